@@ -1,0 +1,114 @@
+# Sourced by bench, tests/run and .ci/run, which set `root` (the repository) and `program` (their name in messages).
+# Everything here writes to stderr only: stdout belongs to the program that is started in the end.
+
+say() { printf '%s: %s\n' "$program" "$*" >&2; }
+
+fail() {
+  say "$@"
+  exit 2
+}
+
+# quietly COMMAND...: shows what the command printed only if it fails.
+quietly() {
+  local output
+  output=$("$@" 2>&1 </dev/null) && return
+  printf '%s\n' "$output" >&2
+  return 1
+}
+
+# locked FOLDER COMMAND...: only one process at a time does something to the folder.
+locked() {
+  local folder=$1
+  shift
+  mkdir -p "$folder" || fail "cannot create $folder"
+  (flock 9 && "$@") 9<"$folder"
+}
+
+# ---- Debian packages ----
+
+package_list=$root/configs/debian-packages.txt
+
+# packages SECTION...: what these sections of the list hold.
+packages() {
+  awk -v sections="$*" '
+    { sub(/#.*/, "") }
+    /^\[/ { wanted = index(" " sections " ", " " substr($1, 2, length($1) - 2) " "); next }
+    wanted && NF { print $1 }' "$package_list"
+}
+
+missing_packages() {
+  comm -23 <(packages "$@" | sort) <(packages "$@" |
+    xargs dpkg-query --show --showformat '${db:Status-Status} ${Package}\n' 2>/dev/null |
+    sed -n 's/^installed //p' | sort -u)
+}
+
+# The package lists of a bare machine are empty or old: an attempt that failed is repeated after an update.
+install_packages() {
+  local install=(apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 "$@")
+  export DEBIAN_FRONTEND=noninteractive
+  quietly "${install[@]}" 2>/dev/null || { quietly apt-get update && quietly "${install[@]}"; }
+}
+
+# ensure_packages SECTION...: installs what is missing, or says what to type and ends the script.
+ensure_packages() {
+  if ! [[ -e /etc/debian_version ]] || ! command -v dpkg-query >/dev/null; then
+    say "not a Debian system: going on without looking for the packages in configs/debian-packages.txt"
+    return
+  fi
+  locked "$root/build" ensure_debian_packages "$@" || exit 2
+}
+
+ensure_debian_packages() {
+  local missing
+  mapfile -t missing < <(missing_packages "$@")
+  ((${#missing[@]})) || return 0
+  say "missing Debian packages: ${missing[*]}"
+  local by_hand="apt-get install -y --no-install-recommends ${missing[*]}"
+  if ((EUID != 0)); then
+    say "install them, then run this again:"
+    printf 'sudo %s\n' "$by_hand" >&2
+    return 2
+  fi
+  say "installing them ..."
+  install_packages "${missing[@]}" || { say "that failed; by hand: $by_hand"; return 2; }
+}
+
+# ---- Build ----
+
+cpu_features() { grep -m1 -E '^(flags|Features)' /proc/cpuinfo 2>/dev/null | cksum; }
+
+# A build folder that was copied along with the repository refers to another source folder or, because of -march=native,
+# another kind of processor. Without these files everything in it is made anew.
+forget_foreign_build() {
+  local dir=$1 home
+  [[ -e $dir/CMakeCache.txt ]] || return 0
+  home=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$dir/CMakeCache.txt")
+  if ! [[ $home -ef $root ]] || { [[ -e $dir/.cpu ]] && [[ $(<"$dir/.cpu") != "$(cpu_features)" ]]; }; then
+    rm -f "$dir"/{CMakeCache.txt,build.ninja,.ninja_log,.ninja_deps,.cpu,bench}
+  fi
+}
+
+# configure FOLDER PRESET [CMAKE_ARGUMENT...]
+configure() {
+  local dir=$1 preset=$2 fresh=()
+  shift 2
+  [[ -e $dir/build.ninja ]] || fresh=(--fresh)  # no leftovers of a configuration that failed
+  quietly cmake -S "$root" --preset "$preset" -B "$dir" "${fresh[@]}" "$@" || return
+  cpu_features >"$dir/.cpu"
+}
+
+# compile FOLDER TARGET: announces itself, unless there is nothing to do.
+compile() {
+  local dir=$1 target=$2 message='building what changed ...'
+  [[ $(ninja -C "$dir" -n "$target" 2>/dev/null) == *'no work to do'* ]] && return
+  [[ -e $dir/bench ]] || message='building (once, about a minute) ...'
+  say "$message"
+  quietly ninja -C "$dir" "$target"
+}
+
+# build_preset FOLDER PRESET TARGET [CMAKE_ARGUMENT...]: always configures, so that the arguments are in force.
+build_preset() {
+  local dir=$1 preset=$2 target=$3
+  shift 3
+  forget_foreign_build "$dir" && configure "$dir" "$preset" "$@" && compile "$dir" "$target"
+}

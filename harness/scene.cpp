@@ -1,0 +1,172 @@
+#include "scene.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "triangle_collider.h"
+#include "usage_error.h"
+
+namespace harness {
+namespace {
+
+using inextensible::Edge;
+using inextensible::Problem;
+using inextensible::ProblemParts;
+
+std::size_t as_size(double value) { return static_cast<std::size_t>(value); }
+
+// n vertices on a straight horizontal line, vertex 0 pinned, at rest, released.
+Scene build_chain(const SceneParameters& p) {
+  const int n = static_cast<int>(p.at("n"));
+  const double length = p.at("length"), link = length / (n - 1);
+  ProblemParts parts;
+  parts.mass.assign(as_size(n), p.at("mass") / n);
+  parts.pinned = {0};
+  parts.gravity = {0, -p.at("gravity"), 0};
+  Scene scene;
+  scene.start.x.setZero(3, n);
+  scene.start.v.setZero(3, n);
+  Scene::Mirror plane{{0, 0, 1}, {}};
+  for (int i = 0; i < n; ++i) {
+    scene.start.x(0, i) = length * i / (n - 1);
+    plane.image.push_back(i);
+    if (i > 0) {
+      parts.edges.push_back({i - 1, i});
+      parts.rest_length.push_back(link);
+    }
+  }
+  scene.problem = std::make_shared<const Problem>(std::move(parts));
+  scene.duration = p.at("duration");
+  scene.size = length;
+  scene.mirrors.push_back(std::move(plane));
+  scene.conserves_energy = true;
+  return scene;
+}
+
+// n x n vertices, flat and horizontal, above a polygonal sphere that is centred at the origin.
+Scene build_drape(const SceneParameters& p) {
+  const int n = static_cast<int>(p.at("n"));
+  const double side = p.at("side"), l = side / (n - 1);
+  const double height = p.at("radius") + p.at("gap");
+  ProblemParts parts;
+  parts.mass.assign(as_size(n) * as_size(n), p.at("mass") / (n * n));
+  parts.gravity = {0, -p.at("gravity"), 0};
+  Scene scene;
+  scene.start.x.resize(3, n * n);
+  scene.start.v.setZero(3, n * n);
+  Scene::Mirror left_right{{1, 0, 0}, {}}, front_back{{0, 0, 1}, {}};
+  const auto vertex = [n](int i, int j) { return i * n + j; };  // row i along z, column j along x
+  const auto constrain = [&](int a, int b) {
+    parts.edges.push_back({a, b});
+    parts.rest_length.push_back(l);
+  };
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      // (2 j - (n - 1)) is exactly antisymmetric, so that the start is mirror symmetric to the last
+      // bit.
+      scene.start.x.col(vertex(i, j)) << 0.5 * l * (2 * j - (n - 1)), height,
+          0.5 * l * (2 * i - (n - 1));
+      left_right.image.push_back(vertex(i, n - 1 - j));
+      front_back.image.push_back(vertex(n - 1 - i, j));
+      if (j + 1 < n) constrain(vertex(i, j), vertex(i, j + 1));  // weft
+      if (i + 1 < n) constrain(vertex(i, j), vertex(i + 1, j));  // warp
+    }
+  }
+  if (p.at("shear") > 0) {
+    inextensible::Springs shear;
+    for (int i = 0; i + 1 < n; ++i) {
+      for (int j = 0; j + 1 < n; ++j) {
+        shear.edges.push_back({vertex(i, j), vertex(i + 1, j + 1)});
+        shear.edges.push_back({vertex(i, j + 1), vertex(i + 1, j)});
+      }
+    }
+    shear.rest_length.assign(shear.edges.size(), std::sqrt(2.0) * l);
+    shear.stiffness.assign(shear.edges.size(), p.at("shear"));
+    parts.shear = std::move(shear);
+  }
+  if (p.at("radius") > 0) {
+    parts.collider = std::make_shared<const inextensible::TriangleCollider>(
+        inextensible::icosphere(Eigen::Vector3d::Zero(), p.at("radius"),
+                                static_cast<int>(p.at("subdivisions"))),
+        p.at("friction"));
+  }
+  scene.problem = std::make_shared<const Problem>(std::move(parts));
+  scene.duration = p.at("duration");
+  scene.size = side;
+  scene.mirrors = {std::move(left_right), std::move(front_back)};
+  return scene;
+}
+
+const std::vector<SceneType>& table() {
+  static const std::vector<SceneType> rows = {
+      {"chain",
+       "a straight horizontal chain, pinned at one end, released",
+       "n",
+       {{"n", 80, "vertices", 2, 10'000'000, true},
+        {"length", 1, "m", 0, 1e6},
+        {"mass", 1, "total, kg", 0, 1e6},
+        {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
+        {"duration", 1, "s", 0, 1e4}},
+       build_chain},
+      {"drape",
+       "a square of cloth that falls onto a polygonal sphere",
+       "n",
+       {{"n", 71, "vertices along each side", 2, 4000, true},
+        {"side", 1, "m", 0, 1e6},
+        {"mass", 0.2, "total, kg", 0, 1e6},
+        {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
+        {"shear", 0.1, "spring stiffness on both diagonals of each quad, N/m; 0: no springs at all",
+         -1e-300, 1e9},
+        {"radius", 0.25, "of the sphere, m; 0: no collider at all", -1e-300, 1e6},
+        {"subdivisions", 3, "of the icosahedron; 3: 1,280 triangles", 0, 6, true},
+        {"gap", 0.001, "between sphere and cloth at the start, m", -1e-300, 1e6},
+        {"friction", 0.3, "Coulomb coefficient", -1e-300, 1e3},
+        {"duration", 1, "s", 0, 1e4}},
+       build_drape},
+  };
+  return rows;
+}
+
+std::string plain(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+}  // namespace
+
+std::span<const SceneType> scene_types() { return table(); }
+
+const SceneType* find_scene(std::string_view name) {
+  for (const SceneType& type : table()) {
+    if (type.name == name) return &type;
+  }
+  return nullptr;
+}
+
+SceneParameters complete_parameters(const SceneType& type, const SceneParameters& given) {
+  SceneParameters all;
+  std::vector<std::string> names;
+  for (const auto& info : type.parameters) {
+    all[info.name] = info.initial;
+    names.emplace_back(info.name);
+  }
+  for (const auto& [name, value] : given) {
+    if (!all.contains(name))
+      throw unknown_name("parameter of scene " + std::string(type.name), name, names);
+    all[name] = value;
+  }
+  for (const auto& info : type.parameters) {
+    const double value = all[info.name];
+    const bool inside = (info.integer ? value >= info.low : value > info.low) && value <= info.high;
+    if (inside && (!info.integer || value == std::floor(value))) continue;
+    const std::string bound = info.integer ? "a whole number of at least " + plain(info.low)
+                              : info.low == -1e-300 ? "at least 0"
+                                                    : "above " + plain(info.low);
+    throw UsageError("scene " + std::string(type.name) + ": '" + info.name + "' is " +
+                     plain(value) + ", must be " + bound + " and at most " + plain(info.high));
+  }
+  return all;
+}
+
+}  // namespace harness

@@ -1,0 +1,20 @@
+// Bad input: one clear line for the user, exit 2.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace harness {
+
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// "no solver 'fast'; did you mean 'fast_projection'? (known: a, b, c)"
+[[nodiscard]] UsageError unknown_name(std::string_view kind, std::string_view name,
+                                      const std::vector<std::string>& known);
+
+}  // namespace harness

@@ -1,0 +1,43 @@
+// The edges of a problem in elimination order with the solver for their J W J^T: what the
+// projection methods share.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "edge_constraints.h"
+#include "schur_complement.h"
+#include "stepper.h"
+
+namespace inextensible {
+
+class ConstraintSystem {
+ public:
+  // linear_solver: a name of make_spd_solver, or "auto": tridiagonal for a chain, else the fastest
+  // for the size (kernels measures it). Edges are renumbered once, so that no factorization
+  // permutes.
+  ConstraintSystem(const Problem& problem, double strain_limit, std::string_view linear_solver);
+
+  const EdgeConstraints& edges() const { return *edges_; }
+  const SchurComplement& schur() const { return *schur_; }
+  const std::string& solver_name() const { return solver_name_; }
+
+  // Assembles J W J^T at gradients u and factors it; false: not positive definite.
+  bool factor(const Eigen::Matrix3Xd& u, WorkCounters& work);
+  // mu = (J W J^T)^-1 mu.
+  void solve(Eigen::VectorXd& mu, WorkCounters& work);
+
+ private:
+  std::string solver_name_;
+  std::unique_ptr<EdgeConstraints> edges_;
+  std::unique_ptr<SchurComplement> schur_;
+  std::unique_ptr<SpdSolver> solver_;
+};
+
+// A refusal that names the worst edge at x; the status becomes not_finite if that edge's length is
+// not.
+StepResult refuse(Status status, int iterations, const EdgeConstraints& edges, const Positions& x,
+                  const char* detail);
+
+}  // namespace inextensible

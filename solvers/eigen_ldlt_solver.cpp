@@ -1,0 +1,63 @@
+#include "eigen_ldlt_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace inextensible {
+
+EigenLdltSolver::EigenLdltSolver(const SymmetricPattern& pattern, bool indefinite)
+    : indefinite_(indefinite) {
+  if (pattern.triangle != SymmetricPattern::Triangle::upper) {
+    throw std::invalid_argument("eigen_ldlt reads the upper triangle");
+  }
+  const std::vector<double> zeros(static_cast<std::size_t>(pattern.entries()), 0.0);
+  matrix_ = Eigen::Map<const Eigen::SparseMatrix<double>>(pattern.n, pattern.n, pattern.entries(),
+                                                          pattern.column_start.data(),
+                                                          pattern.row_index.data(), zeros.data());
+  ldlt_.analyzePattern(matrix_);
+}
+
+bool EigenLdltSolver::factor() {
+  ldlt_.factorize(matrix_);
+  if (ldlt_.info() != Eigen::Success) return false;
+  d_ = ldlt_.vectorD();  // returned by value: kept
+  const auto bad = [this](double pivot) {
+    return indefinite_ ? !std::isfinite(pivot) : !(pivot > 0);
+  };
+  if (std::any_of(d_.data(), d_.data() + d_.size(), bad)) return false;
+  negative_pivots_ = static_cast<int>((d_.array() < 0).count());
+  if (flops_ == 0) {  // sum of squared column counts: the pattern of L is known after the first
+                      // factorization only
+    const auto& l = ldlt_.matrixL().nestedExpression();
+    for (Eigen::Index j = 0; j < l.outerSize(); ++j) {
+      const double count = 1 + l.outerIndexPtr()[j + 1] - l.outerIndexPtr()[j];
+      flops_ += count * count;
+    }
+  }
+  return true;
+}
+
+void EigenLdltSolver::solve(double* rhs) {
+  const auto& l = ldlt_.matrixL().nestedExpression();
+  const int* start = l.outerIndexPtr();
+  const int* row = l.innerIndexPtr();
+  const double* value = l.valuePtr();
+  const auto n = static_cast<int>(l.outerSize());
+  for (int j = 0; j < n; ++j) {  // L y = b
+    const double y = rhs[j];
+    for (int i = start[j]; i < start[j + 1]; ++i) rhs[row[i]] -= value[i] * y;
+  }
+  for (int j = n - 1; j >= 0; --j) {  // L^T x = D^-1 y
+    double x = rhs[j] / d_[j];
+    for (int i = start[j]; i < start[j + 1]; ++i) x -= value[i] * rhs[row[i]];
+    rhs[j] = x;
+  }
+}
+
+double EigenLdltSolver::factor_nonzeros() const {
+  const auto& l = ldlt_.matrixL().nestedExpression();
+  return static_cast<double>(l.nonZeros() + l.outerSize());
+}
+
+}  // namespace inextensible

@@ -1,0 +1,27 @@
+// Fast projection (Goldenthal et al. 2007, Algorithm 1): steps of least M-norm towards the
+// constraint manifold.
+#pragma once
+
+#include "constraint_system.h"
+
+namespace inextensible {
+
+class FastProjection final : public VelocityFilter {
+ public:
+  struct Settings {
+    double strain_limit = 0.01;
+    int max_iterations = 50;
+    std::string_view linear_solver = "auto";
+  };
+  FastProjection(const Problem& problem, const Settings& settings);
+  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+  const char* linear_solver() const override { return system_.solver_name().c_str(); }
+
+ private:
+  ConstraintSystem system_;
+  int max_iterations_;
+  Eigen::Matrix3Xd u_;  // gradient of C at x_j
+  Eigen::VectorXd mu_;  // C(x_j), then h^2 dlambda
+};
+
+}  // namespace inextensible

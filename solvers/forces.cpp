@@ -1,0 +1,71 @@
+#include "forces.h"
+
+#include <cmath>
+
+namespace inextensible {
+namespace {
+
+// x0 += h^2 W f of each spring: f pulls b towards a with stiffness (|d| - r).
+void add_spring_displacement(const Springs& springs, const std::vector<double>& w,
+                             const Positions& x, double h2, Positions& x0) {
+  const double* p = x.data();
+  double* q = x0.data();
+  for (std::size_t k = 0; k < springs.edges.size(); ++k) {
+    const auto [a, b] = springs.edges[k];
+    const double* pa = p + 3 * a;
+    const double* pb = p + 3 * b;
+    const double d0 = pb[0] - pa[0], d1 = pb[1] - pa[1], d2 = pb[2] - pa[2];
+    const double length = std::sqrt(d0 * d0 + d1 * d1 + d2 * d2);
+    // A spring of length zero has no direction; its force is taken as zero.
+    const double f =
+        length > 0 ? h2 * springs.stiffness[k] * (1 - springs.rest_length[k] / length) : 0;
+    const double fa = f * w[static_cast<std::size_t>(a)], fb = f * w[static_cast<std::size_t>(b)];
+    double* qa = q + 3 * a;
+    double* qb = q + 3 * b;
+    qa[0] += fa * d0;
+    qa[1] += fa * d1;
+    qa[2] += fa * d2;
+    qb[0] -= fb * d0;
+    qb[1] -= fb * d1;
+    qb[2] -= fb * d2;
+  }
+}
+
+}  // namespace
+
+void unconstrained_step(const Problem& problem, const State& state, double h, Positions& x0,
+                        WorkCounters& work) {
+  const Eigen::Vector3d fall = h * h * problem.gravity();
+  const auto& w = problem.inverse_mass();
+  x0 = state.x + h * state.v;
+  x0.colwise() += fall;
+  if (const Springs* shear = problem.shear()) {
+    add_spring_displacement(*shear, w, state.x, h * h, x0);
+    work.spring_evaluations += static_cast<std::int64_t>(shear->edges.size());
+  }
+  for (const int vertex : problem.pinned()) x0.col(vertex) = state.x.col(vertex);
+}
+
+double spring_energy(const Springs& springs, const Positions& x) {
+  double energy = 0;
+  for (std::size_t k = 0; k < springs.edges.size(); ++k) {
+    const auto [a, b] = springs.edges[k];
+    const double elongation = (x.col(b) - x.col(a)).norm() - springs.rest_length[k];
+    energy += 0.5 * springs.stiffness[k] * elongation * elongation;
+  }
+  return energy;
+}
+
+double potential_energy(const Problem& problem, const Positions& x) {
+  const Eigen::Map<const Eigen::VectorXd> mass(problem.mass().data(), problem.vertices());
+  double energy = -problem.gravity().dot(x * mass);
+  if (const Springs* shear = problem.shear()) energy += spring_energy(*shear, x);
+  return energy;
+}
+
+double kinetic_energy(const Problem& problem, const Positions& v) {
+  const Eigen::Map<const Eigen::VectorXd> mass(problem.mass().data(), problem.vertices());
+  return 0.5 * v.colwise().squaredNorm() * mass;
+}
+
+}  // namespace inextensible

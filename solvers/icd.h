@@ -1,0 +1,48 @@
+// Implicit constraint direction (Goldenthal et al. 2007, section 4.1): constraint forces act along
+// J at the end of the step.
+#pragma once
+
+#include "constraint_system.h"
+#include "kkt_system.h"
+#include "stepper.h"
+
+namespace inextensible {
+
+class Icd final : public VelocityFilter {
+ public:
+  struct Settings {
+    double strain_limit = 0.01;
+    int max_iterations = 50;
+    // |F| of every vertex must fall below this times strain_limit times the shortest rest length
+    // (m).
+    double direction_tolerance = 0.1;
+    std::string_view linear_solver = "quasi_definite";
+  };
+  Icd(const Problem& problem, const Settings& settings);
+  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+  const char* linear_solver() const override { return linear_solver_.c_str(); }
+
+ private:
+  void evaluate(const Positions& dx);
+  bool direction(bool convex, WorkCounters& work);
+  bool line_search(WorkCounters& work);
+  StepResult newton(double h, Positions& x, WorkCounters& work);
+
+  const Problem& problem_;
+  EdgeConstraints edges_;
+  KktSystem kkt_;
+  std::string linear_solver_;
+  int max_iterations_;
+  double direction_tolerance_;  // m
+  Eigen::VectorXd mass_;        // scaled by the mean mass, as mu is
+
+  Positions x0_, trial_, dx_, trial_dx_, f_, dp_;  // f_ = M F = M dx + J^T mu
+  Eigen::Matrix3Xd u_;
+  Eigen::VectorXd c_, mu_, trial_mu_, dq_;
+  bool permissible_ = false;
+  double largest_f_ = 0;             // m, over vertices
+  double merit_ = 0;                 // sum of |F|^2 and C^2, m^2
+  Eigen::VectorXd previous_lambda_;  // of the last accepted step, 1/kg-scaled: mu / h^2
+};
+
+}  // namespace inextensible

@@ -1,0 +1,224 @@
+#include "registry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "dense_reference.h"
+#include "fast_projection.h"
+#include "gauss_seidel.h"
+#include "icd.h"
+#include "implicit_springs.h"
+#include "jacobi.h"
+#include "shake.h"
+#include "unconstrained.h"
+
+namespace inextensible {
+namespace {
+
+using Shared = std::shared_ptr<const Problem>;
+
+// Settings are complete and checked when they reach a factory (make_stepper).
+double number(const BackendOptions& options, const char* name) {
+  return std::get<double>(options.settings.at(name));
+}
+int integer(const BackendOptions& options, const char* name) {
+  return static_cast<int>(number(options, name));
+}
+const std::string& word(const BackendOptions& options, const char* name) {
+  return std::get<std::string>(options.settings.at(name));
+}
+
+template <class Filter, class... Arguments>
+std::unique_ptr<Stepper> filter_stepper(Shared problem, const Arguments&... arguments) {
+  auto filter = std::make_unique<Filter>(*problem, arguments...);
+  return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
+}
+
+std::unique_ptr<Stepper> make_implicit_springs(Shared problem, const BackendOptions& o) {
+  return std::make_unique<ImplicitSprings>(
+      std::move(problem), ImplicitSprings::Settings{
+                              number(o, "stiffness"), o.strain_limit, integer(o, "max_iterations"),
+                              number(o, "newton_tolerance"), word(o, "linear_solver")});
+}
+
+std::unique_ptr<Stepper> make_jacobi(Shared problem, const BackendOptions& o) {
+  return filter_stepper<Jacobi>(std::move(problem),
+                                Jacobi::Settings{o.strain_limit, integer(o, "max_iterations"),
+                                                 number(o, "target"), number(o, "relaxation")});
+}
+
+std::unique_ptr<Stepper> make_gauss_seidel(Shared problem, const BackendOptions& o) {
+  return filter_stepper<GaussSeidel>(
+      std::move(problem), GaussSeidel::Settings{o.strain_limit, integer(o, "max_iterations"),
+                                                number(o, "target"), o.seed});
+}
+
+std::unique_ptr<Stepper> make_shake(Shared problem, const BackendOptions& o) {
+  return filter_stepper<Shake>(
+      std::move(problem),
+      Shake::Settings{o.strain_limit, integer(o, "max_iterations"), word(o, "linear_solver")});
+}
+
+std::unique_ptr<Stepper> make_icd(Shared problem, const BackendOptions& o) {
+  return filter_stepper<Icd>(
+      std::move(problem),
+      Icd::Settings{o.strain_limit, integer(o, "max_iterations"), number(o, "direction_tolerance"),
+                    word(o, "linear_solver")});
+}
+
+std::unique_ptr<Stepper> make_fast_projection(Shared problem, const BackendOptions& o) {
+  return filter_stepper<FastProjection>(
+      std::move(problem), FastProjection::Settings{o.strain_limit, integer(o, "max_iterations"),
+                                                   word(o, "linear_solver")});
+}
+
+std::unique_ptr<Stepper> make_null(Shared problem, const BackendOptions&) {
+  return filter_stepper<Unconstrained>(std::move(problem));
+}
+
+std::unique_ptr<Stepper> make_reference(Shared problem, const BackendOptions&) {
+  return filter_stepper<DenseReference>(std::move(problem));
+}
+
+const SettingInfo newton_iterations{"max_iterations", 50.0,
+                                    "iterations a step before it is refused"};
+const SettingInfo sweeps{"max_iterations", 1e5, "sweeps a step before it is refused"};
+const SettingInfo target{
+    "target", 0.0, "a corrected edge is brought to this fraction of the strain limit, 0 to 1"};
+const SettingInfo spd_solver{
+    "linear_solver",
+    "auto",
+    "factorization of J W J^T",
+    {"auto", "tridiagonal", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}};
+
+const std::vector<Backend>& table() {
+  static const std::vector<Backend> rows = {
+      {"implicit_springs",
+       "backward Euler on stiff springs, Newton with line search",
+       Knob::stiffness,
+       true,
+       {{"stiffness", 1e4, "spring stiffness EA in N; sweeps search it"},
+        {"max_iterations", 100.0, "Newton iterations a step before it is refused"},
+        {"newton_tolerance", 0.1, "last Newton step, in strain limit times shortest rest length"},
+        {"linear_solver",
+         "auto",
+         "factorization of the Hessian",
+         {"auto", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}}},
+       make_implicit_springs},
+      {"jacobi",
+       "strain limiting, all edges at once and averaged",
+       Knob::strain_limit,
+       true,
+       {sweeps, target, {"relaxation", 1.8, "times the averaged correction, above 0 and below 2"}},
+       make_jacobi},
+      {"gauss_seidel",
+       "strain limiting, edge after edge in random order",
+       Knob::strain_limit,
+       true,
+       {sweeps, target},
+       make_gauss_seidel},
+      {"shake",
+       "constraint direction from the start of the step",
+       Knob::strain_limit,
+       true,
+       {newton_iterations, spd_solver},
+       make_shake},
+      {"icd",
+       "implicit constraint direction: positions and multipliers together",
+       Knob::strain_limit,
+       true,
+       {newton_iterations,
+        {"direction_tolerance", 0.1,
+         "largest |F| of a vertex, in strain limit times shortest rest length"},
+        {"linear_solver",
+         "quasi_definite",
+         "factorization of the KKT matrix",
+         {"quasi_definite", "umfpack"}}},
+       make_icd},
+      {"fast_projection",
+       "Algorithm 1 of Goldenthal et al. 2007",
+       Knob::strain_limit,
+       true,
+       {newton_iterations, spd_solver},
+       make_fast_projection},
+      {"null",
+       "unconstrained step only: what the scene and the harness cost",
+       Knob::none,
+       false,
+       {},
+       make_null},
+      {"reference",
+       "dense Newton to 1e-12, small problems: the oracle of the tests",
+       Knob::none,
+       false,
+       {},
+       make_reference},
+  };
+  return rows;
+}
+
+std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }
+
+// The backend's settings with the given ones put in, checked.
+Settings complete(const Backend& backend, const Settings& given) {
+  Settings all;
+  for (const SettingInfo& info : backend.settings) {
+    if (const auto* text = std::get_if<const char*>(&info.initial)) {
+      all[info.name] = std::string(*text);
+    } else {
+      all[info.name] = std::get<double>(info.initial);
+    }
+  }
+  for (const auto& [name, value] : given) {
+    const auto place = all.find(name);
+    const std::string where = "solver " + quoted(backend.name) + ": setting " + quoted(name);
+    if (place == all.end()) throw std::invalid_argument(where + " does not exist");
+    if (place->second.index() != value.index()) {
+      throw std::invalid_argument(where +
+                                  (value.index() == 0 ? " must be a word" : " must be a number"));
+    }
+    const SettingInfo& info =
+        *std::find_if(backend.settings.begin(), backend.settings.end(),
+                      [&name = name](const SettingInfo& s) { return name == s.name; });
+    if (const auto* number = std::get_if<double>(&value)) {
+      if (!std::isfinite(*number) || *number < 0)
+        throw std::invalid_argument(where + " must be finite and not negative");
+    } else if (const auto& text = std::get<std::string>(value);
+               std::find(info.choices.begin(), info.choices.end(), text) == info.choices.end()) {
+      std::string choices;
+      for (const char* choice : info.choices) {
+        if (!choices.empty()) choices += ", ";
+        choices += choice;
+      }
+      throw std::invalid_argument(where + " is " + quoted(text) + ", must be one of: " + choices);
+    }
+    place->second = value;
+  }
+  return all;
+}
+
+}  // namespace
+
+std::span<const Backend> backends() { return table(); }
+
+const Backend* find_backend(std::string_view name) {
+  const auto place = std::find_if(table().begin(), table().end(),
+                                  [name](const Backend& b) { return b.name == name; });
+  return place == table().end() ? nullptr : &*place;
+}
+
+std::unique_ptr<Stepper> make_stepper(std::string_view name, Shared problem,
+                                      const BackendOptions& options) {
+  const Backend* backend = find_backend(name);
+  if (!backend) throw std::invalid_argument("no solver " + quoted(name));
+  if (!(options.strain_limit > 0) || !std::isfinite(options.strain_limit)) {
+    throw std::invalid_argument("strain limit is " + std::to_string(options.strain_limit) +
+                                ", must be positive");
+  }
+  BackendOptions resolved = options;
+  resolved.settings = complete(*backend, options.settings);
+  return backend->make(std::move(problem), resolved);
+}
+
+}  // namespace inextensible

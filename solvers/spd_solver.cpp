@@ -1,0 +1,40 @@
+#include "spd_solver.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "cholmod_solver.h"
+#include "eigen_ldlt_solver.h"
+#include "tridiagonal_solver.h"
+
+namespace inextensible {
+
+bool SymmetricPattern::tridiagonal() const {
+  for (int column = 0; column < n; ++column) {
+    const auto c = static_cast<std::size_t>(column);
+    for (int i = column_start[c]; i < column_start[c + 1]; ++i) {
+      const int distance = row_index[static_cast<std::size_t>(i)] - column;
+      if (distance < -1 || distance > 1) return false;
+    }
+  }
+  return true;
+}
+
+SymmetricPattern::Triangle triangle_of(std::string_view solver) {
+  // CHOLMOD's supernodal code transposes an upper triangle at every factorization; the up-looking
+  // codes a lower one.
+  return solver == "cholmod_supernodal" ? SymmetricPattern::Triangle::lower
+                                        : SymmetricPattern::Triangle::upper;
+}
+
+std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern) {
+  if (name == "tridiagonal") return std::make_unique<TridiagonalSolver>(pattern);
+  if (name == "eigen_ldlt") return std::make_unique<EigenLdltSolver>(pattern);
+  if (name == "cholmod_simplicial")
+    return std::make_unique<CholmodSolver>(std::move(pattern), false);
+  if (name == "cholmod_supernodal")
+    return std::make_unique<CholmodSolver>(std::move(pattern), true);
+  throw std::invalid_argument("no linear solver '" + std::string(name) + "'");
+}
+
+}  // namespace inextensible

@@ -1,0 +1,54 @@
+// Linear solvers for symmetric positive definite systems that are factored many times with one
+// pattern.
+#pragma once
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+namespace inextensible {
+
+// The pattern of a symmetric n x n matrix: one triangle in compressed columns, row indices
+// ascending.
+struct SymmetricPattern {
+  enum class Triangle { lower, upper };
+  int n = 0;
+  Triangle triangle = Triangle::upper;
+  std::vector<int> column_start;  // n + 1 entries
+  std::vector<int> row_index;     // column_start[n] entries
+
+  int entries() const { return static_cast<int>(row_index.size()); }
+  // Whether every entry lies on the diagonal or beside it.
+  bool tridiagonal() const;
+};
+
+// Use: write the matrix to values() in the pattern's order, factor(), solve() any number of times.
+// The matrix is factored in its own order; permute it first (fill_reducing_order).
+class SpdSolver {
+ public:
+  SpdSolver() = default;
+  virtual ~SpdSolver() = default;
+  SpdSolver(const SpdSolver&) = delete;
+  SpdSolver& operator=(const SpdSolver&) = delete;
+
+  virtual double* values() = 0;  // entries() numbers, in the pattern's order
+  virtual bool factor() = 0;     // false: not positive definite (or not finite)
+  virtual void solve(
+      double* rhs) = 0;  // n numbers, overwritten by the solution; after a successful factor()
+  virtual double factor_nonzeros() const = 0;
+  virtual double factor_flops() const = 0;  // of one factorization
+};
+
+// The triangle that the named solver reads.
+SymmetricPattern::Triangle triangle_of(std::string_view solver);
+
+// name: tridiagonal (tridiagonal patterns only), eigen_ldlt, cholmod_simplicial,
+// cholmod_supernodal. Throws std::invalid_argument for another name or a pattern that the solver
+// cannot take.
+std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern);
+
+// An elimination order with little fill: order[i] is the row that comes i-th. The better of AMD and
+// METIS nested dissection by CHOLMOD's own count of nonzeros, postordered.
+std::vector<int> fill_reducing_order(const SymmetricPattern& pattern);
+
+}  // namespace inextensible

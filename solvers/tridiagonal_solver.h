@@ -1,0 +1,25 @@
+// L D L^T of a symmetric tridiagonal matrix (Golub and Van Loan, Matrix Computations,
+// section 4.3.6): O(n), no pivoting.
+#pragma once
+
+#include "spd_solver.h"
+
+namespace inextensible {
+
+class TridiagonalSolver final : public SpdSolver {
+ public:
+  // The pattern must hold every diagonal entry and every one beside it (zeros are stored).
+  explicit TridiagonalSolver(const SymmetricPattern& pattern);
+  double* values() override { return values_.data(); }
+  bool factor() override;
+  void solve(double* rhs) override;
+  double factor_nonzeros() const override { return 2.0 * n_ - 1; }
+  double factor_flops() const override { return 3.0 * n_; }
+
+ private:
+  int n_;
+  std::vector<double> values_;         // upper triangle: d_0, (e_1, d_1), (e_2, d_2), ...
+  std::vector<double> l_, inverse_d_;  // unit lower bidiagonal factor and 1 / D
+};
+
+}  // namespace inextensible

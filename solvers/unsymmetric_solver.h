@@ -1,0 +1,28 @@
+// LU of general sparse matrices with one pattern: UMFPACK (Davis 2004), or LAPACK's tridiagonal LU
+// where that fits.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+namespace inextensible {
+
+class UnsymmetricSolver {
+ public:
+  UnsymmetricSolver() = default;
+  virtual ~UnsymmetricSolver() = default;
+  UnsymmetricSolver(const UnsymmetricSolver&) = delete;
+  UnsymmetricSolver& operator=(const UnsymmetricSolver&) = delete;
+
+  virtual double* values() = 0;         // in compressed-column order
+  virtual bool factor() = 0;            // false: singular to working precision, or not finite
+  virtual void solve(double* rhs) = 0;  // overwritten by the solution; after a successful factor()
+  virtual double factor_nonzeros() const = 0;  // of L + U
+  virtual double factor_flops() const = 0;
+};
+
+// Square, compressed columns, rows ascending. Tridiagonal patterns get the tridiagonal solver.
+std::unique_ptr<UnsymmetricSolver> make_unsymmetric_solver(std::vector<int> column_start,
+                                                           std::vector<int> row_index);
+
+}  // namespace inextensible
