@@ -107,7 +107,11 @@ const std::vector<SceneType>& table() {
         {"mass", 1, "total, kg", 0, 1e6},
         {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
         {"duration", 1, "s", 0, 1e4}},
-       build_chain},
+       build_chain,
+       [](const SceneParameters& p) {
+         const int n = static_cast<int>(p.at("n"));
+         return std::pair(n, n - 1);
+       }},
       {"drape",
        "a square of cloth that falls onto a polygonal sphere",
        "n",
@@ -122,7 +126,11 @@ const std::vector<SceneType>& table() {
         {"gap", 0.001, "between sphere and cloth at the start, m", -1e-300, 1e6},
         {"friction", 0.3, "Coulomb coefficient", -1e-300, 1e3},
         {"duration", 1, "s", 0, 1e4}},
-       build_drape},
+       build_drape,
+       [](const SceneParameters& p) {
+         const int n = static_cast<int>(p.at("n"));
+         return std::pair(n * n, 2 * n * (n - 1));
+       }},
   };
   return rows;
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "problem.h"
@@ -44,6 +45,8 @@ struct SceneType {
   const char* resolution;  // the parameter that a resolution sweep turns
   std::vector<SceneParameterInfo> parameters;
   Scene (*build)(const SceneParameters& complete);
+  // Vertices and constraints, without building anything.
+  std::pair<int, int> (*counts)(const SceneParameters& complete);
 };
 
 std::span<const SceneType> scene_types();

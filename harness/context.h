@@ -1,0 +1,17 @@
+// Where and with what the numbers came about: machine, build, libraries.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+namespace harness {
+
+// Google Benchmark's keys, and "build", "libraries", "fingerprint" (equal for builds whose counters
+// may be compared).
+nlohmann::json machine_context();
+
+// One BLAS thread, whatever the environment says: a comparison of methods, not of thread pools.
+void use_one_blas_thread();
+
+const char* version();
+
+}  // namespace harness

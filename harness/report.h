@@ -1,0 +1,38 @@
+// What a person sees in the terminal: progress while a sweep runs (stderr), a table at its end
+// (stdout).
+#pragma once
+
+#include <chrono>
+#include <ostream>
+#include <vector>
+
+#include "sweep.h"
+
+namespace harness {
+
+class Progress {
+ public:
+  // terminal: one line that is rewritten; otherwise one line a point.
+  Progress(std::ostream& out, bool terminal);
+  void point(const PointResult& point, std::size_t search, std::size_t searches);
+  void repetition(std::size_t done, std::size_t all);
+  void finish();
+
+ private:
+  void bar(double fraction, const std::string& text);
+
+  std::ostream& out_;
+  bool terminal_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::size_t points_ = 0;
+  std::size_t width_ = 0;
+};
+
+// Per scene and sweep: solvers by limit or resolution, best seconds per simulated second and its
+// step; failures by name.
+void print_table(std::ostream& out, const std::vector<PointResult>& points);
+
+// "12 ms", "1.4 s", "2 min 5 s"
+std::string duration_text(double seconds);
+
+}  // namespace harness

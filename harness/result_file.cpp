@@ -1,0 +1,166 @@
+#include "result_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "context.h"
+#include "usage_error.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+
+// Non-finite numbers are not written to JSON.
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json seconds_json(const std::vector<double>& samples) {
+  if (samples.empty()) return nullptr;
+  return {{"median", quantile(samples, 0.5)},
+          {"min", quantile(samples, 0)},
+          {"q1", quantile(samples, 0.25)},
+          {"q3", quantile(samples, 0.75)},
+          {"samples", samples}};
+}
+
+json work_json(const PointResult& point) {
+  const auto& w = point.work;
+  return {{"steps", w.steps},
+          {"rejected_steps", w.rejected_steps},
+          {"iterations", w.iterations},
+          {"assemblies", w.assemblies},
+          {"factorizations", w.factorizations},
+          {"back_solves", w.back_solves},
+          {"edge_projections", w.edge_projections},
+          {"line_search_steps", w.line_search_steps},
+          {"spring_evaluations", w.spring_evaluations},
+          {"triangle_tests", w.triangle_tests},
+          {"contacts", w.contacts},
+          {"factor_nonzeros", w.factor_nonzeros},
+          {"factor_flops", w.factor_flops},
+          {"calibration_runs", point.calibration_runs}};
+}
+
+// One entry a repetition, in Google Benchmark's own format; compare.py reads them.
+void add_benchmarks(json& list, const PointResult& point, int family) {
+  for (std::size_t i = 0; i < point.samples.size(); ++i) {
+    const double microseconds = point.samples[i] * 1e6;
+    list.push_back({{"name", point.spec.id()},
+                    {"run_name", point.spec.id()},
+                    {"run_type", "iteration"},
+                    {"family_index", family},
+                    {"per_family_instance_index", 0},
+                    {"repetitions", point.samples.size()},
+                    {"repetition_index", i},
+                    {"threads", 1},
+                    {"iterations", 1},
+                    {"real_time", microseconds},
+                    {"cpu_time", microseconds},
+                    {"time_unit", "us"}});
+  }
+}
+
+}  // namespace
+
+json to_json(const PointResult& point) {
+  const PointSpec& spec = point.spec;
+  const Verdict& v = point.verdict;
+  json options = to_json(spec.settings);
+  if (point.stiffness) options["stiffness"] = *point.stiffness;
+  if (!point.linear_solver.empty()) options["linear_solver"] = point.linear_solver;
+  return {
+      {"id", spec.id()},
+      {"sweep", spec.sweep},
+      {"scene", spec.scene},
+      {"solver", spec.solver},
+      {"options", options},
+      {"scene_parameters", spec.scene_parameters},
+      {"resolution", spec.resolution},
+      {"vertices", spec.vertices},
+      {"constraints", spec.constraints},
+      {"strain_limit", spec.strain_limit},
+      {"step", spec.step},
+      {"duration", spec.scene_parameters.at("duration")},
+      {"seed", spec.seed},
+      {"status", to_string(point.status)},
+      {"status_detail", point.detail},
+      {"seconds_per_simulated_second", seconds_json(point.samples)},
+      {"setup_seconds", point.setup_seconds},
+      {"calibration_seconds", point.calibration_seconds},
+      {"phases",
+       {{"unconstrained", point.phases.unconstrained},
+        {"filter", point.phases.filter},
+        {"collision", point.phases.collision}}},
+      {"max_strain", number(v.max_strain)},
+      {"max_stretch", number(v.max_stretch)},
+      {"p99_strain", number(v.p99_strain)},
+      {"rms_strain", number(v.rms_strain)},
+      {"max_strain_after_collision", number(v.max_strain_after_collision)},
+      {"kinetic_energy_mean", number(v.kinetic_energy_mean)},
+      {"error",
+       {{"energy_drift", number(v.energy_drift)}, {"symmetry_defect", number(v.symmetry_defect)}}},
+      {"work", work_json(point)},
+      {"peak_rss_bytes", point.peak_rss_bytes},
+      {"best", point.best}};
+}
+
+json result_document(const Suite& suite, const std::vector<std::string>& command, bool complete,
+                     const std::vector<PointResult>& points) {
+  json context = machine_context();
+  context["command"] = command;
+  context["suite"] = to_json(suite);
+  context["seed"] = suite.seed;
+  json list = json::array(), benchmarks = json::array();
+  int family = 0;
+  for (const PointResult& point : points) {
+    list.push_back(to_json(point));
+    if (point.ok()) add_benchmarks(benchmarks, point, family++);
+  }
+  return {{"schema", "inextensible-bench/1"},
+          {"complete", complete},
+          {"context", context},
+          {"points", list},
+          {"references", json::array()},
+          {"benchmarks", benchmarks}};
+}
+
+void check_writable(const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path target(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw UsageError("cannot make the folder '" + folder.string() + "': " + error.message());
+  if (fs::is_directory(target)) throw UsageError("'" + path + "' is a folder; --out names a file");
+  const std::string trial = path + ".partial";
+  const int file = open(trial.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+  if (file < 0) throw UsageError("cannot write '" + path + "': " + std::strerror(errno));
+  close(file);
+  unlink(trial.c_str());
+}
+
+void write_atomically(const std::string& path, const std::string& text) {
+  const std::string trial = path + ".partial";
+  const auto fail = [&] {
+    throw std::runtime_error("cannot write '" + trial + "': " + std::strerror(errno));
+  };
+  const int file = open(trial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) fail();
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t written = write(file, text.data() + done, text.size() - done);
+    if (written < 0) {
+      close(file);
+      fail();
+    }
+    done += static_cast<std::size_t>(written);
+  }
+  if (fsync(file) != 0 || close(file) != 0 || rename(trial.c_str(), path.c_str()) != 0) fail();
+}
+
+}  // namespace harness

@@ -1,0 +1,24 @@
+// The result file, schema inextensible-bench/1 (configs/result.schema.json).
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "point.h"
+#include "suite.h"
+
+namespace harness {
+
+nlohmann::json to_json(const PointResult& point);
+nlohmann::json result_document(const Suite& suite, const std::vector<std::string>& command,
+                               bool complete, const std::vector<PointResult>& points);
+
+// Throws UsageError unless a file can be made at `path`; makes missing folders. Nothing is left
+// behind.
+void check_writable(const std::string& path);
+
+// Written beside, synced and renamed: the old file or the new one is there, never half of one.
+void write_atomically(const std::string& path, const std::string& text);
+
+}  // namespace harness

@@ -1,0 +1,293 @@
+#include "runner.h"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_roots.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <new>
+#include <sstream>
+
+#include "judge.h"
+
+namespace harness {
+namespace {
+
+using inextensible::Status;
+using Clock = std::chrono::steady_clock;
+
+constexpr double diverged_strain = 10;
+constexpr int sampled_instants = 100;  // a run, for statistics that need sorting
+
+double since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Peak resident size of this process since the last reset; 0 where the system does not tell.
+void reset_peak_rss() { std::ofstream("/proc/self/clear_refs") << 5; }
+double peak_rss_bytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) return 1024 * std::stod(line.substr(6));
+  }
+  return 0;
+}
+
+struct Run {
+  PointStatus status = PointStatus::ok;
+  std::string detail;
+  double seconds = 0;  // of stepping alone
+  Verdict verdict;
+  std::unique_ptr<inextensible::Stepper> stepper;
+  double setup_seconds = 0;
+};
+
+std::string refusal(const inextensible::StepResult& result, int step, double h) {
+  std::ostringstream text;
+  text << "step " << step << " (t = " << step * h
+       << " s): " << inextensible::to_string(result.status) << ", " << result.detail << " after "
+       << result.iterations << " iterations";
+  if (result.worst_edge >= 0 && std::isfinite(result.worst_strain)) {
+    text << "; edge " << result.worst_edge << " strained by " << result.worst_strain;
+  }
+  return text.str();
+}
+
+// Scenes are the same for every run of a point; the stepper is made anew each time.
+class PointRunner {
+ public:
+  PointRunner(const PointSpec& spec, const RunLimits& limits)
+      : spec_(spec),
+        limits_(limits),
+        start_(Clock::now()),
+        scene_(find_scene(spec.scene)->build(spec.scene_parameters)),
+        backend_(*inextensible::find_backend(spec.solver)),
+        steps_(static_cast<int>(std::lround(scene_.duration / spec.step))) {}
+
+  // stop_at: the run is cut short once its strain exceeds this.
+  Run run(const inextensible::Settings& settings, bool judged, double stop_at) const {
+    Run run;
+    const auto setup = Clock::now();
+    run.stepper = inextensible::make_stepper(spec_.solver, scene_.problem,
+                                             {spec_.strain_limit, spec_.seed, settings});
+    run.setup_seconds = since(setup);
+    Judge judge(scene_, steps_ / sampled_instants);
+    inextensible::State state = scene_.start;
+    for (int i = 0; i < steps_; ++i) {
+      const auto before = Clock::now();
+      const auto result = run.stepper->advance(state, spec_.step);
+      run.seconds += since(before);
+      if (!result) {
+        run.status = result.status == Status::not_finite ? PointStatus::diverged
+                                                         : PointStatus::not_converged;
+        run.detail = refusal(result, i, spec_.step);
+        break;
+      }
+      if (judged) {
+        const double strain = judge.look(run.stepper->filtered_positions(), state);
+        if (backend_.knob != inextensible::Knob::none && !(strain <= stop_at)) {
+          run.status =
+              !(strain <= diverged_strain) ? PointStatus::diverged : PointStatus::strain_missed;
+          run.detail = "strain " + std::to_string(strain) + " at step " + std::to_string(i);
+          break;
+        }
+      }
+      if (limits_.interrupted && limits_.interrupted()) throw Interrupted();
+      const bool slow = run.seconds > limits_.hopeless;
+      if ((slow || since(start_) > limits_.timeout) && i + 1 < steps_) {
+        std::ostringstream text;
+        text << "longer than " << (slow ? limits_.hopeless : limits_.timeout) << " s"
+             << (slow ? ", several times the best step's time" : "")
+             << "; stopped at t = " << (i + 1) * spec_.step << " s";
+        run.status = PointStatus::timeout;
+        run.detail = text.str();
+        break;
+      }
+    }
+    run.verdict = judge.verdict();
+    const bool missed = !(run.verdict.max_strain <= spec_.strain_limit * (1 + 1e-9));
+    if (judged && run.status == PointStatus::ok && missed &&
+        backend_.knob != inextensible::Knob::none) {
+      run.status = PointStatus::strain_missed;
+      run.detail = "maximum strain " + std::to_string(run.verdict.max_strain);
+    }
+    return run;
+  }
+
+  bool out_of_time() const { return since(start_) > limits_.timeout; }
+  const inextensible::Backend& backend() const { return backend_; }
+  const PointSpec& spec() const { return spec_; }
+  int steps() const { return steps_; }
+  double weight() const {
+    double mass = 0;
+    for (const double m : scene_.problem->mass()) mass += m;
+    return mass * scene_.problem->gravity().norm();
+  }
+
+ private:
+  const PointSpec& spec_;
+  const RunLimits& limits_;
+  Clock::time_point start_;
+  Scene scene_;
+  const inextensible::Backend& backend_;
+  int steps_;
+};
+
+// Finds the stiffness EA at which the run's own maximum strain just meets the limit: Brent's method
+// (GSL) on log strain / limit over log EA, bracketed from a guess. Runs far above the limit are cut
+// short at twice the limit.
+class Calibration {
+ public:
+  explicit Calibration(const PointRunner& runner) : runner_(runner) {}
+
+  // The softest stiffness tried that met the limit; none if there is none (status() then says why).
+  std::optional<double> find(double guess) {
+    double soft = std::log10(guess), f_soft = excess(soft);
+    double stiff = soft, f_stiff = f_soft;
+    const double stride = 0.4;
+    for (int i = 0; f_soft <= 0 && i < 12 && !done(f_soft) && alive(); ++i) {
+      stiff = soft;
+      f_stiff = f_soft;
+      soft -= stride * (i + 1);
+      f_soft = excess(soft);
+    }
+    for (int i = 0; f_stiff > 0 && i < 12 && alive(); ++i) {
+      soft = stiff;
+      f_soft = f_stiff;
+      stiff += stride * (i + 1);
+      f_stiff = excess(stiff);
+    }
+    if (alive() && !best_close() && f_soft > 0 && f_stiff <= 0) brent(soft, stiff);
+    return best_;
+  }
+
+  int runs() const { return runs_; }
+  PointStatus status() const { return status_; }
+  const std::string& detail() const { return detail_; }
+
+ private:
+  static constexpr double close_enough = 0.85;  // of the limit
+  static constexpr int run_limit = 16;
+
+  static bool done(double f) { return f <= 0 && f >= std::log(close_enough); }
+  bool best_close() const { return best_ && best_excess_ >= std::log(close_enough); }
+  bool alive() const { return runs_ < run_limit && !runner_.out_of_time(); }
+
+  // log(max strain / limit); a run that fails counts as far above.
+  double excess(double log_stiffness) {
+    const auto [known, fresh] = known_.try_emplace(log_stiffness, 0.0);
+    if (fresh) known->second = evaluate(log_stiffness);
+    return known->second;
+  }
+
+  double evaluate(double log_stiffness) {
+    const double limit = runner_.spec().strain_limit;
+    inextensible::Settings settings = runner_.spec().settings;
+    settings["stiffness"] = std::pow(10, log_stiffness);
+    ++runs_;
+    const Run run = runner_.run(settings, true, 2 * limit);
+    const bool finished = run.status == PointStatus::ok || run.status == PointStatus::strain_missed;
+    if (!finished) {
+      status_ = run.status;
+      detail_ = "calibration, " + run.detail;
+      return std::log(2.0);
+    }
+    const double f = std::log(std::max(run.verdict.max_strain, 1e-300) / limit);
+    if (f <= 0 && (!best_ || log_stiffness < std::log10(*best_))) {
+      best_ = std::pow(10, log_stiffness);
+      best_excess_ = f;
+    }
+    return f;
+  }
+
+  void brent(double soft, double stiff) {
+    gsl_set_error_handler_off();
+    const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
+        gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
+    // Aims at the middle of the band that is close enough, from the permitted side.
+    gsl_function function{[](double x, void* self) {
+                            return static_cast<Calibration*>(self)->excess(x) -
+                                   0.5 * std::log(close_enough);
+                          },
+                          this};
+    if (gsl_root_fsolver_set(solver.get(), &function, soft, stiff) != GSL_SUCCESS) return;
+    while (alive() && !best_close()) {
+      if (gsl_root_fsolver_iterate(solver.get()) != GSL_SUCCESS) return;
+      if (gsl_root_fsolver_x_upper(solver.get()) - gsl_root_fsolver_x_lower(solver.get()) < 1e-3)
+        return;
+    }
+  }
+
+  const PointRunner& runner_;
+  int runs_ = 0;
+  std::map<double, double> known_;  // Brent's method asks for the bracket's ends again
+  std::optional<double> best_;
+  double best_excess_ = 0;
+  PointStatus status_ = PointStatus::strain_missed;
+  std::string detail_ = "no stiffness keeps the strain within the limit";
+};
+
+void fill(PointResult& point, Run& run) {
+  point.status = run.status;
+  point.detail = run.detail;
+  point.setup_seconds = run.setup_seconds;
+  point.verdict = run.verdict;
+  point.phases = run.stepper->phases();
+  point.work = run.stepper->work();
+  point.linear_solver = run.stepper->linear_solver();
+}
+
+}  // namespace
+
+PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optional<double> guess) {
+  PointResult point;
+  point.spec = spec;
+  reset_peak_rss();
+  try {
+    const PointRunner runner(spec, limits);
+    point.steps_planned = runner.steps();
+    inextensible::Settings settings = spec.settings;
+    if (runner.backend().knob == inextensible::Knob::stiffness && !settings.contains("stiffness")) {
+      const auto begin = Clock::now();
+      Calibration calibration(runner);
+      // Strain = tension / EA, and a falling chain's tension is a few times its weight.
+      point.stiffness = calibration.find(guess.value_or(5 * runner.weight() / spec.strain_limit));
+      point.calibration_seconds = since(begin);
+      point.calibration_runs = calibration.runs();
+      if (!point.stiffness) {
+        point.status = calibration.status();
+        point.detail = calibration.detail();
+        return point;
+      }
+      settings["stiffness"] = *point.stiffness;
+    }
+    RunLimits own = limits;  // the calibrated run has the whole time-out to itself
+    const PointRunner measured(spec, own);
+    Run run = measured.run(settings, true, diverged_strain);
+    fill(point, run);
+    if (point.ok()) point.samples.push_back(run.seconds / (spec.step * measured.steps()));
+  } catch (const std::bad_alloc&) {
+    point.status = PointStatus::out_of_memory;
+    point.detail = "an allocation failed";
+  } catch (const std::invalid_argument& error) {
+    point.status = PointStatus::unsupported;
+    point.detail = error.what();
+  }
+  point.peak_rss_bytes = peak_rss_bytes();
+  return point;
+}
+
+void repeat_point(PointResult& point, const RunLimits& limits) {
+  inextensible::Settings settings = point.spec.settings;
+  if (point.stiffness) settings["stiffness"] = *point.stiffness;
+  const PointRunner runner(point.spec, limits);
+  const Run run = runner.run(settings, false, diverged_strain);
+  if (run.status == PointStatus::ok)
+    point.samples.push_back(run.seconds / (point.spec.step * runner.steps()));
+}
+
+}  // namespace harness

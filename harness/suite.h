@@ -1,0 +1,38 @@
+// A suite: what a sweep runs. Read from JSON (configs/*.json, schema configs/suite.schema.json),
+// strict about keys.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "point.h"
+
+namespace harness {
+
+struct SweepSpec {
+  std::string sweep;  // "strain" or "resolution"
+  std::string scene;
+  std::vector<std::string> solvers;
+  std::vector<double> limits;    // strain sweep: the axis; resolution sweep: one
+  std::vector<int> resolutions;  // resolution sweep: the axis; strain sweep: one
+  double coarsest = 1.0 / 25, finest = 1.0 / 25600;  // s, ends of the step ladder
+  SceneParameters scene_parameters;
+  std::map<std::string, inextensible::Settings> solver_options;
+};
+
+struct Suite {
+  std::string name, description, profile;
+  std::uint64_t seed = 1;
+  int reps = 3;
+  double timeout = 60;  // s a point
+  std::vector<SweepSpec> sweeps;
+};
+
+// Throws UsageError, naming file, key and value, for anything that is not a suite.
+Suite read_suite(const std::string& path);
+nlohmann::json to_json(const Suite& suite);
+
+nlohmann::json to_json(const inextensible::Settings& settings);
+
+}  // namespace harness

@@ -1,0 +1,220 @@
+#include "sweep.h"
+
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "usage_error.h"
+
+namespace harness {
+namespace {
+
+// A run that has stepped for this many times the best one's time cannot be the best; its time has
+// risen.
+constexpr double hopeless_factor = 3;
+constexpr double hopeless_least = 0.2;  // s; shorter runs are always finished
+// Points that take longer than this are not repeated: their spread is small against what they cost.
+constexpr double repeat_up_to = 20;  // s
+
+bool selected(const SweepFilters& filters, const PointSpec& spec) {
+  const std::string id = spec.id();
+  return (!filters.include || std::regex_search(id, *filters.include)) &&
+         (!filters.exclude || !std::regex_search(id, *filters.exclude));
+}
+
+std::vector<double> step_ladder(const SweepSpec& sweep) {
+  std::vector<double> ladder;
+  for (double h = sweep.coarsest; h >= sweep.finest * (1 - 1e-9); h /= 2) ladder.push_back(h);
+  return ladder;
+}
+
+// The step search of measuring.md: from coarse to fine until the time has risen twice in a row;
+// with a neighbour's best step, from there in both directions. A failure counts as a rise, and
+// before the first success as a reason to go finer.
+class StepSearch {
+ public:
+  StepSearch(std::size_t rungs, std::function<PointResult&(std::size_t rung)> run)
+      : rungs_(rungs), run_(std::move(run)) {}
+
+  // The best rung; none if every step failed.
+  std::optional<std::size_t> find(std::optional<std::size_t> start) {
+    const std::size_t first = std::min(start.value_or(0), rungs_ - 1);
+    walk(first, +1);
+    if (first > 0) walk(first - 1, -1);
+    return best_;
+  }
+
+  bool timed_out() const { return timed_out_; }
+
+ private:
+  void walk(std::size_t from, int direction) {
+    int rises = 0, timeouts = 0;
+    for (std::size_t rung = from; rung < rungs_;
+         rung += static_cast<std::size_t>(direction)) {  // wraps below 0
+      const PointResult& point = run_(rung);
+      if (point.ok() && (!best_ || point.median_seconds() < best_seconds_)) {
+        best_ = rung;
+        best_seconds_ = point.median_seconds();
+        rises = 0;
+      } else if (best_ || direction < 0) {
+        ++rises;
+      }
+      if (point.status == PointStatus::timeout) {
+        timed_out_ = true;
+        ++timeouts;
+      }
+      if (rises == 2 || timeouts == 2) return;
+    }
+  }
+
+  std::size_t rungs_;
+  std::function<PointResult&(std::size_t)> run_;
+  std::optional<std::size_t> best_;
+  double best_seconds_ = 0;
+  bool timed_out_ = false;
+};
+
+void repeat_best(const Suite& suite, std::vector<PointResult>& points, const SweepEvents& events,
+                 const SweepRunners& runners) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double seconds =
+        points[i].median_seconds() * points[i].spec.step * points[i].steps_planned;
+    if (points[i].best && seconds <= repeat_up_to) order.push_back(i);
+  }
+  const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
+                                                                 gsl_rng_free);
+  gsl_rng_set(random.get(), suite.seed);
+  const std::size_t all = order.size() * static_cast<std::size_t>(suite.reps - 1);
+  std::size_t done = 0;
+  for (int rep = 1; rep < suite.reps; ++rep) {
+    gsl_ran_shuffle(random.get(), order.data(), order.size(), sizeof(std::size_t));
+    for (const std::size_t i : order) {
+      runners.repeat(points[i], {suite.timeout, 1e300, events.interrupted});
+      events.repetition(++done, all);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
+  std::vector<Search> searches;
+  std::size_t family = 0;
+  for (const SweepSpec& sweep : suite.sweeps) {
+    const SceneType& type = *find_scene(sweep.scene);
+    std::vector<double> limits = sweep.limits;
+    std::sort(limits.rbegin(), limits.rend());  // loose to tight
+    std::vector<int> resolutions = sweep.resolutions;
+    std::sort(resolutions.begin(), resolutions.end());
+    for (const std::string& solver : sweep.solvers) {
+      if (filters.solver && !std::regex_match(solver, *filters.solver)) continue;
+      for (const int resolution : resolutions) {
+        SceneParameters given = sweep.scene_parameters;
+        given[type.resolution] = resolution;
+        PointSpec base;
+        base.sweep = sweep.sweep;
+        base.scene = sweep.scene;
+        base.scene_parameters = complete_parameters(type, given);
+        base.resolution = resolution;
+        const auto [vertices, constraints] = type.counts(base.scene_parameters);
+        base.vertices = vertices;
+        base.constraints = constraints;
+        base.solver = solver;
+        if (const auto options = sweep.solver_options.find(solver);
+            options != sweep.solver_options.end()) {
+          base.settings = options->second;
+        }
+        base.seed = suite.seed;
+        for (const double limit : limits) {
+          Search search{base, {}, family};
+          search.base.strain_limit = limit;
+          for (const double step : step_ladder(sweep)) {
+            search.base.step = step;
+            if (selected(filters, search.base)) search.ladder.push_back(step);
+          }
+          if (!search.ladder.empty()) searches.push_back(std::move(search));
+        }
+      }
+      ++family;
+    }
+  }
+  if (searches.empty())
+    throw UsageError("no point is left: the filters exclude every point of the suite");
+  return searches;
+}
+
+SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
+                       const SweepEvents& events, const SweepRunners& runners) {
+  SweepOutcome outcome;
+  struct Neighbour {  // what a family's last search found
+    std::optional<double> best_step;
+    std::map<double, double>
+        stiffness_times_limit;  // by step: a spring's strain is tension over stiffness
+    bool hopeless = false;      // only time-outs
+  };
+  std::map<std::size_t, Neighbour> neighbours;
+  try {
+    for (std::size_t s = 0; s < searches.size(); ++s) {
+      const Search& search = searches[s];
+      Neighbour& neighbour = neighbours[search.family];
+      if (neighbour.hopeless) {
+        PointResult skipped;
+        skipped.spec = search.base;
+        skipped.spec.step = search.ladder.front();
+        skipped.detail = "every step timed out at the neighbouring point of the axis already";
+        outcome.points.push_back(std::move(skipped));
+        events.point(outcome.points.back(), s, searches.size());
+        continue;
+      }
+      double best_run = 1e300;  // s
+      std::map<std::size_t, std::size_t> point_of_rung;
+      const auto run = [&](std::size_t rung) -> PointResult& {
+        PointSpec spec = search.base;
+        spec.step = search.ladder[rung];
+        std::optional<double> guess;
+        if (const auto known = neighbour.stiffness_times_limit.find(spec.step);
+            known != neighbour.stiffness_times_limit.end()) {
+          guess = known->second / spec.strain_limit;
+        } else if (!neighbour.stiffness_times_limit.empty()) {
+          guess = neighbour.stiffness_times_limit.begin()->second / spec.strain_limit;
+        }
+        const double hopeless = std::max(hopeless_least, hopeless_factor * best_run);
+        PointResult point = runners.run(spec, {suite.timeout, hopeless, events.interrupted}, guess);
+        if (point.stiffness)
+          neighbour.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
+        if (point.ok())
+          best_run = std::min(best_run, point.median_seconds() * spec.step * point.steps_planned);
+        point_of_rung[rung] = outcome.points.size();
+        outcome.points.push_back(std::move(point));
+        events.point(outcome.points.back(), s, searches.size());
+        return outcome.points.back();
+      };
+      std::optional<std::size_t> start;
+      if (neighbour.best_step) {
+        const auto near = std::find_if(search.ladder.begin(), search.ladder.end(), [&](double h) {
+          return h <= *neighbour.best_step * (1 + 1e-9);
+        });
+        start = static_cast<std::size_t>(near - search.ladder.begin());
+      }
+      StepSearch steps(search.ladder.size(), run);
+      const auto best = steps.find(start);
+      if (best) {
+        outcome.points[point_of_rung.at(*best)].best = true;
+        neighbour.best_step = search.ladder[*best];
+      } else {
+        neighbour.hopeless = steps.timed_out();
+      }
+    }
+    repeat_best(suite, outcome.points, events, runners);
+  } catch (const Interrupted&) {
+    outcome.complete = false;
+  }
+  return outcome;
+}
+
+}  // namespace harness

@@ -1,0 +1,57 @@
+// Runs a suite's sweeps: for each (scene, size, limit, solver) the best step is searched on the
+// ladder coarsest, coarsest / 2, ..., then the best points are repeated, interleaved in a shuffled
+// order.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <regex>
+#include <vector>
+
+#include "runner.h"
+#include "suite.h"
+
+namespace harness {
+
+struct SweepFilters {
+  std::optional<std::regex> solver;   // must match the solver's whole name
+  std::optional<std::regex> include;  // must be found in a point's id
+  std::optional<std::regex> exclude;  // must not
+};
+
+// One best step to be found.
+struct Search {
+  PointSpec base;              // all but the step
+  std::vector<double> ladder;  // s, coarse to fine; those that the filters leave
+  // Searches of one family (same sweep, scene and solver) come in the order of their axis; each
+  // starts from the step that was best in the one before.
+  std::size_t family = 0;
+};
+
+// Throws UsageError if no point is left.
+std::vector<Search> plan(const Suite& suite, const SweepFilters& filters);
+
+// What a sweep tells while it runs.
+struct SweepEvents {
+  std::function<void(const PointResult&, std::size_t search, std::size_t searches)> point =
+      [](auto&&...) {};
+  std::function<void(std::size_t done, std::size_t all)> repetition = [](auto&&...) {};
+  std::function<bool()> interrupted = [] { return false; };
+};
+
+struct SweepOutcome {
+  std::vector<PointResult> points;
+  bool complete = true;  // false: interrupted
+};
+
+// run and repeat stand for run_point and repeat_point; tests put a fake clock there.
+struct SweepRunners {
+  std::function<PointResult(const PointSpec&, const RunLimits&, std::optional<double>)> run =
+      run_point;
+  std::function<void(PointResult&, const RunLimits&)> repeat = repeat_point;
+};
+
+SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
+                       const SweepEvents& events, const SweepRunners& runners = {});
+
+}  // namespace harness

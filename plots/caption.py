@@ -1,0 +1,134 @@
+"""The words around a figure: title, warnings, and a caption that says what was measured, where, and how."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from results import FigureData, Json, NOT_CHOSEN, is_number
+
+SUBJECTS = {
+    ("chain", "strain"): "Figure 4a - chain: cost over permissible strain",
+    ("chain", "resolution"): "Figure 4b - chain: cost over resolution",
+    ("drape", "strain"): "Figure 5a - drape over a sphere: cost over permissible strain",
+    ("drape", "resolution"): "Figure 5b - drape over a sphere: cost over resolution",
+}
+MEANINGS = {
+    "T": "timeout", "D": "diverged", "N": "not converged", "S": "strain limit missed", "U": "unsupported",
+    "O": "out of memory", "C": "crashed", "K": "skipped", NOT_CHOSEN: "ran, but no step was chosen as best",
+}
+
+
+def title_of(figure: FigureData) -> str:
+    axis = "permissible strain" if figure.sweep == "strain" else "resolution"
+    return SUBJECTS.get((figure.scene, figure.sweep), f"{figure.scene}: cost over {axis}")
+
+
+def warnings_of(document: Json) -> list[str]:
+    """What a reader must not overlook; drawn in bold above the axes."""
+    warnings = []
+    if _suite(document).get("profile") == "quick":
+        warnings.append("QUICK PROFILE - not the paper's sizes")
+    if document.get("complete") is not True:
+        warnings.append("INCOMPLETE - the run was cut short, points are missing")
+    return warnings
+
+
+def caption_of(figure: FigureData, document: Json) -> list[str]:
+    """The caption's paragraphs, each to be wrapped to the figure's width."""
+    paragraphs = [_scene_sentence(figure), _method_sentence(figure, document)]
+    failures = _failure_key(figure, document)
+    if failures:
+        paragraphs.append(failures)
+    paragraphs.append(_origin_sentence(document))
+    return paragraphs
+
+
+def _scene_sentence(figure: FigureData) -> str:
+    if figure.sweep == "strain":
+        size = f"{figure.fixed:,.0f} vertices"
+    else:
+        sizes = [point["vertices"] for point in figure.points]
+        size = f"{min(sizes):,.0f} to {max(sizes):,.0f} vertices, permissible strain {percent(figure.fixed)}"
+    parts = [size] + _common_parameters(figure.points)
+    durations = {point["duration"] for point in figure.points if is_number(point.get("duration"))}
+    if durations:
+        parts.append(" or ".join(f"{d:g}" for d in sorted(durations)) + " s simulated")
+    return f"Scene {figure.scene}: " + ", ".join(parts) + "."
+
+
+def _common_parameters(points: list[Json]) -> list[str]:
+    """Scene parameters with one value in all points; those that differ are the axis itself."""
+    scene_parameters = [p["scene_parameters"] for p in points if isinstance(p.get("scene_parameters"), dict)]
+    if not scene_parameters:
+        return []
+    first = scene_parameters[0]
+    same = [key for key in first if all(key in other and other[key] == first[key] for other in scene_parameters)]
+    # the vertex count and the duration stand in the sentence already
+    return [f"{key.replace('_', ' ')} {plain(first[key])}" for key in same if key not in ("n", "N", "vertices", "duration")]
+
+
+def _method_sentence(figure: FigureData, document: Json) -> str:
+    suite = _suite(document)
+    text = "Each solver at its own best time step (panel of best steps); "
+    reps = suite.get("reps")
+    text += f"median of {reps} repetitions" if is_number(reps) and reps != 1 else "one run a point" if reps == 1 else "median"
+    if any(best.q3 > best.q1 for curve in figure.curves.values() for best in curve.best):
+        text += ", bars from the first to the third quartile"
+    settings = [f"timeout {suite['timeout']:g} s" if is_number(suite.get("timeout")) else "",
+                f"profile {plain(suite['profile'])}" if suite.get("profile") else "",
+                f"seed {plain(_seed(document))}" if _seed(document) is not None else ""]
+    return "; ".join([text] + [setting for setting in settings if setting]) + "."
+
+
+def _failure_key(figure: FigureData, document: Json) -> str:
+    letters = {letter for name, curve in figure.curves.items() if name != "null"
+               for failure in curve.failures for letter in failure.letters}
+    if not letters:
+        return ""
+    meanings = dict(MEANINGS)
+    limit = _suite(document).get("timeout")
+    meanings["T"] += f" (T alone: every step took longer than {limit:g} s)" if is_number(limit) else " (T alone: longer than that)"
+    key = ", ".join(f"{letter} = {meanings[letter]}" for letter in meanings if letter in letters)
+    return f"A mark above the axes: every step tried failed, the letters say how, from the coarsest step to the finest: {key}."
+
+
+def _origin_sentence(document: Json) -> str:
+    """Machine, build, date. Executable, command line and host name stay out: they tell of a host, not of a method."""
+    context = _object(document.get("context"))
+    build = _object(context.get("build"))
+    parts = [plain(context["cpu_model"]) if context.get("cpu_model") else "",
+             f"{plain(context['num_cpus'])} CPUs" if is_number(context.get("num_cpus")) else "",
+             f"build {plain(context['library_build_type'])}" if context.get("library_build_type") else "",
+             plain(context["date"])[:16].replace("T", " ") if context.get("date") else "",
+             f"commit {plain(build['git'])[:12]}{' + uncommitted changes' if build.get('dirty') is True else ''}" if build.get("git") else ""]
+    text = "; ".join(part for part in parts if part)
+    text = f"Measured on {text}." if text else "Machine and commit are not recorded."
+    return " ".join([text] + [warning + "." for warning in warnings_of(document)])
+
+
+def _suite(document: Json) -> Json:
+    return _object(_object(document.get("context")).get("suite"))
+
+
+def _seed(document: Json) -> Any:
+    return _object(document.get("context")).get("seed", _suite(document).get("seed"))
+
+
+def _object(value: Any) -> Json:
+    return value if isinstance(value, dict) else {}
+
+
+def plain(value: Any) -> str:
+    """A value as a reader wants it. Of anything that looks like a path only the last part is shown."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if is_number(value):
+        return f"{value:g}" if isinstance(value, float) else str(value)
+    if isinstance(value, list):
+        return " x ".join(plain(item) for item in value)
+    text = " ".join(str(value).split())
+    return text.rstrip("/").rsplit("/", 1)[-1] if text.startswith(("/", "~", "./", "../")) else text
+
+
+def percent(fraction: float) -> str:
+    return f"{100 * fraction:.4g} %"
