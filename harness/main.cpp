@@ -152,6 +152,7 @@ int sweep(const Options& options, const std::vector<std::string>& command) {
           ? source_path("results/local/" + suite.name + "-" + options.sweep + ".json")
           : options.out;
   check_writable(out);
+  const nlohmann::json context = machine_context();
 
   std::signal(SIGINT, [](int) { interrupt_requested = 1; });
   std::signal(SIGTERM, [](int) { interrupt_requested = 1; });
@@ -166,7 +167,8 @@ int sweep(const Options& options, const std::vector<std::string>& command) {
   progress.finish();
 
   write_atomically(
-      out, result_document(suite, command, outcome.complete, outcome.points).dump(1) + "\n");
+      out,
+      result_document(context, suite, command, outcome.complete, outcome.points).dump(1) + "\n");
   print_table(std::cout, outcome.points);
   std::cout << "\nwritten:\n" << out << std::endl;
   if (!outcome.complete) return interrupted_exit;

@@ -8,7 +8,6 @@
 #include <cstring>
 #include <filesystem>
 
-#include "context.h"
 #include "usage_error.h"
 
 namespace harness {
@@ -109,9 +108,8 @@ json to_json(const PointResult& point) {
       {"best", point.best}};
 }
 
-json result_document(const Suite& suite, const std::vector<std::string>& command, bool complete,
-                     const std::vector<PointResult>& points) {
-  json context = machine_context();
+json result_document(json context, const Suite& suite, const std::vector<std::string>& command,
+                     bool complete, const std::vector<PointResult>& points) {
   context["command"] = command;
   context["suite"] = to_json(suite);
   context["seed"] = suite.seed;

@@ -11,8 +11,10 @@
 namespace harness {
 
 nlohmann::json to_json(const PointResult& point);
-nlohmann::json result_document(const Suite& suite, const std::vector<std::string>& command,
-                               bool complete, const std::vector<PointResult>& points);
+// context: machine_context() as it was before the sweep ran.
+nlohmann::json result_document(nlohmann::json context, const Suite& suite,
+                               const std::vector<std::string>& command, bool complete,
+                               const std::vector<PointResult>& points);
 
 // Throws UsageError unless a file can be made at `path`; makes missing folders. Nothing is left
 // behind.

@@ -86,6 +86,7 @@ void repeat_best(const Suite& suite, std::vector<PointResult>& points, const Swe
         points[i].median_seconds() * points[i].spec.step * points[i].steps_planned;
     if (points[i].best && seconds <= repeat_up_to) order.push_back(i);
   }
+  if (order.empty()) return;  // GSL's shuffle does not take nothing
   const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
                                                                  gsl_rng_free);
   gsl_rng_set(random.get(), suite.seed);

@@ -31,7 +31,8 @@ UsageError unknown_name(std::string_view kind, std::string_view name,
   std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
   for (const std::string& candidate : known) {
     const bool prefix = name.size() >= 2 && candidate.starts_with(name);
-    const std::size_t distance = prefix ? 1 : edit_distance(name, candidate);
+    const std::size_t edits = edit_distance(name, candidate);
+    const std::size_t distance = prefix ? std::min<std::size_t>(edits, 2) : edits;
     if (distance < least) {
       least = distance;
       best = &candidate;

@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# The finished program: bad input is one clear line and exit 2 with nothing written; results repeat; Ctrl-C leaves valid JSON.
+set -u
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+# refused PART ARGUMENTS...: exit 2, one line on stderr that contains PART, nothing on stdout, no file made.
+refused() {
+  local part=$1 code lines
+  shift
+  rm -rf out.json
+  "$BENCH_BINARY" "$@" >stdout.txt 2>stderr.txt </dev/null
+  code=$?
+  lines=$(wc -l <stderr.txt)
+  [[ $code == 2 && $lines == 1 && ! -s stdout.txt && ! -e out.json ]] && grep -qF -- "$part" stderr.txt ||
+    fail "$* -> exit $code, $lines lines: $(cat stderr.txt)"
+}
+
+sweep=(--sweep strain --profile quick --out out.json --no-plots)
+refused "did you mean 'strain'" --sweep strian --out out.json
+refused "did you mean 'fast_projection'" "${sweep[@]}" --solver fast_projectoin
+refused "did you mean 'drape'" "${sweep[@]}" --scene drap
+refused "did you mean 'quick'" --sweep strain --profile quik --out out.json
+refused "no point is left" "${sweep[@]}" --filter nothing
+refused "not a regular expression" "${sweep[@]}" --filter '('
+refused "nothing to do"
+refused "--reps" "${sweep[@]}" --reps 0
+refused "--unknown" "${sweep[@]}" --unknown
+refused "cannot read the suite" --sweep strain --config missing.json --out out.json
+echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1, -1]}]}' >suite.json
+refused "'limits' is -1" --sweep strain --config suite.json --out out.json
+echo 'not JSON' >suite.json
+refused "is not JSON" --sweep strain --config suite.json --out out.json
+echo 'a file' >blocked
+refused "cannot make the folder" --sweep strain --profile quick --out blocked/result.json
+refused "did you mean 'solvers'" list solver
+
+# Two runs with one seed: the same counters and the same strain figures.
+small=(--sweep strain --profile quick --scene chain --solver 'gauss_seidel|fast_projection' --filter 'strain:0.01/' --no-plots)
+for i in 1 2; do
+  "$BENCH_BINARY" "${small[@]}" --seed 7 --out "run$i.json" >/dev/null 2>&1 || fail "run $i"
+done
+/usr/bin/python3 - <<'PYTHON' || fail "two runs with one seed differ"
+import json
+def figures(name):
+    points = json.load(open(name))["points"]
+    assert points
+    return {p["id"]: (p["work"], p["max_strain"], p["rms_strain"], p["status"]) for p in points}
+a, b = figures("run1.json"), figures("run2.json")
+# Which steps are tried depends on time; what was tried in both runs must agree.
+common = a.keys() & b.keys()
+assert len(common) >= 4, common
+for key in common:
+    assert a[key] == b[key], (key, a[key], b[key])
+PYTHON
+
+# Ctrl-C: valid JSON, not complete, exit 130.
+"$BENCH_BINARY" --sweep strain --profile paper --scene drape --solver gauss_seidel --out interrupted.json --no-plots \
+  >/dev/null 2>&1 &
+pid=$!
+sleep 2
+kill -TERM $pid  # background jobs of a script ignore SIGINT; SIGTERM takes the same way
+wait $pid
+[[ $? == 130 ]] || fail "an interrupted run must exit 130"
+/usr/bin/python3 -c 'import json; assert json.load(open("interrupted.json"))["complete"] is False' || fail "interrupted.json"
+
+((failures == 0)) && echo "all well"
+exit $((failures > 0))

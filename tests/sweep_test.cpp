@@ -1,0 +1,163 @@
+// The step search and the interleaved repetitions, with a fake clock: no solver runs here.
+#include "sweep.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "usage_error.h"
+
+namespace harness {
+namespace {
+
+// One search family on the chain: limits 10 % and 1 %.
+Suite one_family() {
+  Suite suite;
+  suite.name = "test";
+  suite.reps = 3;
+  SweepSpec sweep;
+  sweep.sweep = "strain";
+  sweep.scene = "chain";
+  sweep.solvers = {"fast_projection"};
+  sweep.limits = {0.1, 0.01};
+  sweep.resolutions = {10};
+  sweep.finest = 1.0 / 6400;
+  suite.sweeps = {sweep};
+  return suite;
+}
+
+// A runner whose time over steps is a parabola in log step with its minimum at `best`, failing
+// above `largest`.
+SweepRunners fake(double best, double largest, std::vector<double>* steps) {
+  SweepRunners runners;
+  runners.run = [=](const PointSpec& spec, const RunLimits&, std::optional<double>) {
+    if (steps) steps->push_back(spec.step);
+    PointResult point;
+    point.spec = spec;
+    point.steps_planned = static_cast<int>(std::lround(1 / spec.step));
+    if (spec.step > largest * (1 + 1e-9)) {
+      point.status = PointStatus::not_converged;
+      return point;
+    }
+    point.status = PointStatus::ok;
+    point.samples = {1 + std::pow(std::log2(spec.step / best), 2)};
+    return point;
+  };
+  runners.repeat = [](PointResult& point, const RunLimits&) {
+    point.samples.push_back(point.samples.front());
+  };
+  return runners;
+}
+
+TEST(StepSearch, FindsTheFastestStepAndStopsAfterTwoRises) {
+  Suite suite = one_family();
+  suite.sweeps[0].limits = {0.01};
+  std::vector<double> steps;
+  const auto outcome = run_sweep(suite, plan(suite, {}), {}, fake(1.0 / 200, 1, &steps));
+  const std::vector<double> expected{1.0 / 25,  1.0 / 50,  1.0 / 100,
+                                     1.0 / 200, 1.0 / 400, 1.0 / 800};
+  ASSERT_EQ(steps.size(), expected.size());
+  for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_DOUBLE_EQ(steps[i], expected[i]);
+  for (const auto& point : outcome.points)
+    EXPECT_EQ(point.best, std::abs(point.spec.step - 1.0 / 200) < 1e-9);
+}
+
+TEST(StepSearch, GoesFinerThroughFailuresUntilAStepWorks) {
+  Suite suite = one_family();
+  suite.sweeps[0].limits = {0.01};
+  std::vector<double> steps;
+  const auto outcome = run_sweep(suite, plan(suite, {}), {}, fake(1.0 / 50, 1.0 / 400, &steps));
+  EXPECT_DOUBLE_EQ(steps.back(), 1.0 / 1600);  // best is 1/400, two rises after it
+  EXPECT_EQ(std::count_if(outcome.points.begin(), outcome.points.end(),
+                          [](const auto& p) { return p.best; }),
+            1);
+}
+
+TEST(StepSearch, StartsFromTheNeighbourAndLooksBothWays) {
+  const Suite suite = one_family();
+  std::vector<double> steps;
+  const auto outcome = run_sweep(suite, plan(suite, {}), {}, fake(1.0 / 200, 1, &steps));
+  // 10 %: six steps as above; 1 %: 1/200 first, then two finer, then two coarser.
+  ASSERT_EQ(steps.size(), 11u);
+  EXPECT_DOUBLE_EQ(steps[6], 1.0 / 200);
+  EXPECT_DOUBLE_EQ(steps[8], 1.0 / 800);
+  EXPECT_DOUBLE_EQ(steps[10], 1.0 / 50);
+}
+
+TEST(StepSearch, EveryTriedStepStaysInTheOutcomeAndOnlyBestOnesAreRepeated) {
+  const Suite suite = one_family();
+  const auto outcome = run_sweep(suite, plan(suite, {}), {}, fake(1.0 / 200, 1.0 / 50, nullptr));
+  for (const auto& point : outcome.points) {
+    EXPECT_EQ(point.samples.size(), point.best ? 3u : point.ok() ? 1u : 0u) << point.spec.id();
+  }
+}
+
+TEST(StepSearch, ASolverThatNeverWorksHasNoBestPoint) {
+  const Suite suite = one_family();
+  const auto outcome = run_sweep(suite, plan(suite, {}), {}, fake(1.0 / 200, 1e-9, nullptr));
+  EXPECT_EQ(outcome.points.size(), 2 * 9u);  // the whole ladder, twice
+  for (const auto& point : outcome.points) EXPECT_FALSE(point.best);
+}
+
+TEST(StepSearch, AnInterruptKeepsWhatWasFinished) {
+  const Suite suite = one_family();
+  SweepRunners runners = fake(1.0 / 200, 1, nullptr);
+  int runs = 0;
+  runners.run = [&, run = runners.run](const PointSpec& spec, const RunLimits& limits,
+                                       std::optional<double> guess) {
+    if (++runs == 4) throw Interrupted();
+    return run(spec, limits, guess);
+  };
+  const auto outcome = run_sweep(suite, plan(suite, {}), {}, runners);
+  EXPECT_FALSE(outcome.complete);
+  EXPECT_EQ(outcome.points.size(), 3u);
+}
+
+TEST(Plan, RefusesFiltersThatLeaveNothing) {
+  SweepFilters filters;
+  filters.include = std::regex("no such point");
+  EXPECT_THROW(static_cast<void>(plan(one_family(), filters)), UsageError);
+}
+
+// What a wrong suite is told. Each message must name the key or value.
+std::string complaint(const std::string& text) {
+  const std::string path = testing::TempDir() + "suite.json";
+  std::ofstream(path) << text;
+  try {
+    static_cast<void>(read_suite(path));
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Suite, NamesFileKeyAndValueOfWhatIsWrong) {
+  const auto sweep = [](const std::string& rest) {
+    return complaint(R"({"sweeps": [{"sweep": "strain", "scene": "chain")" + rest + "}]}");
+  };
+  EXPECT_EQ(sweep(R"(, "limits": [0.1])"), "accepted");
+  const auto says = [](const std::string& message, const std::string& part) {
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  says(complaint("{ nonsense"), "is not JSON");
+  says(complaint("[]"), "must be an object");
+  says(complaint(R"({"reps": 0, "sweeps": []})"), "'reps' is 0");
+  says(sweep(R"(, "limits": [0])"), "'limits' is 0");
+  says(sweep(R"(, "limits": "all")"), "'limits' is \"all\"");
+  says(sweep(R"(, "limit": -1)"), "'limit' is -1");
+  says(sweep(R"(, "limits": [0.1], "solver": ["icd"])"), "did you mean 'solvers'");
+  says(sweep(R"(, "limits": [0.1], "solvers": ["fast_projetion"])"),
+       "did you mean 'fast_projection'");
+  says(sweep(R"(, "limits": [0.1], "scene_parameters": {"n": 1})"), "'n' is 1");
+  says(sweep(R"(, "limits": [0.1], "scene_parameters": {"m": 1})"),
+       "no parameter of scene chain 'm'");
+  says(sweep(R"(, "limits": [0.1], "resolutions": [2.5])"), "'resolutions' is 2.5");
+  says(sweep(R"(, "limits": [0.1], "solver_options": {"icd": {"max_iteration": 3}})"),
+       "did you mean 'max_iterations'");
+  says(complaint(R"({"sweeps": [{"sweep": "strain", "scene": "drap", "limits": [1]}]})"),
+       "did you mean 'drape'");
+}
+
+}  // namespace
+}  // namespace harness
