@@ -1,0 +1,132 @@
+// Every written file fits configs/result.schema.json, every suite fits configs/suite.schema.json.
+#include "result_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
+
+#include "context.h"
+#include "sweep.h"
+#include "usage_error.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+
+std::string source(const std::string& relative) { return std::string(SOURCE_DIR) + "/" + relative; }
+
+json read(const std::string& path) {
+  std::ifstream file(path);
+  return json::parse(file, nullptr, true, true);
+}
+
+// What does not fit, "" if all does.
+std::string misfits(const json& document, const std::string& schema_file) {
+  const json schema_document = read(source(schema_file));
+  valijson::Schema schema;
+  const valijson::adapters::NlohmannJsonAdapter schema_adapter(schema_document), adapter(document);
+  valijson::SchemaParser().populateSchema(schema_adapter, schema);
+  valijson::ValidationResults results;
+  std::string text;
+  if (valijson::Validator().validate(schema, adapter, &results)) return text;
+  valijson::ValidationResults::Error error;
+  while (results.popError(error)) {
+    for (const std::string& part : error.context) text += part;
+    text += ": " + error.description + "\n";
+  }
+  return text;
+}
+
+Suite tiny_suite() {
+  Suite suite = read_suite(source("configs/quick.json"));
+  for (SweepSpec& sweep : suite.sweeps) {
+    sweep.resolutions = {5};
+    sweep.limits = {0.01};
+    sweep.finest = 1.0 / 800;
+  }
+  suite.reps = 2;
+  return suite;
+}
+
+TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchema) {
+  const Suite suite = tiny_suite();
+  const SweepOutcome outcome = run_sweep(suite, plan(suite, {}), {});
+  const json document = result_document(machine_context(), suite, {"bench"}, true, outcome.points);
+  EXPECT_EQ(misfits(json::parse(document.dump()), "configs/result.schema.json"), "");
+  for (const auto& backend : inextensible::backends()) {
+    if (!backend.contestant) continue;
+    for (const char* scene : {"chain", "drape"}) {
+      EXPECT_TRUE(std::any_of(outcome.points.begin(), outcome.points.end(), [&](const PointResult& p) {
+        return p.spec.scene == scene && p.spec.solver == backend.name && p.ok();
+      })) << scene << " " << backend.name;
+    }
+  }
+  // Benchmarks hold every sample of ok points and nothing else: compare.py reads a failed run's time 0 as faster.
+  std::size_t samples = 0;
+  for (const PointResult& point : outcome.points) samples += point.ok() ? point.samples.size() : 0;
+  EXPECT_EQ(document["benchmarks"].size(), samples);
+}
+
+TEST(ResultFile, WritesNullForNumbersThatAreNotFinite) {
+  PointResult point;
+  point.spec.scene_parameters = {{"duration", 1}};
+  point.verdict.max_strain = std::numeric_limits<double>::infinity();
+  point.verdict.rms_strain = std::nan("");
+  const json written = json::parse(to_json(point).dump());
+  EXPECT_TRUE(written["max_strain"].is_null());
+  EXPECT_TRUE(written["rms_strain"].is_null());
+  EXPECT_TRUE(written["seconds_per_simulated_second"].is_null());
+}
+
+TEST(ResultFile, TheSchemaRefusesAWrongStatusAndAnUnknownCounter) {
+  const Suite suite = tiny_suite();
+  PointResult point;
+  point.spec = plan(suite, {}).front().base;
+  const json good = result_document(machine_context(), suite, {"bench"}, true, {point});
+  ASSERT_EQ(misfits(good, "configs/result.schema.json"), "");
+  json bad = good;
+  bad["points"][0]["status"] = "fine";
+  EXPECT_NE(misfits(bad, "configs/result.schema.json"), "");
+  bad = good;
+  bad["points"][0]["work"]["luck"] = 1;
+  EXPECT_NE(misfits(bad, "configs/result.schema.json"), "");
+}
+
+TEST(ResultFile, CommittedResultsFitTheSchema) {
+  for (const auto& entry : std::filesystem::directory_iterator(source("results"))) {
+    if (entry.path().extension() != ".json") continue;
+    EXPECT_EQ(misfits(read(entry.path()), "configs/result.schema.json"), "") << entry.path();
+  }
+}
+
+TEST(Suites, ThatAreCommittedFitTheirSchemaAndAreAccepted) {
+  for (const char* name : {"quick", "default", "paper"}) {
+    const std::string file = std::string("configs/") + name + ".json";
+    EXPECT_EQ(misfits(read(source(file)), "configs/suite.schema.json"), "") << name;
+    EXPECT_NO_THROW(static_cast<void>(read_suite(source(file)))) << name;
+  }
+}
+
+TEST(WriteAtomically, KeepsTheOldFileWhenTheNewOneCannotBeWritten) {
+  const std::string path = testing::TempDir() + "kept.json";
+  write_atomically(path, "old");
+  std::filesystem::create_directory(path + ".partial");  // in the way of the temporary file
+  EXPECT_THROW(write_atomically(path, "new"), std::runtime_error);
+  std::filesystem::remove(path + ".partial");
+  std::ifstream file(path);
+  std::string text;
+  file >> text;
+  EXPECT_EQ(text, "old");
+  EXPECT_THROW(check_writable(testing::TempDir()), UsageError);  // a folder
+}
+
+}  // namespace
+}  // namespace harness
