@@ -3,7 +3,9 @@
 #include <cholmod.h>
 
 #include <algorithm>
+#include <cmath>
 #include <new>
+#include <numeric>
 
 namespace inextensible {
 namespace {
@@ -71,6 +73,8 @@ CholmodSolver::~CholmodSolver() = default;
 
 bool CholmodSolver::factor() {
   Library& c = *library_;
+  // LAPACK's Cholesky, inside the supernodal code, lets NaN pass: no pivot compares as negative.
+  if (!std::isfinite(std::accumulate(values_.begin(), values_.end(), 0.0))) return false;
   if (!cholmod_factorize(&c.matrix, c.factor, &c.common)) return false;
   if (c.common.status != CHOLMOD_OK || c.factor->minor != c.factor->n) return false;
   if (c.factor->is_super || c.factor->is_ll) return true;

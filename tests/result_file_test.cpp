@@ -64,12 +64,16 @@ TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchema) {
   for (const auto& backend : inextensible::backends()) {
     if (!backend.contestant) continue;
     for (const char* scene : {"chain", "drape"}) {
-      EXPECT_TRUE(std::any_of(outcome.points.begin(), outcome.points.end(), [&](const PointResult& p) {
-        return p.spec.scene == scene && p.spec.solver == backend.name && p.ok();
-      })) << scene << " " << backend.name;
+      EXPECT_TRUE(std::any_of(outcome.points.begin(), outcome.points.end(),
+                              [&](const PointResult& p) {
+                                return p.spec.scene == scene && p.spec.solver == backend.name &&
+                                       p.ok();
+                              }))
+          << scene << " " << backend.name;
     }
   }
-  // Benchmarks hold every sample of ok points and nothing else: compare.py reads a failed run's time 0 as faster.
+  // Benchmarks hold every sample of ok points and nothing else: compare.py reads a failed run's
+  // time 0 as faster.
   std::size_t samples = 0;
   for (const PointResult& point : outcome.points) samples += point.ok() ? point.samples.size() : 0;
   EXPECT_EQ(document["benchmarks"].size(), samples);

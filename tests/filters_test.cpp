@@ -1,0 +1,264 @@
+// What every velocity filter must hold, over all registered backends, and the theorems of the
+// paper.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstring>
+
+#include "dense_reference.h"
+#include "fast_projection.h"
+#include "icd.h"
+#include "random_mesh.h"
+#include "registry.h"
+
+namespace inextensible {
+namespace {
+
+using testing::Random;
+using testing::random_mesh;
+constexpr int seeds = 8;
+constexpr double h = 0.01;
+
+std::vector<std::string> filters() {
+  std::vector<std::string> names;
+  for (const Backend& backend : backends()) {
+    if (backend.knob == Knob::strain_limit) names.emplace_back(backend.name);
+  }
+  names.emplace_back("reference");
+  return names;
+}
+
+bool same_bits(const Positions& a, const Positions& b) {
+  return a.cols() == b.cols() &&
+         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+}
+
+// Velocities that would stretch edges by some per cent in one step.
+State moving_state(Random& random, const testing::RandomMesh& mesh, double speed) {
+  State state;
+  state.x = mesh.x;
+  state.v = (testing::perturbed(random, mesh, 1) - mesh.x) * speed;
+  return state;
+}
+
+Eigen::Vector3d linear_momentum(const Problem& p, const Positions& v) {
+  return v * Eigen::Map<const Eigen::VectorXd>(p.mass().data(), p.vertices());
+}
+
+Eigen::Vector3d angular_momentum(const Problem& p, const Positions& x, const Positions& v) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    const Eigen::Vector3d xi = x.col(i), vi = v.col(i);
+    sum += p.mass()[static_cast<std::size_t>(i)] * Eigen::Vector3d(xi[1] * vi[2] - xi[2] * vi[1],
+                                                                   xi[2] * vi[0] - xi[0] * vi[2],
+                                                                   xi[0] * vi[1] - xi[1] * vi[0]);
+  }
+  return sum;
+}
+
+class Filters : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(Filters, MeetTheLimitAndKeepPinnedVerticesBitForBit) {
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const auto mesh = random_mesh(random, 4, 4, 2);
+    const auto stepper = make_stepper(GetParam(), mesh.problem, {0.005, seed, {}});
+    State state = moving_state(random, mesh, 4);
+    const EdgeConstraints edges(*mesh.problem, 0.005);
+    for (int step = 0; step < 5; ++step) {
+      ASSERT_TRUE(stepper->advance(state, h));
+      EXPECT_LE(std::abs(edges.worst(state.x).strain), 0.005);
+      for (const int v : mesh.problem->pinned()) {
+        EXPECT_EQ(std::memcmp(state.x.col(v).data(), mesh.x.col(v).data(), 3 * sizeof(double)), 0);
+      }
+    }
+  }
+}
+
+// Start-of-step directions conserve angular momentum about start-of-step positions only: a SHAKE
+// force does no torque on x^n, an end-of-step force none on x^{n+1}, and each method is held to its
+// own.
+TEST_P(Filters, ConserveLinearMomentumAndTheirAngularMomentum) {
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const auto mesh = random_mesh(random, 4, 4, 0);
+    const Problem& p = *mesh.problem;
+    const auto stepper = make_stepper(GetParam(), mesh.problem, {0.005, seed, {}});
+    State state = moving_state(random, mesh, 4);
+    const Positions x0 = state.x + h * state.v;
+    const State before = state;
+    ASSERT_TRUE(stepper->advance(state, h));
+    const double scale =
+        (before.v.cwiseAbs() * Eigen::Map<const Eigen::VectorXd>(p.mass().data(), p.vertices()))
+            .norm();
+    EXPECT_LT((linear_momentum(p, state.v) - linear_momentum(p, before.v)).norm(), 1e-10 * scale);
+    if (GetParam() == "shake") {
+      EXPECT_LT(
+          (angular_momentum(p, before.x, state.v) - angular_momentum(p, before.x, before.v)).norm(),
+          1e-9 * scale);
+    } else if (GetParam() == "icd" || GetParam() == "reference") {
+      const double direction =
+          GetParam() == "icd" ? 0.1 * 0.005 / h : 1e-10;  // as far as F = 0 is solved
+      EXPECT_LT(
+          (angular_momentum(p, state.x, state.v) - angular_momentum(p, state.x, before.v)).norm(),
+          direction * scale);
+    } else {
+      // Iterated directions: sums of pairwise central forces at intermediate positions, x0 at the
+      // earliest; the defect is of the order of the correction times the displacement.
+      const double correction = (state.x - x0).norm() / h;
+      EXPECT_LT((angular_momentum(p, x0, state.v) - angular_momentum(p, x0, before.v)).norm(),
+                correction * (state.x - x0).norm());
+    }
+  }
+}
+
+TEST_P(Filters, LeaveTheStateUntouchedWhenTheyRefuse) {
+  Random random(11);
+  const auto mesh = random_mesh(random, 4, 4, 1);
+  BackendOptions options{1e-13, 1, {}};
+  if (GetParam() != "reference") options.settings["max_iterations"] = 1.0;
+  const auto stepper = make_stepper(GetParam(), mesh.problem, options);
+  State state = moving_state(random, mesh, GetParam() == "reference" ? 1e300 : 10);
+  state.time = 3;
+  const State before = state;
+  const StepResult result = stepper->advance(state, h);
+  ASSERT_FALSE(result);
+  EXPECT_STRNE(result.detail, "");
+  EXPECT_TRUE(same_bits(state.x, before.x));
+  EXPECT_TRUE(same_bits(state.v, before.v));
+  EXPECT_EQ(state.time, before.time);
+  EXPECT_EQ(stepper->work().rejected_steps, 1);
+  EXPECT_EQ(stepper->work().steps, 0);
+}
+
+TEST_P(Filters, RepeatBitForBitWithTheirCounters) {
+  Random random(12);
+  const auto mesh = random_mesh(random, 5, 4, 1);
+  const State start = moving_state(random, mesh, 4);
+  std::vector<State> ends;
+  std::vector<WorkCounters> work;
+  for (int run = 0; run < 2; ++run) {
+    const auto stepper = make_stepper(GetParam(), mesh.problem, {0.005, 42, {}});
+    State state = start;
+    for (int step = 0; step < 5; ++step) ASSERT_TRUE(stepper->advance(state, h));
+    ends.push_back(state);
+    work.push_back(stepper->work());
+  }
+  EXPECT_TRUE(same_bits(ends[0].x, ends[1].x));
+  EXPECT_EQ(std::memcmp(&work[0], &work[1], sizeof(WorkCounters)), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Filters, ::testing::ValuesIn(filters()),
+                         [](const auto& i) { return i.param; });
+
+// Section 4.3: "The first iteration of these methods is identical."
+TEST(FastProjection, FirstIterationIsIcdsFirstNewtonIteration) {
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const auto mesh = random_mesh(random, 4, 5, 2);
+    const Positions candidate = testing::perturbed(random, mesh, 0.02);
+    // The loosest limit that one iteration reaches: candidates are off by some 0.03, the first
+    // iterate by its square.
+    const double limit = 0.004;
+    ASSERT_FALSE(EdgeConstraints(*mesh.problem, limit).permissible(candidate));
+    WorkCounters work;
+    Positions fast = candidate, icd = candidate;
+    FastProjection fast_projection(*mesh.problem, {limit});
+    Icd::Settings settings{limit};
+    settings.direction_tolerance =
+        1e3;  // stop as soon as the strain is permissible, as fast projection does
+    Icd implicit_direction(*mesh.problem, settings);
+    ASSERT_EQ(fast_projection.apply(mesh.x, h, fast, work).iterations, 1);
+    ASSERT_EQ(implicit_direction.apply(mesh.x, h, icd, work).iterations, 1);
+    EXPECT_LT((fast - icd).norm(), 1e-9 * (fast - candidate).norm());
+    // And both are x0 - W J^T (J W J^T)^-1 C, densely.
+    const Eigen::MatrixXd j = testing::dense_gradient(*mesh.problem, candidate);
+    const Eigen::MatrixXd wjt =
+        testing::inverse_masses3(*mesh.problem).asDiagonal() * j.transpose();
+    Eigen::VectorXd c(mesh.problem->constraints());
+    for (int k = 0; k < c.size(); ++k) {
+      const auto [a, b] = mesh.problem->edges()[static_cast<std::size_t>(k)];
+      const double l = mesh.problem->rest_length()[static_cast<std::size_t>(k)];
+      c[k] = (candidate.col(b) - candidate.col(a)).squaredNorm() / l - l;
+    }
+    const Eigen::VectorXd dx = -wjt * (j * wjt).ldlt().solve(c);
+    EXPECT_LT((fast - candidate - Eigen::Map<const Positions>(dx.data(), 3, fast.cols())).norm(),
+              1e-10);
+  }
+}
+
+// Theorem 1: ICD's solution extremizes the M-norm distance to the candidate over {C = 0}.
+// Perturbations along the null space of J, pulled back onto the manifold, must not come closer.
+TEST(Icd, SolutionIsTheClosestPointOfTheManifold) {
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const auto mesh = random_mesh(random, 3, 4, 1);
+    const Problem& p = *mesh.problem;
+    const Positions candidate = testing::perturbed(random, mesh, 0.05);
+    WorkCounters work;
+    Positions icd = candidate, reference = candidate;
+    Icd::Settings settings{1e-10};
+    ASSERT_TRUE(Icd(p, settings).apply(mesh.x, h, icd, work));
+    ASSERT_TRUE(DenseReference(p).apply(mesh.x, h, reference, work));
+    EXPECT_LT((icd - reference).norm(), 1e-7);
+
+    const auto distance = [&](const Positions& x) {
+      return (x - candidate)
+          .colwise()
+          .squaredNorm()
+          .dot(Eigen::Map<const Eigen::VectorXd>(p.mass().data(), p.vertices()));
+    };
+    Eigen::MatrixXd free_j = testing::dense_gradient(p, icd);
+    for (const int v : p.pinned()) free_j.middleCols(3 * v, 3).setZero();
+    const Eigen::MatrixXd null_space = free_j.fullPivLu().kernel();
+    FastProjection pull_back(p, {1e-13});
+    for (int trial = 0; trial < 20; ++trial) {
+      const Eigen::VectorXd weights = Eigen::VectorXd::NullaryExpr(
+          null_space.cols(), [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
+      Eigen::VectorXd direction = null_space * weights;
+      for (const int v : p.pinned()) direction.segment<3>(3 * v).setZero();
+      Positions moved = icd + 1e-3 / direction.norm() *
+                                  Eigen::Map<const Positions>(direction.data(), 3, icd.cols());
+      ASSERT_TRUE(pull_back.apply(icd, h, moved, work));
+      EXPECT_GE(distance(moved), distance(icd) - 1e-11);
+    }
+  }
+}
+
+TEST(Jacobi, ConvergesAtValenceThirtyWithUnequalMasses) {
+  ProblemParts parts;
+  parts.gravity.setZero();
+  parts.mass.push_back(1e-3);
+  Positions x = Positions::Zero(3, 31);
+  for (int i = 1; i <= 30; ++i) {
+    parts.mass.push_back(i % 2 ? 1.0 : 1e-3);
+    parts.edges.push_back({0, i});
+    parts.rest_length.push_back(1);
+    x.col(i) << std::cos(0.2 * i), std::sin(0.2 * i), 0.01 * i;
+  }
+  x *= 1.3;  // every edge 30 % too long
+  const auto problem = std::make_shared<const Problem>(std::move(parts));
+  const auto stepper = make_stepper("jacobi", problem, {1e-3, 1, {}});
+  State state{x, Positions::Zero(3, 31), 0};
+  EXPECT_TRUE(stepper->advance(state, h));
+}
+
+// The unsteady part of C11: matrices of fast projection and ICD on the same mesh.
+TEST(Counters, FastProjectionFactorsAMuchSmallerMatrixThanIcd) {
+  Random random(5);
+  const auto mesh = random_mesh(random, 15, 15, 0);
+  WorkCounters fast, icd;
+  Positions x = testing::perturbed(random, mesh, 0.02), y = x;
+  ASSERT_TRUE(FastProjection(*mesh.problem, {1e-6}).apply(mesh.x, h, x, fast));
+  ASSERT_TRUE(Icd(*mesh.problem, {1e-6}).apply(mesh.x, h, y, icd));
+  EXPECT_LT(2 * fast.factor_nonzeros, icd.factor_nonzeros);
+  EXPECT_LT(2 * fast.factor_flops, icd.factor_flops);
+}
+
+}  // namespace
+}  // namespace inextensible

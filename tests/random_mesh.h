@@ -1,0 +1,86 @@
+// Random problems for property tests; every test prints the seed it failed with (SCOPED_TRACE).
+#pragma once
+
+#include <algorithm>
+#include <random>
+
+#include "problem.h"
+
+namespace inextensible::testing {
+
+using Random = std::mt19937_64;
+
+inline double uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+struct RandomMesh {
+  std::shared_ptr<const Problem> problem;
+  Positions x;  // at rest: every edge has its rest length
+};
+
+// A crumpled quad grid of rows x columns vertices with unequal edge lengths and masses (a decade
+// apart). pinned: how many vertices; gravity is zero, so that momentum can be checked.
+inline RandomMesh random_mesh(Random& random, int rows, int columns, int pinned) {
+  RandomMesh mesh;
+  const int n = rows * columns;
+  mesh.x.resize(3, n);
+  ProblemParts parts;
+  parts.gravity.setZero();
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      const int v = i * columns + j;
+      mesh.x.col(v) << j + uniform(random, -0.2, 0.2), uniform(random, -0.3, 0.3),
+          i + uniform(random, -0.2, 0.2);
+      parts.mass.push_back(uniform(random, 0.1, 1));
+      if (j > 0) parts.edges.push_back({v - 1, v});
+      if (i > 0) parts.edges.push_back({v, v - columns});  // both orientations occur
+    }
+  }
+  std::vector<int> order(static_cast<std::size_t>(n));
+  for (int v = 0; v < n; ++v) order[static_cast<std::size_t>(v)] = v;
+  std::shuffle(order.begin(), order.end(), random);
+  parts.pinned.assign(order.begin(), order.begin() + pinned);
+  std::erase_if(parts.edges, [&](Edge e) {
+    const auto is_pinned = [&](int v) {
+      return std::count(parts.pinned.begin(), parts.pinned.end(), v) > 0;
+    };
+    return is_pinned(e.a) && is_pinned(e.b);
+  });
+  for (const Edge e : parts.edges)
+    parts.rest_length.push_back((mesh.x.col(e.b) - mesh.x.col(e.a)).norm());
+  mesh.problem = std::make_shared<const Problem>(std::move(parts));
+  return mesh;
+}
+
+// Free vertices moved by up to `size` in each coordinate.
+inline Positions perturbed(Random& random, const RandomMesh& mesh, double size) {
+  Positions x = mesh.x;
+  for (Eigen::Index v = 0; v < x.cols(); ++v) {
+    if (mesh.problem->inverse_mass()[static_cast<std::size_t>(v)] == 0) continue;
+    for (int i = 0; i < 3; ++i) x(i, v) += uniform(random, -size, size);
+  }
+  return x;
+}
+
+// J (m x 3n), dense, row by row from its definition. Pinned columns included.
+inline Eigen::MatrixXd dense_gradient(const Problem& problem, const Positions& x) {
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(problem.constraints(), 3 * x.cols());
+  for (int k = 0; k < problem.constraints(); ++k) {
+    const auto e = static_cast<std::size_t>(k);
+    const auto [a, b] = problem.edges()[e];
+    const Eigen::RowVector3d u = 2 / problem.rest_length()[e] * (x.col(b) - x.col(a)).transpose();
+    jacobian.block<1, 3>(k, 3 * a) = -u;
+    jacobian.block<1, 3>(k, 3 * b) = u;
+  }
+  return jacobian;
+}
+
+inline Eigen::VectorXd inverse_masses3(const Problem& problem) {
+  Eigen::VectorXd w(3 * problem.vertices());
+  for (Eigen::Index i = 0; i < w.size(); ++i)
+    w[i] = problem.inverse_mass()[static_cast<std::size_t>(i / 3)];
+  return w;
+}
+
+}  // namespace inextensible::testing
