@@ -21,12 +21,12 @@ EigenLdltSolver::EigenLdltSolver(const SymmetricPattern& pattern, bool indefinit
 bool EigenLdltSolver::factor() {
   ldlt_.factorize(matrix_);
   if (ldlt_.info() != Eigen::Success) return false;
-  d_ = ldlt_.vectorD();  // returned by value: kept
+  const auto& d = ldlt_.d();
   const auto bad = [this](double pivot) {
     return indefinite_ ? !std::isfinite(pivot) : !(pivot > 0);
   };
-  if (std::any_of(d_.data(), d_.data() + d_.size(), bad)) return false;
-  negative_pivots_ = static_cast<int>((d_.array() < 0).count());
+  if (std::any_of(d.data(), d.data() + d.size(), bad)) return false;
+  negative_pivots_ = static_cast<int>((d.array() < 0).count());
   if (flops_ == 0) {  // sum of squared column counts: the pattern of L is known after the first
                       // factorization only
     const auto& l = ldlt_.matrixL().nestedExpression();
@@ -43,13 +43,14 @@ void EigenLdltSolver::solve(double* rhs) {
   const int* start = l.outerIndexPtr();
   const int* row = l.innerIndexPtr();
   const double* value = l.valuePtr();
+  const auto& d = ldlt_.d();
   const auto n = static_cast<int>(l.outerSize());
   for (int j = 0; j < n; ++j) {  // L y = b
     const double y = rhs[j];
     for (int i = start[j]; i < start[j + 1]; ++i) rhs[row[i]] -= value[i] * y;
   }
   for (int j = n - 1; j >= 0; --j) {  // L^T x = D^-1 y
-    double x = rhs[j] / d_[j];
+    double x = rhs[j] / d[j];
     for (int i = start[j]; i < start[j + 1]; ++i) x -= value[i] * rhs[row[i]];
     rhs[j] = x;
   }

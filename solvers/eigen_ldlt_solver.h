@@ -22,11 +22,15 @@ class EigenLdltSolver final : public SpdSolver {
   double factor_flops() const override { return flops_; }
 
  private:
+  // Eigen's vectorD() returns a copy, and so allocates.
+  struct Ldlt : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Upper,
+                                      Eigen::NaturalOrdering<int>> {
+    const VectorType& d() const { return m_diag; }
+  };
+
   Eigen::SparseMatrix<double> matrix_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Upper, Eigen::NaturalOrdering<int>>
-      ldlt_;
+  Ldlt ldlt_;
   bool indefinite_;
-  Eigen::VectorXd d_;
   int negative_pivots_ = 0;
   double flops_ = 0;
 };

@@ -169,8 +169,12 @@ TEST(TriangleCollider, GridFindsWhatASearchOfAllTrianglesFinds) {
     const Eigen::Vector3d p(0.54 * random(), 0.54 * random(), 0.54 * random());
     const auto quick = collider.nearest(p), slow = collider.nearest_by_all(p);
     ASSERT_NEAR(quick.signed_distance, slow.signed_distance, 1e-14) << p.transpose();
-    if (p.norm() > 0.25) EXPECT_GT(slow.signed_distance, 0);
-    if (p.norm() < 0.24) EXPECT_LT(slow.signed_distance, 0);
+    if (p.norm() > 0.25) {
+      EXPECT_GT(slow.signed_distance, 0);
+    }
+    if (p.norm() < 0.24) {
+      EXPECT_LT(slow.signed_distance, 0);
+    }
   }
 }
 
