@@ -6,7 +6,6 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -14,6 +13,9 @@ namespace inextensible {
 namespace {
 
 using Eigen::Vector3d;
+
+// Cells farther inside than this many cell diagonals ask all triangles.
+constexpr double deep_cells = 1;
 
 const Vector3d& corner(const TriangleMesh& mesh, int triangle, int i) {
   return mesh.vertices[static_cast<std::size_t>(
@@ -111,14 +113,8 @@ TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
   inverse_cell_size_ = cell_size_.cwiseInverse();
   all_.resize(count);
   std::iota(all_.begin(), all_.end(), 0);
-  std::vector<std::vector<int>> lists(static_cast<std::size_t>(resolution) * resolution *
-                                      resolution);
-  refine(Eigen::Vector3i::Zero(), resolution, all_, lists);
-  list_start_.push_back(0);
-  for (const auto& list : lists) {
-    list_.insert(list_.end(), list.begin(), list.end());
-    list_start_.push_back(static_cast<int>(list_.size()));
-  }
+  cell_.assign(static_cast<std::size_t>(resolution) * resolution * resolution, outside);
+  refine(Eigen::Vector3i::Zero(), resolution, all_);
 }
 
 std::size_t TriangleCollider::cell_index(const Eigen::Vector3i& cell) const {
@@ -128,8 +124,7 @@ std::size_t TriangleCollider::cell_index(const Eigen::Vector3i& cell) const {
 // candidates: every triangle that is nearest to some point of the block of size^3 cells that begins
 // at `cell`.
 void TriangleCollider::refine(const Eigen::Vector3i& cell, int size,
-                              const std::vector<int>& candidates,
-                              std::vector<std::vector<int>>& lists) {
+                              const std::vector<int>& candidates) {
   const Vector3d centre =
       low_ + cell_size_.cwiseProduct(cell.cast<double>() + Vector3d::Constant(0.5 * size));
   const double half_diagonal = 0.5 * size * cell_size_.norm();
@@ -139,19 +134,31 @@ void TriangleCollider::refine(const Eigen::Vector3i& cell, int size,
     distance[i] = std::sqrt(closest(candidates[i], centre).squared);
     least = std::min(least, distance[i]);
   }
-  if (least > half_diagonal && nearest_among(candidates, centre).signed_distance > 0)
-    return;  // wholly outside
+  if (least > half_diagonal) {  // the surface does not pass through
+    const bool inside = nearest_among(candidates, centre).signed_distance < 0;
+    if (!inside) return;
+    if (least > half_diagonal + deep_cells * cell_size_.norm()) {
+      for (int k = 0; k < size; ++k) {
+        for (int j = 0; j < size; ++j) {
+          for (int i = 0; i < size; ++i) cell_[cell_index(cell + Eigen::Vector3i(i, j, k))] = deep;
+        }
+      }
+      return;
+    }
+  }
   std::vector<int> kept;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (distance[i] <= (least + 2 * half_diagonal) * (1 + 1e-12)) kept.push_back(candidates[i]);
   }
   if (size == 1) {
-    lists[cell_index(cell)] = std::move(kept);
+    cell_[cell_index(cell)] = static_cast<int>(lists_.size());
+    lists_.push_back(static_cast<int>(kept.size()));
+    lists_.insert(lists_.end(), kept.begin(), kept.end());
     return;
   }
   for (int octant = 0; octant < 8; ++octant) {
     const Eigen::Vector3i offset(octant & 1, (octant >> 1) & 1, octant >> 2);
-    refine(cell + size / 2 * offset, size / 2, kept, lists);
+    refine(cell + size / 2 * offset, size / 2, kept);
   }
 }
 
@@ -204,13 +211,17 @@ TriangleCollider::Nearest TriangleCollider::nearest_by_all(const Vector3d& p) co
   return nearest_among(all_, p);
 }
 
+std::span<const int> TriangleCollider::list(int cell) const {
+  if (cell == deep) return all_;
+  return {lists_.begin() + cell + 1,
+          static_cast<std::size_t>(lists_[static_cast<std::size_t>(cell)])};
+}
+
 TriangleCollider::Nearest TriangleCollider::nearest(const Vector3d& p) const {
   const Vector3d scaled = (p - low_).cwiseProduct(inverse_cell_size_);
   if ((scaled.array() >= 0).all() && (scaled.array() < resolution).all()) {
-    const std::size_t index = cell_index(scaled.cast<int>());
-    const std::span list(list_.begin() + list_start_[index],
-                         list_.begin() + list_start_[index + 1]);
-    if (!list.empty()) return nearest_among(list, p);
+    const int cell = cell_[cell_index(scaled.cast<int>())];
+    if (cell != outside) return nearest_among(list(cell), p);
   }
   return nearest_by_all(p);
 }
@@ -221,12 +232,11 @@ void TriangleCollider::resolve(const Eigen::Matrix3Xd& x_start,
   for (Eigen::Index v = 0; v < x.cols(); ++v) {
     const Vector3d scaled = (x.col(v) - low_).cwiseProduct(inverse_cell_size_);
     if (!((scaled.array() >= 0).all() && (scaled.array() < resolution).all())) continue;
-    const std::size_t index = cell_index(scaled.cast<int>());
-    const int begin = list_start_[index], end = list_start_[index + 1];
-    if (begin == end || inverse_mass[static_cast<std::size_t>(v)] == 0) continue;
-    work.triangle_tests += end - begin;
-    const Nearest contact =
-        nearest_among(std::span(list_.begin() + begin, list_.begin() + end), x.col(v));
+    const int cell = cell_[cell_index(scaled.cast<int>())];
+    if (cell == outside || inverse_mass[static_cast<std::size_t>(v)] == 0) continue;
+    const std::span<const int> triangles = list(cell);
+    work.triangle_tests += static_cast<std::int64_t>(triangles.size());
+    const Nearest contact = nearest_among(triangles, x.col(v));
     if (contact.signed_distance >= 0) continue;
     ++work.contacts;
     // Out along the shortest way; then friction takes up to mu times that way off the tangential

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "collider.h"
 
@@ -52,17 +53,21 @@ class TriangleCollider final : public Collider {
   Closest closest(int triangle, const Eigen::Vector3d& p) const;
   template <class Triangles>
   Nearest nearest_among(const Triangles& triangles, const Eigen::Vector3d& p) const;
-  void refine(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates,
-              std::vector<std::vector<int>>& lists);
+  void refine(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);
+  // The triangles to ask for a point in this cell, not outside.
+  std::span<const int> list(int cell) const;
   std::size_t cell_index(const Eigen::Vector3i& cell) const;
 
-  static constexpr int resolution = 32;  // cells an axis, a power of two
+  static constexpr int resolution = 32;          // cells an axis, a power of two
+  static constexpr int outside = -1, deep = -2;  // cells without a list
   TriangleMesh mesh_;
   double friction_;
   std::vector<std::array<Eigen::Vector3d, 7>> pseudonormal_;  // per triangle, by feature
   Eigen::Vector3d low_, cell_size_, inverse_cell_size_;
-  std::vector<int> all_;                // 0, 1, 2, ...
-  std::vector<int> list_start_, list_;  // triangles of each cell
+  std::vector<int> all_;  // 0, 1, 2, ...
+  // Of each cell: where its list begins in lists_ (its length first), or outside or deep.
+  std::vector<int> cell_;
+  std::vector<int> lists_;
 };
 
 }  // namespace inextensible
