@@ -111,6 +111,7 @@ int draw(const std::vector<std::string>& arguments) {
     std::vector<char*> argv;
     std::vector<std::string> words{"/usr/bin/python3", script};
     words.insert(words.end(), arguments.begin(), arguments.end());
+    argv.reserve(words.size() + 1);
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
     execv(argv[0], argv.data());

@@ -265,8 +265,8 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
       }
       settings["stiffness"] = *point.stiffness;
     }
-    RunLimits own = limits;  // the calibrated run has the whole time-out to itself
-    const PointRunner measured(spec, own);
+    const PointRunner measured(spec,
+                               limits);  // the calibrated run has the whole time-out to itself
     Run run = measured.run(settings, true, diverged_strain);
     fill(point, run);
     if (point.ok()) point.samples.push_back(run.seconds / (spec.step * measured.steps()));

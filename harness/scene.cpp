@@ -9,7 +9,6 @@
 namespace harness {
 namespace {
 
-using inextensible::Edge;
 using inextensible::Problem;
 using inextensible::ProblemParts;
 

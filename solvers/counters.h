@@ -20,6 +20,8 @@ struct WorkCounters {
   std::int64_t contacts = 0;            // vertices moved by the collision filter
   double factor_nonzeros = 0;           // of L (LU: of L + U), last factorization
   double factor_flops = 0;              // of one factorization, where known
+
+  bool operator==(const WorkCounters&) const = default;
 };
 
 }  // namespace inextensible

@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <numeric>
 
 #include "edge_constraints.h"
 #include "eigen_ldlt_solver.h"
@@ -72,6 +73,38 @@ TEST(EdgeConstraints, NaNIsNeverPermissible) {
     EXPECT_FALSE(edges.permissible(x));
     EXPECT_FALSE(edges.linearize(x, u, c));
     EXPECT_TRUE(std::isinf(edges.worst(x).strain));
+  }
+}
+
+TEST(EdgeConstraints, WorstNamesTheProblemsEdgeInAnyOrder) {
+  for (int seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(static_cast<std::uint64_t>(seed));
+    const auto mesh = random_mesh(random, 4, 4, 2);
+    const Problem& p = *mesh.problem;
+    const Positions x = testing::perturbed(random, mesh, 0.2);
+    int expected = 0;
+    std::vector<double> strain;
+    for (std::size_t k = 0; k < p.edges().size(); ++k) {
+      const auto [a, b] = p.edges()[k];
+      strain.push_back((x.col(b) - x.col(a)).norm() / p.rest_length()[k] - 1);
+      if (std::abs(strain[k]) > std::abs(strain[static_cast<std::size_t>(expected)]))
+        expected = static_cast<int>(k);
+    }
+    const double most = strain[static_cast<std::size_t>(expected)];
+    std::vector<int> order(strain.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::shuffle(order.begin(), order.end(), random);
+    // The limit is inclusive; on either side of it both checks agree.
+    for (const double factor : {1 - 1e-9, 1 + 1e-9}) {
+      const EdgeConstraints edges(p, std::abs(most) * factor, order);
+      EXPECT_EQ(edges.worst(x).edge, expected);
+      EXPECT_NEAR(edges.worst(x).strain, most, 1e-14);
+      Eigen::Matrix3Xd u(3, edges.count());
+      Eigen::VectorXd c(edges.count());
+      EXPECT_EQ(edges.permissible(x), factor > 1);
+      EXPECT_EQ(edges.linearize(x, u, c), factor > 1);
+    }
   }
 }
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "dense_reference.h"
 #include "fast_projection.h"
@@ -30,8 +30,9 @@ std::vector<std::string> filters() {
 }
 
 bool same_bits(const Positions& a, const Positions& b) {
-  return a.cols() == b.cols() &&
-         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+  const auto bits = [](double number) { return std::bit_cast<std::uint64_t>(number); };
+  return a.cols() == b.cols() && std::equal(a.data(), a.data() + a.size(), b.data(),
+                                            [&](double p, double q) { return bits(p) == bits(q); });
 }
 
 // Velocities that would stretch edges by some per cent in one step.
@@ -71,7 +72,7 @@ TEST_P(Filters, MeetTheLimitAndKeepPinnedVerticesBitForBit) {
       ASSERT_TRUE(stepper->advance(state, h));
       EXPECT_LE(std::abs(edges.worst(state.x).strain), 0.005);
       for (const int v : mesh.problem->pinned()) {
-        EXPECT_EQ(std::memcmp(state.x.col(v).data(), mesh.x.col(v).data(), 3 * sizeof(double)), 0);
+        EXPECT_TRUE(same_bits(state.x.col(v), mesh.x.col(v)));
       }
     }
   }
@@ -148,7 +149,7 @@ TEST_P(Filters, RepeatBitForBitWithTheirCounters) {
     work.push_back(stepper->work());
   }
   EXPECT_TRUE(same_bits(ends[0].x, ends[1].x));
-  EXPECT_EQ(std::memcmp(&work[0], &work[1], sizeof(WorkCounters)), 0);
+  EXPECT_EQ(work[0], work[1]);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Filters, ::testing::ValuesIn(filters()),

@@ -1,0 +1,240 @@
+// Linear solvers on the matrices of random graphs, where constraints_test.cpp has those of grids:
+// residuals, inertia, singularity, and ICD's saddle-point system against its dense form.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "edge_constraints.h"
+#include "kkt_system.h"
+#include "random_graph.h"
+#include "schur_complement.h"
+#include "unsymmetric_solver.h"
+
+namespace inextensible {
+namespace {
+
+using testing::Random;
+using testing::random_graph;
+constexpr std::uint64_t seeds = 20;
+const std::vector<std::string> general_solvers = {"eigen_ldlt", "cholmod_simplicial",
+                                                  "cholmod_supernodal"};
+
+Eigen::MatrixXd dense_symmetric(const SymmetricPattern& pattern, const double* values) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(pattern.n, pattern.n);
+  for (int j = 0; j < pattern.n; ++j) {
+    for (int i = pattern.column_start[static_cast<std::size_t>(j)];
+         i < pattern.column_start[static_cast<std::size_t>(j) + 1]; ++i) {
+      const int row = pattern.row_index[static_cast<std::size_t>(i)];
+      matrix(row, j) = matrix(j, row) = values[i];
+    }
+  }
+  return matrix;
+}
+
+// Normwise backward error of x as a solution of A x = b: below n eps whatever the conditioning.
+double backward_error(const Eigen::MatrixXd& a, const Eigen::VectorXd& x,
+                      const Eigen::VectorXd& b) {
+  return (a * x - b).norm() / (a.norm() * x.norm() + b.norm());
+}
+
+TEST(SpdSolver, IsBackwardStableOnGraphsOfUnequalMassesInTheFillReducingOrder) {
+  for (const std::string& name : general_solvers) {
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+      SCOPED_TRACE(name + ", seed " + std::to_string(seed));
+      Random random(seed);
+      const auto graph = random_graph(random, 60, 40, 5, 1e-4);
+      const EdgeConstraints natural(*graph.problem, 0.01);
+      const SchurComplement unordered(natural, 60, SymmetricPattern::Triangle::upper);
+      const EdgeConstraints edges(*graph.problem, 0.01, fill_reducing_order(unordered.pattern()));
+      const SchurComplement schur(edges, 60, triangle_of(name));
+      Eigen::Matrix3Xd u(3, edges.count());
+      edges.gradient(graph.x, u);
+      const auto solver = make_spd_solver(name, schur.pattern());
+      schur.assemble(u, solver->values());
+      const Eigen::MatrixXd matrix = dense_symmetric(schur.pattern(), solver->values());
+      ASSERT_TRUE(solver->factor());
+      for (int right_side = 0; right_side < 3; ++right_side) {
+        const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(
+            matrix.rows(), [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
+        Eigen::VectorXd x = b;
+        solver->solve(x.data());
+        EXPECT_LT(backward_error(matrix, x, b), 1e-13);
+      }
+    }
+  }
+}
+
+// A positive diagonal does not make a matrix positive definite: [1 2; 2 1] has eigenvalue -1.
+TEST(SpdSolver, RefusesAnIndefiniteMatrixWithAPositiveDiagonal) {
+  for (const char* name :
+       {"tridiagonal", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}) {
+    SCOPED_TRACE(name);
+    SymmetricPattern pattern;
+    pattern.n = 3;
+    pattern.triangle = triangle_of(name);
+    if (pattern.triangle == SymmetricPattern::Triangle::upper) {
+      pattern.column_start = {0, 1, 3, 5};
+      pattern.row_index = {0, 0, 1, 1, 2};
+    } else {
+      pattern.column_start = {0, 2, 4, 5};
+      pattern.row_index = {0, 1, 1, 2, 2};
+    }
+    const auto solver = make_spd_solver(name, pattern);
+    const auto fill = [&](double off_diagonal) {
+      for (int j = 0; j < 3; ++j) {
+        for (int i = pattern.column_start[static_cast<std::size_t>(j)];
+             i < pattern.column_start[static_cast<std::size_t>(j) + 1]; ++i) {
+          solver->values()[i] =
+              pattern.row_index[static_cast<std::size_t>(i)] == j ? 1 : off_diagonal;
+        }
+      }
+    };
+    fill(0.7);  // eigenvalues 1, 1 +- 0.7 sqrt(2): the least is 0.01
+    EXPECT_TRUE(solver->factor());
+    fill(0.71);  // the least is -0.004
+    EXPECT_FALSE(solver->factor());
+    fill(2);
+    EXPECT_FALSE(solver->factor());
+    fill(std::numeric_limits<double>::infinity());
+    EXPECT_FALSE(solver->factor());
+  }
+}
+
+// SHAKE's matrix, directions at two positions; a tree that is a path has a tridiagonal one.
+TEST(UnsymmetricSolver, IsBackwardStableOnShakesMatrices) {
+  for (const bool chain : {true, false}) {
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+      SCOPED_TRACE((chain ? "chain, seed " : "graph, seed ") + std::to_string(seed));
+      Random random(seed);
+      const auto graph = chain ? testing::random_mesh(random, 1, 40, 1)
+                               : random_graph(random, 40, 25, 3, 1e-2);
+      const Problem& problem = *graph.problem;
+      const EdgeConstraints edges(problem, 0.01);
+      const Positions y = testing::perturbed(random, graph, 0.1);
+      Eigen::Matrix3Xd ux(3, edges.count()), uy(3, edges.count());
+      edges.gradient(graph.x, ux);
+      edges.gradient(y, uy);
+      const UnsymmetricSchurComplement schur(edges, problem.vertices());
+      const auto solver = make_unsymmetric_solver(schur.column_start, schur.row_index);
+      schur.assemble(uy, ux, solver->values());
+      const Eigen::MatrixXd matrix = testing::dense_gradient(problem, y) *
+                                     testing::inverse_masses3(problem).asDiagonal() *
+                                     testing::dense_gradient(problem, graph.x).transpose();
+      ASSERT_TRUE(solver->factor());
+      const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(edges.count(), -1, 2);
+      Eigen::VectorXd x = b;
+      solver->solve(x.data());
+      EXPECT_LT(backward_error(matrix, x, b), 1e-12);
+    }
+  }
+}
+
+TEST(UnsymmetricSolver, SeesDependentRowsWithoutAnyZeroColumn) {
+  for (const int n : {3, 4}) {  // every entry but the corners of n = 3 (tridiagonal), and full
+    std::vector<int> start{0}, rows;
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        if (n == 4 || std::abs(i - j) <= 1) rows.push_back(i);
+      }
+      start.push_back(static_cast<int>(rows.size()));
+    }
+    const auto solver = make_unsymmetric_solver(start, rows);
+    // n = 3: [1 1 0; 1 2 1; 0 1 1], whose middle row is the sum of the others. n = 4: all ones.
+    for (int j = 0; j < n; ++j) {
+      for (int i = start[static_cast<std::size_t>(j)]; i < start[static_cast<std::size_t>(j) + 1];
+           ++i) {
+        const int row = rows[static_cast<std::size_t>(i)];
+        solver->values()[i] = n == 3 && row == 1 && j == 1 ? 2 : 1;
+      }
+    }
+    EXPECT_FALSE(solver->factor()) << "n = " << n;
+    solver->values()[0] = std::nan("");
+    EXPECT_FALSE(solver->factor()) << "n = " << n;
+  }
+}
+
+// K over all 3 n coordinates, pinned ones with a unit diagonal: they then decouple.
+Eigen::MatrixXd dense_kkt(const Problem& problem, const Positions& x, const Eigen::VectorXd& mu,
+                          double mean_mass) {
+  const Eigen::Index n3 = 3 * x.cols(), m = mu.size();
+  Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(n3 + m, n3 + m);
+  for (Eigen::Index i = 0; i < n3; ++i)
+    kkt(i, i) = problem.mass()[static_cast<std::size_t>(i / 3)] / mean_mass;
+  for (Eigen::Index k = 0; k < m; ++k) {
+    const auto [a, b] = problem.edges()[static_cast<std::size_t>(k)];
+    const double curvature = 2 * mu[k] / problem.rest_length()[static_cast<std::size_t>(k)];
+    for (int axis = 0; axis < 3; ++axis) {
+      kkt(3 * a + axis, 3 * a + axis) += curvature;
+      kkt(3 * b + axis, 3 * b + axis) += curvature;
+      kkt(3 * a + axis, 3 * b + axis) -= curvature;
+      kkt(3 * b + axis, 3 * a + axis) -= curvature;
+    }
+  }
+  const Eigen::MatrixXd j = testing::dense_gradient(problem, x);
+  kkt.bottomLeftCorner(m, n3) = j;
+  kkt.topRightCorner(n3, m) = j.transpose();
+  for (const int v : problem.pinned()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      kkt.row(3 * v + axis).setZero();
+      kkt.col(3 * v + axis).setZero();
+      kkt(3 * v + axis, 3 * v + axis) = 1;
+    }
+  }
+  return kkt;
+}
+
+TEST(KktSystem, SolvesTheDenseSaddlePointSystemAndNoticesTheWrongInertia) {
+  int right = 0, wrong = 0;
+  for (const char* name : {"quasi_definite", "umfpack"}) {
+    for (const double size : {0.0, 0.02, 1.0}) {  // of the multipliers, of either sign
+      for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        SCOPED_TRACE(std::string(name) + ", multipliers " + std::to_string(size) + ", seed " +
+                     std::to_string(seed));
+        Random random(seed);
+        const auto graph = seed % 2 ? testing::random_mesh(random, 4, 5, 2)
+                                    : random_graph(random, 20, 12, 2, 0.1);
+        const Problem& problem = *graph.problem;
+        const int n = problem.vertices(), m = problem.constraints();
+        const EdgeConstraints edges(problem, 0.01);
+        Eigen::Matrix3Xd u(3, m);
+        edges.gradient(graph.x, u);
+        const Eigen::VectorXd mu = Eigen::VectorXd::NullaryExpr(m, [&](Eigen::Index) {
+          return size * testing::uniform(random, -1, 1);
+        });
+        KktSystem kkt(problem, edges, name);
+        WorkCounters work;
+        ASSERT_TRUE(kkt.factor(u, mu, false, work));
+        const Eigen::MatrixXd full = dense_kkt(problem, graph.x, mu, kkt.mean_mass());
+        const Eigen::VectorXd eigenvalues =
+            Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full, Eigen::EigenvaluesOnly)
+                .eigenvalues();
+        const bool proper = (eigenvalues.array() < 0).count() == m;
+        ++(proper ? right : wrong);
+        if (eigenvalues.cwiseAbs().minCoeff() > 1e-6 && std::string(name) == "quasi_definite") {
+          EXPECT_EQ(kkt.convexified(), !proper);
+        }
+        Positions r(3, n), p(3, n);
+        for (Eigen::Index i = 0; i < r.size(); ++i)
+          r.data()[i] = testing::uniform(random, -1, 1);
+        for (const int v : problem.pinned()) r.col(v).setZero();
+        const Eigen::VectorXd c = Eigen::VectorXd::NullaryExpr(
+            m, [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
+        Eigen::VectorXd q(m);
+        ASSERT_TRUE(kkt.solve(r, c, p, q, work));
+        const Eigen::MatrixXd used =
+            kkt.convexified() ? dense_kkt(problem, graph.x, mu.cwiseMax(0), kkt.mean_mass()) : full;
+        Eigen::VectorXd solution(3 * n + m), rhs(3 * n + m);
+        solution << Eigen::Map<const Eigen::VectorXd>(p.data(), 3 * n), q;
+        rhs << Eigen::Map<const Eigen::VectorXd>(r.data(), 3 * n), c;
+        EXPECT_LT((used * solution - rhs).norm(), 1e-9 * rhs.norm());
+        for (const int v : problem.pinned()) EXPECT_EQ(p.col(v).norm(), 0);
+      }
+    }
+  }
+  EXPECT_GT(right, 0) << "the multipliers are too large to test the usual case";
+  EXPECT_GT(wrong, 0) << "the multipliers are too small to test the other one";
+}
+
+}  // namespace
+}  // namespace inextensible

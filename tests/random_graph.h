@@ -1,0 +1,41 @@
+// Random graphs in space, for what must hold beyond grids.
+#pragma once
+
+#include <cmath>
+#include <set>
+
+#include "random_mesh.h"
+
+namespace inextensible::testing {
+
+// A random tree of n vertices with `extra` further edges, none twice; positions random in a cube,
+// at rest; masses log-uniform in [lightest, 1]; the first `pinned` vertices pinned. Zero gravity.
+// With extra well below 2 n the gradients are independent (a generic framework in space).
+inline RandomMesh random_graph(Random& random, int n, int extra, int pinned, double lightest) {
+  RandomMesh graph;
+  graph.x.resize(3, n);
+  for (Eigen::Index i = 0; i < graph.x.size(); ++i) graph.x.data()[i] = uniform(random, -1, 1);
+  ProblemParts parts;
+  parts.gravity.setZero();
+  for (int v = 0; v < n; ++v) {
+    parts.mass.push_back(std::pow(lightest, uniform(random, 0, 1)));
+    if (v < pinned) parts.pinned.push_back(v);
+  }
+  std::set<std::pair<int, int>> taken;
+  const auto join = [&](int a, int b) {
+    if (a == b || (a < pinned && b < pinned) || !taken.insert(std::minmax(a, b)).second)
+      return false;
+    parts.edges.push_back({a, b});
+    parts.rest_length.push_back((graph.x.col(b) - graph.x.col(a)).norm());
+    return true;
+  };
+  const auto vertex = [&](int below) {
+    return static_cast<int>(random() % static_cast<std::uint64_t>(below));
+  };
+  for (int v = std::max(pinned, 1); v < n; ++v) join(v, vertex(v));
+  for (int added = 0; added < extra;) added += join(vertex(n), vertex(n));
+  graph.problem = std::make_shared<const Problem>(std::move(parts));
+  return graph;
+}
+
+}  // namespace inextensible::testing
