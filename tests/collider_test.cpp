@@ -1,5 +1,5 @@
-// The collider on a mesh that is not convex, where the sign of the distance is hard: against closest
-// points by another formula and the winding number.
+// The collider on a mesh that is not convex, where the sign of the distance is hard: against
+// closest points by another formula and the winding number.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -26,8 +26,7 @@ double distance_to_triangle(const Vector3d& a, const Vector3d& b, const Vector3d
                             const Vector3d& p) {
   Eigen::Matrix<double, 3, 2> sides;
   sides << b - a, c - a;
-  const Eigen::Vector2d s =
-      (sides.transpose() * sides).ldlt().solve(sides.transpose() * (p - a));
+  const Eigen::Vector2d s = (sides.transpose() * sides).ldlt().solve(sides.transpose() * (p - a));
   if (s[0] >= 0 && s[1] >= 0 && s[0] + s[1] <= 1) return (a + sides * s - p).norm();
   double least = std::numeric_limits<double>::infinity();
   const std::array<Vector3d, 4> corner{a, b, c, a};

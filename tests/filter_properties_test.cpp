@@ -52,16 +52,14 @@ Vector3d linear_momentum(const Problem& p, const Positions& v) {
 Vector3d angular_momentum(const Problem& p, const Positions& x, const Positions& v) {
   Vector3d sum = Vector3d::Zero();
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    sum += p.mass()[static_cast<std::size_t>(i)] *
-           Vector3d(x.col(i)).cross(Vector3d(v.col(i)));
+    sum += p.mass()[static_cast<std::size_t>(i)] * Vector3d(x.col(i)).cross(Vector3d(v.col(i)));
   }
   return sum;
 }
 
 // What a momentum is compared with: the sum of |m v|, which does not cancel.
 double momentum_scale(const Problem& p, const Positions& v) {
-  return v.colwise().norm().dot(
-      Eigen::Map<const Eigen::VectorXd>(p.mass().data(), p.vertices()));
+  return v.colwise().norm().dot(Eigen::Map<const Eigen::VectorXd>(p.mass().data(), p.vertices()));
 }
 
 ProblemParts parts_of(const Problem& p) {
@@ -98,14 +96,16 @@ TEST_P(Steppers, ShortenOneEdgeByTheClosedForm) {
     if (seed % 4 == 0) parts.pinned = {static_cast<int>(seed / 4 % 2)};
     const auto problem = std::make_shared<const Problem>(parts);
     Positions start(3, 2), candidate(3, 2);
-    start.col(0) = Vector3d::NullaryExpr([&](Eigen::Index) { return testing::uniform(random, -1, 1); });
+    start.col(0) =
+        Vector3d::NullaryExpr([&](Eigen::Index) { return testing::uniform(random, -1, 1); });
     start.col(1) = start.col(0) + Vector3d::NullaryExpr([&](Eigen::Index) {
                                     return testing::uniform(random, -1, 1);
                                   }).normalized();
     candidate = start;
     for (int v = 0; v < 2; ++v) {
       if (problem->inverse_mass()[static_cast<std::size_t>(v)] == 0) continue;
-      for (int axis = 0; axis < 3; ++axis) candidate(axis, v) += testing::uniform(random, -0.2, 0.2);
+      for (int axis = 0; axis < 3; ++axis)
+        candidate(axis, v) += testing::uniform(random, -0.2, 0.2);
     }
     const Vector3d d = candidate.col(1) - candidate.col(0);
     Vector3d correction;  // of d

@@ -107,8 +107,8 @@ TEST(UnsymmetricSolver, IsBackwardStableOnShakesMatrices) {
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
       SCOPED_TRACE((chain ? "chain, seed " : "graph, seed ") + std::to_string(seed));
       Random random(seed);
-      const auto graph = chain ? testing::random_mesh(random, 1, 40, 1)
-                               : random_graph(random, 40, 25, 3, 1e-2);
+      const auto graph =
+          chain ? testing::random_mesh(random, 1, 40, 1) : random_graph(random, 40, 25, 3, 1e-2);
       const Problem& problem = *graph.problem;
       const EdgeConstraints edges(problem, 0.01);
       const Positions y = testing::perturbed(random, graph, 0.1);
@@ -192,16 +192,15 @@ TEST(KktSystem, SolvesTheDenseSaddlePointSystemAndNoticesTheWrongInertia) {
         SCOPED_TRACE(std::string(name) + ", multipliers " + std::to_string(size) + ", seed " +
                      std::to_string(seed));
         Random random(seed);
-        const auto graph = seed % 2 ? testing::random_mesh(random, 4, 5, 2)
-                                    : random_graph(random, 20, 12, 2, 0.1);
+        const auto graph =
+            seed % 2 ? testing::random_mesh(random, 4, 5, 2) : random_graph(random, 20, 12, 2, 0.1);
         const Problem& problem = *graph.problem;
         const int n = problem.vertices(), m = problem.constraints();
         const EdgeConstraints edges(problem, 0.01);
         Eigen::Matrix3Xd u(3, m);
         edges.gradient(graph.x, u);
-        const Eigen::VectorXd mu = Eigen::VectorXd::NullaryExpr(m, [&](Eigen::Index) {
-          return size * testing::uniform(random, -1, 1);
-        });
+        const Eigen::VectorXd mu = Eigen::VectorXd::NullaryExpr(
+            m, [&](Eigen::Index) { return size * testing::uniform(random, -1, 1); });
         KktSystem kkt(problem, edges, name);
         WorkCounters work;
         ASSERT_TRUE(kkt.factor(u, mu, false, work));
@@ -215,8 +214,7 @@ TEST(KktSystem, SolvesTheDenseSaddlePointSystemAndNoticesTheWrongInertia) {
           EXPECT_EQ(kkt.convexified(), !proper);
         }
         Positions r(3, n), p(3, n);
-        for (Eigen::Index i = 0; i < r.size(); ++i)
-          r.data()[i] = testing::uniform(random, -1, 1);
+        for (Eigen::Index i = 0; i < r.size(); ++i) r.data()[i] = testing::uniform(random, -1, 1);
         for (const int v : problem.pinned()) r.col(v).setZero();
         const Eigen::VectorXd c = Eigen::VectorXd::NullaryExpr(
             m, [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
