@@ -60,14 +60,14 @@ void edge_pass(benchmark::State& state, const std::string& scene, int n) {
   const EdgeConstraints edges(*m.scene.problem, 0.01);
   Eigen::Matrix3Xd u(3, edges.count());
   Eigen::VectorXd c(edges.count());
-  for (auto _ : state) benchmark::DoNotOptimize(edges.linearize(m.state.x, u, c));
+  while (state.KeepRunning()) benchmark::DoNotOptimize(edges.linearize(m.state.x, u, c));
   per_item(state, edges.count(), "s_per_edge");
 }
 
 void strain_check(benchmark::State& state, const std::string& scene, int n) {
   const Moment m = moment(scene, n);
   const EdgeConstraints edges(*m.scene.problem, 1);  // nothing violates: the whole pass
-  for (auto _ : state) benchmark::DoNotOptimize(edges.permissible(m.state.x));
+  while (state.KeepRunning()) benchmark::DoNotOptimize(edges.permissible(m.state.x));
   per_item(state, edges.count(), "s_per_edge");
 }
 
@@ -76,7 +76,7 @@ void assembly(benchmark::State& state, const std::string& scene, int n) {
   const Linearized linearized(m, "auto");
   std::vector<double> values(
       static_cast<std::size_t>(linearized.system.schur().pattern().entries()));
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     linearized.system.schur().assemble(linearized.u, values.data());
     benchmark::ClobberMemory();
   }
@@ -87,7 +87,7 @@ void factor(benchmark::State& state, const std::string& solver, const std::strin
   const Moment m = moment(scene, n);
   Linearized linearized(m, solver);
   WorkCounters work;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     if (!linearized.system.factor(linearized.u, work))
       return state.SkipWithError("not positive definite");
   }
@@ -103,7 +103,7 @@ void back_solve(benchmark::State& state, const std::string& solver, const std::s
   if (!linearized.system.factor(linearized.u, work))
     return state.SkipWithError("not positive definite");
   Eigen::VectorXd x = linearized.c;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     x = linearized.c;
     linearized.system.solve(x, work);
   }
@@ -122,7 +122,7 @@ void sweep(benchmark::State& state, const std::string& scene, int n) {
   const Positions stretched = 1.05 * m.state.x;
   Positions x = stretched;
   WorkCounters work;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     x = stretched;
     benchmark::DoNotOptimize(filter.apply(m.state.x, 0.01, x, work));
   }
@@ -141,7 +141,7 @@ void kkt(benchmark::State& state, const std::string& solver, bool solve, int n) 
   Positions p = r;
   WorkCounters work;
   if (!system.factor(u, mu, false, work)) return state.SkipWithError("singular");
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     if (solve) {
       benchmark::DoNotOptimize(system.solve(r, c, p, q, work));
     } else {
@@ -159,7 +159,7 @@ void collision_pass(benchmark::State& state, int n) {
   Positions candidate(3, problem.vertices()), x = candidate;
   WorkCounters work;
   unconstrained_step(problem, m.state, 0.005, candidate, work);
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     x = candidate;
     problem.collider()->resolve(m.state.x, problem.inverse_mass(), x, work);
   }
@@ -172,7 +172,7 @@ void free_step(benchmark::State& state, const std::string& scene, int n) {
   const Moment m = moment(scene, n);
   Positions x(3, m.scene.problem->vertices());
   WorkCounters work;
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     unconstrained_step(*m.scene.problem, m.state, 0.005, x, work);
     benchmark::ClobberMemory();
   }
