@@ -118,6 +118,7 @@ class PointRunner {
     return run;
   }
 
+  void restart_clock() { start_ = Clock::now(); }
   bool out_of_time() const { return since(start_) > limits_.timeout; }
   const inextensible::Backend& backend() const { return backend_; }
   const PointSpec& spec() const { return spec_; }
@@ -248,7 +249,7 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
   point.spec = spec;
   reset_peak_rss();
   try {
-    const PointRunner runner(spec, limits);
+    PointRunner runner(spec, limits);
     point.steps_planned = runner.steps();
     inextensible::Settings settings = spec.settings;
     if (runner.backend().knob == inextensible::Knob::stiffness && !settings.contains("stiffness")) {
@@ -265,11 +266,10 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
       }
       settings["stiffness"] = *point.stiffness;
     }
-    const PointRunner measured(spec,
-                               limits);  // the calibrated run has the whole time-out to itself
-    Run run = measured.run(settings, true, diverged_strain);
+    runner.restart_clock();  // the measured run has the whole time-out to itself
+    Run run = runner.run(settings, true, diverged_strain);
     fill(point, run);
-    if (point.ok()) point.samples.push_back(run.seconds / (spec.step * measured.steps()));
+    if (point.ok()) point.samples.push_back(run.seconds / (spec.step * runner.steps()));
   } catch (const std::bad_alloc&) {
     point.status = PointStatus::out_of_memory;
     point.detail = "an allocation failed";

@@ -50,6 +50,7 @@ Suite tiny_suite() {
   for (SweepSpec& sweep : suite.sweeps) {
     sweep.resolutions = {5};
     sweep.limits = {0.01};
+    if (sweep.scene == "drape") sweep.scene_parameters["subdivisions"] = 1;
     sweep.finest = 1.0 / 800;
   }
   suite.reps = 2;
