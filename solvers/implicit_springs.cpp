@@ -13,6 +13,7 @@ namespace {
 
 constexpr int line_search_limit = 30;
 constexpr double sufficient_decrease = 1e-4;
+constexpr double rounding = 1e-14;
 
 // Above this many unknowns CHOLMOD's dense kernels win (measured by `kernels`).
 constexpr int supernodal_from = 3000;
@@ -254,7 +255,8 @@ StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
     ++work_.back_solves;
 
     const double slope = gradient_.dot(step_);
-    const double longest = step_.cwiseAbs().maxCoeff();
+    const double longest =
+        Eigen::Map<const Positions>(step_.data(), 3, step_.size() / 3).colwise().norm().maxCoeff();
     double scale = 1;
     for (int halvings = 0;; ++halvings) {
       trial_ = x;
@@ -269,6 +271,8 @@ StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
         current = next;
         break;
       }
+      // The decrease that is left is below the energy's rounding error: this is the minimum.
+      if (-slope <= rounding * current) return {Status::ok, j + 1};
       if (halvings == line_search_limit || !std::isfinite(slope)) {
         return {Status::not_converged, j, -1, 0,
                 "no step along Newton's direction lowers the energy"};

@@ -101,6 +101,22 @@ TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
     }
   }
 
+  double volume = 0;
+  convex_ = true;
+  for (std::size_t f = 0; f < count; ++f) {
+    const Vector3d& p = corner(mesh_, static_cast<int>(f), 0);
+    volume += p.dot((corner(mesh_, static_cast<int>(f), 1) - p)
+                        .cross(corner(mesh_, static_cast<int>(f), 2) - p));
+    for (const Vector3d& v : mesh_.vertices) {
+      convex_ = convex_ && (v - p).dot(face[f]) <= 1e-9 * p.norm();
+    }
+  }
+  if (!(volume > 0)) {
+    throw std::invalid_argument(
+        "collider: the mesh is inside out; its triangles must be "
+        "counter-clockwise seen from outside");
+  }
+
   Vector3d high = low_ = mesh_.vertices.front();
   for (const Vector3d& v : mesh_.vertices) {
     low_ = low_.cwiseMin(v);
@@ -246,7 +262,10 @@ void TriangleCollider::resolve(const Eigen::Matrix3Xd& x_start,
     const Vector3d tangential = displacement - displacement.dot(normal) * normal;
     const double slide = tangential.norm(), grip = friction_ * -contact.signed_distance;
     const double kept = slide > grip ? 1 - grip / slide : 0;
-    x.col(v) = contact.point - (1 - kept) * tangential;
+    const Vector3d place = contact.point - (1 - kept) * tangential;
+    // Where the mesh is not convex, friction's way back may lead into it.
+    const bool inside = !convex_ && kept < 1 && nearest(place).signed_distance < 0;
+    x.col(v) = inside ? contact.point : place;
   }
 }
 

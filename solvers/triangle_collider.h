@@ -62,6 +62,7 @@ class TriangleCollider final : public Collider {
   static constexpr int outside = -1, deep = -2;  // cells without a list
   TriangleMesh mesh_;
   double friction_;
+  bool convex_ = false;
   std::vector<std::array<Eigen::Vector3d, 7>> pseudonormal_;  // per triangle, by feature
   Eigen::Vector3d low_, cell_size_, inverse_cell_size_;
   std::vector<int> all_;  // 0, 1, 2, ...

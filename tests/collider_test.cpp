@@ -125,13 +125,21 @@ TEST(TriangleCollider, ResolveLeavesNothingInsideAConvexMeshWhateverTheFriction)
   }
 }
 
-TEST(TriangleCollider, ResolveWithoutFrictionLeavesNothingInsideAMeshThatIsNotConvex) {
+TEST(TriangleCollider, ResolveLeavesNothingInsideAMeshThatIsNotConvexWhateverTheFriction) {
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const TriangleMesh mesh = spiky(random, 2);
-    EXPECT_GE(deepest_after_resolve(mesh, 0, random), -1e-12);
+    for (const double friction : {0.0, 0.3, 10.0}) {
+      EXPECT_GE(deepest_after_resolve(mesh, friction, random), -1e-12) << friction;
+    }
   }
+}
+
+TEST(TriangleCollider, RefusesAMeshThatIsInsideOut) {
+  TriangleMesh mesh = icosphere(Vector3d::Zero(), 1, 1);
+  for (auto& triangle : mesh.triangles) std::swap(triangle[0], triangle[1]);
+  EXPECT_THROW(TriangleCollider(mesh, 0), std::invalid_argument);
 }
 
 }  // namespace
