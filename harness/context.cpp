@@ -2,6 +2,7 @@
 
 #include <cholmod.h>
 #include <gsl/gsl_version.h>
+#include <omp.h>
 #include <umfpack.h>
 #include <unistd.h>
 
@@ -94,7 +95,10 @@ std::string fnv1a(const std::string& text) {
 
 const char* version() { return INEXTENSIBLE_VERSION; }
 
-void use_one_blas_thread() { openblas_set_num_threads(1); }
+void use_one_thread() {
+  openblas_set_num_threads(1);
+  omp_set_max_active_levels(0);  // CHOLMOD's num_threads clause outvotes OMP_NUM_THREADS
+}
 
 json machine_context() {
   std::array<char, 256> host{};

@@ -9,8 +9,9 @@ namespace harness {
 // may be compared).
 nlohmann::json machine_context();
 
-// One BLAS thread, whatever the environment says: a comparison of methods, not of thread pools.
-void use_one_blas_thread();
+// One thread, whatever the environment says, in OpenBLAS and in CHOLMOD's own OpenMP loops (which
+// ask for four): a comparison of methods, not of thread pools.
+void use_one_thread();
 
 const char* version();
 

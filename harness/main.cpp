@@ -312,7 +312,7 @@ int run(int argc, char** argv) {
 }  // namespace harness
 
 int main(int argc, char** argv) {
-  harness::use_one_blas_thread();
+  harness::use_one_thread();
   try {
     return harness::run(argc, argv);
   } catch (const harness::UsageError& error) {

@@ -47,8 +47,9 @@ def _scene_sentence(figure: FigureData) -> str:
     if figure.sweep == "strain":
         size = f"{figure.fixed:,.0f} vertices"
     else:
-        sizes = [point["vertices"] for point in figure.points]
-        size = f"{min(sizes):,.0f} to {max(sizes):,.0f} vertices, permissible strain {percent(figure.fixed)}"
+        sizes = sorted({point["vertices"] for point in figure.points})
+        several = f"{sizes[0]:,.0f} to " if len(sizes) > 1 else ""
+        size = f"{several}{sizes[-1]:,.0f} vertices, permissible strain {percent(figure.fixed)}"
     parts = [size] + _common_parameters(figure.points)
     durations = {point["duration"] for point in figure.points if is_number(point.get("duration"))}
     if durations:
@@ -63,15 +64,18 @@ def _common_parameters(points: list[Json]) -> list[str]:
         return []
     first = scene_parameters[0]
     same = [key for key in first if all(key in other and other[key] == first[key] for other in scene_parameters)]
-    # the vertex count and the duration stand in the sentence already
-    return [f"{key.replace('_', ' ')} {plain(first[key])}" for key in same if key not in ("n", "N", "vertices", "duration")]
+    said = ("n", "N", "vertices", "resolution", "duration")  # these stand in the sentence already
+    return [f"{key.replace('_', ' ')} {plain(first[key])}" for key in same if key not in said]
 
 
 def _method_sentence(figure: FigureData, document: Json) -> str:
     suite = _suite(document)
     text = "Each solver at its own best time step (panel of best steps); "
     reps = suite.get("reps")
-    text += f"median of {reps} repetitions" if is_number(reps) and reps != 1 else "one run a point" if reps == 1 else "median"
+    if reps == 1:
+        text += "one run a point"
+    else:
+        text += f"median of {reps} repetitions" if is_number(reps) else "median"
     if any(best.q3 > best.q1 for curve in figure.curves.values() for best in curve.best):
         text += ", bars from the first to the third quartile"
     settings = [f"timeout {suite['timeout']:g} s" if is_number(suite.get("timeout")) else "",
@@ -87,20 +91,23 @@ def _failure_key(figure: FigureData, document: Json) -> str:
         return ""
     meanings = dict(MEANINGS)
     limit = _suite(document).get("timeout")
-    meanings["T"] += f" (T alone: every step took longer than {limit:g} s)" if is_number(limit) else " (T alone: longer than that)"
+    if is_number(limit):
+        meanings["T"] += f" (T alone: every step took longer than {limit:g} s)"
     key = ", ".join(f"{letter} = {meanings[letter]}" for letter in meanings if letter in letters)
-    return f"A mark above the axes: every step tried failed, the letters say how, from the coarsest step to the finest: {key}."
+    return ("A mark above the axes: every step tried failed, the letters say how, from the coarsest step to the finest: "
+            f"{key}.")
 
 
 def _origin_sentence(document: Json) -> str:
     """Machine, build, date. Executable, command line and host name stay out: they tell of a host, not of a method."""
     context = _object(document.get("context"))
     build = _object(context.get("build"))
+    edited = " + uncommitted changes" if build.get("dirty") is True else ""
     parts = [plain(context["cpu_model"]) if context.get("cpu_model") else "",
              f"{plain(context['num_cpus'])} CPUs" if is_number(context.get("num_cpus")) else "",
              f"build {plain(context['library_build_type'])}" if context.get("library_build_type") else "",
              plain(context["date"])[:16].replace("T", " ") if context.get("date") else "",
-             f"commit {plain(build['git'])[:12]}{' + uncommitted changes' if build.get('dirty') is True else ''}" if build.get("git") else ""]
+             f"commit {plain(build['git'])[:12]}{edited}" if build.get("git") else ""]
     text = "; ".join(part for part in parts if part)
     text = f"Measured on {text}." if text else "Machine and commit are not recorded."
     return " ".join([text] + [warning + "." for warning in warnings_of(document)])

@@ -36,7 +36,7 @@ PNG_DPI = 150
 
 # All lengths in inches. Placing by hand keeps the panels' size the same, however long caption and legend are.
 LEFT, GAP, RIGHT = 1.2, 0.75, 0.2
-MAIN_WIDTH, LEGEND_WIDTH = 4.5, 2.6
+MAIN_WIDTH, LEGEND_WIDTH = 4.5, 2.8
 MAIN_HEIGHT, STEPS_HEIGHT, ROW_HEIGHT = 3.3, 1.7, 0.16
 BETWEEN, X_LABEL, LINE_HEIGHT = 0.14, 0.5, 0.15
 TIME_LABEL = "wall seconds per simulated second"
@@ -81,8 +81,8 @@ def _draw_strain(data: FigureData, document: Json, styles: dict[str, SolverStyle
     steps.set_xlabel("permissible strain (%)")
     for axes in (main, steps):
         _grid(axes)
-    _add_strip(sheet, main, rows, styles, names=True)
-    _legend(main, styles, anchor=(1.03, 1.0))
+    _add_strip(sheet, main, rows, styles, "failed at every step")
+    _legend(main, styles, anchor=(1.03, 1.0), columns=1)
     return sheet.figure
 
 
@@ -109,13 +109,15 @@ def _draw_resolution(data: FigureData, document: Json, styles: dict[str, SolverS
     panels.draw_curves(right, data, styles)
     right.tick_params(axis="x", which="both", labelbottom=False)
     panels.draw_steps(steps, data, styles)
-    steps.set_xlabel("vertices (log axes)")
+    steps.set_xlabel("vertices (log axes; dotted: slopes 1 and 2)")
     steps.set_ylabel(STEP_LABEL)
     for axes in (left, right, steps):
         _grid(axes)
-    _add_strip(sheet, left, rows_linear, styles, names=True)
-    _add_strip(sheet, right, rows_log, styles, names=False)
-    _legend(left, styles, anchor=(0.0, -0.2))
+    off_scale = any(mark.text.startswith(panels.ARROW) for marks in rows_linear.values() for mark in marks)
+    _add_strip(sheet, left, rows_linear, styles, f"failed at every step, or above the axes ({panels.ARROW})" if off_scale
+               else "failed at every step")
+    _add_strip(sheet, right, rows_log, styles, "failed at every step", names=False)
+    _legend(left, styles, anchor=(0.0, -0.2), columns=1 if len(styles) <= 8 else 2)
     return sheet.figure
 
 
@@ -130,7 +132,7 @@ def _sheet(data: FigureData, document: Json, width: float, strip_rows: int) -> t
     warnings = caption.warnings_of(document)
     bottom = 0.15 + LINE_HEIGHT * len(lines) + X_LABEL
     panels_top = bottom + STEPS_HEIGHT + BETWEEN + MAIN_HEIGHT + ROW_HEIGHT * strip_rows
-    height = panels_top + 0.45 + 0.2 * len(warnings)
+    height = panels_top + 0.5 + 0.2 * len(warnings)
     figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
     sheet = Sheet(figure, width, height)
@@ -148,18 +150,22 @@ def _grid(axes: Axes) -> None:
     axes.spines["top"].set_visible(False)
 
 
-def _add_strip(sheet: Sheet, main: Axes, rows: panels.Rows, styles: dict[str, SolverStyle], names: bool) -> None:
+def _add_strip(sheet: Sheet, main: Axes, rows: panels.Rows, styles: dict[str, SolverStyle], title: str,
+               names: bool = True) -> None:
     if not rows:
         return
     box = main.get_position()
     strip = sheet.axes(box.x0 * sheet.width, box.y1 * sheet.height, box.width * sheet.width, ROW_HEIGHT * len(rows))
     panels.draw_strip(strip, main, rows, styles, names)
+    strip.set_title(title, loc="right", fontsize=7, pad=2, color="#555555")
 
 
-def _legend(axes: Axes, styles: dict[str, SolverStyle], anchor: tuple[float, float]) -> None:
+def _legend(axes: Axes, styles: dict[str, SolverStyle], anchor: tuple[float, float], columns: int) -> None:
     handles = [panels.line_of(style, [], []) for style in styles.values()]
-    axes.legend(handles, [style.label for style in styles.values()], loc="upper left", bbox_to_anchor=anchor,
-                borderaxespad=0, frameon=False, fontsize=8, handlelength=4.2, labelspacing=0.55)
+    labels = [textwrap.fill(style.label, 36 if columns == 1 else 27) for style in styles.values()]
+    axes.legend(handles, labels, loc="upper left", bbox_to_anchor=anchor,
+                borderaxespad=0, frameon=False, fontsize=8, handlelength=4.2, labelspacing=0.55,
+                ncol=columns, columnspacing=1.2)
 
 
 def save(figure: Figure, path: Path) -> None:
@@ -183,7 +189,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="figures.py", description="Draws the figures of a result file.")
     parser.add_argument("result", type=Path, help="result file of the bench program (JSON)")
     parser.add_argument("--out", type=Path, help="folder for the figures (default: the result file's folder)")
-    parser.add_argument("--format", type=formats, default=list(FORMATS), metavar="svg,png", help="file formats (default: both)")
+    parser.add_argument("--format", type=formats, default=list(FORMATS), metavar="svg,png",
+                        help="file formats (default: both)")
     return parser.parse_args(arguments)
 
 

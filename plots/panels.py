@@ -16,6 +16,7 @@ from style import GREY, LIGHT_GREY, SolverStyle
 Styles = dict[str, SolverStyle]
 COARSEST_STEP = 1 / 25  # the ladder of steps starts here (docs: measuring.md)
 CLIP_RATIO = 20.0       # a solver this many times slower than the fastest one leaves the linear panel at its top
+ARROW = "\u2191"         # "this point lies above the axes"
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,8 @@ def draw_curves(axes: Axes, figure: FigureData, styles: Styles, x_factor: float 
         z = 10 + len(styles) - order if style.contestant else 2
         if style.contestant:  # for the others a bar would be heavier than the line
             bars = [[b.seconds - b.q1 for b in best], [b.q3 - b.seconds for b in best]]
-            axes.errorbar(x, y, yerr=bars, fmt="none", ecolor=style.color, elinewidth=0.7, capsize=1.8, capthick=0.7, zorder=z)
+            axes.errorbar(x, y, yerr=bars, fmt="none", ecolor=style.color, elinewidth=0.7, capsize=1.8, capthick=0.7,
+                          zorder=z)
         axes.add_line(line_of(style, x, y, zorder=z))
 
 
@@ -113,19 +115,18 @@ def linear_top(figure: FigureData, styles: Styles) -> float:
 def draw_slopes(axes: Axes) -> None:
     """Faint lines of slope 1 and 2 through the lower left corner, to read the curves' slopes against."""
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-    for power, name in ((1, "n"), (2, "n\u00b2")):
+    for power in (1, 2):
         end = min(right, left * (high / low) ** (1 / power))
-        axes.plot([left, end], [low, low * (end / left) ** power], color=GREY, linewidth=0.6, linestyle=(0, (1, 3)), zorder=1)
-        at = left * (end / left) ** 0.93
-        axes.annotate(f"\u221d {name}", (at, low * (at / left) ** power), (5, -5), textcoords="offset points",
-                      fontsize=7, color=GREY, ha="left", va="top", zorder=1)
+        axes.plot([left, end], [low, low * (end / left) ** power], color=GREY, linewidth=0.6, linestyle=(0, (1, 3)),
+                  zorder=1)
 
 
 # ---- failures and points off the scale ----------------------------------------------------------------------------
 
 def failed_rows(figure: FigureData, styles: Styles, x_factor: float = 1.0) -> Rows:
     """Marks for each contestant that failed at some x. Backends out of competition are not held to the limit."""
-    rows = {s: [Mark(f.x * x_factor, f.letters) for f in figure.curves[s].failures] for s in styles if styles[s].contestant}
+    contestants = [solver for solver in styles if styles[solver].contestant]
+    rows = {s: [Mark(f.x * x_factor, f.letters) for f in figure.curves[s].failures] for s in contestants}
     return {solver: marks for solver, marks in rows.items() if marks}
 
 
@@ -136,7 +137,7 @@ def clipped_rows(figure: FigureData, styles: Styles, top: float) -> Rows:
     for solver in styles:
         above = [b for b in figure.curves[solver].best if b.seconds > top]
         peak = max(above, key=lambda b: b.seconds, default=None)
-        arrows = [Mark(b.x, f"\u2191 {b.seconds:.3g} s" if b is peak else "\u2191") for b in above]
+        arrows = [Mark(b.x, f"{ARROW} {b.seconds:.3g} s" if b is peak else ARROW) for b in above]
         marks = sorted(arrows + failed.get(solver, []), key=lambda mark: mark.x)
         if marks:
             rows[solver] = marks
@@ -153,13 +154,14 @@ def draw_strip(axes: Axes, beneath: Axes, rows: Rows, styles: Styles, names: boo
     axes.xaxis.set_major_locator(NullLocator())
     axes.xaxis.set_minor_locator(NullLocator())
     axes.tick_params(axis="y", length=0, labelsize=6.5)
-    axes.set_yticks(range(len(rows)), [s.replace("_", " ") if names else "" for s in rows])
+    axes.set_yticks(range(len(rows)), list(rows) if names else [""] * len(rows))
     points_wide = axes.get_figure().get_figwidth() * axes.get_position().width * 72
     for row, (solver, marks) in enumerate(rows.items()):
         style = styles[solver]
         for mark, after in zip(marks, marks[1:] + [None]):
-            axes.plot([mark.x], [row], color=style.color, marker=style.marker or "|", markersize=style.size, linestyle="none",
-                      markeredgecolor="white" if style.marker else style.color, markeredgewidth=0.5, clip_on=False, zorder=5)
+            sign = line_of(style, [mark.x], [row], zorder=5)
+            sign.set(linestyle="none", clip_on=False)
+            axes.add_line(sign)
             if after and mark.text == after.text and _gap(axes, mark.x, after.x) * points_wide < 7 + 5 * len(mark.text):
                 continue  # no room, and the next mark says the same
             # words that would run out of the strip go to the left of their mark

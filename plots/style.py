@@ -36,7 +36,7 @@ TABLE: dict[str, SolverStyle] = {
     "jacobi": SolverStyle("Jacobi strain limiting", ORANGE, "v", (1, 1.5), width=1.6, size=6),
     "gauss_seidel": SolverStyle("Gauss-Seidel strain limiting", SKY, "^", (5, 1.5, 1, 1.5), size=6),
     "shake": SolverStyle("SHAKE", GREEN, "D", (8, 2), size=4.6),
-    "icd": SolverStyle("implicit constraint direction (ICD)", PURPLE, "X", (3, 1.2), size=6.3),
+    "icd": SolverStyle("ICD (implicit constraint direction)", PURPLE, "X", (3, 1.2), size=6.3),
     "fast_projection": SolverStyle("fast projection", BLUE, "o", (), width=2.0),
     "null": SolverStyle("scene without inextensibility", GREY, "", (), width=0.8, contestant=False),
     "reference": SolverStyle("reference (no contestant)", GREY, "+", (1, 2), width=0.8, contestant=False),
@@ -46,8 +46,8 @@ TABLE: dict[str, SolverStyle] = {
 # keeps the colour of its parent and gets a marker and dashes from here; a stranger gets a colour from here as well.
 SPARE_COLORS = (VERMILLION, "#6A3D9A", "#8C6D1F", "#3F7F7F")
 SPARE_LOOKS: tuple[tuple[str, Dashes], ...] = (
-    ("P", (2, 1, 2, 4)), ("*", (6, 1, 1, 1, 1, 1)), ("p", (1, 3)), ("h", (10, 3)),
-    ("<", (4, 4)), (">", (7, 1.5, 3, 1.5)), ("d", (2, 2)), ("8", (1, 1, 4, 1)),
+    ("P", (2, 1, 2, 4)), ("*", (6, 1, 1, 1, 1, 1)), ("p", (1, 3)), ("<", (4, 4)), (">", (7, 1.5, 3, 1.5)),
+    ("d", (2, 2)), ("H", (10, 3)),
 )
 
 # Applied with matplotlib.rc_context around the drawing; the fixed salt makes the ids in an SVG repeat from run to run.
@@ -81,11 +81,13 @@ def styles_for(solvers: Iterable[str]) -> dict[str, SolverStyle]:
         marker, dashes = SPARE_LOOKS[slot]
         parent = parent_of(name)
         if parent:
-            label = TABLE[parent].label + " - " + name[len(parent) + 1:].replace("_", " ")
-            # "null" has no marker and no rank; a variant of it has neither as well
-            styles[name] = replace(TABLE[parent], label=label, dashes=dashes, marker=marker if TABLE[parent].marker else "")
+            label = TABLE[parent].label + ", " + name[len(parent) + 1:].replace("_", " ")
+            if not TABLE[parent].marker:
+                marker = ""  # a variant of "null" stays a plain line
+            styles[name] = replace(TABLE[parent], label=label, dashes=dashes, marker=marker, size=6.5)
         else:
-            styles[name] = SolverStyle(name.replace("_", " "), SPARE_COLORS[slot % len(SPARE_COLORS)], marker, dashes, size=6)
+            color = SPARE_COLORS[slot % len(SPARE_COLORS)]
+            styles[name] = SolverStyle(name.replace("_", " "), color, marker, dashes, size=6.5)
     return _in_order(styles)
 
 
