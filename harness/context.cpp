@@ -83,6 +83,8 @@ std::string now() {
   return std::string(text.data(), length).insert(length - 2, ":");
 }
 
+}  // namespace
+
 std::string fnv1a(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (const unsigned char c : text) hash = (hash ^ c) * 0x100000001b3ULL;
@@ -90,8 +92,6 @@ std::string fnv1a(const std::string& text) {
   hex << std::hex << hash;
   return hex.str();
 }
-
-}  // namespace
 
 const char* version() { return INEXTENSIBLE_VERSION; }
 

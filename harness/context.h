@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace harness {
 
@@ -12,6 +13,9 @@ nlohmann::json machine_context();
 // One thread, whatever the environment says, in OpenBLAS and in CHOLMOD's own OpenMP loops (which
 // ask for four): a comparison of methods, not of thread pools.
 void use_one_thread();
+
+// A short hash (FNV-1a, 64 bits) that is the same on every machine, in hexadecimal.
+std::string fnv1a(const std::string& text);
 
 const char* version();
 

@@ -10,8 +10,15 @@ namespace harness {
 using inextensible::Positions;
 using inextensible::State;
 
-Judge::Judge(const Scene& scene, int sample_every)
-    : scene_(scene), sample_every_(std::max(1, sample_every)) {
+namespace {
+
+constexpr double time_tolerance = 1e-9;  // s; states add up their steps
+
+}  // namespace
+
+Judge::Judge(const Scene& scene, const Options& options) : scene_(scene), options_(options) {
+  options_.sample_every = std::max(1, options_.sample_every);
+  if (options_.residual_of_limit > 0) probe_.emplace(scene.problem, options_.residual_of_limit);
   const auto& problem = *scene.problem;
   start_energy_ = inextensible::potential_energy(problem, scene.start.x) +
                   inextensible::kinetic_energy(problem, scene.start.v);
@@ -37,7 +44,45 @@ Judge::Range Judge::strain_range(const Positions& x) const {
   return {std::max(stretch, 1 - std::sqrt(low)), stretch};
 }
 
-double Judge::look(const Positions& filtered, const State& state) {
+void Judge::before(const State& state, double h) {
+  if (probe_ && (steps_ + 1) % options_.sample_every == 0) {
+    if (const auto residuals = probe_->of_step(state, h))
+      running_.residuals.push_back({state.time + h, residuals->first, residuals->last});
+  }
+  // A sample in the middle of a step is interpolated.
+  if (options_.reference && next_ < options_.reference->times.size() &&
+      options_.reference->times[next_] < state.time + h - time_tolerance) {
+    start_ = state;
+  }
+}
+
+// Distances to the reference at the samples that the last step has reached.
+void Judge::compare(const State& state) {
+  const Reference& reference = *options_.reference;
+  for (; next_ < reference.times.size() && reference.times[next_] <= state.time + time_tolerance;
+       ++next_) {
+    const double time = reference.times[next_];
+    const bool inside = time < state.time - time_tolerance;
+    const double part = inside ? (time - start_.time) / (state.time - start_.time) : 1;
+    const Positions x = inside ? Positions((1 - part) * start_.x + part * state.x) : state.x;
+    if (next_ < reference.positions.size()) {
+      squares_ += std::pow(rms_distance(scene_, x, reference.positions[next_]), 2);
+      most_ = std::max(most_, max_distance(scene_, x, reference.positions[next_]));
+      gap_squares_ += std::pow(reference.gap[next_], 2);
+      ++compared_;
+    } else {
+      const ShapeStatistics shape = shape_statistics(scene_, x);
+      const ShapeStatistics& wanted = reference.shape[next_];
+      shape_squares_.potential_energy +=
+          std::pow(shape.potential_energy - wanted.potential_energy, 2);
+      shape_squares_.corner_height += std::pow(shape.corner_height - wanted.corner_height, 2);
+      shape_squares_.shadow += std::pow(shape.shadow - wanted.shadow, 2);
+      ++shapes_;
+    }
+  }
+}
+
+double Judge::after(const Positions& filtered, const State& state) {
   const Range range = strain_range(filtered);
   running_.max_strain = std::max(running_.max_strain, range.most);
   running_.max_stretch = std::max(running_.max_stretch, range.stretch);
@@ -46,7 +91,8 @@ double Judge::look(const Positions& filtered, const State& state) {
     const double before = running_.max_strain_after_collision;
     running_.max_strain_after_collision = std::isnan(before) ? after : std::max(before, after);
   }
-  if (++steps_ % sample_every_ == 0) sample(filtered, state);
+  if (++steps_ % options_.sample_every == 0) sample(filtered, state);
+  if (options_.reference) compare(state);
   return range.most;
 }
 
@@ -87,6 +133,27 @@ Verdict Judge::verdict() const {
     for (const double strain : strains_) squares += strain * strain;
     verdict.rms_strain = std::sqrt(squares / static_cast<double>(strains_.size()));
     verdict.p99_strain = quantile(strains_, 0.99);
+  }
+  if (!verdict.residuals.empty()) {
+    const auto count = static_cast<double>(verdict.residuals.size());
+    verdict.residual_first = verdict.residual_last = 0;
+    for (const auto& residual : verdict.residuals) {
+      verdict.residual_first += residual.first / count;
+      verdict.residual_last += residual.last / count;
+    }
+  }
+  if (!options_.reference) return verdict;
+  verdict.reference = reference_name(options_.reference->scene, options_.reference->parameters);
+  verdict.valid_until = options_.reference->valid_until;
+  if (compared_ > 0) {
+    verdict.trajectory = std::sqrt(squares_ / compared_);
+    verdict.trajectory_max = most_;
+    verdict.gap = std::sqrt(gap_squares_ / compared_);
+  }
+  if (shapes_ > 0) {
+    verdict.shape_potential_energy = std::sqrt(shape_squares_.potential_energy / shapes_);
+    verdict.shape_corner_height = std::sqrt(shape_squares_.corner_height / shapes_);
+    verdict.shape_shadow = std::sqrt(shape_squares_.shadow / shapes_);
   }
   return verdict;
 }

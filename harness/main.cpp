@@ -10,6 +10,7 @@
 #include <iostream>
 
 #include "build_info.h"  // made by CMake
+#include "claims.h"
 #include "context.h"
 #include "report.h"
 #include "result_file.h"
@@ -26,7 +27,7 @@ volatile std::sig_atomic_t interrupt_requested = 0;
 struct Options {
   std::string sweep, scene, solver, filter, exclude, config, out, profile = "default";
   int reps = 0;
-  double timeout = 0;
+  double timeout = 0, max_error = 0;
   std::int64_t seed = -1;
   bool dry_run = false, no_plots = false;
 };
@@ -57,23 +58,25 @@ void check_solver_pattern(const std::string& text) {
   throw unknown_name("solver", text, names);
 }
 
-Suite load_suite(const Options& options) {
+// The suite's file; refuses unknown profiles and scenes.
+std::string suite_path(const Options& options) {
   if (!options.scene.empty() && !find_scene(options.scene)) {
     std::vector<std::string> names;
     for (const auto& type : scene_types()) names.emplace_back(type.name);
     throw unknown_name("scene", options.scene, names);
   }
+  if (!options.config.empty()) return options.config;
+  const auto known = profiles();
+  if (std::find(known.begin(), known.end(), options.profile) == known.end())
+    throw unknown_name("profile", options.profile, known);
+  return source_path("configs/" + options.profile + ".json");
+}
+
+Suite load_suite(const Options& options) {
   if (!options.solver.empty()) check_solver_pattern(options.solver);
-  std::string path = options.config;
-  if (path.empty()) {
-    const auto known = profiles();
-    if (std::find(known.begin(), known.end(), options.profile) == known.end()) {
-      throw unknown_name("profile", options.profile, known);
-    }
-    path = source_path("configs/" + options.profile + ".json");
-  }
+  const std::string path = suite_path(options);
   Suite suite = read_suite(path);
-  std::vector<std::string> kinds{"strain", "resolution"};
+  const std::vector<std::string> kinds = sweep_kinds();
   if (std::find(kinds.begin(), kinds.end(), options.sweep) == kinds.end())
     throw unknown_name("sweep", options.sweep, kinds);
   std::erase_if(suite.sweeps, [&](const SweepSpec& s) {
@@ -84,6 +87,7 @@ Suite load_suite(const Options& options) {
                      options.scene);
   if (options.reps > 0) suite.reps = options.reps;
   if (options.timeout > 0) suite.timeout = options.timeout;
+  if (options.max_error > 0) suite.max_error = options.max_error;
   if (options.seed >= 0) suite.seed = static_cast<std::uint64_t>(options.seed);
   // A solver that is no contestant joins when it is asked for by its own name.
   if (const auto* backend = inextensible::find_backend(options.solver);
@@ -141,6 +145,88 @@ void dry_run(const Suite& suite, const std::vector<Search>& searches) {
             << duration_text(2 * suite.timeout * static_cast<double>(most)) << '\n';
 }
 
+// Scenes of the plan without a reference: their points carry no trajectory error.
+std::vector<std::pair<std::string, SceneParameters>> without_reference(
+    const std::vector<Search>& searches, ReferenceShelf& shelf) {
+  std::map<std::string, std::pair<std::string, SceneParameters>> missing;
+  for (const Search& search : searches) {
+    const auto& [scene, parameters] = std::pair(search.base.scene, search.base.scene_parameters);
+    if (!shelf.find(scene, parameters))
+      missing[reference_name(scene, parameters)] = {scene, parameters};
+  }
+  std::vector<std::pair<std::string, SceneParameters>> list;
+  for (auto& [name, scene] : missing) list.push_back(std::move(scene));
+  return list;
+}
+
+void tell_missing_references(const Suite& suite, const std::vector<Search>& searches,
+                             ReferenceShelf& shelf) {
+  const auto missing = without_reference(searches, shelf);
+  if (missing.empty()) return;
+  std::string names;
+  for (const auto& [scene, parameters] : missing) {
+    std::string name = reference_name(scene, parameters);
+    names += (names.empty() ? "" : ", ") + name.substr(0, name.rfind(".json"));
+  }
+  if (suite.max_error > 0)
+    throw UsageError("--max-error needs references, missing: " + names +
+                     " (bench reference, with the same scene and profile, makes them)");
+  std::cerr << "bench: no reference, so no trajectory error, for " << names
+            << " (bench reference makes them)\n";
+}
+
+// Computes the references of a profile's sweeps that are missing, or all of them.
+int make_references(const Options& options, bool again, double finest) {
+  Suite suite = read_suite(suite_path(options));
+  std::erase_if(suite.sweeps, [&](const SweepSpec& s) {
+    return (!options.sweep.empty() && s.sweep != options.sweep) ||
+           (!options.scene.empty() && s.scene != options.scene);
+  });
+  if (suite.sweeps.empty()) throw UsageError("no sweep of the suite has such a scene");
+  const auto searches = plan(suite, {});
+  const std::string folder = source_path("results/references");
+  ReferenceShelf shelf(again ? "" : folder);
+  const auto missing = without_reference(searches, shelf);
+  if (missing.empty()) std::cout << "nothing is missing (--again computes them anew)\n";
+  for (const auto& [scene, parameters] : missing) {
+    const std::string path = folder + "/" + reference_name(scene, parameters);
+    check_writable(path);
+    const Reference reference =
+        compute_reference(scene, parameters, finest, [&](const std::string& line) {
+          std::cerr << reference_name(scene, parameters) << ": " << line << '\n';
+        });
+    write_atomically(path, to_json(reference).dump() + "\n");
+    print_reference(std::cout, reference);
+    std::cout << path << std::endl;
+  }
+  return success;
+}
+
+nlohmann::json read_result(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw UsageError("cannot read the result file '" + path + "'");
+  try {
+    nlohmann::json document = nlohmann::json::parse(file);
+    if (!document.is_object() || document.value("schema", "") != "inextensible-bench/1")
+      throw UsageError("'" + path +
+                       "' is not a result file: its schema is not \"inextensible-bench/1\"");
+    return document;
+  } catch (const nlohmann::json::exception& error) {
+    throw UsageError("'" + path + "' is not a result file: " + error.what());
+  }
+}
+
+int claims(const std::vector<std::string>& files, bool markdown) {
+  std::vector<nlohmann::json> results;
+  for (const std::string& file : files) results.push_back(read_result(file));
+  try {
+    (markdown ? print_claims_markdown : print_claims)(std::cout, judge_claims(results));
+  } catch (const nlohmann::json::exception& error) {
+    throw UsageError(std::string("a result file lacks something: ") + error.what());
+  }
+  return success;
+}
+
 int sweep(const Options& options, const std::vector<std::string>& command) {
   const Suite suite = load_suite(options);
   const auto searches = plan(suite, make_filters(options));
@@ -164,7 +250,10 @@ int sweep(const Options& options, const std::vector<std::string>& command) {
   };
   events.repetition = [&](std::size_t done, std::size_t all) { progress.repetition(done, all); };
   events.interrupted = [] { return interrupt_requested != 0; };
-  const SweepOutcome outcome = run_sweep(suite, searches, events);
+  SweepRunners runners;
+  runners.references = std::make_shared<ReferenceShelf>(source_path("results/references"));
+  tell_missing_references(suite, searches, *runners.references);
+  const SweepOutcome outcome = run_sweep(suite, searches, events, runners);
   progress.finish();
 
   write_atomically(
@@ -229,12 +318,18 @@ int run(int argc, char** argv) {
       "  bench --sweep resolution --scene chain   Figure 4b\n"
       "  bench --sweep strain --profile quick     a first look, in under a minute\n"
       "  bench plot RESULT.json                   draws the figures of a result file again\n"
+      "  bench --sweep step --scene chain         time against error, and a table of time to reach "
+      "an "
+      "error\n"
+      "  bench reference                          the trajectories that errors are measured "
+      "against\n"
+      "  bench claims RESULT.json ...             the paper's claims, decided by measurements\n"
       "  bench list                               solvers, scenes and suites with their "
       "settings\n"};
   app.set_version_flag("--version", std::string("bench ") + version());
   Options options;
   const auto sweep_options = [&options](CLI::App& to) {
-    to.add_option("--sweep", options.sweep, "axis: strain (limit) or resolution")
+    to.add_option("--sweep", options.sweep, "axis: strain (limit), resolution or step")
         ->type_name("AXIS");
     to.add_option("--scene", options.scene, "chain or drape; both if left out")->type_name("NAME");
     to.add_option("--solver", options.solver, "only solvers whose name matches, e.g. 'shake|icd'")
@@ -258,6 +353,10 @@ int run(int argc, char** argv) {
   app.add_option("--timeout", options.timeout, "seconds a point may take")
       ->check(CLI::PositiveNumber)
       ->type_name("S");
+  app.add_option("--max-error", options.max_error,
+                 "also find the fastest step within this trajectory error, over the scene's size")
+      ->check(CLI::PositiveNumber)
+      ->type_name("E");
   app.add_option("--seed", options.seed, "of random orders")
       ->check(CLI::NonNegativeNumber)
       ->type_name("N");
@@ -269,6 +368,24 @@ int run(int argc, char** argv) {
   plot->add_option("result", plot_file, "result file")->required()->type_name("RESULT.json");
   plot->add_option("--out", plot_out, "folder for the figures; default: beside the result")
       ->type_name("DIR");
+  bool again = false;
+  double finest = 0;
+  CLI::App* references = app.add_subcommand(
+      "reference",
+      "compute the reference trajectories that a profile's sweeps are measured against");
+  sweep_options(*references);
+  references->add_flag("--again", again, "those that are there already, too");
+  references->add_option("--finest", finest, "smallest step of step halving, s")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
+  std::vector<std::string> claim_files;
+  bool markdown = false;
+  CLI::App* claim_report =
+      app.add_subcommand("claims", "the paper's claims C1 to C16, decided from result files");
+  claim_report->add_option("results", claim_files, "result files")
+      ->required()
+      ->type_name("RESULT.json");
+  claim_report->add_flag("--markdown", markdown, "a table for the README");
   std::string listed;
   CLI::App* lists = app.add_subcommand(
       "list", "show what there is: solvers, scenes, suites or points (points: with --sweep)");
@@ -288,6 +405,8 @@ int run(int argc, char** argv) {
     if (!plot_out.empty()) arguments.insert(arguments.end(), {"--out", plot_out});
     return draw(arguments);
   }
+  if (*claim_report) return claims(claim_files, markdown);
+  if (*references) return make_references(options, again, finest);
   if (*lists) {
     if (listed == "points") {
       list_points(options);
@@ -300,7 +419,7 @@ int run(int argc, char** argv) {
   }
   if (options.sweep.empty()) {
     std::cerr
-        << "bench: nothing to do: give --sweep strain or --sweep resolution (see bench --help)\n";
+        << "bench: nothing to do: give --sweep strain, resolution or step (see bench --help)\n";
     return usage_error;
   }
   std::vector<std::string> command{"bench"};

@@ -13,7 +13,7 @@
 namespace harness {
 
 struct PointSpec {
-  std::string sweep;  // "strain" or "resolution"
+  std::string sweep;  // "strain", "resolution" or "step"
   std::string scene;
   SceneParameters scene_parameters;  // complete
   int resolution = 0;                // the scene's own resolution parameter
@@ -51,6 +51,22 @@ struct Verdict {
       unknown;  // largest |E - E_0| over weight times size, where nothing dissipates
   double symmetry_defect = unknown;  // largest distance to the mirror image, over the scene's size
   double kinetic_energy_mean = unknown;  // J, over sampled instants
+
+  // Against a reference, where there is one; all over the scene's size.
+  std::string reference;            // its name, "" if there is none
+  double trajectory = unknown;      // RMS over vertices (by mass) and samples up to valid_until
+  double trajectory_max = unknown;  // largest distance of a vertex
+  double gap = unknown;             // the reference's own uncertainty, as `trajectory`
+  double valid_until = unknown;     // s
+  double shape_potential_energy = unknown, shape_corner_height = unknown,
+         shape_shadow = unknown;  // RMS over samples after valid_until
+  // Fast projection's F, mean over vertices and sampled steps, m, after the first and the last
+  // iteration; and over time.
+  double residual_first = unknown, residual_last = unknown;
+  struct ResidualSample {
+    double time, first, last;  // s, m, m
+  };
+  std::vector<ResidualSample> residuals;
 };
 
 struct PointResult {
@@ -68,7 +84,8 @@ struct PointResult {
   int steps_planned = 0;
   std::string linear_solver;
   double peak_rss_bytes = 0;
-  bool best = false;
+  bool best = false;           // the fastest of its search
+  bool best_at_error = false;  // the fastest of those within the suite's error limit
 
   bool ok() const { return status == PointStatus::ok; }
   double median_seconds() const;  // of the samples

@@ -86,48 +86,117 @@ void Progress::finish() {
   if (terminal_ && points_ > 0) out_ << '\r' << std::string(width_, ' ') << '\r' << std::flush;
 }
 
+namespace {
+
+constexpr int name_width = 21;
+
+template <class Text>  // Text(const Points&): what stands in a cell
+void print_best(std::ostream& out, const std::vector<const PointResult*>& points,
+                const std::string& title, const Text& cell_text) {
+  std::vector<std::string> solvers, columns;
+  std::map<std::pair<std::string, std::string>, std::vector<const PointResult*>> cells;
+  for (const PointResult* point : points) {
+    const std::string column = axis_text(point->spec);
+    if (std::find(solvers.begin(), solvers.end(), point->spec.solver) == solvers.end())
+      solvers.push_back(point->spec.solver);
+    if (std::find(columns.begin(), columns.end(), column) == columns.end())
+      columns.push_back(column);
+    cells[{point->spec.solver, column}].push_back(point);
+  }
+  out << '\n' << title << '\n';
+  constexpr int cell_width = 17;
+  out << std::left << std::setw(name_width) << "";
+  for (const auto& column : columns) out << std::setw(cell_width) << column;
+  out << '\n';
+  for (const auto& solver : solvers) {
+    out << std::setw(name_width) << solver;
+    for (const auto& column : columns) {
+      const auto cell = cells.find({solver, column});
+      out << std::setw(cell_width) << (cell == cells.end() ? "-" : cell_text(cell->second));
+    }
+    out << '\n';
+  }
+}
+
+std::string time_and_step(const PointResult& point) {
+  return significant(point.median_seconds(), 3) + " (" + step_text(point.spec.step) + ")";
+}
+
+// The fastest point of each solver within each of some errors: step and strain limit are free.
+void print_time_to_error(std::ostream& out, const std::vector<const PointResult*>& points,
+                         const std::string& scene) {
+  constexpr std::array targets{1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4};
+  std::vector<std::string> solvers;
+  double gap = 0;
+  for (const PointResult* point : points) {
+    if (std::find(solvers.begin(), solvers.end(), point->spec.solver) == solvers.end())
+      solvers.push_back(point->spec.solver);
+    if (std::isfinite(point->verdict.gap)) gap = std::max(gap, point->verdict.gap);
+  }
+  out << '\n'
+      << scene << ", step sweep: seconds per simulated second to reach a trajectory error "
+      << "(step in s, strain limit); the reference is sure to " << significant(3 * gap, 2) << '\n';
+  constexpr int cell_width = 25;
+  out << std::left << std::setw(name_width) << "";
+  for (const double target : targets) out << std::setw(cell_width) << significant(target, 1);
+  out << '\n';
+  for (const auto& solver : solvers) {
+    out << std::setw(name_width) << solver;
+    for (const double target : targets) {
+      const PointResult* fastest = nullptr;
+      for (const PointResult* point : points) {
+        if (point->spec.solver != solver || !point->ok() || !(point->verdict.trajectory <= target))
+          continue;
+        if (!fastest || point->median_seconds() < fastest->median_seconds()) fastest = point;
+      }
+      std::string text = "-";
+      if (target < 3 * gap) {
+        text = "< 3 gap";
+      } else if (fastest) {
+        text = significant(fastest->median_seconds(), 3) + " (" + step_text(fastest->spec.step) +
+               ", " + significant(100 * fastest->spec.strain_limit, 3) + " %)";
+      }
+      out << std::setw(cell_width) << text;
+    }
+    out << '\n';
+  }
+}
+
+}  // namespace
+
 void print_table(std::ostream& out, const std::vector<PointResult>& points) {
   using Key = std::pair<std::string, std::string>;  // scene, sweep
   std::vector<Key> tables;
+  bool within_error = false;
   for (const PointResult& point : points) {
     const Key key{point.spec.scene, point.spec.sweep};
     if (std::find(tables.begin(), tables.end(), key) == tables.end()) tables.push_back(key);
+    within_error = within_error || point.best_at_error;
   }
   for (const auto& [scene, sweep] : tables) {
-    std::vector<std::string> solvers, columns;
-    std::map<std::pair<std::string, std::string>, std::vector<const PointResult*>> cells;
+    std::vector<const PointResult*> chosen;
     for (const PointResult& point : points) {
-      if (point.spec.scene != scene || point.spec.sweep != sweep) continue;
-      const std::string column = axis_text(point.spec);
-      if (std::find(solvers.begin(), solvers.end(), point.spec.solver) == solvers.end())
-        solvers.push_back(point.spec.solver);
-      if (std::find(columns.begin(), columns.end(), column) == columns.end())
-        columns.push_back(column);
-      cells[{point.spec.solver, column}].push_back(&point);
+      if (point.spec.scene == scene && point.spec.sweep == sweep) chosen.push_back(&point);
     }
-    out << '\n'
-        << scene << ", " << (sweep == "strain" ? "strain limit" : "resolution")
-        << " sweep: best seconds per simulated second (its step in s)\n";
-    constexpr int name_width = 18, cell_width = 17;
-    out << std::left << std::setw(name_width) << "";
-    for (const auto& column : columns) out << std::setw(cell_width) << column;
-    out << '\n';
-    for (const auto& solver : solvers) {
-      out << std::setw(name_width) << solver;
-      for (const auto& column : columns) {
-        const auto cell = cells.find({solver, column});
-        std::string text = "-";
-        if (cell != cells.end()) {
-          const auto best = std::find_if(cell->second.begin(), cell->second.end(),
-                                         [](const PointResult* p) { return p->best; });
-          text = best == cell->second.end() ? failure_text(cell->second)
-                                            : significant((*best)->median_seconds(), 3) + " (" +
-                                                  step_text((*best)->spec.step) + ")";
-        }
-        out << std::setw(cell_width) << text;
-      }
-      out << '\n';
+    if (sweep == "step") {
+      print_time_to_error(out, chosen, scene);
+      continue;
     }
+    const std::string axis = sweep == "strain" ? "strain limit" : "resolution";
+    const std::string title = scene + ", " + axis + " sweep: best seconds per simulated second";
+    print_best(out, chosen, title + " (its step in s)", [](const auto& cell) {
+      const auto best =
+          std::find_if(cell.begin(), cell.end(), [](const PointResult* p) { return p->best; });
+      return best == cell.end() ? failure_text(cell) : time_and_step(**best);
+    });
+    if (!within_error) continue;
+    print_best(out, chosen, title + " within the error limit (its step in s)",
+               [](const auto& cell) -> std::string {
+                 const auto best = std::find_if(cell.begin(), cell.end(), [](const PointResult* p) {
+                   return p->best_at_error;
+                 });
+                 return best == cell.end() ? "error missed" : time_and_step(**best);
+               });
   }
   std::map<std::string, int> failures;
   for (const PointResult& point : points) {
@@ -137,6 +206,24 @@ void print_table(std::ostream& out, const std::vector<PointResult>& points) {
   if (!failures.empty()) {
     out << "\nsteps that failed, all in the file with their reason:\n";
     for (const auto& [name, count] : failures) out << "  " << name << " x " << count << '\n';
+  }
+}
+
+void print_reference(std::ostream& out, const Reference& reference) {
+  out << reference.scene << ": " << reference.method << "\n  against " << reference.second_method
+      << "\n  observed order " << significant(reference.observed_order, 3) << ", valid until "
+      << reference.valid_until << " s";
+  if (reference.energy_drift > 0)
+    out << ", energy drift " << significant(reference.energy_drift, 2) << " of weight times size";
+  out << "\n  gap (RMS distance of both routes over the scene's size), end vertex:\n";
+  for (std::size_t i = 0; i < reference.times.size(); ++i) {
+    out << "  t = " << reference.times[i] << " s  " << significant(reference.gap[i], 2);
+    if (i < reference.positions.size()) {
+      const auto end = reference.positions[i].col(reference.positions[i].cols() - 1);
+      out << "  (" << std::setprecision(12) << end.x() << ", " << end.y() << ", " << end.z() << ')'
+          << std::setprecision(6);
+    }
+    out << '\n';
   }
 }
 

@@ -29,8 +29,12 @@ class Progress {
 };
 
 // Per scene and sweep: solvers by limit or resolution, best seconds per simulated second and its
-// step; failures by name.
+// step, a second time within the suite's error limit if there was one; of a step sweep, the time to
+// reach each of some errors; failures by name.
 void print_table(std::ostream& out, const std::vector<PointResult>& points);
+
+// How good a reference is, and where the scene's last vertex is.
+void print_reference(std::ostream& out, const Reference& reference);
 
 // "12 ms", "1.4 s", "2 min 5 s"
 std::string duration_text(double seconds);

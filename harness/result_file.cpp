@@ -45,6 +45,27 @@ json work_json(const PointResult& point) {
           {"calibration_runs", point.calibration_runs}};
 }
 
+// series: with the residual over time; one sweep that holds it is enough.
+json error_json(const Verdict& v, bool series) {
+  json residuals = json::array();
+  if (series) {
+    for (const auto& r : v.residuals) residuals.push_back({r.time, r.first, r.last});
+  }
+  return {{"energy_drift", number(v.energy_drift)},
+          {"symmetry_defect", number(v.symmetry_defect)},
+          {"reference", v.reference.empty() ? json(nullptr) : json(v.reference)},
+          {"trajectory", number(v.trajectory)},
+          {"trajectory_max", number(v.trajectory_max)},
+          {"gap", number(v.gap)},
+          {"valid_until", number(v.valid_until)},
+          {"shape_potential_energy", number(v.shape_potential_energy)},
+          {"shape_corner_height", number(v.shape_corner_height)},
+          {"shape_shadow", number(v.shape_shadow)},
+          {"residual_first", number(v.residual_first)},
+          {"residual_last", number(v.residual_last)},
+          {"residuals", residuals}};
+}
+
 // One entry a repetition, in Google Benchmark's own format; compare.py reads them.
 void add_benchmarks(json& list, const PointResult& point, int family) {
   for (std::size_t i = 0; i < point.samples.size(); ++i) {
@@ -72,40 +93,39 @@ json to_json(const PointResult& point) {
   json options = to_json(spec.settings);
   if (point.stiffness) options["stiffness"] = *point.stiffness;
   if (!point.linear_solver.empty()) options["linear_solver"] = point.linear_solver;
-  return {
-      {"id", spec.id()},
-      {"sweep", spec.sweep},
-      {"scene", spec.scene},
-      {"solver", spec.solver},
-      {"options", options},
-      {"scene_parameters", spec.scene_parameters},
-      {"resolution", spec.resolution},
-      {"vertices", spec.vertices},
-      {"constraints", spec.constraints},
-      {"strain_limit", spec.strain_limit},
-      {"step", spec.step},
-      {"duration", spec.scene_parameters.at("duration")},
-      {"seed", spec.seed},
-      {"status", to_string(point.status)},
-      {"status_detail", point.detail},
-      {"seconds_per_simulated_second", seconds_json(point.samples)},
-      {"setup_seconds", point.setup_seconds},
-      {"calibration_seconds", point.calibration_seconds},
-      {"phases",
-       {{"unconstrained", point.phases.unconstrained},
-        {"filter", point.phases.filter},
-        {"collision", point.phases.collision}}},
-      {"max_strain", number(v.max_strain)},
-      {"max_stretch", number(v.max_stretch)},
-      {"p99_strain", number(v.p99_strain)},
-      {"rms_strain", number(v.rms_strain)},
-      {"max_strain_after_collision", number(v.max_strain_after_collision)},
-      {"kinetic_energy_mean", number(v.kinetic_energy_mean)},
-      {"error",
-       {{"energy_drift", number(v.energy_drift)}, {"symmetry_defect", number(v.symmetry_defect)}}},
-      {"work", work_json(point)},
-      {"peak_rss_bytes", point.peak_rss_bytes},
-      {"best", point.best}};
+  return {{"id", spec.id()},
+          {"sweep", spec.sweep},
+          {"scene", spec.scene},
+          {"solver", spec.solver},
+          {"options", options},
+          {"scene_parameters", spec.scene_parameters},
+          {"resolution", spec.resolution},
+          {"vertices", spec.vertices},
+          {"constraints", spec.constraints},
+          {"strain_limit", spec.strain_limit},
+          {"step", spec.step},
+          {"duration", spec.scene_parameters.at("duration")},
+          {"seed", spec.seed},
+          {"status", to_string(point.status)},
+          {"status_detail", point.detail},
+          {"seconds_per_simulated_second", seconds_json(point.samples)},
+          {"setup_seconds", point.setup_seconds},
+          {"calibration_seconds", point.calibration_seconds},
+          {"phases",
+           {{"unconstrained", point.phases.unconstrained},
+            {"filter", point.phases.filter},
+            {"collision", point.phases.collision}}},
+          {"max_strain", number(v.max_strain)},
+          {"max_stretch", number(v.max_stretch)},
+          {"p99_strain", number(v.p99_strain)},
+          {"rms_strain", number(v.rms_strain)},
+          {"max_strain_after_collision", number(v.max_strain_after_collision)},
+          {"kinetic_energy_mean", number(v.kinetic_energy_mean)},
+          {"error", error_json(v, spec.sweep == "step")},
+          {"work", work_json(point)},
+          {"peak_rss_bytes", point.peak_rss_bytes},
+          {"best", point.best},
+          {"best_at_error", point.best_at_error}};
 }
 
 json result_document(json context, const Suite& suite, const std::vector<std::string>& command,

@@ -66,7 +66,9 @@ class PointRunner {
         start_(Clock::now()),
         scene_(find_scene(spec.scene)->build(spec.scene_parameters)),
         backend_(*inextensible::find_backend(spec.solver)),
-        steps_(static_cast<int>(std::lround(scene_.duration / spec.step))) {}
+        steps_(static_cast<int>(std::lround(scene_.duration / spec.step))) {
+    if (limits.references) reference_ = limits.references->find(spec.scene, spec.scene_parameters);
+  }
 
   // stop_at: the run is cut short once its strain exceeds this.
   Run run(const inextensible::Settings& settings, bool judged, double stop_at) const {
@@ -75,9 +77,15 @@ class PointRunner {
     run.stepper = inextensible::make_stepper(spec_.solver, scene_.problem,
                                              {spec_.strain_limit, spec_.seed, settings});
     run.setup_seconds = since(setup);
-    Judge judge(scene_, steps_ / sampled_instants);
+    Judge::Options judging{steps_ / sampled_instants};
+    if (judged && stop_at == diverged_strain) {
+      judging.reference = reference_;
+      if (spec_.solver == "fast_projection") judging.residual_of_limit = spec_.strain_limit;
+    }
+    Judge judge(scene_, judging);
     inextensible::State state = scene_.start;
     for (int i = 0; i < steps_; ++i) {
+      if (judged) judge.before(state, spec_.step);
       const auto before = Clock::now();
       const auto result = run.stepper->advance(state, spec_.step);
       run.seconds += since(before);
@@ -88,7 +96,7 @@ class PointRunner {
         break;
       }
       if (judged) {
-        const double strain = judge.look(run.stepper->filtered_positions(), state);
+        const double strain = judge.after(run.stepper->filtered_positions(), state);
         if (backend_.knob != inextensible::Knob::none && !(strain <= stop_at)) {
           run.status =
               !(strain <= diverged_strain) ? PointStatus::diverged : PointStatus::strain_missed;
@@ -136,6 +144,7 @@ class PointRunner {
   Scene scene_;
   const inextensible::Backend& backend_;
   int steps_;
+  std::shared_ptr<const Reference> reference_;
 };
 
 // Finds the stiffness EA at which the run's own maximum strain just meets the limit: Brent's method

@@ -93,6 +93,13 @@ Scene build_drape(const SceneParameters& p) {
   scene.duration = p.at("duration");
   scene.size = side;
   scene.mirrors = {std::move(left_right), std::move(front_back)};
+  scene.corners = {vertex(0, 0), vertex(0, n - 1), vertex(n - 1, 0), vertex(n - 1, n - 1)};
+  for (int i = 0; i + 1 < n; ++i) {
+    for (int j = 0; j + 1 < n; ++j) {
+      scene.triangles.push_back({vertex(i, j), vertex(i, j + 1), vertex(i + 1, j)});
+      scene.triangles.push_back({vertex(i + 1, j + 1), vertex(i, j + 1), vertex(i + 1, j)});
+    }
+  }
   return scene;
 }
 

@@ -2,6 +2,7 @@
 // initial state; it knows nothing of solvers.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <span>
@@ -37,6 +38,9 @@ struct Scene {
   };
   std::vector<Mirror> mirrors;
   bool conserves_energy = false;  // nothing dissipates: energy drift is an error
+  // Of a cloth, for shape statistics: its corners, and triangles that cover it.
+  std::vector<int> corners;
+  std::vector<std::array<int, 3>> triangles;
 };
 
 struct SceneType {

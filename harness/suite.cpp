@@ -136,10 +136,9 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
   Reader reader(object, where);
   SweepSpec spec;
   spec.sweep = reader.text("sweep", "");
-  if (spec.sweep != "strain" && spec.sweep != "resolution") {
-    throw UsageError(where + ": " +
-                     unknown_name("sweep", spec.sweep, {"strain", "resolution"}).what());
-  }
+  const auto kinds = sweep_kinds();
+  if (std::find(kinds.begin(), kinds.end(), spec.sweep) == kinds.end())
+    throw UsageError(where + ": " + unknown_name("sweep", spec.sweep, kinds).what());
   spec.scene = reader.text("scene", "");
   const SceneType* type = find_scene(spec.scene);
   if (!type)
@@ -208,6 +207,8 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
 
 }  // namespace
 
+std::vector<std::string> sweep_kinds() { return {"strain", "resolution", "step"}; }
+
 Suite read_suite(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw UsageError("cannot read the suite '" + path + "'");
@@ -225,6 +226,7 @@ Suite read_suite(const std::string& path) {
   suite.seed = static_cast<std::uint64_t>(reader.number("seed", 1, 0, true));
   suite.reps = static_cast<int>(reader.number("reps", 3, 1, true));
   suite.timeout = reader.number("timeout", 60, 0);
+  suite.max_error = reader.number("max_error", 0, 0);
   const json* sweeps = reader.find("sweeps");
   if (!sweeps || !sweeps->is_array() || sweeps->empty())
     throw UsageError(reader.where("sweeps") + " must be a list of sweeps");
@@ -261,7 +263,7 @@ json to_json(const Suite& suite) {
   return {{"name", suite.name},       {"description", suite.description},
           {"profile", suite.profile}, {"seed", suite.seed},
           {"reps", suite.reps},       {"timeout", suite.timeout},
-          {"sweeps", sweeps}};
+          {"sweeps", sweeps},         {"max_error", suite.max_error}};
 }
 
 }  // namespace harness

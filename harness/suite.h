@@ -11,11 +11,11 @@
 namespace harness {
 
 struct SweepSpec {
-  std::string sweep;  // "strain" or "resolution"
+  std::string sweep;  // "strain", "resolution" or "step"
   std::string scene;
   std::vector<std::string> solvers;
-  std::vector<double> limits;    // strain sweep: the axis; resolution sweep: one
-  std::vector<int> resolutions;  // resolution sweep: the axis; strain sweep: one
+  std::vector<double> limits;    // strain and step sweep: the axis; resolution sweep: one
+  std::vector<int> resolutions;  // resolution sweep: the axis; the others: one
   double coarsest = 1.0 / 25, finest = 1.0 / 25600;  // s, ends of the step ladder
   SceneParameters scene_parameters;
   std::map<std::string, inextensible::Settings> solver_options;
@@ -25,9 +25,12 @@ struct Suite {
   std::string name, description, profile;
   std::uint64_t seed = 1;
   int reps = 3;
-  double timeout = 60;  // s a point
+  double timeout = 60;   // s a point
+  double max_error = 0;  // trajectory error that `best_at_error` points respect; 0: none is sought
   std::vector<SweepSpec> sweeps;
 };
+
+std::vector<std::string> sweep_kinds();
 
 // Throws UsageError, naming file, key and value, for anything that is not a suite.
 Suite read_suite(const std::string& path);

@@ -34,11 +34,14 @@ std::vector<double> step_ladder(const SweepSpec& sweep) {
 
 // The step search of measuring.md: from coarse to fine until the time has risen twice in a row;
 // with a neighbour's best step, from there in both directions. A failure counts as a rise, and
-// before the first success as a reason to go finer.
+// before the first success as a reason to go finer. Points that miss max_error count as failures;
+// once that error has grown twice in a row towards finer steps (slack within the limit then
+// dominates it), finer ones are hopeless.
 class StepSearch {
  public:
-  StepSearch(std::size_t rungs, std::function<PointResult&(std::size_t rung)> run)
-      : rungs_(rungs), run_(std::move(run)) {}
+  using Run = std::function<const PointResult&(std::size_t rung)>;
+  StepSearch(std::size_t rungs, Run run, double max_error = std::numeric_limits<double>::infinity())
+      : rungs_(rungs), run_(std::move(run)), max_error_(max_error) {}
 
   // The best rung; none if every step failed.
   std::optional<std::size_t> find(std::optional<std::size_t> start) {
@@ -48,17 +51,38 @@ class StepSearch {
     return best_;
   }
 
+  // Every rung from coarse to fine, until two in a row have timed out; the fastest.
+  std::optional<std::size_t> find_among_all() {
+    int timeouts = 0;
+    for (std::size_t rung = 0; rung < rungs_ && timeouts < 2; ++rung) {
+      const PointResult& point = run_(rung);
+      consider(rung, point);
+      timeouts = point.status == PointStatus::timeout ? timeouts + 1 : 0;
+    }
+    return best_;
+  }
+
   bool timed_out() const { return timed_out_; }
 
  private:
+  bool permissible(const PointResult& point) const {
+    return point.ok() && (std::isinf(max_error_) || point.verdict.trajectory <= max_error_);
+  }
+
+  bool consider(std::size_t rung, const PointResult& point) {
+    if (!permissible(point) || (best_ && point.median_seconds() >= best_seconds_)) return false;
+    best_ = rung;
+    best_seconds_ = point.median_seconds();
+    return true;
+  }
+
   void walk(std::size_t from, int direction) {
-    int rises = 0, timeouts = 0;
+    int rises = 0, timeouts = 0, error_rises = 0;
+    double last_error = std::numeric_limits<double>::infinity();
     for (std::size_t rung = from; rung < rungs_;
          rung += static_cast<std::size_t>(direction)) {  // wraps below 0
       const PointResult& point = run_(rung);
-      if (point.ok() && (!best_ || point.median_seconds() < best_seconds_)) {
-        best_ = rung;
-        best_seconds_ = point.median_seconds();
+      if (consider(rung, point)) {
         rises = 0;
       } else if (best_ || direction < 0) {
         ++rises;
@@ -67,12 +91,17 @@ class StepSearch {
         timed_out_ = true;
         ++timeouts;
       }
-      if (rises == 2 || timeouts == 2) return;
+      if (point.ok() && !permissible(point)) {
+        error_rises = point.verdict.trajectory > last_error ? error_rises + 1 : 0;
+        last_error = point.verdict.trajectory;
+      }
+      if (rises == 2 || timeouts == 2 || error_rises == 2) return;
     }
   }
 
   std::size_t rungs_;
-  std::function<PointResult&(std::size_t)> run_;
+  Run run_;
+  double max_error_;
   std::optional<std::size_t> best_;
   double best_seconds_ = 0;
   bool timed_out_ = false;
@@ -84,7 +113,9 @@ void repeat_best(const Suite& suite, std::vector<PointResult>& points, const Swe
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double seconds =
         points[i].median_seconds() * points[i].spec.step * points[i].steps_planned;
-    if (points[i].best && seconds <= repeat_up_to) order.push_back(i);
+    const bool wanted =
+        points[i].spec.sweep == "step" ? points[i].ok() : points[i].best || points[i].best_at_error;
+    if (wanted && seconds <= repeat_up_to) order.push_back(i);
   }
   if (order.empty()) return;  // GSL's shuffle does not take nothing
   const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
@@ -95,7 +126,7 @@ void repeat_best(const Suite& suite, std::vector<PointResult>& points, const Swe
   for (int rep = 1; rep < suite.reps; ++rep) {
     gsl_ran_shuffle(random.get(), order.data(), order.size(), sizeof(std::size_t));
     for (const std::size_t i : order) {
-      runners.repeat(points[i], {suite.timeout, 1e300, events.interrupted});
+      runners.repeat(points[i], {suite.timeout, 1e300, events.interrupted, nullptr});
       events.repetition(++done, all);
     }
   }
@@ -172,9 +203,12 @@ SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
         events.point(outcome.points.back(), s, searches.size());
         continue;
       }
+      const bool every_step = search.base.sweep == "step";
       double best_run = 1e300;  // s
       std::map<std::size_t, std::size_t> point_of_rung;
-      const auto run = [&](std::size_t rung) -> PointResult& {
+      const auto run = [&](std::size_t rung) -> const PointResult& {
+        if (const auto known = point_of_rung.find(rung); known != point_of_rung.end())
+          return outcome.points[known->second];
         PointSpec spec = search.base;
         spec.step = search.ladder[rung];
         std::optional<double> guess;
@@ -184,8 +218,12 @@ SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
         } else if (!neighbour.stiffness_times_limit.empty()) {
           guess = neighbour.stiffness_times_limit.begin()->second / spec.strain_limit;
         }
-        const double hopeless = std::max(hopeless_least, hopeless_factor * best_run);
-        PointResult point = runners.run(spec, {suite.timeout, hopeless, events.interrupted}, guess);
+        // A slower run may still be the best one of those within an error limit.
+        const double hopeless = every_step || suite.max_error > 0
+                                    ? 1e300
+                                    : std::max(hopeless_least, hopeless_factor * best_run);
+        PointResult point = runners.run(
+            spec, {suite.timeout, hopeless, events.interrupted, runners.references}, guess);
         if (point.stiffness)
           neighbour.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
         if (point.ok())
@@ -203,7 +241,12 @@ SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
         start = static_cast<std::size_t>(near - search.ladder.begin());
       }
       StepSearch steps(search.ladder.size(), run);
-      const auto best = steps.find(start);
+      const auto best = every_step ? steps.find_among_all() : steps.find(start);
+      if (suite.max_error > 0 && !every_step) {
+        StepSearch within(search.ladder.size(), run, suite.max_error);
+        if (const auto found = within.find(best))
+          outcome.points[point_of_rung.at(*found)].best_at_error = true;
+      }
       if (best) {
         outcome.points[point_of_rung.at(*best)].best = true;
         neighbour.best_step = search.ladder[*best];

@@ -1,6 +1,6 @@
 // Runs a suite's sweeps: for each (scene, size, limit, solver) the best step is searched on the
-// ladder coarsest, coarsest / 2, ..., then the best points are repeated, interleaved in a shuffled
-// order.
+// ladder coarsest, coarsest / 2, ... (a step sweep runs the whole ladder), then the best points (of
+// a step sweep: all that ran to the end) are repeated, interleaved in a shuffled order.
 #pragma once
 
 #include <functional>
@@ -49,6 +49,7 @@ struct SweepRunners {
   std::function<PointResult(const PointSpec&, const RunLimits&, std::optional<double>)> run =
       run_point;
   std::function<void(PointResult&, const RunLimits&)> repeat = repeat_point;
+  std::shared_ptr<ReferenceShelf> references = nullptr;  // null: no errors against references
 };
 
 SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,

@@ -52,6 +52,14 @@ void EdgeConstraints::gradient(const Positions& x, Eigen::Matrix3Xd& u) const {
   }
 }
 
+void EdgeConstraints::rate(const Eigen::Matrix3Xd& u, const Positions& v,
+                           Eigen::VectorXd& c) const {
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    c[i] = u.col(i).dot(v.col(b[k]) - v.col(a[k]));
+  }
+}
+
 bool EdgeConstraints::permissible(const Positions& x) const {
   constexpr std::size_t block =
       128;  // long enough to vectorize, short enough that a violation is found soon

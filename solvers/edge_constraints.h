@@ -28,6 +28,9 @@ class EdgeConstraints {
   // u alone: the start-of-step direction.
   void gradient(const Positions& x, Eigen::Matrix3Xd& u) const;
 
+  // dC/dt = J v (m entries), J given by u, v 3 x n.
+  void rate(const Eigen::Matrix3Xd& u, const Positions& v, Eigen::VectorXd& c) const;
+
   // Whether |strain| <= limit on every edge; leaves early when not. False on NaN.
   bool permissible(const Positions& x) const;
 

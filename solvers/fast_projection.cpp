@@ -9,6 +9,7 @@ namespace inextensible {
 FastProjection::FastProjection(const Problem& problem, const Settings& settings)
     : system_(problem, settings.strain_limit, settings.linear_solver),
       max_iterations_(settings.max_iterations),
+      min_iterations_(settings.min_iterations),
       u_(3, problem.constraints()),
       mu_(problem.constraints()) {}
 
@@ -16,7 +17,7 @@ StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Pos
                                  WorkCounters& work) {
   const EdgeConstraints& edges = system_.edges();
   for (int j = 0;; ++j) {
-    if (edges.linearize(x, u_, mu_)) return {Status::ok, j};
+    if (edges.linearize(x, u_, mu_) && j >= min_iterations_) return {Status::ok, j};
     if (j == max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
     if (!system_.factor(u_, work))
       return refuse(Status::singular, j, edges, x, "J W J^T is not positive definite");

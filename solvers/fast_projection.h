@@ -11,6 +11,9 @@ class FastProjection final : public VelocityFilter {
   struct Settings {
     double strain_limit = 0.01;
     int max_iterations = 50;
+    // Iterations even where the candidate is permissible already: one keeps slack within the limit
+    // from building up over steps, at the price of a solve in steps that would need none.
+    int min_iterations = 0;
     std::string_view linear_solver = "auto";
   };
   FastProjection(const Problem& problem, const Settings& settings);
@@ -19,7 +22,7 @@ class FastProjection final : public VelocityFilter {
 
  private:
   ConstraintSystem system_;
-  int max_iterations_;
+  int max_iterations_, min_iterations_;
   Eigen::Matrix3Xd u_;  // gradient of C at x_j
   Eigen::VectorXd mu_;  // C(x_j), then h^2 dlambda
 };

@@ -5,11 +5,11 @@
 namespace inextensible {
 namespace {
 
-// x0 += h^2 W f of each spring: f pulls b towards a with stiffness (|d| - r).
-void add_spring_displacement(const Springs& springs, const std::vector<double>& w,
-                             const Positions& x, double h2, Positions& x0) {
+// y += scale W f of each spring: f pulls b towards a with stiffness (|d| - r).
+void add_spring_acceleration(const Springs& springs, const std::vector<double>& w,
+                             const Positions& x, double scale, Positions& y) {
   const double* p = x.data();
-  double* q = x0.data();
+  double* q = y.data();
   for (std::size_t k = 0; k < springs.edges.size(); ++k) {
     const auto [a, b] = springs.edges[k];
     const double* pa = p + 3 * a;
@@ -18,7 +18,7 @@ void add_spring_displacement(const Springs& springs, const std::vector<double>& 
     const double length = std::sqrt(d0 * d0 + d1 * d1 + d2 * d2);
     // A spring of length zero has no direction; its force is taken as zero.
     const double f =
-        length > 0 ? h2 * springs.stiffness[k] * (1 - springs.rest_length[k] / length) : 0;
+        length > 0 ? scale * springs.stiffness[k] * (1 - springs.rest_length[k] / length) : 0;
     const double fa = f * w[static_cast<std::size_t>(a)], fb = f * w[static_cast<std::size_t>(b)];
     double* qa = q + 3 * a;
     double* qb = q + 3 * b;
@@ -33,16 +33,20 @@ void add_spring_displacement(const Springs& springs, const std::vector<double>& 
 
 }  // namespace
 
+void add_acceleration(const Problem& problem, const Positions& x, double scale, Positions& y,
+                      WorkCounters& work) {
+  const Eigen::Vector3d fall = scale * problem.gravity();
+  y.colwise() += fall;
+  const Springs* shear = problem.shear();
+  if (!shear) return;
+  add_spring_acceleration(*shear, problem.inverse_mass(), x, scale, y);
+  work.spring_evaluations += static_cast<std::int64_t>(shear->edges.size());
+}
+
 void unconstrained_step(const Problem& problem, const State& state, double h, Positions& x0,
                         WorkCounters& work) {
-  const Eigen::Vector3d fall = h * h * problem.gravity();
-  const auto& w = problem.inverse_mass();
   x0 = state.x + h * state.v;
-  x0.colwise() += fall;
-  if (const Springs* shear = problem.shear()) {
-    add_spring_displacement(*shear, w, state.x, h * h, x0);
-    work.spring_evaluations += static_cast<std::int64_t>(shear->edges.size());
-  }
+  add_acceleration(problem, state.x, h * h, x0, work);
   for (const int vertex : problem.pinned()) x0.col(vertex) = state.x.col(vertex);
 }
 

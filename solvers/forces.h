@@ -10,6 +10,11 @@ namespace inextensible {
 void unconstrained_step(const Problem& problem, const State& state, double h, Positions& x0,
                         WorkCounters& work);
 
+// y += scale (g - W grad V_shear(x)), the acceleration by everything but inextensibility. Pinned
+// vertices get gravity too; the caller puts them back.
+void add_acceleration(const Problem& problem, const Positions& x, double scale, Positions& y,
+                      WorkCounters& work);
+
 // Energy of linear springs, J.
 double spring_energy(const Springs& springs, const Positions& x);
 

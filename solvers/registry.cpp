@@ -4,12 +4,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "bdf2_stepper.h"
 #include "dense_reference.h"
 #include "fast_projection.h"
 #include "gauss_seidel.h"
 #include "icd.h"
 #include "implicit_springs.h"
 #include "jacobi.h"
+#include "rattle.h"
 #include "shake.h"
 #include "unconstrained.h"
 
@@ -56,8 +58,8 @@ std::unique_ptr<Stepper> make_gauss_seidel(Shared problem, const BackendOptions&
 
 std::unique_ptr<Stepper> make_shake(Shared problem, const BackendOptions& o) {
   return filter_stepper<Shake>(
-      std::move(problem),
-      Shake::Settings{o.strain_limit, integer(o, "max_iterations"), word(o, "linear_solver")});
+      std::move(problem), Shake::Settings{o.strain_limit, integer(o, "max_iterations"),
+                                          integer(o, "min_iterations"), word(o, "linear_solver")});
 }
 
 std::unique_ptr<Stepper> make_icd(Shared problem, const BackendOptions& o) {
@@ -67,10 +69,24 @@ std::unique_ptr<Stepper> make_icd(Shared problem, const BackendOptions& o) {
                     word(o, "linear_solver")});
 }
 
+FastProjection::Settings fast_projection_settings(const BackendOptions& o) {
+  return {o.strain_limit, integer(o, "max_iterations"), integer(o, "min_iterations"),
+          word(o, "linear_solver")};
+}
+
 std::unique_ptr<Stepper> make_fast_projection(Shared problem, const BackendOptions& o) {
-  return filter_stepper<FastProjection>(
-      std::move(problem), FastProjection::Settings{o.strain_limit, integer(o, "max_iterations"),
-                                                   word(o, "linear_solver")});
+  return filter_stepper<FastProjection>(std::move(problem), fast_projection_settings(o));
+}
+
+std::unique_ptr<Stepper> make_fast_projection_bdf2(Shared problem, const BackendOptions& o) {
+  auto filter = std::make_unique<FastProjection>(*problem, fast_projection_settings(o));
+  return std::make_unique<Bdf2Stepper>(std::move(problem), std::move(filter));
+}
+
+std::unique_ptr<Stepper> make_rattle(Shared problem, const BackendOptions& o) {
+  return std::make_unique<Rattle>(
+      std::move(problem), Shake::Settings{o.strain_limit, integer(o, "max_iterations"),
+                                          integer(o, "min_iterations"), word(o, "linear_solver")});
 }
 
 std::unique_ptr<Stepper> make_null(Shared problem, const BackendOptions&) {
@@ -86,6 +102,8 @@ const SettingInfo newton_iterations{"max_iterations", 50.0,
 const SettingInfo sweeps{"max_iterations", 1e5, "sweeps a step before it is refused"};
 const SettingInfo target{
     "target", 0.0, "a corrected edge is brought to this fraction of the strain limit, 0 to 1"};
+constexpr const char* least_iterations =
+    "projections a step even where the candidate is permissible; 1 keeps slack from building up";
 const SettingInfo spd_solver{
     "linear_solver",
     "auto",
@@ -122,7 +140,7 @@ const std::vector<Backend>& table() {
        "constraint direction from the start of the step",
        Knob::strain_limit,
        true,
-       {newton_iterations, spd_solver},
+       {newton_iterations, {"min_iterations", 0.0, least_iterations}, spd_solver},
        make_shake},
       {"icd",
        "implicit constraint direction: positions and multipliers together",
@@ -140,8 +158,20 @@ const std::vector<Backend>& table() {
        "Algorithm 1 of Goldenthal et al. 2007",
        Knob::strain_limit,
        true,
-       {newton_iterations, spd_solver},
+       {newton_iterations, {"min_iterations", 0.0, least_iterations}, spd_solver},
        make_fast_projection},
+      {"fast_projection_bdf2",
+       "fast projection inside the two-step formula BDF2: second order",
+       Knob::strain_limit,
+       true,
+       {newton_iterations, {"min_iterations", 1.0, least_iterations}, spd_solver},
+       make_fast_projection_bdf2},
+      {"rattle",
+       "SHAKE with velocities projected as well (Andersen 1983): second order, no damping",
+       Knob::strain_limit,
+       true,
+       {newton_iterations, {"min_iterations", 1.0, least_iterations}, spd_solver},
+       make_rattle},
       {"null",
        "unconstrained step only: what the scene and the harness cost",
        Knob::none,

@@ -16,6 +16,7 @@ Shake::Shake(const Problem& problem, const Settings& settings)
     : system_(problem, settings.strain_limit, settings.linear_solver),
       vertices_(problem.vertices()),
       max_iterations_(settings.max_iterations),
+      min_iterations_(settings.min_iterations),
       u_start_(3, problem.constraints()),
       u_(3, problem.constraints()),
       c_(problem.constraints()),
@@ -31,12 +32,11 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, Wo
   } matrix = Matrix::start;  // kept, here: the true one of an earlier, of this iterate
   double error = 0;          // |C| at best_
   for (int j = 0;; ++j) {
-    if (edges.linearize(x, u_, c_)) return {Status::ok, j};
+    if (edges.linearize(x, u_, c_) && j >= min_iterations_) return {Status::ok, j};
     if (j == max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
     const double next_error = c_.norm();
     if (j == 0) {
-      edges.gradient(x_start, u_start_);
-      if (!system_.factor(u_start_, work)) {
+      if (!factor_start(x_start, work)) {
         return refuse(Status::singular, j, edges, x,
                       "J W J^T at the start of the step is not positive definite");
       }
@@ -74,6 +74,27 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, Wo
     full_step_ = mu_.norm();
     edges.apply(u_start_, mu_, x);
   }
+}
+
+bool Shake::factor_start(const Positions& x_start, WorkCounters& work) {
+  if (factored_ && x_factored_ == x_start) return true;
+  factored_ = false;
+  system_.edges().gradient(x_start, u_start_);
+  return system_.factor(u_start_, work);
+}
+
+StepResult Shake::project_velocity(const Positions& x, Positions& v, WorkCounters& work) {
+  const EdgeConstraints& edges = system_.edges();
+  if (!factor_start(x, work)) {
+    return refuse(Status::singular, 0, edges, x,
+                  "J W J^T at the end of the step is not positive definite");
+  }
+  x_factored_ = x;
+  factored_ = true;
+  edges.rate(u_start_, v, mu_);  // J v
+  system_.solve(mu_, work);
+  edges.apply(u_start_, mu_, v);
+  return {};
 }
 
 bool Shake::rebuild(WorkCounters& work) {

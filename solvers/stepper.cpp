@@ -1,29 +1,11 @@
 #include "stepper.h"
 
-#include <chrono>
 #include <cmath>
 
 #include "forces.h"
+#include "lap.h"
 
 namespace inextensible {
-namespace {
-
-class Lap {
- public:
-  // Seconds since construction or the last call.
-  double operator()() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
-}  // namespace
-
 const char* to_string(Status status) {
   switch (status) {
     case Status::ok:
@@ -39,7 +21,9 @@ const char* to_string(Status status) {
 }
 
 Stepper::Stepper(std::shared_ptr<const Problem> problem)
-    : problem_(std::move(problem)), next_(3, problem_->vertices()) {
+    : problem_(std::move(problem)),
+      next_(3, problem_->vertices()),
+      velocity_(3, problem_->vertices()) {
   if (problem_->collider()) filtered_.resize(3, problem_->vertices());
 }
 
@@ -56,18 +40,27 @@ StepResult Stepper::advance(State& state, double h) {
     collider->resolve(state.x, problem_->inverse_mass(), next_, work_);
     phases_.collision += lap();
   }
-  // One pass over all numbers commits the step; a sum is not finite if any term is not.
-  const double inverse_h = 1 / h;
-  const double total = next_.sum();
-  if (!std::isfinite(total)) {
+  // A sum is not finite if any term is not.
+  if (!std::isfinite(next_.sum())) {
     ++work_.rejected_steps;
     return {Status::not_finite, result.iterations, -1, 0, "a position overflowed"};
   }
-  state.v = (next_ - state.x) * inverse_h;
+  const StepResult end = end_velocities(state, h, filtered_positions(), next_, velocity_);
+  if (!end) {
+    ++work_.rejected_steps;
+    return end;
+  }
+  state.v.swap(velocity_);
   state.x = next_;
   state.time += h;
   ++work_.steps;
   return result;
+}
+
+StepResult Stepper::end_velocities(const State& start, double h, const Positions& /*filtered*/,
+                                   const Positions& x, Positions& v) {
+  v = (x - start.x) * (1 / h);
+  return {};
 }
 
 FilterStepper::FilterStepper(std::shared_ptr<const Problem> problem,

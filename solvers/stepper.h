@@ -62,12 +62,19 @@ class Stepper {
   // Writes the inextensible positions at the end of the step to x; adds to work_ and phases_.
   virtual StepResult solve(const State& state, double h, Positions& x) = 0;
 
+  // Writes the velocities at the end of the step to v, from the positions x after the collision
+  // filter; `filtered` are those before it, the same object where there is no collider. One-step
+  // methods take v = (x - x^n) / h. A method that remembers earlier steps does so here; it may
+  // still refuse.
+  virtual StepResult end_velocities(const State& start, double h, const Positions& filtered,
+                                    const Positions& x, Positions& v);
+
   std::shared_ptr<const Problem> problem_;
   WorkCounters work_;
   PhaseSeconds phases_;
 
  private:
-  Positions next_, filtered_;
+  Positions next_, filtered_, velocity_;
 };
 
 // A velocity filter: takes start-of-step and candidate positions, moves the candidate onto the

@@ -109,7 +109,7 @@ TEST_P(Steppers, ShortenOneEdgeByTheClosedForm) {
     }
     const Vector3d d = candidate.col(1) - candidate.col(0);
     Vector3d correction;  // of d
-    if (GetParam() == "shake") {
+    if (GetParam() == "shake" || GetParam() == "rattle") {
       const Vector3d e = start.col(1) - start.col(0);
       const double along = d.dot(e);
       correction = (std::sqrt(along * along - d.squaredNorm() + 1) - along) * e;
@@ -190,7 +190,7 @@ TEST_P(Steppers, KeepMomentumOverARun) {
     for (int step = 0; step < 10; ++step) {
       ASSERT_TRUE(stepper->advance(state, 0.002));
       EXPECT_LT((linear_momentum(p, state.v) - linear).norm(), 1e-10 * scale);
-      if (GetParam() == "shake") {
+      if (GetParam() == "shake" || GetParam() == "rattle") {
         EXPECT_LT((angular_momentum(p, state.x, state.v) - angular).norm(), 1e-9 * scale);
       }
     }
@@ -199,6 +199,10 @@ TEST_P(Steppers, KeepMomentumOverARun) {
 
 TEST_P(Steppers, LeaveAPermissibleCandidateBitForBit) {
   if (!limits_strain(GetParam())) GTEST_SKIP() << "no strain limit";
+  for (const SettingInfo& setting : find_backend(GetParam())->settings) {
+    if (setting.name == std::string("min_iterations") && std::get<double>(setting.initial) > 0)
+      GTEST_SKIP() << "corrects every candidate";
+  }
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);

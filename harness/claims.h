@@ -1,0 +1,26 @@
+// The claims C1 to C16 of Goldenthal et al. 2007, each decided from result files by a stated rule.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace harness {
+
+struct ClaimVerdict {
+  std::string id, where, statement;
+  std::string verdict;   // "reproduced", "not reproduced", "changed" or "not yet measured"
+  std::string measured;  // one or two sentences with figures
+  std::string rule;      // how the verdict follows from them
+  std::vector<std::string> points;  // ids behind it
+};
+
+// results: documents of schema inextensible-bench/1; their points are taken together. Points of one
+// id must come from one document (the first that has it counts).
+std::vector<ClaimVerdict> judge_claims(const std::vector<nlohmann::json>& results);
+
+void print_claims(std::ostream& out, const std::vector<ClaimVerdict>& claims);
+void print_claims_markdown(std::ostream& out, const std::vector<ClaimVerdict>& claims);
+
+}  // namespace harness

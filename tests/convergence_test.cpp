@@ -1,0 +1,224 @@
+// Orders of convergence on a smooth stretch of the chain's motion, against the pendulum in angles;
+// energy behaviour; BDF2's own identities.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "bdf2_stepper.h"
+#include "fast_projection.h"
+#include "fit.h"
+#include "forces.h"
+#include "pendulum.h"
+#include "reference.h"
+#include "registry.h"
+#include "scene.h"
+
+namespace harness {
+namespace {
+
+using inextensible::make_stepper;
+using inextensible::Positions;
+using inextensible::State;
+using inextensible::Stepper;
+
+constexpr double stretch = 0.32;  // s, of smooth motion
+constexpr double tight = 1e-11;   // strain limit: slack must not matter
+
+Scene short_chain() {
+  const SceneType& type = *find_scene("chain");
+  return type.build(complete_parameters(type, {{"n", 8}}));
+}
+
+Positions pendulum_at(double time) {
+  Pendulum pendulum({std::vector<double>(7, 1.0 / 8), std::vector<double>(7, 1.0 / 7), 9.81},
+                    std::vector<double>(7, 0.0));
+  pendulum.advance(time, 1e-13);
+  return pendulum.positions();
+}
+
+void run(Stepper& stepper, State& state, double h, double duration = stretch) {
+  for (int i = 0; i < std::lround(duration / h); ++i) ASSERT_TRUE(stepper.advance(state, h));
+}
+
+// Slope of the error at the end of the stretch over five steps. staggered: velocities begin half a
+// step earlier, as the leapfrog form of SHAKE wants them (at rest: v = -h/2 g).
+Slope order(const std::string& solver, const inextensible::Settings& settings = {},
+            const Positions* truth = nullptr, bool staggered = false) {
+  const Scene scene = short_chain();
+  const Positions exact = truth ? *truth : pendulum_at(stretch);
+  std::vector<double> steps, errors;
+  for (double h = stretch / 40; steps.size() < 5; h /= 2) {
+    const auto stepper = make_stepper(solver, scene.problem, {tight, 1, settings});
+    State state = scene.start;
+    if (staggered) state.v.rightCols(7).colwise() -= 0.5 * h * scene.problem->gravity();
+    run(*stepper, state, h);
+    steps.push_back(h);
+    errors.push_back(rms_distance(scene, state.x, exact));
+  }
+  return log_log_slope(steps, errors);
+}
+
+TEST(Order, OfFastProjectionAndIcdIsOne) {
+  for (const char* solver : {"fast_projection", "icd"}) {
+    const Slope slope = order(solver, solver == std::string("icd")
+                                          ? inextensible::Settings{{"direction_tolerance", 1e6}}
+                                          : inextensible::Settings{});
+    EXPECT_NEAR(slope.value, 1, 0.1) << solver << " +- " << slope.half_width;
+  }
+}
+
+TEST(Order, OfShakeIsTwoWithStaggeredVelocitiesAndOneWithout) {
+  EXPECT_NEAR(order("shake", {}, nullptr, true).value, 2, 0.1);
+  EXPECT_NEAR(order("shake").value, 1, 0.1);
+}
+
+TEST(Order, OfRattleAndBdf2IsTwo) {
+  EXPECT_NEAR(order("rattle").value, 2, 0.1);
+  EXPECT_NEAR(order("fast_projection_bdf2").value, 2, 0.2);
+}
+
+TEST(Order, OfImplicitSpringsTowardsTheirOwnStiffLimitIsOne) {
+  const inextensible::Settings settings{{"stiffness", 1e4}, {"newton_tolerance", 1.0}};
+  const Scene scene = short_chain();
+  // The limit h -> 0 at this stiffness, extrapolated from two fine runs; strain_limit sets how
+  // exactly Newton's iteration solves.
+  Positions limit;
+  for (const double h : {stretch / 20480, stretch / 40960}) {
+    const auto stepper = make_stepper("implicit_springs", scene.problem, {1e-9, 1, settings});
+    State state = scene.start;
+    run(*stepper, state, h);
+    limit = limit.size() == 0 ? state.x : Positions(2 * state.x - limit);
+  }
+  std::vector<double> steps, errors;
+  for (double h = stretch / 160; steps.size() < 5; h /= 2) {
+    const auto stepper = make_stepper("implicit_springs", scene.problem, {1e-9, 1, settings});
+    State state = scene.start;
+    run(*stepper, state, h);
+    steps.push_back(h);
+    errors.push_back(rms_distance(scene, state.x, limit));
+  }
+  const Slope slope = log_log_slope(steps, errors);
+  EXPECT_NEAR(slope.value, 1, 0.15) << "+- " << slope.half_width;
+}
+
+double energy(const Scene& scene, const State& state) {
+  return inextensible::potential_energy(*scene.problem, state.x) +
+         inextensible::kinetic_energy(*scene.problem, state.v);
+}
+
+// Over one second the implicit methods lose energy, less at smaller steps; RATTLE does not drift.
+TEST(Energy, IsLostByImplicitMethodsInProportionToTheStepAndKeptByRattle) {
+  const Scene scene = short_chain();
+  const auto drift = [&](const char* solver, double h) {
+    const auto stepper = make_stepper(solver, scene.problem, {tight, 1, {}});
+    State state = scene.start;
+    run(*stepper, state, h, 1);
+    return energy(scene, state) / 9.81;
+  };
+  for (const char* solver : {"fast_projection", "fast_projection_bdf2"}) {
+    const double coarse = drift(solver, 1.0 / 500), fine = drift(solver, 1.0 / 2000);
+    EXPECT_LT(coarse, 0) << solver;
+    EXPECT_LT(std::abs(fine), 0.5 * std::abs(coarse)) << solver;
+  }
+  const double lost = drift("fast_projection", 1.0 / 2000);
+  EXPECT_LT(std::abs(drift("fast_projection_bdf2", 1.0 / 2000)), 0.2 * std::abs(lost));
+  EXPECT_LT(std::abs(drift("rattle", 1.0 / 2000)), 0.02 * std::abs(lost));
+}
+
+std::shared_ptr<const inextensible::Problem> free_edge() {
+  inextensible::ProblemParts parts;
+  parts.mass = {1, 2};
+  parts.edges = {{0, 1}};
+  parts.rest_length = {1};
+  return std::make_shared<const inextensible::Problem>(parts);
+}
+
+inextensible::Bdf2Stepper bdf2(const std::shared_ptr<const inextensible::Problem>& problem) {
+  return {problem, std::make_unique<inextensible::FastProjection>(
+                       *problem, inextensible::FastProjection::Settings{1e-12})};
+}
+
+TEST(Bdf2, IsExactInFreeFallWhateverTheSteps) {
+  const auto problem = free_edge();
+  auto stepper = bdf2(problem);
+  State state{Positions::Zero(3, 2), Positions::Zero(3, 2), 0};
+  state.x(0, 1) = 1;
+  state.v.colwise() += Eigen::Vector3d(1, 2, 3);
+  const State start = state;
+  for (const double h : {0.01, 0.01, 0.02, 0.005, 0.01, 0.03}) {
+    ASSERT_TRUE(stepper.advance(state, h));
+    const double t = state.time;
+    Positions exact = start.x + t * start.v;
+    exact.row(1).array() -= 0.5 * 9.81 * t * t;
+    EXPECT_LT((state.x - exact).cwiseAbs().maxCoeff(), 1e-14) << "t = " << t;
+  }
+  EXPECT_EQ(stepper.restarts(), 2);  // the first step, and the growth from 0.01 to 0.03
+}
+
+TEST(Bdf2, StartsAnewFromAStateThatIsNotItsOwn) {
+  const auto problem = free_edge();
+  auto used = bdf2(problem), fresh = bdf2(problem);
+  State state{Positions::Zero(3, 2), Positions::Zero(3, 2), 0};
+  state.x(0, 1) = 1;
+  state.v(1, 1) = 4;  // spins
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(used.advance(state, 0.01));
+  state.v *= 0.5;
+  State other = state;
+  ASSERT_TRUE(used.advance(state, 0.01));
+  ASSERT_TRUE(fresh.advance(other, 0.01));
+  EXPECT_EQ(used.restarts(), 2);
+  EXPECT_TRUE(state.x == other.x && state.v == other.v);
+}
+
+// A step of another size keeps the order: steps alternate between h and 1.5 h.
+TEST(Bdf2, KeepsItsOrderWhenTheStepChanges) {
+  const Scene scene = short_chain();
+  const Positions exact = pendulum_at(stretch);
+  std::vector<double> steps, errors;
+  for (double h = stretch / 100; steps.size() < 4; h /= 2) {
+    auto stepper = bdf2(scene.problem);
+    State state = scene.start;
+    for (int i = 0; state.time < stretch - 1e-9; ++i)
+      ASSERT_TRUE(stepper.advance(state, i % 2 == 0 ? h : 1.5 * h));
+    ASSERT_NEAR(state.time, stretch, 1e-9);
+    EXPECT_EQ(stepper.restarts(), 1);
+    steps.push_back(h);
+    errors.push_back(rms_distance(scene, state.x, exact));
+  }
+  EXPECT_NEAR(log_log_slope(steps, errors).value, 2, 0.25);
+}
+
+// A body that hits the ground must not bounce off it by a velocity that is extrapolated over the
+// impact.
+TEST(Bdf2, DoesNotBounceOffACollider) {
+  const SceneType& type = *find_scene("drape");
+  const Scene scene = type.build(
+      complete_parameters(type, {{"n", 5}, {"side", 0.05}, {"gap", 0.05}, {"shear", 0}}));
+  auto stepper = bdf2(scene.problem);
+  State state = scene.start;
+  double highest_after = -1;
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE(stepper.advance(state, 0.002));
+    const double rise = state.v.row(1).maxCoeff();
+    if (stepper.work().contacts > 0) highest_after = std::max(highest_after, rise);
+  }
+  EXPECT_GT(stepper.work().contacts, 0);
+  EXPECT_LT(highest_after, 0.1);  // it arrives at 1 m/s
+}
+
+TEST(Fit, FindsAKnownSlopeAndItsInterval) {
+  const std::vector<double> x{1, 2, 4, 8, 16}, y{3, 12, 48, 192, 768};
+  const Slope exact = log_log_slope(x, y);
+  EXPECT_NEAR(exact.value, 2, 1e-12);
+  EXPECT_LT(exact.half_width, 1e-10);
+  const std::vector<double> noisy{3, 11, 50, 190, 790};
+  const Slope fitted = log_log_slope(x, noisy);
+  EXPECT_GT(fitted.half_width, 0.01);
+  EXPECT_LT(fitted.low(), 2);
+  EXPECT_GT(fitted.high(), 2);
+  EXPECT_TRUE(std::isnan(log_log_slope(std::vector<double>{1}, std::vector<double>{1}).value));
+}
+
+}  // namespace
+}  // namespace harness

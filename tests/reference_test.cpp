@@ -1,0 +1,160 @@
+// References: the pendulum in angles against closed forms and against the dense equations of
+// motion, and what is stored.
+#include "reference.h"
+
+#include <gsl/gsl_sf_ellint.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "pendulum.h"
+#include "usage_error.h"
+
+namespace harness {
+namespace {
+
+using inextensible::Positions;
+
+Pendulum::Links uniform_links(int n, double total_mass, double total_length) {
+  // As the scene `chain` of n + 1 vertices: mass by vertex, the pinned one has its share.
+  const auto count = static_cast<std::size_t>(n);
+  return {std::vector<double>(count, total_mass / (n + 1)),
+          std::vector<double>(count, total_length / n), 9.81};
+}
+
+TEST(Pendulum, OfOneLinkSwingsWithTheEllipticPeriod) {
+  for (const double amplitude : {0.1, 1.0, 2.5}) {
+    // From the x axis, so that amplitude is measured from straight down.
+    const double length = 0.7, start = -M_PI / 2 + amplitude;
+    Pendulum pendulum({{2.0}, {length}, 9.81}, {start});
+    const double period = 4 * std::sqrt(length / 9.81) *
+                          gsl_sf_ellint_Kcomp(std::sin(amplitude / 2), GSL_PREC_DOUBLE);
+    pendulum.advance(period / 4, 1e-13);
+    EXPECT_NEAR(pendulum.positions()(0, 1), 0, 1e-10) << "at the bottom after a quarter";
+    pendulum.advance(period, 1e-13);
+    EXPECT_NEAR(pendulum.positions()(0, 1), length * std::cos(start), 1e-10);
+    EXPECT_NEAR(pendulum.positions()(1, 1), length * std::sin(start), 1e-10);
+  }
+}
+
+// Lagrange's equations in angles, dense: sum_j A_ij cos(theta_i - theta_j) l_i l_j theta_j'' +
+// A_ij sin(theta_i - theta_j) l_i l_j theta_j'^2 + g l_i cos(theta_i) M_i = 0 with M_i the mass
+// from point i + 1 on and A_ij = M_max(i,j).
+TEST(Pendulum, RatesFulfilLagrangesEquations) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> positive(0.1, 2), angle(-3, 3);
+    const int n = 1 + static_cast<int>(seed % 6);
+    Pendulum::Links links;
+    std::vector<double> angles, state;
+    for (int i = 0; i < n; ++i) {
+      links.mass.push_back(positive(random));
+      links.length.push_back(positive(random));
+      angles.push_back(angle(random));
+    }
+    state = angles;
+    for (int i = 0; i < n; ++i) state.push_back(angle(random));
+    Pendulum pendulum(links, angles);
+    std::vector<double> rate(state.size());
+    ASSERT_TRUE(pendulum.rates(state.data(), rate.data()));
+    double scale = 0, worst = 0;
+    for (int i = 0; i < n; ++i) {
+      double sum = 0, from_i = 0;
+      for (int k = i; k < n; ++k) from_i += links.mass[static_cast<std::size_t>(k)];
+      const auto I = static_cast<std::size_t>(i), N = static_cast<std::size_t>(n);
+      for (int j = 0; j < n; ++j) {
+        const auto J = static_cast<std::size_t>(j);
+        double tail = 0;
+        for (int k = std::max(i, j); k < n; ++k) tail += links.mass[static_cast<std::size_t>(k)];
+        const double ll = tail * links.length[I] * links.length[J];
+        sum += ll * (std::cos(state[I] - state[J]) * rate[N + J] +
+                     std::sin(state[I] - state[J]) * state[N + J] * state[N + J]);
+        scale += std::abs(ll * rate[N + J]);
+      }
+      sum += links.gravity * links.length[I] * std::cos(state[I]) * from_i;
+      worst = std::max(worst, std::abs(sum));
+    }
+    EXPECT_LT(worst, 1e-12 * (scale + 1));
+  }
+}
+
+TEST(Pendulum, OfEightyVerticesKeepsItsEnergyAndMeetsTheKnownPlaces) {
+  Pendulum pendulum(uniform_links(79, 1, 1), std::vector<double>(79, 0.0));
+  pendulum.advance(0.5, 1e-13);
+  // An independent program's figures, to the digits it gave.
+  EXPECT_NEAR(pendulum.positions()(0, 79), -0.24582, 5e-6);
+  EXPECT_NEAR(pendulum.positions()(1, 79), -0.84093, 5e-6);
+  pendulum.advance(1, 1e-13);
+  EXPECT_NEAR(pendulum.positions()(0, 79), -0.90741, 5e-6);
+  EXPECT_NEAR(pendulum.positions()(1, 79), -0.17839, 5e-6);
+  EXPECT_NEAR(pendulum.energy() / 9.81, 0, 1e-10);
+}
+
+TEST(Reference, OfAShortChainIsTheSameByBothRoutes) {
+  const SceneType& type = *find_scene("chain");
+  const Reference r = compute_reference("chain", complete_parameters(type, {{"n", 12}}), 0.04 / 256,
+                                        [](const std::string&) {});
+  EXPECT_NEAR(r.observed_order, 2, 0.05);
+  EXPECT_EQ(r.times.size(), 25u);
+  EXPECT_DOUBLE_EQ(r.valid_until, 1);
+  for (const double gap : r.gap) EXPECT_LT(gap, 1e-6);
+  EXPECT_LT(r.energy_drift, 1e-10);
+}
+
+TEST(Reference, SurvivesItsFile) {
+  const SceneType& type = *find_scene("chain");
+  const auto parameters = complete_parameters(type, {{"n", 4}, {"duration", 0.2}});
+  const Reference r = compute_reference("chain", parameters, 0.04 / 64, [](const std::string&) {});
+  const std::string folder = ::testing::TempDir() + "references";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder + "/" + reference_name("chain", parameters)) << to_json(r);
+  ReferenceShelf shelf(folder);
+  const auto again = shelf.find("chain", parameters);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->times, r.times);
+  ASSERT_EQ(again->positions.size(), r.positions.size());
+  for (std::size_t i = 0; i < r.positions.size(); ++i)
+    EXPECT_LT((again->positions[i] - r.positions[i]).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_FALSE(shelf.find("chain", complete_parameters(type, {{"n", 5}})));
+  // Another mass is another scene, another duration is not.
+  EXPECT_FALSE(shelf.find("chain", complete_parameters(type, {{"n", 4}, {"mass", 2}})));
+  EXPECT_TRUE(shelf.find("chain", complete_parameters(type, {{"n", 4}})));
+
+  std::ofstream(folder + "/broken.json") << "{\"schema\": \"inextensible-reference/1\"}";
+  EXPECT_THROW(static_cast<void>(read_reference(folder + "/broken.json")), UsageError);
+}
+
+TEST(Reference, ThatIsCommittedIsTheOneThisProgramComputes) {
+  const SceneType& type = *find_scene("chain");
+  const auto parameters = complete_parameters(type, {});
+  ReferenceShelf shelf(std::string(SOURCE_DIR) + "/results/references");
+  const auto stored = shelf.find("chain", parameters);
+  ASSERT_TRUE(stored);
+  Pendulum pendulum(uniform_links(79, 1, 1), std::vector<double>(79, 0.0));
+  const Scene scene = type.build(parameters);
+  for (std::size_t i = 0; i < stored->times.size(); ++i) {
+    pendulum.advance(stored->times[i], 1e-13);
+    EXPECT_LT(max_distance(scene, pendulum.positions(), stored->positions[i]), 1e-9);
+  }
+}
+
+TEST(ShapeStatistics, OfAFlatSquareAreItsHeightAndItsArea) {
+  const SceneType& type = *find_scene("drape");
+  const auto parameters = complete_parameters(type, {{"n", 9}, {"subdivisions", 0}});
+  const Scene scene = type.build(parameters);
+  const ShapeStatistics shape = shape_statistics(scene, scene.start.x);
+  EXPECT_NEAR(shape.corner_height, 0.251, 1e-12);
+  EXPECT_NEAR(shape.potential_energy, 0.251, 1e-12);
+  EXPECT_NEAR(shape.shadow, 1, 0.01);  // pixels
+  Positions folded = scene.start.x;
+  folded.row(0) = folded.row(0).cwiseAbs();
+  EXPECT_NEAR(shape_statistics(scene, folded).shadow, 0.5, 0.01);
+}
+
+}  // namespace
+}  // namespace harness
