@@ -189,12 +189,12 @@ int make_references(const Options& options, bool again, double finest) {
   const auto missing = without_reference(searches, shelf);
   if (missing.empty()) std::cout << "nothing is missing (--again computes them anew)\n";
   for (const auto& [scene, parameters] : missing) {
-    const std::string path = folder + "/" + reference_name(scene, parameters);
+    const std::string name = reference_name(scene, parameters);
+    const std::string path = folder + "/" + name;
     check_writable(path);
-    const Reference reference =
-        compute_reference(scene, parameters, finest, [&](const std::string& line) {
-          std::cerr << reference_name(scene, parameters) << ": " << line << '\n';
-        });
+    const Reference reference = compute_reference(
+        scene, parameters, finest,
+        [&name](const std::string& line) { std::cerr << name << ": " << line << '\n'; });
     write_atomically(path, to_json(reference).dump() + "\n");
     print_reference(std::cout, reference);
     std::cout << path << std::endl;
