@@ -155,6 +155,7 @@ std::vector<std::pair<std::string, SceneParameters>> without_reference(
       missing[reference_name(scene, parameters)] = {scene, parameters};
   }
   std::vector<std::pair<std::string, SceneParameters>> list;
+  list.reserve(missing.size());
   for (auto& [name, scene] : missing) list.push_back(std::move(scene));
   return list;
 }
@@ -218,6 +219,7 @@ nlohmann::json read_result(const std::string& path) {
 
 int claims(const std::vector<std::string>& files, bool markdown) {
   std::vector<nlohmann::json> results;
+  results.reserve(files.size());
   for (const std::string& file : files) results.push_back(read_result(file));
   try {
     (markdown ? print_claims_markdown : print_claims)(std::cout, judge_claims(results));
