@@ -45,7 +45,7 @@ std::string text(double value) {
   return out.str();
 }
 
-// A backend's path at the sample times; h divides the sample interval.
+// A backend's path at the sample times, up to where it fails; h divides the sample interval.
 Path follow(const Scene& scene, const inextensible::State& start, const std::string& solver,
             double limit, double h, const std::vector<double>& times, const Tell& tell) {
   const auto stepper = inextensible::make_stepper(solver, scene.problem, {limit, 1, {}});
@@ -56,13 +56,23 @@ Path follow(const Scene& scene, const inextensible::State& start, const std::str
   for (const double time : times) {
     for (long i = 0; i < per_sample; ++i) {
       const auto result = stepper->advance(state, h);
-      if (!result)
-        throw std::runtime_error("reference: " + solver + " with h = " + text(h) +
-                                 " s stopped before t = " + text(time) + " s: " +
-                                 inextensible::to_string(result.status) + ", " + result.detail);
+      if (!result) {
+        tell(solver + ", h = 1/" + text(std::round(1 / h)) + " s stopped before t = " + text(time) +
+             " s: " + inextensible::to_string(result.status) + ", " + result.detail);
+        return path;
+      }
     }
     path.push_back(state.x);
   }
+  return path;
+}
+
+Path follow_to_the_end(const Scene& scene, const std::string& solver, double limit, double h,
+                       const std::vector<double>& times, const Tell& tell) {
+  Path path = follow(scene, scene.start, solver, limit, h, times, tell);
+  if (path.size() < times.size())
+    throw UsageError("no reference: " + solver + " with h = " + text(h) + " s fails before t = " +
+                     text(times[path.size()]) + " s (a smaller --finest may help)");
   return path;
 }
 
@@ -85,7 +95,7 @@ double mean_distance(const Scene& scene, const Path& a, const Path& b, std::size
 double time_together(const Scene& scene, const Path& a, const Path& b,
                      const std::vector<double>& times) {
   double together = 0;
-  for (std::size_t i = 0; i < times.size(); ++i) {
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
     if (!(max_distance(scene, a[i], b[i]) < parted)) break;
     together = times[i];
   }
@@ -127,9 +137,9 @@ void compute_chain(Reference& r, const Scene& scene, double finest, const Tell& 
   const Path path = swing(scene, 0, r.times, &r.energy_drift);
   const Path disturbed = swing(scene, perturbation, r.times, nullptr);
   r.valid_until = time_together(scene, path, disturbed, r.times);
-  const Path coarse = follow(scene, scene.start, "rattle", tight_limit, 4 * finest, r.times, tell);
-  const Path middle = follow(scene, scene.start, "rattle", tight_limit, 2 * finest, r.times, tell);
-  const Path fine = follow(scene, scene.start, "rattle", tight_limit, finest, r.times, tell);
+  const Path coarse = follow_to_the_end(scene, "rattle", tight_limit, 4 * finest, r.times, tell);
+  const Path middle = follow_to_the_end(scene, "rattle", tight_limit, 2 * finest, r.times, tell);
+  const Path fine = follow_to_the_end(scene, "rattle", tight_limit, finest, r.times, tell);
   const std::size_t all = r.times.size();
   r.observed_order = std::log2(mean_distance(scene, coarse, middle, all) /
                                mean_distance(scene, middle, fine, all));
@@ -161,24 +171,30 @@ void compute_contact(Reference& r, const Scene& scene, double finest, const Tell
       follow(scene, scene.start, "rattle", contact_limit, 2 * finest, r.times, tell);
   const Path fine = follow(scene, scene.start, "rattle", contact_limit, finest, r.times, tell);
   const Path disturbed = follow(scene, moved, "rattle", contact_limit, finest, r.times, tell);
-  const Path icd_coarse =
-      follow(scene, scene.start, "icd", contact_limit, 4 * finest, r.times, tell);
-  const Path icd_fine = follow(scene, scene.start, "icd", contact_limit, 2 * finest, r.times, tell);
+  const Path icd_coarse = follow_to_the_end(scene, "icd", contact_limit, 4 * finest, r.times, tell);
+  const Path icd_fine = follow_to_the_end(scene, "icd", contact_limit, 2 * finest, r.times, tell);
   const Path second = extrapolated(icd_coarse, icd_fine, 1);
   r.valid_until = std::min(time_together(scene, fine, disturbed, r.times),
                            time_together(scene, fine, second, r.times));
   std::size_t valid = 0;
-  while (valid < r.times.size() && r.times[valid] <= r.valid_until) ++valid;
-  if (valid > 0)
+  while (valid < fine.size() && r.times[valid] <= r.valid_until) ++valid;
+  if (valid > 0 && valid <= std::min(coarse.size(), middle.size()))
     r.observed_order = std::log2(mean_distance(scene, coarse, middle, valid) /
                                  mean_distance(scene, middle, fine, valid));
   r.method = "rattle, strain limit " + text(contact_limit) + ", step " + text(finest) + " s";
   r.second_method = "icd, strain limit " + text(contact_limit) + ", steps " + text(4 * finest) +
                     " and " + text(2 * finest) + " s, Richardson extrapolated with order 1";
+  if (fine.size() < r.times.size())
+    r.method +=
+        ", until it fails after t = " + text(fine.empty() ? 0.0 : r.times[fine.size() - 1]) +
+        " s; shape statistics from there on by icd alone";
   for (std::size_t i = 0; i < r.times.size(); ++i) {
-    r.gap.push_back(rms_distance(scene, fine[i], second[i]));
-    const ShapeStatistics a = shape_statistics(scene, fine[i]);
-    const ShapeStatistics b = shape_statistics(scene, second[i]);
+    const bool both = i < fine.size();
+    const Positions& one = both ? fine[i] : icd_fine[i];
+    const Positions& other = both ? second[i] : icd_coarse[i];
+    r.gap.push_back(rms_distance(scene, one, other));
+    const ShapeStatistics a = shape_statistics(scene, one);
+    const ShapeStatistics b = shape_statistics(scene, other);
     r.shape.push_back(a);
     r.shape_gap.push_back({std::abs(a.potential_energy - b.potential_energy),
                            std::abs(a.corner_height - b.corner_height),

@@ -53,8 +53,8 @@ nlohmann::json to_json(const Reference& reference);
 Reference read_reference(const std::string& path);
 
 // Computes the reference of a scene by both routes. finest: the smallest step of step halving, s; 0
-// chooses by the scene. tell is called with a line now and then. Throws std::runtime_error if a
-// route fails.
+// chooses by the scene. tell is called with a line now and then. Throws UsageError if a
+// route fails too early.
 Reference compute_reference(const std::string& scene, const SceneParameters& complete,
                             double finest, const std::function<void(const std::string&)>& tell);
 
