@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from results import FigureData, Json, NOT_CHOSEN, is_number
+from results import FigureData, Json, NOT_CHOSEN, TOO_WRONG, is_number
 
 SUBJECTS = {
     ("chain", "strain"): "Figure 4a - chain: cost over permissible strain",
@@ -14,13 +14,14 @@ SUBJECTS = {
 }
 MEANINGS = {
     "T": "timeout", "D": "diverged", "N": "not converged", "S": "strain limit missed", "U": "unsupported",
-    "O": "out of memory", "C": "crashed", "K": "skipped", NOT_CHOSEN: "ran, but no step was chosen as best",
+    "O": "out of memory", "C": "crashed", "K": "skipped", TOO_WRONG: "trajectory error above the limit", NOT_CHOSEN: "ran, but no step was chosen as best",
 }
 
 
 def title_of(figure: FigureData) -> str:
     axis = "permissible strain" if figure.sweep == "strain" else "resolution"
-    return SUBJECTS.get((figure.scene, figure.sweep), f"{figure.scene}: cost over {axis}")
+    title = SUBJECTS.get((figure.scene, figure.sweep), f"{figure.scene}: cost over {axis}")
+    return title if figure.max_error is None else f"{title}, at a trajectory error of at most {percent(figure.max_error)}"
 
 
 def warnings_of(document: Json) -> list[str]:
@@ -39,7 +40,7 @@ def caption_of(figure: FigureData, document: Json) -> list[str]:
     failures = _failure_key(figure, document)
     if failures:
         paragraphs.append(failures)
-    paragraphs.append(_origin_sentence(document))
+    paragraphs.append(origin_sentence(document))
     return paragraphs
 
 
@@ -50,11 +51,15 @@ def _scene_sentence(figure: FigureData) -> str:
         sizes = sorted({point["vertices"] for point in figure.points})
         several = f"{sizes[0]:,.0f} to " if len(sizes) > 1 else ""
         size = f"{several}{sizes[-1]:,.0f} vertices, permissible strain {percent(figure.fixed)}"
-    parts = [size] + _common_parameters(figure.points)
-    durations = {point["duration"] for point in figure.points if is_number(point.get("duration"))}
+    return scene_sentence(figure.scene, size, figure.points)
+
+
+def scene_sentence(scene: str, size: str, points: list[Json]) -> str:
+    parts = [size] + _common_parameters(points)
+    durations = {point["duration"] for point in points if is_number(point.get("duration"))}
     if durations:
         parts.append(" or ".join(f"{d:g}" for d in sorted(durations)) + " s simulated")
-    return f"Scene {figure.scene}: " + ", ".join(parts) + "."
+    return f"Scene {scene}: " + ", ".join(parts) + "."
 
 
 def _common_parameters(points: list[Json]) -> list[str]:
@@ -71,6 +76,9 @@ def _common_parameters(points: list[Json]) -> list[str]:
 def _method_sentence(figure: FigureData, document: Json) -> str:
     suite = _suite(document)
     text = "Each solver at its own best time step (panel of best steps); "
+    if figure.max_error is not None:
+        text = (f"Each solver at its fastest time step whose trajectory error is at most {percent(figure.max_error)} of the "
+                "scene's size; ")
     reps = suite.get("reps")
     if reps == 1:
         text += "one run a point"
@@ -98,7 +106,7 @@ def _failure_key(figure: FigureData, document: Json) -> str:
             f"{key}.")
 
 
-def _origin_sentence(document: Json) -> str:
+def origin_sentence(document: Json) -> str:
     """Machine, build, date. Executable, command line and host name stay out: they tell of a host, not of a method."""
     context = _object(document.get("context"))
     build = _object(context.get("build"))
