@@ -258,9 +258,10 @@ int sweep(const Options& options, const std::vector<std::string>& command) {
   const SweepOutcome outcome = run_sweep(suite, searches, events, runners);
   progress.finish();
 
-  write_atomically(
-      out,
-      result_document(context, suite, command, outcome.complete, outcome.points).dump(1) + "\n");
+  write_atomically(out, result_document(context, suite, command, outcome.complete, outcome.points,
+                                        runners.references->summaries())
+                                .dump(1) +
+                            "\n");
   print_table(std::cout, outcome.points);
   std::cout << "\nwritten:\n" << out << std::endl;
   if (!outcome.complete) return interrupted_exit;
@@ -321,8 +322,7 @@ int run(int argc, char** argv) {
       "  bench --sweep strain --profile quick     a first look, in under a minute\n"
       "  bench plot RESULT.json                   draws the figures of a result file again\n"
       "  bench --sweep step --scene chain         time against error, and a table of time to reach "
-      "an "
-      "error\n"
+      "an error\n"
       "  bench reference                          the trajectories that errors are measured "
       "against\n"
       "  bench claims RESULT.json ...             the paper's claims, decided by measurements\n"

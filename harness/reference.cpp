@@ -307,6 +307,19 @@ json to_json(const Reference& r) {
           {"positions", std::move(positions)}};
 }
 
+json summary_of(const Reference& r) {
+  double squares = 0;
+  for (std::size_t i = 0; i < r.positions.size(); ++i) squares += r.gap[i] * r.gap[i];
+  const auto valid = static_cast<double>(std::max<std::size_t>(r.positions.size(), 1));
+  return {{"name", reference_name(r.scene, r.parameters)},
+          {"method", r.method},
+          {"second_method", r.second_method},
+          {"valid_until", r.valid_until},
+          {"gap", std::sqrt(squares / valid)},
+          {"observed_order", r.observed_order},
+          {"energy_drift", r.energy_drift}};
+}
+
 Reference read_reference(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw UsageError("cannot read the reference '" + path + "'");
@@ -372,6 +385,13 @@ std::shared_ptr<const Reference> ReferenceShelf::find(const std::string& scene,
       place->second = std::make_shared<const Reference>(read_reference(path.string()));
   }
   return place->second;
+}
+
+json ReferenceShelf::summaries() const {
+  json list = json::array();
+  for (const auto& [name, reference] : known_)
+    if (reference) list.push_back(summary_of(*reference));
+  return list;
 }
 
 }  // namespace harness

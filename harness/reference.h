@@ -49,6 +49,8 @@ double max_distance(const Scene& scene, const inextensible::Positions& x,
 std::string reference_name(const std::string& scene, const SceneParameters& complete);
 
 nlohmann::json to_json(const Reference& reference);
+// What a result file says of a reference that its errors were measured against.
+nlohmann::json summary_of(const Reference& reference);
 // Throws UsageError, naming the file, for anything that is not a reference.
 Reference read_reference(const std::string& path);
 
@@ -62,8 +64,10 @@ Reference compute_reference(const std::string& scene, const SceneParameters& com
 class ReferenceShelf {
  public:
   explicit ReferenceShelf(std::string folder) : folder_(std::move(folder)) {}
-  // Null if there is none that covers the scene's duration. Not thread safe.
+  // Null if there is none. Not thread safe.
   std::shared_ptr<const Reference> find(const std::string& scene, const SceneParameters& complete);
+  // All that find() has found so far.
+  nlohmann::json summaries() const;
 
  private:
   std::string folder_;

@@ -129,7 +129,7 @@ json to_json(const PointResult& point) {
 }
 
 json result_document(json context, const Suite& suite, const std::vector<std::string>& command,
-                     bool complete, const std::vector<PointResult>& points) {
+                     bool complete, const std::vector<PointResult>& points, json references) {
   context["command"] = command;
   context["suite"] = to_json(suite);
   context["seed"] = suite.seed;
@@ -143,7 +143,7 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
           {"complete", complete},
           {"context", context},
           {"points", list},
-          {"references", json::array()},
+          {"references", std::move(references)},
           {"benchmarks", benchmarks}};
 }
 

@@ -11,10 +11,12 @@
 namespace harness {
 
 nlohmann::json to_json(const PointResult& point);
-// context: machine_context() as it was before the sweep ran.
+// context: machine_context() as it was before the sweep ran. references:
+// ReferenceShelf::summaries().
 nlohmann::json result_document(nlohmann::json context, const Suite& suite,
                                const std::vector<std::string>& command, bool complete,
-                               const std::vector<PointResult>& points);
+                               const std::vector<PointResult>& points,
+                               nlohmann::json references = nlohmann::json::array());
 
 // Throws UsageError unless a file can be made at `path`; makes missing folders. Nothing is left
 // behind.

@@ -167,8 +167,8 @@ def draw_residual(data: RunsData, document: Json) -> Figure:
     words = [caption.scene_sentence(data.scene, f"{data.vertices:,} vertices", data.points),
              f"Fast projection, permissible strain {caption.percent(limit)}: what is left of the implicit constraint "
              "direction's equation F = 0 (equation 8 of the paper, in metres, mean over the vertices), after the first "
-             "iteration of a step and after the last, for samples in which a step needed an iteration at all. Right: root "
-             "mean square over the run; the lines are fitted over all steps shown (bench claims: with confidence interval).",
+             "iteration of a step and after the last, for samples in which a step needed an iteration at all. Right: mean "
+             "over those samples; the lines are fitted over all steps shown (bench claims: with confidence interval).",
              caption.origin_sentence(document)]
     sheet = make_sheet(f"{data.scene}: residual of fast projection", caption.warnings_of(document), words,
                        LEFT + 2 * MAIN_WIDTH + GAP + 1.6, MAIN_HEIGHT)
@@ -198,8 +198,8 @@ def _draw_residual_over_time(axes: Axes, by_step: dict[float, list[list[float]]]
 
 def _draw_residual_over_step(axes: Axes, by_step: dict[float, list[list[float]]]) -> None:
     steps = sorted(by_step)
-    first = [_root_mean_square([row[1] for row in by_step[step]]) for step in steps]
-    last = [_root_mean_square([row[2] for row in by_step[step]]) for step in steps]
+    first = [_mean([row[1] for row in by_step[step]]) for step in steps]
+    last = [_mean([row[2] for row in by_step[step]]) for step in steps]
     _log_log(axes, steps, [value for value in first + last if value > 0])
     _step_axis(axes, steps)
     for values, marker, dashes, name in ((first, "o", (3, 1.5), "first iteration"), (last, "s", (), "last iteration")):
@@ -213,8 +213,8 @@ def _draw_residual_over_step(axes: Axes, by_step: dict[float, list[list[float]]]
     axes.legend(frameon=False, fontsize=8, loc="upper left")
 
 
-def _root_mean_square(values: list[float]) -> float:
-    return math.sqrt(sum(value * value for value in values) / len(values))
+def _mean(values: list[float]) -> float:
+    return sum(values) / len(values)
 
 
 # ---- shared -----------------------------------------------------------------------------------------------------------

@@ -38,6 +38,14 @@ refused "is not JSON" --sweep strain --config suite.json --out out.json
 echo 'a file' >blocked
 refused "cannot make the folder" --sweep strain --profile quick --out blocked/result.json
 refused "did you mean 'solvers'" list solver
+refused "--max-error needs references, missing: chain-n7" --sweep strain --profile quick --scene chain --out out.json --max-error 0.02 \
+  --config <(echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1], "scene_parameters": {"n": 7}}]}')
+refused "--max-error" "${sweep[@]}" --max-error -1
+refused "cannot read the result file" claims missing.json
+echo '{"schema": "another"}' >other.json
+refused "is not a result file" claims other.json
+refused "did you mean 'drape'" reference --scene drap
+refused "--finest" reference --finest 0
 
 # Two runs with one seed: the same counters and the same strain figures.
 small=(--sweep strain --profile quick --scene chain --solver 'gauss_seidel|fast_projection' --filter 'strain:0.01/' --no-plots)
@@ -57,6 +65,25 @@ assert len(common) >= 4, common
 for key in common:
     assert a[key] == b[key], (key, a[key], b[key])
 PYTHON
+
+# A step sweep: an error and a sample in every point, a table of time to error; claims are judged from the file.
+"$BENCH_BINARY" --sweep step --profile quick --scene chain --solver 'rattle|^fast_projection$' --filter 'strain:0.0001/' \
+  --reps 1 --no-plots --out steps.json >steps.txt 2>/dev/null || fail "a step sweep"
+grep -q 'to reach a trajectory error' steps.txt || fail "no table of time to error"
+/usr/bin/python3 - <<'PYTHON' || fail "the step sweep's file"
+import json
+document = json.load(open("steps.json"))
+ok = [p for p in document["points"] if p["status"] == "ok"]
+assert len({p["step"] for p in ok}) >= 4
+assert all(0 < p["error"]["trajectory"] < 1 for p in ok)
+assert [r["name"] for r in document["references"]] == ["chain-n80.json"]
+fast = {p["step"]: p["error"] for p in ok if p["solver"] == "fast_projection"}
+finest = min(fast)
+assert fast[finest]["trajectory"] < 0.6 * fast[2 * finest]["trajectory"] + 0.01, fast
+assert fast[2 * finest]["residual_first"] > fast[finest]["residual_first"] > 0
+PYTHON
+"$BENCH_BINARY" claims steps.json --markdown >claims.txt || fail "claims"
+[[ $(grep -c '^| C' claims.txt) == 16 ]] || fail "claims has no 16 rows"
 
 # Ctrl-C: valid JSON, not complete, exit 130.
 "$BENCH_BINARY" --sweep strain --profile paper --scene drape --solver gauss_seidel --out interrupted.json --no-plots \

@@ -114,6 +114,56 @@ TEST(StepSearch, AnInterruptKeepsWhatWasFinished) {
   EXPECT_EQ(outcome.points.size(), 3u);
 }
 
+TEST(StepSweep, RunsTheWholeLadderAndRepeatsEveryPointThatWorks) {
+  Suite suite = one_family();
+  suite.sweeps[0].sweep = "step";
+  suite.sweeps[0].finest = 1.0 / 3200;
+  const auto outcome = run_sweep(suite, plan(suite, {}), {}, fake(1.0 / 200, 1.0 / 50, nullptr));
+  EXPECT_EQ(outcome.points.size(), 2 * 8u);
+  for (const auto& point : outcome.points) {
+    EXPECT_EQ(point.ok(), point.spec.step < 1.0 / 49) << point.spec.id();
+    EXPECT_EQ(point.samples.size(), point.ok() ? 3u : 0u) << point.spec.id();
+    EXPECT_EQ(point.best, std::abs(point.spec.step - 1.0 / 200) < 1e-9) << point.spec.id();
+  }
+}
+
+// The trajectory error of the fake solver is its step times `slope`; 1 % is 10 times as wrong.
+SweepRunners erring(SweepRunners runners, double slope) {
+  runners.run = [slope, run = runners.run](const PointSpec& spec, const RunLimits& limits,
+                                           std::optional<double> guess) {
+    PointResult point = run(spec, limits, guess);
+    point.verdict.trajectory = slope * spec.step * (spec.strain_limit < 0.05 ? 10 : 1);
+    return point;
+  };
+  return runners;
+}
+
+TEST(ErrorLimit, IsRespectedByASecondBestPointBesideTheFirst) {
+  Suite suite = one_family();
+  suite.max_error = 1.0 / 1000;
+  std::vector<double> steps;
+  const auto outcome = run_sweep(suite, plan(suite, {}), {}, erring(fake(1.0 / 200, 1, &steps), 1));
+  // Fastest within 1/1000: 1/1600 at 10 % (the first of the ladder that is), none at 1 % whose
+  // error at the finest step, 10/6400, is still too large.
+  for (const auto& point : outcome.points) {
+    EXPECT_EQ(point.best, std::abs(point.spec.step - 1.0 / 200) < 1e-9) << point.spec.id();
+    EXPECT_EQ(point.best_at_error,
+              point.spec.strain_limit > 0.05 && std::abs(point.spec.step - 1.0 / 1600) < 1e-9)
+        << point.spec.id();
+    EXPECT_EQ(point.samples.size(), point.best || point.best_at_error ? 3u : 1u);
+  }
+  // No step is run twice for the second search.
+  EXPECT_EQ(steps.size(), outcome.points.size());
+}
+
+TEST(ErrorLimit, AnErrorThatIsNotKnownIsNoErrorBelowTheLimit) {
+  Suite suite = one_family();
+  suite.max_error = 1;
+  const auto outcome =
+      run_sweep(suite, plan(suite, {}), {}, erring(fake(1.0 / 200, 1, nullptr), std::nan("")));
+  for (const auto& point : outcome.points) EXPECT_FALSE(point.best_at_error);
+}
+
 TEST(Plan, RefusesFiltersThatLeaveNothing) {
   SweepFilters filters;
   filters.include = std::regex("no such point");
