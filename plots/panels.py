@@ -228,4 +228,4 @@ def _log_step_axis(axes: Axes, steps: list[float]) -> None:
     stride = max(1, math.ceil(len(rungs) / 8))
     axes.yaxis.set_major_locator(FixedLocator([COARSEST_STEP / 2.0**k for k in rungs[::stride]]))
     axes.yaxis.set_minor_locator(NullLocator())
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda step, _: f"1/{1 / step:.4g}" if step < 1 else f"{step:g}"))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda step, _: f"1/{1 / step:.6g}" if step < 1 else f"{step:g}"))
