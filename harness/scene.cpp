@@ -42,15 +42,50 @@ Scene build_chain(const SceneParameters& p) {
   return scene;
 }
 
-// n x n vertices, flat and horizontal, above a polygonal sphere that is centred at the origin.
-Scene build_drape(const SceneParameters& p) {
+// n vertices on a straight horizontal line, both ends pinned `stretch` times its length apart.
+Scene build_taut_row(const SceneParameters& p) {
   const int n = static_cast<int>(p.at("n"));
-  const double side = p.at("side"), l = side / (n - 1);
-  const double height = p.at("radius") + p.at("gap");
+  const double length = p.at("length"), span = length * p.at("stretch");
   ProblemParts parts;
-  parts.mass.assign(as_size(n) * as_size(n), p.at("mass") / (n * n));
+  parts.mass.assign(as_size(n), p.at("mass") / n);
+  parts.pinned = {0, n - 1};
   parts.gravity = {0, -p.at("gravity"), 0};
   Scene scene;
+  scene.start.x.setZero(3, n);
+  scene.start.v.setZero(3, n);
+  Scene::Mirror plane{{0, 0, 1}, {}}, left_right{{1, 0, 0}, {}};
+  for (int i = 0; i < n; ++i) {
+    scene.start.x(0, i) = 0.5 * span * (2 * i - (n - 1)) / (n - 1);
+    plane.image.push_back(i);
+    left_right.image.push_back(n - 1 - i);
+    if (i > 0) {
+      parts.edges.push_back({i - 1, i});
+      parts.rest_length.push_back(length / (n - 1));
+    }
+  }
+  scene.problem = std::make_shared<const Problem>(std::move(parts));
+  scene.duration = p.at("duration");
+  scene.size = length;
+  scene.mirrors = {std::move(plane), std::move(left_right)};
+  scene.conserves_energy = true;
+  return scene;
+}
+
+// What drape and patch share: n x n vertices, flat and horizontal at height y, centred over the
+// origin, warp and weft constrained, shear springs where `shear` is positive. Not yet a problem.
+struct Cloth {
+  ProblemParts parts;
+  Scene scene;
+};
+
+Cloth make_cloth(const SceneParameters& p, double y) {
+  const int n = static_cast<int>(p.at("n"));
+  const double side = p.at("side"), l = side / (n - 1);
+  Cloth cloth;
+  ProblemParts& parts = cloth.parts;
+  Scene& scene = cloth.scene;
+  parts.mass.assign(as_size(n) * as_size(n), p.at("mass") / (n * n));
+  parts.gravity = {0, -p.at("gravity"), 0};
   scene.start.x.resize(3, n * n);
   scene.start.v.setZero(3, n * n);
   Scene::Mirror left_right{{1, 0, 0}, {}}, front_back{{0, 0, 1}, {}};
@@ -63,7 +98,7 @@ Scene build_drape(const SceneParameters& p) {
     for (int j = 0; j < n; ++j) {
       // (2 j - (n - 1)) is exactly antisymmetric, so that the start is mirror symmetric to the last
       // bit.
-      scene.start.x.col(vertex(i, j)) << 0.5 * l * (2 * j - (n - 1)), height,
+      scene.start.x.col(vertex(i, j)) << 0.5 * l * (2 * j - (n - 1)), y,
           0.5 * l * (2 * i - (n - 1));
       left_right.image.push_back(vertex(i, n - 1 - j));
       front_back.image.push_back(vertex(n - 1 - i, j));
@@ -83,13 +118,6 @@ Scene build_drape(const SceneParameters& p) {
     shear.stiffness.assign(shear.edges.size(), p.at("shear"));
     parts.shear = std::move(shear);
   }
-  if (p.at("radius") > 0) {
-    parts.collider = std::make_shared<const inextensible::TriangleCollider>(
-        inextensible::icosphere(Eigen::Vector3d::Zero(), p.at("radius"),
-                                static_cast<int>(p.at("subdivisions"))),
-        p.at("friction"));
-  }
-  scene.problem = std::make_shared<const Problem>(std::move(parts));
   scene.duration = p.at("duration");
   scene.size = side;
   scene.mirrors = {std::move(left_right), std::move(front_back)};
@@ -100,7 +128,35 @@ Scene build_drape(const SceneParameters& p) {
       scene.triangles.push_back({vertex(i + 1, j + 1), vertex(i, j + 1), vertex(i + 1, j)});
     }
   }
-  return scene;
+  return cloth;
+}
+
+// Above a polygonal sphere that is centred at the origin.
+Scene build_drape(const SceneParameters& p) {
+  Cloth cloth = make_cloth(p, p.at("radius") + p.at("gap"));
+  if (p.at("radius") > 0) {
+    cloth.parts.collider = std::make_shared<const inextensible::TriangleCollider>(
+        inextensible::icosphere(Eigen::Vector3d::Zero(), p.at("radius"),
+                                static_cast<int>(p.at("subdivisions"))),
+        p.at("friction"));
+  }
+  cloth.scene.problem = std::make_shared<const Problem>(std::move(cloth.parts));
+  return std::move(cloth.scene);
+}
+
+// Pinned at two corners of one edge, which is straight at full length between them.
+Scene build_patch(const SceneParameters& p) {
+  Cloth cloth = make_cloth(p, 0);
+  cloth.parts.pinned = {cloth.scene.corners[0], cloth.scene.corners[1]};
+  cloth.scene.problem = std::make_shared<const Problem>(std::move(cloth.parts));
+  cloth.scene.mirrors.pop_back();  // the pins break front to back
+  cloth.scene.conserves_energy = true;
+  return std::move(cloth.scene);
+}
+
+std::pair<int, int> count_cloth(const SceneParameters& p) {
+  const int n = static_cast<int>(p.at("n"));
+  return {n * n, 2 * n * (n - 1)};
 }
 
 const std::vector<SceneType>& table() {
@@ -133,9 +189,32 @@ const std::vector<SceneType>& table() {
         {"friction", 0.3, "Coulomb coefficient", -1e-300, 1e3},
         {"duration", 1, "s", 0, 1e4}},
        build_drape,
+       count_cloth},
+      {"patch",
+       "a square of cloth, pinned at two corners of one edge, swings down (Figure 1)",
+       "n",
+       {{"n", 31, "vertices along each side", 2, 4000, true},
+        {"side", 1, "m", 0, 1e6},
+        {"mass", 0.2, "total, kg", 0, 1e6},
+        {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
+        {"shear", 0.1, "spring stiffness on both diagonals of each quad, N/m; 0: no springs at all",
+         -1e-300, 1e9},
+        {"duration", 1, "s", 0, 1e4}},
+       build_patch,
+       count_cloth},
+      {"taut_row",
+       "a straight chain between two pins at its full length: J W J^T is singular",
+       "n",
+       {{"n", 31, "vertices", 3, 10'000'000, true},
+        {"length", 1, "m", 0, 1e6},
+        {"stretch", 1, "distance of the pins over the length; above 1: infeasible", 0, 100},
+        {"mass", 1, "total, kg", 0, 1e6},
+        {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
+        {"duration", 1, "s", 0, 1e4}},
+       build_taut_row,
        [](const SceneParameters& p) {
          const int n = static_cast<int>(p.at("n"));
-         return std::pair(n * n, 2 * n * (n - 1));
+         return std::pair(n, n - 1);
        }},
   };
   return rows;

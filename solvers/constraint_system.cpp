@@ -30,8 +30,9 @@ ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
   solver_ = make_spd_solver(solver_name_, schur_->pattern());
 }
 
-bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, WorkCounters& work) {
+bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, WorkCounters& work, double damping) {
   schur_->assemble(u, solver_->values());
+  if (damping > 0) schur_->scale_diagonal(1 + damping, solver_->values());
   ++work.assemblies;
   ++work.factorizations;
   const bool factored = solver_->factor();

@@ -23,8 +23,9 @@ class ConstraintSystem {
   const SchurComplement& schur() const { return *schur_; }
   const std::string& solver_name() const { return solver_name_; }
 
-  // Assembles J W J^T at gradients u and factors it; false: not positive definite.
-  bool factor(const Eigen::Matrix3Xd& u, WorkCounters& work);
+  // Assembles J W J^T at gradients u, its diagonal times 1 + damping, and factors it; false: not
+  // positive definite.
+  bool factor(const Eigen::Matrix3Xd& u, WorkCounters& work, double damping = 0);
   // mu = (J W J^T)^-1 mu.
   void solve(Eigen::VectorXd& mu, WorkCounters& work);
 

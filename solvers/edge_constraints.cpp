@@ -52,6 +52,14 @@ void EdgeConstraints::gradient(const Positions& x, Eigen::Matrix3Xd& u) const {
   }
 }
 
+void EdgeConstraints::excess(double fraction, Eigen::VectorXd& c) const {
+  const double low = fraction * (permissible_low - 1), high = fraction * (permissible_high - 1);
+  for (std::size_t k = 0; k < rest_length.size(); ++k) {
+    double& ck = c[static_cast<Eigen::Index>(k)];
+    ck -= std::clamp(ck, low * rest_length[k], high * rest_length[k]);
+  }
+}
+
 void EdgeConstraints::rate(const Eigen::Matrix3Xd& u, const Positions& v,
                            Eigen::VectorXd& c) const {
   for (std::size_t k = 0; k < a.size(); ++k) {

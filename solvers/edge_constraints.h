@@ -28,6 +28,10 @@ class EdgeConstraints {
   // u alone: the start-of-step direction.
   void gradient(const Positions& x, Eigen::Matrix3Xd& u) const;
 
+  // c_k (m entries, C on entry) becomes how far it lies outside `fraction` of the permissible band,
+  // 0 inside.
+  void excess(double fraction, Eigen::VectorXd& c) const;
+
   // dC/dt = J v (m entries), J given by u, v 3 x n.
   void rate(const Eigen::Matrix3Xd& u, const Positions& v, Eigen::VectorXd& c) const;
 

@@ -10,7 +10,7 @@ class FastProjection final : public VelocityFilter {
  public:
   struct Settings {
     double strain_limit = 0.01;
-    int max_iterations = 50;
+    int max_iterations = 200;
     // Iterations even where the candidate is permissible already: one keeps slack within the limit
     // from building up over steps, at the price of a solve in steps that would need none.
     int min_iterations = 0;
@@ -21,8 +21,12 @@ class FastProjection final : public VelocityFilter {
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
 
  private:
+  StepResult damped(int j, Positions& x, WorkCounters& work);
+  double damped_prediction(double damping) const;
+
   ConstraintSystem system_;
   int max_iterations_, min_iterations_;
+  Positions best_;      // x_j of least constraint error
   Eigen::Matrix3Xd u_;  // gradient of C at x_j
   Eigen::VectorXd mu_;  // C(x_j), then h^2 dlambda
 };

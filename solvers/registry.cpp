@@ -99,6 +99,8 @@ std::unique_ptr<Stepper> make_reference(Shared problem, const BackendOptions&) {
 
 const SettingInfo newton_iterations{"max_iterations", 50.0,
                                     "iterations a step before it is refused"};
+// More, for the damped iterations of hard steps; ordinary ones take a handful.
+const SettingInfo projections{"max_iterations", 200.0, "projections a step before it is refused"};
 const SettingInfo sweeps{"max_iterations", 1e5, "sweeps a step before it is refused"};
 const SettingInfo target{
     "target", 0.0, "a corrected edge is brought to this fraction of the strain limit, 0 to 1"};
@@ -158,13 +160,13 @@ const std::vector<Backend>& table() {
        "Algorithm 1 of Goldenthal et al. 2007",
        Knob::strain_limit,
        true,
-       {newton_iterations, {"min_iterations", 0.0, least_iterations}, spd_solver},
+       {projections, {"min_iterations", 0.0, least_iterations}, spd_solver},
        make_fast_projection},
       {"fast_projection_bdf2",
        "fast projection inside the two-step formula BDF2: second order",
        Knob::strain_limit,
        true,
-       {newton_iterations, {"min_iterations", 1.0, least_iterations}, spd_solver},
+       {projections, {"min_iterations", 1.0, least_iterations}, spd_solver},
        make_fast_projection_bdf2},
       {"rattle",
        "SHAKE with velocities projected as well (Andersen 1983): second order, no damping",

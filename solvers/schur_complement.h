@@ -21,6 +21,8 @@ class SchurComplement {
   // values[i] = entry i of J W J^T for the gradients u (3 x m).
   void assemble(const Eigen::Matrix3Xd& u, double* values) const;
 
+  void scale_diagonal(double factor, double* values) const;
+
  private:
   SymmetricPattern pattern_;
   std::vector<double> weight_;  // 1/kg, one an entry
