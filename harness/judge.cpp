@@ -82,7 +82,7 @@ void Judge::compare(const State& state) {
   }
 }
 
-double Judge::after(const Positions& filtered, const State& state) {
+double Judge::after(const Positions& filtered, const State& state, bool counts) {
   const Range range = strain_range(filtered);
   running_.max_strain = std::max(running_.max_strain, range.most);
   running_.max_stretch = std::max(running_.max_stretch, range.stretch);
@@ -91,7 +91,7 @@ double Judge::after(const Positions& filtered, const State& state) {
     const double before = running_.max_strain_after_collision;
     running_.max_strain_after_collision = std::isnan(before) ? after : std::max(before, after);
   }
-  if (++steps_ % options_.sample_every == 0) sample(filtered, state);
+  if (counts && ++steps_ % options_.sample_every == 0) sample(filtered, state);
   if (options_.reference) compare(state);
   return range.most;
 }

@@ -25,7 +25,9 @@ class Judge {
   // Before and after each accepted step of h seconds. filtered: positions before the collision
   // filter. `after` returns the step's largest |strain|, infinite if a position is not finite.
   void before(const inextensible::State& state, double h);
-  double after(const inextensible::Positions& filtered, const inextensible::State& state);
+  // counts: whether the step counts towards sample_every (a step controller's parts do not).
+  double after(const inextensible::Positions& filtered, const inextensible::State& state,
+               bool counts = true);
   Verdict verdict() const;
 
  private:

@@ -25,7 +25,8 @@ enum ExitCode { success = 0, internal_error = 1, usage_error = 2, interrupted_ex
 volatile std::sig_atomic_t interrupt_requested = 0;
 
 struct Options {
-  std::string sweep, scene, solver, filter, exclude, config, out, profile = "default";
+  std::string sweep, scene, solver, filter, exclude, config, out, profile = "default",
+                                                                  step = "search";
   int reps = 0;
   double timeout = 0, max_error = 0;
   std::int64_t seed = -1;
@@ -85,6 +86,14 @@ Suite load_suite(const Options& options) {
   if (suite.sweeps.empty())
     throw UsageError("'" + path + "' has no such sweep: --sweep " + options.sweep + " --scene " +
                      options.scene);
+  if (options.step != "search" && options.step != "adaptive")
+    throw unknown_name("step", options.step, {"search", "adaptive"});
+  if (options.step == "adaptive") {
+    if (options.sweep == "step")
+      throw UsageError("--step adaptive does not go with --sweep step, whose steps are fixed");
+    for (SweepSpec& sweep : suite.sweeps) sweep.adaptive = true;
+    suite.name += "-adaptive";  // files and figures of their own
+  }
   if (options.reps > 0) suite.reps = options.reps;
   if (options.timeout > 0) suite.timeout = options.timeout;
   if (options.max_error > 0) suite.max_error = options.max_error;
@@ -355,6 +364,10 @@ int run(int argc, char** argv) {
   app.add_option("--timeout", options.timeout, "seconds a point may take")
       ->check(CLI::PositiveNumber)
       ->type_name("S");
+  app.add_option("--step", options.step,
+                 "search (each solver's best step, default) or adaptive (one run from the coarsest "
+                 "step, halved where the solver refuses it)")
+      ->type_name("HOW");
   app.add_option("--max-error", options.max_error,
                  "also find the fastest step within this trajectory error, over the scene's size")
       ->check(CLI::PositiveNumber)

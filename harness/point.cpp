@@ -9,8 +9,12 @@ namespace harness {
 
 std::string PointSpec::id() const {
   std::ostringstream text;
-  text << scene << '/' << solver << "/n:" << vertices << "/strain:" << strain_limit
-       << "/h:" << step;
+  text << scene << '/' << solver << "/n:" << vertices << "/strain:" << strain_limit << "/h:";
+  if (adaptive) {
+    text << "adaptive";
+  } else {
+    text << step;
+  }
   return text.str();
 }
 

@@ -21,10 +21,12 @@ struct PointSpec {
   std::string solver;
   inextensible::Settings settings;  // given ones only
   double strain_limit = 0.01;
-  double step = 0.01;  // s
+  double step = 0.01;     // s
+  bool adaptive = false;  // `step` is the largest one of a step controller
   std::uint64_t seed = 1;
 
-  std::string id() const;  // drape/fast_projection/n:5041/strain:0.01/h:0.004
+  std::string id()
+      const;  // drape/fast_projection/n:5041/strain:0.01/h:0.004 (adaptive: /h:adaptive)
 };
 
 enum class PointStatus {
@@ -81,6 +83,7 @@ struct PointResult {
   inextensible::WorkCounters work;
   Verdict verdict;
   double claimed_strain = unknown;
+  double smallest_step = unknown;  // s, of the accepted ones of a step controller
   int steps_planned = 0;
   std::string linear_solver;
   double peak_rss_bytes = 0;

@@ -119,7 +119,11 @@ void print_best(std::ostream& out, const std::vector<const PointResult*>& points
 }
 
 std::string time_and_step(const PointResult& point) {
-  return significant(point.median_seconds(), 3) + " (" + step_text(point.spec.step) + ")";
+  std::string step = step_text(point.spec.step);
+  if (point.spec.adaptive && point.work.steps > 0)  // the mean one
+    step = "~" +
+           step_text(point.spec.step * point.steps_planned / static_cast<double>(point.work.steps));
+  return significant(point.median_seconds(), 3) + " (" + step + ")";
 }
 
 // The fastest point of each solver within each of some errors: step and strain limit are free.

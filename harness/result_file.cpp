@@ -104,6 +104,8 @@ json to_json(const PointResult& point) {
           {"constraints", spec.constraints},
           {"strain_limit", spec.strain_limit},
           {"step", spec.step},
+          {"adaptive", spec.adaptive},
+          {"smallest_step", number(point.smallest_step)},
           {"duration", spec.scene_parameters.at("duration")},
           {"seed", spec.seed},
           {"status", to_string(point.status)},

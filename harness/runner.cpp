@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "judge.h"
+#include "step_controller.h"
 
 namespace harness {
 namespace {
@@ -44,13 +45,19 @@ struct Run {
   Verdict verdict;
   std::unique_ptr<inextensible::Stepper> stepper;
   double setup_seconds = 0;
+  double smallest_step = unknown;
 };
 
-std::string refusal(const inextensible::StepResult& result, int step, double h) {
+std::string text(double value) {
+  std::ostringstream stream;
+  stream << value;
+  return stream.str();
+}
+
+std::string refusal(const inextensible::StepResult& result, std::int64_t step, double time) {
   std::ostringstream text;
-  text << "step " << step << " (t = " << step * h
-       << " s): " << inextensible::to_string(result.status) << ", " << result.detail << " after "
-       << result.iterations << " iterations";
+  text << "step " << step << " (t = " << time << " s): " << inextensible::to_string(result.status)
+       << ", " << result.detail << " after " << result.iterations << " iterations";
   if (result.worst_edge >= 0 && std::isfinite(result.worst_strain)) {
     text << "; edge " << result.worst_edge << " strained by " << result.worst_strain;
   }
@@ -80,37 +87,49 @@ class PointRunner {
     Judge::Options judging{steps_ / sampled_instants};
     if (judged && stop_at == diverged_strain) {
       judging.reference = reference_;
-      if (spec_.solver == "fast_projection") judging.residual_of_limit = spec_.strain_limit;
+      if (spec_.solver == "fast_projection" && !spec_.adaptive)
+        judging.residual_of_limit = spec_.strain_limit;
     }
     Judge judge(scene_, judging);
     inextensible::State state = scene_.start;
-    for (int i = 0; i < steps_; ++i) {
+    std::optional<inextensible::StepController> controller;
+    if (spec_.adaptive) {
+      controller.emplace(*run.stepper,
+                         inextensible::StepController::Settings{.largest = spec_.step});
+    }
+    for (int i = 0; i < steps_;) {
       if (judged) judge.before(state, spec_.step);
       const auto before = Clock::now();
-      const auto result = run.stepper->advance(state, spec_.step);
+      const auto result =
+          controller ? controller->advance(state) : run.stepper->advance(state, spec_.step);
       run.seconds += since(before);
       if (!result) {
         run.status = result.status == Status::not_finite ? PointStatus::diverged
                                                          : PointStatus::not_converged;
-        run.detail = refusal(result, i, spec_.step);
+        run.detail = refusal(result, run.stepper->work().steps, state.time);
+        if (controller) run.detail += "; at the smallest step, " + text(controller->next()) + " s";
         break;
       }
+      const bool whole = !controller || controller->aligned();
+      if (whole) ++i;
+      if (controller) run.smallest_step = controller->smallest();
       if (judged) {
-        const double strain = judge.after(run.stepper->filtered_positions(), state);
+        const double strain = judge.after(run.stepper->filtered_positions(), state, whole);
         if (backend_.knob != inextensible::Knob::none && !(strain <= stop_at)) {
           run.status =
               !(strain <= diverged_strain) ? PointStatus::diverged : PointStatus::strain_missed;
-          run.detail = "strain " + std::to_string(strain) + " at step " + std::to_string(i);
+          run.detail = "strain " + std::to_string(strain) + " at step " +
+                       std::to_string(run.stepper->work().steps - 1);
           break;
         }
       }
       if (limits_.interrupted && limits_.interrupted()) throw Interrupted();
       const bool slow = run.seconds > limits_.hopeless;
-      if ((slow || since(start_) > limits_.timeout) && i + 1 < steps_) {
+      if ((slow || since(start_) > limits_.timeout) && i < steps_) {
         std::ostringstream text;
         text << "longer than " << (slow ? limits_.hopeless : limits_.timeout) << " s"
              << (slow ? ", several times the best step's time" : "")
-             << "; stopped at t = " << (i + 1) * spec_.step << " s";
+             << "; stopped at t = " << state.time << " s";
         run.status = PointStatus::timeout;
         run.detail = text.str();
         break;
@@ -246,6 +265,7 @@ void fill(PointResult& point, Run& run) {
   point.detail = run.detail;
   point.setup_seconds = run.setup_seconds;
   point.verdict = run.verdict;
+  point.smallest_step = run.smallest_step;
   point.phases = run.stepper->phases();
   point.work = run.stepper->work();
   point.linear_solver = run.stepper->linear_solver();

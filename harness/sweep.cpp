@@ -27,6 +27,7 @@ bool selected(const SweepFilters& filters, const PointSpec& spec) {
 }
 
 std::vector<double> step_ladder(const SweepSpec& sweep) {
+  if (sweep.adaptive) return {sweep.coarsest};
   std::vector<double> ladder;
   for (double h = sweep.coarsest; h >= sweep.finest * (1 - 1e-9); h /= 2) ladder.push_back(h);
   return ladder;
@@ -162,6 +163,7 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
           base.settings = options->second;
         }
         base.seed = suite.seed;
+        base.adaptive = sweep.adaptive;
         for (const double limit : limits) {
           Search search{base, {}, family};
           search.base.strain_limit = limit;

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from results import FigureData, Json, NOT_CHOSEN, TOO_WRONG, is_number
+from results import FigureData, Json, NOT_CHOSEN, TOO_WRONG, adaptive, is_number
 
 SUBJECTS = {
     ("chain", "strain"): "Figure 4a - chain: cost over permissible strain",
@@ -76,6 +76,8 @@ def _common_parameters(points: list[Json]) -> list[str]:
 def _method_sentence(figure: FigureData, document: Json) -> str:
     suite = _suite(document)
     text = "Each solver at its own best time step (panel of best steps); "
+    if adaptive(figure.points):
+        text = "Adaptive steps: from the coarsest one on, halved where the solver refuses it (panel of mean steps); "
     if figure.max_error is not None:
         text = (f"Each solver at its fastest time step whose trajectory error is at most {percent(figure.max_error)} of the "
                 "scene's size; ")

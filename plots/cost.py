@@ -6,12 +6,13 @@ from matplotlib.figure import Figure
 
 import caption
 import panels
-from results import FigureData, Json
+from results import FigureData, Json, adaptive
 from sheet import (BETWEEN, GAP, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, RIGHT, ROW_HEIGHT, STEPS_HEIGHT, TIME_LABEL,
                    Sheet, add_legend, add_strip, grid, make_sheet)
 from style import SolverStyle, styles_for
 
 STEP_LABEL = "best time step (s)"
+ADAPTIVE_LABEL = "mean time step (s)"
 
 
 def draw(data: FigureData, document: Json) -> Figure:
@@ -33,7 +34,7 @@ def _draw_strain(data: FigureData, document: Json, styles: dict[str, SolverStyle
     main.set_ylabel(TIME_LABEL)
     main.tick_params(axis="x", which="both", labelbottom=False)
     panels.draw_steps(steps, data, styles, x_factor=100)
-    steps.set_ylabel(STEP_LABEL)
+    steps.set_ylabel(ADAPTIVE_LABEL if adaptive(figure.points) else STEP_LABEL)
     steps.set_xlabel("permissible strain (%)")
     for axes in (main, steps):
         grid(axes)
@@ -67,7 +68,7 @@ def _draw_resolution(data: FigureData, document: Json, styles: dict[str, SolverS
     right.tick_params(axis="x", which="both", labelbottom=False)
     panels.draw_steps(steps, data, styles)
     steps.set_xlabel("vertices (log axes; dotted: slopes 1 and 2)")
-    steps.set_ylabel(STEP_LABEL)
+    steps.set_ylabel(ADAPTIVE_LABEL if adaptive(figure.points) else STEP_LABEL)
     for axes in (left, right, steps):
         grid(axes)
     off_scale = any(mark.text.startswith(panels.ARROW) for marks in rows_linear.values() for mark in marks)

@@ -157,13 +157,18 @@ def figures_in(document: Json) -> list[FigureData]:
     for scene, sweep, fixed in order:
         points = groups[scene, sweep, fixed]
         alone = sum(key[:2] == (scene, sweep) for key in order) == 1
-        name = _file_part(scene, sweep, fixed, alone)
+        name = _file_part(scene, sweep, fixed, alone) + ("-adaptive" if adaptive(points) else "")
         axis = "strain_limit" if sweep == "strain" else "vertices"
         figures.append(FigureData(scene, sweep, fixed, points, _curves(points, axis, None), name))
         if max_error is not None:
             curves = _curves(points, axis, max_error)
             figures.append(FigureData(scene, sweep, fixed, points, curves, f"{name}-equal-error", max_error))
     return figures
+
+
+def adaptive(points: list[Json]) -> bool:
+    """Whether a step controller chose the steps."""
+    return any(point.get("adaptive") is True for point in points)
 
 
 def error_limit_of(document: Json) -> float | None:
@@ -259,8 +264,16 @@ def _as_best(x: float, point: Json) -> Best:
     timing = point["seconds_per_simulated_second"]
     median = float(timing["median"])
     q1, q3 = (float(timing[key]) if is_number(timing.get(key)) else median for key in ("q1", "q3"))
+    return Best(x, median, min(q1, median), max(q3, median), _step_of(point))
+
+
+def _step_of(point: Json) -> float | None:
+    """Adaptive runs: the mean of the accepted steps."""
+    steps = point["work"].get("steps") if isinstance(point.get("work"), dict) else None
+    if point.get("adaptive") is True and is_number(steps) and steps > 0 and is_number(point.get("duration")):
+        return float(point["duration"]) / float(steps)
     step = point.get("step")
-    return Best(x, median, min(q1, median), max(q3, median), float(step) if is_number(step) and step > 0 else None)
+    return float(step) if is_number(step) and step > 0 else None
 
 
 def failure_letters(runs: list[Json], max_error: float | None = None) -> str:
