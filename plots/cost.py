@@ -34,7 +34,7 @@ def _draw_strain(data: FigureData, document: Json, styles: dict[str, SolverStyle
     main.set_ylabel(TIME_LABEL)
     main.tick_params(axis="x", which="both", labelbottom=False)
     panels.draw_steps(steps, data, styles, x_factor=100)
-    steps.set_ylabel(ADAPTIVE_LABEL if adaptive(figure.points) else STEP_LABEL)
+    steps.set_ylabel(ADAPTIVE_LABEL if adaptive(data.points) else STEP_LABEL)
     steps.set_xlabel("permissible strain (%)")
     for axes in (main, steps):
         grid(axes)
@@ -68,7 +68,7 @@ def _draw_resolution(data: FigureData, document: Json, styles: dict[str, SolverS
     right.tick_params(axis="x", which="both", labelbottom=False)
     panels.draw_steps(steps, data, styles)
     steps.set_xlabel("vertices (log axes; dotted: slopes 1 and 2)")
-    steps.set_ylabel(ADAPTIVE_LABEL if adaptive(figure.points) else STEP_LABEL)
+    steps.set_ylabel(ADAPTIVE_LABEL if adaptive(data.points) else STEP_LABEL)
     for axes in (left, right, steps):
         grid(axes)
     off_scale = any(mark.text.startswith(panels.ARROW) for marks in rows_linear.values() for mark in marks)
