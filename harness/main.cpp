@@ -14,19 +14,26 @@
 #include "context.h"
 #include "report.h"
 #include "result_file.h"
+#include "stability.h"
 #include "sweep.h"
 #include "usage_error.h"
 
 namespace harness {
 namespace {
 
-enum ExitCode { success = 0, internal_error = 1, usage_error = 2, interrupted_exit = 130 };
+enum ExitCode {
+  success = 0,
+  internal_error = 1,
+  usage_error = 2,
+  unexpected_outcome = 4,
+  interrupted_exit = 130
+};
 
 volatile std::sig_atomic_t interrupt_requested = 0;
 
 struct Options {
-  std::string sweep, scene, solver, filter, exclude, config, out, profile = "default",
-                                                                  step = "search";
+  std::string sweep, scene, solver, hard_case, filter, exclude, config, out, profile = "default",
+                                                                             step = "search";
   int reps = 0;
   double timeout = 0, max_error = 0;
   std::int64_t seed = -1;
@@ -77,9 +84,11 @@ Suite load_suite(const Options& options) {
   if (!options.solver.empty()) check_solver_pattern(options.solver);
   const std::string path = suite_path(options);
   Suite suite = read_suite(path);
-  const std::vector<std::string> kinds = sweep_kinds();
-  if (std::find(kinds.begin(), kinds.end(), options.sweep) == kinds.end())
+  std::vector<std::string> kinds = sweep_kinds();
+  if (std::find(kinds.begin(), kinds.end(), options.sweep) == kinds.end()) {
+    kinds.emplace_back("stability");
     throw unknown_name("sweep", options.sweep, kinds);
+  }
   std::erase_if(suite.sweeps, [&](const SweepSpec& s) {
     return s.sweep != options.sweep || (!options.scene.empty() && s.scene != options.scene);
   });
@@ -278,6 +287,52 @@ int sweep(const Options& options, const std::vector<std::string>& command) {
   return success;
 }
 
+// The matrix of hard cases; its cases are in the program, not in a suite.
+int stability(const Options& options, const std::vector<std::string>& command) {
+  const auto known = profiles();
+  if (std::find(known.begin(), known.end(), options.profile) == known.end())
+    throw unknown_name("profile", options.profile, known);
+  StabilityFilters filters;
+  if (!options.solver.empty()) {
+    check_solver_pattern(options.solver);
+    filters.solver = pattern("--solver", options.solver);
+  }
+  if (!options.hard_case.empty()) filters.hard_case = pattern("--case", options.hard_case);
+  const Extent extent = options.profile == "quick"   ? Extent::quick
+                        : options.profile == "paper" ? Extent::full
+                                                     : Extent::standard;
+  const auto cases = hard_cases(extent);
+  const std::string out = options.out.empty()
+                              ? source_path("results/local/" + options.profile + "-stability.json")
+                              : options.out;
+  check_writable(out);
+  const nlohmann::json context = machine_context();
+  std::signal(SIGINT, [](int) { interrupt_requested = 1; });
+  std::signal(SIGTERM, [](int) { interrupt_requested = 1; });
+  StabilityEvents events;
+  events.interrupted = [] { return interrupt_requested != 0; };
+  const bool terminal = isatty(STDERR_FILENO) == 1;
+  events.cell = [terminal](const StabilityCell& cell, std::size_t done, std::size_t all) {
+    if (terminal) {
+      std::cerr << "\r\033[K[" << done << '/' << all << "] " << cell.hard_case->name << '/'
+                << cell.solver << (done == all ? "\n" : "");
+    } else if (done % 100 == 0 || done == all) {
+      std::cerr << '[' << done << '/' << all << "]\n";
+    }
+  };
+  events.largest_step = [](const LargestStep& found) {
+    std::cerr << "largest step, " << found.scene << '/' << found.solver << '\n';
+  };
+  const std::uint64_t seed = options.seed < 0 ? 1 : static_cast<std::uint64_t>(options.seed);
+  const StabilityOutcome outcome = run_stability(cases, filters, seed, events);
+  write_atomically(out, stability_document(context, outcome, seed, command).dump(1) + "\n");
+  print_stability(std::cout, outcome);
+  std::cout << "\nwritten:\n" << out << std::endl;
+  if (!outcome.complete) return interrupted_exit;
+  if (!options.no_plots && draw({out}) != 0) std::cerr << "bench: the figure could not be drawn\n";
+  return outcome.as_expected() ? success : unexpected_outcome;
+}
+
 void list(const std::string& what) {
   const auto heading = [&](const char* name) {
     if (what.empty()) std::cout << (name == std::string("solvers") ? "" : "\n") << name << '\n';
@@ -301,6 +356,10 @@ void list(const std::string& what) {
                   << parameter.meaning << ")\n";
       }
     }
+  }
+  if (what == "cases") {
+    for (const HardCase& c : hard_cases(Extent::full))
+      std::cout << "  " << c.name << " (" << c.row << "): " << c.what << '\n';
   }
   if (heading("suites")) {
     for (const std::string& name : profiles()) {
@@ -332,6 +391,7 @@ int run(int argc, char** argv) {
       "  bench plot RESULT.json                   draws the figures of a result file again\n"
       "  bench --sweep step --scene chain         time against error, and a table of time to reach "
       "an error\n"
+      "  bench --sweep stability                  hard cases: which solver breaks where\n"
       "  bench reference                          the trajectories that errors are measured "
       "against\n"
       "  bench claims RESULT.json ...             the paper's claims, decided by measurements\n"
@@ -340,7 +400,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", std::string("bench ") + version());
   Options options;
   const auto sweep_options = [&options](CLI::App& to) {
-    to.add_option("--sweep", options.sweep, "axis: strain (limit), resolution or step")
+    to.add_option("--sweep", options.sweep, "axis: strain (limit), resolution, step or stability")
         ->type_name("AXIS");
     to.add_option("--scene", options.scene, "chain or drape; both if left out")->type_name("NAME");
     to.add_option("--solver", options.solver, "only solvers whose name matches, e.g. 'shake|icd'")
@@ -375,6 +435,9 @@ int run(int argc, char** argv) {
   app.add_option("--seed", options.seed, "of random orders")
       ->check(CLI::NonNegativeNumber)
       ->type_name("N");
+  app.add_option("--case", options.hard_case,
+                 "stability: only cases in whose name this is found, e.g. 'Q[12]'")
+      ->type_name("REGEX");
   app.add_flag("--dry-run", options.dry_run, "say what would run and how long, and stop");
   app.add_flag("--no-plots", options.no_plots, "no figures at the end");
 
@@ -403,8 +466,11 @@ int run(int argc, char** argv) {
   claim_report->add_flag("--markdown", markdown, "a table for the README");
   std::string listed;
   CLI::App* lists = app.add_subcommand(
-      "list", "show what there is: solvers, scenes, suites or points (points: with --sweep)");
-  lists->add_option("what", listed, "solvers, scenes, suites or points; all but points if left out")
+      "list",
+      "show what there is: solvers, scenes, suites, cases or points (points: with --sweep)");
+  lists
+      ->add_option("what", listed,
+                   "solvers, scenes, suites, cases or points; the first three if left out")
       ->type_name("WHAT");
   sweep_options(*lists);
 
@@ -425,20 +491,24 @@ int run(int argc, char** argv) {
   if (*lists) {
     if (listed == "points") {
       list_points(options);
-    } else if (listed.empty() || listed == "solvers" || listed == "scenes" || listed == "suites") {
+    } else if (listed.empty() || listed == "solvers" || listed == "scenes" || listed == "suites" ||
+               listed == "cases") {
       list(listed);
     } else {
-      throw unknown_name("list", listed, {"solvers", "scenes", "suites", "points"});
+      throw unknown_name("list", listed, {"solvers", "scenes", "suites", "cases", "points"});
     }
     return success;
   }
   if (options.sweep.empty()) {
     std::cerr
-        << "bench: nothing to do: give --sweep strain, resolution or step (see bench --help)\n";
+        << "bench: nothing to do: give --sweep strain, resolution, step or stability (see bench "
+           "--help)\n";
     return usage_error;
   }
   std::vector<std::string> command{"bench"};
   for (int i = 1; i < argc; ++i) command.emplace_back(argv[i]);
+  if (options.sweep == "stability") return stability(options, command);
+  if (!options.hard_case.empty()) throw UsageError("--case goes with --sweep stability");
   return sweep(options, command);
 }
 

@@ -27,24 +27,6 @@ json seconds_json(const std::vector<double>& samples) {
           {"samples", samples}};
 }
 
-json work_json(const PointResult& point) {
-  const auto& w = point.work;
-  return {{"steps", w.steps},
-          {"rejected_steps", w.rejected_steps},
-          {"iterations", w.iterations},
-          {"assemblies", w.assemblies},
-          {"factorizations", w.factorizations},
-          {"back_solves", w.back_solves},
-          {"edge_projections", w.edge_projections},
-          {"line_search_steps", w.line_search_steps},
-          {"spring_evaluations", w.spring_evaluations},
-          {"triangle_tests", w.triangle_tests},
-          {"contacts", w.contacts},
-          {"factor_nonzeros", w.factor_nonzeros},
-          {"factor_flops", w.factor_flops},
-          {"calibration_runs", point.calibration_runs}};
-}
-
 // series: with the residual over time; one sweep that holds it is enough.
 json error_json(const Verdict& v, bool series) {
   json residuals = json::array();
@@ -87,11 +69,29 @@ void add_benchmarks(json& list, const PointResult& point, int family) {
 
 }  // namespace
 
+json to_json(const inextensible::WorkCounters& w) {
+  return {{"steps", w.steps},
+          {"rejected_steps", w.rejected_steps},
+          {"iterations", w.iterations},
+          {"assemblies", w.assemblies},
+          {"factorizations", w.factorizations},
+          {"back_solves", w.back_solves},
+          {"edge_projections", w.edge_projections},
+          {"line_search_steps", w.line_search_steps},
+          {"spring_evaluations", w.spring_evaluations},
+          {"triangle_tests", w.triangle_tests},
+          {"contacts", w.contacts},
+          {"factor_nonzeros", w.factor_nonzeros},
+          {"factor_flops", w.factor_flops}};
+}
+
 json to_json(const PointResult& point) {
   const PointSpec& spec = point.spec;
   const Verdict& v = point.verdict;
   json options = to_json(spec.settings);
   if (point.stiffness) options["stiffness"] = *point.stiffness;
+  json work = to_json(point.work);
+  work["calibration_runs"] = point.calibration_runs;
   if (!point.linear_solver.empty()) options["linear_solver"] = point.linear_solver;
   return {{"id", spec.id()},
           {"sweep", spec.sweep},
@@ -124,7 +124,7 @@ json to_json(const PointResult& point) {
           {"max_strain_after_collision", number(v.max_strain_after_collision)},
           {"kinetic_energy_mean", number(v.kinetic_energy_mean)},
           {"error", error_json(v, spec.sweep == "step")},
-          {"work", work_json(point)},
+          {"work", work},
           {"peak_rss_bytes", point.peak_rss_bytes},
           {"best", point.best},
           {"best_at_error", point.best_at_error}};

@@ -10,6 +10,7 @@
 
 namespace harness {
 
+nlohmann::json to_json(const inextensible::WorkCounters& work);
 nlohmann::json to_json(const PointResult& point);
 // context: machine_context() as it was before the sweep ran. references:
 // ReferenceShelf::summaries().

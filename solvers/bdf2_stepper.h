@@ -22,6 +22,7 @@ class Bdf2Stepper final : public Stepper {
  public:
   Bdf2Stepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter);
   const char* linear_solver() const override { return filter_->linear_solver(); }
+  double reciprocal_condition() const override { return filter_->reciprocal_condition(); }
 
   // How often the whole history was made anew: first step, foreign state, step grown more than
   // twofold.

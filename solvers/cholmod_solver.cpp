@@ -92,6 +92,10 @@ void CholmodSolver::solve(double* rhs) {
   std::copy(x, x + pattern_.n, rhs);
 }
 
+double CholmodSolver::reciprocal_condition() const {
+  return cholmod_rcond(library_->factor, &library_->common);
+}
+
 double CholmodSolver::factor_nonzeros() const { return library_->common.lnz; }
 double CholmodSolver::factor_flops() const { return library_->common.fl; }
 

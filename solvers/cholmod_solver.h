@@ -15,6 +15,7 @@ class CholmodSolver final : public SpdSolver {
   double* values() override { return values_.data(); }
   bool factor() override;
   void solve(double* rhs) override;
+  double reciprocal_condition() const override;
   double factor_nonzeros() const override;
   double factor_flops() const override;
 

@@ -21,6 +21,7 @@ class ConstraintSystem {
 
   const EdgeConstraints& edges() const { return *edges_; }
   const SchurComplement& schur() const { return *schur_; }
+  double reciprocal_condition() const { return solver_->reciprocal_condition(); }
   const std::string& solver_name() const { return solver_name_; }
 
   // Assembles J W J^T at gradients u, its diagonal times 1 + damping, and factors it; false: not

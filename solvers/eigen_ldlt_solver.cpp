@@ -56,6 +56,11 @@ void EigenLdltSolver::solve(double* rhs) {
   }
 }
 
+double EigenLdltSolver::reciprocal_condition() const {
+  const auto pivots = ldlt_.d().array().abs();
+  return pivots.minCoeff() / pivots.maxCoeff();
+}
+
 double EigenLdltSolver::factor_nonzeros() const {
   const auto& l = ldlt_.matrixL().nestedExpression();
   return static_cast<double>(l.nonZeros() + l.outerSize());

@@ -18,6 +18,7 @@ class EigenLdltSolver final : public SpdSolver {
   void solve(double* rhs) override;
   // Of the last factorization: the matrix's negative eigenvalues (Sylvester's law of inertia).
   int negative_pivots() const { return negative_pivots_; }
+  double reciprocal_condition() const override;
   double factor_nonzeros() const override;
   double factor_flops() const override { return flops_; }
 

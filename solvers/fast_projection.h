@@ -19,6 +19,7 @@ class FastProjection final : public VelocityFilter {
   FastProjection(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
+  double reciprocal_condition() const override { return system_.reciprocal_condition(); }
 
  private:
   StepResult damped(int j, Positions& x, WorkCounters& work);

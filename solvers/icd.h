@@ -21,6 +21,7 @@ class Icd final : public VelocityFilter {
   Icd(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
   const char* linear_solver() const override { return linear_solver_.c_str(); }
+  double reciprocal_condition() const override { return kkt_.reciprocal_condition(); }
 
  private:
   void evaluate(const Positions& dx);

@@ -27,6 +27,7 @@ class ImplicitSprings final : public Stepper {
   };
   ImplicitSprings(std::shared_ptr<const Problem> problem, const Settings& settings);
   const char* linear_solver() const override { return linear_solver_.c_str(); }
+  double reciprocal_condition() const override { return solver_->reciprocal_condition(); }
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override;

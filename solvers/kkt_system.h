@@ -40,6 +40,11 @@ class KktSystem {
   bool solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
              WorkCounters& work);
 
+  // Of the last factorization, from its pivots.
+  double reciprocal_condition() const {
+    return using_umfpack_ ? lu_->reciprocal_condition() : ldlt_->reciprocal_condition();
+  }
+
   double mean_mass() const { return mean_mass_; }
 
  private:

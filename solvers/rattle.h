@@ -14,6 +14,7 @@ class Rattle final : public Stepper {
  public:
   Rattle(std::shared_ptr<const Problem> problem, const Shake::Settings& settings);
   const char* linear_solver() const override { return shake_.linear_solver(); }
+  double reciprocal_condition() const override { return shake_.reciprocal_condition(); }
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override;

@@ -24,6 +24,7 @@ class Shake final : public VelocityFilter {
   StepResult project_velocity(const Positions& x, Positions& v, WorkCounters& work);
 
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
+  double reciprocal_condition() const override { return system_.reciprocal_condition(); }
 
  private:
   // J(x_start) W J(x_start)^T, unless it is there already. False if it is not positive definite.

@@ -35,6 +35,8 @@ class SpdSolver {
   virtual bool factor() = 0;     // false: not positive definite (or not finite)
   virtual void solve(
       double* rhs) = 0;  // n numbers, overwritten by the solution; after a successful factor()
+  // An estimate, of the last successful factorization: smallest over largest pivot of L D L^T.
+  virtual double reciprocal_condition() const = 0;
   virtual double factor_nonzeros() const = 0;
   virtual double factor_flops() const = 0;  // of one factorization
 };

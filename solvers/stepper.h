@@ -57,6 +57,9 @@ class Stepper {
   const PhaseSeconds& phases() const { return phases_; }
   // The linear solver in use, "" for methods without one.
   virtual const char* linear_solver() const { return ""; }
+  // Of the last linear system that was factored, an estimate from its pivots; 1 for methods without
+  // one. Meaningful after a step that counted a factorization and did not end `singular`.
+  virtual double reciprocal_condition() const { return 1; }
 
  protected:
   // Writes the inextensible positions at the end of the step to x; adds to work_ and phases_.
@@ -92,6 +95,7 @@ class VelocityFilter {
                            WorkCounters& work) = 0;
 
   virtual const char* linear_solver() const { return ""; }
+  virtual double reciprocal_condition() const { return 1; }  // as the stepper's
 };
 
 // v* = v - h W grad V(x), x0 = x + h v*, filter: the pipeline of the paper's section 4.4 with V
@@ -100,6 +104,7 @@ class FilterStepper final : public Stepper {
  public:
   FilterStepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter);
   const char* linear_solver() const override { return filter_->linear_solver(); }
+  double reciprocal_condition() const override { return filter_->reciprocal_condition(); }
   VelocityFilter& filter() { return *filter_; }
 
  private:

@@ -1,5 +1,6 @@
 #include "tridiagonal_solver.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace inextensible {
@@ -29,6 +30,11 @@ bool TridiagonalSolver::factor() {
     inverse_d_[i] = 1 / d;
   }
   return true;
+}
+
+double TridiagonalSolver::reciprocal_condition() const {
+  const auto [low, high] = std::minmax_element(inverse_d_.begin(), inverse_d_.end());
+  return *low / *high;
 }
 
 void TridiagonalSolver::solve(double* rhs) {

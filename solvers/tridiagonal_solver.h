@@ -13,6 +13,7 @@ class TridiagonalSolver final : public SpdSolver {
   double* values() override { return values_.data(); }
   bool factor() override;
   void solve(double* rhs) override;
+  double reciprocal_condition() const override;
   double factor_nonzeros() const override { return 2.0 * n_ - 1; }
   double factor_flops() const override { return 3.0 * n_; }
 

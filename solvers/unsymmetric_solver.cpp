@@ -2,6 +2,7 @@
 
 #include <umfpack.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -63,6 +64,7 @@ class UmfpackSolver final : public UnsymmetricSolver {
     std::copy(solution_.begin(), solution_.end(), rhs);
   }
 
+  double reciprocal_condition() const override { return info_[UMFPACK_RCOND]; }
   double factor_nonzeros() const override { return info_[UMFPACK_LNZ] + info_[UMFPACK_UNZ]; }
   double factor_flops() const override { return info_[UMFPACK_FLOPS]; }
 
@@ -114,6 +116,10 @@ class TridiagonalLuSolver final : public UnsymmetricSolver {
             pivot_.data(), rhs, &n_, &info);
   }
 
+  double reciprocal_condition() const override {
+    const auto pivots = Eigen::Map<const Eigen::ArrayXd>(diagonal_.data(), n_).abs();
+    return pivots.minCoeff() / pivots.maxCoeff();
+  }
   double factor_nonzeros() const override { return 5.0 * n_; }
   double factor_flops() const override { return 8.0 * n_; }
 

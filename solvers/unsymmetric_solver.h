@@ -17,7 +17,8 @@ class UnsymmetricSolver {
   virtual double* values() = 0;         // in compressed-column order
   virtual bool factor() = 0;            // false: singular to working precision, or not finite
   virtual void solve(double* rhs) = 0;  // overwritten by the solution; after a successful factor()
-  virtual double factor_nonzeros() const = 0;  // of L + U
+  virtual double reciprocal_condition() const = 0;  // an estimate from the pivots
+  virtual double factor_nonzeros() const = 0;       // of L + U
   virtual double factor_flops() const = 0;
 };
 
