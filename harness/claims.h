@@ -16,8 +16,8 @@ struct ClaimVerdict {
   std::vector<std::string> points;  // ids behind it
 };
 
-// results: documents of schema inextensible-bench/1; their points are taken together. Points of one
-// id must come from one document (the first that has it counts).
+// results: documents of schema inextensible-bench/1 and inextensible-stability/1; their points are
+// taken together. Points of one id must come from one document (the first that has it counts).
 std::vector<ClaimVerdict> judge_claims(const std::vector<nlohmann::json>& results);
 
 void print_claims(std::ostream& out, const std::vector<ClaimVerdict>& claims);

@@ -226,9 +226,11 @@ nlohmann::json read_result(const std::string& path) {
   if (!file) throw UsageError("cannot read the result file '" + path + "'");
   try {
     nlohmann::json document = nlohmann::json::parse(file);
-    if (!document.is_object() || document.value("schema", "") != "inextensible-bench/1")
+    const std::string schema = document.is_object() ? document.value("schema", "") : "";
+    if (schema != "inextensible-bench/1" && schema != "inextensible-stability/1")
       throw UsageError("'" + path +
-                       "' is not a result file: its schema is not \"inextensible-bench/1\"");
+                       "' is not a result file: its schema is neither \"inextensible-bench/1\" nor "
+                       "\"inextensible-stability/1\"");
     return document;
   } catch (const nlohmann::json::exception& error) {
     throw UsageError("'" + path + "' is not a result file: " + error.what());

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Draws the figures of a result file: cost over permissible strain and over resolution, each solver at its best step, and
-for step sweeps time against error, error over step, and the residual of fast projection.
+for step sweeps time against error, error over step, and the residual of fast projection; for a stability sweep the matrix
+of hard cases.
 
     plots/figures.py results/figure4.json [--out DIR] [--format svg,png]
 
 writes <stem>-figure4a.svg and so on, and prints each path it wrote. Needs Debian's python3-matplotlib and nothing else.
-results.py reads and sorts the points; cost.py and precision.py draw the two families of figures, on sheets (sheet.py) of
+results.py reads and sorts the points; cost.py, precision.py and matrix.py draw, the first two on sheets (sheet.py) of
 panels (panels.py); looks are set in style.py; caption.py has the words.
 """
 
@@ -26,8 +27,9 @@ except ImportError:
     sys.exit(2)
 
 import cost
+import matrix
 import precision
-from results import Json, ResultError, figures_in, load, runs_in
+from results import STABILITY_SCHEMA, Json, ResultError, figures_in, load, runs_in
 from sheet import save
 from style import RC
 
@@ -36,6 +38,8 @@ FORMATS = ("svg", "png")
 
 def all_figures(document: Json) -> list[tuple[str, Callable[[], Figure]]]:
     """Names of the figures that the document has points for, and what draws them."""
+    if document["schema"] == STABILITY_SCHEMA:
+        return [("matrix", lambda: matrix.draw(document))]
     figures = [(data.name, lambda data=data: cost.draw(data, document)) for data in figures_in(document)]
     for data in runs_in(document):
         figures += [(name, lambda data=data, draw=draw: draw(data, document)) for name, draw in precision.figures_of(data)]

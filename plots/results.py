@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 SCHEMA = "inextensible-bench/1"
+STABILITY_SCHEMA = "inextensible-stability/1"
 COST_SWEEPS = ("strain", "resolution")
 SWEEPS = (*COST_SWEEPS, "step")
 NUMBERS_OF_THE_PAPER = {"chain": "4", "drape": "5"}
@@ -102,6 +103,9 @@ def load(path: Path) -> Json:
         document = json.loads(text, parse_constant=_refuse_constant)
     except (ValueError, RecursionError) as error:
         raise ResultError(f"{path} is not valid JSON: {error}") from error
+    if isinstance(document, dict) and document.get("schema") == STABILITY_SCHEMA:
+        _check_stability(document, path)
+        return document
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
         found = document.get("schema") if isinstance(document, dict) else None
         raise ResultError(f"{path} is not a result file: schema is {json.dumps(found)}, expected \"{SCHEMA}\"")
@@ -114,6 +118,16 @@ def load(path: Path) -> Json:
         if point.get("sweep") in SWEEPS:
             _check(point, f"{path}: points[{number}]")
     return document
+
+
+def _check_stability(document: Json, path: Path) -> None:
+    for name, keys in (("matrix", ("row", "case", "solver", "outcome")), ("largest_steps", ("scene", "solver"))):
+        entries = document.get(name)
+        if not isinstance(entries, list):
+            raise ResultError(f"{path} has no list of {name}")
+        for number, entry in enumerate(entries):
+            if not isinstance(entry, dict) or not all(isinstance(entry.get(key), str) for key in keys):
+                raise ResultError(f"{path}: {name}[{number}] needs the texts {', '.join(keys)}")
 
 
 def _refuse_constant(name: str) -> None:
