@@ -71,7 +71,7 @@ class Points {
   explicit Points(const std::vector<json>& results) {
     std::set<std::pair<std::string, std::string>> seen;  // id and sweep
     for (const json& result : results) {
-      if (result.at("schema") == "inextensible-stability/1") {
+      if (result.value("schema", "") == "inextensible-stability/1") {
         for (const json& cell : result.at("matrix")) matrix_.push_back(&cell);
         for (const json& mesh : result.at("degrees_of_freedom")) freedom_.push_back(&mesh);
         continue;

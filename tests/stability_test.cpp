@@ -1,0 +1,196 @@
+// The hard cases: the witness sees what it is there to see, and the outcomes that theory fixes.
+#include "stability.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "witness.h"
+
+namespace {
+
+using harness::Extent;
+using harness::HardCase;
+using harness::Outcome;
+using harness::Trial;
+using harness::TrialResult;
+using harness::Witness;
+using inextensible::State;
+
+// Two free vertices of 1 kg, 1 m apart along x, without gravity, turning about their middle.
+Trial dumbbell(bool pinned) {
+  inextensible::ProblemParts parts;
+  parts.mass = {1, 1};
+  parts.edges = {{0, 1}};
+  parts.rest_length = {1};
+  parts.gravity.setZero();
+  if (pinned) parts.pinned = {0};
+  Trial trial;
+  trial.scene.start.x.setZero(3, 2);
+  trial.scene.start.x(0, 1) = 1;
+  trial.scene.start.v.setZero(3, 2);
+  trial.scene.start.v(1, 0) = pinned ? 0 : -1;
+  trial.scene.start.v(1, 1) = 1;
+  trial.scene.problem = std::make_shared<const inextensible::Problem>(std::move(parts));
+  trial.step = 0.01;
+  return trial;
+}
+
+class WitnessTest : public testing::Test {
+ protected:
+  std::optional<Outcome> judge(const Trial& trial, const State& after, bool limit_promised = true) {
+    Witness witness(trial, limit_promised);
+    witness.before(trial.scene.start);
+    return witness.after(after.x, after, trial.step, result_);
+  }
+  TrialResult result_;
+};
+
+TEST_F(WitnessTest, AcceptsTheStateThatItStartedFrom) {
+  for (const bool pinned : {false, true}) {
+    const Trial trial = dumbbell(pinned);
+    EXPECT_EQ(judge(trial, trial.scene.start), std::nullopt) << result_.detail;
+    EXPECT_EQ(result_.max_strain, 0);
+    EXPECT_EQ(result_.energy_gain, 0);
+  }
+}
+
+TEST_F(WitnessTest, SeesAStateThatIsNotFinite) {
+  const Trial trial = dumbbell(false);
+  State state = trial.scene.start;
+  state.v(2, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(judge(trial, state), Outcome::wrong);
+}
+
+TEST_F(WitnessTest, SeesAMissedLimitOnlyWhereOneWasPromised) {
+  const Trial trial = dumbbell(false);
+  State state = trial.scene.start;
+  state.x(0, 1) += 0.0101;
+  EXPECT_EQ(judge(trial, state), Outcome::wrong);
+  EXPECT_NE(result_.detail.find("edge 0"), std::string::npos);
+  EXPECT_EQ(judge(trial, state, false), std::nullopt);
+  EXPECT_NEAR(result_.max_strain, 0.0101, 1e-12);
+}
+
+TEST_F(WitnessTest, SeesDivergence) {
+  const Trial trial = dumbbell(false);
+  State state = trial.scene.start;
+  state.x(0, 1) = 12;
+  EXPECT_EQ(judge(trial, state, false), Outcome::diverged);
+}
+
+TEST_F(WitnessTest, SeesAPinThatMovedByOneBit) {
+  const Trial trial = dumbbell(true);
+  State state = trial.scene.start;
+  state.x(1, 0) = std::numeric_limits<double>::denorm_min();
+  EXPECT_EQ(judge(trial, state), Outcome::wrong);
+  EXPECT_NE(result_.detail.find("pinned vertex 0"), std::string::npos);
+}
+
+TEST_F(WitnessTest, SeesMomentumOutOfNothing) {
+  const Trial trial = dumbbell(false);
+  State state = trial.scene.start;
+  state.v(0, 0) += 1e-6;
+  EXPECT_EQ(judge(trial, state), Outcome::wrong);
+  EXPECT_NE(result_.detail.find("momentum"), std::string::npos);
+}
+
+TEST_F(WitnessTest, SeesEnergyBeyondToleranceAndSlack) {
+  Trial trial = dumbbell(true);  // 1/2 J, which is its scale
+  State state = trial.scene.start;
+  state.v(1, 1) = std::sqrt(1.04);
+  EXPECT_EQ(judge(trial, state), std::nullopt);
+  EXPECT_NEAR(result_.energy_gain, 0.04, 1e-12);
+  state.v(1, 1) = std::sqrt(1.06);
+  EXPECT_EQ(judge(trial, state), Outcome::wrong);
+  trial.slack = 1e-3;  // M (1.5 slack / h)^2 / 2 = 0.0225 J = 0.045 of the scale
+  EXPECT_EQ(judge(trial, state), std::nullopt);
+  trial.energy_tolerance = -1;
+  state.v(1, 1) = 100;
+  EXPECT_EQ(judge(trial, state), std::nullopt);
+}
+
+const HardCase& named(const std::vector<HardCase>& cases, const std::string& name) {
+  return *std::find_if(cases.begin(), cases.end(), [&](const auto& c) { return c.name == name; });
+}
+
+TEST(HardCases, HaveUniqueNamesAndAnExpectationForEverySolver) {
+  std::set<std::string> names;
+  for (const HardCase& c : harness::hard_cases(Extent::full)) {
+    EXPECT_TRUE(names.insert(c.name).second) << c.name << " twice";
+    for (const auto& backend : inextensible::backends()) {
+      if (!backend.contestant) continue;
+      EXPECT_TRUE(std::any_of(
+          c.expectations.begin(), c.expectations.end(),
+          [&](const auto& e) { return e.solvers.empty() || e.solvers.contains(backend.name); }))
+          << c.name << ", " << backend.name;
+    }
+    for (const auto& e : c.expectations) {
+      EXPECT_FALSE(e.allowed.empty()) << c.name;
+      for (const std::string& solver : e.solvers)
+        EXPECT_NE(inextensible::find_backend(solver), nullptr) << solver;
+    }
+  }
+}
+
+// Barth et al. 1994, Goldenthal et al. 2007, Figure 2.
+TEST(HardCases, ShakeRefusesQ1AndQ4AndCurrentDirectionsDoNot) {
+  const auto cases = harness::hard_cases(Extent::quick);
+  for (const char* q : {"Q1", "Q4"}) {
+    EXPECT_EQ(harness::run_trial(named(cases, q).build, "shake", 1).fixed, Outcome::refused) << q;
+    for (const char* solver : {"fast_projection", "fast_projection_bdf2", "icd"})
+      EXPECT_EQ(harness::run_trial(named(cases, q).build, solver, 1).fixed, Outcome::survived)
+          << q << ", " << solver;
+  }
+}
+
+TEST(HardCases, ImpossibleNumbersAreRefusedAtTheDoorAndNamed) {
+  for (const HardCase& c : harness::hard_cases(Extent::quick)) {
+    if (!c.name.starts_with("door/")) continue;
+    const TrialResult result = harness::run_trial(c.build, "fast_projection", 1);
+    EXPECT_EQ(result.outcome, Outcome::refused) << c.name;
+    EXPECT_TRUE(result.detail.find("at the door: vertex ") != std::string::npos ||
+                result.detail.find("at the door: edge ") != std::string::npos)
+        << c.name << ": " << result.detail;
+  }
+}
+
+TEST(HardCases, NothingSatisfiesTheInfeasibleAndTheWorstEdgeIsNamed) {
+  const auto cases = harness::hard_cases(Extent::quick);
+  for (const char* name : {"infeasible/row", "infeasible/duplicate"}) {
+    for (const char* solver : {"fast_projection", "icd", "shake", "gauss_seidel", "jacobi"}) {
+      const TrialResult result = harness::run_trial(named(cases, name).build, solver, 1);
+      EXPECT_EQ(result.outcome, Outcome::refused) << name << ", " << solver;
+      EXPECT_NE(result.detail.find("edge "), std::string::npos) << result.detail;
+    }
+  }
+}
+
+// Quads: 3 n^2 - 2 n (n - 1). Triangles with one diagonal: 3 n^2 - 2 n (n - 1) - (n - 1)^2.
+TEST(DegreesOfFreedom, AreThoseOfAFullRankJacobian) {
+  for (const int n : {3, 8, 15}) {
+    const auto freedom = harness::degrees_of_freedom(n);
+    ASSERT_EQ(freedom.size(), 2u);
+    EXPECT_EQ(freedom[0].degrees_of_freedom, n * n + 2 * n);
+    EXPECT_EQ(freedom[1].degrees_of_freedom, 4 * n - 1);
+  }
+}
+
+TEST(Stability, AFilteredSweepRunsJudgesAndPrints) {
+  const auto cases = harness::hard_cases(Extent::quick);
+  harness::StabilityFilters filters;
+  filters.solver = std::regex("shake|fast_projection");
+  filters.hard_case = std::regex("^Q[14]$");
+  const auto outcome = harness::run_stability(cases, filters, 1, {});
+  EXPECT_EQ(outcome.cells.size(), 4u);
+  EXPECT_TRUE(outcome.complete);
+  EXPECT_TRUE(outcome.as_expected());
+  std::ostringstream text;
+  harness::print_stability(text, outcome);
+  EXPECT_NE(text.str().find("Q4"), std::string::npos);
+  EXPECT_EQ(text.str().find("not as expected:"), std::string::npos);
+}
+
+}  // namespace
