@@ -38,7 +38,8 @@ struct Trial {
   // step of h seconds, which makes kinetic energy of up to M (1.5 slack / h)^2 / 2 on top of the
   // above (1.5: the velocity of BDF2; 1 for one-step methods).
   double slack = 0;
-  double timeout = 10;  // s of wall time, looked at between steps
+  double momentum_tolerance = 1e-8;  // relative to what flows in a step
+  double timeout = 10;               // s of wall time, looked at between steps
 };
 
 struct TrialResult {

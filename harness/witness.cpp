@@ -13,8 +13,7 @@ using inextensible::Problem;
 using inextensible::State;
 
 constexpr double diverged_strain = 10;
-constexpr double diverged_distance = 1e6;    // in scene sizes
-constexpr double momentum_tolerance = 1e-8;  // of what flows in a step
+constexpr double diverged_distance = 1e6;  // in scene sizes
 
 double total_mass(const Problem& problem) {
   double sum = 0;
@@ -101,7 +100,7 @@ std::optional<Outcome> Witness::after(const Positions& filtered, const State& st
   if (free_) {
     const double defect = momentum_defect(state, h);
     raise(result.momentum_defect, defect);
-    if (!(defect <= momentum_tolerance))
+    if (!(defect <= trial_.momentum_tolerance))
       return fail(result, Outcome::wrong, "momentum is not conserved, by " + text(defect));
   }
   if (!judged_) return {};

@@ -81,7 +81,14 @@ bool CholmodSolver::factor() {
   // L D L^T goes on through negative pivots: look at them.
   const auto* start = static_cast<const int*>(c.factor->p);
   const auto* value = static_cast<const double*>(c.factor->x);
-  return std::all_of(start, start + c.factor->n, [value](int p) { return value[p] > 0; });
+  for (std::size_t i = 0; i < c.factor->n; ++i) {
+    const int diagonal = pattern_.triangle == SymmetricPattern::Triangle::upper
+                             ? pattern_.column_start[i + 1] - 1
+                             : pattern_.column_start[i];
+    if (!(value[start[i]] > lost_digits * values_[static_cast<std::size_t>(diagonal)]))
+      return false;
+  }
+  return true;
 }
 
 void CholmodSolver::solve(double* rhs) {

@@ -22,10 +22,12 @@ bool EigenLdltSolver::factor() {
   ldlt_.factorize(matrix_);
   if (ldlt_.info() != Eigen::Success) return false;
   const auto& d = ldlt_.d();
-  const auto bad = [this](double pivot) {
-    return indefinite_ ? !std::isfinite(pivot) : !(pivot > 0);
-  };
-  if (std::any_of(d.data(), d.data() + d.size(), bad)) return false;
+  const double* value = matrix_.valuePtr();
+  const int* column_end = matrix_.outerIndexPtr() + 1;  // the diagonal is a column's last entry
+  for (Eigen::Index i = 0; i < d.size(); ++i) {
+    if (indefinite_ ? !std::isfinite(d[i]) : !(d[i] > lost_digits * value[column_end[i] - 1]))
+      return false;
+  }
   negative_pivots_ = static_cast<int>((d.array() < 0).count());
   if (flops_ == 0) {  // sum of squared column counts: the pattern of L is known after the first
                       // factorization only

@@ -20,8 +20,10 @@
 namespace inextensible {
 namespace {
 
-// Iterations without a new least |C|: Newton often recovers from a rise or two.
+// Iterations without a new least |C|: Newton often recovers from a rise or two. But not from this
+// one of |C|^2, where J W J^T was singular in all but rounding, and digits are lost on the way.
 constexpr int patience = 8;
+constexpr double overshoot = 1e8;
 constexpr double inner_band = 0.6;  // of the permissible one
 constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1e8;
 
@@ -50,7 +52,8 @@ StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Pos
     } else if (j == 0) {
       return refuse(Status::not_finite, j, edges, x, "overflow");
     }
-    if (j - best_j == patience || !system_.factor(u_, work)) return damped(j, x, work);
+    if (j - best_j == patience || !(next_error < overshoot * error) || !system_.factor(u_, work))
+      return damped(j, x, work);
     system_.solve(mu_, work);  // (7)
     edges.apply(u_, mu_, x);   // (5)
   }

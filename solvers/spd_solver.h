@@ -32,7 +32,11 @@ class SpdSolver {
   SpdSolver& operator=(const SpdSolver&) = delete;
 
   virtual double* values() = 0;  // entries() numbers, in the pattern's order
-  virtual bool factor() = 0;     // false: not positive definite (or not finite)
+  // false: not positive definite to working precision (or not finite): a pivot of L D L^T is below
+  // lost_digits times the diagonal entry that it came from. (The supernodal code has no such pivots
+  // to look at and takes any positive one.)
+  virtual bool factor() = 0;
+  static constexpr double lost_digits = 1e-10;
   virtual void solve(
       double* rhs) = 0;  // n numbers, overwritten by the solution; after a successful factor()
   // An estimate, of the last successful factorization: smallest over largest pivot of L D L^T.

@@ -24,9 +24,10 @@ bool TridiagonalSolver::factor() {
   const auto n = static_cast<std::size_t>(n_);
   for (std::size_t i = 1; i < n; ++i) {
     const double e = *entry++;
+    const double a = *entry++;
     l_[i] = e * inverse_d_[i - 1];
-    d = *entry++ - l_[i] * e;
-    if (!(d > 0)) return false;  // the negation catches NaN
+    d = a - l_[i] * e;
+    if (!(d > lost_digits * a)) return false;  // the negation catches NaN
     inverse_d_[i] = 1 / d;
   }
   return true;
