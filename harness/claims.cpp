@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "fit.h"
+#include "usage_error.h"
 
 namespace harness {
 namespace {
@@ -585,7 +586,7 @@ constexpr Row rows[] = {
 
 }  // namespace
 
-std::vector<ClaimVerdict> judge_claims(const std::vector<json>& results) {
+std::vector<ClaimVerdict> judge_claims(const std::vector<json>& results) try {
   const Points points(results);
   std::vector<ClaimVerdict> claims;
   for (const Row& row : rows) {
@@ -598,6 +599,8 @@ std::vector<ClaimVerdict> judge_claims(const std::vector<json>& results) {
     claims.push_back(std::move(claim));
   }
   return claims;
+} catch (const json::exception& error) {
+  throw UsageError(std::string("a result file lacks something: ") + error.what());
 }
 
 void print_claims(std::ostream& out, const std::vector<ClaimVerdict>& claims) {

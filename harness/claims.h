@@ -18,6 +18,7 @@ struct ClaimVerdict {
 
 // results: documents of schema inextensible-bench/1 and inextensible-stability/1; their points are
 // taken together. Points of one id must come from one document (the first that has it counts).
+// Throws UsageError for documents that lack what a claim looks at.
 std::vector<ClaimVerdict> judge_claims(const std::vector<nlohmann::json>& results);
 
 void print_claims(std::ostream& out, const std::vector<ClaimVerdict>& claims);

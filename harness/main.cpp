@@ -221,31 +221,11 @@ int make_references(const Options& options, bool again, double finest) {
   return success;
 }
 
-nlohmann::json read_result(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw UsageError("cannot read the result file '" + path + "'");
-  try {
-    nlohmann::json document = nlohmann::json::parse(file);
-    const std::string schema = document.is_object() ? document.value("schema", "") : "";
-    if (schema != "inextensible-bench/1" && schema != "inextensible-stability/1")
-      throw UsageError("'" + path +
-                       "' is not a result file: its schema is neither \"inextensible-bench/1\" nor "
-                       "\"inextensible-stability/1\"");
-    return document;
-  } catch (const nlohmann::json::exception& error) {
-    throw UsageError("'" + path + "' is not a result file: " + error.what());
-  }
-}
-
 int claims(const std::vector<std::string>& files, bool markdown) {
   std::vector<nlohmann::json> results;
   results.reserve(files.size());
   for (const std::string& file : files) results.push_back(read_result(file));
-  try {
-    (markdown ? print_claims_markdown : print_claims)(std::cout, judge_claims(results));
-  } catch (const nlohmann::json::exception& error) {
-    throw UsageError(std::string("a result file lacks something: ") + error.what());
-  }
+  (markdown ? print_claims_markdown : print_claims)(std::cout, judge_claims(results));
   return success;
 }
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include "usage_error.h"
 
@@ -147,6 +149,28 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
           {"points", list},
           {"references", std::move(references)},
           {"benchmarks", benchmarks}};
+}
+
+json read_result(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf()))
+    throw UsageError("cannot read the result file '" + path + "'");
+  return parse_result(text.str(), path);
+}
+
+json parse_result(const std::string& text, const std::string& path) {
+  try {
+    json document = json::parse(text);
+    const std::string schema = document.is_object() ? document.value("schema", "") : "";
+    if (schema != "inextensible-bench/1" && schema != "inextensible-stability/1")
+      throw UsageError("'" + path +
+                       "' is not a result file: its schema is neither \"inextensible-bench/1\" nor "
+                       "\"inextensible-stability/1\"");
+    return document;
+  } catch (const json::exception& error) {
+    throw UsageError("'" + path + "' is not a result file: " + error.what());
+  }
 }
 
 void check_writable(const std::string& path) {

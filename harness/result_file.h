@@ -19,6 +19,11 @@ nlohmann::json result_document(nlohmann::json context, const Suite& suite,
                                const std::vector<PointResult>& points,
                                nlohmann::json references = nlohmann::json::array());
 
+// A document of either kind of result: of a sweep or of a stability sweep. Throws UsageError,
+// naming the file, for anything else.
+nlohmann::json read_result(const std::string& path);
+nlohmann::json parse_result(const std::string& text, const std::string& path);
+
 // Throws UsageError unless a file can be made at `path`; makes missing folders. Nothing is left
 // behind.
 void check_writable(const std::string& path);

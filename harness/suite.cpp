@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <set>
+#include <sstream>
 
 #include "usage_error.h"
 
@@ -217,11 +218,16 @@ std::vector<std::string> sweep_kinds() { return {"strain", "resolution", "step"}
 
 Suite read_suite(const std::string& path) {
   std::ifstream file(path);
-  if (!file) throw UsageError("cannot read the suite '" + path + "'");
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) throw UsageError("cannot read the suite '" + path + "'");
+  return parse_suite(text.str(), path);
+}
+
+Suite parse_suite(const std::string& text, const std::string& path) {
   json document;
   try {
-    document = json::parse(file, nullptr, true, /*ignore_comments=*/true);
-  } catch (const json::parse_error& error) {
+    document = json::parse(text, nullptr, true, /*ignore_comments=*/true);
+  } catch (const json::exception& error) {
     throw UsageError("'" + path + "' is not JSON: " + error.what());
   }
   Reader reader(document, "suite '" + path + "'");

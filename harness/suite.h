@@ -35,6 +35,8 @@ std::vector<std::string> sweep_kinds();
 
 // Throws UsageError, naming file, key and value, for anything that is not a suite.
 Suite read_suite(const std::string& path);
+// The same of a text; `path` is for messages.
+Suite parse_suite(const std::string& text, const std::string& path);
 nlohmann::json to_json(const Suite& suite);
 
 nlohmann::json to_json(const inextensible::Settings& settings);

@@ -1,0 +1,96 @@
+// Spoiled suites and result files, by the thousand: what the fuzzer does, repeatably and in CI.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "fuzz_documents.h"
+
+namespace {
+
+using harness::testing::read_as_result;
+using harness::testing::read_as_suite;
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+// One to four spoilt places: bytes changed, cut out, doubled or put in from a list of nuisances.
+std::string spoil(std::string text, std::mt19937_64& random) {
+  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
+  static const std::vector<std::string> nuisances{
+      "null",   "-1",  "1e999",   "0",      "\"\"",
+      "[]",     "{}",  "true",    "1e-320", "18446744073709551616",
+      "[[[[",   "}}}", "\\u0000", ",",      ":",
+      "\"\xff", "//",  "/*",      "NaN",    "2147483648"};
+  for (std::size_t i = 1 + below(4); i > 0 && !text.empty(); --i) {
+    const std::size_t at = below(text.size());
+    switch (below(5)) {
+      case 0:
+        text[at] = static_cast<char>(random());
+        break;
+      case 1:
+        text.erase(at, 1 + below(20));
+        break;
+      case 2:
+        text.insert(at, text.substr(below(text.size()), 1 + below(40)));
+        break;
+      case 3:
+        text.insert(at, nuisances[below(nuisances.size())]);
+        break;
+      default: {  // a whole value
+        const std::size_t colon = text.find(':', at);
+        if (colon == std::string::npos) break;
+        const std::size_t end = text.find_first_of(",}\n", colon);
+        if (end == std::string::npos) break;
+        text.replace(colon + 1, end - colon - 1, nuisances[below(nuisances.size())]);
+      }
+    }
+  }
+  return text;
+}
+
+void spoil_and_read(const std::string& text, std::string (*read)(const std::string&), int cases) {
+  int refused = 0;
+  for (int seed = 1; seed <= cases; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    std::string message;
+    ASSERT_NO_THROW(message = read(spoil(text, random)));
+    EXPECT_EQ(message.find('\n'), std::string::npos) << "more than a line: " << message;
+    refused += message.empty() ? 0 : 1;
+  }
+  EXPECT_GT(refused, cases / 4) << "hardly anything was spoilt: this tests nothing";
+}
+
+TEST(Documents, SpoiltSuitesAreReadOrRefusedInALine) {
+  for (const char* name : {"quick.json", "default.json", "paper.json"}) {
+    const std::string text = text_of(std::filesystem::path(SOURCE_DIR) / "configs" / name);
+    ASSERT_EQ(read_as_suite(text), "") << name;
+    spoil_and_read(text, read_as_suite, 2000);
+  }
+}
+
+TEST(Documents, SpoiltResultsAreReadOrRefusedInALine) {
+  harness::PointResult point;
+  point.spec.scene = "chain";
+  point.spec.solver = "fast_projection";
+  point.spec.sweep = "strain";
+  point.spec.scene_parameters["duration"] = 1;
+  point.status = harness::PointStatus::ok;
+  point.samples = {0.5};
+  point.best = true;
+  std::vector<harness::PointResult> points{point, point};
+  points[1].spec.solver = "implicit_springs";
+  const std::string text =
+      harness::result_document({{"git", "x"}}, harness::Suite{}, {"bench"}, true, points).dump(1);
+  ASSERT_EQ(read_as_result(text), "");
+  spoil_and_read(text, read_as_result, 2000);
+}
+
+}  // namespace

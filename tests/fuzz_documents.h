@@ -1,0 +1,39 @@
+// Whatever a user's file holds: a suite, a result, or UsageError with one line; nothing else gets
+// out.
+#pragma once
+
+#include <string>
+
+#include "claims.h"
+#include "result_file.h"
+#include "suite.h"
+#include "sweep.h"
+#include "usage_error.h"
+
+namespace harness::testing {
+
+// The message of the refusal, "" if the text was taken as a suite or a result.
+inline std::string read_as_suite(const std::string& text) {
+  try {
+    const Suite suite = parse_suite(text, "fuzz");
+    (void)to_json(suite).dump();
+    std::size_t points = 0;  // planning is cheap, unless the suite asks for billions of points
+    for (const SweepSpec& s : suite.sweeps)
+      points += s.limits.size() * s.resolutions.size() * s.solvers.size();
+    if (points < 10000) (void)plan(suite, {});
+    return "";
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+}
+
+inline std::string read_as_result(const std::string& text) {
+  try {
+    (void)judge_claims({parse_result(text, "fuzz")});
+    return "";
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+}
+
+}  // namespace harness::testing
