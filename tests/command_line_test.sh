@@ -28,6 +28,10 @@ refused "did you mean 'quick'" --sweep strain --profile quik --out out.json
 refused "no point is left" "${sweep[@]}" --filter nothing
 refused "not a regular expression" "${sweep[@]}" --filter '('
 refused "nothing to do"
+refused "no case matches" --sweep stability --case nothing --out out.json
+refused "--case goes with" "${sweep[@]}" --case Q1
+refused "did you mean 'adaptive'" "${sweep[@]}" --step adaptiv
+refused "--step adaptive does not go with" --sweep step --profile quick --step adaptive --out out.json
 refused "--reps" "${sweep[@]}" --reps 0
 refused "--unknown" "${sweep[@]}" --unknown
 refused "cannot read the suite" --sweep strain --config missing.json --out out.json
@@ -84,6 +88,26 @@ assert fast[2 * finest]["residual_first"] > fast[finest]["residual_first"] > 0
 PYTHON
 "$BENCH_BINARY" claims steps.json --markdown >claims.txt || fail "claims"
 [[ $(grep -c '^| C' claims.txt) == 16 ]] || fail "claims has no 16 rows"
+
+# Hard cases: SHAKE refuses Q1, as theory says, so that nothing is unexpected.
+"$BENCH_BINARY" --sweep stability --case '^Q1$' --solver 'shake|^fast_projection$' --no-plots --out hard.json \
+  >hard.txt 2>/dev/null || fail "hard cases"
+/usr/bin/python3 - <<'PYTHON' || fail "the hard cases' file"
+import json
+cells = {c["solver"]: c for c in json.load(open("hard.json"))["matrix"]}
+assert cells["shake"]["at_fixed_step"] == "refused" and "edge 0" in cells["shake"]["detail"], cells["shake"]
+assert cells["fast_projection"]["outcome"] == "survived"
+PYTHON
+
+# A step controller: one point a search, its rejections counted.
+"$BENCH_BINARY" --sweep strain --profile quick --scene chain --solver '^fast_projection$' --step adaptive --reps 1 \
+  --no-plots --out adaptive.json >/dev/null 2>&1 || fail "adaptive steps"
+/usr/bin/python3 - <<'PYTHON' || fail "the file of adaptive steps"
+import json
+points = json.load(open("adaptive.json"))["points"]
+assert all(p["id"].endswith("h:adaptive") and p["status"] == "ok" for p in points), points
+assert any(p["work"]["rejected_steps"] > 0 and p["smallest_step"] < p["step"] for p in points)
+PYTHON
 
 # Ctrl-C: valid JSON, not complete, exit 130.
 "$BENCH_BINARY" --sweep strain --profile paper --scene drape --solver gauss_seidel --out interrupted.json --no-plots \

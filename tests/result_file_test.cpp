@@ -13,6 +13,7 @@
 #include <valijson/validator.hpp>
 
 #include "context.h"
+#include "stability.h"
 #include "sweep.h"
 #include "usage_error.h"
 
@@ -108,8 +109,26 @@ TEST(ResultFile, TheSchemaRefusesAWrongStatusAndAnUnknownCounter) {
 TEST(ResultFile, CommittedResultsFitTheSchema) {
   for (const auto& entry : std::filesystem::directory_iterator(source("results"))) {
     if (entry.path().extension() != ".json") continue;
-    EXPECT_EQ(misfits(read(entry.path()), "configs/result.schema.json"), "") << entry.path();
+    const json document = read(entry.path());
+    const bool stability = document.at("schema") == "inextensible-stability/1";
+    EXPECT_EQ(misfits(document,
+                      stability ? "configs/stability.schema.json" : "configs/result.schema.json"),
+              "")
+        << entry.path();
   }
+}
+
+TEST(ResultFile, OfAStabilitySweepFitsItsSchema) {
+  const auto cases = hard_cases(Extent::quick);
+  StabilityFilters filters;
+  filters.solver = std::regex("fast_projection|gauss_seidel");
+  filters.hard_case = std::regex("^Q1$|^Q4$|door|triangles|largest step taut");
+  const auto outcome = run_stability(cases, filters, 1, {});
+  EXPECT_FALSE(outcome.cells.empty());
+  EXPECT_FALSE(outcome.largest_steps.empty());
+  EXPECT_FALSE(outcome.freedom.empty());
+  const json document = stability_document(machine_context(), outcome, 1, {"bench"});
+  EXPECT_EQ(misfits(json::parse(document.dump()), "configs/stability.schema.json"), "");
 }
 
 TEST(Suites, ThatAreCommittedFitTheirSchemaAndAreAccepted) {
