@@ -85,7 +85,7 @@ bool CholmodSolver::factor() {
     const int diagonal = pattern_.triangle == SymmetricPattern::Triangle::upper
                              ? pattern_.column_start[i + 1] - 1
                              : pattern_.column_start[i];
-    if (!(value[start[i]] > lost_digits * values_[static_cast<std::size_t>(diagonal)]))
+    if (!(value[start[i]] > least_pivot_ * values_[static_cast<std::size_t>(diagonal)]))
       return false;
   }
   return true;

@@ -28,6 +28,7 @@ ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
   schur_ =
       std::make_unique<SchurComplement>(*edges_, problem.vertices(), triangle_of(solver_name_));
   solver_ = make_spd_solver(solver_name_, schur_->pattern());
+  solver_->set_least_pivot(least_pivot);
 }
 
 bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, WorkCounters& work, double damping) {

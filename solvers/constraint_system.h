@@ -21,6 +21,10 @@ class ConstraintSystem {
 
   const EdgeConstraints& edges() const { return *edges_; }
   const SchurComplement& schur() const { return *schur_; }
+  // J W J^T counts as singular where a pivot keeps less than this of its diagonal entry:
+  // multipliers would outgrow the corrections that they make, and cancel.
+  static constexpr double least_pivot = 1e-10;
+
   double reciprocal_condition() const { return solver_->reciprocal_condition(); }
   const std::string& solver_name() const { return solver_name_; }
 

@@ -25,7 +25,7 @@ bool EigenLdltSolver::factor() {
   const double* value = matrix_.valuePtr();
   const int* column_end = matrix_.outerIndexPtr() + 1;  // the diagonal is a column's last entry
   for (Eigen::Index i = 0; i < d.size(); ++i) {
-    if (indefinite_ ? !std::isfinite(d[i]) : !(d[i] > lost_digits * value[column_end[i] - 1]))
+    if (indefinite_ ? !std::isfinite(d[i]) : !(d[i] > least_pivot_ * value[column_end[i] - 1]))
       return false;
   }
   negative_pivots_ = static_cast<int>((d.array() < 0).count());

@@ -32,17 +32,22 @@ class SpdSolver {
   SpdSolver& operator=(const SpdSolver&) = delete;
 
   virtual double* values() = 0;  // entries() numbers, in the pattern's order
-  // false: not positive definite to working precision (or not finite): a pivot of L D L^T is below
-  // lost_digits times the diagonal entry that it came from. (The supernodal code has no such pivots
+  // false: not positive definite (or not finite), that is, a pivot of L D L^T is not above
+  // least_pivot times the diagonal entry that it came from. (The supernodal code has no such pivots
   // to look at and takes any positive one.)
   virtual bool factor() = 0;
-  static constexpr double lost_digits = 1e-10;
+  // 0 (the default) takes every positive pivot; 1e-10, say, refuses matrices in which ten digits
+  // are lost.
+  void set_least_pivot(double relative) { least_pivot_ = relative; }
   virtual void solve(
       double* rhs) = 0;  // n numbers, overwritten by the solution; after a successful factor()
   // An estimate, of the last successful factorization: smallest over largest pivot of L D L^T.
   virtual double reciprocal_condition() const = 0;
   virtual double factor_nonzeros() const = 0;
   virtual double factor_flops() const = 0;  // of one factorization
+
+ protected:
+  double least_pivot_ = 0;
 };
 
 // The triangle that the named solver reads.

@@ -27,7 +27,7 @@ bool TridiagonalSolver::factor() {
     const double a = *entry++;
     l_[i] = e * inverse_d_[i - 1];
     d = a - l_[i] * e;
-    if (!(d > lost_digits * a)) return false;  // the negation catches NaN
+    if (!(d > least_pivot_ * a)) return false;  // the negation catches NaN
     inverse_d_[i] = 1 / d;
   }
   return true;

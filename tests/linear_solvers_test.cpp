@@ -102,6 +102,34 @@ TEST(SpdSolver, RefusesAnIndefiniteMatrixWithAPositiveDiagonal) {
 }
 
 // SHAKE's matrix, directions at two positions; a tree that is a path has a tridiagonal one.
+// [1 1; 1 1 + p]: the second pivot is p. A solver refuses it where it keeps too little of its
+// diagonal entry, and estimates the condition by it.
+TEST(SpdSolver, RefusesPivotsThatLostTheirDigitsWhereToldTo) {
+  for (const char* name :
+       {"tridiagonal", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}) {
+    SCOPED_TRACE(name);
+    const bool upper = triangle_of(name) == SymmetricPattern::Triangle::upper;
+    const SymmetricPattern pattern{2, triangle_of(name),
+                                   upper ? std::vector<int>{0, 1, 3} : std::vector<int>{0, 2, 3},
+                                   upper ? std::vector<int>{0, 0, 1} : std::vector<int>{0, 1, 1}};
+    const auto solver = make_spd_solver(name, pattern);
+    const auto factors = [&](double p) {
+      const double values[] = {1, 1, 1 + p};
+      std::copy(values, values + 3, solver->values());
+      return solver->factor();
+    };
+    ASSERT_TRUE(factors(1e-6));
+    EXPECT_NEAR(solver->reciprocal_condition(), 1e-6, 1e-12);
+    EXPECT_TRUE(factors(1e-12));
+    EXPECT_FALSE(factors(0));
+    solver->set_least_pivot(1e-10);
+    EXPECT_TRUE(factors(1e-9));
+    if (std::string_view(name) != "cholmod_supernodal") {
+      EXPECT_FALSE(factors(1e-11));
+    }
+  }
+}
+
 TEST(UnsymmetricSolver, IsBackwardStableOnShakesMatrices) {
   for (const bool chain : {true, false}) {
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {

@@ -5,9 +5,9 @@
 
 #include <cstdlib>
 
+#include "constraint_system.h"
 #include "random_graph.h"
 #include "registry.h"
-#include "spd_solver.h"
 #include "witness.h"
 
 namespace inextensible {
@@ -51,7 +51,7 @@ Trial random_trial(Random& random) {
   // Locked graphs have multipliers that cancel; their size is bounded by the pivots that a
   // factorization accepts.
   trial.momentum_tolerance = 1e-5;
-  static_assert(1e-5 > 1e-16 / SpdSolver::lost_digits);
+  static_assert(1e-5 > 1e-16 / ConstraintSystem::least_pivot);
   return trial;
 }
 
