@@ -392,7 +392,7 @@ int run(int argc, char** argv) {
     to.add_option("--exclude", options.exclude, "without points in whose id this is found")
         ->type_name("REGEX");
     to.add_option("--profile", options.profile,
-                  "quick (< 1 min), default (< 5 min) or paper (about an hour)")
+                  "quick (< 1 min), default (about 5 min) or paper (an hour and a half)")
         ->type_name("NAME");
     to.add_option("--config", options.config, "a suite of your own instead of a profile")
         ->type_name("FILE");
