@@ -11,7 +11,6 @@
 namespace harness {
 namespace {
 
-using inextensible::Edge;
 using inextensible::Positions;
 using inextensible::Problem;
 using inextensible::ProblemParts;
