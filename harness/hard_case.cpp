@@ -141,14 +141,14 @@ void add_noise(Positions& x, const std::vector<int>& pinned, double size, std::m
 constexpr double q_step = 0.01, q_limit = 1e-6;
 // The closest point of the manifold is at most twice as far from the start as the candidate is, so
 // that a velocity filter may return up to four times the candidate's kinetic energy.
-constexpr double q_energy = 3;
+constexpr double closest_point_energy = 3;
 
 Trial one_step(Mesh mesh, const Positions& candidate) {
   mesh.parts.gravity.setZero();
   mesh.start.v = (candidate - mesh.start.x) / q_step;
   Trial trial = trial_of(std::move(mesh), q_step, 1, q_limit);
   trial.settings["implicit_springs"] = {{"stiffness", 1e6}};
-  trial.energy_tolerance = q_energy;
+  trial.energy_tolerance = closest_point_energy;
   trial.slack = std::sqrt(2 * q_limit);  // sideways, of an edge pulled taut
   return trial;
 }
@@ -413,19 +413,16 @@ void add_whip(std::vector<HardCase>& cases) {
                      return trial_of(std::move(mesh), 1e-3, 200);
                    },
                    {{everyone, either, "nothing outside acts: momentum is conserved"}}});
-  cases.push_back({row,
-                   "hit",
-                   "15 x 15 cloth, its middle vertex hit at 100 m/s",
+  cases.push_back({row, "hit", "15 x 15 cloth, its middle vertex hit at 100 m/s",
                    [] {
                      Mesh mesh = cloth(15);
                      mesh.parts.pinned.clear();
                      mesh.start.v(1, 7 * 15 + 7) = 100;
-                     return trial_of(std::move(mesh), 1e-3, 100);
+                     Trial trial = trial_of(std::move(mesh), 1e-3, 100);
+                     trial.energy_tolerance = closest_point_energy;
+                     return trial;
                    },
-                   {{start_direction,
-                     {Outcome::survived, Outcome::refused, Outcome::wrong},
-                     "a step along old directions is no closest point: nothing bounds its energy"},
-                    {everyone, slow, "large rotations in a step"}}});
+                   hard});
   cases.push_back({row, "jump", "the pin of a hanging chain jumps by 10 edge lengths in one step",
                    [] {
                      Trial trial = trial_of(chain(20, {0, -1, 0}), 1.0 / 100, 20);
@@ -487,7 +484,7 @@ void add_far_starts(std::vector<HardCase>& cases) {
       {strain_limiting, slow, ""},
       {everyone, either, "released energy may be large"}};
   const auto fast = [](Trial trial) {  // the release moves vertices by many edges a step
-    trial.energy_tolerance = q_energy;
+    trial.energy_tolerance = closest_point_energy;
     return trial;
   };
   for (const double scale : {1.5, 0.5}) {

@@ -2,19 +2,32 @@
 // replaced by J(x^n) W J(x^n)^T, symmetric and factored once a step; where that does not halve the
 // constraint error, the true matrix at the best iterate so far is built, unsymmetric, and kept
 // until it fails in turn. A step along its direction that does not lower the error is halved.
-// Loops: one assembly and factorization a step, one solve and two passes over edges an iteration.
+// The equations have spurious solutions far away; the closest point of the manifold is at most
+// twice as far from x^n (on it) as x0 is, so what is farther, slack apart, is refused. Loops: one
+// assembly and factorization a step, one solve and two passes over edges an iteration.
 #include "shake.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace inextensible {
 namespace {
 
 constexpr double shortest_step = 1e-3;  // of Newton's
 
+double longest(const std::vector<double>& lengths) {
+  return lengths.empty() ? 0 : *std::max_element(lengths.begin(), lengths.end());
+}
+
 }  // namespace
 
 Shake::Shake(const Problem& problem, const Settings& settings)
     : system_(problem, settings.strain_limit, settings.linear_solver),
-      vertices_(problem.vertices()),
+      problem_(problem),
+      slack_(settings.strain_limit * longest(problem.rest_length()) *
+             std::sqrt(std::accumulate(problem.mass().begin(), problem.mass().end(), 0.0))),
       max_iterations_(settings.max_iterations),
       min_iterations_(settings.min_iterations),
       u_start_(3, problem.constraints()),
@@ -31,11 +44,18 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, Wo
     here
   } matrix = Matrix::start;  // kept, here: the true one of an earlier, of this iterate
   double error = 0;          // |C| at best_
+  double reach = 0;          // |x^{n+1} - x^n| of an honest solution
   for (int j = 0;; ++j) {
-    if (edges.linearize(x, u_, c_) && j >= min_iterations_) return {Status::ok, j};
+    if (edges.linearize(x, u_, c_) && j >= min_iterations_) {
+      if (j > 0 && distance(x_start, x) > reach)
+        return refuse(Status::not_converged, j, edges, x, "a spurious solution, far from x^n");
+      return {Status::ok, j};
+    }
     if (j == max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
     const double next_error = c_.norm();
     if (j == 0) {
+      reach = edges.permissible(x_start) ? 2 * distance(x_start, x) + slack_
+                                         : std::numeric_limits<double>::infinity();
       if (!factor_start(x_start, work)) {
         return refuse(Status::singular, j, edges, x,
                       "J W J^T at the start of the step is not positive definite");
@@ -97,9 +117,16 @@ StepResult Shake::project_velocity(const Positions& x, Positions& v, WorkCounter
   return {};
 }
 
+double Shake::distance(const Positions& x_start, const Positions& x) const {
+  double sum = 0;
+  for (Eigen::Index v = 0; v < x.cols(); ++v)
+    sum += problem_.mass()[static_cast<std::size_t>(v)] * (x.col(v) - x_start.col(v)).squaredNorm();
+  return std::sqrt(sum);
+}
+
 bool Shake::rebuild(WorkCounters& work) {
   if (!current_) {
-    current_ = std::make_unique<UnsymmetricSchurComplement>(system_.edges(), vertices_);
+    current_ = std::make_unique<UnsymmetricSchurComplement>(system_.edges(), problem_.vertices());
     current_solver_ = make_unsymmetric_solver(current_->column_start, current_->row_index);
   }
   current_->assemble(u_, u_start_, current_solver_->values());

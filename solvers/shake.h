@@ -30,9 +30,12 @@ class Shake final : public VelocityFilter {
   // J(x_start) W J(x_start)^T, unless it is there already. False if it is not positive definite.
   bool factor_start(const Positions& x_start, WorkCounters& work);
   bool rebuild(WorkCounters& work);
+  // |x - x_start| in the norm of M.
+  double distance(const Positions& x_start, const Positions& x) const;
 
   ConstraintSystem system_;
-  int vertices_;
+  const Problem& problem_;
+  double slack_;  // M-norm of what the strain limit lets vertices drift
   int max_iterations_, min_iterations_;
   Eigen::Matrix3Xd u_start_, u_;
   Positions x_factored_;  // where the factor in system_ was built; used by RATTLE only
