@@ -43,6 +43,7 @@ class Point {
   explicit Point(const json& document) : p_(&document) {}
 
   std::string id() const { return p_->at("id"); }
+  std::string text(const char* key) const { return p_->at(key); }
   bool is(const char* key, const std::string& value) const { return p_->at(key) == value; }
   bool flag(const char* key) const { return p_->value(key, false); }
   bool ok() const { return is("status", "ok"); }
@@ -80,11 +81,16 @@ class Points {
       std::set<std::pair<std::string, std::string>> here;
       for (const json& p : result.at("points")) {
         const std::pair key(p.at("id").get<std::string>(), p.at("sweep").get<std::string>());
-        if (seen.contains(key)) continue;
+        if (seen.contains(key) || p.value("adaptive", false)) continue;
         here.insert(key);
         all_.emplace_back(p);
       }
       seen.merge(here);
+    }
+    for (const Point& p : all_) {
+      if (!p.is("sweep", "strain")) continue;
+      double& largest = largest_[p.text("scene")];
+      largest = std::max(largest, p.number("vertices"));
     }
   }
 
@@ -110,8 +116,7 @@ class Points {
     const char* axis = sweep == "strain" ? "strain_limit" : "vertices";
     std::map<double, Point> curve;
     for (const Point& p : where([&](const Point& q) {
-           return q.is("scene", scene) && q.is("sweep", sweep) && q.is("solver", solver) &&
-                  q.flag("best") && q.ok();
+           return of(q, scene, sweep) && q.is("solver", solver) && q.flag("best") && q.ok();
          }))
       curve.try_emplace(p.number(axis), p);
     return curve;
@@ -123,14 +128,20 @@ class Points {
     const char* axis = sweep == "strain" ? "strain_limit" : "vertices";
     std::set<double> seen;
     for (const Point& p : all_) {
-      if (p.is("scene", scene) && p.is("sweep", sweep) && p.is("solver", solver))
-        seen.insert(p.number(axis));
+      if (of(p, scene, sweep) && p.is("solver", solver)) seen.insert(p.number(axis));
     }
     return seen.size();
   }
 
  private:
+  // Strain sweeps of several sizes may come together: the largest counts.
+  bool of(const Point& point, const std::string& scene, const std::string& sweep) const {
+    if (!point.is("scene", scene) || !point.is("sweep", sweep)) return false;
+    return sweep != "strain" || point.number("vertices") == largest_.at(scene);
+  }
+
   std::vector<Point> all_;
+  std::map<std::string, double> largest_;  // vertices in a scene's strain sweeps
   std::vector<const json*> matrix_, freedom_;
 };
 

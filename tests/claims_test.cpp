@@ -222,6 +222,18 @@ TEST(Claims, OfTwoDocumentsTheFirstThatHasAPointCounts) {
   EXPECT_EQ(judge_claims({pair(1), pair(25)})[2].verdict, "not reproduced");
 }
 
+TEST(Claims, OfTwoSizesTheLargerCountsAndAdaptiveStepsDoNot) {
+  std::vector<json> points{point("chain", "strain", "implicit_springs", 0.01, 80, 0.01, 25),
+                           point("chain", "strain", "fast_projection", 0.01, 80, 0.01, 1),
+                           point("chain", "strain", "implicit_springs", 0.01, 20, 0.01, 1),
+                           point("chain", "strain", "fast_projection", 0.01, 20, 0.01, 1)};
+  EXPECT_EQ(verdict("C3", points).verdict, "reproduced");
+  json adaptive = point("chain", "strain", "fast_projection", 0.01, 80, 0.02, 25);
+  adaptive["adaptive"] = true;
+  points.insert(points.begin(), adaptive);
+  EXPECT_EQ(verdict("C3", points).verdict, "reproduced");
+}
+
 TEST(Claims, MarkdownHasOneRowAClaim) {
   std::ostringstream out;
   print_claims_markdown(out, judge_claims({document({})}));
