@@ -8,6 +8,8 @@
 #include <random>
 #include <sstream>
 
+#include "usage_error.h"
+
 namespace harness {
 namespace {
 
@@ -179,9 +181,7 @@ Trial two_edges(double half_span, double y, double candidate_y) {
   return one_step(std::move(mesh), candidate);
 }
 
-constexpr double distances[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
-
-void add_configurations(std::vector<HardCase>& cases) {
+void add_configurations(std::vector<HardCase>& cases, const std::vector<double>& distances) {
   cases.push_back({"Q1",
                    "Q1",
                    "an edge turns by 90 degrees and doubles its length",
@@ -244,7 +244,7 @@ void add_configurations(std::vector<HardCase>& cases) {
 
 // ---- Rows at full length between pins, and constraints that cannot be met ----
 
-void add_taut(std::vector<HardCase>& cases) {
+void add_taut(std::vector<HardCase>& cases, const std::vector<double>& limits) {
   const auto row = [](double stretch) {
     return scene_of("taut_row", {{"stretch", stretch}, {"duration", 0.5}});
   };
@@ -253,7 +253,7 @@ void add_taut(std::vector<HardCase>& cases) {
     trial.slack = std::sqrt(3 * trial.strain_limit / 8);
     return trial;
   };
-  for (const double limit : {0.01, 0.001}) {
+  for (const double limit : limits) {
     cases.push_back({"taut row",
                      "taut_row/" + plain(limit),
                      "30 links straight between pins, falling; strain limit " + plain(limit),
@@ -340,8 +340,8 @@ void add_degenerate(std::vector<HardCase>& cases) {
 
 // ---- Mass ratios ----
 
-void add_mass_ratios(std::vector<HardCase>& cases) {
-  for (const double ratio : {1e2, 1e4, 1e6, 1e8}) {
+void add_mass_ratios(std::vector<HardCase>& cases, const std::vector<double>& ratios) {
+  for (const double ratio : ratios) {
     const std::vector<Expectation> expected{
         {strain_limiting, slow, "convergence slows with the ratio"},
         {start_direction, either, ""},
@@ -436,19 +436,15 @@ void add_whip(std::vector<HardCase>& cases) {
 
 // ---- Length ----
 
-void add_lengths(std::vector<HardCase>& cases, Extent extent) {
-  std::vector<int> links{10, 100, 1000}, sides{21};
-  if (extent != Extent::quick) {
-    links.insert(links.end(), {10000, 100000});
-    sides.push_back(51);
-  }
-  if (extent == Extent::full) sides.insert(sides.end(), {101, 201});
+void add_lengths(std::vector<HardCase>& cases, const std::vector<double>& links,
+                 const std::vector<double>& sides) {
   const auto budget = [](Trial& trial) {  // edge visits that strain limiting may spend on a step
     const double sweeps = std::max(100.0, 2e8 / trial.scene.problem->constraints());
     for (const std::string& name : strain_limiting)
       trial.settings[name] = {{"max_iterations", std::min(1e5, std::floor(sweeps))}};
   };
-  for (const int n : links) {
+  for (const double value : links) {
+    const int n = static_cast<int>(value);
     cases.push_back({"long chain",
                      "chain/" + std::to_string(n),
                      "this many links, falling, h = 1/400 s",
@@ -461,7 +457,8 @@ void add_lengths(std::vector<HardCase>& cases, Extent extent) {
                       {start_direction, slow, "links turn farther in a step the shorter they are"},
                       {everyone, slow, ""}}});
   }
-  for (const int n : sides) {
+  for (const double value : sides) {
+    const int n = static_cast<int>(value);
     cases.push_back({"large cloth",
                      "cloth/" + std::to_string(n),
                      "this many vertices a side, held at one corner, h = 1/400 s",
@@ -478,7 +475,7 @@ void add_lengths(std::vector<HardCase>& cases, Extent extent) {
 
 // ---- Far from the manifold ----
 
-void add_far_starts(std::vector<HardCase>& cases) {
+void add_far_starts(std::vector<HardCase>& cases, const std::vector<double>& scales) {
   const std::vector<Expectation> expected{
       {start_direction, either, "no solution along old directions"},
       {strain_limiting, slow, ""},
@@ -487,7 +484,7 @@ void add_far_starts(std::vector<HardCase>& cases) {
     trial.energy_tolerance = closest_point_energy;
     return trial;
   };
-  for (const double scale : {1.5, 0.5}) {
+  for (const double scale : scales) {
     cases.push_back({"far start", "scaled/" + plain(scale), "a chain of 20 scaled by this",
                      [scale, fast] {
                        Mesh mesh = chain(20);
@@ -561,15 +558,44 @@ void add_impossible_numbers(std::vector<HardCase>& cases) {
 
 }  // namespace
 
-std::vector<HardCase> hard_cases(Extent extent) {
+HardCaseValues hard_case_values(const std::string& profile) {
+  HardCaseValues values{{"distances", {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}},
+                        {"limits", {0.01, 0.001}},
+                        {"ratios", {1e2, 1e4, 1e6, 1e8}},
+                        {"links", {10, 100, 1000}},
+                        {"sides", {21}},
+                        {"scales", {1.5, 0.5}}};
+  if (profile != "quick") {
+    values["links"] = {10, 100, 1000, 10000, 100000};
+    values["sides"] = {21, 51};
+  }
+  if (profile == "paper") values["sides"] = {21, 51, 101, 201};
+  return values;
+}
+
+std::vector<HardCase> hard_cases(const HardCaseValues& values) {
+  for (const auto& [name, list] : values) {
+    const bool size = name == "links" || name == "sides";
+    for (const double value : list) {
+      const bool possible = size ? value >= 2 && value <= 1e7 && value == std::floor(value)
+                                 : value > 0 && std::isfinite(value) &&
+                                       (name != "distances" || value < 1) &&
+                                       (name != "limits" || value < 1);
+      if (!possible)
+        throw UsageError("hard cases: '" + name + "' has " + plain(value) + ", must be " +
+                         (size                                      ? "a whole number from 2 on"
+                          : name == "distances" || name == "limits" ? "above 0 and below 1"
+                                                                    : "above 0"));
+    }
+  }
   std::vector<HardCase> cases;
-  add_configurations(cases);
-  add_taut(cases);
+  add_configurations(cases, values.at("distances"));
+  add_taut(cases, values.at("limits"));
   add_degenerate(cases);
-  add_mass_ratios(cases);
+  add_mass_ratios(cases, values.at("ratios"));
   add_whip(cases);
-  add_lengths(cases, extent);
-  add_far_starts(cases);
+  add_lengths(cases, values.at("links"), values.at("sides"));
+  add_far_starts(cases, values.at("scales"));
   add_impossible_numbers(cases);
   return cases;
 }

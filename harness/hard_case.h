@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -28,10 +29,15 @@ struct HardCase {
   std::vector<Expectation> expectations;
 };
 
-enum class Extent { quick, standard, full };
+// Values that families of cases run over, by name: distances (from the singular positions Q1 to
+// Q4), limits (strain, of taut scenes), ratios (of masses), links (of long chains), sides (vertices
+// along large cloths), scales (of far starts).
+using HardCaseValues = std::map<std::string, std::vector<double>>;
 
-// All cases; `extent` says how large the length cases grow.
-std::vector<HardCase> hard_cases(Extent extent);
+// profile: quick, default or paper, which differ in how large chains and cloths grow.
+HardCaseValues hard_case_values(const std::string& profile);
+// values: all of the above. Throws UsageError, naming it, for a value that makes no scene.
+std::vector<HardCase> hard_cases(const HardCaseValues& values);
 
 // Largest stable step: scenes with a default step range.
 struct StabilityScene {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include "build_info.h"  // made by CMake
 #include "claims.h"
@@ -34,6 +35,7 @@ volatile std::sig_atomic_t interrupt_requested = 0;
 struct Options {
   std::string sweep, scene, solver, hard_case, filter, exclude, config, out, profile = "default",
                                                                              step = "search";
+  std::vector<std::string> values;
   int reps = 0;
   double timeout = 0, max_error = 0;
   std::int64_t seed = -1;
@@ -269,6 +271,32 @@ int sweep(const Options& options, const std::vector<std::string>& command) {
   return success;
 }
 
+// "ratios=1e3,1e5" into `values`.
+void set_values(HardCaseValues& values, const std::string& given) {
+  const auto equals = given.find('=');
+  const std::string name = given.substr(0, equals);
+  const auto place = values.find(name);
+  if (place == values.end()) {
+    std::vector<std::string> names;
+    for (const auto& entry : values) names.push_back(entry.first);
+    throw unknown_name("value of hard cases", name, names);
+  }
+  place->second.clear();
+  std::istringstream list(equals == std::string::npos ? "" : given.substr(equals + 1));
+  for (std::string item; std::getline(list, item, ',');) {
+    std::size_t read = 0;
+    try {
+      place->second.push_back(std::stod(item, &read));
+    } catch (const std::exception&) {
+      read = 0;
+    }
+    if (read == 0 || read != item.size())
+      throw UsageError("--values " + given + ": '" + item + "' is not a number");
+  }
+  if (place->second.empty())
+    throw UsageError("--values " + given + ": must be NAME=NUMBER,NUMBER,...");
+}
+
 // The matrix of hard cases; its cases are in the program, not in a suite.
 int stability(const Options& options, const std::vector<std::string>& command) {
   const auto known = profiles();
@@ -280,10 +308,9 @@ int stability(const Options& options, const std::vector<std::string>& command) {
     filters.solver = pattern("--solver", options.solver);
   }
   if (!options.hard_case.empty()) filters.hard_case = pattern("--case", options.hard_case);
-  const Extent extent = options.profile == "quick"   ? Extent::quick
-                        : options.profile == "paper" ? Extent::full
-                                                     : Extent::standard;
-  const auto cases = hard_cases(extent);
+  HardCaseValues values = hard_case_values(options.profile);
+  for (const std::string& given : options.values) set_values(values, given);
+  const auto cases = hard_cases(values);
   const std::string out = options.out.empty()
                               ? source_path("results/local/" + options.profile + "-stability.json")
                               : options.out;
@@ -340,7 +367,7 @@ void list(const std::string& what) {
     }
   }
   if (what == "cases") {
-    for (const HardCase& c : hard_cases(Extent::full))
+    for (const HardCase& c : hard_cases(hard_case_values("paper")))
       std::cout << "  " << c.name << " (" << c.row << "): " << c.what << '\n';
   }
   if (heading("suites")) {
@@ -420,6 +447,10 @@ int run(int argc, char** argv) {
   app.add_option("--case", options.hard_case,
                  "stability: only cases in whose name this is found, e.g. 'Q[12]'")
       ->type_name("REGEX");
+  app.add_option("--values", options.values,
+                 "stability: what a family of cases runs over, e.g. ratios=1e3,1e5 (distances, "
+                 "limits, ratios, links, sides, scales)")
+      ->type_name("NAME=LIST");
   app.add_flag("--dry-run", options.dry_run, "say what would run and how long, and stop");
   app.add_flag("--no-plots", options.no_plots, "no figures at the end");
 
@@ -490,7 +521,8 @@ int run(int argc, char** argv) {
   std::vector<std::string> command{"bench"};
   for (int i = 1; i < argc; ++i) command.emplace_back(argv[i]);
   if (options.sweep == "stability") return stability(options, command);
-  if (!options.hard_case.empty()) throw UsageError("--case goes with --sweep stability");
+  if (!options.hard_case.empty() || !options.values.empty())
+    throw UsageError("--case and --values go with --sweep stability");
   return sweep(options, command);
 }
 

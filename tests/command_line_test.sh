@@ -29,7 +29,10 @@ refused "no point is left" "${sweep[@]}" --filter nothing
 refused "not a regular expression" "${sweep[@]}" --filter '('
 refused "nothing to do"
 refused "no case matches" --sweep stability --case nothing --out out.json
-refused "--case goes with" "${sweep[@]}" --case Q1
+refused "--case and --values go with" "${sweep[@]}" --case Q1
+refused "did you mean 'ratios'" --sweep stability --values ratio=2 --out out.json
+refused "'x' is not a number" --sweep stability --values ratios=1,x --out out.json
+refused "'distances' has 2" --sweep stability --values distances=2 --out out.json
 refused "did you mean 'adaptive'" "${sweep[@]}" --step adaptiv
 refused "--step adaptive does not go with" --sweep step --profile quick --step adaptive --out out.json
 refused "--reps" "${sweep[@]}" --reps 0

@@ -119,7 +119,7 @@ TEST(ResultFile, CommittedResultsFitTheSchema) {
 }
 
 TEST(ResultFile, OfAStabilitySweepFitsItsSchema) {
-  const auto cases = hard_cases(Extent::quick);
+  const auto cases = hard_cases(hard_case_values("quick"));
   StabilityFilters filters;
   filters.solver = std::regex("fast_projection|gauss_seidel");
   filters.hard_case = std::regex("^Q1$|^Q4$|door|triangles|largest step taut");

@@ -11,7 +11,6 @@
 
 namespace {
 
-using harness::Extent;
 using harness::HardCase;
 using harness::Outcome;
 using harness::Trial;
@@ -118,7 +117,7 @@ const HardCase& named(const std::vector<HardCase>& cases, const std::string& nam
 
 TEST(HardCases, HaveUniqueNamesAndAnExpectationForEverySolver) {
   std::set<std::string> names;
-  for (const HardCase& c : harness::hard_cases(Extent::full)) {
+  for (const HardCase& c : harness::hard_cases(harness::hard_case_values("paper"))) {
     EXPECT_TRUE(names.insert(c.name).second) << c.name << " twice";
     for (const auto& backend : inextensible::backends()) {
       if (!backend.contestant) continue;
@@ -137,7 +136,7 @@ TEST(HardCases, HaveUniqueNamesAndAnExpectationForEverySolver) {
 
 // Barth et al. 1994, Goldenthal et al. 2007, Figure 2.
 TEST(HardCases, ShakeRefusesQ1AndQ4AndCurrentDirectionsDoNot) {
-  const auto cases = harness::hard_cases(Extent::quick);
+  const auto cases = harness::hard_cases(harness::hard_case_values("quick"));
   for (const char* q : {"Q1", "Q4"}) {
     EXPECT_EQ(harness::run_trial(named(cases, q).build, "shake", 1).fixed, Outcome::refused) << q;
     for (const char* solver : {"fast_projection", "fast_projection_bdf2", "icd"})
@@ -147,7 +146,7 @@ TEST(HardCases, ShakeRefusesQ1AndQ4AndCurrentDirectionsDoNot) {
 }
 
 TEST(HardCases, ImpossibleNumbersAreRefusedAtTheDoorAndNamed) {
-  for (const HardCase& c : harness::hard_cases(Extent::quick)) {
+  for (const HardCase& c : harness::hard_cases(harness::hard_case_values("quick"))) {
     if (!c.name.starts_with("door/")) continue;
     const TrialResult result = harness::run_trial(c.build, "fast_projection", 1);
     EXPECT_EQ(result.outcome, Outcome::refused) << c.name;
@@ -158,7 +157,7 @@ TEST(HardCases, ImpossibleNumbersAreRefusedAtTheDoorAndNamed) {
 }
 
 TEST(HardCases, NothingSatisfiesTheInfeasibleAndTheWorstEdgeIsNamed) {
-  const auto cases = harness::hard_cases(Extent::quick);
+  const auto cases = harness::hard_cases(harness::hard_case_values("quick"));
   for (const char* name : {"infeasible/row", "infeasible/duplicate"}) {
     for (const char* solver : {"fast_projection", "icd", "shake", "gauss_seidel", "jacobi"}) {
       const TrialResult result = harness::run_trial(named(cases, name).build, solver, 1);
@@ -179,7 +178,7 @@ TEST(DegreesOfFreedom, AreThoseOfAFullRankJacobian) {
 }
 
 TEST(Stability, AFilteredSweepRunsJudgesAndPrints) {
-  const auto cases = harness::hard_cases(Extent::quick);
+  const auto cases = harness::hard_cases(harness::hard_case_values("quick"));
   harness::StabilityFilters filters;
   filters.solver = std::regex("shake|fast_projection");
   filters.hard_case = std::regex("^Q[14]$");
