@@ -519,7 +519,10 @@ int run(int argc, char** argv) {
     return usage_error;
   }
   std::vector<std::string> command{"bench"};
-  for (int i = 1; i < argc; ++i) command.emplace_back(argv[i]);
+  for (int i = 1; i < argc; ++i) {  // a result is no place for a machine's folders
+    const std::filesystem::path argument(argv[i]);
+    command.push_back(argument.is_absolute() ? argument.filename().string() : argument.string());
+  }
   if (options.sweep == "stability") return stability(options, command);
   if (!options.hard_case.empty() || !options.values.empty())
     throw UsageError("--case and --values go with --sweep stability");

@@ -104,10 +104,12 @@ PYTHON
 
 # A step controller: one point a search, its rejections counted.
 "$BENCH_BINARY" --sweep strain --profile quick --scene chain --solver '^fast_projection$' --step adaptive --reps 1 \
-  --no-plots --out adaptive.json >/dev/null 2>&1 || fail "adaptive steps"
+  --no-plots --out "$PWD/adaptive.json" >/dev/null 2>&1 || fail "adaptive steps"
 /usr/bin/python3 - <<'PYTHON' || fail "the file of adaptive steps"
 import json
-points = json.load(open("adaptive.json"))["points"]
+document = json.load(open("adaptive.json"))
+assert "adaptive.json" in document["context"]["command"] and "/" not in "".join(document["context"]["command"])
+points = document["points"]
 assert all(p["id"].endswith("h:adaptive") and p["status"] == "ok" for p in points), points
 assert any(p["work"]["rejected_steps"] > 0 and p["smallest_step"] < p["step"] for p in points)
 PYTHON
