@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "fit.h"
+#include "text.h"
 #include "usage_error.h"
 
 namespace harness {
@@ -22,11 +23,7 @@ constexpr const char* not_reproduced = "not reproduced";
 constexpr const char* changed = "changed";
 constexpr const char* not_measured = "not yet measured";
 
-std::string text(double value, int digits = 3) {
-  std::ostringstream out;
-  out << std::setprecision(digits) << value;
-  return out.str();
-}
+std::string text(double value, int digits = 3) { return number_text(value, digits); }
 
 std::string percent(double fraction) { return text(100 * fraction) + " %"; }
 

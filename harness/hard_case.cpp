@@ -8,6 +8,7 @@
 #include <random>
 #include <sstream>
 
+#include "text.h"
 #include "usage_error.h"
 
 namespace harness {
@@ -34,12 +35,6 @@ const std::set<Outcome> either{Outcome::survived, Outcome::refused};
 const std::set<Outcome> slow{Outcome::survived, Outcome::refused, Outcome::timeout};
 
 std::size_t as_size(int i) { return static_cast<std::size_t>(i); }
-
-std::string plain(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
 
 // ---- Parts of scenes ----
 
@@ -92,37 +87,31 @@ Mesh cloth(int n, bool diagonals = false) {
   return mesh;
 }
 
-double longest(const std::vector<double>& lengths) {
-  return lengths.empty() ? 0 : *std::max_element(lengths.begin(), lengths.end());
-}
-
 // Springs promise no limit: a stiffness that would keep it in a fall of a few weights.
-Trial trial_of(Mesh mesh, double step, int steps, double strain_limit = 0.01) {
+Trial trial_of(Scene scene, double step, int steps, double strain_limit = 0.01) {
+  const Problem& problem = *scene.problem;
   Trial trial;
-  double mass = 0;
-  for (const double m : mesh.parts.mass) mass += std::isfinite(m) ? std::abs(m) : 0;
-  trial.scene.size = mesh.size;
-  trial.slack = strain_limit * longest(mesh.parts.rest_length);
-  trial.scene.start = std::move(mesh.start);
-  trial.scene.problem = std::make_shared<const Problem>(std::move(mesh.parts));
+  trial.slack = strain_limit * problem.longest_rest_length();
   trial.step = step;
   trial.steps = steps;
   trial.strain_limit = strain_limit;
-  trial.settings["implicit_springs"] = {{"stiffness", 20 * g * mass / strain_limit}};
+  trial.settings["implicit_springs"] = {
+      {"stiffness", 20 * g * problem.total_mass() / strain_limit}};
+  trial.scene = std::move(scene);
   return trial;
 }
 
 Trial trial_of(Scene scene, double step, double strain_limit = 0.01) {
-  Trial trial;
-  double mass = 0;
-  for (const double m : scene.problem->mass()) mass += m;
-  trial.slack = strain_limit * longest(scene.problem->rest_length());
-  trial.step = step;
-  trial.steps = static_cast<int>(std::lround(scene.duration / step));
-  trial.strain_limit = strain_limit;
-  trial.settings["implicit_springs"] = {{"stiffness", 20 * g * mass / strain_limit}};
-  trial.scene = std::move(scene);
-  return trial;
+  const int steps = static_cast<int>(std::lround(scene.duration / step));
+  return trial_of(std::move(scene), step, steps, strain_limit);
+}
+
+Trial trial_of(Mesh mesh, double step, int steps, double strain_limit = 0.01) {
+  Scene scene;
+  scene.size = mesh.size;
+  scene.start = std::move(mesh.start);
+  scene.problem = std::make_shared<const Problem>(std::move(mesh.parts));
+  return trial_of(std::move(scene), step, steps, strain_limit);
 }
 
 Scene scene_of(const char* name, const SceneParameters& given) {
@@ -215,25 +204,25 @@ void add_configurations(std::vector<HardCase>& cases, const std::vector<double>&
                     {everyone, survives, "J(x^n) is not used"}}});
   for (const double d : distances) {
     cases.push_back({"Q1 near",
-                     "Q1/" + plain(d),
+                     "Q1/" + number_text(d),
                      "the candidate too long by this much only",
                      [d] { return one_edge(0, 1 + d); },
                      {{start_direction, either, "no solution beyond the limit"},
                       {everyone, survives, "as Q1"}}});
     cases.push_back(
         {"Q2 near",
-         "Q2/" + plain(d),
+         "Q2/" + number_text(d),
          "J(x0) W J(x^n)^T of this size",
          [d] { return one_edge(d, 0.5); },
          {{start_direction, either, "nearly singular"}, {everyone, survives, "as Q2"}}});
     cases.push_back(
         {"Q3 near",
-         "Q3/" + plain(d),
+         "Q3/" + number_text(d),
          "the candidate beside the line of the pins",
          [d] { return two_edges(0.6, 0.8, 0.8 * d); },
          {{start_direction, either, "J(x^n) is regular"}, {everyone, either, "nearly singular"}}});
     cases.push_back({"Q4 near",
-                     "Q4/" + plain(d),
+                     "Q4/" + number_text(d),
                      "a sagging chain between two pins",
                      [d] { return two_edges(std::sqrt(1 - d * d), d, d + 0.01); },
                      {{start_direction, either, "nearly singular"},
@@ -255,15 +244,15 @@ void add_taut(std::vector<HardCase>& cases, const std::vector<double>& limits) {
   };
   for (const double limit : limits) {
     cases.push_back({"taut row",
-                     "taut_row/" + plain(limit),
-                     "30 links straight between pins, falling; strain limit " + plain(limit),
+                     "taut_row/" + number_text(limit),
+                     "30 links straight between pins, falling; strain limit " + number_text(limit),
                      [=] { return taut(trial_of(row(1), 1.0 / 200, limit)); },
                      {{start_direction, either, "J(x^n) is singular at the start (Q4)"},
                       {current_direction, survives, "the permissible band has an interior"},
                       {everyone, slow, "information travels an edge a sweep"}}});
     cases.push_back({"1 m patch",
-                     "patch/" + plain(limit),
-                     "15 x 15 cloth, pinned 1 m apart, falling; strain limit " + plain(limit),
+                     "patch/" + number_text(limit),
+                     "15 x 15 cloth, pinned 1 m apart, falling; strain limit " + number_text(limit),
                      [=] {
                        return taut(trial_of(scene_of("patch", {{"n", 15}, {"duration", 0.5}}),
                                             1.0 / 400, limit));
@@ -346,7 +335,7 @@ void add_mass_ratios(std::vector<HardCase>& cases, const std::vector<double>& ra
         {strain_limiting, slow, "convergence slows with the ratio"},
         {start_direction, either, ""},
         {everyone, survives, "a direct solve does not mind"}};
-    cases.push_back({"heavy end", "heavy_end/" + plain(ratio), "last vertex heavier by this",
+    cases.push_back({"heavy end", "heavy_end/" + number_text(ratio), "last vertex heavier by this",
                      [ratio] {
                        Mesh mesh = chain(20);
                        mesh.parts.mass.back() *= ratio;
@@ -354,7 +343,7 @@ void add_mass_ratios(std::vector<HardCase>& cases, const std::vector<double>& ra
                      },
                      expected});
     cases.push_back({"light between heavy",
-                     "light_between/" + plain(ratio),
+                     "light_between/" + number_text(ratio),
                      "every other vertex lighter by this",
                      [ratio] {
                        Mesh mesh = chain(20);
@@ -369,7 +358,7 @@ void add_mass_ratios(std::vector<HardCase>& cases, const std::vector<double>& ra
                        "light beads on a taut string: transverse waves too stiff for a constraint "
                        "direction that is not implicit"}}});
     cases.push_back({"heavy patch",
-                     "heavy_patch/" + plain(ratio),
+                     "heavy_patch/" + number_text(ratio),
                      "11 x 11 cloth pinned closer, its middle 3 x 3 heavier by this",
                      [ratio] {
                        Mesh mesh = cloth(11);
@@ -485,7 +474,7 @@ void add_far_starts(std::vector<HardCase>& cases, const std::vector<double>& sca
     return trial;
   };
   for (const double scale : scales) {
-    cases.push_back({"far start", "scaled/" + plain(scale), "a chain of 20 scaled by this",
+    cases.push_back({"far start", "scaled/" + number_text(scale), "a chain of 20 scaled by this",
                      [scale, fast] {
                        Mesh mesh = chain(20);
                        mesh.start.x *= scale;
@@ -547,12 +536,12 @@ void add_impossible_numbers(std::vector<HardCase>& cases) {
                      {{everyone, refuses, "at the door, naming it"}}});
   };
   for (const double value : {nan, infinity}) {
-    add("position " + plain(value), [value](Mesh& m) { m.start.x(1, 2) = value; });
-    add("velocity " + plain(value), [value](Mesh& m) { m.start.v(0, 3) = value; });
+    add("position " + number_text(value), [value](Mesh& m) { m.start.x(1, 2) = value; });
+    add("velocity " + number_text(value), [value](Mesh& m) { m.start.v(0, 3) = value; });
   }
   for (const double value : {nan, infinity, 0.0, -1.0}) {
-    add("mass " + plain(value), [value](Mesh& m) { m.parts.mass[2] = value; });
-    add("length " + plain(value), [value](Mesh& m) { m.parts.rest_length[1] = value; });
+    add("mass " + number_text(value), [value](Mesh& m) { m.parts.mass[2] = value; });
+    add("length " + number_text(value), [value](Mesh& m) { m.parts.rest_length[1] = value; });
   }
 }
 
@@ -582,7 +571,7 @@ std::vector<HardCase> hard_cases(const HardCaseValues& values) {
                                        (name != "distances" || value < 1) &&
                                        (name != "limits" || value < 1);
       if (!possible)
-        throw UsageError("hard cases: '" + name + "' has " + plain(value) + ", must be " +
+        throw UsageError("hard cases: '" + name + "' has " + number_text(value) + ", must be " +
                          (size                                      ? "a whole number from 2 on"
                           : name == "distances" || name == "limits" ? "above 0 and below 1"
                                                                     : "above 0"));

@@ -22,9 +22,7 @@ Judge::Judge(const Scene& scene, const Options& options) : scene_(scene), option
   const auto& problem = *scene.problem;
   start_energy_ = inextensible::potential_energy(problem, scene.start.x) +
                   inextensible::kinetic_energy(problem, scene.start.v);
-  double mass = 0;
-  for (const double m : problem.mass()) mass += m;
-  energy_scale_ = mass * problem.gravity().norm() * scene.size;
+  energy_scale_ = problem.total_mass() * problem.gravity().norm() * scene.size;
 }
 
 Judge::Range Judge::strain_range(const Positions& x) const {

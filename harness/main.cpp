@@ -13,10 +13,12 @@
 #include "build_info.h"  // made by CMake
 #include "claims.h"
 #include "context.h"
+#include "files.h"
 #include "report.h"
 #include "result_file.h"
 #include "stability.h"
 #include "sweep.h"
+#include "text.h"
 #include "usage_error.h"
 
 namespace harness {

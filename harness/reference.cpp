@@ -13,6 +13,7 @@
 #include "forces.h"
 #include "pendulum.h"
 #include "registry.h"
+#include "text.h"
 #include "usage_error.h"
 
 namespace harness {
@@ -39,12 +40,6 @@ std::vector<double> sample_times(double duration) {
   return times;
 }
 
-std::string text(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
-
 // A backend's path at the sample times, up to where it fails; h divides the sample interval.
 Path follow(const Scene& scene, const inextensible::State& start, const std::string& solver,
             double limit, double h, const std::vector<double>& times, const Tell& tell) {
@@ -52,12 +47,13 @@ Path follow(const Scene& scene, const inextensible::State& start, const std::str
   inextensible::State state = start;
   const auto per_sample = std::lround(sample_interval / h);
   Path path;
-  tell(solver + ", h = 1/" + text(std::round(1 / h)) + " s ...");
+  tell(solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ...");
   for (const double time : times) {
     for (long i = 0; i < per_sample; ++i) {
       const auto result = stepper->advance(state, h);
       if (!result) {
-        tell(solver + ", h = 1/" + text(std::round(1 / h)) + " s stopped before t = " + text(time) +
+        tell(solver + ", h = 1/" + number_text(std::round(1 / h)) +
+             " s stopped before t = " + number_text(time) +
              " s: " + inextensible::to_string(result.status) + ", " + result.detail);
         return path;
       }
@@ -71,8 +67,9 @@ Path follow_to_the_end(const Scene& scene, const std::string& solver, double lim
                        const std::vector<double>& times, const Tell& tell) {
   Path path = follow(scene, scene.start, solver, limit, h, times, tell);
   if (path.size() < times.size())
-    throw UsageError("no reference: " + solver + " with h = " + text(h) + " s fails before t = " +
-                     text(times[path.size()]) + " s (a smaller --finest may help)");
+    throw UsageError("no reference: " + solver + " with h = " + number_text(h) +
+                     " s fails before t = " + number_text(times[path.size()]) +
+                     " s (a smaller --finest may help)");
   return path;
 }
 
@@ -118,10 +115,8 @@ Pendulum pendulum_of(const Scene& scene, double disturbance) {
 Path swing(const Scene& scene, double disturbance, const std::vector<double>& times,
            double* energy_drift) {
   Pendulum pendulum = pendulum_of(scene, disturbance);
-  double mass = 0;
-  for (const double m : scene.problem->mass()) mass += m;
   const double start = pendulum.energy();
-  const double scale = mass * scene.problem->gravity().norm() * scene.size;
+  const double scale = scene.problem->total_mass() * scene.problem->gravity().norm() * scene.size;
   Path path;
   for (const double time : times) {
     pendulum.advance(time, pendulum_tolerance);
@@ -133,7 +128,7 @@ Path swing(const Scene& scene, double disturbance, const std::vector<double>& ti
 }
 
 void compute_chain(Reference& r, const Scene& scene, double finest, const Tell& tell) {
-  tell("pendulum in angles, tolerance " + text(pendulum_tolerance) + " ...");
+  tell("pendulum in angles, tolerance " + number_text(pendulum_tolerance) + " ...");
   const Path path = swing(scene, 0, r.times, &r.energy_drift);
   const Path disturbed = swing(scene, perturbation, r.times, nullptr);
   r.valid_until = time_together(scene, path, disturbed, r.times);
@@ -144,9 +139,9 @@ void compute_chain(Reference& r, const Scene& scene, double finest, const Tell& 
   r.observed_order = std::log2(mean_distance(scene, coarse, middle, all) /
                                mean_distance(scene, middle, fine, all));
   const Path second = extrapolated(middle, fine, 2);
-  r.method = "N-link pendulum in angles, GSL rk8pd, tolerance " + text(pendulum_tolerance);
-  r.second_method = "rattle, strain limit " + text(tight_limit) + ", steps down to " +
-                    text(finest) + " s, Richardson extrapolated with order 2";
+  r.method = "N-link pendulum in angles, GSL rk8pd, tolerance " + number_text(pendulum_tolerance);
+  r.second_method = "rattle, strain limit " + number_text(tight_limit) + ", steps down to " +
+                    number_text(finest) + " s, Richardson extrapolated with order 2";
   for (std::size_t i = 0; i < all; ++i) {
     r.gap.push_back(rms_distance(scene, path[i], second[i]));
     r.shape.push_back(shape_statistics(scene, path[i]));
@@ -181,12 +176,14 @@ void compute_contact(Reference& r, const Scene& scene, double finest, const Tell
   if (valid > 0 && valid <= std::min(coarse.size(), middle.size()))
     r.observed_order = std::log2(mean_distance(scene, coarse, middle, valid) /
                                  mean_distance(scene, middle, fine, valid));
-  r.method = "rattle, strain limit " + text(contact_limit) + ", step " + text(finest) + " s";
-  r.second_method = "icd, strain limit " + text(contact_limit) + ", steps " + text(4 * finest) +
-                    " and " + text(2 * finest) + " s, Richardson extrapolated with order 1";
+  r.method =
+      "rattle, strain limit " + number_text(contact_limit) + ", step " + number_text(finest) + " s";
+  r.second_method = "icd, strain limit " + number_text(contact_limit) + ", steps " +
+                    number_text(4 * finest) + " and " + number_text(2 * finest) +
+                    " s, Richardson extrapolated with order 1";
   if (fine.size() < r.times.size())
     r.method +=
-        ", until it fails after t = " + text(fine.empty() ? 0.0 : r.times[fine.size() - 1]) +
+        ", until it fails after t = " + number_text(fine.empty() ? 0.0 : r.times[fine.size() - 1]) +
         " s; shape statistics from there on by icd alone";
   for (std::size_t i = 0; i < r.times.size(); ++i) {
     const bool both = i < fine.size();
@@ -252,11 +249,10 @@ std::vector<ShapeStatistics> shape_of(const json& rows) {
 }  // namespace
 
 ShapeStatistics shape_statistics(const Scene& scene, const Positions& x) {
-  double mass = 0;
-  for (const double m : scene.problem->mass()) mass += m;
   ShapeStatistics shape;
-  shape.potential_energy = inextensible::potential_energy(*scene.problem, x) /
-                           (mass * scene.problem->gravity().norm() * scene.size);
+  shape.potential_energy =
+      inextensible::potential_energy(*scene.problem, x) /
+      (scene.problem->total_mass() * scene.problem->gravity().norm() * scene.size);
   for (const int corner : scene.corners)
     shape.corner_height += x(1, corner) / scene.size / static_cast<double>(scene.corners.size());
   if (!scene.triangles.empty()) shape.shadow = shadow_area(scene, x);
@@ -279,9 +275,10 @@ std::string reference_name(const std::string& scene, const SceneParameters& comp
   for (const auto& info : type.parameters) {
     const std::string name = info.name;
     if (name == type.resolution || name == "duration") continue;
-    if (complete.at(name) != info.initial) changed += name + "=" + text(complete.at(name)) + ";";
+    if (complete.at(name) != info.initial)
+      changed += name + "=" + number_text(complete.at(name)) + ";";
   }
-  return scene + "-n" + text(complete.at(type.resolution)) +
+  return scene + "-n" + number_text(complete.at(type.resolution)) +
          (changed.empty() ? "" : "-" + fnv1a(changed)) + ".json";
 }
 
@@ -363,7 +360,8 @@ Reference compute_reference(const std::string& scene_name, const SceneParameters
   r.parameters = complete;
   r.times = sample_times(scene.duration);
   if (r.times.empty())
-    throw UsageError("a reference needs a duration of at least " + text(sample_interval) + " s");
+    throw UsageError("a reference needs a duration of at least " + number_text(sample_interval) +
+                     " s");
   if (scene_name == "chain") {
     compute_chain(r, scene, finest > 0 ? finest : sample_interval / 1024, tell);
   } else {

@@ -6,20 +6,13 @@
 #include <map>
 #include <sstream>
 
+#include "text.h"
+
 namespace harness {
 namespace {
 
-std::string significant(double value, int digits) {
-  std::ostringstream text;
-  text << std::setprecision(digits) << value;
-  return text.str();
-}
-
-// 1/250 for a step of 0.004 s.
-std::string step_text(double step) { return "1/" + significant(1 / step, 6); }
-
 std::string axis_text(const PointSpec& spec) {
-  if (spec.sweep == "strain") return significant(100 * spec.strain_limit, 3) + " %";
+  if (spec.sweep == "strain") return number_text(100 * spec.strain_limit, 3) + " %";
   return spec.scene == "chain" ? std::to_string(spec.resolution)
                                : std::to_string(spec.resolution) + "^2";
 }
@@ -33,13 +26,6 @@ std::string failure_text(const std::vector<const PointResult*>& tried) {
 }
 
 }  // namespace
-
-std::string duration_text(double seconds) {
-  if (seconds < 1) return significant(1000 * seconds, 3) + " ms";
-  if (seconds < 100) return significant(seconds, 3) + " s";
-  const long whole = std::lround(seconds);
-  return std::to_string(whole / 60) + " min " + std::to_string(whole % 60) + " s";
-}
 
 Progress::Progress(std::ostream& out, bool terminal) : out_(out), terminal_(terminal) {}
 
@@ -123,7 +109,7 @@ std::string time_and_step(const PointResult& point) {
   if (point.spec.adaptive && point.work.steps > 0)  // the mean one
     step = "~" +
            step_text(point.spec.step * point.steps_planned / static_cast<double>(point.work.steps));
-  return significant(point.median_seconds(), 3) + " (" + step + ")";
+  return number_text(point.median_seconds(), 3) + " (" + step + ")";
 }
 
 // The fastest point of each solver within each of some errors: step and strain limit are free.
@@ -139,10 +125,10 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
   }
   out << '\n'
       << scene << ", step sweep: seconds per simulated second to reach a trajectory error "
-      << "(step in s, strain limit); the reference is sure to " << significant(3 * gap, 2) << '\n';
+      << "(step in s, strain limit); the reference is sure to " << number_text(3 * gap, 2) << '\n';
   constexpr int cell_width = 25;
   out << std::left << std::setw(name_width) << "";
-  for (const double target : targets) out << std::setw(cell_width) << significant(target, 1);
+  for (const double target : targets) out << std::setw(cell_width) << number_text(target, 1);
   out << '\n';
   for (const auto& solver : solvers) {
     out << std::setw(name_width) << solver;
@@ -157,8 +143,8 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
       if (target < 3 * gap) {
         text = "< 3 gap";
       } else if (fastest) {
-        text = significant(fastest->median_seconds(), 3) + " (" + step_text(fastest->spec.step) +
-               ", " + significant(100 * fastest->spec.strain_limit, 3) + " %)";
+        text = number_text(fastest->median_seconds(), 3) + " (" + step_text(fastest->spec.step) +
+               ", " + number_text(100 * fastest->spec.strain_limit, 3) + " %)";
       }
       out << std::setw(cell_width) << text;
     }
@@ -215,13 +201,13 @@ void print_table(std::ostream& out, const std::vector<PointResult>& points) {
 
 void print_reference(std::ostream& out, const Reference& reference) {
   out << reference.scene << ": " << reference.method << "\n  against " << reference.second_method
-      << "\n  observed order " << significant(reference.observed_order, 3) << ", valid until "
+      << "\n  observed order " << number_text(reference.observed_order, 3) << ", valid until "
       << reference.valid_until << " s";
   if (reference.energy_drift > 0)
-    out << ", energy drift " << significant(reference.energy_drift, 2) << " of weight times size";
+    out << ", energy drift " << number_text(reference.energy_drift, 2) << " of weight times size";
   out << "\n  gap (RMS distance of both routes over the scene's size), end vertex:\n";
   for (std::size_t i = 0; i < reference.times.size(); ++i) {
-    out << "  t = " << reference.times[i] << " s  " << significant(reference.gap[i], 2);
+    out << "  t = " << reference.times[i] << " s  " << number_text(reference.gap[i], 2);
     if (i < reference.positions.size()) {
       const auto end = reference.positions[i].col(reference.positions[i].cols() - 1);
       out << "  (" << std::setprecision(12) << end.x() << ", " << end.y() << ", " << end.z() << ')'

@@ -36,7 +36,4 @@ void print_table(std::ostream& out, const std::vector<PointResult>& points);
 // How good a reference is, and where the scene's last vertex is.
 void print_reference(std::ostream& out, const Reference& reference);
 
-// "12 ms", "1.4 s", "2 min 5 s"
-std::string duration_text(double seconds);
-
 }  // namespace harness

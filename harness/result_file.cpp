@@ -1,24 +1,14 @@
 #include "result_file.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
+#include "files.h"
 #include "usage_error.h"
 
 namespace harness {
 namespace {
 
 using nlohmann::json;
-
-// Non-finite numbers are not written to JSON.
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json seconds_json(const std::vector<double>& samples) {
   if (samples.empty()) return nullptr;
@@ -70,6 +60,8 @@ void add_benchmarks(json& list, const PointResult& point, int family) {
 }
 
 }  // namespace
+
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json to_json(const inextensible::WorkCounters& w) {
   return {{"steps", w.steps},
@@ -152,11 +144,7 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
 }
 
 json read_result(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf()))
-    throw UsageError("cannot read the result file '" + path + "'");
-  return parse_result(text.str(), path);
+  return parse_result(read_file(path, "result file"), path);
 }
 
 json parse_result(const std::string& text, const std::string& path) {
@@ -171,40 +159,6 @@ json parse_result(const std::string& text, const std::string& path) {
   } catch (const json::exception& error) {
     throw UsageError("'" + path + "' is not a result file: " + error.what());
   }
-}
-
-void check_writable(const std::string& path) {
-  namespace fs = std::filesystem;
-  const fs::path target(path);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw UsageError("cannot make the folder '" + folder.string() + "': " + error.message());
-  if (fs::is_directory(target)) throw UsageError("'" + path + "' is a folder; --out names a file");
-  const std::string trial = path + ".partial";
-  const int file = open(trial.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
-  if (file < 0) throw UsageError("cannot write '" + path + "': " + std::strerror(errno));
-  close(file);
-  unlink(trial.c_str());
-}
-
-void write_atomically(const std::string& path, const std::string& text) {
-  const std::string trial = path + ".partial";
-  const auto fail = [&] {
-    throw std::runtime_error("cannot write '" + trial + "': " + std::strerror(errno));
-  };
-  const int file = open(trial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) fail();
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t written = write(file, text.data() + done, text.size() - done);
-    if (written < 0) {
-      close(file);
-      fail();
-    }
-    done += static_cast<std::size_t>(written);
-  }
-  if (fsync(file) != 0 || close(file) != 0 || rename(trial.c_str(), path.c_str()) != 0) fail();
 }
 
 }  // namespace harness

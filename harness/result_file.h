@@ -10,6 +10,8 @@
 
 namespace harness {
 
+// null for a number that is not finite: JSON has no word for it.
+nlohmann::json number(double value);
 nlohmann::json to_json(const inextensible::WorkCounters& work);
 nlohmann::json to_json(const PointResult& point);
 // context: machine_context() as it was before the sweep ran. references:
@@ -23,12 +25,5 @@ nlohmann::json result_document(nlohmann::json context, const Suite& suite,
 // naming the file, for anything else.
 nlohmann::json read_result(const std::string& path);
 nlohmann::json parse_result(const std::string& text, const std::string& path);
-
-// Throws UsageError unless a file can be made at `path`; makes missing folders. Nothing is left
-// behind.
-void check_writable(const std::string& path);
-
-// Written beside, synced and renamed: the old file or the new one is there, never half of one.
-void write_atomically(const std::string& path, const std::string& text);
 
 }  // namespace harness

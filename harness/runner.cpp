@@ -14,6 +14,7 @@
 
 #include "judge.h"
 #include "step_controller.h"
+#include "text.h"
 
 namespace harness {
 namespace {
@@ -47,12 +48,6 @@ struct Run {
   double setup_seconds = 0;
   double smallest_step = unknown;
 };
-
-std::string text(double value) {
-  std::ostringstream stream;
-  stream << value;
-  return stream.str();
-}
 
 std::string refusal(const inextensible::StepResult& result, std::int64_t step, double time) {
   std::ostringstream text;
@@ -107,7 +102,8 @@ class PointRunner {
         run.status = result.status == Status::not_finite ? PointStatus::diverged
                                                          : PointStatus::not_converged;
         run.detail = refusal(result, run.stepper->work().steps, state.time);
-        if (controller) run.detail += "; at the smallest step, " + text(controller->next()) + " s";
+        if (controller)
+          run.detail += "; at the smallest step, " + number_text(controller->next()) + " s";
         break;
       }
       const bool whole = !controller || controller->aligned();
@@ -150,11 +146,7 @@ class PointRunner {
   const inextensible::Backend& backend() const { return backend_; }
   const PointSpec& spec() const { return spec_; }
   int steps() const { return steps_; }
-  double weight() const {
-    double mass = 0;
-    for (const double m : scene_.problem->mass()) mass += m;
-    return mass * scene_.problem->gravity().norm();
-  }
+  double weight() const { return scene_.problem->total_mass() * scene_.problem->gravity().norm(); }
 
  private:
   const PointSpec& spec_;

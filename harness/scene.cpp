@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "text.h"
 #include "triangle_collider.h"
 #include "usage_error.h"
 
@@ -220,12 +221,6 @@ const std::vector<SceneType>& table() {
   return rows;
 }
 
-std::string plain(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
 }  // namespace
 
 std::span<const SceneType> scene_types() { return table(); }
@@ -253,11 +248,12 @@ SceneParameters complete_parameters(const SceneType& type, const SceneParameters
     const double value = all[info.name];
     const bool inside = (info.integer ? value >= info.low : value > info.low) && value <= info.high;
     if (inside && (!info.integer || value == std::floor(value))) continue;
-    const std::string bound = info.integer ? "a whole number of at least " + plain(info.low)
+    const std::string bound = info.integer ? "a whole number of at least " + number_text(info.low)
                               : info.low == -1e-300 ? "at least 0"
-                                                    : "above " + plain(info.low);
+                                                    : "above " + number_text(info.low);
     throw UsageError("scene " + std::string(type.name) + ": '" + info.name + "' is " +
-                     plain(value) + ", must be " + bound + " and at most " + plain(info.high));
+                     number_text(value) + ", must be " + bound + " and at most " +
+                     number_text(info.high));
   }
   return all;
 }

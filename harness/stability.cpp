@@ -8,6 +8,7 @@
 
 #include "registry.h"
 #include "result_file.h"
+#include "text.h"
 #include "usage_error.h"
 
 namespace harness {
@@ -118,13 +119,6 @@ std::vector<std::string> in_order(const Items& items, Key key) {
     if (std::find(keys.begin(), keys.end(), key(item)) == keys.end()) keys.push_back(key(item));
   }
   return keys;
-}
-
-std::string step_text(double step) {
-  if (std::isnan(step)) return "-";
-  std::ostringstream text;
-  text << "1/" << std::lround(1 / step);
-  return text.str();
 }
 
 }  // namespace
@@ -248,9 +242,6 @@ void print_stability(std::ostream& out, const StabilityOutcome& outcome) {
 
 json stability_document(json context, const StabilityOutcome& outcome, std::uint64_t seed,
                         const std::vector<std::string>& command) {
-  const auto number = [](double value) {
-    return std::isfinite(value) ? json(value) : json(nullptr);
-  };
   context["command"] = command;
   context["seed"] = seed;
   json matrix = json::array(), steps = json::array(), freedom = json::array();

@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "files.h"
 #include "usage_error.h"
 
 namespace harness {
@@ -216,12 +217,7 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
 
 std::vector<std::string> sweep_kinds() { return {"strain", "resolution", "step"}; }
 
-Suite read_suite(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) throw UsageError("cannot read the suite '" + path + "'");
-  return parse_suite(text.str(), path);
-}
+Suite read_suite(const std::string& path) { return parse_suite(read_file(path, "suite"), path); }
 
 Suite parse_suite(const std::string& text, const std::string& path) {
   json document;

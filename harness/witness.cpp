@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "forces.h"
+#include "text.h"
 
 namespace harness {
 namespace {
@@ -14,12 +15,6 @@ using inextensible::State;
 
 constexpr double diverged_strain = 10;
 constexpr double diverged_distance = 1e6;  // in scene sizes
-
-double total_mass(const Problem& problem) {
-  double sum = 0;
-  for (const double m : problem.mass()) sum += m;
-  return sum;
-}
 
 Eigen::Vector3d momentum(const Problem& problem, const State& state) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -43,12 +38,6 @@ WorstEdge worst_edge(const Problem& problem, const Positions& x) {
   return worst;
 }
 
-std::string text(double value) {
-  std::ostringstream stream;
-  stream << value;
-  return stream.str();
-}
-
 void raise(double& figure, double value) {
   figure = std::isnan(figure) ? value : std::max(figure, value);
 }
@@ -64,7 +53,7 @@ Witness::Witness(const Trial& trial, bool limit_promised)
     : trial_(trial),
       problem_(*trial.scene.problem),
       limit_promised_(limit_promised),
-      mass_(total_mass(problem_)),
+      mass_(problem_.total_mass()),
       free_(problem_.pinned().empty() && !problem_.collider()) {
   scale_ = mass_ * problem_.gravity().norm() * trial.scene.size +
            inextensible::kinetic_energy(problem_, trial.scene.start.v);
@@ -87,11 +76,11 @@ std::optional<Outcome> Witness::after(const Positions& filtered, const State& st
   raise(result.max_strain, worst.strain);
   if (worst.strain > diverged_strain ||
       state.x.cwiseAbs().maxCoeff() > diverged_distance * trial_.scene.size)
-    return fail(result, Outcome::diverged, "strain " + text(worst.strain));
+    return fail(result, Outcome::diverged, "strain " + number_text(worst.strain));
   if (limit_promised_ && worst.strain > trial_.strain_limit * (1 + 1e-9)) {
     return fail(result, Outcome::wrong,
                 "success claimed, but edge " + std::to_string(worst.edge) + " is strained by " +
-                    text(worst.strain));
+                    number_text(worst.strain));
   }
   for (const int pin : problem_.pinned()) {
     if (state.x.col(pin) != start_.x.col(pin))
@@ -101,7 +90,7 @@ std::optional<Outcome> Witness::after(const Positions& filtered, const State& st
     const double defect = momentum_defect(state, h);
     raise(result.momentum_defect, defect);
     if (!(defect <= trial_.momentum_tolerance))
-      return fail(result, Outcome::wrong, "momentum is not conserved, by " + text(defect));
+      return fail(result, Outcome::wrong, "momentum is not conserved, by " + number_text(defect));
   }
   if (!judged_) return {};
   if (!energy_) {
@@ -113,7 +102,8 @@ std::optional<Outcome> Witness::after(const Positions& filtered, const State& st
   raise(result.energy_gain, gain);
   const double release = 0.5 * mass_ * std::pow(1.5 * trial_.slack / h, 2) / scale_;
   if (!(gain <= trial_.energy_tolerance + release))
-    return fail(result, Outcome::wrong, "energy out of nothing, " + text(gain) + " of its scale");
+    return fail(result, Outcome::wrong,
+                "energy out of nothing, " + number_text(gain) + " of its scale");
   return {};
 }
 

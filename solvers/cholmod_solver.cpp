@@ -81,12 +81,9 @@ bool CholmodSolver::factor() {
   // L D L^T goes on through negative pivots: look at them.
   const auto* start = static_cast<const int*>(c.factor->p);
   const auto* value = static_cast<const double*>(c.factor->x);
-  for (std::size_t i = 0; i < c.factor->n; ++i) {
-    const int diagonal = pattern_.triangle == SymmetricPattern::Triangle::upper
-                             ? pattern_.column_start[i + 1] - 1
-                             : pattern_.column_start[i];
-    if (!(value[start[i]] > least_pivot_ * values_[static_cast<std::size_t>(diagonal)]))
-      return false;
+  for (int i = 0; i < pattern_.n; ++i) {
+    const auto diagonal = static_cast<std::size_t>(pattern_.diagonal(i));
+    if (!(value[start[i]] > least_pivot_ * values_[diagonal])) return false;
   }
   return true;
 }

@@ -4,9 +4,9 @@
 // iteration.
 //
 // Where J W J^T is singular or nearly so (a row pulled straight between two pins, Q3) that step
-// does not exist or overshoots. An iteration that does not lower |C| is therefore taken back, and
-// the rest of the step is Levenberg's and Marquardt's (1963) with the damping rule of Nielsen
-// (1999):
+// does not exist or overshoots. When several iterations have not lowered |C|, or one has raised it
+// beyond all measure, the best x_j is taken up again, and the rest of the step is Levenberg's and
+// Marquardt's (1963) with the damping rule of Nielsen (1999):
 //   (J W J^T + damping D) mu = C~,   D the diagonal,
 // which minimizes |C~ + J dx|^2 + damping |dx|^2 in the norms of D^-1 and M. C~ is what of C lies
 // outside the inner part of the permissible band: a straight row at full length has no neighbour

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -78,8 +79,12 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
     check_positive(shear.rest_length, "shear spring", "rest length");
     check_positive(shear.stiffness, "shear spring", "stiffness");
   }
+  total_mass_ = std::accumulate(parts_.mass.begin(), parts_.mass.end(), 0.0);
   if (!parts_.rest_length.empty()) {
-    shortest_rest_length_ = *std::min_element(parts_.rest_length.begin(), parts_.rest_length.end());
+    const auto [shortest, longest] =
+        std::minmax_element(parts_.rest_length.begin(), parts_.rest_length.end());
+    shortest_rest_length_ = *shortest;
+    longest_rest_length_ = *longest;
   }
 }
 

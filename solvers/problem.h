@@ -57,6 +57,8 @@ class Problem {
   const std::vector<Edge>& edges() const { return parts_.edges; }
   const std::vector<double>& rest_length() const { return parts_.rest_length; }
   double shortest_rest_length() const { return shortest_rest_length_; }
+  double longest_rest_length() const { return longest_rest_length_; }  // 0 without edges
+  double total_mass() const { return total_mass_; }
   const Eigen::Vector3d& gravity() const { return parts_.gravity; }
   const Springs* shear() const { return parts_.shear ? &*parts_.shear : nullptr; }
   const Collider* collider() const { return parts_.collider.get(); }
@@ -64,7 +66,7 @@ class Problem {
  private:
   ProblemParts parts_;
   std::vector<double> inverse_mass_;
-  double shortest_rest_length_ = 0;
+  double shortest_rest_length_ = 0, longest_rest_length_ = 0, total_mass_ = 0;
 };
 
 struct State {

@@ -81,11 +81,7 @@ void SchurComplement::assemble(const Eigen::Matrix3Xd& u, double* values) const 
 }
 
 void SchurComplement::scale_diagonal(double factor, double* values) const {
-  // Rows ascend: the diagonal is the last entry of an upper triangle's column, the first of a
-  // lower's.
-  const bool upper = pattern_.triangle == SymmetricPattern::Triangle::upper;
-  for (std::size_t l = 0; l < static_cast<std::size_t>(pattern_.n); ++l)
-    values[upper ? pattern_.column_start[l + 1] - 1 : pattern_.column_start[l]] *= factor;
+  for (int l = 0; l < pattern_.n; ++l) values[pattern_.diagonal(l)] *= factor;
 }
 
 UnsymmetricSchurComplement::UnsymmetricSchurComplement(const EdgeConstraints& edges, int vertices) {

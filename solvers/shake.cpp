@@ -17,17 +17,13 @@ namespace {
 
 constexpr double shortest_step = 1e-3;  // of Newton's
 
-double longest(const std::vector<double>& lengths) {
-  return lengths.empty() ? 0 : *std::max_element(lengths.begin(), lengths.end());
-}
-
 }  // namespace
 
 Shake::Shake(const Problem& problem, const Settings& settings)
     : system_(problem, settings.strain_limit, settings.linear_solver),
       problem_(problem),
-      slack_(settings.strain_limit * longest(problem.rest_length()) *
-             std::sqrt(std::accumulate(problem.mass().begin(), problem.mass().end(), 0.0))),
+      slack_(settings.strain_limit * problem.longest_rest_length() *
+             std::sqrt(problem.total_mass())),
       max_iterations_(settings.max_iterations),
       min_iterations_(settings.min_iterations),
       u_start_(3, problem.constraints()),

@@ -20,6 +20,12 @@ struct SymmetricPattern {
   int entries() const { return static_cast<int>(row_index.size()); }
   // Whether every entry lies on the diagonal or beside it.
   bool tridiagonal() const;
+  // The place of a column's diagonal entry: rows ascend, so it is the last of an upper triangle's
+  // column and the first of a lower's.
+  int diagonal(int column) const {
+    const auto i = static_cast<std::size_t>(column);
+    return triangle == Triangle::upper ? column_start[i + 1] - 1 : column_start[i];
+  }
 };
 
 // Use: write the matrix to values() in the pattern's order, factor(), solve() any number of times.

@@ -21,7 +21,7 @@ class StepController {
   // The stepper must outlive the controller and take no other steps meanwhile.
   StepController(Stepper& stepper, const Settings& settings);
 
-  // Takes one step of step() seconds, which it may have to shorten first. A refusal is the one at
+  // Takes one step of next() seconds, which it may have to shorten first. A refusal is the one at
   // the smallest step, and leaves the state untouched. Refused attempts are in the stepper's
   // counter rejected_steps.
   StepResult advance(State& state);

@@ -13,6 +13,7 @@
 #include <valijson/validator.hpp>
 
 #include "context.h"
+#include "files.h"
 #include "stability.h"
 #include "sweep.h"
 #include "usage_error.h"

@@ -1,0 +1,17 @@
+// Numbers as people read them.
+#pragma once
+
+#include <string>
+
+namespace harness {
+
+// With that many significant digits and no trailing zeros; six are what a stream writes by default.
+std::string number_text(double value, int digits = 6);
+
+// "1/250" for a step of 0.004 s, "-" for none (NaN).
+std::string step_text(double step);
+
+// "12 ms", "1.5 s", "2 min 5 s".
+std::string duration_text(double seconds);
+
+}  // namespace harness
