@@ -1,0 +1,48 @@
+#include "commands.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <iostream>
+
+#include "build_info.h"  // made by CMake
+
+namespace harness {
+namespace {
+
+volatile std::sig_atomic_t interrupt_requested = 0;
+
+}  // namespace
+
+std::string source_path(const std::string& relative) {
+  return std::string(INEXTENSIBLE_SOURCE_DIR) + "/" + relative;
+}
+
+void catch_interrupts() {
+  std::signal(SIGINT, [](int) { interrupt_requested = 1; });
+  std::signal(SIGTERM, [](int) { interrupt_requested = 1; });
+}
+
+bool interrupted() { return interrupt_requested != 0; }
+
+int draw(const std::vector<std::string>& arguments) {
+  std::cout.flush();
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string script = source_path("plots/figures.py");
+    std::vector<char*> argv;
+    std::vector<std::string> words{"/usr/bin/python3", script};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    argv.reserve(words.size() + 1);
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  int status = 0;
+  if (child < 0 || waitpid(child, &status, 0) < 0) return internal_error;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : internal_error;
+}
+
+}  // namespace harness

@@ -1,0 +1,121 @@
+#include "sweep_options.h"
+
+#include <algorithm>
+
+#include "commands.h"
+#include "usage_error.h"
+
+namespace harness {
+
+void add_selection(CLI::App& to, SweepOptions& options) {
+  to.add_option("--sweep", options.sweep, "axis: strain (limit), resolution, step or stability")
+      ->type_name("AXIS");
+  to.add_option("--scene", options.scene, "chain or drape; both if left out")->type_name("NAME");
+  to.add_option("--solver", options.solver, "only solvers whose name matches, e.g. 'shake|icd'")
+      ->type_name("REGEX");
+  to.add_option("--filter", options.filter, "only points in whose id this is found")
+      ->type_name("REGEX");
+  to.add_option("--exclude", options.exclude, "without points in whose id this is found")
+      ->type_name("REGEX");
+  to.add_option("--profile", options.profile,
+                "quick (< 1 min), default (about 5 min) or paper (an hour and a half)")
+      ->type_name("NAME");
+  to.add_option("--config", options.config, "a suite of your own instead of a profile")
+      ->type_name("FILE");
+}
+
+std::vector<std::string> profiles() { return {"quick", "default", "paper"}; }
+
+void check_profile(const std::string& name) {
+  const auto known = profiles();
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    throw unknown_name("profile", name, known);
+}
+
+std::regex pattern(const std::string& option, const std::string& text) {
+  try {
+    return std::regex(text, std::regex::ECMAScript | std::regex::icase);
+  } catch (const std::regex_error& error) {
+    throw UsageError(option + " '" + text + "' is not a regular expression: " + error.what());
+  }
+}
+
+void check_solver_pattern(const std::string& text) {
+  std::vector<std::string> names;
+  for (const auto& backend : inextensible::backends()) names.emplace_back(backend.name);
+  const std::regex expression = pattern("--solver", text);
+  for (const std::string& name : names) {
+    if (std::regex_match(name, expression)) return;
+  }
+  throw unknown_name("solver", text, names);
+}
+
+std::string suite_path(const SweepOptions& options) {
+  if (!options.scene.empty() && !find_scene(options.scene)) {
+    std::vector<std::string> names;
+    for (const auto& type : scene_types()) names.emplace_back(type.name);
+    throw unknown_name("scene", options.scene, names);
+  }
+  if (!options.config.empty()) return options.config;
+  check_profile(options.profile);
+  return source_path("configs/" + options.profile + ".json");
+}
+
+Suite load_suite(const SweepOptions& options) {
+  if (!options.solver.empty()) check_solver_pattern(options.solver);
+  const std::string path = suite_path(options);
+  Suite suite = read_suite(path);
+  std::vector<std::string> kinds = sweep_kinds();
+  if (std::find(kinds.begin(), kinds.end(), options.sweep) == kinds.end()) {
+    kinds.emplace_back("stability");
+    throw unknown_name("sweep", options.sweep, kinds);
+  }
+  std::erase_if(suite.sweeps, [&](const SweepSpec& s) {
+    return s.sweep != options.sweep || (!options.scene.empty() && s.scene != options.scene);
+  });
+  if (suite.sweeps.empty())
+    throw UsageError("'" + path + "' has no such sweep: --sweep " + options.sweep + " --scene " +
+                     options.scene);
+  if (options.step != "search" && options.step != "adaptive")
+    throw unknown_name("step", options.step, {"search", "adaptive"});
+  if (options.step == "adaptive") {
+    if (options.sweep == "step")
+      throw UsageError("--step adaptive does not go with --sweep step, whose steps are fixed");
+    for (SweepSpec& sweep : suite.sweeps) sweep.adaptive = true;
+    suite.name += "-adaptive";  // files and figures of their own
+  }
+  if (options.reps > 0) suite.reps = options.reps;
+  if (options.timeout > 0) suite.timeout = options.timeout;
+  if (options.max_error > 0) suite.max_error = options.max_error;
+  if (options.seed >= 0) suite.seed = static_cast<std::uint64_t>(options.seed);
+  // A solver that is no contestant joins when it is asked for by its own name.
+  if (const auto* backend = inextensible::find_backend(options.solver);
+      backend && !backend->contestant) {
+    for (SweepSpec& sweep : suite.sweeps) sweep.solvers = {options.solver};
+  }
+  return suite;
+}
+
+SweepFilters make_filters(const SweepOptions& options) {
+  SweepFilters filters;
+  if (!options.solver.empty()) filters.solver = pattern("--solver", options.solver);
+  if (!options.filter.empty()) filters.include = pattern("--filter", options.filter);
+  if (!options.exclude.empty()) filters.exclude = pattern("--exclude", options.exclude);
+  return filters;
+}
+
+std::vector<std::pair<std::string, SceneParameters>> without_reference(
+    const std::vector<Search>& searches, ReferenceShelf& shelf) {
+  std::map<std::string, std::pair<std::string, SceneParameters>> missing;
+  for (const Search& search : searches) {
+    const auto& [scene, parameters] = std::pair(search.base.scene, search.base.scene_parameters);
+    if (!shelf.find(scene, parameters))
+      missing[reference_name(scene, parameters)] = {scene, parameters};
+  }
+  std::vector<std::pair<std::string, SceneParameters>> list;
+  list.reserve(missing.size());
+  for (auto& [name, scene] : missing) list.push_back(std::move(scene));
+  return list;
+}
+
+}  // namespace harness
