@@ -180,8 +180,8 @@ void add_sweep_command(CLI::App& app, Chosen& chosen, const std::vector<std::str
       ->check(CLI::PositiveNumber)
       ->type_name("S");
   app.add_option("--step", options.step,
-                 "search (each solver's best step, default) or adaptive (one run from the coarsest "
-                 "step, halved where the solver refuses it)")
+                 "search (each solver's best step, default), all (the whole ladder) or adaptive "
+                 "(one run from the coarsest step, halved where the solver refuses it)")
       ->type_name("HOW");
   app.add_option("--max-error", options.max_error,
                  "also find the fastest step within this trajectory error, over the scene's size")

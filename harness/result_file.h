@@ -10,10 +10,6 @@
 
 namespace harness {
 
-// null for a number that is not finite: JSON has no word for it.
-nlohmann::json number(double value);
-nlohmann::json to_json(const inextensible::WorkCounters& work);
-nlohmann::json to_json(const PointResult& point);
 // context: machine_context() as it was before the sweep ran. references:
 // ReferenceShelf::summaries().
 nlohmann::json result_document(nlohmann::json context, const Suite& suite,

@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 
+#include "point_json.h"
 #include "registry.h"
 #include "result_file.h"
 #include "text.h"

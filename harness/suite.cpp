@@ -184,9 +184,12 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
     Reader ladder(*steps, where + ": 'steps'");
     spec.coarsest = ladder.number("coarsest", spec.coarsest, 0);
     spec.finest = ladder.number("finest", spec.finest, 0);
-    if (const json* adaptive = ladder.find("adaptive")) {
-      if (!adaptive->is_boolean()) ladder.fail_at("adaptive", *adaptive, "true or false");
-      spec.adaptive = adaptive->get<bool>();
+    for (const auto& [key, flag] :
+         {std::pair("adaptive", &spec.adaptive), std::pair("all", &spec.every_step)}) {
+      const json* given = ladder.find(key);
+      if (!given) continue;
+      if (!given->is_boolean()) ladder.fail_at(key, *given, "true or false");
+      *flag = given->get<bool>();
     }
     ladder.finish();
     if (spec.finest > spec.coarsest)
@@ -194,6 +197,9 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
   }
   if (spec.adaptive && spec.sweep == "step")
     throw UsageError(where + ": a step sweep has fixed steps, so no 'adaptive' ones");
+  if (spec.sweep == "step") spec.every_step = true;
+  if (spec.adaptive && spec.every_step)
+    throw UsageError(where + ": 'steps': 'adaptive' and 'all' exclude each other");
   if (const json* options = reader.find("solver_options")) {
     if (!options->is_object()) reader.fail_at("solver_options", *options, "an object { ... }");
     for (const auto& [name, value] : options->items()) {
@@ -259,15 +265,18 @@ json to_json(const Suite& suite) {
   for (const SweepSpec& s : suite.sweeps) {
     json options = json::object();
     for (const auto& [solver, settings] : s.solver_options) options[solver] = to_json(settings);
-    sweeps.push_back(
-        {{"sweep", s.sweep},
-         {"scene", s.scene},
-         {"solvers", s.solvers},
-         {"limits", s.limits},
-         {"resolutions", s.resolutions},
-         {"steps", {{"coarsest", s.coarsest}, {"finest", s.finest}, {"adaptive", s.adaptive}}},
-         {"scene_parameters", s.scene_parameters},
-         {"solver_options", options}});
+    sweeps.push_back({{"sweep", s.sweep},
+                      {"scene", s.scene},
+                      {"solvers", s.solvers},
+                      {"limits", s.limits},
+                      {"resolutions", s.resolutions},
+                      {"steps",
+                       {{"coarsest", s.coarsest},
+                        {"finest", s.finest},
+                        {"adaptive", s.adaptive},
+                        {"all", s.every_step}}},
+                      {"scene_parameters", s.scene_parameters},
+                      {"solver_options", options}});
   }
   return {{"name", suite.name},       {"description", suite.description},
           {"profile", suite.profile}, {"seed", suite.seed},

@@ -165,7 +165,7 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
         base.seed = suite.seed;
         base.adaptive = sweep.adaptive;
         for (const double limit : limits) {
-          Search search{base, {}, family};
+          Search search{base, {}, family, sweep.every_step};
           search.base.strain_limit = limit;
           for (const double step : step_ladder(sweep)) {
             search.base.step = step;
@@ -205,7 +205,7 @@ SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
         events.point(outcome.points.back(), s, searches.size());
         continue;
       }
-      const bool every_step = search.base.sweep == "step";
+      const bool every_step = search.every_step;
       double best_run = 1e300;  // s
       std::map<std::size_t, std::size_t> point_of_rung;
       const auto run = [&](std::size_t rung) -> const PointResult& {

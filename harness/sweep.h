@@ -26,6 +26,7 @@ struct Search {
   // Searches of one family (same sweep, scene and solver) come in the order of their axis; each
   // starts from the step that was best in the one before.
   std::size_t family = 0;
+  bool every_step = false;  // the whole ladder, whatever the times are
 };
 
 // Throws UsageError if no point is left.

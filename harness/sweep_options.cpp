@@ -76,13 +76,16 @@ Suite load_suite(const SweepOptions& options) {
   if (suite.sweeps.empty())
     throw UsageError("'" + path + "' has no such sweep: --sweep " + options.sweep + " --scene " +
                      options.scene);
-  if (options.step != "search" && options.step != "adaptive")
-    throw unknown_name("step", options.step, {"search", "adaptive"});
+  if (options.step != "search" && options.step != "adaptive" && options.step != "all")
+    throw unknown_name("step", options.step, {"search", "adaptive", "all"});
   if (options.step == "adaptive") {
     if (options.sweep == "step")
       throw UsageError("--step adaptive does not go with --sweep step, whose steps are fixed");
     for (SweepSpec& sweep : suite.sweeps) sweep.adaptive = true;
     suite.name += "-adaptive";  // files and figures of their own
+  } else if (options.step == "all" && options.sweep != "step") {
+    for (SweepSpec& sweep : suite.sweeps) sweep.every_step = true;
+    suite.name += "-all";
   }
   if (options.reps > 0) suite.reps = options.reps;
   if (options.timeout > 0) suite.timeout = options.timeout;

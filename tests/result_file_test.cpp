@@ -14,6 +14,7 @@
 
 #include "context.h"
 #include "files.h"
+#include "point_json.h"
 #include "stability.h"
 #include "sweep.h"
 #include "usage_error.h"
@@ -59,9 +60,13 @@ Suite tiny_suite() {
   return suite;
 }
 
-TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchema) {
+TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchemaAndComesBackAsItWas) {
   const Suite suite = tiny_suite();
   const SweepOutcome outcome = run_sweep(suite, plan(suite, {}), {});
+  for (const PointResult& point : outcome.points) {
+    const json written = json::parse(to_json(point).dump());
+    EXPECT_EQ(to_json(point_of(written)), written) << point.spec.id();
+  }
   const json document = result_document(machine_context(), suite, {"bench"}, true, outcome.points);
   EXPECT_EQ(misfits(json::parse(document.dump()), "configs/result.schema.json"), "");
   for (const auto& backend : inextensible::backends()) {

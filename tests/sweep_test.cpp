@@ -63,6 +63,16 @@ TEST(StepSearch, FindsTheFastestStepAndStopsAfterTwoRises) {
     EXPECT_EQ(point.best, std::abs(point.spec.step - 1.0 / 200) < 1e-9);
 }
 
+TEST(StepSearch, RunsTheWholeLadderWhereAsked) {
+  Suite suite = one_family();
+  suite.sweeps[0].every_step = true;
+  std::vector<double> steps;
+  const auto outcome = run_sweep(suite, plan(suite, {}), {}, fake(1.0 / 50, 1.0 / 100, &steps));
+  EXPECT_EQ(steps.size(), 18u);  // 1/25 to 1/6400, two limits
+  for (const auto& point : outcome.points)
+    EXPECT_EQ(point.best, std::abs(point.spec.step - 1.0 / 100) < 1e-9);
+}
+
 TEST(StepSearch, GoesFinerThroughFailuresUntilAStepWorks) {
   Suite suite = one_family();
   suite.sweeps[0].limits = {0.01};
