@@ -197,7 +197,6 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
   }
   if (spec.adaptive && spec.sweep == "step")
     throw UsageError(where + ": a step sweep has fixed steps, so no 'adaptive' ones");
-  if (spec.sweep == "step") spec.every_step = true;
   if (spec.adaptive && spec.every_step)
     throw UsageError(where + ": 'steps': 'adaptive' and 'all' exclude each other");
   if (const json* options = reader.find("solver_options")) {

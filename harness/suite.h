@@ -18,7 +18,7 @@ struct SweepSpec {
   std::vector<int> resolutions;  // resolution sweep: the axis; the others: one
   double coarsest = 1.0 / 25, finest = 1.0 / 25600;  // s, ends of the step ladder
   bool adaptive = false;    // a step controller from `coarsest` down, instead of the ladder
-  bool every_step = false;  // the whole ladder, as step sweeps do, instead of a search
+  bool every_step = false;  // the whole ladder instead of a search; step sweeps always do
   SceneParameters scene_parameters;
   std::map<std::string, inextensible::Settings> solver_options;
 };

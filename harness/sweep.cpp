@@ -165,7 +165,7 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
         base.seed = suite.seed;
         base.adaptive = sweep.adaptive;
         for (const double limit : limits) {
-          Search search{base, {}, family, sweep.every_step};
+          Search search{base, {}, family, sweep.every_step || sweep.sweep == "step"};
           search.base.strain_limit = limit;
           for (const double step : step_ladder(sweep)) {
             search.base.step = step;
