@@ -1,27 +1,23 @@
-// bench --sweep: runs a suite's sweeps, or the matrix of hard cases.
+// bench --sweep strain|resolution|step: runs a suite's sweeps.
 #include <unistd.h>
 
+#include <filesystem>
 #include <iostream>
-#include <sstream>
 
 #include "commands.h"
 #include "context.h"
 #include "files.h"
+#include "isolation.h"
+#include "journal.h"
 #include "report.h"
 #include "result_file.h"
-#include "stability.h"
-#include "sweep_options.h"
+#include "sentinel.h"
+#include "sweep_command.h"
 #include "text.h"
 #include "usage_error.h"
 
 namespace harness {
 namespace {
-
-struct SweepCommand : SweepOptions {
-  std::string hard_case, out;
-  std::vector<std::string> values;
-  bool dry_run = false, no_plots = false;
-};
 
 // Upper bounds, told before anything runs.
 void dry_run(const Suite& suite, const std::vector<Search>& searches) {
@@ -58,9 +54,103 @@ void tell_missing_references(const Suite& suite, const std::vector<Search>& sear
             << " (bench reference makes them)\n";
 }
 
-int sweep(const SweepCommand& options, const std::vector<std::string>& command) {
+// What chooses points beside the suite.
+nlohmann::json selection(const SweepCommand& options) {
+  return {{"solver", options.solver},
+          {"filter", options.filter},
+          {"exclude", options.exclude},
+          {"shard", options.shard}};
+}
+
+// What is known already: from the journal of a run that did not finish, or from the result of one
+// that did.
+struct Past {
+  Memory memory;
+  nlohmann::json identity, context;  // null: there is none
+  bool finished = false, in_journal = false;
+};
+
+Past look_back(const SweepCommand& options, const std::string& out, const Journal& journal) {
+  const bool again = options.resume || options.rerun_failed;
+  if (journal.points() > 0) {
+    if (again)
+      return {journal.memory(), journal.header().at("identity"), journal.header().at("context"),
+              false, true};
+    if (!options.force)
+      throw UsageError("'" + journal.path() + "' holds " + std::to_string(journal.points()) +
+                       " points of a run that did not finish: --resume goes on with it, --force "
+                       "starts anew");
+  } else if (again && std::filesystem::exists(out)) {
+    const nlohmann::json result = read_result(out);
+    if (result.at("schema") != "inextensible-bench/1")
+      throw UsageError("'" + out + "' is the result of a stability sweep: nothing to resume");
+    Past past;
+    past.memory.learn(result);
+    past.context = result.at("context");
+    past.identity = identity(past.context, past.context.at("suite"),
+                             past.context.value("selection", nlohmann::json::object()));
+    past.finished = result.at("complete");
+    return past;
+  }
+  return {};
+}
+
+void check_same(const Past& past, const nlohmann::json& mine, const std::string& out, bool force) {
+  if (past.identity.is_null() || force) return;
+  const std::string what = difference(past.identity, mine);
+  if (!what.empty())
+    throw UsageError("'" + out + "' is of another build or suite: " + what +
+                     "; --resume --force goes on all the same");
+}
+
+// The journal then holds what `memory` does.
+void begin_journal(Journal& journal, const Past& past, const Memory& memory,
+                   const nlohmann::json& header) {
+  if (!past.in_journal) journal.start(header);
+  for (const auto& [key, known] : past.memory.points) {
+    if (past.in_journal) {
+      if (!memory.points.contains(key)) journal.forget(key);
+    } else if (memory.points.contains(key)) {
+      journal.add(known.point);
+      for (const auto& seconds : known.repetitions) journal.add_repetition(key, seconds);
+    }
+  }
+}
+
+SweepRunners watched(SweepRunners inner, Sentinel& sentinel) {
+  SweepRunners runners = inner;
+  runners.run = [run = inner.run, &sentinel](const auto& spec, const auto& limits, auto guess) {
+    sentinel.sample_if_due();
+    return run(spec, limits, guess);
+  };
+  runners.repeat = [repeat = inner.repeat, &sentinel](auto& point, const auto& limits) {
+    sentinel.sample_if_due();
+    repeat(point, limits);
+  };
+  return runners;
+}
+
+void warn_if_busy(const nlohmann::json& context) {
+  const auto& load = context.at("load_avg");
+  const double processors = context.at("num_cpus");
+  if (!load.empty() && load.at(0).get<double>() > 0.5 * processors)
+    std::cerr << "bench: the machine is busy (load " << number_text(load.at(0), 2) << " on "
+              << processors << " processors): times will be noisy\n";
+}
+
+void tell_noise(const nlohmann::json& context) {
+  if (!context.at("sentinel").at("noisy").get<bool>()) return;
+  std::cout << "\nNOISY: a fixed kernel's time varied by "
+            << number_text(100 * context.at("sentinel").at("spread").get<double>(), 2)
+            << " % during the run; counters and errors stand, compare times with care\n";
+}
+
+}  // namespace
+
+int sweep_command(const SweepCommand& options, const std::vector<std::string>& command) {
   const Suite suite = load_suite(options);
-  const auto searches = plan(suite, make_filters(options));
+  auto searches = plan(suite, make_filters(options));
+  if (!options.shard.empty()) searches = shard(std::move(searches), parse_shard(options.shard));
   if (options.dry_run) {
     dry_run(suite, searches);
     return success;
@@ -70,7 +160,29 @@ int sweep(const SweepCommand& options, const std::vector<std::string>& command) 
           ? source_path("results/local/" + suite.name + "-" + options.sweep + ".json")
           : options.out;
   check_writable(out);
-  const nlohmann::json context = machine_context();
+  nlohmann::json context = machine_context();
+  context["selection"] = selection(options);
+  const nlohmann::json mine = identity(context, to_json(suite), context["selection"]);
+  Journal journal(out);
+  const Past past = look_back(options, out, journal);
+  check_same(past, mine, past.in_journal ? journal.path() : out, options.force);
+  if (past.finished && !options.rerun_failed) {
+    std::cout << out << " is complete already\n";
+    return success;
+  }
+  Memory memory = past.memory;
+  if (options.rerun_failed) memory.forget_failures();
+  SweepRunners runners;
+  const auto shelf = std::make_shared<ReferenceShelf>(source_path("results/references"));
+  runners.references = shelf;
+  tell_missing_references(suite, searches, *shelf);
+  warn_if_busy(context);
+  if (!past.identity.is_null())
+    context["resumed"] = {{"from", past.context.at("date")},
+                          {"points", memory.points.size()},
+                          {"difference", difference(past.identity, mine)}};
+  begin_journal(journal, past, memory,
+                {{"pid", getpid()}, {"identity", mine}, {"context", context}});
 
   catch_interrupts();
   Progress progress(std::cerr, isatty(STDERR_FILENO) == 1);
@@ -80,92 +192,33 @@ int sweep(const SweepCommand& options, const std::vector<std::string>& command) 
   };
   events.repetition = [&](std::size_t done, std::size_t all) { progress.repetition(done, all); };
   events.interrupted = interrupted;
-  SweepRunners runners;
-  runners.references = std::make_shared<ReferenceShelf>(source_path("results/references"));
-  tell_missing_references(suite, searches, *runners.references);
-  const SweepOutcome outcome = run_sweep(suite, searches, events, runners);
+  Sentinel sentinel;
+  sentinel.sample();
+  const ProcessorTicks ticks = processor_ticks();
+  if (!options.in_process) runners = isolated(std::move(runners), options.memory);
+  const SweepOutcome outcome =
+      run_sweep(suite, searches, events,
+                journaled(watched(std::move(runners), sentinel), journal, std::move(memory)));
   progress.finish();
+  sentinel.sample();
+  context["sentinel"] = sentinel.to_json();
+  context["stolen"] = stolen_share(ticks, processor_ticks());
 
   write_atomically(out, result_document(context, suite, command, outcome.complete, outcome.points,
-                                        runners.references->summaries())
+                                        shelf->summaries())
                                 .dump(1) +
                             "\n");
   print_table(std::cout, outcome.points);
+  tell_noise(context);
   std::cout << "\nwritten:\n" << out << std::endl;
-  if (!outcome.complete) return interrupted_exit;
+  if (!outcome.complete) {
+    std::cerr << "bench: interrupted; the same command with --resume goes on from here\n";
+    return interrupted_exit;
+  }
+  journal.remove();
   if (!options.no_plots && draw({out}) != 0) std::cerr << "bench: the figures could not be drawn\n";
   return success;
 }
-
-// "ratios=1e3,1e5" into `values`.
-void set_values(HardCaseValues& values, const std::string& given) {
-  const auto equals = given.find('=');
-  const std::string name = given.substr(0, equals);
-  const auto place = values.find(name);
-  if (place == values.end()) {
-    std::vector<std::string> names;
-    for (const auto& entry : values) names.push_back(entry.first);
-    throw unknown_name("value of hard cases", name, names);
-  }
-  place->second.clear();
-  std::istringstream list(equals == std::string::npos ? "" : given.substr(equals + 1));
-  for (std::string item; std::getline(list, item, ',');) {
-    std::size_t read = 0;
-    try {
-      place->second.push_back(std::stod(item, &read));
-    } catch (const std::exception&) {
-      read = 0;
-    }
-    if (read == 0 || read != item.size())
-      throw UsageError("--values " + given + ": '" + item + "' is not a number");
-  }
-  if (place->second.empty())
-    throw UsageError("--values " + given + ": must be NAME=NUMBER,NUMBER,...");
-}
-
-// The matrix of hard cases; its cases are in the program, not in a suite.
-int stability(const SweepCommand& options, const std::vector<std::string>& command) {
-  check_profile(options.profile);
-  StabilityFilters filters;
-  if (!options.solver.empty()) {
-    check_solver_pattern(options.solver);
-    filters.solver = pattern("--solver", options.solver);
-  }
-  if (!options.hard_case.empty()) filters.hard_case = pattern("--case", options.hard_case);
-  HardCaseValues values = hard_case_values(options.profile);
-  for (const std::string& given : options.values) set_values(values, given);
-  const auto cases = hard_cases(values);
-  const std::string out = options.out.empty()
-                              ? source_path("results/local/" + options.profile + "-stability.json")
-                              : options.out;
-  check_writable(out);
-  const nlohmann::json context = machine_context();
-  catch_interrupts();
-  StabilityEvents events;
-  events.interrupted = interrupted;
-  const bool terminal = isatty(STDERR_FILENO) == 1;
-  events.cell = [terminal](const StabilityCell& cell, std::size_t done, std::size_t all) {
-    if (terminal) {
-      std::cerr << "\r\033[K[" << done << '/' << all << "] " << cell.hard_case->name << '/'
-                << cell.solver << (done == all ? "\n" : "");
-    } else if (done % 100 == 0 || done == all) {
-      std::cerr << '[' << done << '/' << all << "]\n";
-    }
-  };
-  events.largest_step = [](const LargestStep& found) {
-    std::cerr << "largest step, " << found.scene << '/' << found.solver << '\n';
-  };
-  const std::uint64_t seed = options.seed < 0 ? 1 : static_cast<std::uint64_t>(options.seed);
-  const StabilityOutcome outcome = run_stability(cases, filters, seed, events);
-  write_atomically(out, stability_document(context, outcome, seed, command).dump(1) + "\n");
-  print_stability(std::cout, outcome);
-  std::cout << "\nwritten:\n" << out << std::endl;
-  if (!outcome.complete) return interrupted_exit;
-  if (!options.no_plots && draw({out}) != 0) std::cerr << "bench: the figure could not be drawn\n";
-  return outcome.as_expected() ? success : unexpected_outcome;
-}
-
-}  // namespace
 
 void add_sweep_command(CLI::App& app, Chosen& chosen, const std::vector<std::string>& command) {
   const auto given = std::make_shared<SweepCommand>();
@@ -173,12 +226,31 @@ void add_sweep_command(CLI::App& app, Chosen& chosen, const std::vector<std::str
   add_selection(app, options);
   app.add_option("--out", options.out, "result file; default results/local/<profile>-<axis>.json")
       ->type_name("FILE");
-  app.add_option("--reps", options.reps, "runs of each best point")
-      ->check(CLI::Range(1, 1000))
+  app.add_option("--reps", options.reps,
+                 "runs of each best point; 5..40: more until the median is known to --rel-ci")
       ->type_name("N");
+  app.add_option(
+         "--rel-ci", options.rel_ci,
+         "half width of the median's 95 % confidence interval over the median, default 0.02")
+      ->check(CLI::PositiveNumber)
+      ->type_name("R");
   app.add_option("--timeout", options.timeout, "seconds a point may take")
       ->check(CLI::PositiveNumber)
       ->type_name("S");
+  app.add_option("--memory", options.memory, "address space a point may have, e.g. 4G")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("BYTES");
+  app.add_flag("--resume", options.resume, "go on with an interrupted run of the same --out");
+  app.add_flag("--rerun-failed", options.rerun_failed,
+               "as --resume, also after a finished run, and run again what failed");
+  app.add_flag(
+      "--force", options.force,
+      "drop an interrupted run; with --resume: go on though it is of another build or suite");
+  app.add_flag("--in-process", options.in_process,
+               "no child process a point, for debuggers and profilers");
+  app.add_option("--shard", options.shard,
+                 "i/N: the i-th of N parts; all solvers of a scene and size are in one of them")
+      ->type_name("I/N");
   app.add_option("--step", options.step,
                  "search (each solver's best step, default), all (the whole ladder) or adaptive "
                  "(one run from the coarsest step, halved where the solver refuses it)")
@@ -206,10 +278,10 @@ void add_sweep_command(CLI::App& app, Chosen& chosen, const std::vector<std::str
       if (given->sweep.empty())
         throw UsageError(
             "nothing to do: give --sweep strain, resolution, step or stability (see bench --help)");
-      if (given->sweep == "stability") return stability(*given, command);
+      if (given->sweep == "stability") return stability_command(*given, command);
       if (!given->hard_case.empty() || !given->values.empty())
         throw UsageError("--case and --values go with --sweep stability");
-      return sweep(*given, command);
+      return sweep_command(*given, command);
     };
   });
 }

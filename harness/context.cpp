@@ -18,6 +18,7 @@
 #include <thread>
 
 #include "build_info.h"  // made by CMake
+#include "files.h"
 
 extern "C" {  // OpenBLAS; its own header clashes with GSL's
 void openblas_set_num_threads(int threads);
@@ -109,6 +110,7 @@ json machine_context() {
   const std::string commit = git("rev-parse HEAD");
   const json build = {{"git", commit},
                       {"dirty", !git("status --porcelain --untracked-files=no").empty()},
+                      {"binary", fnv1a(read_file("/proc/self/exe", "program"))},
                       {"compiler", INEXTENSIBLE_COMPILER},
                       {"flags", INEXTENSIBLE_FLAGS},
                       {"type", INEXTENSIBLE_BUILD_TYPE}};
@@ -135,6 +137,7 @@ json machine_context() {
       {"mhz_per_cpu", static_cast<int>(std::atof(cpu_field("cpu MHz").c_str()))},
       {"cpu_model", cpu},
       {"cpu_scaling_enabled", !governor.empty() && governor != "performance"},
+      {"cpu_scaling_governor", governor},
       {"caches", caches()},
       {"load_avg", load_known ? json(load) : json::array()},
       {"library_build_type", std::string(INEXTENSIBLE_BUILD_TYPE) == "Debug" ? "debug" : "release"},

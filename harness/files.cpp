@@ -13,6 +13,12 @@
 
 namespace harness {
 
+FileError::FileError(const std::string& path, const std::string& verb)
+    : FileError(path, verb, std::strerror(errno)) {}
+
+FileError::FileError(const std::string& path, const std::string& verb, const std::string& reason)
+    : std::runtime_error("cannot " + verb + " '" + path + "': " + reason) {}
+
 std::string read_file(const std::string& path, const std::string& what) {
   std::ifstream file(path);
   std::ostringstream text;
@@ -40,19 +46,23 @@ void check_writable(const std::string& path) {
 void write_atomically(const std::string& path, const std::string& text) {
   const std::string trial = path + ".partial";
   const auto fail = [&] {
-    throw std::runtime_error("cannot write '" + trial + "': " + std::strerror(errno));
+    const FileError error(path, "write");
+    unlink(trial.c_str());
+    throw error;
   };
   const int file = open(trial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) fail();
-  for (std::size_t done = 0; done < text.size();) {
+  bool whole = true;
+  for (std::size_t done = 0; whole && done < text.size();) {
     const ssize_t written = write(file, text.data() + done, text.size() - done);
-    if (written < 0) {
-      close(file);
-      fail();
-    }
-    done += static_cast<std::size_t>(written);
+    whole = written >= 0;
+    if (whole) done += static_cast<std::size_t>(written);
   }
-  if (fsync(file) != 0 || close(file) != 0 || rename(trial.c_str(), path.c_str()) != 0) fail();
+  whole = whole && fsync(file) == 0;
+  const int reason = errno;
+  close(file);
+  errno = reason;
+  if (!whole || rename(trial.c_str(), path.c_str()) != 0) fail();
 }
 
 }  // namespace harness

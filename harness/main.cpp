@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "context.h"
+#include "files.h"
 #include "usage_error.h"
 
 namespace harness {
@@ -45,6 +46,7 @@ int run(int argc, char** argv) {
   add_reference_command(app, chosen);
   add_claims_command(app, chosen);
   add_list_command(app, chosen);
+  add_merge_command(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -65,6 +67,9 @@ int main(int argc, char** argv) {
   } catch (const harness::UsageError& error) {
     std::cerr << "bench: " << error.what() << '\n';
     return harness::usage_error;
+  } catch (const harness::FileError& error) {
+    std::cerr << "bench: " << error.what() << '\n';
+    return harness::internal_error;
   } catch (const std::exception& error) {
     std::cerr << "bench: internal error: " << error.what() << '\n';
     return harness::internal_error;

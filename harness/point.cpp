@@ -1,5 +1,6 @@
 #include "point.h"
 
+#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_statistics.h>
 
 #include <algorithm>
@@ -46,6 +47,17 @@ double quantile(std::vector<double> samples, double fraction) {
   if (samples.empty()) return unknown;
   std::sort(samples.begin(), samples.end());
   return gsl_stats_quantile_from_sorted_data(samples.data(), 1, samples.size(), fraction);
+}
+
+double median_uncertainty(std::vector<double> samples) {
+  std::sort(samples.begin(), samples.end());
+  const auto n = static_cast<unsigned>(samples.size());
+  // The median lies below the k-th smallest sample with the chance of fewer than k heads in n
+  // throws of a coin.
+  unsigned k = 0;
+  while (2 * (k + 1) <= n && gsl_cdf_binomial_P(k, 0.5, n) <= 0.025) ++k;
+  if (k == 0) return std::numeric_limits<double>::infinity();
+  return 0.5 * (samples[n - k] - samples[k - 1]) / quantile(samples, 0.5);
 }
 
 double PointResult::median_seconds() const { return quantile(samples, 0.5); }

@@ -12,6 +12,7 @@
 #include <new>
 #include <sstream>
 
+#include "child_process.h"
 #include "judge.h"
 #include "step_controller.h"
 #include "text.h"
@@ -92,6 +93,7 @@ class PointRunner {
       controller.emplace(*run.stepper,
                          inextensible::StepController::Settings{.largest = spec_.step});
     }
+    if (limits_.heartbeat) limits_.heartbeat->step = 0;
     for (int i = 0; i < steps_;) {
       if (judged) judge.before(state, spec_.step);
       const auto before = Clock::now();
@@ -120,6 +122,10 @@ class PointRunner {
         }
       }
       if (limits_.interrupted && limits_.interrupted()) throw Interrupted();
+      if (limits_.heartbeat) {
+        limits_.heartbeat->step = i;
+        limits_.heartbeat->time = state.time;
+      }
       const bool slow = run.seconds > limits_.hopeless;
       if ((slow || since(start_) > limits_.timeout) && i < steps_) {
         std::ostringstream text;
@@ -141,7 +147,10 @@ class PointRunner {
     return run;
   }
 
-  void restart_clock() { start_ = Clock::now(); }
+  void restart_clock() {
+    start_ = Clock::now();
+    if (limits_.heartbeat) limits_.heartbeat->restart();
+  }
   bool out_of_time() const { return since(start_) > limits_.timeout; }
   const inextensible::Backend& backend() const { return backend_; }
   const PointSpec& spec() const { return spec_; }

@@ -9,11 +9,14 @@
 
 namespace harness {
 
+struct Heartbeat;
+
 struct RunLimits {
   double timeout = 60;      // s of wall time, for calibration and for the measured run each
   double hopeless = 1e300;  // s of stepping after which a run cannot be the best any more
   std::function<bool()> interrupted = nullptr;           // asked after every step
   std::shared_ptr<ReferenceShelf> references = nullptr;  // null: no errors against references
+  Heartbeat* heartbeat = nullptr;                        // told of every step; see child_process.h
 };
 
 class Interrupted : public std::exception {};

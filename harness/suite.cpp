@@ -238,6 +238,8 @@ Suite parse_suite(const std::string& text, const std::string& path) {
   suite.profile = reader.text("profile", "custom");
   suite.seed = static_cast<std::uint64_t>(reader.number("seed", 1, 0, true));
   suite.reps = static_cast<int>(reader.number("reps", 3, 1, true));
+  suite.most_reps = static_cast<int>(reader.number("most_reps", 0, 0, true));
+  suite.rel_ci = reader.number("rel_ci", suite.rel_ci, 0);
   suite.timeout = reader.number("timeout", 60, 0);
   suite.max_error = reader.number("max_error", 0, 0);
   const json* sweeps = reader.find("sweeps");
@@ -277,10 +279,13 @@ json to_json(const Suite& suite) {
                       {"scene_parameters", s.scene_parameters},
                       {"solver_options", options}});
   }
-  return {{"name", suite.name},       {"description", suite.description},
-          {"profile", suite.profile}, {"seed", suite.seed},
-          {"reps", suite.reps},       {"timeout", suite.timeout},
-          {"sweeps", sweeps},         {"max_error", suite.max_error}};
+  json document = {{"name", suite.name},       {"description", suite.description},
+                   {"profile", suite.profile}, {"seed", suite.seed},
+                   {"reps", suite.reps},       {"most_reps", suite.most_reps},
+                   {"rel_ci", suite.rel_ci},   {"timeout", suite.timeout},
+                   {"sweeps", sweeps}};
+  if (suite.max_error > 0) document["max_error"] = suite.max_error;
+  return document;
 }
 
 }  // namespace harness

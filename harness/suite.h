@@ -26,7 +26,9 @@ struct SweepSpec {
 struct Suite {
   std::string name, description, profile;
   std::uint64_t seed = 1;
-  int reps = 3;
+  int reps = 3;          // runs of each best point, the first one included
+  int most_reps = 0;     // above reps: more of them until the median is known to rel_ci
+  double rel_ci = 0.02;  // half width of the median's 95 % confidence interval over the median
   double timeout = 60;   // s a point
   double max_error = 0;  // trajectory error that `best_at_error` points respect; 0: none is sought
   std::vector<SweepSpec> sweeps;
@@ -38,6 +40,7 @@ std::vector<std::string> sweep_kinds();
 Suite read_suite(const std::string& path);
 // The same of a text; `path` is for messages.
 Suite parse_suite(const std::string& text, const std::string& path);
+// parse_suite() reads it back.
 nlohmann::json to_json(const Suite& suite);
 
 nlohmann::json to_json(const inextensible::Settings& settings);

@@ -122,9 +122,17 @@ void repeat_best(const Suite& suite, std::vector<PointResult>& points, const Swe
   const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
                                                                  gsl_rng_free);
   gsl_rng_set(random.get(), suite.seed);
-  const std::size_t all = order.size() * static_cast<std::size_t>(suite.reps - 1);
+  const int most = std::max(suite.reps, suite.most_reps);
   std::size_t done = 0;
-  for (int rep = 1; rep < suite.reps; ++rep) {
+  for (int rep = 1; rep < most; ++rep) {
+    if (rep >= suite.reps) {
+      std::erase_if(order, [&](std::size_t i) {
+        return median_uncertainty(points[i].samples) <= suite.rel_ci;
+      });
+      if (order.empty()) return;
+    }
+    const std::size_t all = done + order.size() * static_cast<std::size_t>(
+                                                      (rep < suite.reps ? suite.reps : most) - rep);
     gsl_ran_shuffle(random.get(), order.data(), order.size(), sizeof(std::size_t));
     for (const std::size_t i : order) {
       runners.repeat(points[i], {suite.timeout, 1e300, events.interrupted, nullptr});
@@ -173,12 +181,34 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
           }
           if (!search.ladder.empty()) searches.push_back(std::move(search));
         }
+        ++family;
       }
-      ++family;
     }
   }
   if (searches.empty())
     throw UsageError("no point is left: the filters exclude every point of the suite");
+  return searches;
+}
+
+std::vector<Search> shard(std::vector<Search> searches, const Shard& part) {
+  // Work grows with constraints times limits.
+  std::map<std::pair<std::string, SceneParameters>, double> load;
+  const auto group = [](const Search& s) {
+    return std::pair(s.base.scene, s.base.scene_parameters);
+  };
+  for (const Search& s : searches) load[group(s)] += s.base.constraints;
+  std::vector<std::pair<double, std::pair<std::string, SceneParameters>>> largest;
+  for (const auto& [name, size] : load) largest.emplace_back(size, name);
+  std::stable_sort(largest.begin(), largest.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<double> filled(part.count, 0);
+  std::map<std::pair<std::string, SceneParameters>, std::size_t> place;
+  for (const auto& [size, name] : largest) {
+    const auto least = std::min_element(filled.begin(), filled.end());
+    *least += size;
+    place[name] = static_cast<std::size_t>(least - filled.begin()) + 1;
+  }
+  std::erase_if(searches, [&](const Search& s) { return place.at(group(s)) != part.index; });
   return searches;
 }
 

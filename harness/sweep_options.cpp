@@ -61,6 +61,18 @@ std::string suite_path(const SweepOptions& options) {
   return source_path("configs/" + options.profile + ".json");
 }
 
+// "5" or "5..40".
+std::pair<int, int> parse_reps(const std::string& text) {
+  static const std::regex form(R"((\d{1,4})(?:\.\.(\d{1,4}))?)");
+  std::smatch match;
+  if (!std::regex_match(text, match, form) || std::stoi(match[1]) < 1)
+    throw UsageError("--reps is '" + text + "', must be a number from 1 on, or two: 5..40");
+  const int least = std::stoi(match[1]), most = match[2].matched ? std::stoi(match[2]) : 0;
+  if (match[2].matched && most < least)
+    throw UsageError("--reps is '" + text + "', whose second number is below the first");
+  return {least, most};
+}
+
 Suite load_suite(const SweepOptions& options) {
   if (!options.solver.empty()) check_solver_pattern(options.solver);
   const std::string path = suite_path(options);
@@ -87,7 +99,8 @@ Suite load_suite(const SweepOptions& options) {
     for (SweepSpec& sweep : suite.sweeps) sweep.every_step = true;
     suite.name += "-all";
   }
-  if (options.reps > 0) suite.reps = options.reps;
+  if (!options.reps.empty()) std::tie(suite.reps, suite.most_reps) = parse_reps(options.reps);
+  if (options.rel_ci > 0) suite.rel_ci = options.rel_ci;
   if (options.timeout > 0) suite.timeout = options.timeout;
   if (options.max_error > 0) suite.max_error = options.max_error;
   if (options.seed >= 0) suite.seed = static_cast<std::uint64_t>(options.seed);
@@ -105,6 +118,17 @@ SweepFilters make_filters(const SweepOptions& options) {
   if (!options.filter.empty()) filters.include = pattern("--filter", options.filter);
   if (!options.exclude.empty()) filters.exclude = pattern("--exclude", options.exclude);
   return filters;
+}
+
+Shard parse_shard(const std::string& text) {
+  static const std::regex form(R"((\d{1,6})/(\d{1,6}))");
+  std::smatch match;
+  if (!std::regex_match(text, match, form))
+    throw UsageError("--shard is '" + text + "', must be i/N, such as 2/5");
+  const Shard shard{std::stoul(match[1]), std::stoul(match[2])};
+  if (shard.index < 1 || shard.index > shard.count)
+    throw UsageError("--shard is '" + text + "', but i must be from 1 to N");
+  return shard;
 }
 
 std::vector<std::pair<std::string, SceneParameters>> without_reference(

@@ -11,8 +11,8 @@ namespace harness {
 
 struct SweepOptions {
   std::string sweep, scene, solver, filter, exclude, config, profile = "default", step = "search";
-  int reps = 0;
-  double timeout = 0, max_error = 0;
+  std::string reps;  // "5", or "5..40" with rel_ci
+  double timeout = 0, max_error = 0, rel_ci = 0;
   std::int64_t seed = -1;
 };
 
@@ -29,6 +29,8 @@ std::regex pattern(const std::string& option, const std::string& text);
 std::string suite_path(const SweepOptions& options);
 Suite load_suite(const SweepOptions& options);
 SweepFilters make_filters(const SweepOptions& options);
+// "2/5"; throws UsageError unless 1 <= i <= N.
+Shard parse_shard(const std::string& text);
 
 // Scenes of the plan without a reference: their points carry no trajectory error.
 std::vector<std::pair<std::string, SceneParameters>> without_reference(

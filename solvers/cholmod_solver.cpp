@@ -75,7 +75,9 @@ bool CholmodSolver::factor() {
   Library& c = *library_;
   // LAPACK's Cholesky, inside the supernodal code, lets NaN pass: no pivot compares as negative.
   if (!std::isfinite(std::accumulate(values_.begin(), values_.end(), 0.0))) return false;
-  if (!cholmod_factorize(&c.matrix, c.factor, &c.common)) return false;
+  const bool done = cholmod_factorize(&c.matrix, c.factor, &c.common);
+  if (c.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (!done) return false;
   if (c.common.status != CHOLMOD_OK || c.factor->minor != c.factor->n) return false;
   if (c.factor->is_super || c.factor->is_ll) return true;
   // L D L^T goes on through negative pivots: look at them.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <new>
 
 extern "C" {  // LAPACK
 void dgttrf_(const int* n, double* dl, double* d, double* du, double* du2, int* ipiv, int* info);
@@ -49,11 +50,13 @@ class UmfpackSolver final : public UnsymmetricSolver {
       const int status =
           umfpack_di_symbolic(n, n, column_start_.data(), row_index_.data(), values_.data(),
                               &symbolic_, control_.data(), info_.data());
+      if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();
       if (status != UMFPACK_OK) return false;
     }
     umfpack_di_free_numeric(&numeric_);
     const int status = umfpack_di_numeric(column_start_.data(), row_index_.data(), values_.data(),
                                           symbolic_, &numeric_, control_.data(), info_.data());
+    if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();
     return status == UMFPACK_OK && info_[UMFPACK_RCOND] > singular_rcond;
   }
 

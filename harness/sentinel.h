@@ -1,0 +1,45 @@
+// A fixed piece of work, timed again and again while a sweep runs: if its time varies, so did the
+// machine, and times measured meanwhile are to be taken with care.
+#pragma once
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace harness {
+
+class Sentinel {
+ public:
+  // Spread (largest over smallest time, less 1) from which on the machine counts as noisy.
+  static constexpr double noisy_from = 0.1;
+
+  // every: s between samples.
+  explicit Sentinel(double every = 60) : every_(every) {}
+
+  void sample();
+  void sample_if_due();
+
+  struct Sample {
+    double at, seconds;  // s since the first one; the kernel's median time of a few
+  };
+  const std::vector<Sample>& samples() const { return samples_; }
+  double spread() const;
+  bool noisy() const { return spread() > noisy_from; }
+  // {"at": [...], "seconds": [...], "spread": x, "noisy": b}
+  nlohmann::json to_json() const;
+
+ private:
+  double every_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::vector<Sample> samples_;
+};
+
+// Processor time of all processors since boot, in ticks; 0 where the system does not tell. Stolen:
+// what a hypervisor gave to others.
+struct ProcessorTicks {
+  double stolen = 0, all = 0;
+};
+ProcessorTicks processor_ticks();
+double stolen_share(const ProcessorTicks& before, const ProcessorTicks& after);  // 0 to 1
+
+}  // namespace harness

@@ -1,0 +1,190 @@
+// Points in child processes: whatever a child does to itself is one point's status.
+#include "isolation.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include "child_process.h"
+#include "point_json.h"
+
+namespace harness {
+namespace {
+
+using Work = std::function<void(Heartbeat&)>;
+
+PointSpec chain_of_ten() {
+  PointSpec spec;
+  spec.sweep = "strain";
+  spec.scene = "chain";
+  const SceneType& type = *find_scene("chain");
+  spec.scene_parameters = complete_parameters(type, {{"n", 10}});
+  spec.resolution = spec.vertices = 10;
+  spec.constraints = 9;
+  spec.solver = "gauss_seidel";
+  return spec;
+}
+
+// A point whose run does `work` when it has come to step 5, t = 0.25 s.
+PointResult run_isolated(const Work& work, const RunLimits& limits, double memory = 0) {
+  SweepRunners runners;
+  runners.run = [&work](const PointSpec& spec, const RunLimits& inner, std::optional<double>) {
+    inner.heartbeat->step = 5;
+    inner.heartbeat->time = 0.25;
+    work(*inner.heartbeat);
+    PointResult point;
+    point.spec = spec;
+    point.status = PointStatus::ok;
+    return point;
+  };
+  return isolated(runners, memory).run(chain_of_ten(), limits, {});
+}
+
+double seconds_of(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void sleep_for_ever() {
+  for (;;) pause();
+}
+
+TEST(Isolation, ARunInAChildIsTheRunInTheParent) {
+  RunLimits limits;
+  SweepRunners here, there = isolated(here, 0);
+  PointResult a = here.run(chain_of_ten(), limits, {}), b = there.run(chain_of_ten(), limits, {});
+  here.repeat(a, limits);
+  there.repeat(b, limits);
+  ASSERT_EQ(a.samples.size(), 2u);
+  ASSERT_EQ(b.samples.size(), 2u);
+  nlohmann::json one = to_json(a), other = to_json(b);
+  for (nlohmann::json* point : {&one, &other}) {
+    for (const char* timing :
+         {"seconds_per_simulated_second", "setup_seconds", "phases", "peak_rss_bytes"})
+      point->erase(timing);
+  }
+  EXPECT_EQ(one, other);
+  EXPECT_GT(b.peak_rss_bytes, 1e6);
+}
+
+TEST(Isolation, ACrashIsAStatusWithSignalAndStep) {
+  const PointResult point = run_isolated([](Heartbeat&) { std::abort(); }, {});
+  EXPECT_EQ(point.status, PointStatus::crashed);
+  EXPECT_NE(point.detail.find("SIGABRT"), std::string::npos) << point.detail;
+  EXPECT_NE(point.detail.find("in step 5 (t = 0.25 s)"), std::string::npos) << point.detail;
+  EXPECT_EQ(point.spec.id(), chain_of_ten().id());
+}
+
+TEST(Isolation, AnExitAndAnExceptionAreStatusesToo) {
+  PointResult point = run_isolated([](Heartbeat&) { _exit(9); }, {});
+  EXPECT_EQ(point.status, PointStatus::crashed);
+  EXPECT_NE(point.detail.find("exit code 9"), std::string::npos) << point.detail;
+  point = run_isolated([](Heartbeat&) { throw std::runtime_error("no such luck"); }, {});
+  EXPECT_EQ(point.status, PointStatus::crashed);
+  EXPECT_NE(point.detail.find("no such luck"), std::string::npos) << point.detail;
+}
+
+TEST(Isolation, AHangIsEndedAtItsTimeOut) {
+  RunLimits limits;
+  limits.timeout = 0.2;
+  PointResult point;
+  const double seconds =
+      seconds_of([&] { point = run_isolated([](Heartbeat&) { sleep_for_ever(); }, limits); });
+  EXPECT_EQ(point.status, PointStatus::timeout);
+  EXPECT_NE(point.detail.find("SIGTERM"), std::string::npos) << point.detail;
+  EXPECT_NE(point.detail.find("in step 5"), std::string::npos) << point.detail;
+  EXPECT_GE(seconds, limits.timeout);
+  EXPECT_LT(seconds, 20);  // on a crowded machine
+}
+
+TEST(Isolation, AHangThatIgnoresSigtermIsKilled) {
+  RunLimits limits;
+  limits.timeout = 0.1;
+  const PointResult point = run_isolated(
+      [](Heartbeat&) {
+        std::signal(SIGTERM, SIG_IGN);
+        sleep_for_ever();
+      },
+      limits);
+  EXPECT_EQ(point.status, PointStatus::timeout);
+  EXPECT_NE(point.detail.find("SIGKILL"), std::string::npos) << point.detail;
+}
+
+TEST(Isolation, ATimeOutIsCountedFromTheLastRestart) {
+  RunLimits limits;
+  limits.timeout = 1;
+  const PointResult point = run_isolated(
+      [](Heartbeat& heartbeat) {
+        for (int i = 0; i < 8; ++i) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(300));
+          heartbeat.restart();
+        }
+      },
+      limits);
+  EXPECT_EQ(point.status, PointStatus::ok) << point.detail;
+}
+
+TEST(Isolation, ARunBeyondItsMemoryIsOutOfMemory) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "the address sanitizer needs all address space there is";
+#endif
+  PointSpec spec = chain_of_ten();
+  spec.scene = "drape";
+  spec.scene_parameters = complete_parameters(*find_scene("drape"), {{"n", 301}});
+  spec.solver = "fast_projection";
+  spec.step = 0.04;
+  std::ifstream statm("/proc/self/statm");
+  double pages = 0;
+  statm >> pages;
+  RunLimits limits;
+  const double memory = pages * static_cast<double>(sysconf(_SC_PAGESIZE)) + 100e6;
+  const PointResult point = isolated({}, memory).run(spec, limits, {});
+  EXPECT_EQ(point.status, PointStatus::out_of_memory) << point.detail;
+}
+
+TEST(Isolation, AnInterruptEndsTheChildAtOnce) {
+  RunLimits limits;
+  int asked = 0;
+  limits.interrupted = [&asked] { return ++asked > 3; };
+  EXPECT_THROW(run_isolated([](Heartbeat&) { sleep_for_ever(); }, limits), Interrupted);
+}
+
+TEST(Isolation, AChildDiesWithItsParent) {
+  int pipe_ends[2];
+  ASSERT_EQ(pipe(pipe_ends), 0);
+  const pid_t parent = fork();
+  if (parent == 0) {
+    run_in_child(
+        [&](Heartbeat&) {
+          const pid_t me = getpid();
+          if (write(pipe_ends[1], &me, sizeof me) != sizeof me) _exit(1);
+          sleep_for_ever();
+          return std::string();
+        },
+        {});
+    _exit(0);
+  }
+  pid_t child = 0;
+  ASSERT_EQ(read(pipe_ends[0], &child, sizeof child), static_cast<ssize_t>(sizeof child));
+  EXPECT_EQ(kill(child, 0), 0);
+  kill(parent, SIGKILL);
+  waitpid(parent, nullptr, 0);
+  // Gone, or a zombie that nobody has fetched (a container's first process may not).
+  const auto dead = [&] {
+    std::ifstream file("/proc/" + std::to_string(child) + "/stat");
+    std::string text((std::istreambuf_iterator<char>(file)), {});
+    return text.empty() || text[text.rfind(')') + 2] == 'Z';
+  };
+  for (int i = 0; i < 500 && !dead(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_TRUE(dead());
+}
+
+}  // namespace
+}  // namespace harness

@@ -1,0 +1,280 @@
+// Journals and shards: whatever a sweep is cut into, its parts are the whole.
+#include "journal.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "files.h"
+#include "merge.h"
+#include "point_json.h"
+#include "result_file.h"
+#include "usage_error.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+// Two scenes, two limits, three sizes: 60 searches of up to ten steps.
+Suite suite_of(const std::string& axis) {
+  return parse_suite(axis == "strain" ? R"({"name": "test", "seed": 3, "reps": 3, "sweeps": [
+      {"sweep": "strain", "scene": "chain", "limits": [0.1, 0.01], "solvers": ["shake", "icd"],
+       "scene_parameters": {"n": 7}, "steps": {"finest": 0.002}},
+      {"sweep": "strain", "scene": "drape", "limits": [0.1, 0.01], "solvers": ["shake", "icd"],
+       "scene_parameters": {"n": 5}, "steps": {"finest": 0.002}}]})"
+                                      : R"({"name": "test", "seed": 3, "reps": 3, "sweeps": [
+      {"sweep": "resolution", "scene": "chain", "limit": 0.01, "resolutions": [5, 7, 9],
+       "solvers": ["shake", "icd"], "steps": {"finest": 0.002}},
+      {"sweep": "resolution", "scene": "drape", "limit": 0.01, "resolutions": [5, 7],
+       "solvers": ["shake", "icd"], "steps": {"finest": 0.002}}]})",
+                     "test");
+}
+
+// A clock that depends on what is run alone, fails now and then, and counts.
+SweepRunners fake(int& runs) {
+  SweepRunners runners;
+  runners.run = [&runs](const PointSpec& spec, const RunLimits&, std::optional<double>) {
+    ++runs;
+    PointResult point;
+    point.spec = spec;
+    point.steps_planned = static_cast<int>(std::lround(1 / spec.step));
+    const std::size_t hash = std::hash<std::string>{}(key_of(spec));
+    point.status = hash % 5 == 0 ? PointStatus::not_converged : PointStatus::ok;
+    if (point.ok()) point.samples = {1 + static_cast<double>(hash % 1000)};
+    return point;
+  };
+  runners.repeat = [&runs](PointResult& point, const RunLimits&) {
+    ++runs;
+    point.samples.push_back(point.samples.back() + 0.25);
+  };
+  return runners;
+}
+
+json points_json(const std::vector<PointResult>& points) {
+  json list = json::array();
+  for (const PointResult& point : points) list.push_back(to_json(point));
+  return list;
+}
+
+json header_of(const Suite& suite) {
+  return {{"pid", 1}, {"identity", to_json(suite)}, {"context", {}}};
+}
+
+class JournalTest : public ::testing::Test {
+ protected:
+  JournalTest()
+      : folder_(fs::temp_directory_path() / ("journal_test_" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~JournalTest() override { fs::remove_all(folder_); }
+
+  std::string out() const { return (folder_ / "out.json").string(); }
+  std::string journal() const { return out() + ".journal"; }
+
+  // The whole sweep with a journal; what it took.
+  json run(const Suite& suite, int& runs) {
+    Journal journal(out());
+    if (journal.header().is_null()) journal.start(header_of(suite));
+    const Memory memory = journal.memory();
+    return points_json(
+        run_sweep(suite, plan(suite, {}), {}, journaled(fake(runs), journal, memory)).points);
+  }
+
+ private:
+  fs::path folder_;
+};
+
+TEST_F(JournalTest, CutAnywhereTheRestIsRunAndTheResultIsTheSame) {
+  const Suite suite = suite_of("strain");
+  int all = 0;
+  const json whole = run(suite, all);
+  const std::string text = read_file(journal(), "journal");
+  ASSERT_GT(all, 30);
+  const auto seed = std::random_device{}();
+  std::cout << "seed " << seed << '\n';
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < 40; ++i) {
+    const std::size_t header = text.find('\n') + 1;
+    const std::size_t cut = std::uniform_int_distribution<std::size_t>(header, text.size())(random);
+    std::ofstream(journal(), std::ios::trunc) << text.substr(0, cut);
+    const auto lines =
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(cut), '\n');
+    int runs = 0;
+    EXPECT_EQ(run(suite, runs), whole) << "cut at " << cut;
+    EXPECT_EQ(runs, all - (lines - 1)) << "cut at " << cut;
+    EXPECT_EQ(read_file(journal(), "journal"), text) << "cut at " << cut;
+  }
+}
+
+TEST_F(JournalTest, ASpoiltLineInTheMiddleIsRefusedByNumber) {
+  int runs = 0;
+  run(suite_of("strain"), runs);
+  std::string text = read_file(journal(), "journal");
+  const std::size_t second = text.find('\n') + 1;
+  text[second + 1] = '}';
+  std::ofstream(journal(), std::ios::trunc) << text;
+  try {
+    Journal journal(out());
+    FAIL() << "accepted";
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("from line 2 on"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(JournalTest, ForgottenFailuresAreRunAgainAndNothingElse) {
+  const Suite suite = suite_of("strain");
+  int runs = 0;
+  const json whole = run(suite, runs);
+  const auto failures = std::count_if(whole.begin(), whole.end(),
+                                      [](const json& p) { return p.at("status") != "ok"; });
+  ASSERT_GT(failures, 0);
+  Journal journal(out());
+  Memory memory = journal.memory();
+  memory.forget_failures();
+  runs = 0;
+  EXPECT_EQ(
+      points_json(
+          run_sweep(suite, plan(suite, {}), {}, journaled(fake(runs), journal, memory)).points),
+      whole);
+  EXPECT_EQ(runs, failures);
+}
+
+TEST_F(JournalTest, AResultFileRemembersAsMuch) {
+  const Suite suite = suite_of("strain");
+  int runs = 0;
+  const json whole = run(suite, runs);
+  Memory memory;
+  memory.learn({{"points", whole}});
+  Journal journal(out());
+  runs = 0;
+  EXPECT_EQ(
+      points_json(
+          run_sweep(suite, plan(suite, {}), {}, journaled(fake(runs), journal, memory)).points),
+      whole);
+  EXPECT_EQ(runs, 0);
+}
+
+TEST_F(JournalTest, BelongsToOneProcess) {
+  Journal mine(out());
+  mine.start(header_of(suite_of("strain")));
+  const pid_t child = fork();
+  if (child == 0) {
+    try {
+      Journal theirs(out());
+      _exit(0);
+    } catch (const UsageError& error) {
+      _exit(std::string(error.what()).find("(process " + std::to_string(getppid()) + ")") !=
+                    std::string::npos
+                ? 42
+                : 1);
+    }
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 42);
+}
+
+TEST_F(JournalTest, ThatIsRemovedMeanwhileIsMissedAtOnce) {
+  Journal journal(out());
+  journal.start(header_of(suite_of("strain")));
+  fs::remove(this->journal());
+  EXPECT_THROW(journal.forget("x"), FileError);
+}
+
+TEST(Difference, NamesTheFirstThingThatDiffers) {
+  const json was = {{"compiler", "GNU 12"}, {"suite", {{"timeout", 60}}}};
+  json is = was;
+  EXPECT_EQ(difference(was, is), "");
+  is["suite"]["timeout"] = 20;
+  EXPECT_EQ(difference(was, is), "suite/timeout is 20, was 60");
+  is["compiler"] = "GNU 13";
+  EXPECT_EQ(difference(was, is), "compiler is \"GNU 13\", was \"GNU 12\"");
+}
+
+// ---- Shards ----
+
+json context_of(const std::string& shard) {
+  return {{"date", "2026-01-01"},
+          {"host_name", "h"},
+          {"cpu_model", "c"},
+          {"fingerprint", "f"},
+          {"load_avg", {0, 0, 0}},
+          {"libraries", {}},
+          {"build", {{"compiler", "g"}, {"flags", ""}, {"git", ""}}},
+          {"selection", {{"shard", shard}}}};
+}
+
+class ShardTest : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ShardTest, MergedAreTheWhole) {
+  const Suite suite = suite_of(GetParam());
+  const auto searches = plan(suite, {});
+  int runs = 0;
+  const auto result = [&](const std::vector<Search>& some, const std::string& name) {
+    return result_document(context_of(name), suite, {"bench"}, true,
+                           run_sweep(suite, some, {}, fake(runs)).points);
+  };
+  const json whole = result(searches, "");
+  for (std::size_t count = 1; count <= 8; ++count) {
+    std::vector<NamedResult> parts;
+    std::map<std::string, std::size_t> owner;  // of a scene and size
+    for (std::size_t i = count; i >= 1; --i) {
+      const auto some = shard(searches, {i, count});
+      for (const Search& s : some) {
+        const std::string size = s.base.scene + std::to_string(s.base.resolution);
+        EXPECT_EQ(owner.emplace(size, i).first->second, i) << size << " is in two shards";
+      }
+      parts.push_back({"part " + std::to_string(i), result(some, std::to_string(i))});
+    }
+    const json joined = merge(parts, false);
+    EXPECT_EQ(joined.at("points"), whole.at("points")) << count << " shards";
+    EXPECT_EQ(joined.at("benchmarks"), whole.at("benchmarks")) << count << " shards";
+    EXPECT_EQ(joined.at("context").at("merged").size(), count);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sweeps, ShardTest, ::testing::Values("strain", "resolution"));
+
+TEST(Merge, RefusesWhatDoesNotBelongTogether) {
+  const Suite suite = suite_of("strain");
+  const auto searches = plan(suite, {});
+  int runs = 0;
+  const auto part = [&](std::size_t i) {
+    return NamedResult{
+        "part" + std::to_string(i),
+        result_document(context_of(""), suite, {"bench"}, true,
+                        run_sweep(suite, shard(searches, {i, 2}), {}, fake(runs)).points)};
+  };
+  const auto complaint = [](const std::vector<NamedResult>& parts, bool allow_mixed = false) {
+    try {
+      merge(parts, allow_mixed);
+      return std::string();
+    } catch (const UsageError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(complaint({part(1), part(2)}), "");
+  EXPECT_NE(complaint({part(1), part(1)}).find("is in 'part1' and in 'part1'"), std::string::npos);
+  NamedResult other = part(2);
+  other.document["context"]["fingerprint"] = "another";
+  other.document["context"]["cpu_model"] = "another";
+  EXPECT_NE(complaint({part(1), other}).find("processor is \"another\", was \"c\""),
+            std::string::npos)
+      << complaint({part(1), other});
+  EXPECT_EQ(complaint({part(1), other}, true), "");
+  other = part(2);
+  other.document["complete"] = false;
+  EXPECT_NE(complaint({part(1), other}).find("'part2' is not complete"), std::string::npos);
+  other = part(2);
+  other.document["context"]["suite"]["timeout"] = 1;
+  EXPECT_NE(complaint({part(1), other}, true).find("suite"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace harness
