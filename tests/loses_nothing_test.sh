@@ -1,0 +1,185 @@
+#!/usr/bin/env bash
+# A sweep against everything that ends sweeps: kill -9, Ctrl-C, crashing and hanging points, a full disk, a folder that is
+# gone, a second run on the same output, a journal of something else.
+set -u
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+rm -rf work && mkdir work && cd work || exit 1
+
+# What is run is the same whatever the times are.
+cat >suite.json <<'JSON'
+{"name": "small", "reps": 2, "timeout": 20, "sweeps": [
+  {"sweep": "strain", "scene": "chain", "limits": [0.1, 0.01], "scene_parameters": {"n": 20},
+   "steps": {"finest": 0.005, "all": true}},
+  {"sweep": "strain", "scene": "drape", "limits": [0.1], "scene_parameters": {"n": 7, "subdivisions": 1},
+   "steps": {"coarsest": 0.01, "finest": 0.005, "all": true}}]}
+JSON
+bench=("$BENCH_BINARY" --sweep strain --config suite.json --no-plots)
+
+# same A B: the points of two results but for times, and which of them was fastest.
+same() {
+  python3 - "$1" "$2" <<'PYTHON'
+import json, sys
+
+def points(path):
+    document = json.load(open(path))
+    assert document["complete"], path
+    for point in document["points"]:
+        for key in ("seconds_per_simulated_second", "setup_seconds", "calibration_seconds", "phases", "peak_rss_bytes", "best"):
+            del point[key]
+    return document["points"]
+
+a, b = (points(path) for path in sys.argv[1:])
+if a != b:
+    sys.exit(f"{len(a)} and {len(b)} points; first difference: "
+             + next((f"{p['id']}" for p, q in zip(a, b) if p != q), "in number"))
+PYTHON
+}
+
+# line_of FILE PART: FILE is one line that contains PART.
+line_of() { [[ $(wc -l <"$1") == 1 ]] && grep -qF -- "$2" "$1"; }
+
+# lines JOURNAL N: waits until the journal has so many lines.
+lines() {
+  for _ in $(seq 3000); do
+    [[ -e $1 && $(wc -l <"$1") -ge $2 ]] && return
+    sleep 0.01
+  done
+  fail "$1 did not come to $2 lines"
+}
+
+"${bench[@]}" --out whole.json >/dev/null 2>&1 || fail "undisturbed run: exit $?"
+[[ ! -e whole.json.journal ]] || fail "a journal is left of a run that was finished"
+
+# ---- kill -9, again and again ----
+for after in 3 20 45; do
+  "${bench[@]}" --resume --out killed.json >/dev/null 2>&1 &
+  lines killed.json.journal "$after"
+  kill -9 $!
+  wait $! 2>/dev/null
+  [[ ! -e killed.json ]] || fail "a result before the end"
+done
+before=$(wc -l <killed.json.journal)
+"${bench[@]}" --out killed.json >/dev/null 2>err.txt
+[[ $? == 2 ]] && line_of err.txt "--resume goes on with it" || fail "an unfinished run is not asked about: $(cat err.txt)"
+[[ $(wc -l <killed.json.journal) == "$before" ]] || fail "an unfinished run was touched"
+"${bench[@]}" --resume --out killed.json >/dev/null 2>&1 || fail "resumed run: exit $?"
+same whole.json killed.json || fail "killed and resumed is not undisturbed"
+[[ ! -e killed.json.journal ]] || fail "a journal is left of a resumed run"
+cp killed.json copy.json
+"${bench[@]}" --resume --out killed.json >stdout.txt 2>&1 || fail "--resume of a finished run: exit $?"
+grep -q "complete already" stdout.txt && cmp -s killed.json copy.json || fail "--resume touched a finished run"
+
+# ---- Ctrl-C ----
+"${bench[@]}" --out interrupted.json >/dev/null 2>&1 &
+lines interrupted.json.journal 10
+kill -INT $!
+wait $!
+[[ $? == 130 ]] || fail "Ctrl-C: exit $?"
+python3 -c 'import json; d = json.load(open("interrupted.json")); assert not d["complete"] and len(d["points"]) >= 9' ||
+  fail "no partial result after Ctrl-C"
+"${bench[@]}" --resume --out interrupted.json >/dev/null 2>&1 || fail "resumed after Ctrl-C: exit $?"
+same whole.json interrupted.json || fail "interrupted and resumed is not undisturbed"
+
+# ---- Points that crash or hang: one child is killed, one is stopped ----
+cat >long.json <<'JSON'
+{"name": "long", "reps": 1, "timeout": 2, "sweeps": [
+  {"sweep": "strain", "scene": "drape", "limits": [0.001], "scene_parameters": {"n": 31}, "solvers": ["jacobi", "gauss_seidel", "fast_projection"],
+   "steps": {"coarsest": 0.001, "finest": 0.001}}]}
+JSON
+"$BENCH_BINARY" --sweep strain --config long.json --no-plots --out long.json.out >/dev/null 2>&1 &
+program=$!
+child_of() {
+  local child
+  for _ in $(seq 1000); do
+    child=$(pgrep -P "$program" | head -1)
+    [[ -n $child && $child != "${1-}" ]] && { echo "$child"; return; }
+    sleep 0.01
+  done
+}
+first=$(child_of)
+sleep 0.3
+kill -ILL "$first"
+second=$(child_of "$first")
+sleep 0.2
+kill -STOP "$second"
+wait "$program" || fail "a crash and a hang ended the sweep: exit $?"
+python3 - <<'PYTHON' || fail "statuses of a crash and a hang"
+import json
+a, b, c = json.load(open("long.json.out"))["points"]
+assert a["status"] == "crashed" and "SIGILL" in a["status_detail"] and "step" in a["status_detail"], a["status_detail"]
+assert b["status"] == "timeout" and "SIGKILL" in b["status_detail"], b["status_detail"]
+assert c["status"] == "ok" or "longer than" in c["status_detail"], c["status_detail"]
+PYTHON
+"$BENCH_BINARY" --sweep strain --config long.json --no-plots --out long.json.out --rerun-failed >/dev/null 2>&1 ||
+  fail "--rerun-failed: exit $?"
+python3 - <<'PYTHON' || fail "--rerun-failed left a crash"
+import json
+d = json.load(open("long.json.out"))
+assert all(p["status"] == "ok" or "stopped at" in p["status_detail"] for p in d["points"]), [p["status_detail"] for p in d["points"]]
+assert "resumed" in d["context"]
+PYTHON
+
+# ---- Two runs on one output ----
+"${bench[@]}" --out both.json >/dev/null 2>&1 &
+lines both.json.journal 3
+"${bench[@]}" --resume --out both.json >/dev/null 2>err.txt
+[[ $? == 2 ]] && line_of err.txt "another bench (process $!) is writing" || fail "two runs at once: $(cat err.txt)"
+wait $! || fail "the first of two runs: exit $?"
+same whole.json both.json || fail "the first of two runs was disturbed"
+
+# ---- A journal of something else ----
+"${bench[@]}" --out other.json >/dev/null 2>&1 &
+lines other.json.journal 5
+kill -9 $!
+wait $! 2>/dev/null
+cp other.json.journal kept
+"${bench[@]}" --reps 3 --resume --out other.json >/dev/null 2>err.txt
+[[ $? == 2 ]] && line_of err.txt "suite/reps is 3, was 2" || fail "another suite: $(cat err.txt)"
+{ cat "$BENCH_BINARY"; echo; } >other_bench && chmod +x other_bench
+./other_bench "${bench[@]:1}" --resume --out other.json >/dev/null 2>err.txt
+[[ $? == 2 ]] && line_of err.txt "program is" || fail "another build: $(cat err.txt)"
+cmp -s other.json.journal kept || fail "a refused journal was touched"
+./other_bench "${bench[@]:1}" --resume --force --out other.json >/dev/null 2>&1 || fail "--resume --force: exit $?"
+same whole.json other.json || fail "resumed by another build"
+
+# ---- The folder goes ----
+mkdir gone
+"${bench[@]}" --out gone/result.json >/dev/null 2>err.txt &
+lines gone/result.json.journal 5
+rm -rf gone
+wait $!
+[[ $? == 1 ]] && grep -q "removed meanwhile" err.txt || fail "a folder that is gone: $(tail -1 err.txt)"
+
+# ---- The disk fills up ----
+mkdir -p small
+if mount -t tmpfs -o size=256k tmpfs small 2>/dev/null; then
+  trap 'umount small' EXIT
+  echo '{"old": true}' >small/result.json
+  "${bench[@]}" --force --out small/result.json >/dev/null 2>err.txt
+  [[ $? == 1 ]] && grep -q "cannot write .*No space left on device" err.txt || fail "a full disk: $(tail -1 err.txt)"
+  [[ $(cat small/result.json) == '{"old": true}' ]] || fail "a full disk cost the old result"
+  [[ $(wc -l <small/result.json.journal) -gt 5 ]] || fail "a full disk cost the journal"
+  mount -o remount,size=8m small
+  rm small/result.json
+  "${bench[@]}" --resume --out small/result.json >/dev/null 2>&1 || fail "resumed after a full disk: exit $?"
+  same whole.json small/result.json || fail "resumed after a full disk is not undisturbed"
+else
+  echo "no small file system could be mounted (not root?): a full disk was not tried"
+fi
+
+# ---- Shards ----
+for i in 1 2 3; do
+  "${bench[@]}" --shard "$i/3" --out "part$i.json" >/dev/null 2>&1 || fail "shard $i: exit $?"
+done
+"$BENCH_BINARY" merge part3.json part1.json part2.json --out merged.json >/dev/null || fail "merge: exit $?"
+same whole.json merged.json || fail "the shards are not the whole"
+"$BENCH_BINARY" merge part1.json whole.json --out twice.json 2>err.txt
+[[ $? == 2 && ! -e twice.json ]] && line_of err.txt "is in 'part1.json' and in 'whole.json'" || fail "a point twice: $(cat err.txt)"
+
+exit $((failures > 0))
