@@ -37,7 +37,8 @@ def points(path):
 a, b = (points(path) for path in sys.argv[1:])
 if a != b:
     sys.exit(f"{len(a)} and {len(b)} points; first difference: "
-             + next((f"{p['id']}" for p, q in zip(a, b) if p != q), "in number"))
+             + next((f"{p['id']}: " + ", ".join(f"{k} {p[k]} and {q[k]}" for k in p if p[k] != q[k])
+                     for p, q in zip(a, b) if p != q), "in number"))
 PYTHON
 }
 
@@ -89,8 +90,8 @@ same whole.json interrupted.json || fail "interrupted and resumed is not undistu
 # ---- Points that crash or hang: one child is killed, one is stopped ----
 cat >long.json <<'JSON'
 {"name": "long", "reps": 1, "timeout": 2, "sweeps": [
-  {"sweep": "strain", "scene": "drape", "limits": [0.001], "scene_parameters": {"n": 31}, "solvers": ["jacobi", "gauss_seidel", "fast_projection"],
-   "steps": {"coarsest": 0.001, "finest": 0.001}}]}
+  {"sweep": "strain", "scene": "drape", "limits": [0.001], "scene_parameters": {"n": 51},
+   "solvers": ["jacobi", "gauss_seidel", "fast_projection"], "steps": {"coarsest": 0.00025, "finest": 0.00025}}]}
 JSON
 "$BENCH_BINARY" --sweep strain --config long.json --no-plots --out long.json.out >/dev/null 2>&1 &
 program=$!
