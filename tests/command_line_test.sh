@@ -36,6 +36,11 @@ refused "'distances' has 2" --sweep stability --values distances=2 --out out.jso
 refused "did you mean 'adaptive'" "${sweep[@]}" --step adaptiv
 refused "--step adaptive does not go with" --sweep step --profile quick --step adaptive --out out.json
 refused "--reps" "${sweep[@]}" --reps 0
+refused "whose second number is below" "${sweep[@]}" --reps 9..5
+refused "must be i/N" "${sweep[@]}" --shard 2
+refused "i must be from 1 to N" "${sweep[@]}" --shard 3/2
+refused "--memory" "${sweep[@]}" --memory much
+refused "cannot read the result file" merge missing.json --out out.json
 refused "--unknown" "${sweep[@]}" --unknown
 refused "cannot read the suite" --sweep strain --config missing.json --out out.json
 echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1, -1]}]}' >suite.json

@@ -73,6 +73,41 @@ TEST(StepSearch, RunsTheWholeLadderWhereAsked) {
     EXPECT_EQ(point.best, std::abs(point.spec.step - 1.0 / 100) < 1e-9);
 }
 
+// Ranks of the median's 95 % confidence interval: standard tables of the sign test (n: 6, 9 and
+// 20).
+TEST(MedianUncertainty, IsHalfTheIntervalOfTheTabledRanks) {
+  const auto first = [](int n) {  // 1, 2, ..., n: the rank is the value
+    std::vector<double> samples;
+    for (int i = n; i >= 1; --i) samples.push_back(i);
+    return samples;
+  };
+  EXPECT_TRUE(std::isinf(median_uncertainty(first(5))));
+  EXPECT_DOUBLE_EQ(median_uncertainty(first(6)), 0.5 * (6 - 1) / 3.5);
+  EXPECT_DOUBLE_EQ(median_uncertainty(first(9)), 0.5 * (8 - 2) / 5);
+  EXPECT_DOUBLE_EQ(median_uncertainty(first(20)), 0.5 * (15 - 6) / 10.5);
+}
+
+TEST(Repetitions, GoOnUntilTheMedianIsKnown) {
+  Suite suite = one_family();
+  suite.sweeps[0].every_step = true;
+  suite.reps = 2;
+  suite.most_reps = 30;
+  suite.rel_ci = 0.02;
+  SweepRunners runners = fake(1.0 / 50, 1, nullptr);
+  int count = 0;
+  runners.repeat = [&count](PointResult& point, const RunLimits&) {
+    const bool steady = point.spec.strain_limit > 0.05;
+    point.samples.push_back(point.samples.front() * (steady ? 1 : 1 + 0.5 * (++count % 3)));
+  };
+  for (const PointResult& point : run_sweep(suite, plan(suite, {}), {}, runners).points) {
+    if (point.best) {
+      EXPECT_EQ(point.samples.size(), point.spec.strain_limit > 0.05 ? 6u : 30u);
+    } else {
+      EXPECT_EQ(point.samples.size(), 1u);
+    }
+  }
+}
+
 TEST(StepSearch, GoesFinerThroughFailuresUntilAStepWorks) {
   Suite suite = one_family();
   suite.sweeps[0].limits = {0.01};
