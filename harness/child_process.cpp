@@ -115,6 +115,16 @@ void attend(pid_t child, int pipe, const Heartbeat& heartbeat, const ChildLimits
   }
 }
 
+// A SIGTERM that ended the child may have been meant for the whole job, and reach this process a
+// moment later.
+bool interrupted_soon(const ChildLimits& limits) {
+  for (int i = 0; i < 10 && limits.interrupted; ++i) {
+    if (limits.interrupted()) return true;
+    poll(nullptr, 0, 20);
+  }
+  return false;
+}
+
 }  // namespace
 
 void Heartbeat::restart() { begin = now(); }
@@ -160,7 +170,8 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
   outcome.code = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
   if (outcome.end != ChildOutcome::End::returned) return outcome;
   if (WIFSIGNALED(status)) {
-    outcome.end = ChildOutcome::End::killed;
+    const bool for_all = outcome.code == SIGTERM && interrupted_soon(limits);
+    outcome.end = for_all ? ChildOutcome::End::interrupted : ChildOutcome::End::killed;
   } else if (outcome.code != 0 || outcome.text.empty()) {
     outcome.end = ChildOutcome::End::exited;
   } else {

@@ -53,6 +53,39 @@ void explain(const ChildOutcome& outcome, const RunLimits& limits, PointResult& 
   point.peak_rss_bytes = outcome.peak_rss_bytes;
 }
 
+// ---- Trials, to the parent and back ----
+
+json pack(const TrialResult& r) {
+  return {{"fixed", static_cast<int>(r.fixed)},
+          {"outcome", static_cast<int>(r.outcome)},
+          {"detail", r.detail},
+          {"smallest_step", number(r.smallest_step)},
+          {"max_strain", number(r.max_strain)},
+          {"energy_gain", number(r.energy_gain)},
+          {"momentum_defect", number(r.momentum_defect)},
+          {"reciprocal_condition", number(r.reciprocal_condition)},
+          {"seconds", r.seconds},
+          {"work", to_json(r.work)}};
+}
+
+TrialResult unpack(const json& j) {
+  TrialResult r;
+  r.fixed = static_cast<Outcome>(j.at("fixed").get<int>());
+  r.outcome = static_cast<Outcome>(j.at("outcome").get<int>());
+  j.at("detail").get_to(r.detail);
+  r.smallest_step = number_of(j.at("smallest_step"));
+  r.max_strain = number_of(j.at("max_strain"));
+  r.energy_gain = number_of(j.at("energy_gain"));
+  r.momentum_defect = number_of(j.at("momentum_defect"));
+  r.reciprocal_condition = number_of(j.at("reciprocal_condition"));
+  j.at("seconds").get_to(r.seconds);
+  r.work = work_of(j.at("work"));
+  return r;
+}
+
+// A trial looks at its own clock between steps; this is for steps that do not end.
+constexpr double longest_trial = 60;  // s
+
 }  // namespace
 
 SweepRunners isolated(SweepRunners inner, double memory) {
@@ -91,6 +124,26 @@ SweepRunners isolated(SweepRunners inner, double memory) {
       point.samples.push_back(sample);
   };
   return runners;
+}
+
+TrialResult run_isolated_trial(const std::function<Trial()>& build, const std::string& solver,
+                               std::uint64_t seed) {
+  const ChildOutcome child =
+      run_in_child([&](Heartbeat&) { return pack(run_trial(build, solver, seed)).dump(); },
+                   {longest_trial, 0, nullptr});
+  if (child.end == End::returned) return unpack(json::parse(child.text));
+  TrialResult result;
+  const bool stuck = child.end == End::timed_out;
+  result.fixed = result.outcome = stuck ? Outcome::timeout : Outcome::crashed;
+  if (stuck) {
+    result.detail = "a step did not end within " + number_text(longest_trial) + " s";
+  } else if (child.end == End::killed) {
+    result.detail = "killed by " + signal_text(child.code);
+  } else {
+    result.detail =
+        child.end == End::threw ? child.text : "ended with exit code " + std::to_string(child.code);
+  }
+  return result;
 }
 
 }  // namespace harness

@@ -87,8 +87,7 @@ json identity(const json& build_context, const json& suite, const json& selectio
   return {{"processor", build_context.at("cpu_model")},
           {"compiler", build.at("compiler")},
           {"compiler flags", build.at("flags")},
-          {"commit", build.at("git")},
-          {"program", build.value("binary", "")},
+          {"program", build.value("binary", build.at("git").get<std::string>())},
           {"libraries", build_context.at("libraries")},
           {"suite", suite},
           {"selection", selection}};

@@ -39,8 +39,6 @@ json error_json(const Verdict& v, bool series) {
           {"residuals", residuals}};
 }
 
-double number_of(const json& value) { return value.is_null() ? unknown : value.get<double>(); }
-
 inextensible::Settings settings_of(const json& object) {
   inextensible::Settings settings;
   for (const auto& [name, value] : object.items()) {
@@ -86,25 +84,9 @@ Verdict verdict_of(const json& p) {
   return v;
 }
 
-inextensible::WorkCounters work_of(const json& w) {
-  inextensible::WorkCounters work;
-  w.at("steps").get_to(work.steps);
-  w.at("rejected_steps").get_to(work.rejected_steps);
-  w.at("iterations").get_to(work.iterations);
-  w.at("assemblies").get_to(work.assemblies);
-  w.at("factorizations").get_to(work.factorizations);
-  w.at("back_solves").get_to(work.back_solves);
-  w.at("edge_projections").get_to(work.edge_projections);
-  w.at("line_search_steps").get_to(work.line_search_steps);
-  w.at("spring_evaluations").get_to(work.spring_evaluations);
-  w.at("triangle_tests").get_to(work.triangle_tests);
-  w.at("contacts").get_to(work.contacts);
-  w.at("factor_nonzeros").get_to(work.factor_nonzeros);
-  w.at("factor_flops").get_to(work.factor_flops);
-  return work;
-}
-
 }  // namespace
+
+double number_of(const json& value) { return value.is_null() ? unknown : value.get<double>(); }
 
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
@@ -169,6 +151,24 @@ json to_json(const PointResult& point) {
           {"peak_rss_bytes", point.peak_rss_bytes},
           {"best", point.best},
           {"best_at_error", point.best_at_error}};
+}
+
+inextensible::WorkCounters work_of(const json& w) {
+  inextensible::WorkCounters work;
+  w.at("steps").get_to(work.steps);
+  w.at("rejected_steps").get_to(work.rejected_steps);
+  w.at("iterations").get_to(work.iterations);
+  w.at("assemblies").get_to(work.assemblies);
+  w.at("factorizations").get_to(work.factorizations);
+  w.at("back_solves").get_to(work.back_solves);
+  w.at("edge_projections").get_to(work.edge_projections);
+  w.at("line_search_steps").get_to(work.line_search_steps);
+  w.at("spring_evaluations").get_to(work.spring_evaluations);
+  w.at("triangle_tests").get_to(work.triangle_tests);
+  w.at("contacts").get_to(work.contacts);
+  w.at("factor_nonzeros").get_to(work.factor_nonzeros);
+  w.at("factor_flops").get_to(work.factor_flops);
+  return work;
 }
 
 PointSpec spec_of(const json& p) {

@@ -9,8 +9,10 @@ namespace harness {
 
 // null for a number that is not finite: JSON has no word for it.
 nlohmann::json number(double value);
+double number_of(const nlohmann::json& value);  // NaN for null
 nlohmann::json to_json(const inextensible::WorkCounters& work);
 nlohmann::json to_json(const PointResult& point);
+inextensible::WorkCounters work_of(const nlohmann::json& work);
 
 // The way back: to_json(point_of(j)) == j. Both throw json::exception for anything that is not a
 // point.

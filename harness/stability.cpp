@@ -6,6 +6,7 @@
 #include <map>
 #include <sstream>
 
+#include "isolation.h"
 #include "point_json.h"
 #include "registry.h"
 #include "result_file.h"
@@ -38,7 +39,7 @@ LargestStep largest_step(const StabilityScene& scene, const std::string& solver,
                          std::uint64_t seed) {
   LargestStep found{scene.name, solver, unknown, unknown, ""};
   const auto survives = [&](double step) {
-    const TrialResult result = run_trial(
+    const TrialResult result = run_isolated_trial(
         [&] {
           // Whole steps, so that a second is a second.
           Trial trial = scene.build(1 / std::round(1 / step));
@@ -82,6 +83,8 @@ char letter(Outcome outcome) {
       return 'W';
     case Outcome::timeout:
       return 'T';
+    case Outcome::crashed:
+      return 'C';
   }
   return '?';
 }
@@ -97,7 +100,7 @@ std::string cell_text(const std::vector<const StabilityCell*>& cells) {
     expected = expected && cell->expected;
   }
   std::string text;
-  for (const char c : std::string("SsRTDW")) {
+  for (const char c : std::string("SsRTDWC")) {
     const auto place = counts.find(c);
     if (place == counts.end()) continue;
     if (!text.empty()) text += ' ';
@@ -157,8 +160,8 @@ StabilityOutcome run_stability(const std::vector<HardCase>& cases, const Stabili
         outcome.complete = false;
         return outcome;
       }
-      StabilityCell cell{c, solver, run_trial(c->build, solver, seed), &expectation_of(*c, solver),
-                         true};
+      StabilityCell cell{c, solver, run_isolated_trial(c->build, solver, seed),
+                         &expectation_of(*c, solver), true};
       cell.expected = acceptable(*cell.expectation, cell.result);
       outcome.cells.push_back(std::move(cell));
       events.cell(outcome.cells.back(), outcome.cells.size(), all);

@@ -79,6 +79,8 @@ const char* to_string(Outcome outcome) {
       return "wrong";
     case Outcome::timeout:
       return "timeout";
+    case Outcome::crashed:
+      return "crashed";
   }
   return "?";
 }

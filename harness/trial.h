@@ -18,6 +18,7 @@ enum class Outcome {
   diverged,          // positions or strains out of all proportion
   wrong,             // claimed success, and a check says otherwise
   timeout,
+  crashed,  // took its process with it
 };
 const char* to_string(Outcome outcome);
 

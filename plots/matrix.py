@@ -22,8 +22,9 @@ OUTCOMES: dict[str, tuple[str, str, str]] = {
     "timeout": ("T", "took too long", "#F2D38B"),
     "diverged": ("D", "diverged", "#C2553B"),
     "wrong": ("W", "wrong: claimed success, and a check says otherwise", "#A32D00"),
+    "crashed": ("C", "took its process with it", "#5C1A00"),
 }
-DARK = ("diverged", "wrong")
+DARK = ("diverged", "wrong", "crashed")
 CELL_WIDTH, CELL_HEIGHT = 1.0, 0.22
 LABEL_WIDTH, HEADER = 1.75, 1.05
 TOLD_GAIN = 0.05  # energy gained, over its scale, from which on a cell says so

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "child_process.h"
+#include "hard_case.h"
 #include "point_json.h"
 
 namespace harness {
@@ -148,11 +149,39 @@ TEST(Isolation, ARunBeyondItsMemoryIsOutOfMemory) {
   EXPECT_EQ(point.status, PointStatus::out_of_memory) << point.detail;
 }
 
+TEST(Isolation, ATrialThatCrashesIsAnOutcomeAndOthersComeBackWhole) {
+  const auto cases = hard_cases(hard_case_values("quick"));
+  const TrialResult here = run_trial(cases.front().build, "fast_projection", 1);
+  const TrialResult there = run_isolated_trial(cases.front().build, "fast_projection", 1);
+  EXPECT_EQ(there.outcome, here.outcome);
+  EXPECT_EQ(there.work, here.work);
+  EXPECT_EQ(there.max_strain, here.max_strain);
+  EXPECT_EQ(there.energy_gain, here.energy_gain);
+  const TrialResult crash =
+      run_isolated_trial([]() -> Trial { std::abort(); }, "fast_projection", 1);
+  EXPECT_EQ(crash.outcome, Outcome::crashed);
+  EXPECT_NE(crash.detail.find("SIGABRT"), std::string::npos);
+}
+
 TEST(Isolation, AnInterruptEndsTheChildAtOnce) {
   RunLimits limits;
   int asked = 0;
   limits.interrupted = [&asked] { return ++asked > 3; };
   EXPECT_THROW(run_isolated([](Heartbeat&) { sleep_for_ever(); }, limits), Interrupted);
+}
+
+// As a scheduler cancels a job: every process of it gets the signal, the child may be the first.
+TEST(Isolation, ASigtermForAllIsAnInterruptAndOneForTheChildIsACrash) {
+  RunLimits limits;
+  const Work terminate = [](Heartbeat&) {
+    raise(SIGTERM);
+    sleep_for_ever();
+  };
+  int asked = 0;
+  limits.interrupted = [&asked] { return ++asked > 2; };
+  EXPECT_THROW(run_isolated(terminate, limits), Interrupted);
+  limits.interrupted = [] { return false; };
+  EXPECT_EQ(run_isolated(terminate, limits).status, PointStatus::crashed);
 }
 
 TEST(Isolation, AChildDiesWithItsParent) {
