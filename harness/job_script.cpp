@@ -26,7 +26,7 @@ std::string fill(const std::string& text,
 void check(const std::string& option, const std::string& value, const char* form,
            const std::string& meaning) {
   if (!value.empty() && !std::regex_match(value, std::regex(form)))
-    throw UsageError(option + " '" + value + "': must be " + meaning);
+    throw UsageError(option + " must be " + meaning);  // the value may have several lines
 }
 
 // What both scripts have in common: values first, so that a user finds them.
@@ -147,8 +147,7 @@ void check_common(const JobScript& job) {
   // In the name of a log Slurm gives % and backslash a meaning of their own.
   if (job.result.empty() || job.result.back() == '/' || job.result.front() == '-' ||
       std::any_of(job.result.begin(), job.result.end(), unfit))
-    throw UsageError("--out '" + job.result +
-                     "': must be a file's name without %, backslash or control characters");
+    throw UsageError("--out must be a file's name without %, backslash or control characters");
 }
 
 std::string script(const char* text, const JobScript& job, const std::string& demands) {
