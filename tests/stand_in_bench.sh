@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Stands in for bench where tests of job scripts need a sweep that takes a known time, or fails when told to.
 # A sweep has POINTS points of 0.1 s each. SIGTERM: what there is is kept, exit 130. With --resume it goes on there.
-# Every start is a line of calls.txt: shard or merge, points already there, threads; arguments in calls.<shard>, one a line.
+# Every start is a line of calls.txt: shard, points already there, threads; arguments in calls.SHARD, one a line, the process
+# in pid.SHARD.
 set -u
 if [[ $1 == merge ]]; then
   shift
@@ -20,6 +21,7 @@ for ((i = 1; i <= $#; ++i)); do
 done
 name=${shard%/*}
 printf '%s\n' "$@" >"calls.$name"
+echo $$ >"pid.$name"
 [[ -s $out ]] && $resume && { echo "$name complete" >>calls.txt; exit; }
 part=$out.part
 $resume || rm -f "$part"
