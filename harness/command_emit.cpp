@@ -53,6 +53,9 @@ int emit(EmitCommand& given) {
   if (slurm && job.jobs > 0) throw UsageError("--jobs goes with emit parallel");
   if (given.sweep == "stability")
     throw UsageError("--sweep stability has no shards; it takes two minutes");
+  if (!given.config.empty() && std::filesystem::exists(given.config) &&
+      !std::filesystem::is_regular_file(given.config))
+    throw UsageError("--config '" + given.config + "' will not be there when the shards are run");
   const Suite suite = load_suite(given);
   job.axis = given.sweep;
   job.jobs = std::max(1, job.jobs);

@@ -4,6 +4,7 @@
 set -u
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 failures=0
+codes=
 
 fail() {
   echo "FAILED: $*"
@@ -39,8 +40,9 @@ refused "no point is left" slurm --shards 2 "${sweep[@]}" --filter nothing
 refused "not a regular expression" slurm --shards 2 "${sweep[@]}" --filter '('
 refused "cannot read the suite" slurm --shards 2 --sweep strain --config missing.json
 refused "--reps" slurm --shards 2 "${sweep[@]}" --reps 0
-refused "--max-error needs references" slurm --shards 1 --sweep strain --max-error 0.02 \
-  --config <(echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1], "scene_parameters": {"n": 7}}]}')
+echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1], "scene_parameters": {"n": 7}}]}' >suite.json
+refused "--max-error needs references" slurm --shards 1 --sweep strain --max-error 0.02 --config suite.json
+refused "will not be there" slurm --shards 1 --sweep strain --config <(cat suite.json)
 refused "--jobs goes with emit parallel" slurm --shards 2 "${sweep[@]}" --jobs 2
 refused "go with emit slurm" parallel --shards 2 "${sweep[@]}" --time 01:00:00
 refused "must be HH:MM:SS" slurm --shards 2 "${sweep[@]}" --time 'soon
@@ -50,7 +52,7 @@ refused "must be an account's name" slurm --shards 2 "${sweep[@]}" --account '"'
 refused "must be a size such as 4G" parallel --shards 2 "${sweep[@]}" --memory 4
 refused "without %" slurm --shards 2 "${sweep[@]}" --out 'results/%a.json'
 refused "is a folder" slurm --shards 2 "${sweep[@]}" --out .
-[[ $(find . -type f | sort | tr '\n' ' ') == './stderr.txt ./stdout.txt ' ]] || fail "a refusal left files: $(find .)"
+[[ $(find . -type f | sort | tr '\n' ' ') == './stderr.txt ./stdout.txt ./suite.json ' ]] || fail "a refusal left files: $(find .)"
 
 # What only one of the two knows, and what stays out unless it was asked for.
 "$BENCH_BINARY" emit slurm --shards 3 "${sweep[@]}" --time 01:30:00 --partition long --account cloth --memory 4G >job.sh ||
@@ -71,8 +73,30 @@ done
 bash job.sh >stdout.txt 2>stderr.txt
 [[ $? == 2 ]] && grep -q 'there is no ./bench here' stderr.txt || fail "started without ./bench: $(cat stderr.txt)"
 
-# Every option reaches bench as it was typed: here by way of a single shard, which needs no batch system.
+# A shard of the Slurm script, with Slurm's part played: when the time is nearly up it asks for another turn, but not for ever.
 ln -sf "$here/stand_in_bench.sh" bench
+mkdir fake
+printf '%s\n' '#!/usr/bin/env bash' 'echo "$*" >>scontrol.txt' 'kill -KILL $PPID' >fake/scontrol
+chmod +x fake/scontrol
+"$BENCH_BINARY" emit slurm --shards 3 "${sweep[@]}" --out turns/result.json >job.sh
+for turn in 19 20; do
+  rm -f calls*
+  PATH=$PWD/fake:$PATH POINTS=100 SLURM_ARRAY_JOB_ID=5 SLURM_ARRAY_TASK_ID=2 SLURM_RESTART_COUNT=$turn bash job.sh 2>/dev/null &
+  script=$!
+  for _ in {1..100}; do
+    [[ -s calls.txt ]] && break
+    sleep 0.1
+  done
+  sleep 0.3
+  kill -USR1 $script
+  wait $script 2>/dev/null
+  codes+=" $?"
+  [[ $(tail -n 1 calls.txt) == '2 interrupted' ]] || fail "turn $turn: $(cat calls.txt)"
+done
+[[ $codes == ' 137 130' && $(<scontrol.txt) == 'requeue 5_2' ]] || fail "turns end with $codes: $(cat scontrol.txt)"
+
+# Every option reaches bench as it was typed: here by way of a single shard, which needs no batch system.
+rm -f calls*
 export POINTS=1
 hostile=$'a|b $(touch pwned) `touch pwned` a{1} [{}] \' " \\\\ ; @N@ # * ~'
 "$BENCH_BINARY" emit parallel --shards 3 "${sweep[@]}" --filter "$hostile" --exclude=-x --seed 7 --timeout 0.30 --reps 2 \
