@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <set>
 
 #include "commands.h"
 #include "job_script.h"
@@ -17,20 +16,20 @@ struct EmitCommand : SweepOptions {
   JobScript job;
 };
 
-// All solvers of one scene and size stay in one shard, so more shards than these would be empty.
-std::size_t shares(const std::vector<Search>& searches) {
-  std::set<std::string> names;
-  for (const Search& search : searches)
-    names.insert(reference_name(search.base.scene, search.base.scene_parameters));
-  return names.size();
+// All solvers of one scene and size stay in one shard, so that there may be less work than shards.
+std::size_t shares(const std::vector<Search>& searches, std::size_t shards) {
+  std::size_t filled = 0;
+  for (std::size_t i = 1; i <= shards; ++i) filled += !shard(searches, {i, shards}).empty();
+  return filled;
 }
 
 // What the sweep itself would refuse is refused here, before anything waits in a queue.
 void check_sweep(const Suite& suite, const EmitCommand& given) {
   const auto searches = plan(suite, make_filters(given));
-  const std::size_t most = shares(searches);
-  if (static_cast<std::size_t>(given.job.shards) > most)
-    throw UsageError("--shards " + std::to_string(given.job.shards) + ": this sweep has " +
+  const auto shards = static_cast<std::size_t>(given.job.shards);
+  const std::size_t most = shares(searches, shards);
+  if (shards > most)
+    throw UsageError("--shards " + std::to_string(shards) + ": this sweep has " +
                      std::to_string(most) +
                      " scenes and sizes to share out, each of which stays in one shard");
   ReferenceShelf shelf(source_path("results/references"));
@@ -88,7 +87,8 @@ void add_emit_command(CLI::App& app, Chosen& chosen) {
                    "the merged result; default results/local/<profile>-<axis>.json. Shards and "
                    "logs go to a folder of this name with -shards")
       ->type_name("FILE");
-  command->add_option("--memory", job.memory, "that a shard needs, e.g. 4G")->type_name("SIZE");
+  command->add_option("--memory", job.memory, "that a point may have and a shard reserves, e.g. 4G")
+      ->type_name("SIZE");
   command->add_option("--time", job.time, "slurm: time limit of a shard")->type_name("HH:MM:SS");
   command->add_option("--partition", job.partition, "slurm: where to run")->type_name("NAME");
   command->add_option("--account", job.account, "slurm: whose hours")->type_name("NAME");
@@ -101,6 +101,7 @@ void add_emit_command(CLI::App& app, Chosen& chosen) {
       if (option->count() == 0 || option->results().back().empty()) continue;
       given->job.sweep.push_back(option->get_name() + "=" + option->results().back());
     }
+    if (!given->job.memory.empty()) given->job.sweep.push_back("--memory=" + given->job.memory);
     chosen = [given] { return emit(*given); };
   });
 }

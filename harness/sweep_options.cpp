@@ -25,9 +25,13 @@ void add_selection(CLI::App& to, SweepOptions& options) {
 }
 
 void add_measurement(CLI::App& to, SweepOptions& options) {
-  to.add_option("--reps", options.reps, "runs of each best point")
-      ->check(CLI::Range(1, 1000))
+  to.add_option("--reps", options.reps,
+                "runs of each best point; 5..40: more until the median is known to --rel-ci")
       ->type_name("N");
+  to.add_option("--rel-ci", options.rel_ci,
+                "half width of the median's 95 % confidence interval over the median, default 0.02")
+      ->check(CLI::PositiveNumber)
+      ->type_name("R");
   to.add_option("--timeout", options.timeout, "seconds a point may take")
       ->check(CLI::PositiveNumber)
       ->type_name("S");

@@ -19,7 +19,7 @@ struct SweepOptions {
 // --sweep, --scene, --solver, --filter, --exclude, --profile and --config.
 void add_selection(CLI::App& to, SweepOptions& options);
 
-// --reps, --timeout, --step, --max-error and --seed.
+// --reps, --rel-ci, --timeout, --step, --max-error and --seed.
 void add_measurement(CLI::App& to, SweepOptions& options);
 
 std::vector<std::string> profiles();
