@@ -60,6 +60,7 @@ refused "is a folder" slurm --shards 2 "${sweep[@]}" --out .
 for line in --array=1-3 --exclusive --requeue --time=01:30:00 --partition=long --account=cloth --mem=4G; do
   grep -qx -- "#SBATCH $line" job.sh || fail "no line #SBATCH $line"
 done
+grep -q '^sweep=(.* --memory=4G)$' job.sh || fail "points of a shard may have more memory than it reserves"
 grep -q '^result=results/local/quick-resolution.json$' job.sh || fail "the default result is not relative"
 "$BENCH_BINARY" emit slurm --shards 3 "${sweep[@]}" >job.sh
 grep -E '^#SBATCH --(time|partition|account|mem)' job.sh && fail "demands that nobody made"
