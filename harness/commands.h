@@ -28,6 +28,7 @@ void add_list_command(CLI::App& app, Chosen& chosen);
 void add_claims_command(CLI::App& app, Chosen& chosen);
 void add_merge_command(CLI::App& app, Chosen& chosen);
 void add_plot_command(CLI::App& app, Chosen& chosen);
+void add_emit_command(CLI::App& app, Chosen& chosen);
 
 // A file of the source tree.
 std::string source_path(const std::string& relative);

@@ -36,6 +36,8 @@ int run(int argc, char** argv) {
       "  bench reference                          the trajectories that errors are measured "
       "against\n"
       "  bench claims RESULT.json ...             the paper's claims, decided by measurements\n"
+      "  bench emit slurm --shards 8 ... > job.sh  the same on many machines, under Slurm or GNU "
+      "parallel\n"
       "  bench list                               solvers, scenes and suites with their "
       "settings\n"};
   app.set_version_flag("--version", std::string("bench ") + version());
@@ -45,6 +47,7 @@ int run(int argc, char** argv) {
   add_plot_command(app, chosen);
   add_reference_command(app, chosen);
   add_claims_command(app, chosen);
+  add_emit_command(app, chosen);
   add_list_command(app, chosen);
   add_merge_command(app, chosen);
   try {

@@ -24,6 +24,30 @@ void add_selection(CLI::App& to, SweepOptions& options) {
       ->type_name("FILE");
 }
 
+void add_measurement(CLI::App& to, SweepOptions& options) {
+  to.add_option("--reps", options.reps,
+                "runs of each best point; 5..40: more until the median is known to --rel-ci")
+      ->type_name("N");
+  to.add_option("--rel-ci", options.rel_ci,
+                "half width of the median's 95 % confidence interval over the median, default 0.02")
+      ->check(CLI::PositiveNumber)
+      ->type_name("R");
+  to.add_option("--timeout", options.timeout, "seconds a point may take")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
+  to.add_option("--step", options.step,
+                "search (each solver's best step, default), all (the whole ladder) or adaptive "
+                "(one run from the coarsest step, halved where the solver refuses it)")
+      ->type_name("HOW");
+  to.add_option("--max-error", options.max_error,
+                "also find the fastest step within this trajectory error, over the scene's size")
+      ->check(CLI::PositiveNumber)
+      ->type_name("E");
+  to.add_option("--seed", options.seed, "of random orders")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N");
+}
+
 std::vector<std::string> profiles() { return {"quick", "default", "paper"}; }
 
 void check_profile(const std::string& name) {

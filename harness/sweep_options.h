@@ -19,6 +19,9 @@ struct SweepOptions {
 // --sweep, --scene, --solver, --filter, --exclude, --profile and --config.
 void add_selection(CLI::App& to, SweepOptions& options);
 
+// --reps, --rel-ci, --timeout, --step, --max-error and --seed.
+void add_measurement(CLI::App& to, SweepOptions& options);
+
 std::vector<std::string> profiles();
 // All of these throw UsageError for what does not exist.
 void check_profile(const std::string& name);
