@@ -226,17 +226,7 @@ void add_sweep_command(CLI::App& app, Chosen& chosen, const std::vector<std::str
   add_selection(app, options);
   app.add_option("--out", options.out, "result file; default results/local/<profile>-<axis>.json")
       ->type_name("FILE");
-  app.add_option("--reps", options.reps,
-                 "runs of each best point; 5..40: more until the median is known to --rel-ci")
-      ->type_name("N");
-  app.add_option(
-         "--rel-ci", options.rel_ci,
-         "half width of the median's 95 % confidence interval over the median, default 0.02")
-      ->check(CLI::PositiveNumber)
-      ->type_name("R");
-  app.add_option("--timeout", options.timeout, "seconds a point may take")
-      ->check(CLI::PositiveNumber)
-      ->type_name("S");
+  add_measurement(app, options);
   app.add_option("--memory", options.memory, "address space a point may have, e.g. 4G")
       ->transform(CLI::AsSizeValue(false))
       ->type_name("BYTES");
@@ -251,17 +241,6 @@ void add_sweep_command(CLI::App& app, Chosen& chosen, const std::vector<std::str
   app.add_option("--shard", options.shard,
                  "i/N: the i-th of N parts; all solvers of a scene and size are in one of them")
       ->type_name("I/N");
-  app.add_option("--step", options.step,
-                 "search (each solver's best step, default), all (the whole ladder) or adaptive "
-                 "(one run from the coarsest step, halved where the solver refuses it)")
-      ->type_name("HOW");
-  app.add_option("--max-error", options.max_error,
-                 "also find the fastest step within this trajectory error, over the scene's size")
-      ->check(CLI::PositiveNumber)
-      ->type_name("E");
-  app.add_option("--seed", options.seed, "of random orders")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("N");
   app.add_option("--case", options.hard_case,
                  "stability: only cases in whose name this is found, e.g. 'Q[12]'")
       ->type_name("REGEX");

@@ -276,9 +276,10 @@ ShapeStatistics shape_statistics(const Scene& scene, const Positions& x) {
 }
 
 double rms_distance(const Scene& scene, const Positions& x, const Positions& y) {
-  const auto& mass = scene.problem->mass();
-  const Eigen::Map<const Eigen::VectorXd> m(mass.data(), scene.problem->vertices());
-  return std::sqrt((x - y).colwise().squaredNorm().dot(m) / m.sum()) / scene.size;
+  double sum = 0;  // term by term, so that equal runs have equal errors to the last digit
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    sum += scene.problem->mass()[static_cast<std::size_t>(i)] * (x.col(i) - y.col(i)).squaredNorm();
+  return std::sqrt(sum / scene.problem->total_mass()) / scene.size;
 }
 
 double max_distance(const Scene& scene, const Positions& x, const Positions& y) {

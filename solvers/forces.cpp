@@ -61,15 +61,21 @@ double spring_energy(const Springs& springs, const Positions& x) {
 }
 
 double potential_energy(const Problem& problem, const Positions& x) {
-  const Eigen::Map<const Eigen::VectorXd> mass(problem.mass().data(), problem.vertices());
-  double energy = -problem.gravity().dot(x * mass);
+  // Term by term: Eigen's own sums go by the address of what they add up, so that equal runs would
+  // differ by a rounding.
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    moment += problem.mass()[static_cast<std::size_t>(i)] * x.col(i);
+  double energy = -problem.gravity().dot(moment);
   if (const Springs* shear = problem.shear()) energy += spring_energy(*shear, x);
   return energy;
 }
 
 double kinetic_energy(const Problem& problem, const Positions& v) {
-  const Eigen::Map<const Eigen::VectorXd> mass(problem.mass().data(), problem.vertices());
-  return 0.5 * v.colwise().squaredNorm() * mass;
+  double sum = 0;
+  for (Eigen::Index i = 0; i < v.cols(); ++i)
+    sum += problem.mass()[static_cast<std::size_t>(i)] * v.col(i).squaredNorm();
+  return 0.5 * sum;
 }
 
 }  // namespace inextensible
