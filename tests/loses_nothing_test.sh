@@ -103,6 +103,7 @@ child_of() {
     sleep 0.01
   done
 }
+lines long.json.out.journal 1  # after git, which is a child of its own
 first=$(child_of)
 sleep 0.3
 kill -ILL "$first"
