@@ -5,6 +5,7 @@
 
 #include "cholmod_solver.h"
 #include "eigen_ldlt_solver.h"
+#include "fixed_pattern_cholesky.h"
 #include "tridiagonal_solver.h"
 
 namespace inextensible {
@@ -23,8 +24,9 @@ bool SymmetricPattern::tridiagonal() const {
 SymmetricPattern::Triangle triangle_of(std::string_view solver) {
   // CHOLMOD's supernodal code transposes an upper triangle at every factorization; the up-looking
   // codes a lower one.
-  return solver == "cholmod_supernodal" ? SymmetricPattern::Triangle::lower
-                                        : SymmetricPattern::Triangle::upper;
+  return solver == "cholmod_supernodal" || solver == "fixed_pattern"
+             ? SymmetricPattern::Triangle::lower
+             : SymmetricPattern::Triangle::upper;
 }
 
 std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern) {
@@ -34,6 +36,7 @@ std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPatte
     return std::make_unique<CholmodSolver>(std::move(pattern), false);
   if (name == "cholmod_supernodal")
     return std::make_unique<CholmodSolver>(std::move(pattern), true);
+  if (name == "fixed_pattern") return std::make_unique<FixedPatternCholesky>(std::move(pattern));
   throw std::invalid_argument("no linear solver '" + std::string(name) + "'");
 }
 

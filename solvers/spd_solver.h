@@ -60,8 +60,8 @@ class SpdSolver {
 SymmetricPattern::Triangle triangle_of(std::string_view solver);
 
 // name: tridiagonal (tridiagonal patterns only), eigen_ldlt, cholmod_simplicial,
-// cholmod_supernodal. Throws std::invalid_argument for another name or a pattern that the solver
-// cannot take.
+// cholmod_supernodal, fixed_pattern. Throws std::invalid_argument for another name or a pattern
+// that the solver cannot take.
 std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern);
 
 // An elimination order with little fill: order[i] is the row that comes i-th. The better of AMD and

@@ -17,8 +17,8 @@ namespace {
 using testing::Random;
 using testing::random_graph;
 constexpr std::uint64_t seeds = 20;
-const std::vector<std::string> general_solvers = {"eigen_ldlt", "cholmod_simplicial",
-                                                  "cholmod_supernodal"};
+const std::vector<std::string> general_solvers = {"eigen_ldlt", "fixed_pattern",
+                                                  "cholmod_simplicial", "cholmod_supernodal"};
 
 Eigen::MatrixXd dense_symmetric(const SymmetricPattern& pattern, const double* values) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(pattern.n, pattern.n);
@@ -68,7 +68,7 @@ TEST(SpdSolver, IsBackwardStableOnGraphsOfUnequalMassesInTheFillReducingOrder) {
 // A positive diagonal does not make a matrix positive definite: [1 2; 2 1] has eigenvalue -1.
 TEST(SpdSolver, RefusesAnIndefiniteMatrixWithAPositiveDiagonal) {
   for (const char* name :
-       {"tridiagonal", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}) {
+       {"tridiagonal", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern"}) {
     SCOPED_TRACE(name);
     SymmetricPattern pattern;
     pattern.n = 3;
@@ -106,7 +106,7 @@ TEST(SpdSolver, RefusesAnIndefiniteMatrixWithAPositiveDiagonal) {
 // diagonal entry, and estimates the condition by it.
 TEST(SpdSolver, RefusesPivotsThatLostTheirDigitsWhereToldTo) {
   for (const char* name :
-       {"tridiagonal", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}) {
+       {"tridiagonal", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern"}) {
     SCOPED_TRACE(name);
     const bool upper = triangle_of(name) == SymmetricPattern::Triangle::upper;
     const SymmetricPattern pattern{2, triangle_of(name),

@@ -1,0 +1,429 @@
+#include "fixed_pattern_cholesky.h"
+
+#include <cholmod.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <stdexcept>
+
+namespace inextensible {
+namespace {
+
+using Distance = std::ptrdiff_t;
+
+constexpr int panel = 8;   // columns eliminated at once
+constexpr int target = 4;  // columns updated at once
+constexpr int lanes =
+    8;  // partial sums of a dot product, so that it can be vectorized as it stands
+
+// ---- Dense steps, all on column-major storage ----
+
+// Eliminates the first K columns of the lower trapezoid l of n rows: the triangle of K rows, then
+// the rows below, each independent of the others. Returns the first column whose pivot is not above
+// its bound, K if all are.
+template <int K>
+int eliminate(double* l, Distance ld, int n, const double* bound, double* pivots) {
+  double triangle[K][K], inverse[K];
+  for (int c = 0; c < K; ++c) {
+    double d = l[c * ld + c];
+    for (int k = 0; k < c; ++k) d -= triangle[c][k] * triangle[c][k];
+    if (!(d > bound[c])) return c;  // the negation catches NaN
+    pivots[c] = d;
+    triangle[c][c] = std::sqrt(d);
+    inverse[c] = 1 / triangle[c][c];
+    for (int r = c + 1; r < K; ++r) {
+      double s = l[c * ld + r];
+      for (int k = 0; k < c; ++k) s -= triangle[r][k] * triangle[c][k];
+      triangle[r][c] = s * inverse[c];
+    }
+  }
+  for (int c = 0; c < K; ++c) {
+    for (int r = c; r < K; ++r) l[c * ld + r] = triangle[r][c];
+  }
+#pragma GCC ivdep  // rows do not touch each other
+  for (int i = K; i < n; ++i) {
+    double y[K];
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) {
+      double s = l[c * ld + i];
+#pragma GCC unroll 8
+      for (int k = 0; k < c; ++k) s -= y[k] * triangle[c][k];
+      y[c] = s * inverse[c];
+      l[c * ld + i] = y[c];
+    }
+  }
+  return K;
+}
+
+// J columns of C less those of P P^T, from row j on, where the first of them is column j; P is n x
+// K. Entries above the diagonal are written too, and never read.
+template <int K, int J>
+void subtract_columns(const double* p, Distance ld_p, int n, int j, double* c, Distance ld_c) {
+  double factor[K][J];
+  for (int k = 0; k < K; ++k) {
+    for (int t = 0; t < J; ++t) factor[k][t] = p[k * ld_p + j + t];
+  }
+  c += j * ld_c;
+#pragma GCC ivdep  // P and C do not overlap
+  for (int i = j; i < n; ++i) {
+    double sum[J] = {};
+#pragma GCC unroll 8
+    for (int k = 0; k < K; ++k) {
+      const double value = p[k * ld_p + i];
+#pragma GCC unroll 4
+      for (int t = 0; t < J; ++t) sum[t] += value * factor[k][t];
+    }
+#pragma GCC unroll 4
+    for (int t = 0; t < J; ++t) c[t * ld_c + i] -= sum[t];
+  }
+}
+
+// The first m columns of the lower triangle of C (n rows) less those of P P^T.
+template <int K>
+void subtract_product(const double* p, Distance ld_p, int n, int m, double* c, Distance ld_c) {
+  int j = 0;
+  for (; j + target <= m; j += target) subtract_columns<K, target>(p, ld_p, n, j, c, ld_c);
+  for (; j + 2 <= m; j += 2) subtract_columns<K, 2>(p, ld_p, n, j, c, ld_c);
+  if (j < m) subtract_columns<K, 1>(p, ld_p, n, j, c, ld_c);
+}
+
+// A front on its way: `own` columns of `rows` rows, and the update matrix of the rows below them.
+struct Trapezoid {
+  double* columns;
+  int rows, own;
+  double* update;
+};
+
+// The panel of K columns at column k: eliminated, and taken from the own columns right of it and
+// from the update matrix.
+template <int K>
+int take_panel(const Trapezoid& front, int k, const double* bound, double* pivots) {
+  const Distance ld = front.rows;
+  double* l = front.columns + k * ld + k;
+  const int bad = eliminate<K>(l, ld, front.rows - k, bound, pivots);
+  if (bad < K) return bad;
+  const int right = front.own - k - K, below = front.rows - front.own;
+  subtract_product<K>(l + K, ld, front.rows - k - K, right, l + K * ld + K, ld);
+  subtract_product<K>(front.columns + k * ld + front.own, ld, below, below, front.update, below);
+  return K;
+}
+
+int take_panel(int width, const Trapezoid& front, int k, const double* bound, double* pivots) {
+  switch (width) {
+    case 1:
+      return take_panel<1>(front, k, bound, pivots);
+    case 2:
+      return take_panel<2>(front, k, bound, pivots);
+    case 3:
+      return take_panel<3>(front, k, bound, pivots);
+    case 4:
+      return take_panel<4>(front, k, bound, pivots);
+    case 5:
+      return take_panel<5>(front, k, bound, pivots);
+    case 6:
+      return take_panel<6>(front, k, bound, pivots);
+    case 7:
+      return take_panel<7>(front, k, bound, pivots);
+    default:
+      return take_panel<panel>(front, k, bound, pivots);
+  }
+}
+
+// y += sum over J columns of l (n rows) times x.
+template <int J>
+void add_columns(const double* l, Distance ld, int n, const double* x, double* y) {
+#pragma GCC ivdep
+  for (int i = 0; i < n; ++i) {
+    double sum = y[i];
+#pragma GCC unroll 4
+    for (int t = 0; t < J; ++t) sum += l[t * ld + i] * x[t];
+    y[i] = sum;
+  }
+}
+
+// x_t -= (column t of l) . y for J columns of n rows.
+template <int J>
+void subtract_dots(const double* l, Distance ld, int n, const double* y, double* x) {
+  double sum[J][lanes] = {};
+  int i = 0;
+  for (; i + lanes <= n; i += lanes) {
+#pragma GCC unroll 4
+    for (int t = 0; t < J; ++t) {
+      for (int lane = 0; lane < lanes; ++lane) sum[t][lane] += l[t * ld + i + lane] * y[i + lane];
+    }
+  }
+  for (int t = 0; t < J; ++t) {
+    double total = 0;
+    for (const double part : sum[t]) total += part;
+    for (int r = i; r < n; ++r) total += l[t * ld + r] * y[r];
+    x[t] -= total;
+  }
+}
+
+// ---- CHOLMOD's symbolic analysis ----
+
+struct Analysis {
+  cholmod_common common{};
+  cholmod_factor* factor = nullptr;
+
+  explicit Analysis(const SymmetricPattern& pattern) {
+    cholmod_start(&common);
+    common.print = 0;
+    common.nmethods = 1;
+    common.method[0].ordering = CHOLMOD_NATURAL;
+    common.postorder = 0;
+    common.supernodal = CHOLMOD_SUPERNODAL;
+    cholmod_sparse matrix{};
+    matrix.nrow = matrix.ncol = static_cast<std::size_t>(pattern.n);
+    matrix.nzmax = static_cast<std::size_t>(pattern.entries());
+    matrix.p = const_cast<int*>(pattern.column_start.data());
+    matrix.i = const_cast<int*>(pattern.row_index.data());
+    matrix.stype = -1;
+    matrix.itype = CHOLMOD_INT;
+    matrix.xtype = CHOLMOD_PATTERN;
+    matrix.dtype = CHOLMOD_DOUBLE;
+    matrix.sorted = matrix.packed = 1;
+    factor = cholmod_analyze(&matrix, &common);
+    if (!factor) {
+      cholmod_finish(&common);
+      throw std::bad_alloc();
+    }
+  }
+  ~Analysis() {
+    cholmod_free_factor(&factor, &common);
+    cholmod_finish(&common);
+  }
+  Analysis(const Analysis&) = delete;
+  Analysis& operator=(const Analysis&) = delete;
+};
+
+std::size_t as_size(int i) { return static_cast<std::size_t>(i); }
+std::size_t square(int n) { return as_size(n) * as_size(n); }
+
+}  // namespace
+
+FixedPatternCholesky::FixedPatternCholesky(SymmetricPattern pattern)
+    : pattern_(std::move(pattern)),
+      values_(as_size(pattern_.entries())),
+      pivots_(as_size(pattern_.n)),
+      inverse_diagonal_(as_size(pattern_.n)) {
+  if (pattern_.triangle != SymmetricPattern::Triangle::lower)
+    throw std::invalid_argument("fixed_pattern reads the lower triangle");
+  find_fronts();
+  place_entries();
+  link_fronts();
+  place_updates();
+}
+
+void FixedPatternCholesky::find_fronts() {
+  const Analysis analysis(pattern_);
+  const cholmod_factor& f = *analysis.factor;
+  const auto* super = static_cast<const int*>(f.super);
+  const auto* start = static_cast<const int*>(f.pi);
+  const auto* row = static_cast<const int*>(f.s);
+  std::size_t factor_size = 0;
+  for (std::size_t s = 0; s < f.nsuper; ++s) {
+    Front front{};
+    front.first_column = super[s];
+    front.columns = super[s + 1] - super[s];
+    front.rows = start[s + 1] - start[s];
+    front.rows_at = rows_.size();
+    front.factor_at = factor_size;
+    factor_size += as_size(front.columns) * as_size(front.rows);
+    rows_.insert(rows_.end(), row + start[s] + front.columns, row + start[s + 1]);
+    for (int c = 0; c < front.columns; ++c) flops_ += static_cast<double>(square(front.rows - c));
+    most_below_ = std::max(most_below_, front.below());
+    fronts_.push_back(front);
+  }
+  factor_.resize(factor_size);
+  below_.resize(as_size(most_below_));
+}
+
+void FixedPatternCholesky::place_entries() {
+  entry_place_.resize(values_.size());
+  for (Front& front : fronts_) {
+    const int end = front.first_column + front.columns;
+    front.entries_begin = pattern_.column_start[as_size(front.first_column)];
+    front.entries_end = pattern_.column_start[as_size(end)];
+    for (int column = front.first_column; column < end; ++column) {
+      const int base = (column - front.first_column) * front.rows;
+      for (int e = pattern_.column_start[as_size(column)];
+           e < pattern_.column_start[as_size(column) + 1]; ++e)
+        entry_place_[as_size(e)] = base + place_in(front, pattern_.row_index[as_size(e)]);
+    }
+  }
+}
+
+// The place of a row of the matrix among a front's rows.
+int FixedPatternCholesky::place_in(const Front& front, int row) const {
+  if (row < front.first_column + front.columns) return row - front.first_column;
+  const auto begin = rows_.begin() + static_cast<Distance>(front.rows_at);
+  return front.columns +
+         static_cast<int>(std::lower_bound(begin, begin + front.below(), row) - begin);
+}
+
+void FixedPatternCholesky::link_fronts() {
+  std::vector<int> front_of(as_size(pattern_.n));
+  for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    for (int c = 0; c < fronts_[f].columns; ++c)
+      front_of[as_size(fronts_[f].first_column + c)] = static_cast<int>(f);
+  }
+  std::vector<std::vector<int>> children(fronts_.size());
+  for (std::size_t f = fronts_.size(); f-- > 0;) {  // parents come later: from the roots down
+    Front& front = fronts_[f];
+    if (front.below() == 0) continue;
+    const auto parent = as_size(front_of[as_size(rows_[front.rows_at])]);
+    children[parent].push_back(static_cast<int>(f));
+    front.stack = 1 - fronts_[parent].stack;
+    front.runs_begin = static_cast<int>(runs_.size());
+    for (int i = 0; i < front.below(); ++i) {
+      const int place = place_in(fronts_[parent], rows_[front.rows_at + as_size(i)]);
+      const bool goes_on = static_cast<int>(runs_.size()) > front.runs_begin &&
+                           runs_.back().to + runs_.back().count == place;
+      if (goes_on) {
+        ++runs_.back().count;
+      } else {
+        runs_.push_back({i, place, 1});
+      }
+    }
+    front.runs_end = static_cast<int>(runs_.size());
+  }
+  for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    fronts_[f].children_begin = static_cast<int>(children_.size());
+    children_.insert(children_.end(), children[f].begin(), children[f].end());
+    fronts_[f].children_end = static_cast<int>(children_.size());
+  }
+}
+
+// In a postorder a front's children are the last ones on their stack. In another order every update
+// matrix has a place of its own.
+void FixedPatternCholesky::place_updates() {
+  std::size_t top[2] = {0, 0}, most[2] = {0, 0};
+  bool postordered = true;
+  for (Front& front : fronts_) {
+    front.update_at = top[front.stack];
+    top[front.stack] += square(front.below());
+    most[front.stack] = std::max(most[front.stack], top[front.stack]);
+    std::size_t dropped = 0, lowest = top[1 - front.stack];
+    for (int c = front.children_begin; c < front.children_end; ++c) {
+      const Front& child = fronts_[as_size(children_[as_size(c)])];
+      dropped += square(child.below());
+      lowest = std::min(lowest, child.update_at);
+    }
+    postordered = postordered && top[1 - front.stack] - lowest == dropped;
+    top[1 - front.stack] = lowest;
+  }
+  if (!postordered) {
+    most[0] = most[1] = 0;
+    for (Front& front : fronts_) {
+      front.update_at = most[front.stack];
+      most[front.stack] += square(front.below());
+    }
+  }
+  for (const int i : {0, 1}) updates_[i].resize(most[i]);
+}
+
+// The child's update matrix into the parent's own columns and update matrix.
+void FixedPatternCholesky::add_update(const Front& child, const Front& parent, double* columns,
+                                      double* update) const {
+  const double* source = updates_[child.stack].data() + child.update_at;
+  const Run* const end = runs_.data() + child.runs_end;
+  for (const Run* of_column = runs_.data() + child.runs_begin; of_column < end; ++of_column) {
+    for (int k = 0; k < of_column->count; ++k, source += child.below()) {
+      const int column = of_column->to + k;
+      double* into =
+          column < parent.columns
+              ? columns + Distance{column} * parent.rows
+              : update + Distance{column - parent.columns} * parent.below() - parent.columns;
+      for (const Run* run = of_column; run < end; ++run) {
+        const int skip = run == of_column ? k : 0;  // rows above the diagonal
+        const double* from = source + run->from;
+        double* to = into + run->to;
+#pragma GCC ivdep
+        for (int i = skip; i < run->count; ++i) to[i] += from[i];
+      }
+    }
+  }
+}
+
+bool FixedPatternCholesky::factor() {
+  double bound[panel];
+  for (const Front& front : fronts_) {
+    double* columns = factor_.data() + front.factor_at;
+    double* update = updates_[front.stack].data() + front.update_at;
+    std::fill_n(columns, as_size(front.columns) * as_size(front.rows), 0.0);
+    std::fill_n(update, square(front.below()), 0.0);
+    for (int e = front.entries_begin; e < front.entries_end; ++e)
+      columns[entry_place_[as_size(e)]] = values_[as_size(e)];
+    for (int c = front.children_begin; c < front.children_end; ++c)
+      add_update(fronts_[as_size(children_[as_size(c)])], front, columns, update);
+    for (int k = 0; k < front.columns; k += panel) {
+      const int width = std::min(panel, front.columns - k), column = front.first_column + k;
+      for (int c = 0; c < width; ++c)
+        bound[c] = least_pivot_ * values_[as_size(pattern_.diagonal(column + c))];
+      const int good = take_panel(width, {columns, front.rows, front.columns, update}, k, bound,
+                                  pivots_.data() + column);
+      if (good < width) {
+        failed_column_ = column + good;
+        return false;
+      }
+    }
+    for (int c = 0; c < front.columns; ++c)
+      inverse_diagonal_[as_size(front.first_column + c)] =
+          1 / columns[Distance{c} * front.rows + c];
+  }
+  failed_column_ = -1;
+  return true;
+}
+
+void FixedPatternCholesky::solve(double* rhs) {
+  double* below = below_.data();
+  for (const Front& front : fronts_) {  // L y = rhs
+    const double* l = factor_.data() + front.factor_at;
+    const Distance ld = front.rows;
+    double* x = rhs + front.first_column;
+    const double* inverse = inverse_diagonal_.data() + front.first_column;
+    for (int c = 0; c < front.columns; ++c) {
+      x[c] *= inverse[c];
+      const double* column = l + c * ld;
+      for (int r = c + 1; r < front.columns; ++r) x[r] -= column[r] * x[c];
+    }
+    if (front.below() == 0) continue;
+    std::fill_n(below, front.below(), 0.0);
+    const double* lower = l + front.columns;
+    int c = 0;
+    for (; c + target <= front.columns; c += target)
+      add_columns<target>(lower + c * ld, ld, front.below(), x + c, below);
+    for (; c < front.columns; ++c) add_columns<1>(lower + c * ld, ld, front.below(), x + c, below);
+    const int* row = rows_.data() + front.rows_at;
+    for (int i = 0; i < front.below(); ++i) rhs[row[i]] -= below[i];
+  }
+  for (std::size_t f = fronts_.size(); f-- > 0;) {  // L^T x = y
+    const Front& front = fronts_[f];
+    const double* l = factor_.data() + front.factor_at;
+    const Distance ld = front.rows;
+    double* x = rhs + front.first_column;
+    const double* inverse = inverse_diagonal_.data() + front.first_column;
+    const int* row = rows_.data() + front.rows_at;
+    for (int i = 0; i < front.below(); ++i) below[i] = rhs[row[i]];
+    const double* lower = l + front.columns;
+    int c = 0;
+    for (; c + target <= front.columns; c += target)
+      subtract_dots<target>(lower + c * ld, ld, front.below(), below, x + c);
+    for (; c < front.columns; ++c)
+      subtract_dots<1>(lower + c * ld, ld, front.below(), below, x + c);
+    for (c = front.columns; c-- > 0;) {
+      const double* column = l + c * ld;
+      for (int r = c + 1; r < front.columns; ++r) x[c] -= column[r] * x[r];
+      x[c] *= inverse[c];
+    }
+  }
+}
+
+double FixedPatternCholesky::reciprocal_condition() const {
+  const auto [low, high] = std::minmax_element(pivots_.begin(), pivots_.end());
+  return *low / *high;
+}
+
+}  // namespace inextensible
