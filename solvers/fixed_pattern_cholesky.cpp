@@ -20,49 +20,52 @@ constexpr int lanes =
 // ---- Dense steps, all on column-major storage ----
 
 // Eliminates the first K columns of the lower trapezoid l of n rows: the triangle of K rows, then
-// the rows below, each independent of the others. Returns the first column whose pivot is not above
-// its bound, K if all are.
+// the rows below, each independent of the others. Leaves unit columns of L (their ones are not
+// written) and the pivots. Returns the first column whose pivot is not above its bound, K if all
+// are.
 template <int K>
 int eliminate(double* l, Distance ld, int n, const double* bound, double* pivots) {
-  double triangle[K][K], inverse[K];
+  double triangle[K][K], inverse[K];  // unit lower; 1 / pivot
   for (int c = 0; c < K; ++c) {
+    double scaled[K];
     double d = l[c * ld + c];
-    for (int k = 0; k < c; ++k) d -= triangle[c][k] * triangle[c][k];
+    for (int k = 0; k < c; ++k) {
+      scaled[k] = triangle[c][k] * pivots[k];
+      d -= triangle[c][k] * scaled[k];
+    }
     if (!(d > bound[c])) return c;  // the negation catches NaN
     pivots[c] = d;
-    triangle[c][c] = std::sqrt(d);
-    inverse[c] = 1 / triangle[c][c];
+    inverse[c] = 1 / d;
     for (int r = c + 1; r < K; ++r) {
       double s = l[c * ld + r];
-      for (int k = 0; k < c; ++k) s -= triangle[r][k] * triangle[c][k];
-      triangle[r][c] = s * inverse[c];
+      for (int k = 0; k < c; ++k) s -= triangle[r][k] * scaled[k];
+      l[c * ld + r] = triangle[r][c] = s * inverse[c];
     }
-  }
-  for (int c = 0; c < K; ++c) {
-    for (int r = c; r < K; ++r) l[c * ld + r] = triangle[r][c];
   }
 #pragma GCC ivdep  // rows do not touch each other
   for (int i = K; i < n; ++i) {
-    double y[K];
+    double y[K];  // a row of L D
 #pragma GCC unroll 8
     for (int c = 0; c < K; ++c) {
-      double s = l[c * ld + i];
+      y[c] = l[c * ld + i];
 #pragma GCC unroll 8
-      for (int k = 0; k < c; ++k) s -= y[k] * triangle[c][k];
-      y[c] = s * inverse[c];
-      l[c * ld + i] = y[c];
+      for (int k = 0; k < c; ++k) y[c] -= y[k] * triangle[c][k];
     }
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) l[c * ld + i] = y[c] * inverse[c];
   }
   return K;
 }
 
-// J columns of C less those of P P^T, from row j on, where the first of them is column j; P is n x
-// K. Entries above the diagonal are written too, and never read.
-template <int K, int J>
-void subtract_columns(const double* p, Distance ld_p, int n, int j, double* c, Distance ld_c) {
+// J columns of C less those of P D P^T, from row j on, where the first of them is column j; P is n
+// x K. With `begin` C is not read: it begins as zero. Entries above the diagonal are written too,
+// and never read.
+template <int K, int J, bool begin>
+void subtract_columns(const double* p, Distance ld_p, const double* d, int n, int j, double* c,
+                      Distance ld_c) {
   double factor[K][J];
   for (int k = 0; k < K; ++k) {
-    for (int t = 0; t < J; ++t) factor[k][t] = p[k * ld_p + j + t];
+    for (int t = 0; t < J; ++t) factor[k][t] = d[k] * p[k * ld_p + j + t];
   }
   c += j * ld_c;
 #pragma GCC ivdep  // P and C do not overlap
@@ -75,20 +78,23 @@ void subtract_columns(const double* p, Distance ld_p, int n, int j, double* c, D
       for (int t = 0; t < J; ++t) sum[t] += value * factor[k][t];
     }
 #pragma GCC unroll 4
-    for (int t = 0; t < J; ++t) c[t * ld_c + i] -= sum[t];
+    for (int t = 0; t < J; ++t) c[t * ld_c + i] = (begin ? 0 : c[t * ld_c + i]) - sum[t];
   }
 }
 
-// The first m columns of the lower triangle of C (n rows) less those of P P^T.
-template <int K>
-void subtract_product(const double* p, Distance ld_p, int n, int m, double* c, Distance ld_c) {
+// The first m columns of the lower triangle of C (n rows) less those of P D P^T.
+template <int K, bool begin>
+void subtract_product(const double* p, Distance ld_p, const double* d, int n, int m, double* c,
+                      Distance ld_c) {
   int j = 0;
-  for (; j + target <= m; j += target) subtract_columns<K, target>(p, ld_p, n, j, c, ld_c);
-  for (; j + 2 <= m; j += 2) subtract_columns<K, 2>(p, ld_p, n, j, c, ld_c);
-  if (j < m) subtract_columns<K, 1>(p, ld_p, n, j, c, ld_c);
+  for (; j + target <= m; j += target)
+    subtract_columns<K, target, begin>(p, ld_p, d, n, j, c, ld_c);
+  for (; j + 2 <= m; j += 2) subtract_columns<K, 2, begin>(p, ld_p, d, n, j, c, ld_c);
+  if (j < m) subtract_columns<K, 1, begin>(p, ld_p, d, n, j, c, ld_c);
 }
 
-// A front on its way: `own` columns of `rows` rows, and the update matrix of the rows below them.
+// A front on its way: `own` columns of `rows` rows, and the update matrix of the rows below them,
+// which the first panel begins.
 struct Trapezoid {
   double* columns;
   int rows, own;
@@ -104,8 +110,13 @@ int take_panel(const Trapezoid& front, int k, const double* bound, double* pivot
   const int bad = eliminate<K>(l, ld, front.rows - k, bound, pivots);
   if (bad < K) return bad;
   const int right = front.own - k - K, below = front.rows - front.own;
-  subtract_product<K>(l + K, ld, front.rows - k - K, right, l + K * ld + K, ld);
-  subtract_product<K>(front.columns + k * ld + front.own, ld, below, below, front.update, below);
+  subtract_product<K, false>(l + K, ld, pivots, front.rows - k - K, right, l + K * ld + K, ld);
+  const double* p = front.columns + k * ld + front.own;
+  if (k == 0) {
+    subtract_product<K, true>(p, ld, pivots, below, below, front.update, below);
+  } else {
+    subtract_product<K, false>(p, ld, pivots, below, below, front.update, below);
+  }
   return K;
 }
 
@@ -206,8 +217,7 @@ std::size_t square(int n) { return as_size(n) * as_size(n); }
 FixedPatternCholesky::FixedPatternCholesky(SymmetricPattern pattern)
     : pattern_(std::move(pattern)),
       values_(as_size(pattern_.entries())),
-      pivots_(as_size(pattern_.n)),
-      inverse_diagonal_(as_size(pattern_.n)) {
+      pivots_(as_size(pattern_.n)) {
   if (pattern_.triangle != SymmetricPattern::Triangle::lower)
     throw std::invalid_argument("fixed_pattern reads the lower triangle");
   find_fronts();
@@ -270,24 +280,19 @@ void FixedPatternCholesky::link_fronts() {
       front_of[as_size(fronts_[f].first_column + c)] = static_cast<int>(f);
   }
   std::vector<std::vector<int>> children(fronts_.size());
+  parent_place_.resize(rows_.size());
   for (std::size_t f = fronts_.size(); f-- > 0;) {  // parents come later: from the roots down
     Front& front = fronts_[f];
     if (front.below() == 0) continue;
     const auto parent = as_size(front_of[as_size(rows_[front.rows_at])]);
     children[parent].push_back(static_cast<int>(f));
     front.stack = 1 - fronts_[parent].stack;
-    front.runs_begin = static_cast<int>(runs_.size());
+    const int parent_columns = fronts_[parent].columns;
     for (int i = 0; i < front.below(); ++i) {
       const int place = place_in(fronts_[parent], rows_[front.rows_at + as_size(i)]);
-      const bool goes_on = static_cast<int>(runs_.size()) > front.runs_begin &&
-                           runs_.back().to + runs_.back().count == place;
-      if (goes_on) {
-        ++runs_.back().count;
-      } else {
-        runs_.push_back({i, place, 1});
-      }
+      parent_place_[front.rows_at + as_size(i)] = place;
+      front.own_of_parent += place < parent_columns;
     }
-    front.runs_end = static_cast<int>(runs_.size());
   }
   for (std::size_t f = 0; f < fronts_.size(); ++f) {
     fronts_[f].children_begin = static_cast<int>(children_.size());
@@ -324,56 +329,59 @@ void FixedPatternCholesky::place_updates() {
   for (const int i : {0, 1}) updates_[i].resize(most[i]);
 }
 
-// The child's update matrix into the parent's own columns and update matrix.
-void FixedPatternCholesky::add_update(const Front& child, const Front& parent, double* columns,
-                                      double* update) const {
-  const double* source = updates_[child.stack].data() + child.update_at;
-  const Run* const end = runs_.data() + child.runs_end;
-  for (const Run* of_column = runs_.data() + child.runs_begin; of_column < end; ++of_column) {
-    for (int k = 0; k < of_column->count; ++k, source += child.below()) {
-      const int column = of_column->to + k;
-      double* into =
-          column < parent.columns
-              ? columns + Distance{column} * parent.rows
-              : update + Distance{column - parent.columns} * parent.below() - parent.columns;
-      for (const Run* run = of_column; run < end; ++run) {
-        const int skip = run == of_column ? k : 0;  // rows above the diagonal
-        const double* from = source + run->from;
-        double* to = into + run->to;
-#pragma GCC ivdep
-        for (int i = skip; i < run->count; ++i) to[i] += from[i];
-      }
-    }
+// Columns [begin, end) of the child's update matrix into the parent's front, whose row 0 of column
+// c is at into + c * ld.
+void FixedPatternCholesky::add_update(const Front& child, int begin, int end, double* into,
+                                      Distance ld) const {
+  const int* place = parent_place_.data() + child.rows_at;
+  const int below = child.below();
+  const double* from = updates_[child.stack].data() + child.update_at + Distance{begin} * below;
+  for (int c = begin; c < end; ++c, from += below) {
+    double* to = into + place[c] * ld;
+#pragma GCC ivdep  // places differ
+#pragma GCC unroll 4
+    for (int i = c; i < below; ++i) to[place[i]] += from[i];
   }
 }
 
 bool FixedPatternCholesky::factor() {
-  double bound[panel];
   for (const Front& front : fronts_) {
     double* columns = factor_.data() + front.factor_at;
     double* update = updates_[front.stack].data() + front.update_at;
     std::fill_n(columns, as_size(front.columns) * as_size(front.rows), 0.0);
-    std::fill_n(update, square(front.below()), 0.0);
     for (int e = front.entries_begin; e < front.entries_end; ++e)
       columns[entry_place_[as_size(e)]] = values_[as_size(e)];
-    for (int c = front.children_begin; c < front.children_end; ++c)
-      add_update(fronts_[as_size(children_[as_size(c)])], front, columns, update);
-    for (int k = 0; k < front.columns; k += panel) {
-      const int width = std::min(panel, front.columns - k), column = front.first_column + k;
-      for (int c = 0; c < width; ++c)
-        bound[c] = least_pivot_ * values_[as_size(pattern_.diagonal(column + c))];
-      const int good = take_panel(width, {columns, front.rows, front.columns, update}, k, bound,
-                                  pivots_.data() + column);
-      if (good < width) {
-        failed_column_ = column + good;
-        return false;
-      }
+    const int* const children_end = children_.data() + front.children_end;
+    const int* const children = children_.data() + front.children_begin;
+    for (const int* c = children; c < children_end; ++c) {
+      const Front& child = fronts_[as_size(*c)];
+      add_update(child, 0, child.own_of_parent, columns, front.rows);
     }
-    for (int c = 0; c < front.columns; ++c)
-      inverse_diagonal_[as_size(front.first_column + c)] =
-          1 / columns[Distance{c} * front.rows + c];
+    if (!eliminate_columns(front, columns, update)) return false;
+    // Row and column 0 of the front lie `columns` before those of the update matrix.
+    double* origin = update - Distance{front.columns} * front.below() - front.columns;
+    for (const int* c = children; c < children_end; ++c) {
+      const Front& child = fronts_[as_size(*c)];
+      add_update(child, child.own_of_parent, child.below(), origin, front.below());
+    }
   }
   failed_column_ = -1;
+  return true;
+}
+
+bool FixedPatternCholesky::eliminate_columns(const Front& front, double* columns, double* update) {
+  double bound[panel];
+  for (int k = 0; k < front.columns; k += panel) {
+    const int width = std::min(panel, front.columns - k), column = front.first_column + k;
+    for (int c = 0; c < width; ++c)
+      bound[c] = least_pivot_ * values_[as_size(pattern_.diagonal(column + c))];
+    const int good = take_panel(width, {columns, front.rows, front.columns, update}, k, bound,
+                                pivots_.data() + column);
+    if (good < width) {
+      failed_column_ = column + good;
+      return false;
+    }
+  }
   return true;
 }
 
@@ -383,11 +391,8 @@ void FixedPatternCholesky::solve(double* rhs) {
     const double* l = factor_.data() + front.factor_at;
     const Distance ld = front.rows;
     double* x = rhs + front.first_column;
-    const double* inverse = inverse_diagonal_.data() + front.first_column;
     for (int c = 0; c < front.columns; ++c) {
-      x[c] *= inverse[c];
-      const double* column = l + c * ld;
-      for (int r = c + 1; r < front.columns; ++r) x[r] -= column[r] * x[c];
+      for (int r = c + 1; r < front.columns; ++r) x[r] -= l[c * ld + r] * x[c];
     }
     if (front.below() == 0) continue;
     std::fill_n(below, front.below(), 0.0);
@@ -399,12 +404,12 @@ void FixedPatternCholesky::solve(double* rhs) {
     const int* row = rows_.data() + front.rows_at;
     for (int i = 0; i < front.below(); ++i) rhs[row[i]] -= below[i];
   }
-  for (std::size_t f = fronts_.size(); f-- > 0;) {  // L^T x = y
+  for (std::size_t i = 0; i < pivots_.size(); ++i) rhs[i] /= pivots_[i];
+  for (std::size_t f = fronts_.size(); f-- > 0;) {  // L^T x = D^-1 y
     const Front& front = fronts_[f];
     const double* l = factor_.data() + front.factor_at;
     const Distance ld = front.rows;
     double* x = rhs + front.first_column;
-    const double* inverse = inverse_diagonal_.data() + front.first_column;
     const int* row = rows_.data() + front.rows_at;
     for (int i = 0; i < front.below(); ++i) below[i] = rhs[row[i]];
     const double* lower = l + front.columns;
@@ -414,9 +419,7 @@ void FixedPatternCholesky::solve(double* rhs) {
     for (; c < front.columns; ++c)
       subtract_dots<1>(lower + c * ld, ld, front.below(), below, x + c);
     for (c = front.columns; c-- > 0;) {
-      const double* column = l + c * ld;
-      for (int r = c + 1; r < front.columns; ++r) x[c] -= column[r] * x[r];
-      x[c] *= inverse[c];
+      for (int r = c + 1; r < front.columns; ++r) x[c] -= l[c * ld + r] * x[r];
     }
   }
 }

@@ -1,20 +1,20 @@
-// L L^T of matrices that share one pattern, for thousands of factorizations: the multifrontal
-// method (Duff and Reid 1983; Liu 1992), with everything that depends on the pattern alone done
-// once.
+// L D L^T of positive definite matrices that share one pattern, for thousands of factorizations:
+// the multifrontal method (Duff and Reid 1983; Liu 1992), with everything that depends on the
+// pattern alone done once.
 //
 // Columns of L with (nearly) the same rows below form a supernode. Its front is a dense lower
 // trapezoid over those rows: the entries of A in its columns, plus what its children in the
 // elimination tree leave over. The columns are eliminated by dense steps; what that subtracts from
-// the rows below is the front's update matrix, which goes to the parent.
+// the rows below, with what the children leave over there, is the front's update matrix, for its
+// parent.
 //
 // Fixed by the pattern, and so made in the constructor: supernodes and their rows (CHOLMOD's
-// analysis), the place of every entry of A in its front, the runs of a child's rows that are
-// neighbours in its parent too (so that adding an update matrix is adding vectors), and the place
-// of every update matrix. Those lie on two stacks, one for even and one for odd depths of the tree:
-// a front's update matrix is made on one while its children's are read, and then dropped, on the
-// other.
+// analysis), the place of every entry of A in its front, the place of every row of an update matrix
+// in the parent's front, and the place of every update matrix. Those lie on two stacks, one for
+// even and one for odd depths of the tree: a front's update matrix is made on one while its
+// children's, the last ones on the other, are read and dropped.
 //
-// The dense steps take panels of up to eight columns, whose count is a template argument: eight
+// The dense steps take panels of up to eight columns, whose number is a template argument: eight
 // columns of the panel against four of the target in one loop over rows, which the compiler turns
 // into vector instructions of any width.
 #pragma once
@@ -44,13 +44,10 @@ class FixedPatternCholesky final : public SpdSolver {
     int first_column, columns, rows;   // rows: the own columns' and those below
     int entries_begin, entries_end;    // of A, in the pattern's order
     int children_begin, children_end;  // in children_
-    int runs_begin, runs_end;          // in runs_
+    int own_of_parent;                 // of its rows below, how many are own columns of the parent
     int stack;                         // 0 or 1, the depth's parity: where the update matrix is
     std::size_t rows_at, factor_at, update_at;
     int below() const { return rows - columns; }
-  };
-  struct Run {  // rows of an update matrix that are neighbours in the parent's front as well
-    int from, to, count;
   };
 
   void find_fronts();
@@ -58,7 +55,8 @@ class FixedPatternCholesky final : public SpdSolver {
   void link_fronts();
   void place_updates();
   int place_in(const Front& front, int row) const;
-  void add_update(const Front& child, const Front& parent, double* columns, double* update) const;
+  void add_update(const Front& child, int begin, int end, double* into, std::ptrdiff_t ld) const;
+  bool eliminate_columns(const Front& front, double* columns, double* update);
 
   SymmetricPattern pattern_;
   std::vector<double> values_;
@@ -66,12 +64,11 @@ class FixedPatternCholesky final : public SpdSolver {
   std::vector<int> rows_;         // of the matrix, below each front's own columns, ascending
   std::vector<int> entry_place_;  // of A's entries in their front's columns
   std::vector<int> children_;
-  std::vector<Run> runs_;
+  std::vector<int> parent_place_;   // of each of rows_ in the parent's front
   std::vector<double> factor_;      // of each front columns x rows, column by column
   std::vector<double> updates_[2];  // the stacks
   std::vector<double> pivots_;      // of L D L^T
-  std::vector<double> inverse_diagonal_;
-  std::vector<double> below_;  // solve(): one number a row below
+  std::vector<double> below_;       // solve(): one number a row below
   int most_below_ = 0;
   double flops_ = 0;
   int failed_column_ = -1;
