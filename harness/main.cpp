@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "context.h"
+#include "plugins.h"
 #include "usage_error.h"
 
 namespace harness {
@@ -17,6 +18,21 @@ std::vector<std::string> command_words(int argc, char** argv) {
     words.push_back(argument.is_absolute() ? argument.filename().string() : argument.string());
   }
   return words;
+}
+
+// Before and after a command's name, any number of times.
+void add_plugin_option(CLI::App& app, std::vector<std::string>& files) {
+  std::vector<CLI::App*> places = app.get_subcommands([](const CLI::App*) { return true; });
+  places.push_back(&app);
+  for (CLI::App* place : places) {
+    place
+        ->add_option_function<std::vector<std::string>>(
+            "--plugin",
+            [&files](const auto& given) { files.insert(files.end(), given.begin(), given.end()); },
+            "load solvers of your own from a shared library (solvers/plugin.h); repeatable")
+        ->allow_extra_args(false)
+        ->type_name("FILE");
+  }
 }
 
 int run(int argc, char** argv) {
@@ -45,6 +61,8 @@ int run(int argc, char** argv) {
   add_reference_command(app, chosen);
   add_claims_command(app, chosen);
   add_list_command(app, chosen);
+  std::vector<std::string> plugins;
+  add_plugin_option(app, plugins);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -52,6 +70,7 @@ int run(int argc, char** argv) {
     std::cerr << "bench: " << error.what() << " (see bench --help)\n";
     return usage_error;
   }
+  for (const std::string& file : plugins) load_plugin(file);
   return chosen();
 }
 
