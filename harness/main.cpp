@@ -71,6 +71,11 @@ int run(int argc, char** argv) {
     return usage_error;
   }
   for (const std::string& file : plugins) load_plugin(file);
+  for (const Plugin& plugin : loaded_plugins()) {
+    if (!plugin.optimized)
+      std::cerr << "bench: plug-in '" << plugin.file
+                << "' was compiled without optimization: its times say nothing\n";
+  }
   return chosen();
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 #include <stdexcept>
 
 #include "plugin.h"
@@ -40,20 +41,19 @@ EntryPoint entry_point(const std::string& path) {
 }
 
 void check_stamp(const InextensiblePlugin& plugin) {
+  const auto refuse = [](const std::string& why, std::int64_t there, std::int64_t here) {
+    std::ostringstream text;
+    text << "it was built differently: " << why << " is " << there << " there, " << here
+         << " here; build it against this program's headers";
+    throw std::runtime_error(text.str());
+  };
   if (plugin.abi != INEXTENSIBLE_PLUGIN_ABI)
-    throw std::runtime_error("it was built for version " + std::to_string(plugin.abi) +
-                             " of the plug-in interface, this program has version " +
-                             std::to_string(INEXTENSIBLE_PLUGIN_ABI) +
-                             "; build it against this program's headers");
+    refuse("version of the plug-in interface", plugin.abi, INEXTENSIBLE_PLUGIN_ABI);
   if (plugin.stamp_items != std::size(inextensible_stamp))
-    throw std::runtime_error(
-        "its stamp is not of this version; build it against this program's headers");
+    refuse("length of its stamp", plugin.stamp_items, std::size(inextensible_stamp));
   for (std::size_t i = 0; i < std::size(inextensible_stamp); ++i) {
     const InextensibleStampItem &here = inextensible_stamp[i], &there = plugin.stamp[i];
-    if (here.value != there.value)
-      throw std::runtime_error("it was built differently: " + std::string(here.what) + " is " +
-                               std::to_string(there.value) + " there, " +
-                               std::to_string(here.value) + " here");
+    if (here.value != there.value) refuse(here.what, there.value, here.value);
   }
 }
 
@@ -66,8 +66,10 @@ Plugin add(const std::string& path) {
   const InextensiblePlugin* table = entry_point(path)();
   if (!table) throw std::runtime_error("inextensible_plugin() returned nothing");
   check_stamp(*table);
-  Plugin plugin{
-      std::filesystem::path(path).filename().string(), table->version ? table->version : "", {}};
+  Plugin plugin{std::filesystem::path(path).filename().string(),
+                table->version ? table->version : "",
+                {},
+                table->optimized};
   if (!printable(plugin.version)) throw std::runtime_error("its version is no printable text");
   const std::span rows(table->backends, table->backend_count);
   if (rows.empty()) throw std::runtime_error("it brings no solver");

@@ -10,7 +10,7 @@ struct Plugin {
   std::string file;     // name without its folder
   std::string version;  // the plug-in's own
   std::vector<std::string> solvers;
-  bool optimized;  // by the compiler; if not, its times say nothing
+  bool optimized = false;  // by the compiler; if not, its times say nothing
 };
 
 // Adds the file's backends to the registry; at program start. Throws UsageError, having added
