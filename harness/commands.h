@@ -27,6 +27,7 @@ void add_reference_command(CLI::App& app, Chosen& chosen);
 void add_list_command(CLI::App& app, Chosen& chosen);
 void add_claims_command(CLI::App& app, Chosen& chosen);
 void add_plot_command(CLI::App& app, Chosen& chosen);
+void add_check_command(CLI::App& app, Chosen& chosen);
 
 // A file that comes with the program, named as in the source tree: of the share folder beside an
 // installed bench, else of the source tree.

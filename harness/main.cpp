@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
       "  bench reference                          the trajectories that errors are measured "
       "against\n"
       "  bench claims RESULT.json ...             the paper's claims, decided by measurements\n"
+      "  bench check --solver NAME                whether a solver keeps what every solver must\n"
       "  bench list                               solvers, scenes and suites with their "
       "settings\n"};
   app.set_version_flag("--version", std::string("bench ") + version());
@@ -60,6 +61,7 @@ int run(int argc, char** argv) {
   add_plot_command(app, chosen);
   add_reference_command(app, chosen);
   add_claims_command(app, chosen);
+  add_check_command(app, chosen);
   add_list_command(app, chosen);
   std::vector<std::string> plugins;
   add_plugin_option(app, plugins);
