@@ -1,4 +1,5 @@
-// Plug-ins that bench must refuse, by MISFIT_...; plugin_test.sh loads them.
+// Plug-ins that bench must refuse, by MISFIT_..., and one that it must find broken; plugin_test.sh
+// loads them.
 #include <stdexcept>
 
 #include "plugin.h"
@@ -22,7 +23,8 @@ constexpr const char* name = "misfit";
 }  // namespace
 
 extern "C" const InextensiblePlugin* inextensible_plugin() {
-  static const std::vector<Backend> rows{{name, "does nothing", Knob::none, true, {}, make}};
+  static const std::vector<Backend> rows{
+      {name, "does nothing", Knob::strain_limit, true, {}, make}};
   static InextensiblePlugin plugin = inextensible_plugin_of("1.0", rows);
 #if defined(MISFIT_another_version)
   plugin.abi = 999;

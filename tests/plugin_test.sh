@@ -63,7 +63,19 @@ ls figures/*.svg >/dev/null || fail "no figures"
 "$bench" --plugin "$plugin" --sweep stability --case '^(Q1|infeasible)' --solver symmetric_sweeps --no-plots --out hard.json \
   >hard.txt 2>&1 || fail "hard cases: $(cat hard.txt)"
 
+
 misfits=$BUILD_FOLDER/tests
+"$bench" check --solver symmetric_sweeps --plugin "$plugin" >check.txt 2>&1 || fail "a sound solver: $(cat check.txt)"
+grep -q '^verdict: symmetric_sweeps conforms: ' check.txt || fail "no verdict: $(cat check.txt)"
+grep -q '^PASS  hard cases' check.txt || fail "no hard cases: $(cat check.txt)"
+"$bench" --plugin "$misfits/libplugin_broken.so" check --solver misfit --quick >check.txt 2>&1
+[[ $? == 4 ]] || fail "a broken solver must exit 4: $(cat check.txt)"
+grep -q '^FAIL  limit .*(allowed 1)$' check.txt && grep -q '^      -> edge ' check.txt &&
+  grep -q '^verdict: misfit DOES NOT CONFORM: ' check.txt || fail "a broken solver's verdict: $(cat check.txt)"
+refused "did you mean 'symmetric_sweeps'" --plugin "$plugin" check --solver symetric_sweeps
+refused "--solver is required" check
+refused "--seed" check --solver icd --seed -1
+
 seq 100 >text.so
 refused "there is no such file" --plugin missing.so list
 refused "invalid ELF header" --plugin text.so list
