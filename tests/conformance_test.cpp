@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <iostream>
+#include <limits>
+#include <map>
 #include <set>
 
 #include "fast_projection.h"
@@ -14,7 +17,6 @@
 namespace inextensible {
 namespace {
 
-using harness::conforms;
 using harness::examine;
 using harness::Finding;
 
@@ -121,6 +123,8 @@ std::set<std::string> failed_checks(const std::string& solver, bool hard_cases =
   for (const Finding& finding : examine(solver, {1, hard_cases})) {
     if (finding.grade != Finding::Grade::fail) continue;
     failed.insert(finding.check);
+    std::cout << solver << ": " << finding.check << ", " << finding.measured << '\n'
+              << finding.advice << '\n';
     EXPECT_NE(finding.measured, "") << finding.check;
     EXPECT_NE(finding.advice, "") << finding.check;
   }
