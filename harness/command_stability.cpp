@@ -54,9 +54,8 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
   HardCaseValues values = hard_case_values(options.profile);
   for (const std::string& given : options.values) set_values(values, given);
   const auto cases = hard_cases(values);
-  const std::string out = options.out.empty()
-                              ? source_path("results/local/" + options.profile + "-stability.json")
-                              : options.out;
+  const std::string out =
+      options.out.empty() ? local_result(options.profile + "-stability.json") : options.out;
   check_writable(out);
   const nlohmann::json context = machine_context();
   catch_interrupts();

@@ -156,9 +156,7 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
     return success;
   }
   const std::string out =
-      options.out.empty()
-          ? source_path("results/local/" + suite.name + "-" + options.sweep + ".json")
-          : options.out;
+      options.out.empty() ? local_result(suite.name + "-" + options.sweep + ".json") : options.out;
   check_writable(out);
   nlohmann::json context = machine_context();
   context["selection"] = selection(options);

@@ -29,9 +29,14 @@ void add_claims_command(CLI::App& app, Chosen& chosen);
 void add_merge_command(CLI::App& app, Chosen& chosen);
 void add_plot_command(CLI::App& app, Chosen& chosen);
 void add_emit_command(CLI::App& app, Chosen& chosen);
+void add_check_command(CLI::App& app, Chosen& chosen);
 
-// A file of the source tree.
+// A file that comes with the program, named as in the source tree: of the share folder beside an
+// installed bench, else of the source tree.
 std::string source_path(const std::string& relative);
+// Where results go by default: results/local of the source tree, for an installed bench of the
+// current folder.
+std::string local_result(const std::string& name);
 
 // SIGINT and SIGTERM become a flag from here on; whether one has come.
 void catch_interrupts();

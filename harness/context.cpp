@@ -19,6 +19,7 @@
 
 #include "build_info.h"  // made by CMake
 #include "files.h"
+#include "plugins.h"
 
 extern "C" {  // OpenBLAS; its own header clashes with GSL's
 void openblas_set_num_threads(int threads);
@@ -129,7 +130,7 @@ json machine_context() {
         {"core", std::string(openblas_get_corename())},
         {"threads", openblas_get_num_threads()}}}};
   const std::string cpu = cpu_field("model name");
-  return {
+  json context = {
       {"date", now()},
       {"host_name", host.data()},
       {"executable", "bench"},
@@ -145,6 +146,13 @@ json machine_context() {
       {"libraries", libraries},
       {"fingerprint",
        fnv1a(cpu + INEXTENSIBLE_COMPILER + INEXTENSIBLE_FLAGS + commit + libraries.dump())}};
+  for (const Plugin& plugin : loaded_plugins()) {
+    context["plugins"].push_back({{"file", plugin.file},
+                                  {"version", plugin.version},
+                                  {"solvers", plugin.solvers},
+                                  {"optimized", plugin.optimized}});
+  }
+  return context;
 }
 
 }  // namespace harness

@@ -7,7 +7,7 @@
 namespace harness {
 
 // Google Benchmark's keys, and "build", "libraries", "fingerprint" (equal for builds whose counters
-// may be compared).
+// may be compared); "plugins" where some are loaded.
 nlohmann::json machine_context();
 
 // One thread, whatever the environment says, in OpenBLAS and in CHOLMOD's own OpenMP loops (which

@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "context.h"
 #include "files.h"
+#include "plugins.h"
 #include "usage_error.h"
 
 namespace harness {
@@ -18,6 +19,21 @@ std::vector<std::string> command_words(int argc, char** argv) {
     words.push_back(argument.is_absolute() ? argument.filename().string() : argument.string());
   }
   return words;
+}
+
+// Before and after a command's name, any number of times.
+void add_plugin_option(CLI::App& app, std::vector<std::string>& files) {
+  std::vector<CLI::App*> places = app.get_subcommands([](const CLI::App*) { return true; });
+  places.push_back(&app);
+  for (CLI::App* place : places) {
+    place
+        ->add_option_function<std::vector<std::string>>(
+            "--plugin",
+            [&files](const auto& given) { files.insert(files.end(), given.begin(), given.end()); },
+            "load solvers of your own from a shared library (solvers/plugin.h); repeatable")
+        ->allow_extra_args(false)
+        ->type_name("FILE");
+  }
 }
 
 int run(int argc, char** argv) {
@@ -38,6 +54,7 @@ int run(int argc, char** argv) {
       "  bench claims RESULT.json ...             the paper's claims, decided by measurements\n"
       "  bench emit slurm --shards 8 ... > job.sh  the same on many machines, under Slurm or GNU "
       "parallel\n"
+      "  bench check --solver NAME                whether a solver keeps what every solver must\n"
       "  bench list                               solvers, scenes and suites with their "
       "settings\n"};
   app.set_version_flag("--version", std::string("bench ") + version());
@@ -50,12 +67,21 @@ int run(int argc, char** argv) {
   add_emit_command(app, chosen);
   add_list_command(app, chosen);
   add_merge_command(app, chosen);
+  add_check_command(app, chosen);
+  std::vector<std::string> plugins;
+  add_plugin_option(app, plugins);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     std::cerr << "bench: " << error.what() << " (see bench --help)\n";
     return usage_error;
+  }
+  for (const std::string& file : plugins) load_plugin(file);
+  for (const Plugin& plugin : loaded_plugins()) {
+    if (!plugin.optimized)
+      std::cerr << "bench: plug-in '" << plugin.file
+                << "' was compiled without optimization: its times say nothing\n";
   }
   return chosen();
 }

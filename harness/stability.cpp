@@ -27,10 +27,10 @@ const Expectation& expectation_of(const HardCase& hard_case, const std::string& 
       [&](const Expectation& e) { return e.solvers.empty() || e.solvers.contains(solver); });
 }
 
-bool acceptable(const Expectation& expectation, const TrialResult& result) {
-  if (!expectation.allowed.contains(result.fixed)) return false;
+bool acceptable(const std::set<Outcome>& allowed, const TrialResult& result) {
+  if (!allowed.contains(result.fixed)) return false;
   if (result.outcome == result.fixed || result.outcome == Outcome::survived_smaller) return true;
-  return result.outcome == Outcome::timeout || expectation.allowed.contains(result.outcome);
+  return result.outcome == Outcome::timeout || allowed.contains(result.outcome);
 }
 
 // The largest step at which the scene's second is survived: down the powers of two to the first one
@@ -127,6 +127,13 @@ std::vector<std::string> in_order(const Items& items, Key key) {
 
 }  // namespace
 
+std::set<Outcome> allowed_outcomes(const Expectation& expectation, const std::string& solver) {
+  std::set<Outcome> allowed = expectation.allowed;
+  if (!inextensible::is_built_in(solver) && allowed.contains(Outcome::survived))
+    allowed.insert({Outcome::refused, Outcome::timeout});
+  return allowed;
+}
+
 bool StabilityOutcome::as_expected() const {
   return std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.expected; });
 }
@@ -160,9 +167,11 @@ StabilityOutcome run_stability(const std::vector<HardCase>& cases, const Stabili
         outcome.complete = false;
         return outcome;
       }
-      StabilityCell cell{c, solver, run_isolated_trial(c->build, solver, seed),
-                         &expectation_of(*c, solver), true};
-      cell.expected = acceptable(*cell.expectation, cell.result);
+      StabilityCell cell{
+          c,  solver, run_isolated_trial(c->build, solver, seed), &expectation_of(*c, solver),
+          {}, true};
+      cell.allowed = allowed_outcomes(*cell.expectation, solver);
+      cell.expected = acceptable(cell.allowed, cell.result);
       outcome.cells.push_back(std::move(cell));
       events.cell(outcome.cells.back(), outcome.cells.size(), all);
     }
@@ -252,7 +261,7 @@ json stability_document(json context, const StabilityOutcome& outcome, std::uint
   for (const auto& cell : outcome.cells) {
     const TrialResult& r = cell.result;
     json allowed = json::array();
-    for (const Outcome o : cell.expectation->allowed) allowed.push_back(to_string(o));
+    for (const Outcome o : cell.allowed) allowed.push_back(to_string(o));
     matrix.push_back({{"row", cell.hard_case->row},
                       {"case", cell.hard_case->name},
                       {"what", cell.hard_case->what},

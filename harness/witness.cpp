@@ -1,6 +1,7 @@
 #include "witness.h"
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "forces.h"
@@ -23,21 +24,6 @@ Eigen::Vector3d momentum(const Problem& problem, const State& state) {
   return sum;
 }
 
-struct WorstEdge {
-  double strain = 0;
-  std::size_t edge = 0;
-};
-
-WorstEdge worst_edge(const Problem& problem, const Positions& x) {
-  WorstEdge worst;
-  for (std::size_t k = 0; k < problem.edges().size(); ++k) {
-    const auto [a, b] = problem.edges()[k];
-    const double strain = std::abs((x.col(b) - x.col(a)).norm() / problem.rest_length()[k] - 1);
-    if (!(strain <= worst.strain)) worst = {strain, k};
-  }
-  return worst;
-}
-
 void raise(double& figure, double value) {
   figure = std::isnan(figure) ? value : std::max(figure, value);
 }
@@ -48,6 +34,17 @@ Outcome fail(TrialResult& result, Outcome outcome, const std::string& why) {
 }
 
 }  // namespace
+
+WorstEdge worst_edge(const Problem& problem, const Positions& x) {
+  WorstEdge worst;
+  for (std::size_t k = 0; k < problem.edges().size(); ++k) {
+    const auto [a, b] = problem.edges()[k];
+    const double strain = std::abs((x.col(b) - x.col(a)).norm() / problem.rest_length()[k] - 1);
+    if (!(strain <= worst.strain))
+      worst = {std::isnan(strain) ? std::numeric_limits<double>::infinity() : strain, k};
+  }
+  return worst;
+}
 
 Witness::Witness(const Trial& trial, bool limit_promised)
     : trial_(trial),

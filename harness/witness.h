@@ -8,6 +8,13 @@
 
 namespace harness {
 
+// The harness's own word on strain: the edge of largest | |d| / l - 1 |, infinite if not a number.
+struct WorstEdge {
+  double strain = 0;
+  std::size_t edge = 0;
+};
+WorstEdge worst_edge(const inextensible::Problem& problem, const inextensible::Positions& x);
+
 class Witness {
  public:
   // limit_promised: the solver claims to keep the trial's strain limit. The trial must outlive

@@ -112,8 +112,8 @@ const SettingInfo spd_solver{
     "factorization of J W J^T",
     {"auto", "tridiagonal", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}};
 
-const std::vector<Backend>& table() {
-  static const std::vector<Backend> rows = {
+std::vector<Backend> built_in() {
+  return {
       {"implicit_springs",
        "backward Euler on stiff springs, Newton with line search",
        Knob::stiffness,
@@ -187,7 +187,16 @@ const std::vector<Backend>& table() {
        {},
        make_reference},
   };
-  return rows;
+}
+
+struct Table {
+  std::vector<Backend> rows = built_in();
+  std::size_t built_in_rows = rows.size();
+};
+
+Table& table() {
+  static Table all;
+  return all;
 }
 
 std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }
@@ -230,14 +239,43 @@ Settings complete(const Backend& backend, const Settings& given) {
   return all;
 }
 
+void check_row(const Backend& row, std::span<const Backend> others) {
+  const std::string_view name = row.name ? row.name : "";
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  if (name.empty() || !std::all_of(name.begin(), name.end(), fits))
+    throw std::invalid_argument("solver " + quoted(name) + ": a name is made of a-z, 0-9 and _");
+  if (std::any_of(others.begin(), others.end(),
+                  [name](const Backend& b) { return b.name == name; }))
+    throw std::invalid_argument("there is a solver " + quoted(name) + " already");
+  if (!row.make || !row.summary)
+    throw std::invalid_argument("solver " + quoted(name) + " has no factory or no summary");
+}
+
 }  // namespace
 
-std::span<const Backend> backends() { return table(); }
+std::span<const Backend> backends() { return table().rows; }
+
+void add_backends(std::span<const Backend> rows) {
+  std::vector<Backend> all = table().rows;
+  for (const Backend& row : rows) {
+    check_row(row, all);
+    all.push_back(row);
+  }
+  table().rows.swap(all);
+}
 
 const Backend* find_backend(std::string_view name) {
-  const auto place = std::find_if(table().begin(), table().end(),
-                                  [name](const Backend& b) { return b.name == name; });
-  return place == table().end() ? nullptr : &*place;
+  const auto rows = backends();
+  const auto place =
+      std::find_if(rows.begin(), rows.end(), [name](const Backend& b) { return b.name == name; });
+  return place == rows.end() ? nullptr : &*place;
+}
+
+bool is_built_in(std::string_view name) {
+  const Backend* backend = find_backend(name);
+  return backend && backend < backends().data() + table().built_in_rows;
 }
 
 std::unique_ptr<Stepper> make_stepper(std::string_view name, Shared problem,

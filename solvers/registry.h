@@ -1,11 +1,12 @@
 // The list of all backends: tests, sweeps, figures and the command line iterate it. A new backend
-// is its own file pair and one row in registry.cpp.
+// is its own file pair and one row in registry.cpp, or a plug-in (plugin.h).
 #pragma once
 
 #include <map>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -42,6 +43,12 @@ struct Backend {
 };
 
 std::span<const Backend> backends();
+// Appends rows from outside this library. At program start, before anything else: what backends()
+// and find_backend() gave before is no longer valid. Throws std::invalid_argument, having added
+// nothing, for a name that is taken or not made of a-z, 0-9 and _ (it becomes part of point ids),
+// and for a row without `make` or summary.
+void add_backends(std::span<const Backend> rows);
+bool is_built_in(std::string_view name);             // a row of registry.cpp
 const Backend* find_backend(std::string_view name);  // null if there is none
 
 // Throws std::invalid_argument for an unknown backend, setting or choice, or a strain limit that is

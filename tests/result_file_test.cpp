@@ -112,6 +112,17 @@ TEST(ResultFile, TheSchemaRefusesAWrongStatusAndAnUnknownCounter) {
   EXPECT_NE(misfits(bad, "configs/result.schema.json"), "");
 }
 
+TEST(ResultFile, NamesItsPlugins) {
+  json document = result_document(machine_context(), tiny_suite(), {"bench"}, true, {});
+  EXPECT_FALSE(document["context"].contains("plugins"));
+  json plugin = {{"file", "libx.so"}, {"version", "1.0"}, {"solvers", {"x"}}, {"optimized", true}};
+  document["context"]["plugins"] = {plugin};
+  EXPECT_EQ(misfits(document, "configs/result.schema.json"), "");
+  plugin.erase("version");
+  document["context"]["plugins"] = {plugin};
+  EXPECT_NE(misfits(document, "configs/result.schema.json"), "");
+}
+
 TEST(ResultFile, CommittedResultsFitTheSchema) {
   for (const auto& entry : std::filesystem::directory_iterator(source("results"))) {
     if (entry.path().extension() != ".json") continue;

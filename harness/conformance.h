@@ -1,0 +1,31 @@
+// `bench check`: what every solver must hold, whatever its method, examined from outside and said
+// so that its author knows where to look.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace harness {
+
+struct Finding {
+  enum class Grade { pass, fail, not_applicable };
+  Grade grade = Grade::pass;
+  std::string check;     // "pins"
+  std::string measured;  // the number, and what is allowed; not_applicable: why
+  std::string advice;    // of a failure: what it means and where to look
+};
+
+struct ConformanceOptions {
+  std::uint64_t seed = 1;
+  bool hard_cases = true;                                       // the longest part, up to minutes
+  std::function<void(const Finding&)> finding = [](auto&&) {};  // as soon as it is there
+};
+
+// The checks in the order in which they ran. `solver` must be registered.
+std::vector<Finding> examine(const std::string& solver, const ConformanceOptions& options);
+
+bool conforms(const std::vector<Finding>& findings);  // no failure among them
+
+}  // namespace harness

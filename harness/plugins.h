@@ -1,0 +1,22 @@
+// Backends from shared libraries (`bench --plugin FILE`, solvers/plugin.h).
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace harness {
+
+struct Plugin {
+  std::string file;     // name without its folder
+  std::string version;  // the plug-in's own
+  std::vector<std::string> solvers;
+  bool optimized = false;  // by the compiler; if not, its times say nothing
+};
+
+// Adds the file's backends to the registry; at program start. Throws UsageError, having added
+// nothing, if it is no plug-in, was built unlike this program, or brings a solver that exists.
+void load_plugin(const std::string& path);
+
+const std::vector<Plugin>& loaded_plugins();  // in the order of loading
+
+}  // namespace harness

@@ -1,0 +1,233 @@
+// `bench check` must tell sound solvers from broken ones, and say what is broken: each solver here
+// is fast projection with one fault, and fails the check that is meant for it and no other.
+#include "conformance.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <iostream>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "fast_projection.h"
+#include "registry.h"
+#include "stability.h"
+
+namespace inextensible {
+namespace {
+
+using harness::examine;
+using harness::Finding;
+
+// What a fault gets to see; it spoils x after a step that was accepted, or before it.
+struct Step {
+  const Problem& problem;
+  const Positions& x_start;
+  Positions& x;
+  WorkCounters& work;
+};
+
+struct None {
+  static constexpr double limit_factor = 1;
+  static void before(const Step&) {}
+  static void corrected(const Step&) {}  // after a step that needed an iteration
+  static void refused(const Step&) {}
+};
+
+struct MovesAPin : None {
+  static void corrected(const Step& s) {
+    for (const int pin : s.problem.pinned()) s.x(1, pin) += 1e-15;
+  }
+};
+struct IgnoresTheLimit : None {
+  static constexpr double limit_factor = 2;
+};
+struct WritesToTheStart : None {
+  static void refused(const Step& s) { const_cast<Positions&>(s.x_start)(1, 1) += 1e-9; }
+};
+struct RemembersOthers : None {
+  static void corrected(const Step& s) {
+    static int calls = 0;
+    if (++calls % 3 == 0) s.x(1, s.x.cols() - 1) += 1e-14;
+  }
+};
+struct Drifts : None {
+  static void corrected(const Step& s) {
+    if (s.problem.pinned().empty()) s.x.colwise() += Eigen::Vector3d(0, 1e-8, 0);
+  }
+};
+struct Turns : None {
+  static void corrected(const Step& s) {
+    if (!s.problem.pinned().empty()) return;
+    const Eigen::Map<const Eigen::VectorXd> mass(s.problem.mass().data(), s.problem.vertices());
+    const Eigen::Vector3d centre = s.x * mass / s.problem.total_mass();
+    const Eigen::AngleAxisd turn(1e-5, Eigen::Vector3d::UnitY());
+    s.x = ((turn.toRotationMatrix() * (s.x.colwise() - centre)).colwise() + centre).eval();
+  }
+};
+struct DampsByTheStep : None {
+  static void before(const Step& s) {  // a twentieth of the velocity, however short the step is
+    if (s.problem.vertices() == 8) s.x = (0.95 * s.x + 0.05 * s.x_start).eval();
+  }
+};
+struct UncountsWork : None {
+  static void corrected(const Step& s) { s.work.iterations -= 100; }
+};
+struct Meddles : None {
+  static void before(const Step& s) {
+    if (s.problem.pinned().size() == 1 && s.problem.vertices() == 25) s.x.col(20) *= 1.001;
+  }
+};
+struct GivesUp : None {
+  static void before(const Step& s) {
+    if (s.problem.collider()) s.x(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  }
+};
+
+template <class Fault>
+class Spoilt final : public VelocityFilter {
+ public:
+  Spoilt(const Problem& problem, double limit)
+      : problem_(problem), filter_(problem, {.strain_limit = Fault::limit_factor * limit}) {}
+  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override {
+    const Step step{problem_, x_start, x, work};
+    Fault::before(step);
+    const StepResult result = filter_.apply(x_start, h, x, work);
+    if (!result) {
+      Fault::refused(step);
+    } else if (result.iterations > 0) {
+      Fault::corrected(step);
+    }
+    return result;
+  }
+
+ private:
+  const Problem& problem_;
+  FastProjection filter_;
+};
+
+template <class Fault>
+std::unique_ptr<Stepper> make(std::shared_ptr<const Problem> problem, const BackendOptions& o) {
+  auto filter = std::make_unique<Spoilt<Fault>>(*problem, o.strain_limit);
+  return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
+}
+
+template <class Fault>
+Backend row(const char* name) {
+  return {name, "fast projection, spoilt", Knob::strain_limit, true, {}, make<Fault>};
+}
+
+std::set<std::string> failed_checks(const std::string& solver, bool hard_cases = false) {
+  std::set<std::string> failed;
+  for (const Finding& finding : examine(solver, {1, hard_cases})) {
+    if (finding.grade != Finding::Grade::fail) continue;
+    failed.insert(finding.check);
+    std::cout << solver << ": " << finding.check << ", " << finding.measured << '\n'
+              << finding.advice << '\n';
+    EXPECT_NE(finding.measured, "") << finding.check;
+    EXPECT_NE(finding.advice, "") << finding.check;
+  }
+  return failed;
+}
+
+class BrokenSolvers : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    if (find_backend("sound")) return;
+    const std::vector<Backend> rows{row<None>("sound"),
+                                    row<MovesAPin>("moves_a_pin"),
+                                    row<IgnoresTheLimit>("ignores_the_limit"),
+                                    row<WritesToTheStart>("writes_to_the_start"),
+                                    row<RemembersOthers>("remembers_others"),
+                                    row<Drifts>("drifts"),
+                                    row<Turns>("turns"),
+                                    row<DampsByTheStep>("damps_by_the_step"),
+                                    row<UncountsWork>("uncounts_work"),
+                                    row<Meddles>("meddles"),
+                                    row<GivesUp>("gives_up")};
+    add_backends(rows);
+  }
+};
+
+using Checks = std::set<std::string>;
+
+TEST_F(BrokenSolvers, TheSameWithoutAFaultConforms) {
+  EXPECT_EQ(failed_checks("sound", true), Checks{});
+}
+
+TEST_F(BrokenSolvers, FailTheCheckThatIsMeantForThemAndNoOther) {
+  const std::map<std::string, std::string> meant{{"moves_a_pin", "pins"},
+                                                 {"ignores_the_limit", "limit"},
+                                                 {"writes_to_the_start", "refusal"},
+                                                 {"remembers_others", "determinism"},
+                                                 {"drifts", "linear momentum"},
+                                                 {"turns", "angular momentum"},
+                                                 {"damps_by_the_step", "consistency"},
+                                                 {"uncounts_work", "counters"},
+                                                 {"meddles", "permissible candidate"},
+                                                 {"gives_up", "steps"}};
+  for (const auto& [solver, check] : meant)
+    EXPECT_EQ(failed_checks(solver), Checks{check}) << solver;
+}
+
+TEST_F(BrokenSolvers, AreFoundByTheHardCasesAsWell) {
+  EXPECT_EQ(failed_checks("ignores_the_limit", true), (Checks{"limit", "hard cases"}));
+  EXPECT_EQ(failed_checks("drifts", true), (Checks{"linear momentum", "hard cases"}));
+}
+
+TEST_F(BrokenSolvers, AreToldWhereToLook) {
+  for (const Finding& finding : examine("moves_a_pin", {1, false})) {
+    if (finding.check != "pins") continue;
+    EXPECT_NE(finding.advice.find("vertex 0 is pinned but moved by 1e-15 m at chain of 20, step "),
+              std::string::npos)
+        << finding.advice;
+  }
+}
+
+// A stranger may refuse where theory expects others to survive, but nobody may be wrong, and what
+// is impossible must be refused.
+TEST_F(BrokenSolvers, StrangersMayRefuseInHardCases) {
+  using harness::Outcome;
+  const harness::Expectation survives{{}, {Outcome::survived}, ""},
+      refuses{{}, {Outcome::refused}, ""};
+  EXPECT_EQ(harness::allowed_outcomes(survives, "fast_projection"), survives.allowed);
+  EXPECT_EQ(harness::allowed_outcomes(survives, "sound"),
+            (std::set<Outcome>{Outcome::survived, Outcome::refused, Outcome::timeout}));
+  EXPECT_EQ(harness::allowed_outcomes(refuses, "sound"), refuses.allowed);
+}
+
+TEST_F(BrokenSolvers, CannotTakeANameOrBringHalfARow) {
+  const std::size_t count = backends().size();
+  const Backend good = row<None>("good");
+  for (const char* name : {"shake", "sound", "", "two words", "Upper", "a/b"}) {
+    const std::vector<Backend> rows{good, row<None>(name)};
+    EXPECT_THROW(add_backends(rows), std::invalid_argument) << name;
+  }
+  Backend half = row<None>("half");
+  half.make = nullptr;
+  EXPECT_THROW(add_backends(std::vector<Backend>{good, half}), std::invalid_argument);
+  EXPECT_THROW(add_backends(std::vector<Backend>{good, good}), std::invalid_argument);
+  EXPECT_EQ(backends().size(), count);
+  EXPECT_EQ(find_backend("good"), nullptr);
+  EXPECT_FALSE(is_built_in("sound"));
+  EXPECT_TRUE(is_built_in("reference"));
+}
+
+class BuiltInSolvers : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(BuiltInSolvers, Conform) { EXPECT_EQ(failed_checks(GetParam(), true), Checks{}); }
+
+std::vector<const char*> built_in() {
+  std::vector<const char*> names;
+  for (const Backend& backend : backends()) {
+    if (is_built_in(backend.name)) names.push_back(backend.name);
+  }
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BuiltInSolvers, ::testing::ValuesIn(built_in()),
+                         [](const auto& i) { return std::string(i.param); });
+
+}  // namespace
+}  // namespace inextensible

@@ -1,0 +1,35 @@
+// Plug-ins that bench must refuse, by MISFIT_..., and one that it must find broken; plugin_test.sh
+// loads them.
+#include <stdexcept>
+
+#include "plugin.h"
+#include "unconstrained.h"
+
+namespace {
+
+using namespace inextensible;
+
+std::unique_ptr<Stepper> make(std::shared_ptr<const Problem> problem, const BackendOptions&) {
+  auto filter = std::make_unique<Unconstrained>(*problem);
+  return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
+}
+
+#if defined(MISFIT_taken_name)
+constexpr const char* name = "shake";
+#else
+constexpr const char* name = "misfit";
+#endif
+
+}  // namespace
+
+extern "C" const InextensiblePlugin* inextensible_plugin() {
+  static const std::vector<Backend> rows{
+      {name, "does nothing", Knob::strain_limit, true, {}, make}};
+  static InextensiblePlugin plugin = inextensible_plugin_of("1.0", rows);
+#if defined(MISFIT_another_version)
+  plugin.abi = 999;
+#elif defined(MISFIT_throws)
+  throw std::runtime_error("no licence\nfor today");
+#endif
+  return &plugin;
+}

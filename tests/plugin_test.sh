@@ -1,0 +1,91 @@
+#!/usr/bin/env bash
+# From an installed bench: a solver and a program out of the tree are built with find_package; the solver is listed, swept,
+# recorded and checked; what is no fitting plug-in is one clear line and exit 2.
+set -u
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+# quietly COMMAND...: shows what it printed only if it fails, and ends the test.
+quietly() {
+  "$@" >quietly.txt 2>&1 || { cat quietly.txt; echo "FAILED: $*"; exit 1; }
+}
+
+rm -rf installed example results ./*.json ./*.txt
+quietly cmake --install "$BUILD_FOLDER" --prefix "$PWD/installed"
+# Not with bench's own -march: what crosses the border must not depend on it.
+CMAKE_GENERATOR=Ninja quietly cmake -S "$EXAMPLE" -B example -DCMAKE_PREFIX_PATH="$PWD/installed"
+quietly cmake --build example
+bench=$PWD/installed/bin/bench plugin=example/libmy_solver.so
+
+# refused PART ARGUMENTS...: exit 2, one line on stderr that contains PART, nothing on stdout, no file made.
+refused() {
+  local part=$1 code lines
+  shift
+  rm -rf out.json
+  "$bench" "$@" >stdout.txt 2>stderr.txt </dev/null
+  code=$?
+  lines=$(wc -l <stderr.txt)
+  [[ $code == 2 && $lines == 1 && ! -s stdout.txt && ! -e out.json ]] && grep -qF -- "$part" stderr.txt ||
+    fail "$* -> exit $code, $lines lines: $(cat stderr.txt)"
+}
+
+example/rope >rope.txt || fail "the program of one's own: $(cat rope.txt)"
+
+# The option may stand before and after the command.
+"$bench" --plugin "$plugin" list solvers | grep -q '^  symmetric_sweeps: ' || fail "list does not show the plug-in's solver"
+"$bench" list --plugin "$plugin" solvers | grep -q '^  symmetric_sweeps: ' || fail "--plugin after the command"
+"$bench" list solvers | grep -q symmetric && fail "a solver that was not loaded"
+
+tiny() {
+  "$bench" --plugin "$plugin" --sweep strain --profile quick --scene chain --reps 1 --filter 'strain:0.01/' "$@"
+}
+refused "did you mean 'symmetric_sweeps'" --plugin "$plugin" --sweep strain --solver symetric_sweeps --out out.json
+refused "no solver 'symmetric_sweeps'" --sweep strain --solver symmetric_sweeps --out out.json
+# By default an installed bench writes to the current folder; a sweep that names no solvers has the plug-in's among them.
+tiny --exclude jacobi --no-plots >sweep.txt 2>&1 || fail "a sweep: $(cat sweep.txt)"
+/usr/bin/python3 - <<'PYTHON' || fail "the sweep's file"
+import json
+document = json.load(open("results/local/quick-strain.json"))
+assert document["context"]["plugins"] == [
+    {"file": "libmy_solver.so", "version": "1.0", "solvers": ["symmetric_sweeps"], "optimized": True}], document["context"]
+best = {p["solver"] for p in document["points"] if p["best"]}
+assert {"symmetric_sweeps", "gauss_seidel", "fast_projection"} <= best, best
+mine = [p for p in document["points"] if p["solver"] == "symmetric_sweeps" and p["best"]][0]
+assert 0 < mine["max_strain"] <= 0.01 and mine["work"]["edge_projections"] > 0, mine
+PYTHON
+tiny --solver 'symmetric_sweeps|gauss_seidel' --out figures/out.json >sweep.txt 2>&1 || fail "a sweep with figures: $(cat sweep.txt)"
+grep -q 'could not be drawn' sweep.txt && fail "no figures: $(cat sweep.txt)"
+ls figures/*.svg >/dev/null || fail "no figures"
+"$bench" --plugin "$plugin" --sweep stability --case '^(Q1|infeasible)' --solver symmetric_sweeps --no-plots --out hard.json \
+  >hard.txt 2>&1 || fail "hard cases: $(cat hard.txt)"
+
+
+misfits=$BUILD_FOLDER/tests
+"$bench" check --solver symmetric_sweeps --plugin "$plugin" >check.txt 2>&1 || fail "a sound solver: $(cat check.txt)"
+grep -q '^verdict: symmetric_sweeps conforms: ' check.txt || fail "no verdict: $(cat check.txt)"
+grep -q '^PASS  hard cases' check.txt || fail "no hard cases: $(cat check.txt)"
+"$bench" --plugin "$misfits/libplugin_broken.so" check --solver misfit --quick >check.txt 2>&1
+[[ $? == 4 ]] || fail "a broken solver must exit 4: $(cat check.txt)"
+grep -q '^FAIL  limit .*(allowed 1)$' check.txt && grep -q '^      -> edge ' check.txt &&
+  grep -q '^verdict: misfit DOES NOT CONFORM: ' check.txt || fail "a broken solver's verdict: $(cat check.txt)"
+refused "did you mean 'symmetric_sweeps'" --plugin "$plugin" check --solver symetric_sweeps
+refused "--solver is required" check
+refused "--seed" check --solver icd --seed -1
+
+seq 100 >text.so
+refused "there is no such file" --plugin missing.so list
+refused "invalid ELF header" --plugin text.so list
+refused "has no function inextensible_plugin" --plugin "$(ldd "$bench" | awk '/libm\.so/ {print $3}')" list
+refused "version of the plug-in interface is 999 there, 1 here" --plugin "$misfits/libplugin_another_version.so" list
+refused "alignment (EIGEN_MAX_ALIGN_BYTES) is 128 there, 64 here" --plugin "$misfits/libplugin_another_alignment.so" list
+refused "there is a solver 'shake' already" --plugin "$misfits/libplugin_taken_name.so" list
+refused "no licence for today" --plugin "$misfits/libplugin_throws.so" list
+refused "there is a solver 'symmetric_sweeps' already" --plugin "$plugin" list --plugin "$plugin"
+refused "there is no such file" --plugin "$plugin" --plugin missing.so "--sweep" strain --out out.json
+
+((failures == 0)) && echo "all well"
+exit $((failures > 0))
