@@ -27,6 +27,8 @@ void add_reference_command(CLI::App& app, Chosen& chosen);
 void add_list_command(CLI::App& app, Chosen& chosen);
 void add_claims_command(CLI::App& app, Chosen& chosen);
 void add_plot_command(CLI::App& app, Chosen& chosen);
+void add_compare_command(CLI::App& app, Chosen& chosen);
+void add_baseline_command(CLI::App& app, Chosen& chosen);
 
 // A file of the source tree.
 std::string source_path(const std::string& relative);

@@ -1,8 +1,10 @@
 #include "context.h"
 
 #include <cholmod.h>
+#include <gnu/libc-version.h>
 #include <gsl/gsl_version.h>
 #include <omp.h>
+#include <sys/utsname.h>
 #include <umfpack.h>
 #include <unistd.h>
 
@@ -83,6 +85,20 @@ std::string now() {
   return std::string(text.data(), length).insert(length - 2, ":");
 }
 
+// Where this agrees, work counters may be compared exactly: the code that computes is the same.
+// Not the machine, not its BLAS kernel (OPENBLAS_CORETYPE chooses that), not the commit, whose
+// effect a comparison is to show. The mathematics of the C library is part of every trajectory.
+std::string counters_fingerprint(json libraries, const std::string& cpu) {
+  const std::string blas = libraries["blas"]["name"];  // "OpenBLAS 0.3.21 ... Zen ..."
+  libraries["blas"] = blas.substr(0, blas.find(' ', blas.find(' ') + 1));
+  libraries["libc"] = gnu_get_libc_version();
+  utsname system{};
+  if (uname(&system) == 0) libraries["instruction set"] = system.machine;
+  const std::string flags = INEXTENSIBLE_FLAGS;
+  const bool native = flags.find("=native") != std::string::npos;
+  return fnv1a(INEXTENSIBLE_COMPILER + flags + (native ? cpu : "") + libraries.dump());
+}
+
 }  // namespace
 
 std::string fnv1a(const std::string& text) {
@@ -140,6 +156,7 @@ json machine_context() {
       {"library_build_type", std::string(INEXTENSIBLE_BUILD_TYPE) == "Debug" ? "debug" : "release"},
       {"build", build},
       {"libraries", libraries},
+      {"counters_fingerprint", counters_fingerprint(libraries, cpu)},
       {"fingerprint",
        fnv1a(cpu + INEXTENSIBLE_COMPILER + INEXTENSIBLE_FLAGS + commit + libraries.dump())}};
 }

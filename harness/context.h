@@ -6,8 +6,9 @@
 
 namespace harness {
 
-// Google Benchmark's keys, and "build", "libraries", "fingerprint" (equal for builds whose counters
-// may be compared).
+// Google Benchmark's keys, and "build", "libraries", "fingerprint" (equal for one build of one
+// commit on one kind of machine), "counters_fingerprint" (equal where work counters may be compared
+// exactly: compiler, flags, libraries; with -march=native the kind of machine too).
 nlohmann::json machine_context();
 
 // One thread, whatever the environment says, in OpenBLAS and in CHOLMOD's own OpenMP loops (which

@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
       "  bench reference                          the trajectories that errors are measured "
       "against\n"
       "  bench claims RESULT.json ...             the paper's claims, decided by measurements\n"
+      "  bench compare BASE.json NEW.json         what has become slower or fails now, for CI\n"
       "  bench list                               solvers, scenes and suites with their "
       "settings\n"};
   app.set_version_flag("--version", std::string("bench ") + version());
@@ -44,6 +45,8 @@ int run(int argc, char** argv) {
   add_plot_command(app, chosen);
   add_reference_command(app, chosen);
   add_claims_command(app, chosen);
+  add_compare_command(app, chosen);
+  add_baseline_command(app, chosen);
   add_list_command(app, chosen);
   try {
     app.parse(argc, argv);
