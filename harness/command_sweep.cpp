@@ -183,6 +183,9 @@ void add_sweep_command(CLI::App& app, Chosen& chosen, const std::vector<std::str
                  "search (each solver's best step, default), all (the whole ladder) or adaptive "
                  "(one run from the coarsest step, halved where the solver refuses it)")
       ->type_name("HOW");
+  app.add_option("--finest", options.finest, "smallest step of the ladder instead of the suite's")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
   app.add_option("--max-error", options.max_error,
                  "also find the fastest step within this trajectory error, over the scene's size")
       ->check(CLI::PositiveNumber)

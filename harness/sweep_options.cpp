@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "commands.h"
+#include "text.h"
 #include "usage_error.h"
 
 namespace harness {
@@ -61,6 +62,17 @@ std::string suite_path(const SweepOptions& options) {
   return source_path("configs/" + options.profile + ".json");
 }
 
+static void cut_ladders(Suite& suite, double finest) {
+  for (SweepSpec& sweep : suite.sweeps) {
+    if (sweep.adaptive)
+      throw UsageError("--finest does not go with adaptive steps, which have no ladder");
+    if (finest > sweep.coarsest)
+      throw UsageError("--finest " + number_text(finest) + " leaves no step: the ladder of " +
+                       sweep.scene + " begins at " + number_text(sweep.coarsest) + " s");
+    sweep.finest = finest;
+  }
+}
+
 Suite load_suite(const SweepOptions& options) {
   if (!options.solver.empty()) check_solver_pattern(options.solver);
   const std::string path = suite_path(options);
@@ -87,6 +99,7 @@ Suite load_suite(const SweepOptions& options) {
     for (SweepSpec& sweep : suite.sweeps) sweep.every_step = true;
     suite.name += "-all";
   }
+  if (options.finest > 0) cut_ladders(suite, options.finest);
   if (options.reps > 0) suite.reps = options.reps;
   if (options.timeout > 0) suite.timeout = options.timeout;
   if (options.max_error > 0) suite.max_error = options.max_error;
