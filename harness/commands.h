@@ -29,6 +29,8 @@ void add_claims_command(CLI::App& app, Chosen& chosen);
 void add_plot_command(CLI::App& app, Chosen& chosen);
 void add_compare_command(CLI::App& app, Chosen& chosen);
 void add_baseline_command(CLI::App& app, Chosen& chosen);
+void add_point_command(CLI::App& app, Chosen& chosen);
+void add_ab_command(CLI::App& app, Chosen& chosen);
 
 // A file of the source tree.
 std::string source_path(const std::string& relative);

@@ -7,9 +7,13 @@
 namespace harness {
 
 // Google Benchmark's keys, and "build", "libraries", "fingerprint" (equal for one build of one
-// commit on one kind of machine), "counters_fingerprint" (equal where work counters may be compared
-// exactly: compiler, flags, libraries; with -march=native the kind of machine too).
+// commit on one kind of machine), "counters_fingerprint".
 nlohmann::json machine_context();
+
+// Equal where work counters may be compared exactly, because the code that computes is the same:
+// compiler, flags, libraries; with -march=native the kind of machine too. Not the commit, whose
+// effect a comparison is to show.
+std::string counters_fingerprint();
 
 // One thread, whatever the environment says, in OpenBLAS and in CHOLMOD's own OpenMP loops (which
 // ask for four): a comparison of methods, not of thread pools.

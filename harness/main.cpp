@@ -36,6 +36,8 @@ int run(int argc, char** argv) {
       "against\n"
       "  bench claims RESULT.json ...             the paper's claims, decided by measurements\n"
       "  bench compare BASE.json NEW.json         what has become slower or fails now, for CI\n"
+      "  bench ab OLD_BINARY NEW_BINARY           two builds against each other, in interleaved "
+      "runs\n"
       "  bench list                               solvers, scenes and suites with their "
       "settings\n"};
   app.set_version_flag("--version", std::string("bench ") + version());
@@ -47,6 +49,8 @@ int run(int argc, char** argv) {
   add_claims_command(app, chosen);
   add_compare_command(app, chosen);
   add_baseline_command(app, chosen);
+  add_point_command(app, chosen);
+  add_ab_command(app, chosen);
   add_list_command(app, chosen);
   try {
     app.parse(argc, argv);
