@@ -31,9 +31,8 @@ const json& error_of(const json& point, const std::string& name) {
 json read_any(const std::string& path) {
   json document;
   const std::string text = read_file(path, "result file");
-  if (const json raw = json::parse(text, nullptr, false);
-      raw.is_object() && raw.value("schema", json()) == baseline_schema)
-    return raw;
+  document = json::parse(text, nullptr, false);
+  if (document.is_object() && document.value("schema", json()) == baseline_schema) return document;
   document = parse_result(text, path);
   if (document.at("schema") != "inextensible-bench/1")
     throw UsageError("'" + path +

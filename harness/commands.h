@@ -31,6 +31,7 @@ void add_compare_command(CLI::App& app, Chosen& chosen);
 void add_baseline_command(CLI::App& app, Chosen& chosen);
 void add_point_command(CLI::App& app, Chosen& chosen);
 void add_ab_command(CLI::App& app, Chosen& chosen);
+void add_history_command(CLI::App& app, Chosen& chosen);
 
 // A file of the source tree.
 std::string source_path(const std::string& relative);
@@ -39,7 +40,7 @@ std::string source_path(const std::string& relative);
 void catch_interrupts();
 bool interrupted();
 
-// Runs plots/figures.py on a result file; its paths go to stdout as they are. Its exit code.
-int draw(const std::vector<std::string>& arguments);
+// Runs a script of plots/ on result files; its paths go to stdout as they are. Its exit code.
+int draw(const std::vector<std::string>& arguments, const std::string& script = "figures.py");
 
 }  // namespace harness

@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
   add_baseline_command(app, chosen);
   add_point_command(app, chosen);
   add_ab_command(app, chosen);
+  add_history_command(app, chosen);
   add_list_command(app, chosen);
   try {
     app.parse(argc, argv);
