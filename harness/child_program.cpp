@@ -61,6 +61,7 @@ ProgramResult run_program(const std::vector<std::string>& words, const std::stri
   const TemporaryFile in = temporary_file(input), out = temporary_file(), err = temporary_file();
   std::vector<std::string> copies = words;
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : copies) argv.push_back(word.data());
   argv.push_back(nullptr);
   // With SIGCHLD blocked, sigtimedwait returns the moment the child ends: no polling beside a

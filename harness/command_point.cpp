@@ -1,4 +1,5 @@
 // bench point: runs single points in this process; what bench ab and other programs build upon.
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -24,6 +25,7 @@ constexpr double most_steps = 1e8;  // more is a mistake in the step
 template <class Infos>
 std::vector<std::string> names_of(const Infos& infos) {
   std::vector<std::string> names;
+  names.reserve(infos.size());
   for (const auto& info : infos) names.emplace_back(info.name);
   return names;
 }

@@ -54,7 +54,7 @@ int samples_for(double seconds, double least) {
   return static_cast<int>(std::clamp(std::ceil(least / std::max(seconds, 1e-9)), 1.0, most));
 }
 
-void run_pairs(std::vector<PairedPoint*> points, int pairs, const RunOne& run) {
+void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne& run) {
   for (int pair = 0; pair < pairs; ++pair) {
     const bool old_first = pair % 2 == 0;
     for (PairedPoint* point : points) {
@@ -74,6 +74,7 @@ Comparison compare_in_pairs(std::vector<PairedPoint> points, int pairs, int conf
     Change first;
   };
   std::vector<PairedPoint*> all, again;
+  all.reserve(points.size());
   for (PairedPoint& point : points) all.push_back(&point);
   run_pairs(all, pairs, run);
   Comparison comparison;

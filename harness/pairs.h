@@ -33,7 +33,7 @@ int samples_for(double seconds, double least);
 
 // `pairs` rounds over all points; the sides take turns in coming first (ABBA). A point that has
 // failed on either side is left alone from then on.
-void run_pairs(std::vector<PairedPoint*> points, int pairs, const RunOne& run);
+void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne& run);
 
 // run_pairs, then once more, from scratch, with `confirming` pairs for points whose times have
 // changed: only what is found both times counts.
