@@ -45,13 +45,12 @@ void catch_interrupts() {
 
 bool interrupted() { return interrupt_requested != 0; }
 
-int draw(const std::vector<std::string>& arguments) {
+int draw(const std::vector<std::string>& arguments, const std::string& script) {
   std::cout.flush();
   const pid_t child = fork();
   if (child == 0) {
-    const std::string script = source_path("plots/figures.py");
     std::vector<char*> argv;
-    std::vector<std::string> words{"/usr/bin/python3", script};
+    std::vector<std::string> words{"/usr/bin/python3", source_path("plots/" + script)};
     words.insert(words.end(), arguments.begin(), arguments.end());
     argv.reserve(words.size() + 1);
     for (std::string& word : words) argv.push_back(word.data());

@@ -30,6 +30,11 @@ void add_merge_command(CLI::App& app, Chosen& chosen);
 void add_plot_command(CLI::App& app, Chosen& chosen);
 void add_emit_command(CLI::App& app, Chosen& chosen);
 void add_check_command(CLI::App& app, Chosen& chosen);
+void add_compare_command(CLI::App& app, Chosen& chosen);
+void add_baseline_command(CLI::App& app, Chosen& chosen);
+void add_point_command(CLI::App& app, Chosen& chosen);
+void add_ab_command(CLI::App& app, Chosen& chosen);
+void add_history_command(CLI::App& app, Chosen& chosen);
 
 // A file that comes with the program, named as in the source tree: of the share folder beside an
 // installed bench, else of the source tree.
@@ -42,7 +47,7 @@ std::string local_result(const std::string& name);
 void catch_interrupts();
 bool interrupted();
 
-// Runs plots/figures.py on a result file; its paths go to stdout as they are. Its exit code.
-int draw(const std::vector<std::string>& arguments);
+// Runs a script of plots/ on result files; its paths go to stdout as they are. Its exit code.
+int draw(const std::vector<std::string>& arguments, const std::string& script = "figures.py");
 
 }  // namespace harness

@@ -1,8 +1,10 @@
 #include "context.h"
 
 #include <cholmod.h>
+#include <gnu/libc-version.h>
 #include <gsl/gsl_version.h>
 #include <omp.h>
+#include <sys/utsname.h>
 #include <umfpack.h>
 #include <unistd.h>
 
@@ -85,6 +87,22 @@ std::string now() {
   return std::string(text.data(), length).insert(length - 2, ":");
 }
 
+json libraries_json() {
+  const auto dotted = [](auto... parts) {
+    std::string text;
+    ((text += (text.empty() ? "" : ".") + std::to_string(parts)), ...);
+    return text;
+  };
+  return {{"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+          {"cholmod", dotted(CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION)},
+          {"umfpack", dotted(UMFPACK_MAIN_VERSION, UMFPACK_SUB_VERSION, UMFPACK_SUBSUB_VERSION)},
+          {"gsl", GSL_VERSION},
+          {"blas",
+           {{"name", std::string(openblas_get_config())},
+            {"core", std::string(openblas_get_corename())},
+            {"threads", openblas_get_num_threads()}}}};
+}
+
 }  // namespace
 
 std::string fnv1a(const std::string& text) {
@@ -102,6 +120,21 @@ void use_one_thread() {
   omp_set_max_active_levels(0);  // CHOLMOD's num_threads clause outvotes OMP_NUM_THREADS
 }
 
+std::string counters_fingerprint() {
+  json libraries = libraries_json();
+  // Not its kernel, which OPENBLAS_CORETYPE chooses: "OpenBLAS 0.3.21" of "OpenBLAS 0.3.21 ...
+  // Zen".
+  const std::string blas = libraries["blas"]["name"];
+  libraries["blas"] = blas.substr(0, blas.find(' ', blas.find(' ') + 1));
+  libraries["libc"] = gnu_get_libc_version();  // its mathematics is part of every trajectory
+  utsname system{};
+  if (uname(&system) == 0) libraries["instruction set"] = system.machine;
+  const std::string flags = INEXTENSIBLE_FLAGS;
+  const bool native = flags.find("=native") != std::string::npos;
+  return fnv1a(INEXTENSIBLE_COMPILER + flags + (native ? cpu_field("model name") : "") +
+               libraries.dump());
+}
+
 json machine_context() {
   std::array<char, 256> host{};
   gethostname(host.data(), host.size() - 1);
@@ -115,20 +148,7 @@ json machine_context() {
                       {"compiler", INEXTENSIBLE_COMPILER},
                       {"flags", INEXTENSIBLE_FLAGS},
                       {"type", INEXTENSIBLE_BUILD_TYPE}};
-  const auto dotted = [](auto... parts) {
-    std::string text;
-    ((text += (text.empty() ? "" : ".") + std::to_string(parts)), ...);
-    return text;
-  };
-  const json libraries = {
-      {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
-      {"cholmod", dotted(CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION)},
-      {"umfpack", dotted(UMFPACK_MAIN_VERSION, UMFPACK_SUB_VERSION, UMFPACK_SUBSUB_VERSION)},
-      {"gsl", GSL_VERSION},
-      {"blas",
-       {{"name", std::string(openblas_get_config())},
-        {"core", std::string(openblas_get_corename())},
-        {"threads", openblas_get_num_threads()}}}};
+  const json libraries = libraries_json();
   const std::string cpu = cpu_field("model name");
   json context = {
       {"date", now()},
@@ -144,6 +164,7 @@ json machine_context() {
       {"library_build_type", std::string(INEXTENSIBLE_BUILD_TYPE) == "Debug" ? "debug" : "release"},
       {"build", build},
       {"libraries", libraries},
+      {"counters_fingerprint", counters_fingerprint()},
       {"fingerprint",
        fnv1a(cpu + INEXTENSIBLE_COMPILER + INEXTENSIBLE_FLAGS + commit + libraries.dump())}};
   for (const Plugin& plugin : loaded_plugins()) {

@@ -6,9 +6,14 @@
 
 namespace harness {
 
-// Google Benchmark's keys, and "build", "libraries", "fingerprint" (equal for builds whose counters
-// may be compared); "plugins" where some are loaded.
+// Google Benchmark's keys, and "build", "libraries", "fingerprint" (equal for one build of one
+// commit on one kind of machine), "counters_fingerprint"; "plugins" where some are loaded.
 nlohmann::json machine_context();
+
+// Equal where work counters may be compared exactly, because the code that computes is the same:
+// compiler, flags, libraries; with -march=native the kind of machine too. Not the commit, whose
+// effect a comparison is to show.
+std::string counters_fingerprint();
 
 // One thread, whatever the environment says, in OpenBLAS and in CHOLMOD's own OpenMP loops (which
 // ask for four): a comparison of methods, not of thread pools.

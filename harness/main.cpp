@@ -55,6 +55,9 @@ int run(int argc, char** argv) {
       "  bench emit slurm --shards 8 ... > job.sh  the same on many machines, under Slurm or GNU "
       "parallel\n"
       "  bench check --solver NAME                whether a solver keeps what every solver must\n"
+      "  bench compare BASE.json NEW.json         what has become slower or fails now, for CI\n"
+      "  bench ab OLD_BINARY NEW_BINARY           two builds against each other, in interleaved "
+      "runs\n"
       "  bench list                               solvers, scenes and suites with their "
       "settings\n"};
   app.set_version_flag("--version", std::string("bench ") + version());
@@ -65,6 +68,11 @@ int run(int argc, char** argv) {
   add_reference_command(app, chosen);
   add_claims_command(app, chosen);
   add_emit_command(app, chosen);
+  add_compare_command(app, chosen);
+  add_baseline_command(app, chosen);
+  add_point_command(app, chosen);
+  add_ab_command(app, chosen);
+  add_history_command(app, chosen);
   add_list_command(app, chosen);
   add_merge_command(app, chosen);
   add_check_command(app, chosen);

@@ -3,9 +3,38 @@
 #include <algorithm>
 
 #include "commands.h"
+#include "text.h"
 #include "usage_error.h"
 
 namespace harness {
+
+namespace {
+
+// "5" or "5..40".
+std::pair<int, int> parse_reps(const std::string& text) {
+  static const std::regex form(R"((\d{1,4})(?:\.\.(\d{1,4}))?)");
+  std::smatch match;
+  if (!std::regex_match(text, match, form) || std::stoi(match[1]) < 1)
+    throw UsageError("--reps is '" + text + "', must be a number from 1 on, or two: 5..40");
+  const int least = std::stoi(match[1]), most = match[2].matched ? std::stoi(match[2]) : 0;
+  if (match[2].matched && most < least)
+    throw UsageError("--reps is '" + text + "', whose second number is below the first");
+  return {least, most};
+}
+
+// For all sweeps a ladder that ends earlier or later.
+void cut_ladders(Suite& suite, double finest) {
+  for (SweepSpec& sweep : suite.sweeps) {
+    if (sweep.adaptive)
+      throw UsageError("--finest does not go with adaptive steps, which have no ladder");
+    if (finest > sweep.coarsest)
+      throw UsageError("--finest " + number_text(finest) + " leaves no step: the ladder of " +
+                       sweep.scene + " begins at " + number_text(sweep.coarsest) + " s");
+    sweep.finest = finest;
+  }
+}
+
+}  // namespace
 
 void add_selection(CLI::App& to, SweepOptions& options) {
   to.add_option("--sweep", options.sweep, "axis: strain (limit), resolution, step or stability")
@@ -39,6 +68,9 @@ void add_measurement(CLI::App& to, SweepOptions& options) {
                 "search (each solver's best step, default), all (the whole ladder) or adaptive "
                 "(one run from the coarsest step, halved where the solver refuses it)")
       ->type_name("HOW");
+  to.add_option("--finest", options.finest, "smallest step of the ladder instead of the suite's")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
   to.add_option("--max-error", options.max_error,
                 "also find the fastest step within this trajectory error, over the scene's size")
       ->check(CLI::PositiveNumber)
@@ -85,18 +117,6 @@ std::string suite_path(const SweepOptions& options) {
   return source_path("configs/" + options.profile + ".json");
 }
 
-// "5" or "5..40".
-std::pair<int, int> parse_reps(const std::string& text) {
-  static const std::regex form(R"((\d{1,4})(?:\.\.(\d{1,4}))?)");
-  std::smatch match;
-  if (!std::regex_match(text, match, form) || std::stoi(match[1]) < 1)
-    throw UsageError("--reps is '" + text + "', must be a number from 1 on, or two: 5..40");
-  const int least = std::stoi(match[1]), most = match[2].matched ? std::stoi(match[2]) : 0;
-  if (match[2].matched && most < least)
-    throw UsageError("--reps is '" + text + "', whose second number is below the first");
-  return {least, most};
-}
-
 Suite load_suite(const SweepOptions& options) {
   if (!options.solver.empty()) check_solver_pattern(options.solver);
   const std::string path = suite_path(options);
@@ -125,6 +145,7 @@ Suite load_suite(const SweepOptions& options) {
   }
   if (!options.reps.empty()) std::tie(suite.reps, suite.most_reps) = parse_reps(options.reps);
   if (options.rel_ci > 0) suite.rel_ci = options.rel_ci;
+  if (options.finest > 0) cut_ladders(suite, options.finest);
   if (options.timeout > 0) suite.timeout = options.timeout;
   if (options.max_error > 0) suite.max_error = options.max_error;
   if (options.seed >= 0) suite.seed = static_cast<std::uint64_t>(options.seed);

@@ -12,7 +12,7 @@ namespace harness {
 struct SweepOptions {
   std::string sweep, scene, solver, filter, exclude, config, profile = "default", step = "search";
   std::string reps;  // "5", or "5..40" with rel_ci
-  double timeout = 0, max_error = 0, rel_ci = 0;
+  double timeout = 0, max_error = 0, rel_ci = 0, finest = 0;
   std::int64_t seed = -1;
 };
 

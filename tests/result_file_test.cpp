@@ -12,8 +12,10 @@
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
 
+#include "baseline.h"
 #include "context.h"
 #include "files.h"
+#include "gate.h"
 #include "point_json.h"
 #include "stability.h"
 #include "sweep.h"
@@ -154,6 +156,31 @@ TEST(Suites, ThatAreCommittedFitTheirSchemaAndAreAccepted) {
     EXPECT_EQ(misfits(read(source(file)), "configs/suite.schema.json"), "") << name;
     EXPECT_NO_THROW(static_cast<void>(read_suite(source(file)))) << name;
   }
+}
+
+TEST(Gates, ThatAreCommittedFitTheirSchemaAndAreAccepted) {
+  EXPECT_EQ(misfits(read(source("configs/gate.json")), "configs/gate.schema.json"), "");
+  EXPECT_NO_THROW(static_cast<void>(read_gate(source("configs/gate.json"))));
+  // The schema refuses what the program refuses, and knows every counter.
+  const json wrong = json::parse(R"({"times": {"cout": true}})");
+  EXPECT_NE(misfits(wrong, "configs/gate.schema.json"), "");
+  const json all = {{"counters", {{"names", counter_names()}}}};
+  EXPECT_EQ(misfits(all, "configs/gate.schema.json"), "");
+  EXPECT_NO_THROW(static_cast<void>(parse_gate(all.dump(), "all")));
+}
+
+TEST(Baselines, FitTheirSchema) {
+  const Suite suite = tiny_suite();
+  PointResult point;
+  point.spec = plan(suite, {}).front().base;
+  const json result = result_document(machine_context(), suite, {"bench"}, true, {point});
+  const json baseline = json::parse(baseline_text(baseline_document({result})));
+  EXPECT_EQ(misfits(baseline, "configs/baseline.schema.json"), "");
+  json bad = baseline;
+  bad["points"][0]["seconds"] = 1;
+  EXPECT_NE(misfits(bad, "configs/baseline.schema.json"), "");
+  for (const auto& entry : std::filesystem::directory_iterator(source("results/baseline")))
+    EXPECT_EQ(misfits(read(entry.path()), "configs/baseline.schema.json"), "") << entry.path();
 }
 
 TEST(WriteAtomically, KeepsTheOldFileWhenTheNewOneCannotBeWritten) {

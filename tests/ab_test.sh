@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# bench ab: a program against itself passes 20 times of 20 on a busy machine (the load comes and goes, so that it does not fall
+# on all runs alike); one that is 15 % slower in one solver is found, and so are a solver that fails and an extra iteration.
+set -u
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+busy() {
+  while true; do
+    timeout 0.7 sh -c 'while :; do :; done'
+    sleep 0.5
+  done
+}
+busy &
+load=$!
+trap 'kill $load 2>/dev/null' EXIT
+
+# against PROGRAM [OPTIONS...]: its exit code; what it printed is in table.txt. One step, which every solver gets through.
+against() {
+  "$BENCH_BINARY" ab "$BENCH_BINARY" "$@" --scene chain --filter 'strain:0.01/h:0.0025$' >table.txt 2>log.txt
+}
+
+for run in {1..20}; do
+  against "$BENCH_BINARY" --solver fast_projection --pairs 15 --seconds 0.03 || fail "run $run, exit $?: $(cat table.txt log.txt)"
+done
+
+kill $load
+against "$BENCH_WITH_FAULTS" --solver 'gauss_seidel|icd' --pairs 25 --seconds 0.1 --junit slow.xml
+[[ $? == 3 ]] || fail "15 % slower: $(cat table.txt log.txt)"
+grep -q '^SLOWER *strain chain/gauss_seidel' table.txt || fail "the slower solver: $(cat table.txt)"
+grep -q '^SLOWER *strain chain/icd' table.txt && fail "the other solver: $(cat table.txt)"
+grep -q 'failure type="SLOWER" message="SLOWER: time +' slow.xml || fail "slow.xml: $(cat slow.xml)"
+
+against "$BENCH_WITH_FAULTS" --solver jacobi --pairs 4
+[[ $? == 4 ]] && grep -q '^NEWLY_FAILING strain chain/jacobi' table.txt || fail "a failing solver: $(cat table.txt log.txt)"
+
+# An extra iteration: told, and with a gate that counts it a regression.
+echo '{"counters": {"rule": "exact"}}' >exact.json
+against "$BENCH_WITH_FAULTS" --solver fast_projection --pairs 4 --gate exact.json
+[[ $? == 3 ]] && grep -q 'iterations [0-9]* -> ' table.txt || fail "an extra iteration: $(cat table.txt log.txt)"
+
+((failures == 0)) && echo "all well"
+exit $((failures > 0))

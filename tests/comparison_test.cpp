@@ -1,0 +1,444 @@
+// The statistics of a comparison against scipy's numbers and against themselves; its verdicts, its
+// gate, its baseline and its reports.
+#include "comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <random>
+
+#include "comparison_report.h"
+#include "context.h"
+#include "files.h"
+#include "point_json.h"
+#include "result_file.h"
+#include "statistics.h"
+#include "usage_error.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+using Times = std::vector<double>;
+
+// ---- Mann-Whitney -------------------------------------------------------------------------------
+
+// scipy 1.10.1: scipy.stats.mannwhitneyu(a, b, alternative="greater", method="exact").
+TEST(MannWhitney, AgreesWithScipyWhereThereAreNoTies) {
+  EXPECT_NEAR(mann_whitney_greater({1.1, 1.2, 1.3, 1.4}, {1.0, 1.05, 0.9, 0.95}),
+              0.014285714285714285, 1e-15);
+  EXPECT_NEAR(mann_whitney_greater({0.8, 0.83, 1.89, 1.04, 1.45, 1.38, 1.91, 1.64, 0.73, 1.46},
+                                   {1.15, 0.88, 0.9, 0.74, 1.21}),
+              0.1272061272061272, 1e-15);
+  EXPECT_NEAR(mann_whitney_greater({19, 22, 16, 29, 24}, {20, 11, 17, 12}), 0.05555555555555555,
+              1e-15);
+}
+
+// Ties: all choices of ranks counted one by one (scipy.stats.rankdata and itertools.combinations).
+TEST(MannWhitney, IsExactWithTies) {
+  const Times a{3, 4, 2, 6, 2, 5, 7, 7}, b{9, 7, 5, 10, 6, 8, 2, 3};
+  EXPECT_NEAR(mann_whitney_greater(a, b), 0.9120435120435121, 1e-15);
+  EXPECT_NEAR(mann_whitney_greater(b, a), 0.10240870240870241, 1e-15);
+  EXPECT_NEAR(mann_whitney_greater({9, 7, 5, 10, 6, 8}, {3, 4, 2, 6, 2, 5}), 0.005411255411255411,
+              1e-15);
+}
+
+// scipy 1.10.1, method="asymptotic" (it corrects for ties and continuity).
+TEST(MannWhitney, OfManySamplesAgreesWithScipysNormalApproximation) {
+  Times a, b;
+  for (int i = 3; i < 43; ++i) a.push_back(i % 17);
+  for (int i = 0; i < 45; ++i) b.push_back((3 * i % 19) * 0.9);
+  EXPECT_NEAR(mann_whitney_greater(a, b), 0.6717825771992799, 1e-9);
+  EXPECT_NEAR(mann_whitney_greater(b, a), 0.33140674930257097, 1e-9);
+  Times c, d;
+  for (int i = 0; i < 40; ++i) {
+    c.push_back(i * 1.01 + 5);
+    d.push_back(i * 1.0 + 0.003);
+  }
+  EXPECT_NEAR(mann_whitney_greater(c, d), 0.025104467306861344, 1e-9);
+}
+
+Times random_times(std::mt19937_64& random, std::size_t n) {
+  std::lognormal_distribution<double> time(0, 0.2);
+  Times times(n);
+  for (double& t : times) t = std::round(100 * time(random)) / 100;  // some ties
+  return times;
+}
+
+TEST(MannWhitney, IgnoresOrderAndUnits) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(seed);
+    Times a = random_times(random, 3 + random() % 40);
+    const Times b = random_times(random, 3 + random() % 40);
+    const double p = mann_whitney_greater(a, b);
+    EXPECT_GT(p, 0);
+    EXPECT_LE(p, 1 + 1e-12);
+    EXPECT_GE(p, least_possible_p(a.size(), b.size()) * (1 - 1e-9));
+    std::shuffle(a.begin(), a.end(), random);
+    EXPECT_NEAR(mann_whitney_greater(a, b), p, 1e-12);
+    Times milli_a = a, milli_b = b;
+    for (double& t : milli_a) t *= 1024;
+    for (double& t : milli_b) t *= 1024;
+    EXPECT_NEAR(mann_whitney_greater(milli_a, milli_b), p, 1e-12);
+    // Both tails hold the outcome itself, so together they exceed 1.
+    EXPECT_GE(p + mann_whitney_greater(b, a), 1 - 0.1 / static_cast<double>(a.size()));
+  }
+}
+
+// Not where there are ties: making or breaking one changes what all outcomes are.
+TEST(MannWhitney, FallsAsOneValueRises) {
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> time(1, 2);
+    Times a(3 + random() % 40), b(3 + random() % 40);
+    for (double& t : a) t = time(random);
+    for (double& t : b) t = time(random);
+    double p = mann_whitney_greater(a, b);
+    for (int rise = 0; rise < 5; ++rise) {
+      a[random() % a.size()] += 0.3 * time(random);
+      const double next = mann_whitney_greater(a, b);
+      EXPECT_LE(next, p + 1e-12);
+      p = next;
+    }
+  }
+}
+
+TEST(MannWhitney, IsSignificantInOneOfTwentyPairsFromOneDistribution) {
+  std::mt19937_64 random(5);
+  int significant = 0;
+  constexpr int trials = 2000;
+  for (int i = 0; i < trials; ++i)
+    significant += mann_whitney_greater(random_times(random, 15), random_times(random, 15)) < 0.05;
+  EXPECT_GT(significant, trials * 0.03);
+  EXPECT_LE(significant, trials * 0.065);  // four standard deviations above 0.05 or less
+}
+
+TEST(MannWhitney, KnowsTheLeastItCanSay) {
+  EXPECT_EQ(mann_whitney_greater({2, 3, 4}, {1, 1.5, 1.7}), 0.05);
+  EXPECT_EQ(least_possible_p(3, 3), 0.05);
+  EXPECT_EQ(mann_whitney_greater({}, {1}), 1);
+  EXPECT_EQ(mann_whitney_greater({1, 1, 1}, {1, 1, 1}), 1);
+}
+
+// ---- Times --------------------------------------------------------------------------------------
+
+Times spread(double middle, int n, double width = 0.01) {
+  Times times;
+  for (int i = 0; i < n; ++i) times.push_back(middle * (1 + width * (i % 5)));
+  return times;
+}
+
+TEST(CompareTimes, FlagsOnlyWhatTestAndBothRatiosAgreeOn) {
+  const Gate gate;
+  const Times base = spread(1, 15);
+  EXPECT_EQ(compare_times(base, spread(1.15, 15), gate).change, Change::slower);
+  EXPECT_EQ(compare_times(spread(1.15, 15), base, gate).change, Change::faster);
+  EXPECT_EQ(compare_times(base, spread(1.02, 15), gate).change, Change::same);  // sure, but small
+  EXPECT_EQ(compare_times(base, base, gate).change, Change::same);
+  Times one_fast = spread(1.15, 15);
+  one_fast.front() = 1;  // the minimum does not agree
+  const TimeChange torn = compare_times(base, one_fast, gate);
+  EXPECT_EQ(torn.change, Change::ambiguous);
+  EXPECT_NE(torn.reason.find("only the median"), std::string::npos) << torn.reason;
+  EXPECT_FALSE(torn.too_few);
+}
+
+TEST(CompareTimes, SaysWhenThereAreTooFewRuns) {
+  const TimeChange few = compare_times({1, 1.01, 1.02}, {2, 2.1, 2.2}, Gate());
+  EXPECT_EQ(few.change, Change::ambiguous);
+  EXPECT_TRUE(few.too_few);
+  EXPECT_NE(few.reason.find("it takes 4 each"), std::string::npos) << few.reason;
+  EXPECT_EQ(compare_times({1, 1.01, 1.02, 1.03}, {2, 2.1, 2.2, 2.3}, Gate()).change,
+            Change::slower);
+  EXPECT_EQ(compare_times({1}, {1.01}, Gate()).change, Change::same);
+  EXPECT_EQ(compare_times({}, {1.01}, Gate()).change, Change::same);
+}
+
+TEST(CompareTimes, IsTheSameStoryFromTheOtherSide) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(seed);
+    const Times a = random_times(random, 15);
+    Times b = random_times(random, 15);
+    for (double& t : b) t *= 1 + 0.01 * static_cast<double>(seed % 30);
+    const Change there = compare_times(a, b, Gate()).change,
+                 back = compare_times(b, a, Gate()).change;
+    const Change mirrored = there == Change::slower   ? Change::faster
+                            : there == Change::faster ? Change::slower
+                                                      : there;
+    EXPECT_EQ(back, mirrored);
+  }
+}
+
+// ---- Points and results -------------------------------------------------------------------------
+
+ComparedPoint point_with(const std::string& id, double iterations = 100) {
+  ComparedPoint point;
+  point.sweep = "strain";
+  point.id = id;
+  point.status = "ok";
+  point.spec = "same";
+  point.counters = {{"iterations", iterations}, {"steps", 50}};
+  point.errors = {{"max_strain", 0.009}, {"trajectory", 0.02}};
+  return point;
+}
+
+ComparedResult result_of(std::vector<ComparedPoint> points) {
+  ComparedResult result;
+  result.path = "result.json";
+  result.context = {{"counters_fingerprint", "c"}, {"cpu_model", "cpu"}, {"num_cpus", 2}};
+  result.points = std::move(points);
+  return result;
+}
+
+Change only_change(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate = {}) {
+  const Comparison comparison = compare(result_of({base}), result_of({next}), gate);
+  return comparison.points.at(0).change;
+}
+
+const char* const some_id = "chain/shake/n:80/strain:0.01/h:0.01";
+
+TEST(Compare, TellsEveryVerdict) {
+  const ComparedPoint good = point_with(some_id);
+  ComparedPoint bad = good;
+  bad.status = "not_converged";
+  EXPECT_EQ(only_change(good, good), Change::same);
+  EXPECT_EQ(only_change(good, bad), Change::newly_failing);
+  EXPECT_EQ(only_change(bad, good), Change::fixed);
+  EXPECT_EQ(only_change(bad, bad), Change::same);
+  EXPECT_EQ(only_change(good, point_with(some_id, 101)), Change::slower);
+  const auto both =
+      compare(result_of({good, point_with("chain/icd/n:80/strain:0.01/h:0.01")}),
+              result_of({good, point_with("chain/null/n:80/strain:0.01/h:0.01")}), Gate());
+  ASSERT_EQ(both.points.size(), 3u);
+  EXPECT_EQ(both.points[1].change, Change::missing);
+  EXPECT_EQ(both.points[2].change, Change::added);
+  EXPECT_TRUE(both.any(is_failure));
+  EXPECT_FALSE(both.any(is_regression));
+}
+
+TEST(Compare, CounterRuleDecidesWhatAFallMeans) {
+  const ComparedPoint base = point_with(some_id, 100), fell = point_with(some_id, 99),
+                      rose = point_with(some_id, 101);
+  Gate gate;
+  EXPECT_EQ(only_change(base, fell, gate), Change::changed);
+  gate.counter_rule = CounterRule::rise;
+  EXPECT_EQ(only_change(base, fell, gate), Change::faster);
+  EXPECT_EQ(only_change(base, rose, gate), Change::slower);
+  gate.counter_rule = CounterRule::inform;
+  EXPECT_EQ(only_change(base, rose, gate), Change::same);
+  gate.counter_rule = CounterRule::exact;
+  gate.counters = {"steps"};
+  EXPECT_EQ(only_change(base, rose, gate), Change::same);
+}
+
+TEST(Compare, LargerErrorsAreARegressionAndRoundingIsNot) {
+  const ComparedPoint base = point_with(some_id);
+  ComparedPoint next = base;
+  next.errors["trajectory"] = 0.0201;
+  EXPECT_EQ(only_change(base, next), Change::same);  // within 1 %
+  next.errors["trajectory"] = 0.021;
+  EXPECT_EQ(only_change(base, next), Change::changed);
+  next.errors["trajectory"] = 0.01;
+  EXPECT_EQ(only_change(base, next), Change::same);
+  ComparedPoint exact = base;
+  exact.errors["max_strain"] = 1e-16;
+  next = exact;
+  next.errors["max_strain"] = 3e-16;
+  EXPECT_EQ(only_change(exact, next), Change::same);
+}
+
+TEST(Compare, LeavesCountersOfAnotherBuildAndTimesOfAnotherMachineAlone) {
+  ComparedPoint base = point_with(some_id), next = point_with(some_id, 101);
+  base.samples = spread(1, 15);
+  next.samples = spread(2, 15);
+  ComparedResult here = result_of({base}), there = result_of({next});
+  there.context["counters_fingerprint"] = "another";
+  const Comparison times_only = compare(here, there, Gate());
+  EXPECT_EQ(times_only.points[0].change, Change::slower);
+  EXPECT_EQ(times_only.points[0].text().find("iterations"), std::string::npos);
+  there.context["cpu_model"] = "another";
+  EXPECT_THROW(compare(here, there, Gate()), NotComparable);
+  there.context["counters_fingerprint"] = "c";
+  const Comparison counters_only = compare(here, there, Gate());
+  EXPECT_EQ(counters_only.points[0].text(), "iterations 100 -> 101 (+1 %)");
+}
+
+TEST(Compare, RefusesResultsWithNothingInCommonOrOtherParameters) {
+  const ComparedPoint base = point_with(some_id);
+  ComparedPoint other = point_with(some_id);
+  other.spec = "other";
+  EXPECT_THROW(compare(result_of({base}), result_of({other}), Gate()), NotComparable);
+  EXPECT_THROW(compare(result_of({base}), result_of({point_with("chain/icd/n:7")}), Gate()),
+               NotComparable);
+}
+
+TEST(Compare, ASearchMayTakeAnotherWay) {
+  std::vector<ComparedPoint> base{point_with("chain/icd/n:80/strain:0.01/h:0.02"),
+                                  point_with("chain/icd/n:80/strain:0.01/h:0.01"),
+                                  point_with("chain/icd/n:80/strain:0.01/h:0.005")};
+  for (ComparedPoint& point : base) point.searched = true;
+  std::vector<ComparedPoint> next{base[0], base[1]};
+  next[0].status = "timeout";  // three times the best one's time
+  next[1].best = true;
+  const Comparison comparison = compare(result_of(base), result_of(next), Gate());
+  ASSERT_EQ(comparison.points.size(), 1u);
+  EXPECT_EQ(comparison.points[0].change, Change::same);
+  for (ComparedPoint& point : base) point.searched = false;
+  for (ComparedPoint& point : next) point.searched = false;
+  const Comparison whole = compare(result_of(base), result_of(next), Gate());
+  EXPECT_EQ(whole.count(Change::newly_failing), 1u);
+  EXPECT_EQ(whole.count(Change::missing), 1u);
+}
+
+TEST(Compare, PairsPointsOfOneNameInTheirOrder) {
+  const ComparedPoint first = point_with(some_id, 1), second = point_with(some_id, 2);
+  const Comparison comparison =
+      compare(result_of({first, second}), result_of({first, second}), Gate());
+  EXPECT_EQ(comparison.count(Change::same), 2u);
+}
+
+// ---- Files --------------------------------------------------------------------------------------
+
+json one_result() {
+  PointResult point;
+  point.spec.sweep = "strain";
+  point.spec.scene = "chain";
+  point.spec.solver = "shake";
+  point.spec.scene_parameters = {{"n", 80}, {"duration", 1}};
+  point.spec.resolution = point.spec.vertices = 80;
+  point.spec.constraints = 79;
+  point.status = PointStatus::ok;
+  point.samples = {0.25};
+  point.work.iterations = 1234567;
+  point.verdict.max_strain = 0.00987654321;
+  point.verdict.trajectory = 0.0123456789;
+  PointResult failed = point;
+  failed.spec.step = 0.02;
+  failed.status = PointStatus::diverged;
+  failed.verdict.max_strain = std::numeric_limits<double>::infinity();
+  return json::parse(
+      result_document(machine_context(), Suite(), {"bench"}, true, {point, failed}).dump());
+}
+
+TEST(Baseline, HoldsCountersAndRoundedErrorsOnePointALineAndNoTimes) {
+  const std::string text = baseline_text(baseline_document({one_result()}));
+  const json document = json::parse(text);
+  ASSERT_EQ(document["points"].size(), 2u);
+  const json& point = document["points"][0];
+  EXPECT_EQ(point["work"]["iterations"], 1234567);
+  EXPECT_EQ(point["max_strain"], 0.00987654);
+  EXPECT_EQ(point["error"]["trajectory"], 0.0123457);
+  EXPECT_TRUE(document["points"][1]["max_strain"].is_null());
+  EXPECT_EQ(text.find("seconds"), std::string::npos);
+  std::istringstream lines(text);
+  int points = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("{\"sweep\"")) continue;
+    ++points;
+    if (line.back() == ',') line.pop_back();
+    EXPECT_TRUE(json::parse(line).is_object());
+  }
+  EXPECT_EQ(points, 2);
+}
+
+TEST(Baseline, ComparesAsTheResultItCameFrom) {
+  const std::string result = testing::TempDir() + "result.json",
+                    baseline = testing::TempDir() + "baseline.json";
+  write_atomically(result, one_result().dump());
+  write_atomically(baseline, baseline_text(baseline_document({one_result()})));
+  const Comparison same = compare(read_compared({baseline}), read_compared({result}), Gate());
+  EXPECT_EQ(same.count(Change::same), 2u);
+  json worse = one_result();
+  worse["points"][0]["work"]["iterations"] = 1234568;
+  write_atomically(result, worse.dump());
+  const Comparison changed = compare(read_compared({baseline}), read_compared({result}), Gate());
+  EXPECT_EQ(changed.count(Change::slower), 1u);
+}
+
+TEST(Gate, RefusesWhatItDoesNotKnow) {
+  const auto message = [](const std::string& text) -> std::string {
+    try {
+      parse_gate(text, "g.json");
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message("{}"), "");
+  for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
+           {"{", "'g.json' is not JSON"},
+           {"[]", "must be an object"},
+           {R"({"time": {}})", "did you mean 'times'?"},
+           {R"({"times": {"cout": true}})", "did you mean 'count'?"},
+           {R"({"times": {"count": 1}})", "'count' is 1, must be true or false"},
+           {R"({"times": {"significance": 0}})", "'significance' is 0, must be a number above"},
+           {R"({"times": {"significance": 0.6}})", "at most 0.5"},
+           {R"({"times": {"median_ratio": "x"}})", "'median_ratio' is \"x\""},
+           {R"({"times": {"minimum_ratio": 0.9}})", "'minimum_ratio' is 0.9"},
+           {R"({"counters": {"rule": "exakt"}})", "did you mean 'exact'?"},
+           {R"({"counters": {"names": ["iteration"]}})", "did you mean 'iterations'?"},
+           {R"({"counters": {"names": []}})", "must be a list of counters"},
+           {R"({"errors": {"max_strain": 0.5}})", "'max_strain' is 0.5"},
+           {R"({"errors": {"maxstrain": 2}})", "did you mean 'max_strain'?"}}) {
+    const std::string said = message(text);
+    EXPECT_NE(said.find(part), std::string::npos) << text << " -> " << said;
+    EXPECT_NE(said.find("g.json"), std::string::npos) << said;
+  }
+  const Gate gate = parse_gate(
+      R"({"times": {"count": false}, "counters": {"rule": "rise", "names": ["steps"]}, "errors": {}})",
+      "g.json");
+  EXPECT_FALSE(gate.times);
+  EXPECT_EQ(gate.counter_rule, CounterRule::rise);
+  EXPECT_TRUE(gate.errors.empty());
+}
+
+// ---- Reports ------------------------------------------------------------------------------------
+
+Comparison awkward() {
+  Comparison comparison;
+  comparison.points = {
+      {Change::newly_failing, "strain", "chain/a/h:1", {"edge <3> & \"more\" | \x01 `x`\nend"}},
+      {Change::same, "strain", "chain/b/h:1", {}},
+      {Change::added, "strain", "chain/c/h:1", {"ok"}}};
+  comparison.notes = {"times not compared"};
+  return comparison;
+}
+
+TEST(Reports, JUnitEscapesAndCounts) {
+  const std::string xml = junit_xml(awkward(), "bench <compare>");
+  EXPECT_NE(xml.find("tests=\"3\" failures=\"1\""), std::string::npos);
+  EXPECT_NE(xml.find("name=\"bench &lt;compare&gt;\""), std::string::npos);
+  EXPECT_NE(xml.find("edge &lt;3&gt; &amp; &quot;more&quot; | ? `x`&#10;end"), std::string::npos);
+  EXPECT_NE(xml.find("classname=\"strain.chain.b\" name=\"chain/b/h:1\"/>"), std::string::npos)
+      << xml;
+}
+
+TEST(Reports, MarkdownKeepsToOneRowAPointAndLeavesOutWhatIsTheSame) {
+  const std::string text = markdown_table(awkward(), "bench compare");
+  EXPECT_NE(text.find("| **NEWLY\\_FAILING** | strain | chain/a/h:1 | edge &lt;3> &amp; \"more\" "
+                      "\\|   \\`x\\` end |\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("chain/b"), std::string::npos);
+  EXPECT_NE(text.find("3 points: 1 NEWLY_FAILING, 1 NEW, 1 SAME"), std::string::npos);
+}
+
+TEST(Reports, TheTableLeavesOutWhatIsTheSameAndSumsUpWhatHadTooFewRuns) {
+  Comparison comparison = awkward();
+  comparison.points.push_back({Change::ambiguous, "strain", "chain/d/h:1", {"1 and 1 runs"}, true});
+  std::ostringstream out;
+  print_comparison(out, comparison);
+  EXPECT_EQ(out.str().find("chain/b"), std::string::npos);
+  EXPECT_EQ(out.str().find("AMBIGUOUS     strain"), std::string::npos) << out.str();
+  EXPECT_NE(out.str().find("1 of the AMBIGUOUS have too few runs"), std::string::npos);
+  EXPECT_NE(out.str().find("4 points: 1 NEWLY_FAILING, 1 AMBIGUOUS, 1 NEW, 1 SAME"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace harness

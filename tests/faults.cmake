@@ -1,0 +1,48 @@
+# bench_with_faults: the program with a fault put into copies of three solver files, for gate_test. No hook in the solvers
+# themselves: if the text that a fault replaces is gone, configuring says so.
+
+# with_fault(FILE FROM TO): a copy of solvers/FILE with FROM replaced, appended to fault_sources.
+function(with_fault file from to)
+  set(copy ${CMAKE_CURRENT_BINARY_DIR}/faults/${file})
+  if(copy IN_LIST fault_sources)  # another fault in the same file
+    file(READ ${copy} text)
+  else()
+    file(READ ${PROJECT_SOURCE_DIR}/solvers/${file} text)
+  endif()
+  string(FIND "${text}" "${from}" place)
+  if(place EQUAL -1)
+    message(FATAL_ERROR "tests/faults.cmake: solvers/${file} no longer holds '${from}'")
+  endif()
+  string(REPLACE "${from}" "${to}" text "${text}")
+  file(CONFIGURE OUTPUT ${copy} CONTENT "${text}" @ONLY)  # touched only if it changes
+  list(APPEND fault_sources ${copy})
+  list(REMOVE_DUPLICATES fault_sources)
+  set(fault_sources ${fault_sources} PARENT_SCOPE)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/solvers/${file})
+endfunction()
+
+set(fault_sources)
+# Gauss-Seidel: 15 % slower. What a call has taken is waited for once more in part.
+with_fault(gauss_seidel.cpp "#include <cmath>" "#include <chrono>\n#include <cmath>")
+with_fault(gauss_seidel.cpp "namespace {\n" "namespace {
+struct Delay {
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start = Clock::now();
+  ~Delay() {
+    const auto now = Clock::now();
+    while (Clock::now() < now + (now - start) * 15 / 100) {
+    }
+  }
+};
+")
+with_fault(gauss_seidel.cpp "  for (int sweeps = 0;; ++sweeps) {" "  const Delay delay;\n  for (int sweeps = 0;; ++sweeps) {")
+# Fast projection: one iteration more than is needed.
+with_fault(fast_projection.cpp "  for (int j = 0, best_j = 0;; ++j) {" "  int extra = 0;\n  for (int j = 0, best_j = 0;; ++j) {")
+with_fault(fast_projection.cpp "j >= min_iterations_)" "j >= min_iterations_ && extra++ > 0)")
+# Jacobi: gives up after three sweeps.
+with_fault(jacobi.cpp "sweeps == max_iterations_" "sweeps == 3")
+
+# The copies come first, so that the archive's members of that name are not taken.
+add_executable(bench_with_faults ${fault_sources} $<TARGET_OBJECTS:bench>)
+target_include_directories(bench_with_faults PRIVATE ${PROJECT_SOURCE_DIR}/solvers)
+target_link_libraries(bench_with_faults PRIVATE inextensible_harness)
