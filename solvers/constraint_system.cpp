@@ -5,14 +5,10 @@
 namespace inextensible {
 namespace {
 
-// Above this many rows CHOLMOD's dense kernels win over an up-looking factorization (one thread,
-// drape: 15 percent slower at 80,000 rows, as fast at 157,000).
-constexpr int supernodal_from = 150000;
-
 std::string choose(std::string_view wanted, const SymmetricPattern& pattern) {
   if (wanted != "auto") return std::string(wanted);
   if (pattern.entries() == 2 * pattern.n - 1 && pattern.tridiagonal()) return "tridiagonal";
-  return pattern.n < supernodal_from ? "eigen_ldlt" : "cholmod_supernodal";
+  return "fixed_pattern";
 }
 
 }  // namespace

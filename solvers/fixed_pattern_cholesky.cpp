@@ -232,6 +232,11 @@ void FixedPatternCholesky::find_fronts() {
   const auto* super = static_cast<const int*>(f.super);
   const auto* start = static_cast<const int*>(f.pi);
   const auto* row = static_cast<const int*>(f.s);
+  const auto* count = static_cast<const int*>(f.ColCount);
+  for (int column = 0; column < pattern_.n; ++column) {
+    nonzeros_ += count[column];
+    flops_ += static_cast<double>(square(count[column]));
+  }
   std::size_t factor_size = 0;
   for (std::size_t s = 0; s < f.nsuper; ++s) {
     Front front{};
@@ -242,7 +247,6 @@ void FixedPatternCholesky::find_fronts() {
     front.factor_at = factor_size;
     factor_size += as_size(front.columns) * as_size(front.rows);
     rows_.insert(rows_.end(), row + start[s] + front.columns, row + start[s + 1]);
-    for (int c = 0; c < front.columns; ++c) flops_ += static_cast<double>(square(front.rows - c));
     most_below_ = std::max(most_below_, front.below());
     fronts_.push_back(front);
   }

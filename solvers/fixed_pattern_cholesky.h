@@ -34,7 +34,9 @@ class FixedPatternCholesky final : public SpdSolver {
   bool factor() override;
   void solve(double* rhs) override;
   double reciprocal_condition() const override;
-  double factor_nonzeros() const override { return static_cast<double>(factor_.size()); }
+  // Those of L itself; what is stored and computed is about half as much again, for whole
+  // rectangles.
+  double factor_nonzeros() const override { return nonzeros_; }
   double factor_flops() const override { return flops_; }
   // After factor() returned false: the column whose pivot was too small.
   int failed_column() const { return failed_column_; }
@@ -70,7 +72,7 @@ class FixedPatternCholesky final : public SpdSolver {
   std::vector<double> pivots_;      // of L D L^T
   std::vector<double> below_;       // solve(): one number a row below
   int most_below_ = 0;
-  double flops_ = 0;
+  double nonzeros_ = 0, flops_ = 0;
   int failed_column_ = -1;
 };
 

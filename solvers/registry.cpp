@@ -106,11 +106,11 @@ const SettingInfo target{
     "target", 0.0, "a corrected edge is brought to this fraction of the strain limit, 0 to 1"};
 constexpr const char* least_iterations =
     "projections a step even where the candidate is permissible; 1 keeps slack from building up";
-const SettingInfo spd_solver{
-    "linear_solver",
-    "auto",
-    "factorization of J W J^T",
-    {"auto", "tridiagonal", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}};
+const SettingInfo spd_solver{"linear_solver",
+                             "auto",
+                             "factorization of J W J^T",
+                             {"auto", "tridiagonal", "fixed_pattern", "eigen_ldlt",
+                              "cholmod_simplicial", "cholmod_supernodal"}};
 
 std::vector<Backend> built_in() {
   return {
@@ -124,7 +124,7 @@ std::vector<Backend> built_in() {
         {"linear_solver",
          "auto",
          "factorization of the Hessian",
-         {"auto", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}}},
+         {"auto", "fixed_pattern", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}}},
        make_implicit_springs},
       {"jacobi",
        "strain limiting, all edges at once and averaged",

@@ -120,7 +120,7 @@ assert any(p["work"]["rejected_steps"] > 0 and p["smallest_step"] < p["step"] fo
 PYTHON
 
 # Ctrl-C: valid JSON, not complete, exit 130.
-"$BENCH_BINARY" --sweep strain --profile paper --scene drape --solver gauss_seidel --out interrupted.json --no-plots \
+"$BENCH_BINARY" --sweep strain --profile paper --scene drape --solver gauss_seidel --out interrupted.json --no-plots --force \
   >/dev/null 2>&1 &
 pid=$!
 sleep 2
