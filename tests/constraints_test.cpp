@@ -212,7 +212,7 @@ TEST_P(SpdSolvers, RefuseWhatIsNotPositiveDefinite) {
 
 INSTANTIATE_TEST_SUITE_P(All, SpdSolvers,
                          ::testing::Values("tridiagonal", "eigen_ldlt", "cholmod_simplicial",
-                                           "cholmod_supernodal"));
+                                           "cholmod_supernodal", "fixed_pattern"));
 
 TEST(UnsymmetricSolver, LeavesASmallResidualAndSeesSingularMatrices) {
   for (const bool tridiagonal : {true, false}) {

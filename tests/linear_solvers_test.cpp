@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "edge_constraints.h"
+#include "fixed_pattern_cholesky.h"
 #include "kkt_system.h"
 #include "random_graph.h"
 #include "schur_complement.h"
@@ -62,6 +63,47 @@ TEST(SpdSolver, IsBackwardStableOnGraphsOfUnequalMassesInTheFillReducingOrder) {
         EXPECT_LT(backward_error(matrix, x, b), 1e-13);
       }
     }
+  }
+}
+
+// Random lower patterns in any order, no postorder of their trees: diagonally dominant, with one
+// dense row in the middle.
+TEST(FixedPatternCholesky, TakesAnyOrderAndAgreesWithADenseFactorization) {
+  for (std::uint64_t seed = 0; seed < 5 * seeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const int n = 1 + static_cast<int>(seed % 60);
+    SymmetricPattern pattern{n, SymmetricPattern::Triangle::lower, {0}, {}};
+    for (int j = 0; j < n; ++j) {
+      for (int i = j; i < n; ++i) {
+        if (i == j || i == n / 2 || testing::uniform(random, 0, 1) < 0.1)
+          pattern.row_index.push_back(i);
+      }
+      pattern.column_start.push_back(pattern.entries());
+    }
+    FixedPatternCholesky solver(pattern);
+    Eigen::VectorXd sum = Eigen::VectorXd::Ones(n);  // of absolute values beside the diagonal
+    for (int j = 0; j < n; ++j) {
+      for (int e = pattern.diagonal(j) + 1;
+           e < pattern.column_start[static_cast<std::size_t>(j) + 1]; ++e) {
+        solver.values()[e] = testing::uniform(random, -1, 1);
+        sum[j] += std::abs(solver.values()[e]);
+        sum[pattern.row_index[static_cast<std::size_t>(e)]] += std::abs(solver.values()[e]);
+      }
+    }
+    for (int j = 0; j < n; ++j) solver.values()[pattern.diagonal(j)] = sum[j];
+    const Eigen::MatrixXd matrix = dense_symmetric(pattern, solver.values());
+    ASSERT_TRUE(solver.factor());
+    EXPECT_EQ(solver.failed_column(), -1);
+    Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, -1, 2);
+    const Eigen::VectorXd expected = matrix.ldlt().solve(x);
+    solver.solve(x.data());
+    EXPECT_LT((x - expected).norm(), 1e-13 * expected.norm());
+    // A negative diagonal entry is the first pivot to fail: those before it do not see it.
+    const int bad = static_cast<int>(seed / 7) % n;
+    solver.values()[pattern.diagonal(bad)] = -1;
+    EXPECT_FALSE(solver.factor());
+    EXPECT_EQ(solver.failed_column(), bad);
   }
 }
 
