@@ -1,40 +1,13 @@
 #include "cholmod_solver.h"
 
-#include <cholmod.h>
-
 #include <algorithm>
 #include <cmath>
 #include <new>
 #include <numeric>
 
+#include "cholmod_symbolic.h"
+
 namespace inextensible {
-namespace {
-
-cholmod_sparse view(const SymmetricPattern& pattern, double* values) {
-  cholmod_sparse matrix{};
-  matrix.nrow = matrix.ncol = static_cast<std::size_t>(pattern.n);
-  matrix.nzmax = static_cast<std::size_t>(pattern.entries());
-  matrix.p = const_cast<int*>(pattern.column_start.data());
-  matrix.i = const_cast<int*>(pattern.row_index.data());
-  matrix.x = values;
-  matrix.stype = pattern.triangle == SymmetricPattern::Triangle::upper ? 1 : -1;
-  matrix.itype = CHOLMOD_INT;
-  matrix.xtype = values ? CHOLMOD_REAL : CHOLMOD_PATTERN;
-  matrix.dtype = CHOLMOD_DOUBLE;
-  matrix.sorted = matrix.packed = 1;
-  return matrix;
-}
-
-void quiet_natural(cholmod_common& common) {
-  cholmod_start(&common);
-  common.print = 0;
-  common.nmethods = 1;
-  common.method[0].ordering = CHOLMOD_NATURAL;
-  common.postorder = 0;  // fill_reducing_order is postordered already
-}
-
-}  // namespace
-
 struct CholmodSolver::Library {
   cholmod_common common{};
   cholmod_sparse matrix{};
@@ -56,11 +29,11 @@ CholmodSolver::CholmodSolver(SymmetricPattern pattern, bool supernodal)
       values_(static_cast<std::size_t>(pattern_.entries())),
       library_(std::make_unique<Library>()) {
   Library& c = *library_;
-  quiet_natural(c.common);
+  cholmod_start_natural(c.common);
   c.common.supernodal = supernodal ? CHOLMOD_SUPERNODAL : CHOLMOD_SIMPLICIAL;
   c.common.final_ll = supernodal;  // simplicial: L D L^T, without square roots
   c.common.quick_return_if_not_posdef = 1;
-  c.matrix = view(pattern_, values_.data());
+  c.matrix = cholmod_view(pattern_, values_.data());
   c.factor = cholmod_analyze(&c.matrix, &c.common);
   if (!c.factor) throw std::bad_alloc();
   c.rhs.nrow = c.rhs.nzmax = c.rhs.d = static_cast<std::size_t>(pattern_.n);
@@ -113,7 +86,7 @@ std::vector<int> fill_reducing_order(const SymmetricPattern& pattern) {
   common.method[0].ordering = CHOLMOD_AMD;
   common.method[1].ordering = CHOLMOD_METIS;
   common.postorder = 1;
-  cholmod_sparse matrix = view(pattern, nullptr);
+  cholmod_sparse matrix = cholmod_view(pattern, nullptr);
   cholmod_factor* factor = cholmod_analyze(&matrix, &common);
   if (!factor) {
     cholmod_finish(&common);

@@ -1,11 +1,11 @@
 #include "fixed_pattern_cholesky.h"
 
-#include <cholmod.h>
-
 #include <algorithm>
 #include <cmath>
 #include <new>
 #include <stdexcept>
+
+#include "cholmod_symbolic.h"
 
 namespace inextensible {
 namespace {
@@ -120,26 +120,10 @@ int take_panel(const Trapezoid& front, int k, const double* bound, double* pivot
   return K;
 }
 
-int take_panel(int width, const Trapezoid& front, int k, const double* bound, double* pivots) {
-  switch (width) {
-    case 1:
-      return take_panel<1>(front, k, bound, pivots);
-    case 2:
-      return take_panel<2>(front, k, bound, pivots);
-    case 3:
-      return take_panel<3>(front, k, bound, pivots);
-    case 4:
-      return take_panel<4>(front, k, bound, pivots);
-    case 5:
-      return take_panel<5>(front, k, bound, pivots);
-    case 6:
-      return take_panel<6>(front, k, bound, pivots);
-    case 7:
-      return take_panel<7>(front, k, bound, pivots);
-    default:
-      return take_panel<panel>(front, k, bound, pivots);
-  }
-}
+using TakePanel = int (*)(const Trapezoid& front, int k, const double* bound, double* pivots);
+constexpr TakePanel take_panel_of_width[] = {nullptr,       take_panel<1>, take_panel<2>,
+                                             take_panel<3>, take_panel<4>, take_panel<5>,
+                                             take_panel<6>, take_panel<7>, take_panel<panel>};
 
 // y += sum over J columns of l (n rows) times x.
 template <int J>
@@ -179,22 +163,9 @@ struct Analysis {
   cholmod_factor* factor = nullptr;
 
   explicit Analysis(const SymmetricPattern& pattern) {
-    cholmod_start(&common);
-    common.print = 0;
-    common.nmethods = 1;
-    common.method[0].ordering = CHOLMOD_NATURAL;
-    common.postorder = 0;
+    cholmod_start_natural(common);
     common.supernodal = CHOLMOD_SUPERNODAL;
-    cholmod_sparse matrix{};
-    matrix.nrow = matrix.ncol = static_cast<std::size_t>(pattern.n);
-    matrix.nzmax = static_cast<std::size_t>(pattern.entries());
-    matrix.p = const_cast<int*>(pattern.column_start.data());
-    matrix.i = const_cast<int*>(pattern.row_index.data());
-    matrix.stype = -1;
-    matrix.itype = CHOLMOD_INT;
-    matrix.xtype = CHOLMOD_PATTERN;
-    matrix.dtype = CHOLMOD_DOUBLE;
-    matrix.sorted = matrix.packed = 1;
+    cholmod_sparse matrix = cholmod_view(pattern, nullptr);
     factor = cholmod_analyze(&matrix, &common);
     if (!factor) {
       cholmod_finish(&common);
@@ -379,8 +350,8 @@ bool FixedPatternCholesky::eliminate_columns(const Front& front, double* columns
     const int width = std::min(panel, front.columns - k), column = front.first_column + k;
     for (int c = 0; c < width; ++c)
       bound[c] = least_pivot_ * values_[as_size(pattern_.diagonal(column + c))];
-    const int good = take_panel(width, {columns, front.rows, front.columns, update}, k, bound,
-                                pivots_.data() + column);
+    const int good = take_panel_of_width[width]({columns, front.rows, front.columns, update}, k,
+                                                bound, pivots_.data() + column);
     if (good < width) {
       failed_column_ = column + good;
       return false;
