@@ -20,7 +20,7 @@ class Sentinel {
   void sample_if_due();
 
   struct Sample {
-    double at, seconds;  // s since the first one; the kernel's median time of a few
+    double at, seconds;  // s since construction; the kernel's mean time
   };
   const std::vector<Sample>& samples() const { return samples_; }
   double spread() const;

@@ -1,0 +1,64 @@
+// The fixed kernel that tells a noisy machine from a quiet one, with noise of our own making.
+#include "sentinel.h"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+namespace harness {
+namespace {
+
+// Keeps this process and its children to the processor that it is on.
+void stay_here() {
+  cpu_set_t here;
+  CPU_ZERO(&here);
+  CPU_SET(static_cast<std::size_t>(sched_getcpu()), &here);
+  ASSERT_EQ(sched_setaffinity(0, sizeof here, &here), 0);
+}
+
+TEST(Sentinel, SeesThatOthersTakeTheProcessor) {
+  Sentinel sentinel;
+  EXPECT_EQ(sentinel.spread(), 0);
+  EXPECT_FALSE(sentinel.noisy());
+  stay_here();
+  sentinel.sample();
+  pid_t others[4];
+  for (pid_t& other : others) {
+    other = fork();
+    if (other == 0) {
+      for (volatile bool on = true; on;) {
+      }
+    }
+  }
+  sentinel.sample();
+  for (const pid_t other : others) {
+    kill(other, SIGKILL);
+    waitpid(other, nullptr, 0);
+  }
+  ASSERT_EQ(sentinel.samples().size(), 2u);
+  EXPECT_TRUE(sentinel.noisy()) << "spread " << sentinel.spread();
+  EXPECT_TRUE(sentinel.to_json().at("noisy").get<bool>());
+}
+
+TEST(Sentinel, SamplesWhenItIsDue) {
+  Sentinel seldom(3600), always(0);
+  for (int i = 0; i < 3; ++i) {
+    seldom.sample_if_due();
+    always.sample_if_due();
+  }
+  EXPECT_EQ(seldom.samples().size(), 1u);
+  EXPECT_EQ(always.samples().size(), 3u);
+}
+
+TEST(ProcessorTicks, GoOnAndGiveAShare) {
+  const ProcessorTicks before = processor_ticks();
+  EXPECT_GT(before.all, 0);
+  EXPECT_DOUBLE_EQ(stolen_share({1, 10}, {2, 14}), 0.25);
+  EXPECT_DOUBLE_EQ(stolen_share(before, before), 0);
+}
+
+}  // namespace
+}  // namespace harness
