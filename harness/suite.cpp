@@ -151,6 +151,10 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
       if (backend.contestant) spec.solvers.emplace_back(backend.name);
     }
   }
+  for (const std::string& name : reader.texts("also")) {
+    if (std::find(spec.solvers.begin(), spec.solvers.end(), name) == spec.solvers.end())
+      spec.solvers.push_back(name);
+  }
   for (const std::string& name : spec.solvers) {
     if (!inextensible::find_backend(name))
       throw UsageError(where + ": " + unknown_name("solver", name, solver_names()).what());

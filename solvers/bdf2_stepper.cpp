@@ -8,23 +8,29 @@ namespace {
 
 constexpr double largest_growth = 2;  // of the step; variable-step BDF2 is stable below 1 + sqrt 2
 
-struct Coefficients {
-  Coefficients(double h, double h_before)
-      : w(h / h_before),
-        alpha((1 + w) * (1 + w) / (1 + 2 * w)),
-        beta_h(h * (1 + w) / (1 + 2 * w)) {}
-  double w, alpha, beta_h;
-};
-
 }  // namespace
 
+// y^{n+1} = now y^n + before y^{n-1} + earlier y^{n-2} + beta_h y'^{n+1}.
+Bdf2Stepper::Coefficients Bdf2Stepper::coefficients(double h) const {
+  if (blend_ > 0 && h == h_before_ && h == h_earlier_) {
+    const double scale = 1 / (1.5 + blend_ / 3);
+    return {(2 + blend_) * scale, -(0.5 + blend_) * scale, blend_ / 3 * scale, h * scale};
+  }
+  const double w = h / h_before_, alpha = (1 + w) * (1 + w) / (1 + 2 * w);
+  return {alpha, 1 - alpha, 0, h * (1 + w) / (1 + 2 * w)};
+}
+
 Bdf2Stepper::Bdf2Stepper(std::shared_ptr<const Problem> problem,
-                         std::unique_ptr<VelocityFilter> filter)
-    : Stepper(std::move(problem)), filter_(std::move(filter)) {
+                         std::unique_ptr<VelocityFilter> filter, double blend)
+    : Stepper(std::move(problem)), filter_(std::move(filter)), blend_(blend) {
   const Eigen::Index n = problem_->vertices();
   for (Positions* p : {&x_before_, &v_before_, &x_known_, &v_known_, &acceleration_})
     p->resize(3, n);
   if (problem_->shear()) x_ahead_.resize(3, n);
+  if (blend_ > 0) {
+    x_earlier_.resize(3, n);
+    v_earlier_.resize(3, n);
+  }
 }
 
 void Bdf2Stepper::restart(const State& state, double h) {
@@ -33,6 +39,7 @@ void Bdf2Stepper::restart(const State& state, double h) {
   x_known_ = state.x;
   v_known_ = state.v;
   h_before_ = h;
+  h_earlier_ = 0;
   ++restarts_;
 }
 
@@ -45,11 +52,11 @@ StepResult Bdf2Stepper::solve(const State& state, double h, Positions& x) {
   const bool known = h_before_ > 0 && h <= largest_growth * h_before_ && state.x == x_known_ &&
                      state.v == v_known_;
   if (!known) restart(state, h);
-  const Coefficients c(h, h_before_);
-  // In one pass: x0 = alpha x^n + (1 - alpha) x^{n-1} + beta h (alpha v^n + (1 - alpha) v^{n-1} +
-  // beta h a)
-  x = c.alpha * (state.x + c.beta_h * state.v) +
-      (1 - c.alpha) * (x_before_ + c.beta_h * v_before_) + (c.beta_h * c.beta_h) * acceleration_;
+  const Coefficients c = coefficients(h);
+  // In one pass: the formula for x with the formula for v in it.
+  x = c.now * (state.x + c.beta_h * state.v) + c.before * (x_before_ + c.beta_h * v_before_) +
+      (c.beta_h * c.beta_h) * acceleration_;
+  if (c.earlier != 0) x += c.earlier * (x_earlier_ + c.beta_h * v_earlier_);
   for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
   phases_.unconstrained += lap();
   const StepResult result = filter_->apply(state.x, h, x, work_);
@@ -60,8 +67,14 @@ StepResult Bdf2Stepper::solve(const State& state, double h, Positions& x) {
 StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Positions& filtered,
                                        const Positions& x, Positions& v) {
   Lap lap;
-  const Coefficients c(h, h_before_);
-  v = (x - c.alpha * start.x - (1 - c.alpha) * x_before_) * (1 / c.beta_h);
+  const Coefficients c = coefficients(h);
+  v = (x - c.now * start.x - c.before * x_before_) * (1 / c.beta_h);
+  if (c.earlier != 0) v -= (c.earlier / c.beta_h) * x_earlier_;
+  if (blend_ > 0) {
+    x_earlier_.swap(x_before_);
+    v_earlier_.swap(v_before_);
+    h_earlier_ = h_before_;
+  }
   x_before_ = start.x;
   v_before_ = start.v;
   if (problem_->collider()) {
@@ -70,6 +83,10 @@ StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Posit
       v.col(i) = (x.col(i) - start.x.col(i)) / h;
       x_before_.col(i) = x.col(i) - h * v.col(i) + (0.5 * h * h) * acceleration_.col(i);
       v_before_.col(i) = v.col(i) - h * acceleration_.col(i);
+      if (blend_ > 0) {
+        x_earlier_.col(i) = x.col(i) - 2 * h * v.col(i) + (2 * h * h) * acceleration_.col(i);
+        v_earlier_.col(i) = v.col(i) - 2 * h * acceleration_.col(i);
+      }
     }
   }
   for (const int vertex : problem_->pinned()) v.col(vertex).setZero();

@@ -83,6 +83,11 @@ std::unique_ptr<Stepper> make_fast_projection_bdf2(Shared problem, const Backend
   return std::make_unique<Bdf2Stepper>(std::move(problem), std::move(filter));
 }
 
+std::unique_ptr<Stepper> make_fast_projection_bdf2opt(Shared problem, const BackendOptions& o) {
+  auto filter = std::make_unique<FastProjection>(*problem, fast_projection_settings(o));
+  return std::make_unique<Bdf2Stepper>(std::move(problem), std::move(filter), number(o, "blend"));
+}
+
 std::unique_ptr<Stepper> make_rattle(Shared problem, const BackendOptions& o) {
   return std::make_unique<Rattle>(
       std::move(problem), Shake::Settings{o.strain_limit, integer(o, "max_iterations"),
@@ -174,6 +179,15 @@ std::vector<Backend> built_in() {
        true,
        {newton_iterations, {"min_iterations", 1.0, least_iterations}, spd_solver},
        make_rattle},
+      {"fast_projection_bdf2opt",
+       "the same with half the error constant: BDF2 blended with BDF3",
+       Knob::strain_limit,
+       false,
+       {projections,
+        {"min_iterations", 1.0, least_iterations},
+        {"blend", 0.48, "of BDF3 in the formula, 0 to 0.48 (A-stable)"},
+        spd_solver},
+       make_fast_projection_bdf2opt},
       {"null",
        "unconstrained step only: what the scene and the harness cost",
        Knob::none,

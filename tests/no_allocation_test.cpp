@@ -56,6 +56,7 @@ INSTANTIATE_TEST_SUITE_P(
     Steppers, NoAllocation,
     ::testing::Values(Case{"chain", 80, "fast_projection", 0.005},
                       Case{"chain", 80, "fast_projection_bdf2", 0.005},
+                      Case{"chain", 80, "fast_projection_bdf2opt", 0.005},
                       Case{"chain", 80, "rattle", 0.0005},
                       Case{"drape", 15, "fast_projection_bdf2", 0.005},
                       Case{"drape", 15, "rattle", 0.001}, Case{"chain", 80, "jacobi", 0.001},
