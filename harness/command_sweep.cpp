@@ -117,7 +117,7 @@ void begin_journal(Journal& journal, const Past& past, const Memory& memory,
   }
 }
 
-SweepRunners watched(SweepRunners inner, Sentinel& sentinel) {
+SweepRunners watched(const SweepRunners& inner, Sentinel& sentinel) {
   SweepRunners runners = inner;
   runners.run = [run = inner.run, &sentinel](const auto& spec, const auto& limits, auto guess) {
     sentinel.sample_if_due();
@@ -193,10 +193,9 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   Sentinel sentinel;
   sentinel.sample();
   const ProcessorTicks ticks = processor_ticks();
-  if (!options.in_process) runners = isolated(std::move(runners), options.memory);
-  const SweepOutcome outcome =
-      run_sweep(suite, searches, events,
-                journaled(watched(std::move(runners), sentinel), journal, std::move(memory)));
+  if (!options.in_process) runners = isolated(runners, options.memory);
+  const SweepOutcome outcome = run_sweep(
+      suite, searches, events, journaled(watched(runners, sentinel), journal, std::move(memory)));
   progress.finish();
   sentinel.sample();
   context["sentinel"] = sentinel.to_json();

@@ -88,7 +88,7 @@ constexpr double longest_trial = 150;  // s, both attempts
 
 }  // namespace
 
-SweepRunners isolated(SweepRunners inner, double memory) {
+SweepRunners isolated(const SweepRunners& inner, double memory) {
   SweepRunners runners;
   runners.references = inner.references;
   runners.run = [run = inner.run, memory](const PointSpec& spec, const RunLimits& limits,

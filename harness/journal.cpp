@@ -211,7 +211,7 @@ void Journal::remove() {
   file_ = -1;
 }
 
-SweepRunners journaled(SweepRunners inner, Journal& journal, Memory memory) {
+SweepRunners journaled(const SweepRunners& inner, Journal& journal, Memory memory) {
   const auto known = std::make_shared<Memory>(std::move(memory));
   SweepRunners runners;
   runners.references = inner.references;

@@ -78,6 +78,6 @@ class Journal {
 
 // Runners that look into `memory` first and write what `inner` does to the journal, which must
 // outlive them.
-SweepRunners journaled(SweepRunners inner, Journal& journal, Memory memory);
+SweepRunners journaled(const SweepRunners& inner, Journal& journal, Memory memory);
 
 }  // namespace harness

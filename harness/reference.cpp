@@ -159,7 +159,7 @@ struct FirstRoute {
 };
 
 FirstRoute first_route(const Scene& scene, double h) {
-  const FirstRoute route;
+  FirstRoute route;
   inextensible::State state = scene.start;
   const auto stepper =
       inextensible::make_stepper(route.solver, scene.problem, {route.limit, 1, {}});

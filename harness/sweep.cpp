@@ -198,6 +198,7 @@ std::vector<Search> shard(std::vector<Search> searches, const Shard& part) {
   };
   for (const Search& s : searches) load[group(s)] += s.base.constraints;
   std::vector<std::pair<double, std::pair<std::string, SceneParameters>>> largest;
+  largest.reserve(load.size());
   for (const auto& [name, size] : load) largest.emplace_back(size, name);
   std::stable_sort(largest.begin(), largest.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
