@@ -304,18 +304,18 @@ void FixedPatternCholesky::place_updates() {
   for (const int i : {0, 1}) updates_[i].resize(most[i]);
 }
 
-// Columns [begin, end) of the child's update matrix into the parent's front, whose row 0 of column
-// c is at into + c * ld.
+// Columns [begin, end) of the child's update matrix into a part of the parent's front that begins
+// at the front's row and column `origin`.
 void FixedPatternCholesky::add_update(const Front& child, int begin, int end, double* into,
-                                      Distance ld) const {
+                                      Distance ld, int origin) const {
   const int* place = parent_place_.data() + child.rows_at;
   const int below = child.below();
   const double* from = updates_[child.stack].data() + child.update_at + Distance{begin} * below;
   for (int c = begin; c < end; ++c, from += below) {
-    double* to = into + place[c] * ld;
+    const Distance base = (place[c] - origin) * ld - origin;
 #pragma GCC ivdep  // places differ
 #pragma GCC unroll 4
-    for (int i = c; i < below; ++i) to[place[i]] += from[i];
+    for (int i = c; i < below; ++i) into[base + place[i]] += from[i];
   }
 }
 
@@ -330,14 +330,12 @@ bool FixedPatternCholesky::factor() {
     const int* const children = children_.data() + front.children_begin;
     for (const int* c = children; c < children_end; ++c) {
       const Front& child = fronts_[as_size(*c)];
-      add_update(child, 0, child.own_of_parent, columns, front.rows);
+      add_update(child, 0, child.own_of_parent, columns, front.rows, 0);
     }
     if (!eliminate_columns(front, columns, update)) return false;
-    // Row and column 0 of the front lie `columns` before those of the update matrix.
-    double* origin = update - Distance{front.columns} * front.below() - front.columns;
     for (const int* c = children; c < children_end; ++c) {
       const Front& child = fronts_[as_size(*c)];
-      add_update(child, child.own_of_parent, child.below(), origin, front.below());
+      add_update(child, child.own_of_parent, child.below(), update, front.below(), front.columns);
     }
   }
   failed_column_ = -1;

@@ -57,7 +57,8 @@ class FixedPatternCholesky final : public SpdSolver {
   void link_fronts();
   void place_updates();
   int place_in(const Front& front, int row) const;
-  void add_update(const Front& child, int begin, int end, double* into, std::ptrdiff_t ld) const;
+  void add_update(const Front& child, int begin, int end, double* into, std::ptrdiff_t ld,
+                  int origin) const;
   bool eliminate_columns(const Front& front, double* columns, double* update);
 
   SymmetricPattern pattern_;
