@@ -22,14 +22,6 @@ struct PointCommand {
 
 constexpr double most_steps = 1e8;  // more is a mistake in the step
 
-template <class Infos>
-std::vector<std::string> names_of(const Infos& infos) {
-  std::vector<std::string> names;
-  names.reserve(infos.size());
-  for (const auto& info : infos) names.emplace_back(info.name);
-  return names;
-}
-
 // What a point says of itself twice must agree: no run stands for another.
 void check_count(const std::string& where, const char* key, int given, int actual) {
   if (given != actual)
@@ -99,11 +91,12 @@ std::vector<PointSpec> read_specs(std::istream& in) {
 int run_points(const PointCommand& options) {
   RunLimits limits;
   limits.timeout = options.timeout;
+  const std::string fingerprint = counters_fingerprint();
   for (const PointSpec& spec : read_specs(std::cin)) {
     PointResult point = run_point(spec, limits);
     for (int i = 1; i < options.samples && point.ok(); ++i) repeat_point(point, limits);
     json line = to_json(point);
-    line["counters_fingerprint"] = counters_fingerprint();
+    line["counters_fingerprint"] = fingerprint;
     std::cout << line.dump() << std::endl;
   }
   return success;

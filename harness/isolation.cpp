@@ -26,29 +26,24 @@ std::string place(const ChildOutcome& outcome) {
   return "in step " + std::to_string(outcome.step) + " (t = " + number_text(outcome.time) + " s)";
 }
 
+// What became of a child that ended by itself, or was ended by others, without a result.
+std::string ending(const ChildOutcome& outcome) {
+  if (outcome.end == End::killed) return "killed by " + signal_text(outcome.code);
+  if (outcome.end == End::exited) return "ended with exit code " + std::to_string(outcome.code);
+  return outcome.text;  // of the exception
+}
+
 // Status and detail of a point whose child did not come back.
 void explain(const ChildOutcome& outcome, const RunLimits& limits, PointResult& point) {
-  point.status = PointStatus::crashed;
-  switch (outcome.end) {
-    case End::timed_out:
-      point.status = PointStatus::timeout;
-      point.detail = "longer than " + number_text(limits.timeout) + " s, stuck " + place(outcome) +
-                     "; ended with " + signal_text(outcome.code);
-      break;
-    case End::killed:
-      if (outcome.out_of_memory) point.status = PointStatus::out_of_memory;
-      point.detail = "killed by " + signal_text(outcome.code) + " " + place(outcome) +
-                     (outcome.out_of_memory ? "; the kernel was out of memory" : "");
-      break;
-    case End::exited:
-      point.detail = "ended with exit code " + std::to_string(outcome.code) + " " + place(outcome);
-      break;
-    case End::threw:
-      point.detail = outcome.text + " " + place(outcome);
-      break;
-    case End::returned:
-    case End::interrupted:
-      break;
+  if (outcome.end == End::timed_out) {
+    point.status = PointStatus::timeout;
+    point.detail = "longer than " + number_text(limits.timeout) + " s, stuck " + place(outcome) +
+                   "; ended with " + signal_text(outcome.code);
+  } else {
+    const bool starved = outcome.end == End::killed && outcome.out_of_memory;
+    point.status = starved ? PointStatus::out_of_memory : PointStatus::crashed;
+    point.detail =
+        ending(outcome) + " " + place(outcome) + (starved ? "; the kernel was out of memory" : "");
   }
   point.peak_rss_bytes = outcome.peak_rss_bytes;
 }
@@ -135,14 +130,8 @@ TrialResult run_isolated_trial(const std::function<Trial()>& build, const std::s
   TrialResult result;
   const bool stuck = child.end == End::timed_out;
   result.fixed = result.outcome = stuck ? Outcome::timeout : Outcome::crashed;
-  if (stuck) {
-    result.detail = "a step did not end within " + number_text(longest_trial) + " s";
-  } else if (child.end == End::killed) {
-    result.detail = "killed by " + signal_text(child.code);
-  } else {
-    result.detail =
-        child.end == End::threw ? child.text : "ended with exit code " + std::to_string(child.code);
-  }
+  result.detail =
+      stuck ? "a step did not end within " + number_text(longest_trial) + " s" : ending(child);
   return result;
 }
 

@@ -4,7 +4,6 @@
 #include <gsl/gsl_roots.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -13,6 +12,7 @@
 #include <sstream>
 
 #include "child_process.h"
+#include "clock.h"
 #include "judge.h"
 #include "step_controller.h"
 #include "text.h"
@@ -21,14 +21,9 @@ namespace harness {
 namespace {
 
 using inextensible::Status;
-using Clock = std::chrono::steady_clock;
 
 constexpr double diverged_strain = 10;
 constexpr int sampled_instants = 100;  // a run, for statistics that need sorting
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // Peak resident size of this process since the last reset; 0 where the system does not tell.
 void reset_peak_rss() { std::ofstream("/proc/self/clear_refs") << 5; }

@@ -5,14 +5,10 @@
 #include <fstream>
 #include <string>
 
+#include "clock.h"
+
 namespace harness {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // About 1 ms of what solvers do: a recurrence that waits for every result (a tridiagonal solve),
 // and passes over an array that fills the second-level cache.

@@ -98,24 +98,11 @@ class Reader {
   std::set<std::string> known_;
 };
 
-std::vector<std::string> solver_names() {
-  std::vector<std::string> names;
-  for (const auto& backend : inextensible::backends()) names.emplace_back(backend.name);
-  return names;
-}
-
-std::vector<std::string> scene_names() {
-  std::vector<std::string> names;
-  for (const auto& type : scene_types()) names.emplace_back(type.name);
-  return names;
-}
-
 inextensible::Settings read_settings(const json& object, const std::string& where,
                                      const inextensible::Backend& backend) {
   if (!object.is_object()) throw UsageError(where + ": must be an object { ... }");
   inextensible::Settings settings;
-  std::vector<std::string> known;
-  for (const auto& info : backend.settings) known.emplace_back(info.name);
+  const std::vector<std::string> known = names_of(backend.settings);
   for (const auto& [key, value] : object.items()) {
     if (std::find(known.begin(), known.end(), key) == known.end()) {
       throw UsageError(
@@ -144,7 +131,8 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
   spec.scene = reader.text("scene", "");
   const SceneType* type = find_scene(spec.scene);
   if (!type)
-    throw UsageError(where + ": " + unknown_name("scene", spec.scene, scene_names()).what());
+    throw UsageError(where + ": " +
+                     unknown_name("scene", spec.scene, names_of(scene_types())).what());
   spec.solvers = reader.texts("solvers");
   if (spec.solvers.empty()) {
     for (const auto& backend : inextensible::backends()) {
@@ -157,7 +145,8 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
   }
   for (const std::string& name : spec.solvers) {
     if (!inextensible::find_backend(name))
-      throw UsageError(where + ": " + unknown_name("solver", name, solver_names()).what());
+      throw UsageError(where + ": " +
+                       unknown_name("solver", name, names_of(inextensible::backends())).what());
   }
   spec.limits = reader.numbers("limits", 0);
   if (const double limit = reader.number("limit", 0, 0); limit > 0) {
@@ -208,8 +197,8 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
     for (const auto& [name, value] : options->items()) {
       const auto* backend = inextensible::find_backend(name);
       if (!backend)
-        throw UsageError(
-            where + ": 'solver_options': " + unknown_name("solver", name, solver_names()).what());
+        throw UsageError(where + ": 'solver_options': " +
+                         unknown_name("solver", name, names_of(inextensible::backends())).what());
       spec.solver_options[name] = read_settings(value, where + ": 'solver_options'", *backend);
     }
   }

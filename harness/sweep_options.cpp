@@ -97,8 +97,7 @@ std::regex pattern(const std::string& option, const std::string& text) {
 }
 
 void check_solver_pattern(const std::string& text) {
-  std::vector<std::string> names;
-  for (const auto& backend : inextensible::backends()) names.emplace_back(backend.name);
+  const std::vector<std::string> names = names_of(inextensible::backends());
   const std::regex expression = pattern("--solver", text);
   for (const std::string& name : names) {
     if (std::regex_match(name, expression)) return;
@@ -107,11 +106,8 @@ void check_solver_pattern(const std::string& text) {
 }
 
 std::string suite_path(const SweepOptions& options) {
-  if (!options.scene.empty() && !find_scene(options.scene)) {
-    std::vector<std::string> names;
-    for (const auto& type : scene_types()) names.emplace_back(type.name);
-    throw unknown_name("scene", options.scene, names);
-  }
+  if (!options.scene.empty() && !find_scene(options.scene))
+    throw unknown_name("scene", options.scene, names_of(scene_types()));
   if (!options.config.empty()) return options.config;
   check_profile(options.profile);
   return source_path("configs/" + options.profile + ".json");

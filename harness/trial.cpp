@@ -1,9 +1,9 @@
 #include "trial.h"
 
-#include <chrono>
 #include <optional>
 #include <sstream>
 
+#include "clock.h"
 #include "registry.h"
 #include "step_controller.h"
 #include "witness.h"
@@ -12,11 +12,6 @@ namespace harness {
 namespace {
 
 using inextensible::State;
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // One attempt, with or without the step controller.
 Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::uint64_t seed,

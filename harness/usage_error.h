@@ -17,4 +17,13 @@ class UsageError : public std::runtime_error {
 [[nodiscard]] UsageError unknown_name(std::string_view kind, std::string_view name,
                                       const std::vector<std::string>& known);
 
+// The names of solvers, scenes or settings, to be suggested.
+template <class Infos>
+std::vector<std::string> names_of(const Infos& infos) {
+  std::vector<std::string> names;
+  names.reserve(infos.size());
+  for (const auto& info : infos) names.emplace_back(info.name);
+  return names;
+}
+
 }  // namespace harness

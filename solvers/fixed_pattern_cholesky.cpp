@@ -209,6 +209,7 @@ void FixedPatternCholesky::find_fronts() {
     flops_ += static_cast<double>(square(count[column]));
   }
   std::size_t factor_size = 0;
+  int most_below = 0;
   for (std::size_t s = 0; s < f.nsuper; ++s) {
     Front front{};
     front.first_column = super[s];
@@ -218,11 +219,11 @@ void FixedPatternCholesky::find_fronts() {
     front.factor_at = factor_size;
     factor_size += as_size(front.columns) * as_size(front.rows);
     rows_.insert(rows_.end(), row + start[s] + front.columns, row + start[s + 1]);
-    most_below_ = std::max(most_below_, front.below());
+    most_below = std::max(most_below, front.below());
     fronts_.push_back(front);
   }
   factor_.resize(factor_size);
-  below_.resize(as_size(most_below_));
+  below_.resize(as_size(most_below));
 }
 
 void FixedPatternCholesky::place_entries() {

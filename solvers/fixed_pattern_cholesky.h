@@ -72,7 +72,6 @@ class FixedPatternCholesky final : public SpdSolver {
   std::vector<double> updates_[2];  // the stacks
   std::vector<double> pivots_;      // of L D L^T
   std::vector<double> below_;       // solve(): one number a row below
-  int most_below_ = 0;
   double nonzeros_ = 0, flops_ = 0;
   int failed_column_ = -1;
 };

@@ -45,24 +45,45 @@ PYTHON
 # line_of FILE PART: FILE is one line that contains PART.
 line_of() { [[ $(wc -l <"$1") == 1 ]] && grep -qF -- "$2" "$1"; }
 
-# lines JOURNAL N: waits until the journal has so many lines.
+# lines JOURNAL N: waits until the journal has so many lines; fails where it does not come to that.
 lines() {
   for _ in $(seq 3000); do
     [[ -e $1 && $(wc -l <"$1") -ge $2 ]] && return
+    kill -0 "$!" 2>/dev/null || return 1
     sleep 0.01
   done
-  fail "$1 did not come to $2 lines"
+  return 1
+}
+
+# hold RESULT LINES [OPTION...]: a run in the background ($!), stopped by SIGSTOP in its middle, once its journal has so
+# many lines. A busy machine may let a run finish unseen: then again. What is done to a held run meets it where it stands.
+hold() {
+  for _ in $(seq 20); do
+    "${bench[@]}" "${@:3}" --out "$1" >/dev/null 2>err.txt &
+    if lines "$1.journal" "$2" && kill -STOP "$!" && [[ $(wc -l <"$1.journal") -lt $whole ]]; then return; fi
+    kill -KILL "$!" 2>/dev/null
+    wait "$!"
+    rm -f "$1" "$1.journal"
+  done 2>/dev/null
+  fail "no run was seen at $2 lines"
+}
+
+# let_go SIGNAL: sends it to the held run, lets that go on and waits for it; its exit code.
+let_go() {
+  kill "-$1" "$!"
+  kill -CONT "$!" 2>/dev/null
+  wait "$!" 2>/dev/null
 }
 
 "${bench[@]}" --out whole.json >/dev/null 2>&1 || fail "undisturbed run: exit $?"
 [[ ! -e whole.json.journal ]] || fail "a journal is left of a run that was finished"
+# Of its journal: a header, the points, the repetitions of the best.
+whole=$(python3 -c 'import json; p = json.load(open("whole.json"))["points"]; print(1 + len(p) + sum(q["best"] for q in p))')
 
 # ---- kill -9, again and again ----
 for after in 3 20 45; do
-  "${bench[@]}" --resume --out killed.json >/dev/null 2>&1 &
-  lines killed.json.journal "$after"
-  kill -9 $!
-  wait $! 2>/dev/null
+  hold killed.json "$after" --resume
+  let_go KILL
   [[ ! -e killed.json ]] || fail "a result before the end"
 done
 before=$(wc -l <killed.json.journal)
@@ -77,11 +98,10 @@ cp killed.json copy.json
 grep -q "complete already" stdout.txt && cmp -s killed.json copy.json || fail "--resume touched a finished run"
 
 # ---- Ctrl-C ----
-"${bench[@]}" --out interrupted.json >/dev/null 2>&1 &
-lines interrupted.json.journal 10
-kill -INT $!
-wait $!
-[[ $? == 130 ]] || fail "Ctrl-C: exit $?"
+hold interrupted.json 10
+let_go INT
+code=$?
+[[ $code == 130 ]] || fail "Ctrl-C: exit $code"
 python3 -c 'import json; d = json.load(open("interrupted.json")); assert not d["complete"] and len(d["points"]) >= 9' ||
   fail "no partial result after Ctrl-C"
 "${bench[@]}" --resume --out interrupted.json >/dev/null 2>&1 || fail "resumed after Ctrl-C: exit $?"
@@ -103,7 +123,7 @@ child_of() {
     sleep 0.01
   done
 }
-lines long.json.out.journal 1  # after git, which is a child of its own
+lines long.json.out.journal 1 || fail "no journal"  # after git, which is a child of its own
 first=$(child_of)
 sleep 0.3
 kill -ILL "$first"
@@ -128,18 +148,15 @@ assert "resumed" in d["context"]
 PYTHON
 
 # ---- Two runs on one output ----
-"${bench[@]}" --out both.json >/dev/null 2>&1 &
-lines both.json.journal 3
-"${bench[@]}" --resume --out both.json >/dev/null 2>err.txt
-[[ $? == 2 ]] && line_of err.txt "another bench (process $!) is writing" || fail "two runs at once: $(cat err.txt)"
-wait $! || fail "the first of two runs: exit $?"
+hold both.json 3
+"${bench[@]}" --resume --out both.json >/dev/null 2>second.txt
+[[ $? == 2 ]] && line_of second.txt "another bench (process $!) is writing" || fail "two runs at once: $(cat second.txt)"
+let_go CONT || fail "the first of two runs: exit $?"
 same whole.json both.json || fail "the first of two runs was disturbed"
 
 # ---- A journal of something else ----
-"${bench[@]}" --out other.json >/dev/null 2>&1 &
-lines other.json.journal 5
-kill -9 $!
-wait $! 2>/dev/null
+hold other.json 5
+let_go KILL
 cp other.json.journal kept
 "${bench[@]}" --reps 3 --resume --out other.json >/dev/null 2>err.txt
 [[ $? == 2 ]] && line_of err.txt "suite/reps is 3, was 2" || fail "another suite: $(cat err.txt)"
@@ -152,10 +169,9 @@ same whole.json other.json || fail "resumed by another build"
 
 # ---- The folder goes ----
 mkdir gone
-"${bench[@]}" --out gone/result.json >/dev/null 2>err.txt &
-lines gone/result.json.journal 5
+hold gone/result.json 5
 rm -rf gone
-wait $!
+let_go CONT
 [[ $? == 1 ]] && grep -q "removed meanwhile" err.txt || fail "a folder that is gone: $(tail -1 err.txt)"
 
 # ---- The disk fills up ----
