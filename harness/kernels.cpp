@@ -15,8 +15,10 @@
 #include "context.h"
 #include "forces.h"
 #include "gauss_seidel.h"
+#include "icd.h"
 #include "jacobi.h"
 #include "kkt_system.h"
+#include "projected_cg.h"
 #include "registry.h"
 #include "scene.h"
 
@@ -157,29 +159,32 @@ void sweep(benchmark::State& state, int n) {
 
 // The matrix of ICD's second iteration, about: with fast projection's first multipliers, negative
 // ones left out of H, so that there is one factorization. Factoring includes assembling; solving
-// includes refinement.
+// includes refinement, or the conjugate gradients to ICD's own tolerance.
 void kkt(benchmark::State& state, const std::string& solver, bool solve, int n) {
   const Moment& m = moment("drape", n);
   const Linearized l(m, "auto");
-  const EdgeConstraints edges(m.problem(), 0.01);
-  KktSystem system(m.problem(), edges, solver);
-  Eigen::Matrix3Xd u(3, edges.count());
-  Eigen::VectorXd c(edges.count()), q = l.c, mu(edges.count());
-  edges.linearize(m.x0, u, c);
+  const EdgeConstraints& edges = l.system.edges();
+  std::unique_ptr<KktSolver> system;
+  if (solver == "projected_cg") {
+    system = std::make_unique<ProjectedCg>(m.problem(), edges,
+                                           ProjectedCg::Settings{Icd::Settings{}.cg_tolerance});
+  } else {
+    system = std::make_unique<KktSystem>(m.problem(), edges, solver);
+  }
   if (!l.solver->factor()) return state.SkipWithError("not positive definite");
-  l.solver->solve(q.data());
-  for (int k = 0; k < edges.count(); ++k)
-    mu[l.system.edges().problem_edge(k)] = q[k] / system.mean_mass();
+  Eigen::VectorXd mu = l.c, q(edges.count());
+  l.solver->solve(mu.data());
+  mu /= system->mean_mass();
   const Positions r = Positions::Zero(3, m.x0.cols());
   Positions p = r;
   WorkCounters work;
-  if (!system.factor(u, mu, true, work)) return state.SkipWithError("singular");
+  if (!system->factor(l.u, mu, true, work)) return state.SkipWithError("singular");
   while (state.KeepRunning()) {
-    if (!(solve ? system.solve(r, c, p, q, work) : system.factor(u, mu, true, work)))
+    if (!(solve ? system->solve(r, l.c, p, q, work) : system->factor(l.u, mu, true, work)))
       return state.SkipWithError("singular, or too inaccurate");
   }
   if (work.factorizations != (solve ? 1 : state.iterations() + 1))
-    return state.SkipWithError("UMFPACK had to take over");
+    return state.SkipWithError("another solver had to take over");
   per_item(state, edges.count());
   state.counters["nnz_L"] = work.factor_nonzeros;  // umfpack: of L + U
   state.counters["flops"] =
@@ -228,7 +233,7 @@ void register_scene(const std::string& scene, int n, const std::vector<std::stri
   add("sweep/gauss_seidel" + at, [=](State& s) { sweep<GaussSeidel>(s, n); })->UseManualTime();
   add("sweep/jacobi" + at, [=](State& s) { sweep<Jacobi>(s, n); })->UseManualTime();
   add("collision_pass" + at, [=](State& s) { vertex_pass(s, true, scene, n); });
-  for (const std::string name : {"quasi_definite", "umfpack"}) {
+  for (const std::string name : {"projected_cg", "quasi_definite", "umfpack"}) {
     add("icd_factor/" + name + at, [=](State& s) { kkt(s, name, false, n); });
     add("icd_solve/" + name + at, [=](State& s) { kkt(s, name, true, n); });
   }
@@ -243,7 +248,8 @@ int main(int argc, char** argv) {
   for (const int n : {80, 1000, 100000}) register_scene("chain", n, {"tridiagonal"});
   for (const int n : {15, 31, 71, 101})
     register_scene("drape", n,
-                   {"eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern"});
+                   {"eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern",
+                    "fixed_pattern_single"});
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <new>
 #include <stdexcept>
+#include <type_traits>
 
 #include "cholmod_symbolic.h"
 
@@ -14,8 +15,13 @@ using Distance = std::ptrdiff_t;
 
 constexpr int panel = 8;   // columns eliminated at once
 constexpr int target = 4;  // columns updated at once
-constexpr int lanes =
-    8;  // partial sums of a dot product, so that it can be vectorized as it stands
+// Partial sums of a dot product, so that it can be vectorized as it stands.
+template <class Real>
+constexpr int lanes = 64 / sizeof(Real);
+// Single precision computes a pivot to about seven digits of its diagonal entry: what is less than
+// this of it says nothing.
+template <class Real>
+constexpr double least_trusted_pivot = sizeof(Real) == sizeof(float) ? 1e-5 : 0;
 
 // ---- Dense steps, all on column-major storage ----
 
@@ -23,12 +29,12 @@ constexpr int lanes =
 // the rows below, each independent of the others. Leaves unit columns of L (their ones are not
 // written) and the pivots. Returns the first column whose pivot is not above its bound, K if all
 // are.
-template <int K>
-int eliminate(double* l, Distance ld, int n, const double* bound, double* pivots) {
-  double triangle[K][K], inverse[K];  // unit lower; 1 / pivot
+template <int K, class Real>
+int eliminate(Real* l, Distance ld, int n, const Real* bound, Real* pivots) {
+  Real triangle[K][K], inverse[K];  // unit lower; 1 / pivot
   for (int c = 0; c < K; ++c) {
-    double scaled[K];
-    double d = l[c * ld + c];
+    Real scaled[K];
+    Real d = l[c * ld + c];
     for (int k = 0; k < c; ++k) {
       scaled[k] = triangle[c][k] * pivots[k];
       d -= triangle[c][k] * scaled[k];
@@ -37,14 +43,14 @@ int eliminate(double* l, Distance ld, int n, const double* bound, double* pivots
     pivots[c] = d;
     inverse[c] = 1 / d;
     for (int r = c + 1; r < K; ++r) {
-      double s = l[c * ld + r];
+      Real s = l[c * ld + r];
       for (int k = 0; k < c; ++k) s -= triangle[r][k] * scaled[k];
       l[c * ld + r] = triangle[r][c] = s * inverse[c];
     }
   }
 #pragma GCC ivdep  // rows do not touch each other
   for (int i = K; i < n; ++i) {
-    double y[K];  // a row of L D
+    Real y[K];  // a row of L D
 #pragma GCC unroll 8
     for (int c = 0; c < K; ++c) {
       y[c] = l[c * ld + i];
@@ -60,20 +66,20 @@ int eliminate(double* l, Distance ld, int n, const double* bound, double* pivots
 // J columns of C less those of P D P^T, from row j on, where the first of them is column j; P is n
 // x K. With `begin` C is not read: it begins as zero. Entries above the diagonal are written too,
 // and never read.
-template <int K, int J, bool begin>
-void subtract_columns(const double* p, Distance ld_p, const double* d, int n, int j, double* c,
+template <int K, int J, bool begin, class Real>
+void subtract_columns(const Real* p, Distance ld_p, const Real* d, int n, int j, Real* c,
                       Distance ld_c) {
-  double factor[K][J];
+  Real factor[K][J];
   for (int k = 0; k < K; ++k) {
     for (int t = 0; t < J; ++t) factor[k][t] = d[k] * p[k * ld_p + j + t];
   }
   c += j * ld_c;
 #pragma GCC ivdep  // P and C do not overlap
   for (int i = j; i < n; ++i) {
-    double sum[J] = {};
+    Real sum[J] = {};
 #pragma GCC unroll 8
     for (int k = 0; k < K; ++k) {
-      const double value = p[k * ld_p + i];
+      const Real value = p[k * ld_p + i];
 #pragma GCC unroll 4
       for (int t = 0; t < J; ++t) sum[t] += value * factor[k][t];
     }
@@ -83,8 +89,8 @@ void subtract_columns(const double* p, Distance ld_p, const double* d, int n, in
 }
 
 // The first m columns of the lower triangle of C (n rows) less those of P D P^T.
-template <int K, bool begin>
-void subtract_product(const double* p, Distance ld_p, const double* d, int n, int m, double* c,
+template <int K, bool begin, class Real>
+void subtract_product(const Real* p, Distance ld_p, const Real* d, int n, int m, Real* c,
                       Distance ld_c) {
   int j = 0;
   for (; j + target <= m; j += target)
@@ -95,23 +101,24 @@ void subtract_product(const double* p, Distance ld_p, const double* d, int n, in
 
 // A front on its way: `own` columns of `rows` rows, and the update matrix of the rows below them,
 // which the first panel begins.
+template <class Real>
 struct Trapezoid {
-  double* columns;
+  Real* columns;
   int rows, own;
-  double* update;
+  Real* update;
 };
 
 // The panel of K columns at column k: eliminated, and taken from the own columns right of it and
 // from the update matrix.
-template <int K>
-int take_panel(const Trapezoid& front, int k, const double* bound, double* pivots) {
+template <int K, class Real>
+int take_panel(const Trapezoid<Real>& front, int k, const Real* bound, Real* pivots) {
   const Distance ld = front.rows;
-  double* l = front.columns + k * ld + k;
+  Real* l = front.columns + k * ld + k;
   const int bad = eliminate<K>(l, ld, front.rows - k, bound, pivots);
   if (bad < K) return bad;
   const int right = front.own - k - K, below = front.rows - front.own;
   subtract_product<K, false>(l + K, ld, pivots, front.rows - k - K, right, l + K * ld + K, ld);
-  const double* p = front.columns + k * ld + front.own;
+  const Real* p = front.columns + k * ld + front.own;
   if (k == 0) {
     subtract_product<K, true>(p, ld, pivots, below, below, front.update, below);
   } else {
@@ -120,41 +127,84 @@ int take_panel(const Trapezoid& front, int k, const double* bound, double* pivot
   return K;
 }
 
-using TakePanel = int (*)(const Trapezoid& front, int k, const double* bound, double* pivots);
-constexpr TakePanel take_panel_of_width[] = {nullptr,       take_panel<1>, take_panel<2>,
-                                             take_panel<3>, take_panel<4>, take_panel<5>,
-                                             take_panel<6>, take_panel<7>, take_panel<panel>};
+template <class Real>
+using TakePanel = int (*)(const Trapezoid<Real>& front, int k, const Real* bound, Real* pivots);
+template <class Real>
+constexpr TakePanel<Real> take_panel_of_width[] = {nullptr,       take_panel<1>, take_panel<2>,
+                                                   take_panel<3>, take_panel<4>, take_panel<5>,
+                                                   take_panel<6>, take_panel<7>, take_panel<panel>};
 
-// y += sum over J columns of l (n rows) times x.
-template <int J>
-void add_columns(const double* l, Distance ld, int n, const double* x, double* y) {
-#pragma GCC ivdep
-  for (int i = 0; i < n; ++i) {
-    double sum = y[i];
-#pragma GCC unroll 4
-    for (int t = 0; t < J; ++t) sum += l[t * ld + i] * x[t];
-    y[i] = sum;
+// K columns of forward substitution on the front's rows w: the triangle, then the rows below it.
+template <int K, class Real>
+void substitute_forward(const Real* l, Distance ld, int n, Real* w) {
+  Real x[K];
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) {
+    x[c] = w[c];
+#pragma GCC unroll 8
+    for (int k = 0; k < c; ++k) x[c] -= l[k * ld + c] * x[k];
+  }
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) w[c] = x[c];
+#pragma GCC ivdep  // L is not written
+  for (int i = K; i < n; ++i) {
+    Real sum = w[i];
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) sum -= l[c * ld + i] * x[c];
+    w[i] = sum;
   }
 }
 
-// x_t -= (column t of l) . y for J columns of n rows.
-template <int J>
-void subtract_dots(const double* l, Distance ld, int n, const double* y, double* x) {
-  double sum[J][lanes] = {};
-  int i = 0;
-  for (; i + lanes <= n; i += lanes) {
-#pragma GCC unroll 4
-    for (int t = 0; t < J; ++t) {
-      for (int lane = 0; lane < lanes; ++lane) sum[t][lane] += l[t * ld + i + lane] * y[i + lane];
+// K columns of back substitution: the rows below, then the triangle.
+template <int K, class Real>
+void substitute_back(const Real* l, Distance ld, int n, Real* w) {
+  constexpr int width = lanes<Real>;
+  Real sum[K][width] = {};
+  int i = K;
+  for (; i + width <= n; i += width) {
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) {
+      for (int lane = 0; lane < width; ++lane) sum[c][lane] += l[c * ld + i + lane] * w[i + lane];
     }
   }
-  for (int t = 0; t < J; ++t) {
-    double total = 0;
-    for (const double part : sum[t]) total += part;
-    for (int r = i; r < n; ++r) total += l[t * ld + r] * y[r];
-    x[t] -= total;
+  Real x[K];
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) {
+    Real total = 0;
+    for (const Real part : sum[c]) total += part;
+    for (int r = i; r < n; ++r) total += l[c * ld + r] * w[r];
+    x[c] = w[c] - total;
+  }
+#pragma GCC unroll 8
+  for (int c = K - 1; c >= 0; --c) {
+#pragma GCC unroll 8
+    for (int r = c + 1; r < K; ++r) x[c] -= l[c * ld + r] * x[r];
+    w[c] = x[c];
   }
 }
+
+template <class Real>
+using Substitute = void (*)(const Real* l, Distance ld, int n, Real* w);
+template <class Real>
+constexpr Substitute<Real> forward_of_width[] = {nullptr,
+                                                 substitute_forward<1>,
+                                                 substitute_forward<2>,
+                                                 substitute_forward<3>,
+                                                 substitute_forward<4>,
+                                                 substitute_forward<5>,
+                                                 substitute_forward<6>,
+                                                 substitute_forward<7>,
+                                                 substitute_forward<panel>};
+template <class Real>
+constexpr Substitute<Real> back_of_width[] = {nullptr,
+                                              substitute_back<1>,
+                                              substitute_back<2>,
+                                              substitute_back<3>,
+                                              substitute_back<4>,
+                                              substitute_back<5>,
+                                              substitute_back<6>,
+                                              substitute_back<7>,
+                                              substitute_back<panel>};
 
 // ---- CHOLMOD's symbolic analysis ----
 
@@ -165,6 +215,16 @@ struct Analysis {
   explicit Analysis(const SymmetricPattern& pattern) {
     cholmod_start_natural(common);
     common.supernodal = CHOLMOD_SUPERNODAL;
+    // Supernodes are merged less than CHOLMOD does for its BLAS calls: short loops cost less here,
+    // and every zero stored is read again in solve().
+    const struct {
+      std::size_t columns;
+      double zeros;
+    } relaxed[3] = {{4, 0.5}, {8, 0.1}, {16, 0.02}};
+    for (int i = 0; i < 3; ++i) {
+      common.nrelax[i] = relaxed[i].columns;
+      common.zrelax[i] = relaxed[i].zeros;
+    }
     cholmod_sparse matrix = cholmod_view(pattern, nullptr);
     factor = cholmod_analyze(&matrix, &common);
     if (!factor) {
@@ -185,7 +245,8 @@ std::size_t square(int n) { return as_size(n) * as_size(n); }
 
 }  // namespace
 
-FixedPatternCholesky::FixedPatternCholesky(SymmetricPattern pattern)
+template <class Real>
+MultifrontalCholesky<Real>::MultifrontalCholesky(SymmetricPattern pattern)
     : pattern_(std::move(pattern)),
       values_(as_size(pattern_.entries())),
       pivots_(as_size(pattern_.n)) {
@@ -197,7 +258,8 @@ FixedPatternCholesky::FixedPatternCholesky(SymmetricPattern pattern)
   place_updates();
 }
 
-void FixedPatternCholesky::find_fronts() {
+template <class Real>
+void MultifrontalCholesky<Real>::find_fronts() {
   const Analysis analysis(pattern_);
   const cholmod_factor& f = *analysis.factor;
   const auto* super = static_cast<const int*>(f.super);
@@ -209,7 +271,7 @@ void FixedPatternCholesky::find_fronts() {
     flops_ += static_cast<double>(square(count[column]));
   }
   std::size_t factor_size = 0;
-  int most_below = 0;
+  int most_rows = 0;
   for (std::size_t s = 0; s < f.nsuper; ++s) {
     Front front{};
     front.first_column = super[s];
@@ -219,14 +281,16 @@ void FixedPatternCholesky::find_fronts() {
     front.factor_at = factor_size;
     factor_size += as_size(front.columns) * as_size(front.rows);
     rows_.insert(rows_.end(), row + start[s] + front.columns, row + start[s + 1]);
-    most_below = std::max(most_below, front.below());
+    most_rows = std::max(most_rows, front.rows);
     fronts_.push_back(front);
   }
   factor_.resize(factor_size);
-  below_.resize(as_size(most_below));
+  front_rows_.resize(as_size(most_rows));
+  if constexpr (!std::is_same_v<Real, double>) rounded_.resize(as_size(pattern_.n));
 }
 
-void FixedPatternCholesky::place_entries() {
+template <class Real>
+void MultifrontalCholesky<Real>::place_entries() {
   entry_place_.resize(values_.size());
   for (Front& front : fronts_) {
     const int end = front.first_column + front.columns;
@@ -242,14 +306,16 @@ void FixedPatternCholesky::place_entries() {
 }
 
 // The place of a row of the matrix among a front's rows.
-int FixedPatternCholesky::place_in(const Front& front, int row) const {
+template <class Real>
+int MultifrontalCholesky<Real>::place_in(const Front& front, int row) const {
   if (row < front.first_column + front.columns) return row - front.first_column;
   const auto begin = rows_.begin() + static_cast<Distance>(front.rows_at);
   return front.columns +
          static_cast<int>(std::lower_bound(begin, begin + front.below(), row) - begin);
 }
 
-void FixedPatternCholesky::link_fronts() {
+template <class Real>
+void MultifrontalCholesky<Real>::link_fronts() {
   std::vector<int> front_of(as_size(pattern_.n));
   for (std::size_t f = 0; f < fronts_.size(); ++f) {
     for (int c = 0; c < fronts_[f].columns; ++c)
@@ -279,7 +345,8 @@ void FixedPatternCholesky::link_fronts() {
 
 // In a postorder a front's children are the last ones on their stack. In another order every update
 // matrix has a place of its own.
-void FixedPatternCholesky::place_updates() {
+template <class Real>
+void MultifrontalCholesky<Real>::place_updates() {
   std::size_t top[2] = {0, 0}, most[2] = {0, 0};
   bool postordered = true;
   for (Front& front : fronts_) {
@@ -307,11 +374,12 @@ void FixedPatternCholesky::place_updates() {
 
 // Columns [begin, end) of the child's update matrix into a part of the parent's front that begins
 // at the front's row and column `origin`.
-void FixedPatternCholesky::add_update(const Front& child, int begin, int end, double* into,
-                                      Distance ld, int origin) const {
+template <class Real>
+void MultifrontalCholesky<Real>::add_update(const Front& child, int begin, int end, Real* into,
+                                            Distance ld, int origin) const {
   const int* place = parent_place_.data() + child.rows_at;
   const int below = child.below();
-  const double* from = updates_[child.stack].data() + child.update_at + Distance{begin} * below;
+  const Real* from = updates_[child.stack].data() + child.update_at + Distance{begin} * below;
   for (int c = begin; c < end; ++c, from += below) {
     const Distance base = (place[c] - origin) * ld - origin;
 #pragma GCC ivdep  // places differ
@@ -320,13 +388,14 @@ void FixedPatternCholesky::add_update(const Front& child, int begin, int end, do
   }
 }
 
-bool FixedPatternCholesky::factor() {
+template <class Real>
+bool MultifrontalCholesky<Real>::factor() {
   for (const Front& front : fronts_) {
-    double* columns = factor_.data() + front.factor_at;
-    double* update = updates_[front.stack].data() + front.update_at;
-    std::fill_n(columns, as_size(front.columns) * as_size(front.rows), 0.0);
+    Real* columns = factor_.data() + front.factor_at;
+    Real* update = updates_[front.stack].data() + front.update_at;
+    std::fill_n(columns, as_size(front.columns) * as_size(front.rows), Real{0});
     for (int e = front.entries_begin; e < front.entries_end; ++e)
-      columns[entry_place_[as_size(e)]] = values_[as_size(e)];
+      columns[entry_place_[as_size(e)]] = static_cast<Real>(values_[as_size(e)]);
     const int* const children_end = children_.data() + front.children_end;
     const int* const children = children_.data() + front.children_begin;
     for (const int* c = children; c < children_end; ++c) {
@@ -343,14 +412,17 @@ bool FixedPatternCholesky::factor() {
   return true;
 }
 
-bool FixedPatternCholesky::eliminate_columns(const Front& front, double* columns, double* update) {
-  double bound[panel];
+template <class Real>
+bool MultifrontalCholesky<Real>::eliminate_columns(const Front& front, Real* columns,
+                                                   Real* update) {
+  Real bound[panel];
+  const double least = std::max(least_pivot_, least_trusted_pivot<Real>);
   for (int k = 0; k < front.columns; k += panel) {
     const int width = std::min(panel, front.columns - k), column = front.first_column + k;
     for (int c = 0; c < width; ++c)
-      bound[c] = least_pivot_ * values_[as_size(pattern_.diagonal(column + c))];
-    const int good = take_panel_of_width[width]({columns, front.rows, front.columns, update}, k,
-                                                bound, pivots_.data() + column);
+      bound[c] = static_cast<Real>(least * values_[as_size(pattern_.diagonal(column + c))]);
+    const int good = take_panel_of_width<Real>[width]({columns, front.rows, front.columns, update},
+                                                      k, bound, pivots_.data() + column);
     if (good < width) {
       failed_column_ = column + good;
       return false;
@@ -359,48 +431,63 @@ bool FixedPatternCholesky::eliminate_columns(const Front& front, double* columns
   return true;
 }
 
-void FixedPatternCholesky::solve(double* rhs) {
-  double* below = below_.data();
+template <class Real>
+void MultifrontalCholesky<Real>::solve(double* rhs) {
+  if constexpr (std::is_same_v<Real, double>) {
+    substitute(rhs);
+  } else {  // scaled, so that no magnitude is out of range
+    double largest = 0;
+    for (int i = 0; i < pattern_.n; ++i) largest = std::max(largest, std::abs(rhs[i]));
+    if (!(largest > 0)) return;
+    for (int i = 0; i < pattern_.n; ++i) rounded_[as_size(i)] = static_cast<Real>(rhs[i] / largest);
+    substitute(rounded_.data());
+    for (int i = 0; i < pattern_.n; ++i) rhs[i] = largest * double{rounded_[as_size(i)]};
+  }
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::substitute(Real* rhs) {
+  Real* w = front_rows_.data();
   for (const Front& front : fronts_) {  // L y = rhs
-    const double* l = factor_.data() + front.factor_at;
-    const Distance ld = front.rows;
-    double* x = rhs + front.first_column;
-    for (int c = 0; c < front.columns; ++c) {
-      for (int r = c + 1; r < front.columns; ++r) x[r] -= l[c * ld + r] * x[c];
-    }
-    if (front.below() == 0) continue;
-    std::fill_n(below, front.below(), 0.0);
-    const double* lower = l + front.columns;
-    int c = 0;
-    for (; c + target <= front.columns; c += target)
-      add_columns<target>(lower + c * ld, ld, front.below(), x + c, below);
-    for (; c < front.columns; ++c) add_columns<1>(lower + c * ld, ld, front.below(), x + c, below);
+    const Real* l = factor_.data() + front.factor_at;
     const int* row = rows_.data() + front.rows_at;
-    for (int i = 0; i < front.below(); ++i) rhs[row[i]] -= below[i];
+    Real* x = rhs + front.first_column;
+    std::copy_n(x, front.columns, w);
+    std::fill_n(w + front.columns, front.below(), Real{0});
+    for (int k = 0; k < front.columns; k += panel) {
+      const int width = std::min(panel, front.columns - k);
+      forward_of_width<Real>[width](l + k * Distance{front.rows} + k, front.rows, front.rows - k,
+                                    w + k);
+    }
+    std::copy_n(w, front.columns, x);
+    const Real* below = w + front.columns;
+    for (int i = 0; i < front.below(); ++i) rhs[row[i]] += below[i];
   }
   for (std::size_t i = 0; i < pivots_.size(); ++i) rhs[i] /= pivots_[i];
   for (std::size_t f = fronts_.size(); f-- > 0;) {  // L^T x = D^-1 y
     const Front& front = fronts_[f];
-    const double* l = factor_.data() + front.factor_at;
-    const Distance ld = front.rows;
-    double* x = rhs + front.first_column;
+    const Real* l = factor_.data() + front.factor_at;
     const int* row = rows_.data() + front.rows_at;
+    Real* x = rhs + front.first_column;
+    std::copy_n(x, front.columns, w);
+    Real* below = w + front.columns;
     for (int i = 0; i < front.below(); ++i) below[i] = rhs[row[i]];
-    const double* lower = l + front.columns;
-    int c = 0;
-    for (; c + target <= front.columns; c += target)
-      subtract_dots<target>(lower + c * ld, ld, front.below(), below, x + c);
-    for (; c < front.columns; ++c)
-      subtract_dots<1>(lower + c * ld, ld, front.below(), below, x + c);
-    for (c = front.columns; c-- > 0;) {
-      for (int r = c + 1; r < front.columns; ++r) x[c] -= l[c * ld + r] * x[r];
+    for (int k = (front.columns - 1) / panel * panel; k >= 0; k -= panel) {
+      const int width = std::min(panel, front.columns - k);
+      back_of_width<Real>[width](l + k * Distance{front.rows} + k, front.rows, front.rows - k,
+                                 w + k);
     }
+    std::copy_n(w, front.columns, x);
   }
 }
 
-double FixedPatternCholesky::reciprocal_condition() const {
+template <class Real>
+double MultifrontalCholesky<Real>::reciprocal_condition() const {
   const auto [low, high] = std::minmax_element(pivots_.begin(), pivots_.end());
-  return *low / *high;
+  return double{*low} / double{*high};
 }
+
+template class MultifrontalCholesky<double>;
+template class MultifrontalCholesky<float>;
 
 }  // namespace inextensible

@@ -6,11 +6,15 @@
 // constraints' null space, negative multipliers are left out of H; a step is backtracked until
 // either the residual |F|^2 + |C|^2 or the exact penalty 1/2 |dx|_M^2 + nu |C|_1, whose minimum is
 // the closest point of Theorem 1, falls enough. Multipliers start from the last accepted step's
-// forces; if that fails, once more from zero, whose first iteration is fast projection's. Loops:
-// one assembly, one factorization, one or more solves and evaluations an iteration.
+// forces; if that fails, once more from zero, whose first iteration is fast projection's. The
+// linear system is solved to a few percent by projected conjugate gradients, or factored. Loops:
+// one assembly, one factorization, several solves and one or more evaluations an iteration.
 #include "icd.h"
 
 #include <cmath>
+
+#include "kkt_system.h"
+#include "projected_cg.h"
 
 namespace inextensible {
 namespace {
@@ -18,18 +22,30 @@ namespace {
 constexpr int line_search_limit = 12;
 constexpr double sufficient_decrease = 1e-4;
 
+// Without fill, as on a chain, factoring the saddle-point matrix is cheaper than any iteration.
+std::string choose(std::string_view wanted, const Problem& problem) {
+  if (wanted != "auto") return std::string(wanted);
+  return problem.constraints() < problem.vertices() ? "quasi_definite" : "projected_cg";
+}
+
 }  // namespace
 
 Icd::Icd(const Problem& problem, const Settings& settings)
     : problem_(problem),
-      edges_(problem, settings.strain_limit),
-      kkt_(problem, edges_, settings.linear_solver),
-      linear_solver_(settings.linear_solver),
+      linear_solver_(choose(settings.linear_solver, problem)),
+      edges_(problem, settings.strain_limit,
+             linear_solver_ == "projected_cg" ? elimination_order(problem) : std::vector<int>{}),
       max_iterations_(settings.max_iterations),
       direction_tolerance_(settings.direction_tolerance * settings.strain_limit *
                            problem.shortest_rest_length()),
       mass_(Eigen::Map<const Eigen::VectorXd>(problem.mass().data(), problem.vertices()) /
-            kkt_.mean_mass()) {
+            problem.total_mass() * problem.vertices()) {
+  if (linear_solver_ == "projected_cg") {
+    kkt_ = std::make_unique<ProjectedCg>(problem, edges_,
+                                         ProjectedCg::Settings{settings.cg_tolerance});
+  } else {
+    kkt_ = std::make_unique<KktSystem>(problem, edges_, linear_solver_);
+  }
   for (Positions* p : {&x0_, &trial_, &dx_, &trial_dx_, &f_, &dp_})
     p->resize(3, problem.vertices());
   u_.resize(3, problem.constraints());
@@ -73,7 +89,7 @@ StepResult Icd::apply(const Positions& /*x_start*/, double h, Positions& x, Work
 }
 
 bool Icd::direction(bool convex, WorkCounters& work) {
-  return kkt_.factor(u_, mu_, convex, work) && kkt_.solve(f_, c_, dp_, dq_, work);
+  return kkt_->factor(u_, mu_, convex, work) && kkt_->solve(f_, c_, dp_, dq_, work);
 }
 
 // Leaves the accepted step in trial_dx_, trial_mu_ and trial_.
@@ -117,7 +133,7 @@ StepResult Icd::newton(double h, Positions& x, WorkCounters& work) {
     if (!line_search(work)) {
       // Once more with the convex matrix, from the same place; evaluate() restores what the search
       // overwrote.
-      const bool was_convex = kkt_.convexified();
+      const bool was_convex = kkt_->convexified();
       trial_ = x0_ + dx_;
       trial_mu_ = mu_;
       evaluate(dx_);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "constraint_system.h"
-#include "kkt_system.h"
+#include "kkt_solver.h"
 #include "stepper.h"
 
 namespace inextensible {
@@ -16,12 +16,14 @@ class Icd final : public VelocityFilter {
     // |F| of every vertex must fall below this times strain_limit times the shortest rest length
     // (m).
     double direction_tolerance = 0.1;
-    std::string_view linear_solver = "quasi_definite";
+    // projected_cg, quasi_definite, umfpack, or "auto": the first, but on a chain the second.
+    std::string_view linear_solver = "auto";
+    double cg_tolerance = 0.03;  // of projected_cg
   };
   Icd(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
   const char* linear_solver() const override { return linear_solver_.c_str(); }
-  double reciprocal_condition() const override { return kkt_.reciprocal_condition(); }
+  double reciprocal_condition() const override { return kkt_->reciprocal_condition(); }
 
  private:
   void evaluate(const Positions& dx);
@@ -30,9 +32,9 @@ class Icd final : public VelocityFilter {
   StepResult newton(double h, Positions& x, WorkCounters& work);
 
   const Problem& problem_;
-  EdgeConstraints edges_;
-  KktSystem kkt_;
   std::string linear_solver_;
+  EdgeConstraints edges_;
+  std::unique_ptr<KktSolver> kkt_;
   int max_iterations_;
   double direction_tolerance_;  // m
   Eigen::VectorXd mass_;        // scaled by the mean mass, as mu is

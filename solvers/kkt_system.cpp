@@ -46,11 +46,13 @@ int find(const SymmetricPattern& pattern, int i, int j) {
 
 }  // namespace
 
+KktSolver::KktSolver(const Problem& problem)
+    : mean_mass_(problem.total_mass() / static_cast<double>(problem.vertices())) {}
+
 KktSystem::KktSystem(const Problem& problem, const EdgeConstraints& edges,
                      std::string_view linear_solver)
-    : edges_(edges), umfpack_only_(linear_solver == "umfpack") {
+    : KktSolver(problem), edges_(edges), umfpack_only_(linear_solver == "umfpack") {
   const auto n = static_cast<std::size_t>(problem.vertices());
-  mean_mass_ = problem.total_mass() / static_cast<double>(n);
   vertex_unknown_.assign(n, -1);
   for (std::size_t v = 0; v < n; ++v) {
     if (problem.inverse_mass()[v] == 0) continue;

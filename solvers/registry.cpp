@@ -66,7 +66,7 @@ std::unique_ptr<Stepper> make_icd(Shared problem, const BackendOptions& o) {
   return filter_stepper<Icd>(
       std::move(problem),
       Icd::Settings{o.strain_limit, integer(o, "max_iterations"), number(o, "direction_tolerance"),
-                    word(o, "linear_solver")});
+                    word(o, "linear_solver"), number(o, "cg_tolerance")});
 }
 
 FastProjection::Settings fast_projection_settings(const BackendOptions& o) {
@@ -114,8 +114,8 @@ constexpr const char* least_iterations =
 const SettingInfo spd_solver{"linear_solver",
                              "auto",
                              "factorization of J W J^T",
-                             {"auto", "tridiagonal", "fixed_pattern", "eigen_ldlt",
-                              "cholmod_simplicial", "cholmod_supernodal"}};
+                             {"auto", "tridiagonal", "fixed_pattern", "fixed_pattern_single",
+                              "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}};
 
 std::vector<Backend> built_in() {
   return {
@@ -156,10 +156,11 @@ std::vector<Backend> built_in() {
        {newton_iterations,
         {"direction_tolerance", 0.1,
          "largest |F| of a vertex, in strain limit times shortest rest length"},
+        {"cg_tolerance", 0.03, "accuracy of a Newton step by projected_cg"},
         {"linear_solver",
-         "quasi_definite",
-         "factorization of the KKT matrix",
-         {"quasi_definite", "umfpack"}}},
+         "auto",
+         "of the KKT system",
+         {"auto", "projected_cg", "quasi_definite", "umfpack"}}},
        make_icd},
       {"fast_projection",
        "Algorithm 1 of Goldenthal et al. 2007",

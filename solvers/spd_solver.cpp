@@ -24,7 +24,7 @@ bool SymmetricPattern::tridiagonal() const {
 SymmetricPattern::Triangle triangle_of(std::string_view solver) {
   // CHOLMOD's supernodal code transposes an upper triangle at every factorization; the up-looking
   // codes a lower one.
-  return solver == "cholmod_supernodal" || solver == "fixed_pattern"
+  return solver == "cholmod_supernodal" || solver.starts_with("fixed_pattern")
              ? SymmetricPattern::Triangle::lower
              : SymmetricPattern::Triangle::upper;
 }
@@ -37,6 +37,8 @@ std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPatte
   if (name == "cholmod_supernodal")
     return std::make_unique<CholmodSolver>(std::move(pattern), true);
   if (name == "fixed_pattern") return std::make_unique<FixedPatternCholesky>(std::move(pattern));
+  if (name == "fixed_pattern_single")
+    return std::make_unique<MultifrontalCholesky<float>>(std::move(pattern));
   throw std::invalid_argument("no linear solver '" + std::string(name) + "'");
 }
 

@@ -8,6 +8,7 @@
 #include "edge_constraints.h"
 #include "fixed_pattern_cholesky.h"
 #include "kkt_system.h"
+#include "projected_cg.h"
 #include "random_graph.h"
 #include "schur_complement.h"
 #include "unsymmetric_solver.h"
@@ -68,7 +69,8 @@ TEST(SpdSolver, IsBackwardStableOnGraphsOfUnequalMassesInTheFillReducingOrder) {
 
 // Random lower patterns in any order, no postorder of their trees: diagonally dominant, with one
 // dense row in the middle.
-TEST(FixedPatternCholesky, TakesAnyOrderAndAgreesWithADenseFactorization) {
+template <class Real>
+void expect_any_order_to_agree_with_a_dense_factorization(double tolerance) {
   for (std::uint64_t seed = 0; seed < 5 * seeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -81,7 +83,7 @@ TEST(FixedPatternCholesky, TakesAnyOrderAndAgreesWithADenseFactorization) {
       }
       pattern.column_start.push_back(pattern.entries());
     }
-    FixedPatternCholesky solver(pattern);
+    MultifrontalCholesky<Real> solver(pattern);
     Eigen::VectorXd sum = Eigen::VectorXd::Ones(n);  // of absolute values beside the diagonal
     for (int j = 0; j < n; ++j) {
       for (int e = pattern.diagonal(j) + 1;
@@ -98,7 +100,11 @@ TEST(FixedPatternCholesky, TakesAnyOrderAndAgreesWithADenseFactorization) {
     Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, -1, 2);
     const Eigen::VectorXd expected = matrix.ldlt().solve(x);
     solver.solve(x.data());
-    EXPECT_LT((x - expected).norm(), 1e-13 * expected.norm());
+    EXPECT_LT((x - expected).norm(), tolerance * expected.norm());
+    // Of whatever magnitude.
+    Eigen::VectorXd large = 1e60 * Eigen::VectorXd::LinSpaced(n, -1, 2);
+    solver.solve(large.data());
+    EXPECT_LT((large - 1e60 * expected).norm(), tolerance * large.norm());
     // A negative diagonal entry is the first pivot to fail: those before it do not see it.
     const int bad = static_cast<int>(seed / 7) % n;
     solver.values()[pattern.diagonal(bad)] = -1;
@@ -107,10 +113,28 @@ TEST(FixedPatternCholesky, TakesAnyOrderAndAgreesWithADenseFactorization) {
   }
 }
 
+TEST(FixedPatternCholesky, TakesAnyOrderAndAgreesWithADenseFactorization) {
+  expect_any_order_to_agree_with_a_dense_factorization<double>(1e-13);
+}
+
+TEST(FixedPatternCholesky, InSinglePrecisionAgreesToSixDigits) {
+  expect_any_order_to_agree_with_a_dense_factorization<float>(1e-5);
+}
+
+// A pivot of 1e-6 of its diagonal entry is noise in single precision.
+TEST(FixedPatternCholesky, InSinglePrecisionRefusesPivotsWithoutDigits) {
+  MultifrontalCholesky<float> solver({2, SymmetricPattern::Triangle::lower, {0, 2, 3}, {0, 1, 1}});
+  for (const double pivot : {1e-3, 1e-6, 0.0, -1e-6}) {
+    const double values[] = {1, 1, 1 + pivot};
+    std::copy(values, values + 3, solver.values());
+    EXPECT_EQ(solver.factor(), pivot == 1e-3) << pivot;
+  }
+}
+
 // A positive diagonal does not make a matrix positive definite: [1 2; 2 1] has eigenvalue -1.
 TEST(SpdSolver, RefusesAnIndefiniteMatrixWithAPositiveDiagonal) {
-  for (const char* name :
-       {"tridiagonal", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern"}) {
+  for (const char* name : {"tridiagonal", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal",
+                           "fixed_pattern", "fixed_pattern_single"}) {
     SCOPED_TRACE(name);
     SymmetricPattern pattern;
     pattern.n = 3;
@@ -302,6 +326,65 @@ TEST(KktSystem, SolvesTheDenseSaddlePointSystemAndNoticesTheWrongInertia) {
   }
   EXPECT_GT(right, 0) << "the multipliers are too large to test the usual case";
   EXPECT_GT(wrong, 0) << "the multipliers are too small to test the other one";
+}
+
+// On every step J p = c holds; where M + H is positive definite on the null space of J, the system
+// is solved.
+TEST(ProjectedCg, SolvesTheSaddlePointSystemAndKeepsTheConstraintsWhereItIsIndefinite) {
+  int right = 0, wrong = 0;
+  for (const double size : {0.0, 0.02, 1.0, 30.0}) {  // of the multipliers
+    for (const double lowest : {0.0, -1.0}) {         // tension alone; of either sign
+      for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        SCOPED_TRACE("multipliers " + std::to_string(size) + " from " + std::to_string(lowest) +
+                     ", seed " + std::to_string(seed));
+        Random random(seed);
+        const auto graph =
+            seed % 2 ? testing::random_mesh(random, 4, 5, 2) : random_graph(random, 20, 12, 2, 0.1);
+        const Problem& problem = *graph.problem;
+        const int n = problem.vertices(), m = problem.constraints();
+        const EdgeConstraints edges(problem, 0.01, elimination_order(problem));
+        Eigen::Matrix3Xd u(3, m);
+        edges.gradient(graph.x, u);
+        const Eigen::VectorXd mu = Eigen::VectorXd::NullaryExpr(
+            m, [&](Eigen::Index) { return size * testing::uniform(random, lowest, 1); });
+        ProjectedCg cg(problem, edges, {1e-12, 500, "fixed_pattern"});
+        WorkCounters work;
+        ASSERT_TRUE(cg.factor(u, mu, false, work));
+        Positions r(3, n), p(3, n);
+        for (Eigen::Index i = 0; i < r.size(); ++i) r.data()[i] = testing::uniform(random, -1, 1);
+        for (const int v : problem.pinned()) r.col(v).setZero();
+        const Eigen::VectorXd c = Eigen::VectorXd::NullaryExpr(
+            m, [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
+        Eigen::VectorXd q(m), rate(m);
+        ASSERT_TRUE(cg.solve(r, c, p, q, work));
+        edges.rate(u, p, rate);
+        EXPECT_LT((rate - c).norm(), 1e-8 * c.norm());
+        for (const int v : problem.pinned()) EXPECT_EQ(p.col(v).norm(), 0);
+
+        Eigen::VectorXd natural_mu(m), natural_q(m), natural_c(m);  // in the problem's order
+        for (int k = 0; k < m; ++k) {
+          natural_mu[edges.problem_edge(k)] = mu[k];
+          natural_q[edges.problem_edge(k)] = q[k];
+          natural_c[edges.problem_edge(k)] = c[k];
+        }
+        const Eigen::MatrixXd full = dense_kkt(problem, graph.x, natural_mu, cg.mean_mass());
+        const Eigen::VectorXd eigenvalues =
+            Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full, Eigen::EigenvaluesOnly)
+                .eigenvalues();
+        const bool proper = (eigenvalues.array() < 0).count() == m;
+        ++(proper ? right : wrong);
+        if (!proper) continue;
+        EXPECT_FALSE(cg.convexified());
+        Eigen::VectorXd solution(3 * n + m), rhs(3 * n + m);
+        solution << Eigen::Map<const Eigen::VectorXd>(p.data(), 3 * n), natural_q;
+        rhs << Eigen::Map<const Eigen::VectorXd>(r.data(), 3 * n), natural_c;
+        EXPECT_LT((full * solution - rhs).norm(),
+                  1e-8 * (rhs.norm() + full.norm() * solution.norm()));
+      }
+    }
+  }
+  EXPECT_GT(right, 0) << "no system of a minimum";
+  EXPECT_GT(wrong, 0) << "no indefinite one";
 }
 
 }  // namespace
