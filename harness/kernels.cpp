@@ -1,10 +1,14 @@
 // kernels: the inner pieces of a step, timed one by one by Google Benchmark, so that the cost of a
 // step can be explained from its parts. Names: piece/solver/scene:n. Matrices are those of a cloth
 // in mid-drape and a chain in mid-swing, at the positions that a filter gets. Items are constrained
-// edges, or vertices. collision_pass and the solves include a copy of their input, a few percent.
+// edges, or vertices. floor/sqrt_div is a square root and a division, what an edge of a sweep costs
+// at least; floor_ratio is a sweep over that. collision_pass and the solves include a copy of their
+// input, a few percent.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <functional>
@@ -15,6 +19,7 @@
 #include "context.h"
 #include "forces.h"
 #include "gauss_seidel.h"
+#include "gauss_seidel_colored.h"
 #include "icd.h"
 #include "jacobi.h"
 #include "kkt_system.h"
@@ -130,6 +135,30 @@ double processor_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+// What no sweep that corrects every edge can go below: a square root and a division an edge,
+// independent of each other, in the first-level cache.
+void sqrt_div(std::array<double, 1024>& lengths) {
+  for (double& q : lengths) q = 1.5 - 0.5 / std::sqrt(q);
+  benchmark::DoNotOptimize(lengths.data());
+  benchmark::ClobberMemory();
+}
+
+// Seconds for one of each, the best of many: at most what the processor can do undisturbed.
+double sqrt_div_seconds() {
+  static const double seconds = [] {
+    std::array<double, 1024> lengths;
+    lengths.fill(1.2);
+    double best = 1;
+    for (int i = 0; i < 1000; ++i) {
+      const double begin = processor_seconds();
+      for (int repeat = 0; repeat < 20; ++repeat) sqrt_div(lengths);
+      best = std::min(best, processor_seconds() - begin);
+    }
+    return best / (20 * 1024);
+  }();
+  return seconds;
+}
+
 // One sweep over a cloth stretched by a fifth, so that every edge is corrected. A call that
 // may not sweep at all costs the checks, the refusal and the clock: that is taken off.
 template <class Filter>
@@ -143,15 +172,20 @@ void sweep(benchmark::State& state, int n) {
   const Positions stretched = 1.2 * m.x0;
   Positions x = stretched;
   WorkCounters work;
+  double total = 0;
   while (state.KeepRunning()) {
     x = stretched;
     const double begin = processor_seconds();
     benchmark::DoNotOptimize(none.apply(m.state.x, m.h, x, work));
     const double middle = processor_seconds();
     benchmark::DoNotOptimize(one.apply(m.state.x, m.h, x, work));
-    state.SetIterationTime((processor_seconds() - middle) - (middle - begin));
+    const double seconds = (processor_seconds() - middle) - (middle - begin);
+    state.SetIterationTime(seconds);
+    total += seconds;
   }
   per_item(state, m.problem().constraints());
+  state.counters["floor_ratio"] =
+      Counter(total / m.problem().constraints() / sqrt_div_seconds(), Counter::kAvgIterations);
   state.counters["corrected"] =
       Counter(static_cast<double>(work.edge_projections) / m.problem().constraints(),
               Counter::kAvgIterations);
@@ -231,6 +265,9 @@ void register_scene(const std::string& scene, int n, const std::vector<std::stri
   }
   if (scene == "chain") return;
   add("sweep/gauss_seidel" + at, [=](State& s) { sweep<GaussSeidel>(s, n); })->UseManualTime();
+  add("sweep/gauss_seidel_colored" + at, [=](State& s) {
+    sweep<GaussSeidelColored>(s, n);
+  })->UseManualTime();
   add("sweep/jacobi" + at, [=](State& s) { sweep<Jacobi>(s, n); })->UseManualTime();
   add("collision_pass" + at, [=](State& s) { vertex_pass(s, true, scene, n); });
   for (const std::string name : {"projected_cg", "quasi_definite", "umfpack"}) {
@@ -245,6 +282,12 @@ int main(int argc, char** argv) {
   harness::use_one_thread();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  add("floor/sqrt_div", [](benchmark::State& s) {
+    std::array<double, 1024> lengths;
+    lengths.fill(1.2);
+    while (s.KeepRunning()) sqrt_div(lengths);
+    per_item(s, 1024, "s_per_edge");
+  });
   for (const int n : {80, 1000, 100000}) register_scene("chain", n, {"tridiagonal"});
   for (const int n : {15, 31, 71, 101})
     register_scene("drape", n,

@@ -35,6 +35,7 @@ TABLE: dict[str, SolverStyle] = {
     "implicit_springs": SolverStyle("implicit springs", BLACK, "s", (5, 2), size=4.8),
     "jacobi": SolverStyle("Jacobi strain limiting", ORANGE, "v", (1, 1.5), width=1.6, size=6),
     "gauss_seidel": SolverStyle("Gauss-Seidel strain limiting", SKY, "^", (5, 1.5, 1, 1.5), size=6),
+    "gauss_seidel_colored": SolverStyle("Gauss-Seidel strain limiting, colored", SKY, "<", (2, 1), width=1.6, size=6),
     "shake": SolverStyle("SHAKE", GREEN, "D", (8, 2), size=4.6),
     "icd": SolverStyle("ICD (implicit constraint direction)", PURPLE, "X", (3, 1.2), size=6.3),
     "fast_projection": SolverStyle("fast projection", BLUE, "o", (), width=2.0),
@@ -45,7 +46,7 @@ TABLE: dict[str, SolverStyle] = {
     "reference": SolverStyle("reference (no contestant)", GREY, "+", (1, 2), width=0.8, contestant=False),
 }
 
-# For solvers that the table does not know: a variant of a known one ("gauss_seidel:order=colored", "shake_lazy")
+# For solvers that the table does not know: a variant of a known one ("gauss_seidel:target=0.5", "shake_lazy")
 # keeps the colour of its parent and gets a marker and dashes from here; a stranger gets a colour from here as well.
 SPARE_COLORS = (VERMILLION, "#6A3D9A", "#8C6D1F", "#3F7F7F")
 SPARE_LOOKS: tuple[tuple[str, Dashes], ...] = (

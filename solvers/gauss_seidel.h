@@ -4,6 +4,7 @@
 #pragma once
 
 #include "constraint_system.h"
+#include "strain_sweep.h"
 
 namespace inextensible {
 
@@ -19,17 +20,17 @@ class GaussSeidel final : public VelocityFilter {
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
 
  private:
-  struct EdgeRecord {  // all that a visit needs, in one cache line
+  struct EdgeRecord {  // all that a visit needs
     int a, b;
-    double low, high;                // permissible |d|^2, m^2
-    double target_low, target_high;  // m
-    double share_a, share_b;         // w_a / (w_a + w_b) and its complement
+    double inverse_square;  // 1 / l^2
+    double share_a;         // w_a / (w_a + w_b)
   };
   void shuffle();
   std::int64_t sweep(Positions& x) const;
 
   EdgeConstraints edges_;
   int max_iterations_;
+  StrainBand band_;
   std::vector<EdgeRecord> records_;
   std::vector<int> permutation_;
   std::uint64_t random_;  // SplitMix64 state

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "constraint_system.h"
+#include "strain_sweep.h"
 
 namespace inextensible {
 
@@ -18,13 +19,9 @@ class Jacobi final : public VelocityFilter {
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
 
  private:
-  std::int64_t sweep(Positions& x);
-
   EdgeConstraints edges_;
   int max_iterations_;
-  double target_low_, target_high_;        // |d| / l that corrections aim at
-  std::vector<double> share_a_, share_b_;  // averaged shares of both ends
-  Positions correction_;
+  StrainSweep sweep_;
 };
 
 }  // namespace inextensible

@@ -8,6 +8,7 @@
 #include "dense_reference.h"
 #include "fast_projection.h"
 #include "gauss_seidel.h"
+#include "gauss_seidel_colored.h"
 #include "icd.h"
 #include "implicit_springs.h"
 #include "jacobi.h"
@@ -54,6 +55,13 @@ std::unique_ptr<Stepper> make_gauss_seidel(Shared problem, const BackendOptions&
   return filter_stepper<GaussSeidel>(
       std::move(problem), GaussSeidel::Settings{o.strain_limit, integer(o, "max_iterations"),
                                                 number(o, "target"), o.seed});
+}
+
+std::unique_ptr<Stepper> make_gauss_seidel_colored(Shared problem, const BackendOptions& o) {
+  return filter_stepper<GaussSeidelColored>(
+      std::move(problem),
+      GaussSeidelColored::Settings{o.strain_limit, integer(o, "max_iterations"),
+                                   number(o, "target"), number(o, "relaxation")});
 }
 
 std::unique_ptr<Stepper> make_shake(Shared problem, const BackendOptions& o) {
@@ -143,6 +151,12 @@ std::vector<Backend> built_in() {
        true,
        {sweeps, target},
        make_gauss_seidel},
+      {"gauss_seidel_colored",
+       "the same, edges that share no vertex side by side in vectors",
+       Knob::strain_limit,
+       true,
+       {sweeps, target, {"relaxation", 1.0, "times the correction, above 0 and below 2"}},
+       make_gauss_seidel_colored},
       {"shake",
        "constraint direction from the start of the step",
        Knob::strain_limit,
