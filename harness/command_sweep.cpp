@@ -11,6 +11,7 @@
 #include "journal.h"
 #include "report.h"
 #include "result_file.h"
+#include "runner.h"
 #include "sentinel.h"
 #include "sweep_command.h"
 #include "text.h"
@@ -145,6 +146,30 @@ void tell_noise(const nlohmann::json& context) {
             << " % during the run; counters and errors stand, compare times with care\n";
 }
 
+// The harness's own share of the shortest step that was timed.
+nlohmann::json harness_overhead(const std::vector<PointResult>& points) {
+  nlohmann::json overhead = {{"seconds_per_step", harness_seconds_per_step()}};
+  const PointResult* shortest = nullptr;
+  const auto step_seconds = [](const PointResult& p) { return p.median_seconds() * p.spec.step; };
+  for (const PointResult& point : points) {
+    if (point.ok() && (!shortest || step_seconds(point) < step_seconds(*shortest)))
+      shortest = &point;
+  }
+  if (!shortest) return overhead;
+  overhead["shortest_step"] = step_seconds(*shortest);
+  overhead["of"] = shortest->spec.id();
+  return overhead;
+}
+
+void tell_overhead(const nlohmann::json& overhead) {
+  if (!overhead.contains("of")) return;
+  const double own = overhead.at("seconds_per_step"), step = overhead.at("shortest_step");
+  std::cout << "\nthe harness's own share of the shortest timed step: " << number_text(1e9 * own, 2)
+            << " ns of " << number_text(1e9 * step, 3) << " ns, "
+            << number_text(100 * own / step, 2) << " % (" << overhead.at("of").get<std::string>()
+            << ")\n";
+}
+
 }  // namespace
 
 int sweep_command(const SweepCommand& options, const std::vector<std::string>& command) {
@@ -200,12 +225,14 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   sentinel.sample();
   context["sentinel"] = sentinel.to_json();
   context["stolen"] = stolen_share(ticks, processor_ticks());
+  context["harness_overhead"] = harness_overhead(outcome.points);
 
   write_atomically(out, result_document(context, suite, command, outcome.complete, outcome.points,
                                         shelf->summaries())
                                 .dump(1) +
                             "\n");
   print_table(std::cout, outcome.points);
+  tell_overhead(context["harness_overhead"]);
   tell_noise(context);
   std::cout << "\nwritten:\n" << out << std::endl;
   if (!outcome.complete) {

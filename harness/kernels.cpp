@@ -1,16 +1,18 @@
 // kernels: the inner pieces of a step, timed one by one by Google Benchmark, so that the cost of a
 // step can be explained from its parts. Names: piece/solver/scene:n. Matrices are those of a cloth
 // in mid-drape and a chain in mid-swing, at the positions that a filter gets. Items are constrained
-// edges, or vertices. floor/sqrt_div is a square root and a division, what an edge of a sweep costs
-// at least; floor_ratio is a sweep over that. collision_pass and the solves include a copy of their
-// input, a few percent.
+// edges, or vertices. collision_pass and the solves include a copy of their input, a few percent.
+// floor/...: what the core can do at best. floor_ratio holds a sweep of strain limiting against the
+// square root and the division that an edge costs at least; of_peak and of_bandwidth hold flops of
+// a factorization against the peak, and bytes of the factor, read twice by a solve, against the
+// bandwidth at which an array of the factor's size is read (the library prints such ratios with
+// "/s" behind them).
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <functional>
 #include <map>
 #include <string>
@@ -20,6 +22,7 @@
 #include "forces.h"
 #include "gauss_seidel.h"
 #include "gauss_seidel_colored.h"
+#include "hardware_peak.h"
 #include "icd.h"
 #include "jacobi.h"
 #include "kkt_system.h"
@@ -31,8 +34,9 @@ namespace {
 
 using namespace inextensible;
 using benchmark::Counter;
+using harness::processor_seconds;
 
-// A scene after 40 steps of fast projection: deformed, in contact where there is something to
+// A scene after some steps of fast projection: deformed, in contact where there is something to
 // touch.
 struct Moment {
   harness::Scene scene;
@@ -53,9 +57,10 @@ const Moment& moment(const std::string& scene, int n) {
   m.h = scene == "drape" ? 0.005 : std::min(0.001, 1.0 / n);
   m.state = m.scene.start;
   const auto stepper = make_stepper("fast_projection", m.scene.problem, {});
+  const int wanted = n > 200000 ? 4 : 40;
   int steps = 0;
-  while (steps < 40 && stepper->advance(m.state, m.h)) ++steps;
-  if (steps < 40)
+  while (steps < wanted && stepper->advance(m.state, m.h)) ++steps;
+  if (steps < wanted)
     std::fprintf(stderr, "kernels: %s:%d: step %d was refused\n", scene.c_str(), n, steps + 1);
   m.x0.resize(3, m.problem().vertices());
   WorkCounters work;
@@ -124,15 +129,15 @@ void linear_solver(benchmark::State& state, const std::string& name, bool solve,
     benchmark::ClobberMemory();
   }
   per_item(state, m.problem().constraints());
+  const auto rate = [](double a) { return Counter(a, Counter::kIsIterationInvariantRate); };
   state.counters["nnz_L"] = l.solver->factor_nonzeros();
-  if (!solve)
-    state.counters["flops"] = Counter(l.solver->factor_flops(), Counter::kIsIterationInvariantRate);
-}
-
-double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  if (solve) {
+    const double bytes = l.solver->factor_nonzeros() * sizeof(double);
+    state.counters["of_bandwidth"] = rate(2 * bytes / harness::read_bandwidth(bytes));
+  } else {
+    state.counters["flops"] = rate(l.solver->factor_flops());
+    state.counters["of_peak"] = rate(l.solver->factor_flops() / harness::peak_flops());
+  }
 }
 
 // What no sweep that corrects every edge can go below: a square root and a division an edge,
@@ -189,6 +194,50 @@ void sweep(benchmark::State& state, int n) {
   state.counters["corrected"] =
       Counter(static_cast<double>(work.edge_projections) / m.problem().constraints(),
               Counter::kAvgIterations);
+}
+
+// One iteration of a solver as it is in a step: steps from one state, less those of `null`, over
+// their iterations. So it holds also what a solver does once a step, a last look at the edges, say.
+void iteration(benchmark::State& state, const std::string& name, const std::string& scene, int n) {
+  const Moment& m = moment(scene, n);
+  BackendOptions options{.strain_limit = 1e-4};  // so that there is something to do
+  for (const SettingInfo& setting : find_backend(name)->settings)
+    if (std::string_view(setting.name) == "min_iterations") options.settings[setting.name] = 1.0;
+  const auto stepper = make_stepper(name, m.scene.problem, options);
+  const auto null = make_stepper("null", m.scene.problem, {});
+  const int rounds = std::max(1, 20000 / n);  // so that clock reads do not count
+  State s;
+  const auto seconds = [&](Stepper& which) {
+    const double begin = processor_seconds();
+    for (int round = 0; round < rounds; ++round) {
+      s = m.state;
+      benchmark::DoNotOptimize(which.advance(s, m.h));
+    }
+    return processor_seconds() - begin;
+  };
+  s = m.state;
+  const StepResult first = stepper->advance(s, m.h);
+  if (!first || first.iterations == 0) return state.SkipWithError("refused, or nothing to do");
+  while (state.KeepRunning()) {
+    const double without = seconds(*null);
+    state.SetIterationTime(seconds(*stepper) - without);
+  }
+  per_item(state, m.problem().constraints() * first.iterations * rounds);
+  state.counters["iterations"] = first.iterations;
+}
+
+void floor_read(benchmark::State& state, std::size_t bytes) {
+  const std::size_t size = bytes / sizeof(double);
+  const Eigen::VectorXd data = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(size));
+  while (state.KeepRunning()) benchmark::DoNotOptimize(harness::read_all(data.data(), size));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(bytes));
+}
+
+void floor_multiply_add(benchmark::State& state) {
+  constexpr std::size_t times = 1 << 16;
+  while (state.KeepRunning()) benchmark::DoNotOptimize(harness::multiply_add(times));
+  state.counters["flops"] =
+      Counter(harness::flops_of_multiply_add(times), Counter::kIsIterationInvariantRate);
 }
 
 // The matrix of ICD's second iteration, about: with fast projection's first multipliers, negative
@@ -263,7 +312,16 @@ void register_scene(const std::string& scene, int n, const std::vector<std::stri
     add("factor/" + name + at, [=](State& s) { linear_solver(s, name, false, scene, n); });
     add("solve/" + name + at, [=](State& s) { linear_solver(s, name, true, scene, n); });
   }
-  if (scene == "chain") return;
+  if (scene == "chain") {
+    for (const std::string name :
+         {"fast_projection", "implicit_springs", "shake", "rattle", "icd"}) {
+      if (n > 80 && name != "fast_projection" && name != "implicit_springs") continue;
+      add("iteration/" + name + at, [=](State& s) {
+        iteration(s, name, scene, n);
+      })->UseManualTime();
+    }
+    return;
+  }
   add("sweep/gauss_seidel" + at, [=](State& s) { sweep<GaussSeidel>(s, n); })->UseManualTime();
   add("sweep/gauss_seidel_colored" + at, [=](State& s) {
     sweep<GaussSeidelColored>(s, n);
@@ -288,7 +346,11 @@ int main(int argc, char** argv) {
     while (s.KeepRunning()) sqrt_div(lengths);
     per_item(s, 1024, "s_per_edge");
   });
-  for (const int n : {80, 1000, 100000}) register_scene("chain", n, {"tridiagonal"});
+  add("floor/multiply_add", floor_multiply_add);
+  for (const std::size_t kib : {16, 512, 8192, 262144})
+    add("floor/stream_read/KiB:" + std::to_string(kib),
+        [=](benchmark::State& s) { floor_read(s, 1024 * kib); });
+  for (const int n : {80, 1000, 100000, 1000000}) register_scene("chain", n, {"tridiagonal"});
   for (const int n : {15, 31, 71, 101})
     register_scene("drape", n,
                    {"eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern",

@@ -48,8 +48,8 @@ json joined_context(const std::vector<NamedResult>& results) {
   for (const auto& [name, document] : results) {
     const json& c = document.at("context");
     json part = {{"file", name}, {"points", document.at("points").size()}};
-    for (const char* key :
-         {"date", "host_name", "fingerprint", "command", "load_avg", "sentinel", "stolen"})
+    for (const char* key : {"date", "host_name", "fingerprint", "command", "load_avg", "sentinel",
+                            "stolen", "harness_overhead"})
       if (c.contains(key)) part[key] = c.at(key);
     noisy = noisy || (c.contains("sentinel") && c.at("sentinel").at("noisy").get<bool>());
     parts.push_back(std::move(part));
@@ -57,6 +57,7 @@ json joined_context(const std::vector<NamedResult>& results) {
   context["merged"] = parts;
   context["sentinel"] = {{"noisy", noisy}};  // each part has its own figures
   context.erase("stolen");
+  context.erase("harness_overhead");
   return context;
 }
 

@@ -44,7 +44,7 @@ void Bdf2Stepper::restart(const State& state, double h) {
 }
 
 StepResult Bdf2Stepper::solve(const State& state, double h, Positions& x) {
-  Lap lap;
+  Lap lap(phases_wanted_);
   acceleration_.setZero();
   if (problem_->shear()) x_ahead_ = state.x + h * state.v;
   add_acceleration(*problem_, x_ahead_, 1, acceleration_, work_);
@@ -66,7 +66,7 @@ StepResult Bdf2Stepper::solve(const State& state, double h, Positions& x) {
 
 StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Positions& filtered,
                                        const Positions& x, Positions& v) {
-  Lap lap;
+  Lap lap(phases_wanted_);
   const Coefficients c = coefficients(h);
   v = (x - c.now * start.x - c.before * x_before_) * (1 / c.beta_h);
   if (c.earlier != 0) v -= (c.earlier / c.beta_h) * x_earlier_;

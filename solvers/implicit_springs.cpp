@@ -15,11 +15,6 @@ constexpr int line_search_limit = 30;
 constexpr double sufficient_decrease = 1e-4;
 constexpr double rounding = 1e-14;
 
-// Springs a vertex above which the factor has enough fill for dense blocks to win: a chain has 1, a
-// cloth 2 and more (measured: chain of 80 Eigen 1.2 times as fast, drape of 31 x 31
-// fixed_pattern 3.6 times as fast as CHOLMOD).
-constexpr double dense_from = 1.5;
-
 // Vertex blocks of the Hessian, one triangle, as vertex graph: column f holds itself and its
 // neighbours of lower place.
 SymmetricPattern vertex_graph(int n, const std::vector<Edge>& pairs) {
@@ -91,6 +86,11 @@ std::array<int, 3> block_begin(const SymmetricPattern& pattern, int i, int j) {
   return begin;
 }
 
+// Whether vertices are numbered along chains: every spring joins one to the next.
+bool chains(const std::vector<Edge>& pairs) {
+  return std::all_of(pairs.begin(), pairs.end(), [](Edge e) { return std::abs(e.a - e.b) == 1; });
+}
+
 }  // namespace
 
 ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Settings& settings)
@@ -124,19 +124,29 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Se
     return pairs;
   };
   const int n = static_cast<int>(free_vertex_.size());
-  const std::vector<int> order = fill_reducing_order(vertex_graph(n, free_pairs()));
-  std::vector<int> ordered(free_vertex_.size());
-  for (std::size_t f = 0; f < ordered.size(); ++f) {
-    ordered[f] = free_vertex_[static_cast<std::size_t>(order[f])];
-    place[static_cast<std::size_t>(ordered[f])] = static_cast<int>(f);
-  }
-  free_vertex_ = std::move(ordered);
+  std::vector<Edge> pairs = free_pairs();
   linear_solver_ = settings.linear_solver != "auto" ? std::string(settings.linear_solver)
-                   : static_cast<double>(springs_.size()) < dense_from * n ? "eigen_ldlt"
-                                                                           : "fixed_pattern";
-  SymmetricPattern pattern = expand(vertex_graph(n, free_pairs()), triangle_of(linear_solver_));
+                   : chains(pairs)                  ? "block_tridiagonal"
+                                                    : "fixed_pattern";
+  if (linear_solver_ == "block_tridiagonal") {
+    // Where one chain ends and the next begins the matrix holds zeros.
+    for (int f = 1; f < n; ++f) pairs.push_back({f - 1, f});
+  } else {
+    const std::vector<int> order = fill_reducing_order(vertex_graph(n, pairs));
+    std::vector<int> ordered(free_vertex_.size());
+    for (std::size_t f = 0; f < ordered.size(); ++f) {
+      ordered[f] = free_vertex_[static_cast<std::size_t>(order[f])];
+      place[static_cast<std::size_t>(ordered[f])] = static_cast<int>(f);
+    }
+    free_vertex_ = std::move(ordered);
+    pairs = free_pairs();
+  }
+  SymmetricPattern pattern = expand(vertex_graph(n, pairs), triangle_of(linear_solver_));
   for (int f = 0; f < n; ++f) {
-    diagonal_.push_back(block_begin(pattern, f, f));
+    const auto [x, y, z] = block_begin(pattern, f, f);
+    diagonal_.push_back(pattern.triangle == SymmetricPattern::Triangle::upper
+                            ? Places{x, y, y + 1, z, z + 1, z + 2}
+                            : Places{x, x + 1, y, x + 2, y + 1, z});
     free_mass_.push_back(
         p.mass()[static_cast<std::size_t>(free_vertex_[static_cast<std::size_t>(f)])]);
   }
@@ -176,56 +186,47 @@ double ImplicitSprings::energy(const Positions& x, double h) const {
 void ImplicitSprings::assemble(const Positions& x, double h) {
   double* value = solver_->values();
   std::fill(value, value + entries_, 0.0);
-  const bool upper = triangle_of(linear_solver_) == SymmetricPattern::Triangle::upper;
-  // Adds h^2 k (t I + (1 - t) n n^T), t = the projected transverse stiffness, to one block;
-  // diagonal blocks are triangles.
-  const auto add_diagonal = [&](int f, const double(&block)[3][3]) {
-    const auto& begin = diagonal_[static_cast<std::size_t>(f)];
-    for (int c = 0; c < 3; ++c) {
-      double* column = value + begin[static_cast<std::size_t>(c)];
-      if (upper) {
-        for (int r = 0; r <= c; ++r) column[r] += block[r][c];
-      } else {
-        for (int r = c; r < 3; ++r) column[r - c] += block[r][c];
-      }
-    }
-  };
-  for (std::size_t f = 0; f < free_vertex_.size(); ++f) {
-    const double m = free_mass_[f];
-    const double block[3][3] = {{m, 0, 0}, {0, m, 0}, {0, 0, m}};
-    add_diagonal(static_cast<int>(f), block);
-    gradient_.segment<3>(static_cast<Eigen::Index>(3 * f)) =
-        m * (x.col(free_vertex_[f]) - inertial_.col(free_vertex_[f]));
-  }
   const double* p = x.data();
   double* g = gradient_.data();
+  for (std::size_t f = 0; f < free_vertex_.size(); ++f) {
+    const double m = free_mass_[f];
+    const Places& at = diagonal_[f];
+    value[at.xx] = value[at.yy] = value[at.zz] = m;
+    const double* from = inertial_.data() + 3 * free_vertex_[f];
+    const double* to = p + 3 * free_vertex_[f];
+    for (std::size_t i = 0; i < 3; ++i) g[3 * f + i] = m * (to[i] - from[i]);
+  }
   for (const Spring& s : springs_) {
     const double* pa = p + 3 * s.a;
     const double* pb = p + 3 * s.b;
-    const double d[3] = {pb[0] - pa[0], pb[1] - pa[1], pb[2] - pa[2]};
-    const double squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-    const double length = std::sqrt(squared);
+    const double dx = pb[0] - pa[0], dy = pb[1] - pa[1], dz = pb[2] - pa[2];
+    const double squared = dx * dx + dy * dy + dz * dz;
+    const double inverse_length = squared > 0 ? 1 / std::sqrt(squared) : 0;
     const double stiffness = h * h * s.k;
-    const double pull = length > 0 ? stiffness * (1 - s.rest / length) : 0;  // force over d
+    // Over the spring's vector; one of length zero has no direction and no force.
+    const double pull = squared > 0 ? stiffness * (1 - s.rest * inverse_length) : 0;
+    // h^2 k (t I + (1 - t) n n^T), t = the projected transverse stiffness.
     const double transverse = std::max(pull, 0.0);
-    const double along = length > 0 ? (stiffness - transverse) / squared : 0;
-    double block[3][3];
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) block[r][c] = along * d[r] * d[c] + (r == c ? transverse : 0);
-    }
-    if (s.fa >= 0) {
-      add_diagonal(s.fa, block);
-      for (int r = 0; r < 3; ++r) g[3 * s.fa + r] -= pull * d[r];
-    }
-    if (s.fb >= 0) {
-      add_diagonal(s.fb, block);
-      for (int r = 0; r < 3; ++r) g[3 * s.fb + r] += pull * d[r];
-    }
+    const double along = (stiffness - transverse) * (inverse_length * inverse_length);
+    const double xx = along * dx * dx + transverse, xy = along * dx * dy, xz = along * dx * dz,
+                 yy = along * dy * dy + transverse, yz = along * dy * dz,
+                 zz = along * dz * dz + transverse;
+    const auto add = [&](int f, double signed_pull) {
+      const Places& at = diagonal_[static_cast<std::size_t>(f)];
+      value[at.xx] += xx, value[at.xy] += xy, value[at.yy] += yy;
+      value[at.xz] += xz, value[at.yz] += yz, value[at.zz] += zz;
+      double* gf = g + 3 * f;
+      gf[0] += signed_pull * dx, gf[1] += signed_pull * dy, gf[2] += signed_pull * dz;
+    };
+    if (s.fa >= 0) add(s.fa, -pull);
+    if (s.fb >= 0) add(s.fb, pull);
     if (s.fa < 0 || s.fb < 0) continue;
-    for (int c = 0; c < 3; ++c) {
-      double* column = value + s.coupling[c];
-      for (int r = 0; r < 3; ++r) column[r] -= block[r][c];  // symmetric, so either orientation
-    }
+    double* cx = value + s.coupling[0];  // the block is symmetric: either orientation
+    double* cy = value + s.coupling[1];
+    double* cz = value + s.coupling[2];
+    cx[0] -= xx, cx[1] -= xy, cx[2] -= xz;
+    cy[0] -= xy, cy[1] -= yy, cy[2] -= yz;
+    cz[0] -= xz, cz[1] -= yz, cz[2] -= zz;
   }
 }
 
@@ -257,8 +258,10 @@ StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
     ++work_.back_solves;
 
     const double slope = gradient_.dot(step_);
-    const double longest =
-        Eigen::Map<const Positions>(step_.data(), 3, step_.size() / 3).colwise().norm().maxCoeff();
+    const double longest = std::sqrt(Eigen::Map<const Positions>(step_.data(), 3, step_.size() / 3)
+                                         .colwise()
+                                         .squaredNorm()
+                                         .maxCoeff());
     double scale = 1;
     for (int halvings = 0;; ++halvings) {
       trial_ = x;

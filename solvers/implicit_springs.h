@@ -46,8 +46,10 @@ class ImplicitSprings final : public Stepper {
   std::vector<Spring> springs_;
   std::vector<int> free_vertex_;  // in elimination order
   std::vector<double> free_mass_;
-  std::vector<std::array<int, 3>>
-      diagonal_;  // where each column of a free vertex's diagonal block begins
+  struct Places {  // of a diagonal block's numbers among the matrix's values
+    int xx, xy, yy, xz, yz, zz;
+  };
+  std::vector<Places> diagonal_;  // one a free vertex
   std::size_t entries_ = 0;
   std::unique_ptr<SpdSolver> solver_;
   Positions inertial_, trial_;  // x + h v + h^2 g, and a line search's positions

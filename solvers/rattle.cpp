@@ -9,7 +9,7 @@ Rattle::Rattle(std::shared_ptr<const Problem> problem, const Shake::Settings& se
     : Stepper(std::move(problem)), shake_(*problem_, settings) {}
 
 StepResult Rattle::solve(const State& state, double h, Positions& x) {
-  Lap lap;
+  Lap lap(phases_wanted_);
   x = state.x + h * state.v;
   add_acceleration(*problem_, state.x, 0.5 * h * h, x, work_);
   for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
@@ -21,7 +21,7 @@ StepResult Rattle::solve(const State& state, double h, Positions& x) {
 
 StepResult Rattle::end_velocities(const State& start, double h, const Positions& /*filtered*/,
                                   const Positions& x, Positions& v) {
-  Lap lap;
+  Lap lap(phases_wanted_);
   v = (x - start.x) * (1 / h);
   add_acceleration(*problem_, x, 0.5 * h, v, work_);
   for (const int vertex : problem_->pinned()) v.col(vertex).setZero();

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "block_tridiagonal_solver.h"
 #include "cholmod_solver.h"
 #include "eigen_ldlt_solver.h"
 #include "fixed_pattern_cholesky.h"
@@ -10,16 +11,26 @@
 
 namespace inextensible {
 
-bool SymmetricPattern::tridiagonal() const {
-  for (int column = 0; column < n; ++column) {
+namespace {
+
+// Whether every entry lies in a block of `size` rows and columns that is on the diagonal or beside
+// it.
+bool near_diagonal(const SymmetricPattern& pattern, int size) {
+  for (int column = 0; column < pattern.n; ++column) {
     const auto c = static_cast<std::size_t>(column);
-    for (int i = column_start[c]; i < column_start[c + 1]; ++i) {
-      const int distance = row_index[static_cast<std::size_t>(i)] - column;
+    for (int i = pattern.column_start[c]; i < pattern.column_start[c + 1]; ++i) {
+      const int distance = pattern.row_index[static_cast<std::size_t>(i)] / size - column / size;
       if (distance < -1 || distance > 1) return false;
     }
   }
   return true;
 }
+
+}  // namespace
+
+bool SymmetricPattern::tridiagonal() const { return near_diagonal(*this, 1); }
+
+bool SymmetricPattern::block_tridiagonal() const { return n % 3 == 0 && near_diagonal(*this, 3); }
 
 SymmetricPattern::Triangle triangle_of(std::string_view solver) {
   // CHOLMOD's supernodal code transposes an upper triangle at every factorization; the up-looking
@@ -31,6 +42,7 @@ SymmetricPattern::Triangle triangle_of(std::string_view solver) {
 
 std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern) {
   if (name == "tridiagonal") return std::make_unique<TridiagonalSolver>(pattern);
+  if (name == "block_tridiagonal") return std::make_unique<BlockTridiagonalSolver>(pattern);
   if (name == "eigen_ldlt") return std::make_unique<EigenLdltSolver>(pattern);
   if (name == "cholmod_simplicial")
     return std::make_unique<CholmodSolver>(std::move(pattern), false);

@@ -20,6 +20,8 @@ struct SymmetricPattern {
   int entries() const { return static_cast<int>(row_index.size()); }
   // Whether every entry lies on the diagonal or beside it.
   bool tridiagonal() const;
+  // The same of 3 x 3 blocks.
+  bool block_tridiagonal() const;
   // The place of a column's diagonal entry: rows ascend, so it is the last of an upper triangle's
   // column and the first of a lower's.
   int diagonal(int column) const {
@@ -59,9 +61,9 @@ class SpdSolver {
 // The triangle that the named solver reads.
 SymmetricPattern::Triangle triangle_of(std::string_view solver);
 
-// name: tridiagonal (tridiagonal patterns only), eigen_ldlt, cholmod_simplicial,
-// cholmod_supernodal, fixed_pattern. Throws std::invalid_argument for another name or a pattern
-// that the solver cannot take.
+// name: tridiagonal, block_tridiagonal (3 x 3 blocks; each for such patterns only), eigen_ldlt,
+// cholmod_simplicial, cholmod_supernodal, fixed_pattern. Throws std::invalid_argument for another
+// name or a pattern that the solver cannot take.
 std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern);
 
 // An elimination order with little fill: order[i] is the row that comes i-th. The better of AMD and

@@ -35,7 +35,7 @@ StepResult Stepper::advance(State& state, double h) {
     return result;
   }
   if (const Collider* collider = problem_->collider()) {
-    Lap lap;
+    Lap lap(phases_wanted_);
     filtered_ = next_;
     collider->resolve(state.x, problem_->inverse_mass(), next_, work_);
     phases_.collision += lap();
@@ -68,7 +68,7 @@ FilterStepper::FilterStepper(std::shared_ptr<const Problem> problem,
     : Stepper(std::move(problem)), filter_(std::move(filter)) {}
 
 StepResult FilterStepper::solve(const State& state, double h, Positions& x) {
-  Lap lap;
+  Lap lap(phases_wanted_);
   unconstrained_step(*problem_, state, h, x, work_);
   phases_.unconstrained += lap();
   const StepResult result = filter_->apply(state.x, h, x, work_);

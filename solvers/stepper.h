@@ -54,7 +54,9 @@ class Stepper {
 
   const Problem& problem() const { return *problem_; }
   const WorkCounters& work() const { return work_; }
+  // Seconds spent in each phase of the steps since measure_phases(true); it is off at first.
   const PhaseSeconds& phases() const { return phases_; }
+  void measure_phases(bool wanted) { phases_wanted_ = wanted; }
   // The linear solver in use, "" for methods without one.
   virtual const char* linear_solver() const { return ""; }
   // Of the last linear system that was factored, an estimate from its pivots; 1 for methods without
@@ -75,6 +77,7 @@ class Stepper {
   std::shared_ptr<const Problem> problem_;
   WorkCounters work_;
   PhaseSeconds phases_;
+  bool phases_wanted_ = false;  // for Lap
 
  private:
   Positions next_, filtered_, velocity_;

@@ -17,6 +17,7 @@ namespace {
 
 using testing::Random;
 using testing::random_mesh;
+using testing::RandomMesh;
 constexpr int seeds = 8;
 constexpr double h = 0.01;
 
@@ -250,6 +251,79 @@ TEST(Jacobi, ConvergesAtValenceThirtyWithUnequalMasses) {
 }
 
 // The unsteady part of C11: matrices of fast projection and ICD on the same mesh.
+// Hairs of unequal length in one problem, each pinned somewhere, some springs twice.
+RandomMesh random_hairs(Random& random, int hairs) {
+  RandomMesh mesh;
+  ProblemParts parts;
+  for (int hair = 0; hair < hairs; ++hair) {
+    const int first = static_cast<int>(parts.mass.size());
+    const int length = 2 + static_cast<int>(random() % 9);
+    parts.pinned.push_back(first + static_cast<int>(random() % 3) * (length - 1) / 2);
+    for (int v = first; v < first + length; ++v) {
+      parts.mass.push_back(testing::uniform(random, 0.1, 1));
+      if (v == first) continue;
+      parts.edges.push_back(random() % 2 ? Edge{v - 1, v} : Edge{v, v - 1});
+      if (random() % 4 == 0) parts.edges.push_back({v - 1, v});
+    }
+  }
+  mesh.x = Positions::NullaryExpr(3, static_cast<Eigen::Index>(parts.mass.size()),
+                                  [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
+  for (const Edge e : parts.edges)
+    parts.rest_length.push_back((mesh.x.col(e.b) - mesh.x.col(e.a)).norm());
+  mesh.problem = std::make_shared<const Problem>(std::move(parts));
+  return mesh;
+}
+
+// The solver for chains against one that takes any matrix, in another elimination order.
+TEST(ImplicitSprings, TakeTheSameStepsByEitherFactorizationOfChains) {
+  for (std::uint64_t seed = 0; seed < 3 * seeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const RandomMesh mesh = random_hairs(random, 1 + static_cast<int>(seed % 4));
+    const State start = moving_state(random, mesh, 1);
+    const auto run = [&](const char* linear_solver) {
+      const auto stepper = make_stepper(
+          "implicit_springs", mesh.problem,
+          {1e-2, 1, {{"linear_solver", std::string(linear_solver)}, {"newton_tolerance", 1e-6}}});
+      State state = start;
+      for (int i = 0; i < 3; ++i) EXPECT_TRUE(stepper->advance(state, h));
+      EXPECT_STREQ(stepper->linear_solver(),
+                   std::string_view(linear_solver) == "auto" ? "block_tridiagonal" : linear_solver);
+      return state.x;
+    };
+    const Positions chain = run("auto"), general = run("eigen_ldlt");
+    EXPECT_LT((chain - general).norm(), 1e-8 * general.norm());
+  }
+}
+
+TEST(ImplicitSprings, SayWhereChainsAreNeeded) {
+  Random random(1);
+  const RandomMesh cloth = random_mesh(random, 3, 3, 1);
+  EXPECT_STREQ(make_stepper("implicit_springs", cloth.problem, {})->linear_solver(),
+               "fixed_pattern");
+  EXPECT_THROW(make_stepper("implicit_springs", cloth.problem,
+                            {0.01, 1, {{"linear_solver", std::string("block_tridiagonal")}}}),
+               std::invalid_argument);
+}
+
+TEST(Stepper, ReadsNoClockUnlessPhasesAreWanted) {
+  for (const Backend& backend : backends()) {
+    if (backend.knob != Knob::strain_limit) continue;
+    SCOPED_TRACE(backend.name);
+    Random random(2);
+    const RandomMesh mesh = random_mesh(random, 1, 9, 1);
+    const auto stepper = make_stepper(backend.name, mesh.problem, {0.1, 1, {}});
+    State state = moving_state(random, mesh, 0.1);
+    ASSERT_TRUE(stepper->advance(state, h));
+    EXPECT_EQ(stepper->phases().unconstrained, 0);
+    EXPECT_EQ(stepper->phases().filter, 0);
+    stepper->measure_phases(true);
+    ASSERT_TRUE(stepper->advance(state, h));
+    EXPECT_GT(stepper->phases().unconstrained, 0);
+    EXPECT_GT(stepper->phases().filter, 0);
+  }
+}
+
 TEST(Counters, FastProjectionFactorsAMuchSmallerMatrixThanIcd) {
   Random random(5);
   const auto mesh = random_mesh(random, 15, 15, 0);

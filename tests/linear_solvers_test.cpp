@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <utility>
 
 #include "edge_constraints.h"
 #include "fixed_pattern_cholesky.h"
@@ -167,7 +168,138 @@ TEST(SpdSolver, RefusesAnIndefiniteMatrixWithAPositiveDiagonal) {
   }
 }
 
-// SHAKE's matrix, directions at two positions; a tree that is a path has a tridiagonal one.
+// The upper triangle of a matrix of `rows` blocks along the diagonal and beside it.
+SymmetricPattern chain_pattern(int rows, int block) {
+  SymmetricPattern pattern{rows * block, SymmetricPattern::Triangle::upper, {0}, {}};
+  for (int j = 0; j < pattern.n; ++j) {
+    for (int i = std::max(0, j - j % block - block); i <= j; ++i) pattern.row_index.push_back(i);
+    pattern.column_start.push_back(pattern.entries());
+  }
+  return pattern;
+}
+
+void write_upper(const SymmetricPattern& pattern, const Eigen::MatrixXd& matrix, double* values) {
+  for (int j = 0; j < pattern.n; ++j) {
+    for (int e = pattern.column_start[static_cast<std::size_t>(j)];
+         e < pattern.column_start[static_cast<std::size_t>(j) + 1]; ++e)
+      values[e] = matrix(pattern.row_index[static_cast<std::size_t>(e)], j);
+  }
+}
+
+struct ChainSolver {
+  const char* name;
+  int block;
+};
+const ChainSolver chain_solvers[] = {{"tridiagonal", 1}, {"block_tridiagonal", 3}};
+
+// A sum of positive semidefinite matrices of two blocks each, and a little on the diagonal.
+Eigen::MatrixXd random_chain_matrix(Random& random, int rows, int block) {
+  Eigen::MatrixXd matrix = 1e-3 * Eigen::MatrixXd::Identity(rows * block, rows * block);
+  for (int row = 0; row < rows; ++row) {
+    const int size = row + 1 < rows ? 2 * block : block;
+    const Eigen::MatrixXd factor = Eigen::MatrixXd::NullaryExpr(
+        size, size, [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
+    matrix.block(row * block, row * block, size, size) += factor * factor.transpose();
+  }
+  return matrix;
+}
+
+TEST(ChainSolvers, AgreeWithADenseFactorizationAtEveryLength) {
+  for (const auto [name, block] : chain_solvers) {
+    for (int rows = 1; rows <= 40; ++rows) {  // odd and even: they meet in a row, or between two
+      SCOPED_TRACE(std::string(name) + ", rows (and seed) " + std::to_string(rows));
+      Random random(static_cast<std::uint64_t>(rows));
+      const SymmetricPattern pattern = chain_pattern(rows, block);
+      const Eigen::MatrixXd matrix = random_chain_matrix(random, rows, block);
+      const auto solver = make_spd_solver(name, pattern);
+      write_upper(pattern, matrix, solver->values());
+      ASSERT_TRUE(solver->factor());
+      const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(pattern.n, -1, 2);
+      const Eigen::VectorXd expected = matrix.llt().solve(b);
+      Eigen::VectorXd x = b;
+      solver->solve(x.data());
+      EXPECT_LT(backward_error(matrix, x, b), 1e-15 * (1 + pattern.n));
+      EXPECT_LT((x - expected).norm(), 1e-9 * expected.norm());
+      EXPECT_GT(solver->reciprocal_condition(), 0);
+      EXPECT_LE(solver->reciprocal_condition(), 1);
+    }
+  }
+}
+
+// Shifted by a little less, and a little more, than its least eigenvalue, a matrix is and is not
+// positive definite; which row shows it depends on the matrix.
+TEST(ChainSolvers, TellPositiveDefiniteMatricesFromIndefiniteOnes) {
+  for (const auto [name, block] : chain_solvers) {
+    for (std::uint64_t seed = 0; seed < 3 * seeds; ++seed) {
+      SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
+      Random random(seed);
+      const int rows = 1 + static_cast<int>(seed % 13);
+      const SymmetricPattern pattern = chain_pattern(rows, block);
+      const Eigen::MatrixXd matrix = random_chain_matrix(random, rows, block);
+      const double least =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly)
+              .eigenvalues()[0];
+      const auto solver = make_spd_solver(name, pattern);
+      const auto factors = [&](double shift) {
+        write_upper(pattern,
+                    matrix - shift * Eigen::MatrixXd::Identity(matrix.rows(), matrix.cols()),
+                    solver->values());
+        return solver->factor();
+      };
+      EXPECT_TRUE(factors(0.99 * least));
+      EXPECT_FALSE(factors(1.01 * least));
+      EXPECT_TRUE(factors(0)) << "a failed factorization must not spoil the next";
+      for (int column = 0; column < pattern.n; ++column) {
+        for (const double bad :
+             {-1.0, 0.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+          double& entry = solver->values()[pattern.diagonal(column)];
+          const double kept = std::exchange(entry, bad);
+          EXPECT_FALSE(solver->factor()) << "diagonal entry " << column << " is " << bad;
+          entry = kept;
+        }
+      }
+    }
+  }
+}
+
+// A chain of springs that hangs on nothing: its Laplacian is singular, and so nearly that of one
+// whose ends are held by weak ones.
+TEST(ChainSolvers, RefusePivotsThatLostTheirDigitsWhereToldTo) {
+  for (const auto [name, block] : chain_solvers) {
+    for (const int rows : {2, 3, 12, 13}) {
+      for (const int held : {0, rows / 2, rows - 1}) {
+        SCOPED_TRACE(std::string(name) + ", " + std::to_string(rows) + " rows, held at " +
+                     std::to_string(held));
+        const SymmetricPattern pattern = chain_pattern(rows, block);
+        const auto solver = make_spd_solver(name, pattern);
+        solver->set_least_pivot(1e-10);
+        const auto factors = [&](double hold) {
+          Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(pattern.n, pattern.n);
+          for (int i = 0; i < pattern.n; ++i) {
+            matrix(i, i) = (i >= block) + (i + block < pattern.n) + (i / block == held ? hold : 0);
+            if (i >= block) matrix(i - block, i) = -1;
+          }
+          write_upper(pattern, matrix, solver->values());
+          return solver->factor();
+        };
+        ASSERT_TRUE(factors(1e-6));
+        EXPECT_LT(solver->reciprocal_condition(), 1e-5);
+        EXPECT_FALSE(factors(1e-12));
+        EXPECT_FALSE(factors(0));
+      }
+    }
+  }
+}
+
+TEST(ChainSolvers, TakeTheirPatternOnly) {
+  EXPECT_THROW(make_spd_solver("tridiagonal", chain_pattern(4, 3)), std::invalid_argument);
+  EXPECT_THROW(make_spd_solver("block_tridiagonal", chain_pattern(6, 1)), std::invalid_argument);
+  EXPECT_THROW(make_spd_solver("block_tridiagonal", chain_pattern(5, 2)), std::invalid_argument);
+  SymmetricPattern lower = chain_pattern(1, 3);
+  lower.triangle = SymmetricPattern::Triangle::lower;
+  EXPECT_THROW(make_spd_solver("block_tridiagonal", lower), std::invalid_argument);
+}
+
 // [1 1; 1 1 + p]: the second pivot is p. A solver refuses it where it keeps too little of its
 // diagonal entry, and estimates the condition by it.
 TEST(SpdSolver, RefusesPivotsThatLostTheirDigitsWhereToldTo) {
@@ -196,6 +328,7 @@ TEST(SpdSolver, RefusesPivotsThatLostTheirDigitsWhereToldTo) {
   }
 }
 
+// SHAKE's matrix, directions at two positions; a tree that is a path has a tridiagonal one.
 TEST(UnsymmetricSolver, IsBackwardStableOnShakesMatrices) {
   for (const bool chain : {true, false}) {
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
