@@ -15,14 +15,16 @@ namespace inextensible {
 class ConstraintSystem {
  public:
   // linear_solver: a name of make_spd_solver, or "auto": tridiagonal for a chain, else
-  // fixed_pattern, which is the fastest from some 200 rows on (kernels measures it). Edges are
-  // renumbered once, so that no factorization permutes.
+  // fixed_pattern, which is the fastest factorization from some 200 rows on (kernels measures it),
+  // and from hybrid_rows on hybrid. For factorizations edges are renumbered once, so that none
+  // permutes.
   ConstraintSystem(const Problem& problem, double strain_limit, std::string_view linear_solver);
 
   const EdgeConstraints& edges() const { return *edges_; }
   const SchurComplement& schur() const { return *schur_; }
   // J W J^T counts as singular where a pivot keeps less than this of its diagonal entry:
   // multipliers would outgrow the corrections that they make, and cancel.
+  static constexpr int hybrid_rows = 40'000;
   static constexpr double least_pivot = 1e-10;
 
   double reciprocal_condition() const { return solver_->reciprocal_condition(); }
@@ -31,8 +33,9 @@ class ConstraintSystem {
   // Assembles J W J^T at gradients u, its diagonal times 1 + damping, and factors it; false: not
   // positive definite.
   bool factor(const Eigen::Matrix3Xd& u, WorkCounters& work, double damping = 0);
-  // mu = (J W J^T)^-1 mu.
-  void solve(Eigen::VectorXd& mu, WorkCounters& work);
+  // mu = (J W J^T)^-1 mu; iterative solvers to a residual of `tolerance` times the right-hand side.
+  // false: one of them did not get there, mu is unspecified.
+  bool solve(Eigen::VectorXd& mu, WorkCounters& work, double tolerance = SpdSolver::tightest);
 
  private:
   std::string solver_name_;

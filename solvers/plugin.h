@@ -30,7 +30,7 @@
 #include "registry.h"
 
 // Counts up whenever these headers change what a plug-in relies on.
-#define INEXTENSIBLE_PLUGIN_ABI 1
+#define INEXTENSIBLE_PLUGIN_ABI 2
 
 struct InextensibleStampItem {
   const char* what;

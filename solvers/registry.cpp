@@ -113,9 +113,9 @@ constexpr const char* least_iterations =
     "projections a step even where the candidate is permissible; 1 keeps slack from building up";
 const SettingInfo spd_solver{"linear_solver",
                              "auto",
-                             "factorization of J W J^T",
-                             {"auto", "tridiagonal", "fixed_pattern", "eigen_ldlt",
-                              "cholmod_simplicial", "cholmod_supernodal"}};
+                             "factorization of J W J^T, or conjugate gradients",
+                             {"auto", "tridiagonal", "fixed_pattern", "line_cg", "hybrid",
+                              "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}};
 
 std::vector<Backend> built_in() {
   return {

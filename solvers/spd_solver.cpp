@@ -6,6 +6,8 @@
 #include "cholmod_solver.h"
 #include "eigen_ldlt_solver.h"
 #include "fixed_pattern_cholesky.h"
+#include "hybrid_spd_solver.h"
+#include "line_cg_solver.h"
 #include "tridiagonal_solver.h"
 
 namespace inextensible {
@@ -37,6 +39,8 @@ std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPatte
   if (name == "cholmod_supernodal")
     return std::make_unique<CholmodSolver>(std::move(pattern), true);
   if (name == "fixed_pattern") return std::make_unique<FixedPatternCholesky>(std::move(pattern));
+  if (name == "line_cg") return std::make_unique<LineCgSolver>(std::move(pattern));
+  if (name == "hybrid") return std::make_unique<HybridSpdSolver>(std::move(pattern));
   throw std::invalid_argument("no linear solver '" + std::string(name) + "'");
 }
 
