@@ -21,7 +21,7 @@
 // sheared until warp and weft are parallel, J W J^T itself is nearly singular and the lines are no
 // help; the number of iterations then grows.
 //
-// Loops: an iteration reads C twice, the factors of T_A and T_B twice, and passes over six vectors.
+// Loops: an iteration reads C twice, the factors of T_A and T_B twice, and six vectors.
 #include "line_cg_solver.h"
 
 #include <algorithm>
@@ -40,10 +40,6 @@ namespace {
 constexpr double strong = 0.25;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-double dot(const std::vector<double>& x, const std::vector<double>& y) {
-  return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
-}
 
 }  // namespace
 
@@ -279,28 +275,39 @@ bool LineCgSolver::Family::factor(const double* values, double least_pivot) {
   return true;
 }
 
-// x = T^-1 x. A row that follows its predecessor takes it from a register: the chain of operations
+// A row that follows its predecessor takes it from a register: the chain of operations
 // along a line, not their number, is what bounds this.
-void LineCgSolver::Family::solve(double* x) const {
+double LineCgSolver::Family::solve(const double* b, double* x) const {
   const int n = size();
   const double *d = inverse_pivot.data(), *e = link.data();
   const int* before = previous.data();
   double last = 0;
   for (int k = 0; k < n; ++k) {
-    const int b = before[k];
-    const double above = b == k - 1 ? last : d[b] * x[b];
-    x[k] -= e[k] * above;  // nothing at a line's first row: e = 0 there
+    const int i = before[k];  // k itself at a line's first row, where e = 0
+    const double above = i == k - 1 ? last : i == k ? 0 : d[i] * x[i];
+    x[k] = b[k] - e[k] * above;
     last = d[k] * x[k];
   }
   double carried = 0;  // what row k + 1 subtracts from row k
+  double sum = 0;
   for (int k = n - 1; k >= 0; --k) {
     const double xk = x[k] = (x[k] - carried) * d[k];
+    sum += b[k] * xk;
     carried = 0;
     if (before[k] == k - 1) {
       carried = e[k] * xk;
     } else {
       x[before[k]] -= e[k] * xk;
     }
+  }
+  return sum;
+}
+
+void LineCgSolver::solve_lines(double* x) {
+  for (const auto& [family, vector] : {std::pair(&eliminated_, &beyond_), {&kept_, &product_}}) {
+    for (int k = 0; k < family->size(); ++k) (*vector)[at(k)] = x[family->row[at(k)]];
+    family->solve(vector->data(), vector->data());
+    for (int k = 0; k < family->size(); ++k) x[family->row[at(k)]] = (*vector)[at(k)];
   }
 }
 
@@ -330,7 +337,7 @@ double LineCgSolver::multiply(const double* p, double* q) {
     for (int i = across_.start[at(k)]; i < across_.start[at(k) + 1]; ++i)
       y[across_.column[at(i)]] += across_.value[at(i)] * p[k];
   }
-  eliminated_.solve(y);
+  eliminated_.solve(y, y);
   for (int k = 0; k < n; ++k) {
     for (int i = among_.start[at(k)]; i < among_.start[at(k) + 1]; ++i) {
       q[k] += among_.value[at(i)] * p[among_.column[at(i)]];
@@ -360,7 +367,7 @@ bool LineCgSolver::solve_within(double tolerance, double* rhs) {
 
   // r = b_B - C T_A^-1 b_A
   for (int k = 0; k < eliminated_.size(); ++k) beyond_[at(k)] = rhs[eliminated_.row[at(k)]];
-  eliminated_.solve(beyond_.data());
+  eliminated_.solve(beyond_.data(), beyond_.data());
   double error = 0;
   for (int k = 0; k < n; ++k) {
     r[k] = rhs[kept_.row[at(k)]];
@@ -373,15 +380,12 @@ bool LineCgSolver::solve_within(double tolerance, double* rhs) {
   double old_energy = 1;
   bool reached = error <= enough;
   for (int i = 0; i < most_iterations_ && !reached; ++i, ++iterations_) {
-    product_ = residual_;
-    kept_.solve(q);  // z = T_B^-1 r
-    const double energy = dot(residual_, product_);
+    const double energy = kept_.solve(r, q);  // z = T_B^-1 r
     const double beta = i == 0 ? 0 : energy / old_energy;
     for (int k = 0; k < n; ++k) {
       p[k] = q[k] + beta * p[k];
-      tp[k] = r[k] + beta * tp[k];  // T_B p, without a product
+      q[k] = tp[k] = r[k] + beta * tp[k];  // T_B p, without a product
     }
-    product_ = line_direction_;
     const double curvature = multiply(p, q);
     if (!(energy > 0 && curvature > 0)) break;  // the negation catches NaN
     const double alpha = energy / curvature;
@@ -402,7 +406,7 @@ bool LineCgSolver::solve_within(double tolerance, double* rhs) {
       beyond_[at(across_.column[at(i)])] -= across_.value[at(i)] * x[k];
     rhs[kept_.row[at(k)]] = x[k];
   }
-  eliminated_.solve(beyond_.data());
+  eliminated_.solve(beyond_.data(), beyond_.data());
   for (int k = 0; k < eliminated_.size(); ++k) rhs[eliminated_.row[at(k)]] = beyond_[at(k)];
   return reached;
 }

@@ -33,6 +33,8 @@ class LineCgSolver final : public SpdSolver {
   // What was found: the number of lines; whether row i is eliminated (its line is coupled with no
   // other eliminated one).
   int lines() const { return lines_; }
+  // x = diag(T_A, T_B)^-1 x, rows as in the matrix: every line's own system.
+  void solve_lines(double* x);
   bool eliminated(int row) const { return family_of_[static_cast<std::size_t>(row)] == 0; }
 
  private:
@@ -47,7 +49,8 @@ class LineCgSolver final : public SpdSolver {
 
     int size() const { return static_cast<int>(row.size()); }
     bool factor(const double* values, double least_pivot);
-    void solve(double* x) const;
+    // x = T^-1 b, returns b . x; b may be x, the number then means nothing.
+    double solve(const double* b, double* x) const;
   };
   struct Graph;  // of the matrix, while lines are sought
 
