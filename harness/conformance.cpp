@@ -118,6 +118,7 @@ std::vector<std::int64_t> counts_of(const WorkCounters& w) {
           w.assemblies,
           w.factorizations,
           w.back_solves,
+          w.linear_iterations,
           w.edge_projections,
           w.line_search_steps,
           w.spring_evaluations,

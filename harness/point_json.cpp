@@ -97,6 +97,7 @@ json to_json(const inextensible::WorkCounters& w) {
           {"assemblies", w.assemblies},
           {"factorizations", w.factorizations},
           {"back_solves", w.back_solves},
+          {"linear_iterations", w.linear_iterations},
           {"edge_projections", w.edge_projections},
           {"line_search_steps", w.line_search_steps},
           {"spring_evaluations", w.spring_evaluations},
@@ -161,6 +162,7 @@ inextensible::WorkCounters work_of(const json& w) {
   w.at("assemblies").get_to(work.assemblies);
   w.at("factorizations").get_to(work.factorizations);
   w.at("back_solves").get_to(work.back_solves);
+  work.linear_iterations = w.value("linear_iterations", std::int64_t{0});
   w.at("edge_projections").get_to(work.edge_projections);
   w.at("line_search_steps").get_to(work.line_search_steps);
   w.at("spring_evaluations").get_to(work.spring_evaluations);

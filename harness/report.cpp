@@ -76,6 +76,12 @@ namespace {
 
 constexpr int name_width = 21;
 
+// s; adaptive: the mean one.
+double step_length(const PointResult& point) {
+  if (!point.spec.adaptive || point.work.steps == 0) return point.spec.step;
+  return point.spec.step * point.steps_planned / static_cast<double>(point.work.steps);
+}
+
 template <class Text>  // Text(const Points&): what stands in a cell
 void print_best(std::ostream& out, const std::vector<const PointResult*>& points,
                 const std::string& title, const Text& cell_text) {
@@ -105,10 +111,7 @@ void print_best(std::ostream& out, const std::vector<const PointResult*>& points
 }
 
 std::string time_and_step(const PointResult& point) {
-  std::string step = step_text(point.spec.step);
-  if (point.spec.adaptive && point.work.steps > 0)  // the mean one
-    step = "~" +
-           step_text(point.spec.step * point.steps_planned / static_cast<double>(point.work.steps));
+  const std::string step = (point.spec.adaptive ? "~" : "") + step_text(step_length(point));
   return number_text(point.median_seconds(), 3) + " (" + step + ")";
 }
 
@@ -152,7 +155,79 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
   }
 }
 
+std::string exponent_text(const Slope& slope) {
+  std::string text = number_text(slope.value, 3);
+  if (std::isfinite(slope.half_width))
+    text += " (" + number_text(slope.low(), 3) + ".." + number_text(slope.high(), 3) + ")";
+  return text;
+}
+
+// A column of the table of growth.
+struct Column {
+  const char* head;
+  std::string (*text)(const PointResult&);
+};
+
+double per_step(const PointResult& point, std::int64_t count) {
+  return static_cast<double>(count) /
+         static_cast<double>(std::max<std::int64_t>(1, point.work.steps));
+}
+
+// How the time of a step grows with the vertices, of each solver's best points, and what explains
+// it at the largest of them.
+void print_growth(std::ostream& out, const std::vector<const PointResult*>& points) {
+  constexpr std::array<Column, 5> columns{{
+      {"seconds a step",
+       [](const PointResult& p) { return number_text(p.median_seconds() * step_length(p), 3); }},
+      {"iterations a step",
+       [](const PointResult& p) { return number_text(per_step(p, p.work.iterations), 3); }},
+      {"linear iterations",
+       [](const PointResult& p) { return number_text(per_step(p, p.work.linear_iterations), 3); }},
+      {"set-up (s)", [](const PointResult& p) { return number_text(p.setup_seconds, 3); }},
+      {"memory (GiB)",
+       [](const PointResult& p) { return number_text(p.peak_rss_bytes / (1 << 30), 3); }},
+  }};
+  constexpr int cell_width = 19;
+  out << "growth of the time a step with vertices (exponent, 95 % interval), and the largest "
+         "size:\n"
+      << std::left << std::setw(name_width) << "" << std::setw(cell_width) << "exponent"
+      << std::setw(cell_width) << "over vertices";
+  for (const Column& column : columns) out << std::setw(cell_width) << column.head;
+  out << '\n';
+  for (const Growth& growth : growths(points)) {
+    const PointResult& largest = *growth.largest;
+    out << std::setw(name_width) << growth.solver << std::setw(cell_width)
+        << exponent_text(growth.exponent) << std::setw(cell_width)
+        << std::to_string(growth.smallest->spec.vertices) + ".." +
+               std::to_string(largest.spec.vertices);
+    for (const Column& column : columns) out << std::setw(cell_width) << column.text(largest);
+    out << '\n';
+  }
+}
+
 }  // namespace
+
+std::vector<Growth> growths(const std::vector<const PointResult*>& points) {
+  std::vector<Growth> all;
+  std::map<std::string, std::map<int, const PointResult*>> curves;  // by solver, by vertices
+  for (const PointResult* point : points) {
+    if (point->best && point->ok()) curves[point->spec.solver][point->spec.vertices] = point;
+  }
+  for (const PointResult* point : points) {  // in the order of the sweep
+    const auto curve = curves.find(point->spec.solver);
+    if (curve == curves.end()) continue;
+    std::vector<double> vertices, seconds;
+    for (const auto& [size, p] : curve->second) {
+      vertices.push_back(size);
+      seconds.push_back(p->median_seconds() * step_length(*p));
+    }
+    all.push_back({curve->first, log_log_slope(vertices, seconds), curve->second.begin()->second,
+                   curve->second.rbegin()->second});
+    curves.erase(curve);
+  }
+  std::erase_if(all, [](const Growth& growth) { return growth.exponent.points < 2; });
+  return all;
+}
 
 void print_table(std::ostream& out, const std::vector<PointResult>& points) {
   using Key = std::pair<std::string, std::string>;  // scene, sweep
@@ -179,6 +254,7 @@ void print_table(std::ostream& out, const std::vector<PointResult>& points) {
           std::find_if(cell.begin(), cell.end(), [](const PointResult* p) { return p->best; });
       return best == cell.end() ? failure_text(cell) : time_and_step(**best);
     });
+    if (sweep == "resolution") print_growth(out, chosen);
     if (!within_error) continue;
     print_best(out, chosen, title + " within the error limit (its step in s)",
                [](const auto& cell) -> std::string {

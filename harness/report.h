@@ -6,6 +6,7 @@
 #include <ostream>
 #include <vector>
 
+#include "fit.h"
 #include "sweep.h"
 
 namespace harness {
@@ -32,6 +33,17 @@ class Progress {
 // step, a second time within the suite's error limit if there was one; of a step sweep, the time to
 // reach each of some errors; failures by name.
 void print_table(std::ostream& out, const std::vector<PointResult>& points);
+
+// How the time of a step grows with the vertices: of the best points of one solver in a resolution
+// sweep.
+struct Growth {
+  std::string solver;
+  Slope exponent;
+  const PointResult *smallest, *largest;  // of those that count
+};
+// One for each solver with best points at two sizes at least, in the order of `points`, which are
+// those of one sweep.
+std::vector<Growth> growths(const std::vector<const PointResult*>& points);
 
 // How good a reference is, and where the scene's last vertex is.
 void print_reference(std::ostream& out, const Reference& reference);

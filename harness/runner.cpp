@@ -85,7 +85,8 @@ class PointRunner {
     Judge::Options judging{steps_ / sampled_instants};
     if (judged && stop_at == diverged_strain) {
       judging.reference = reference_;
-      if (spec_.solver == "fast_projection" && !spec_.adaptive)
+      // Where growth is the question, a probe that needs the solver's own memory again is not.
+      if (spec_.solver == "fast_projection" && !spec_.adaptive && spec_.sweep != "resolution")
         judging.residual_of_limit = spec_.strain_limit;
     }
     Judge judge(scene_, judging);

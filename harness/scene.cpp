@@ -1,6 +1,7 @@
 #include "scene.h"
 
 #include <cmath>
+#include <numbers>
 #include <sstream>
 
 #include "text.h"
@@ -72,8 +73,27 @@ Scene build_taut_row(const SceneParameters& p) {
   return scene;
 }
 
+// One of the two curves whose sum is a folded cloth: n points, links of length l, in waves of the
+// slope A sin(2 pi w s) over the arc length s, mirrored about its middle to the last bit. Columns:
+// (along, up), the lowest at up = 0.
+Eigen::Matrix2Xd waves(int n, double l, double slope) {
+  constexpr double count = 3;
+  Eigen::Matrix2Xd p(2, n);
+  const auto link = [&](double from_middle) -> Eigen::Vector2d {  // in links
+    const double angle = slope * std::sin(2 * std::numbers::pi * count * from_middle / (n - 1));
+    return {l * std::cos(angle), l * std::sin(angle)};
+  };
+  const int right = n / 2;  // the middle vertex, or the first one right of the middle link
+  p.col(right) = n % 2 == 1 ? Eigen::Vector2d(0, 0) : Eigen::Vector2d(0.5 * l, 0);
+  for (int j = right + 1; j < n; ++j) p.col(j) = p.col(j - 1) + link(j - 0.5 - 0.5 * (n - 1));
+  for (int j = 0; j < n / 2; ++j) p.col(j) << -p(0, n - 1 - j), p(1, n - 1 - j);
+  p.row(1).array() -= p.row(1).minCoeff();
+  return p;
+}
+
 // What drape and patch share: n x n vertices, flat and horizontal at height y, centred over the
-// origin, warp and weft constrained, shear springs where `shear` is positive. Not yet a problem.
+// origin, or in waves, `folds` steep, the lowest point there; warp and weft constrained, shear
+// springs where `shear` is positive. Not yet a problem.
 struct Cloth {
   ProblemParts parts;
   Scene scene;
@@ -90,6 +110,9 @@ Cloth make_cloth(const SceneParameters& p, double y) {
   scene.start.x.resize(3, n * n);
   scene.start.v.setZero(3, n * n);
   Scene::Mirror left_right{{1, 0, 0}, {}}, front_back{{0, 0, 1}, {}};
+  // A sum of two curves keeps the length of every link: a Chebyshev net.
+  const double folds = p.contains("folds") ? p.at("folds") : 0;
+  const Eigen::Matrix2Xd wave = waves(n, l, folds);
   const auto vertex = [n](int i, int j) { return i * n + j; };  // row i along z, column j along x
   const auto constrain = [&](int a, int b) {
     parts.edges.push_back({a, b});
@@ -103,6 +126,8 @@ Cloth make_cloth(const SceneParameters& p, double y) {
           0.5 * l * (2 * i - (n - 1));
       left_right.image.push_back(vertex(i, n - 1 - j));
       front_back.image.push_back(vertex(n - 1 - i, j));
+      if (folds > 0)
+        scene.start.x.col(vertex(i, j)) << wave(0, j), y + wave(1, j) + wave(1, i), wave(0, i);
       if (j + 1 < n) constrain(vertex(i, j), vertex(i, j + 1));  // weft
       if (i + 1 < n) constrain(vertex(i, j), vertex(i + 1, j));  // warp
     }
@@ -135,6 +160,7 @@ Cloth make_cloth(const SceneParameters& p, double y) {
 // Above a polygonal sphere that is centred at the origin.
 Scene build_drape(const SceneParameters& p) {
   Cloth cloth = make_cloth(p, p.at("radius") + p.at("gap"));
+  if (p.contains("speed")) cloth.scene.start.v.row(1).setConstant(-p.at("speed"));
   if (p.at("radius") > 0) {
     cloth.parts.collider = std::make_shared<const inextensible::TriangleCollider>(
         inextensible::icosphere(Eigen::Vector3d::Zero(), p.at("radius"),
@@ -189,6 +215,24 @@ const std::vector<SceneType>& table() {
         {"gap", 0.001, "between sphere and cloth at the start, m", -1e-300, 1e6},
         {"friction", 0.3, "Coulomb coefficient", -1e-300, 1e3},
         {"duration", 1, "s", 0, 1e4}},
+       build_drape,
+       count_cloth},
+      {"folded_drape",
+       "the drape, from a start in folds that shear it: as hard as mid-fall, at any size",
+       "n",
+       {{"n", 71, "vertices along each side", 2, 4000, true},
+        {"side", 1, "m", 0, 1e6},
+        {"mass", 0.2, "total, kg", 0, 1e6},
+        {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
+        {"shear", 0.1, "spring stiffness on both diagonals of each quad, N/m; 0: no springs at all",
+         -1e-300, 1e9},
+        {"folds", 0.8, "slope of three waves each way, rad; 0: flat", -1e-300, 1.2},
+        {"speed", 0, "downwards, at the start, m/s", -1e4, 1e4},
+        {"radius", 0.25, "of the sphere, m; 0: no collider at all", -1e-300, 1e6},
+        {"subdivisions", 3, "of the icosahedron; 3: 1,280 triangles", 0, 6, true},
+        {"gap", 0.001, "between sphere and cloth at the start, m", -1e-300, 1e6},
+        {"friction", 0.3, "Coulomb coefficient", -1e-300, 1e3},
+        {"duration", 0.02, "s", 0, 1e4}},
        build_drape,
        count_cloth},
       {"patch",

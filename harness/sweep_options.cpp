@@ -80,7 +80,7 @@ void add_measurement(CLI::App& to, SweepOptions& options) {
       ->type_name("N");
 }
 
-std::vector<std::string> profiles() { return {"quick", "default", "paper"}; }
+std::vector<std::string> profiles() { return {"quick", "default", "paper", "large"}; }
 
 void check_profile(const std::string& name) {
   const auto known = profiles();

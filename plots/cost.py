@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import statistics
+from dataclasses import replace
+
 from matplotlib.figure import Figure
 
 import caption
@@ -75,8 +79,22 @@ def _draw_resolution(data: FigureData, document: Json, styles: dict[str, SolverS
     add_strip(sheet, left, rows_linear, styles, f"failed at every step, or above the axes ({panels.ARROW})" if off_scale
                else "failed at every step")
     add_strip(sheet, right, rows_log, styles, "failed at every step", names=False)
-    add_legend(left, styles, anchor=(0.0, -0.2), columns=1 if len(styles) <= 8 else 2)
+    add_legend(left, _with_exponents(styles, data), anchor=(0.0, -0.2), columns=1 if len(styles) <= 8 else 2)
     return sheet.figure
+
+
+def _with_exponents(styles: dict[str, SolverStyle], data: FigureData) -> dict[str, SolverStyle]:
+    """Labels with the slope of the log-log panel, least squares; the terminal's table has its interval, a step's time."""
+    labelled = {}
+    for name, style in styles.items():
+        points = [(math.log(best.x), math.log(best.seconds)) for best in data.curves[name].best]
+        spread = len(points) and statistics.pvariance([x for x, _ in points])
+        if len(points) < 3 or not spread:
+            labelled[name] = style
+            continue
+        slope = statistics.linear_regression(*zip(*points)).slope
+        labelled[name] = replace(style, label=f"{style.label}, slope {slope:.2f}")
+    return labelled
 
 
 def _xs(data: FigureData) -> list[float]:

@@ -8,21 +8,28 @@ namespace {
 std::string choose(std::string_view wanted, const SymmetricPattern& pattern) {
   if (wanted != "auto") return std::string(wanted);
   if (pattern.entries() == 2 * pattern.n - 1 && pattern.tridiagonal()) return "tridiagonal";
-  return "fixed_pattern";
+  return pattern.n < ConstraintSystem::hybrid_rows ? "fixed_pattern" : "hybrid";
+}
+
+// Without fill, or with an order of its own.
+bool in_natural_order(std::string_view solver) {
+  return solver == "tridiagonal" || solver == "line_cg" || solver == "hybrid";
 }
 
 }  // namespace
 
 ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
                                    std::string_view linear_solver) {
-  const EdgeConstraints natural(problem, strain_limit);
-  const SchurComplement unordered(natural, problem.vertices(), SymmetricPattern::Triangle::upper);
-  solver_name_ = choose(linear_solver, unordered.pattern());
-  std::vector<int> order;
-  if (solver_name_ != "tridiagonal") order = fill_reducing_order(unordered.pattern());
-  edges_ = std::make_unique<EdgeConstraints>(problem, strain_limit, std::move(order));
-  schur_ =
-      std::make_unique<SchurComplement>(*edges_, problem.vertices(), triangle_of(solver_name_));
+  const auto natural = SymmetricPattern::Triangle::upper;
+  edges_ = std::make_unique<EdgeConstraints>(problem, strain_limit);
+  schur_ = std::make_unique<SchurComplement>(*edges_, problem.vertices(), natural);
+  solver_name_ = choose(linear_solver, schur_->pattern());
+  if (!in_natural_order(solver_name_)) {
+    edges_ = std::make_unique<EdgeConstraints>(problem, strain_limit,
+                                               fill_reducing_order(schur_->pattern()));
+    schur_ =
+        std::make_unique<SchurComplement>(*edges_, problem.vertices(), triangle_of(solver_name_));
+  }
   solver_ = make_spd_solver(solver_name_, schur_->pattern());
   solver_->set_least_pivot(least_pivot);
 }
@@ -31,16 +38,21 @@ bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, WorkCounters& work, dou
   schur_->assemble(u, solver_->values());
   if (damping > 0) schur_->scale_diagonal(1 + damping, solver_->values());
   ++work.assemblies;
-  ++work.factorizations;
+  const std::int64_t skipped = solver_->skipped_factorizations();
   const bool factored = solver_->factor();
+  work.factorizations += 1 - (solver_->skipped_factorizations() - skipped);
   work.factor_nonzeros = solver_->factor_nonzeros();
   work.factor_flops = solver_->factor_flops();
   return factored;
 }
 
-void ConstraintSystem::solve(Eigen::VectorXd& mu, WorkCounters& work) {
-  solver_->solve(mu.data());
+bool ConstraintSystem::solve(Eigen::VectorXd& mu, WorkCounters& work, double tolerance) {
+  const std::int64_t before = solver_->iterations(), skipped = solver_->skipped_factorizations();
+  const bool solved = solver_->solve_within(tolerance, mu.data());
   ++work.back_solves;
+  work.linear_iterations += solver_->iterations() - before;
+  work.factorizations -= solver_->skipped_factorizations() - skipped;
+  return solved;
 }
 
 StepResult refuse(Status status, int iterations, const EdgeConstraints& edges, const Positions& x,

@@ -13,6 +13,7 @@ struct WorkCounters {
   std::int64_t assemblies = 0;          // of the linear system
   std::int64_t factorizations = 0;      // numeric
   std::int64_t back_solves = 0;         // one right-hand side, forward and back substitution
+  std::int64_t linear_iterations = 0;   // of iterative linear solvers, of all back_solves
   std::int64_t edge_projections = 0;    // single edges corrected (strain limiting)
   std::int64_t line_search_steps = 0;   // steps shortened by a globalization
   std::int64_t spring_evaluations = 0;  // shear springs, in forces or energies

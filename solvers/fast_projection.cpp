@@ -11,6 +11,10 @@
 // which minimizes |C~ + J dx|^2 + damping |dx|^2 in the norms of D^-1 and M. C~ is what of C lies
 // outside the inner part of the permissible band: a straight row at full length has no neighbour
 // with C = 0, but many permissible ones.
+//
+// Iterative linear solvers solve (7) to a residual of a fraction of |C(x_j)|, the forcing term of
+// an inexact Newton method: 1e-2 at first, then as |C| has fallen, squared (Eisenstat and Walker
+// 1996, choice 2), which keeps the convergence of order two.
 #include "fast_projection.h"
 
 #include <algorithm>
@@ -25,6 +29,7 @@ namespace {
 constexpr int patience = 8;
 constexpr double overshoot = 1e8;
 constexpr double inner_band = 0.6;  // of the permissible one
+constexpr double first_forcing = 1e-2, least_forcing = 1e-8, damped_forcing = 1e-4;
 constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1e8;
 
 }  // namespace
@@ -35,12 +40,14 @@ FastProjection::FastProjection(const Problem& problem, const Settings& settings)
       min_iterations_(settings.min_iterations),
       best_(3, problem.vertices()),
       u_(3, problem.constraints()),
-      mu_(problem.constraints()) {}
+      mu_(problem.constraints()),
+      excess_(problem.constraints()) {}
 
 StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
                                  WorkCounters& work) {
   const EdgeConstraints& edges = system_.edges();
   double error = std::numeric_limits<double>::infinity();  // |C|^2 at best_
+  double last_error = error, forcing = first_forcing;
   for (int j = 0, best_j = 0;; ++j) {
     if (edges.linearize(x, u_, mu_) && j >= min_iterations_) return {Status::ok, j};
     if (j == max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
@@ -52,10 +59,12 @@ StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Pos
     } else if (j == 0) {
       return refuse(Status::not_finite, j, edges, x, "overflow");
     }
-    if (j - best_j == patience || !(next_error < overshoot * error) || !system_.factor(u_, work))
+    if (j > 0) forcing = std::clamp(0.9 * next_error / last_error, least_forcing, first_forcing);
+    last_error = next_error;
+    if (j - best_j == patience || !(next_error < overshoot * error) || !system_.factor(u_, work) ||
+        !system_.solve(mu_, work, forcing))  // (7)
       return damped(j, x, work);
-    system_.solve(mu_, work);  // (7)
-    edges.apply(u_, mu_, x);   // (5)
+    edges.apply(u_, mu_, x);  // (5)
   }
 }
 
@@ -73,12 +82,16 @@ StepResult FastProjection::damped(int j, Positions& x, WorkCounters& work) {
       error = mu_.squaredNorm();
     }
     if (j >= max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
-    while (damping < largest_damping && !system_.factor(u_, work, damping)) damping *= 10;
+    excess_ = mu_;
+    while (damping < largest_damping &&
+           !(system_.factor(u_, work, damping) && system_.solve(mu_, work, damped_forcing))) {
+      damping *= 10;
+      mu_ = excess_;
+    }
     if (!(damping < largest_damping)) {
       return refuse(Status::not_converged, j, edges, x,
                     "no damped projection lowers the constraint error");
     }
-    system_.solve(mu_, work);
     const double predicted_error = damped_prediction(damping);
     edges.apply(u_, mu_, x);
     if (edges.linearize(x, u_, mu_)) return {Status::ok, j + 1};

@@ -27,9 +27,10 @@ class FastProjection final : public VelocityFilter {
 
   ConstraintSystem system_;
   int max_iterations_, min_iterations_;
-  Positions best_;      // x_j of least constraint error
-  Eigen::Matrix3Xd u_;  // gradient of C at x_j
-  Eigen::VectorXd mu_;  // C(x_j), then h^2 dlambda
+  Positions best_;          // x_j of least constraint error
+  Eigen::Matrix3Xd u_;      // gradient of C at x_j
+  Eigen::VectorXd mu_;      // C(x_j), then h^2 dlambda
+  Eigen::VectorXd excess_;  // C~ of a damped iteration
 };
 
 }  // namespace inextensible

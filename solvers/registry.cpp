@@ -119,11 +119,12 @@ const SettingInfo target{
     "target", 0.0, "a corrected edge is brought to this fraction of the strain limit, 0 to 1"};
 constexpr const char* least_iterations =
     "projections a step even where the candidate is permissible; 1 keeps slack from building up";
-const SettingInfo spd_solver{"linear_solver",
-                             "auto",
-                             "factorization of J W J^T",
-                             {"auto", "tridiagonal", "fixed_pattern", "fixed_pattern_single",
-                              "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}};
+const SettingInfo spd_solver{
+    "linear_solver",
+    "auto",
+    "factorization of J W J^T, or conjugate gradients",
+    {"auto", "tridiagonal", "fixed_pattern", "fixed_pattern_single", "lazy", "line_cg", "hybrid",
+     "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}};
 
 std::vector<Backend> built_in() {
   return {

@@ -16,6 +16,9 @@ namespace inextensible {
 namespace {
 
 constexpr double shortest_step = 1e-3;  // of Newton's
+// Of iterative linear solvers: a frozen matrix converges linearly anyway.
+constexpr double inner_tolerance = 1e-2;
+constexpr const char* no_solution = "the iterative linear solver did not converge";
 
 }  // namespace
 
@@ -82,7 +85,8 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, Wo
     best_ = x;
     mu_ = c_;
     if (matrix == Matrix::start) {
-      system_.solve(mu_, work);
+      if (!system_.solve(mu_, work, inner_tolerance))
+        return refuse(Status::singular, j, edges, x, no_solution);
     } else {
       current_solver_->solve(mu_.data());
       ++work.back_solves;
@@ -108,7 +112,7 @@ StepResult Shake::project_velocity(const Positions& x, Positions& v, WorkCounter
   x_factored_ = x;
   factored_ = true;
   edges.rate(u_start_, v, mu_);  // J v
-  system_.solve(mu_, work);
+  if (!system_.solve(mu_, work)) return refuse(Status::singular, 0, edges, x, no_solution);
   edges.apply(u_start_, mu_, v);
   return {};
 }

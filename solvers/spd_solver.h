@@ -2,6 +2,7 @@
 // pattern.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,17 @@ class SpdSolver {
   void set_least_pivot(double relative) { least_pivot_ = relative; }
   virtual void solve(
       double* rhs) = 0;  // n numbers, overwritten by the solution; after a successful factor()
+  // As solve(), but iterative solvers stop once |b - A x| <= tolerance |b|; direct ones are as
+  // exact as they are. false: not reached, or not positive definite after all; rhs is then
+  // unspecified.
+  virtual bool solve_within(double /*tolerance*/, double* rhs) {
+    solve(rhs);
+    return true;
+  }
+  static constexpr double tightest = 1e-12;              // tolerance that is sure to be reached
+  virtual std::int64_t iterations() const { return 0; }  // of all solves; direct solvers have none
+  // Of all calls of factor(), how many did without a factorization, those in solves taken off.
+  virtual std::int64_t skipped_factorizations() const { return 0; }
   // An estimate, of the last successful factorization: smallest over largest pivot of L D L^T.
   virtual double reciprocal_condition() const = 0;
   virtual double factor_nonzeros() const = 0;
@@ -62,8 +74,9 @@ class SpdSolver {
 SymmetricPattern::Triangle triangle_of(std::string_view solver);
 
 // name: tridiagonal, block_tridiagonal (3 x 3 blocks; each for such patterns only), eigen_ldlt,
-// cholmod_simplicial, cholmod_supernodal, fixed_pattern. Throws std::invalid_argument for another
-// name or a pattern that the solver cannot take.
+// cholmod_simplicial, cholmod_supernodal, fixed_pattern, fixed_pattern_single; not direct: line_cg,
+// hybrid, lazy. Throws std::invalid_argument for another name or a pattern that the solver cannot
+// take.
 std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern);
 
 // An elimination order with little fill: order[i] is the row that comes i-th. The better of AMD and

@@ -69,7 +69,7 @@ void spoil_and_read(const std::string& text, std::string (*read)(const std::stri
 }
 
 TEST(Documents, SpoiltSuitesAreReadOrRefusedInALine) {
-  for (const char* name : {"quick.json", "default.json", "paper.json"}) {
+  for (const char* name : {"quick.json", "default.json", "paper.json", "large.json"}) {
     const std::string text = text_of(std::filesystem::path(SOURCE_DIR) / "configs" / name);
     ASSERT_EQ(read_as_suite(text), "") << name;
     spoil_and_read(text, read_as_suite, 2000);

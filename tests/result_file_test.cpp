@@ -151,7 +151,7 @@ TEST(ResultFile, OfAStabilitySweepFitsItsSchema) {
 }
 
 TEST(Suites, ThatAreCommittedFitTheirSchemaAndAreAccepted) {
-  for (const char* name : {"quick", "default", "paper"}) {
+  for (const char* name : {"quick", "default", "paper", "large"}) {
     const std::string file = std::string("configs/") + name + ".json";
     EXPECT_EQ(misfits(read(source(file)), "configs/suite.schema.json"), "") << name;
     EXPECT_NO_THROW(static_cast<void>(read_suite(source(file)))) << name;
