@@ -38,20 +38,18 @@ bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, WorkCounters& work, dou
   schur_->assemble(u, solver_->values());
   if (damping > 0) schur_->scale_diagonal(1 + damping, solver_->values());
   ++work.assemblies;
-  const std::int64_t skipped = solver_->skipped_factorizations();
+  ++work.factorizations;
   const bool factored = solver_->factor();
-  work.factorizations += 1 - (solver_->skipped_factorizations() - skipped);
   work.factor_nonzeros = solver_->factor_nonzeros();
   work.factor_flops = solver_->factor_flops();
   return factored;
 }
 
 bool ConstraintSystem::solve(Eigen::VectorXd& mu, WorkCounters& work, double tolerance) {
-  const std::int64_t before = solver_->iterations(), skipped = solver_->skipped_factorizations();
+  const std::int64_t before = solver_->iterations();
   const bool solved = solver_->solve_within(tolerance, mu.data());
   ++work.back_solves;
   work.linear_iterations += solver_->iterations() - before;
-  work.factorizations -= solver_->skipped_factorizations() - skipped;
   return solved;
 }
 

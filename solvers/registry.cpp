@@ -123,7 +123,7 @@ const SettingInfo spd_solver{
     "linear_solver",
     "auto",
     "factorization of J W J^T, or conjugate gradients",
-    {"auto", "tridiagonal", "fixed_pattern", "fixed_pattern_single", "lazy", "line_cg", "hybrid",
+    {"auto", "tridiagonal", "fixed_pattern", "fixed_pattern_single", "line_cg", "hybrid",
      "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}};
 
 std::vector<Backend> built_in() {

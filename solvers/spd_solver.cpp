@@ -8,7 +8,6 @@
 #include "eigen_ldlt_solver.h"
 #include "fixed_pattern_cholesky.h"
 #include "hybrid_spd_solver.h"
-#include "lazy_spd_solver.h"
 #include "line_cg_solver.h"
 #include "tridiagonal_solver.h"
 
@@ -38,7 +37,7 @@ bool SymmetricPattern::block_tridiagonal() const { return n % 3 == 0 && near_dia
 SymmetricPattern::Triangle triangle_of(std::string_view solver) {
   // CHOLMOD's supernodal code transposes an upper triangle at every factorization; the up-looking
   // codes a lower one.
-  return solver == "cholmod_supernodal" || solver.starts_with("fixed_pattern") || solver == "lazy"
+  return solver == "cholmod_supernodal" || solver.starts_with("fixed_pattern")
              ? SymmetricPattern::Triangle::lower
              : SymmetricPattern::Triangle::upper;
 }
@@ -54,7 +53,6 @@ std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPatte
   if (name == "fixed_pattern") return std::make_unique<FixedPatternCholesky>(std::move(pattern));
   if (name == "fixed_pattern_single")
     return std::make_unique<MultifrontalCholesky<float>>(std::move(pattern));
-  if (name == "lazy") return std::make_unique<LazySpdSolver>(std::move(pattern));
   if (name == "line_cg") return std::make_unique<LineCgSolver>(std::move(pattern));
   if (name == "hybrid") return std::make_unique<HybridSpdSolver>(std::move(pattern));
   throw std::invalid_argument("no linear solver '" + std::string(name) + "'");

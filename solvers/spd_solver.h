@@ -59,8 +59,6 @@ class SpdSolver {
   }
   static constexpr double tightest = 1e-12;              // tolerance that is sure to be reached
   virtual std::int64_t iterations() const { return 0; }  // of all solves; direct solvers have none
-  // Of all calls of factor(), how many did without a factorization, those in solves taken off.
-  virtual std::int64_t skipped_factorizations() const { return 0; }
   // An estimate, of the last successful factorization: smallest over largest pivot of L D L^T.
   virtual double reciprocal_condition() const = 0;
   virtual double factor_nonzeros() const = 0;
@@ -75,7 +73,7 @@ SymmetricPattern::Triangle triangle_of(std::string_view solver);
 
 // name: tridiagonal, block_tridiagonal (3 x 3 blocks; each for such patterns only), eigen_ldlt,
 // cholmod_simplicial, cholmod_supernodal, fixed_pattern, fixed_pattern_single; not direct: line_cg,
-// hybrid, lazy. Throws std::invalid_argument for another name or a pattern that the solver cannot
+// hybrid. Throws std::invalid_argument for another name or a pattern that the solver cannot
 // take.
 std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern);
 
