@@ -242,8 +242,9 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   for (const int n : {80, 1000, 100000}) register_scene("chain", n, {"tridiagonal"});
   for (const int n : {15, 31, 71, 101})
-    register_scene("drape", n,
-                   {"eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern"});
+    register_scene(
+        "drape", n,
+        {"eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern", "line_cg"});
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -259,7 +259,7 @@ TEST(FastProjection, KeepsTheLimitAlikeWithConjugateGradientsAndWithAFactorizati
     ASSERT_TRUE(exact);
     EXPECT_EQ(work.linear_iterations, 0);
     for (const char* name : {"line_cg", "hybrid"}) {
-      SCOPED_TRACE(name + (", seed " + std::to_string(seed)));
+      SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
       Positions x = candidate;
       WorkCounters inexact;
       FastProjection filter(*mesh.problem, {.strain_limit = limit, .linear_solver = name});
