@@ -354,7 +354,7 @@ int main(int argc, char** argv) {
   for (const int n : {15, 31, 71, 101})
     register_scene("drape", n,
                    {"eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern",
-                    "fixed_pattern_single"});
+                    "fixed_pattern_single", "line_cg"});
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

@@ -151,8 +151,9 @@ TEST(LineCg, LinesAreASymmetricPositiveDefinitePreconditionerAndThoseEliminatedA
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j) {
         const bool whole = solver.eliminated(i) && solver.eliminated(j);
-        if (whole || i == j || std::abs(lines(i, j)) > 1e-6 * lines.norm())
+        if (whole || i == j || std::abs(lines(i, j)) > 1e-6 * lines.norm()) {
           EXPECT_NEAR(lines(i, j), matrix(i, j), 1e-9 * matrix.norm());
+        }
       }
     }
   }
@@ -259,7 +260,7 @@ TEST(FastProjection, KeepsTheLimitAlikeWithConjugateGradientsAndWithAFactorizati
     ASSERT_TRUE(exact);
     EXPECT_EQ(work.linear_iterations, 0);
     for (const char* name : {"line_cg", "hybrid"}) {
-      SCOPED_TRACE(name + (", seed " + std::to_string(seed)));
+      SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
       Positions x = candidate;
       WorkCounters inexact;
       FastProjection filter(*mesh.problem, {.strain_limit = limit, .linear_solver = name});
