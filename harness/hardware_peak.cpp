@@ -1,10 +1,9 @@
 #include "hardware_peak.h"
 
-#include <time.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <bit>
+#include <ctime>
 #include <map>
 
 namespace harness {
