@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 import caption
 import panels
-from results import FigureData, Json, adaptive
+from results import Best, Curve, FigureData, Json, adaptive
 from sheet import (BETWEEN, GAP, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, RIGHT, ROW_HEIGHT, STEPS_HEIGHT, TIME_LABEL,
                    Sheet, add_legend, add_strip, grid, make_sheet)
 from style import SolverStyle, styles_for
@@ -79,21 +79,45 @@ def _draw_resolution(data: FigureData, document: Json, styles: dict[str, SolverS
     add_strip(sheet, left, rows_linear, styles, f"failed at every step, or above the axes ({panels.ARROW})" if off_scale
                else "failed at every step")
     add_strip(sheet, right, rows_log, styles, "failed at every step", names=False)
-    add_legend(left, _with_exponents(styles, data), anchor=(0.0, -0.2), columns=1 if len(styles) <= 8 else 2)
+    add_legend(left, styles, anchor=(0.0, -0.2), columns=1 if len(styles) <= 8 else 2)
     return sheet.figure
 
 
-def _with_exponents(styles: dict[str, SolverStyle], data: FigureData) -> dict[str, SolverStyle]:
-    """Labels with the slope of the log-log panel, least squares; the terminal's table has its interval, a step's time."""
-    labelled = {}
+def draw_growth(data: FigureData, document: Json) -> Figure:
+    """Time of a step over vertices, log-log, slopes in the legend: what a step costs as cloth gets finer, whatever steps."""
+    curves = {solver: Curve([_of_step(best) for best in curve.best if best.step], curve.failures)
+              for solver, curve in data.curves.items()}
+    steps = replace(data, curves=curves)
+    styles = styles_for(curves)
+    rows = panels.failed_rows(steps, styles)
+    sheet = make_sheet(f"{data.scene}: growth of a step's time with vertices", caption.warnings_of(document),
+                       caption.caption_of(data, document), LEFT + MAIN_WIDTH + LEGEND_WIDTH,
+                       MAIN_HEIGHT + ROW_HEIGHT * len(rows))
+    main = sheet.axes(LEFT, sheet.bottom, MAIN_WIDTH, MAIN_HEIGHT)
+    panels.log_x(main, _xs(steps), MAIN_WIDTH)
+    panels.log_y(main, steps)
+    panels.draw_slopes(main)
+    panels.draw_curves(main, steps, styles)
+    main.set_ylabel("wall seconds of a step")
+    main.set_xlabel("vertices (log axes; dotted: slopes 1 and 2)")
+    grid(main)
+    add_strip(sheet, main, rows, styles, "failed at every step")
+    add_legend(main, _with_slopes(styles, steps), anchor=(1.03, 1.0), columns=1)
+    return sheet.figure
+
+
+def _of_step(best: Best) -> Best:
+    return replace(best, seconds=best.seconds * best.step, q1=best.q1 * best.step, q3=best.q3 * best.step)
+
+
+def _with_slopes(styles: dict[str, SolverStyle], data: FigureData) -> dict[str, SolverStyle]:
+    """Labels with the least-squares slope of log time over log vertices; the terminal's table has its interval."""
+    labelled = dict(styles)
     for name, style in styles.items():
         points = [(math.log(best.x), math.log(best.seconds)) for best in data.curves[name].best]
-        spread = len(points) and statistics.pvariance([x for x, _ in points])
-        if len(points) < 3 or not spread:
-            labelled[name] = style
-            continue
-        slope = statistics.linear_regression(*zip(*points)).slope
-        labelled[name] = replace(style, label=f"{style.label}, slope {slope:.2f}")
+        if len(points) > 2:
+            slope = statistics.linear_regression(*zip(*points)).slope
+            labelled[name] = replace(style, label=f"{style.label}: {slope:.2f}")
     return labelled
 
 

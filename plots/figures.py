@@ -41,6 +41,8 @@ def all_figures(document: Json) -> list[tuple[str, Callable[[], Figure]]]:
     if document["schema"] == STABILITY_SCHEMA:
         return [("matrix", lambda: matrix.draw(document))]
     figures = [(data.name, lambda data=data: cost.draw(data, document)) for data in figures_in(document)]
+    figures += [(f"{data.name}-growth", lambda data=data: cost.draw_growth(data, document))
+                for data in figures_in(document) if data.sweep == "resolution"]
     for data in runs_in(document):
         figures += [(name, lambda data=data, draw=draw: draw(data, document)) for name, draw in precision.figures_of(data)]
     return figures

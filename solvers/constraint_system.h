@@ -24,7 +24,7 @@ class ConstraintSystem {
   const SchurComplement& schur() const { return *schur_; }
   // Measured on the drape, processor time of fast projection, hybrid over fixed_pattern: the fall
   // up to 0.6 s at 1/500 s and 0.1 %, in whose last third warp and weft become parallel, 0.69, 0.80
-  // and 0.71 at 101, 141 and 201 vertices a side; its first 0.2 s 0.24 to 0.3 from 31 on. Below
+  // and 0.71 at 101, 141 and 201 vertices a side; its first 0.2 s 0.24 to 0.33 from 31 on. Below
   // this size both cost little, and a factorization's time does not depend on how the cloth lies.
   static constexpr int hybrid_rows = 20'000;
   // J W J^T counts as singular where a pivot keeps less than this of its diagonal entry:
