@@ -137,6 +137,13 @@ std::string signal_text(int signal) {
 
 ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
                           const ChildLimits& limits) {
+  // While children are attended, only those that take longer than poll_interval are interrupted: a
+  // series of short ones is here.
+  ChildOutcome outcome;
+  if (limits.interrupted && limits.interrupted()) {
+    outcome.end = ChildOutcome::End::interrupted;
+    return outcome;
+  }
   const auto heartbeat = shared_heartbeat();
   heartbeat->restart();
   std::array<int, 2> pipe{};
@@ -156,7 +163,6 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
     be_child(work, *heartbeat, limits.memory, parent, pipe[1]);
   }
   close(pipe[1]);
-  ChildOutcome outcome;
   attend(child, pipe[0], *heartbeat, limits, outcome);
   close(pipe[0]);
   int status = 0;

@@ -37,8 +37,8 @@ struct ChildOutcome {
 
 // Runs work in a forked child. One that outlives its time-out (with a little grace: work that can,
 // ends itself) gets SIGTERM, and SIGKILL two seconds later; it dies with its parent too, and
-// ignores SIGINT, which is for the parent. Throws std::runtime_error only if no child can be made.
-// Not for programs with threads.
+// ignores SIGINT, which is for the parent. After an interruption no child is made. Throws
+// std::runtime_error only if no child can be made. Not for programs with threads.
 ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
                           const ChildLimits& limits);
 

@@ -170,6 +170,17 @@ TEST(Isolation, AnInterruptEndsTheChildAtOnce) {
   EXPECT_THROW(run_isolated([](Heartbeat&) { sleep_for_ever(); }, limits), Interrupted);
 }
 
+// A series of children that are done before they are asked whether to go on.
+TEST(Isolation, AnInterruptIsSeenBetweenChildrenThatEndAtOnce) {
+  RunLimits limits;
+  bool interrupted = false;
+  limits.interrupted = [&interrupted] { return interrupted; };
+  const Work nothing = [](Heartbeat&) {};
+  EXPECT_EQ(run_isolated(nothing, limits).status, PointStatus::ok);
+  interrupted = true;
+  EXPECT_THROW(run_isolated(nothing, limits), Interrupted);
+}
+
 // As a scheduler cancels a job: every process of it gets the signal, the child may be the first.
 TEST(Isolation, ASigtermForAllIsAnInterruptAndOneForTheChildIsACrash) {
   RunLimits limits;
