@@ -22,10 +22,13 @@ namespace {
 constexpr int line_search_limit = 12;
 constexpr double sufficient_decrease = 1e-4;
 
-// Without fill, as on a chain, factoring the saddle-point matrix is cheaper than any iteration.
+// Without fill, as on a chain, factoring the saddle-point matrix is cheaper than any iteration; and
+// where it is small it costs little, and a full Newton step leaves less of F than is asked for.
+constexpr int many_edges = 600;
 std::string choose(std::string_view wanted, const Problem& problem) {
   if (wanted != "auto") return std::string(wanted);
-  return problem.constraints() < problem.vertices() ? "quasi_definite" : "projected_cg";
+  const bool fill = problem.constraints() >= problem.vertices();
+  return fill && problem.constraints() >= many_edges ? "projected_cg" : "quasi_definite";
 }
 
 }  // namespace
