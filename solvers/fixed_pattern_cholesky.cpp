@@ -15,50 +15,81 @@ using Distance = std::ptrdiff_t;
 
 constexpr int panel = 8;   // columns eliminated at once
 constexpr int target = 4;  // columns updated at once
-// Partial sums of a dot product, so that it can be vectorized as it stands.
-template <class Real>
-constexpr int lanes = 64 / sizeof(Real);
 // Single precision computes a pivot to about seven digits of its diagonal entry: what is less than
 // this of it says nothing.
 template <class Real>
 constexpr double least_trusted_pivot = sizeof(Real) == sizeof(float) ? 1e-5 : 0;
 
 // ---- Dense steps, all on column-major storage ----
+//
+// Rows are taken in whole groups of `lanes`, the last one with rows that do not exist: storage has
+// room for them, and they hold zeros where they are summed up.
 
-// Eliminates the first K columns of the lower trapezoid l of n rows: the triangle of K rows, then
-// the rows below, each independent of the others. Leaves unit columns of L (their ones are not
-// written) and the pivots. Returns the first column whose pivot is not above its bound, K if all
-// are.
+constexpr int vector_bytes = 32;
+template <class Real>
+constexpr int lanes = vector_bytes / sizeof(Real);
+template <class Real>
+constexpr int padded(int n) {
+  return (n + lanes<Real> - 1) / lanes<Real> * lanes<Real>;
+}
+// Rows that a panel of K columns and n rows, its triangle's included, has room for.
+template <class Real>
+constexpr int panel_ld(int K, int n) {
+  return padded<Real>(K % lanes<Real> == 0 ? n : n + lanes<Real> - 1);
+}
+
+template <class Real>
+struct Vector {
+  typedef Real type __attribute__((vector_size(vector_bytes), aligned(sizeof(Real)), may_alias));
+};
+template <class Real>
+auto& lanes_at(Real* p) {
+  return *reinterpret_cast<typename Vector<Real>::type*>(p);
+}
+template <class Real>
+const auto& lanes_at(const Real* p) {
+  return *reinterpret_cast<const typename Vector<Real>::type*>(p);
+}
+
+// Eliminates the K columns of a panel of n rows: the triangle of K rows, then the rows below, each
+// independent of the others. Leaves unit columns of L (their ones are not written) and the pivots.
+// Returns the first column whose pivot is not above its bound, K if all are.
 template <int K, class Real>
 int eliminate(Real* l, Distance ld, int n, const Real* bound, Real* pivots) {
-  Real triangle[K][K], inverse[K];  // unit lower; 1 / pivot
+  Real triangle[K][K], inverse[K];  // lower; 1 / pivot
+#pragma GCC unroll 8
   for (int c = 0; c < K; ++c) {
-    Real scaled[K];
-    Real d = l[c * ld + c];
-    for (int k = 0; k < c; ++k) {
-      scaled[k] = triangle[c][k] * pivots[k];
-      d -= triangle[c][k] * scaled[k];
-    }
+#pragma GCC unroll 8
+    for (int r = c; r < K; ++r) triangle[r][c] = l[c * ld + r];
+  }
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) {
+    const Real d = triangle[c][c];
     if (!(d > bound[c])) return c;  // the negation catches NaN
     pivots[c] = d;
     inverse[c] = 1 / d;
+    Real scaled[K];
+#pragma GCC unroll 8
     for (int r = c + 1; r < K; ++r) {
-      Real s = l[c * ld + r];
-      for (int k = 0; k < c; ++k) s -= triangle[r][k] * scaled[k];
-      l[c * ld + r] = triangle[r][c] = s * inverse[c];
+      scaled[r] = triangle[r][c];
+      l[c * ld + r] = triangle[r][c] *= inverse[c];
+    }
+#pragma GCC unroll 8
+    for (int k = c + 1; k < K; ++k) {
+#pragma GCC unroll 8
+      for (int r = k; r < K; ++r) triangle[r][k] -= triangle[r][c] * scaled[k];
     }
   }
-#pragma GCC ivdep  // rows do not touch each other
-  for (int i = K; i < n; ++i) {
-    Real y[K];  // a row of L D
+  for (int i = K; i < n; i += lanes<Real>) {
+    typename Vector<Real>::type y[K];  // rows of L D
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) y[c] = lanes_at(l + c * ld + i);
 #pragma GCC unroll 8
     for (int c = 0; c < K; ++c) {
-      y[c] = l[c * ld + i];
 #pragma GCC unroll 8
-      for (int k = 0; k < c; ++k) y[c] -= y[k] * triangle[c][k];
+      for (int k = c + 1; k < K; ++k) y[k] -= y[c] * triangle[k][c];
+      lanes_at(l + c * ld + i) = y[c] * inverse[c];
     }
-#pragma GCC unroll 8
-    for (int c = 0; c < K; ++c) l[c * ld + i] = y[c] * inverse[c];
   }
   return K;
 }
@@ -70,21 +101,25 @@ template <int K, int J, bool begin, class Real>
 void subtract_columns(const Real* p, Distance ld_p, const Real* d, int n, int j, Real* c,
                       Distance ld_c) {
   Real factor[K][J];
+#pragma GCC unroll 8
   for (int k = 0; k < K; ++k) {
+#pragma GCC unroll 4
     for (int t = 0; t < J; ++t) factor[k][t] = d[k] * p[k * ld_p + j + t];
   }
   c += j * ld_c;
-#pragma GCC ivdep  // P and C do not overlap
-  for (int i = j; i < n; ++i) {
-    Real sum[J] = {};
+  for (int i = j / lanes<Real> * lanes<Real>; i < n; i += lanes<Real>) {
+    typename Vector<Real>::type sum[J] = {};
 #pragma GCC unroll 8
     for (int k = 0; k < K; ++k) {
-      const Real value = p[k * ld_p + i];
+      const auto& value = lanes_at(p + k * ld_p + i);
 #pragma GCC unroll 4
       for (int t = 0; t < J; ++t) sum[t] += value * factor[k][t];
     }
 #pragma GCC unroll 4
-    for (int t = 0; t < J; ++t) c[t * ld_c + i] = (begin ? 0 : c[t * ld_c + i]) - sum[t];
+    for (int t = 0; t < J; ++t) {
+      auto& result = lanes_at(c + t * ld_c + i);
+      result = begin ? -sum[t] : result - sum[t];
+    }
   }
 }
 
@@ -95,12 +130,18 @@ void subtract_product(const Real* p, Distance ld_p, const Real* d, int n, int m,
   int j = 0;
   for (; j + target <= m; j += target)
     subtract_columns<K, target, begin>(p, ld_p, d, n, j, c, ld_c);
-  for (; j + 2 <= m; j += 2) subtract_columns<K, 2, begin>(p, ld_p, d, n, j, c, ld_c);
-  if (j < m) subtract_columns<K, 1, begin>(p, ld_p, d, n, j, c, ld_c);
+  for (; j < m; ++j) subtract_columns<K, 1, begin>(p, ld_p, d, n, j, c, ld_c);
 }
 
-// A front on its way: `own` columns of `rows` rows, and the update matrix of the rows below them,
-// which the first panel begins.
+// Where the panel that begins at column k lies among a front's panels, of `rows` rows: they lie one
+// after the other, each without the rows above its own.
+template <class Real>
+Distance panel_at(int rows, int k) {
+  return Distance{k} * (padded<Real>(rows) - (k - panel) / 2);
+}
+
+// A front on its way: `own` columns of `rows` rows, in panels, and the update matrix of the rows
+// below them, of padded(rows - own) rows and columns, which the first panel begins.
 template <class Real>
 struct Trapezoid {
   Real* columns;
@@ -112,17 +153,25 @@ struct Trapezoid {
 // from the update matrix.
 template <int K, class Real>
 int take_panel(const Trapezoid<Real>& front, int k, const Real* bound, Real* pivots) {
-  const Distance ld = front.rows;
-  Real* l = front.columns + k * ld + k;
-  const int bad = eliminate<K>(l, ld, front.rows - k, bound, pivots);
+  const int n = front.rows - k, below = front.rows - front.own;
+  const Distance ld = panel_ld<Real>(K, n);
+  Real* l = front.columns + panel_at<Real>(front.rows, k);
+  const int bad = eliminate<K>(l, ld, n, bound, pivots);
   if (bad < K) return bad;
-  const int right = front.own - k - K, below = front.rows - front.own;
-  subtract_product<K, false>(l + K, ld, pivots, front.rows - k - K, right, l + K * ld + K, ld);
-  const Real* p = front.columns + k * ld + front.own;
+  if constexpr (K == panel) {
+    for (int r = k + panel; r < front.own; r += panel) {
+      const int width = std::min(panel, front.own - r), rows = front.rows - r;
+      subtract_product<K, false>(l + (r - k), ld, pivots, rows, width,
+                                 front.columns + panel_at<Real>(front.rows, r),
+                                 Distance{panel_ld<Real>(width, rows)});
+    }
+  }
+  const Real* p = l + (front.own - k);
+  const int all = padded<Real>(below);
   if (k == 0) {
-    subtract_product<K, true>(p, ld, pivots, below, below, front.update, below);
+    subtract_product<K, true>(p, ld, pivots, below, all, front.update, all);
   } else {
-    subtract_product<K, false>(p, ld, pivots, below, below, front.update, below);
+    subtract_product<K, false>(p, ld, pivots, below, all, front.update, all);
   }
   return K;
 }
@@ -139,46 +188,42 @@ template <int K, class Real>
 void substitute_forward(const Real* l, Distance ld, int n, Real* w) {
   Real x[K];
 #pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) {
-    x[c] = w[c];
+  for (int c = 0; c < K; ++c) x[c] = w[c];
 #pragma GCC unroll 8
-    for (int k = 0; k < c; ++k) x[c] -= l[k * ld + c] * x[k];
+  for (int c = 0; c < K; ++c) {
+#pragma GCC unroll 8
+    for (int r = c + 1; r < K; ++r) x[r] -= l[c * ld + r] * x[c];
   }
 #pragma GCC unroll 8
   for (int c = 0; c < K; ++c) w[c] = x[c];
-#pragma GCC ivdep  // L is not written
-  for (int i = K; i < n; ++i) {
-    Real sum = w[i];
+  for (int i = K; i < n; i += lanes<Real>) {
+    auto sum = lanes_at(w + i);
 #pragma GCC unroll 8
-    for (int c = 0; c < K; ++c) sum -= l[c * ld + i] * x[c];
-    w[i] = sum;
+    for (int c = 0; c < K; ++c) sum -= lanes_at(l + c * ld + i) * x[c];
+    lanes_at(w + i) = sum;
   }
 }
 
 // K columns of back substitution: the rows below, then the triangle.
 template <int K, class Real>
 void substitute_back(const Real* l, Distance ld, int n, Real* w) {
-  constexpr int width = lanes<Real>;
-  Real sum[K][width] = {};
-  int i = K;
-  for (; i + width <= n; i += width) {
+  typename Vector<Real>::type sum[K] = {};
+  for (int i = K; i < n; i += lanes<Real>) {
+    const auto& value = lanes_at(w + i);
 #pragma GCC unroll 8
-    for (int c = 0; c < K; ++c) {
-      for (int lane = 0; lane < width; ++lane) sum[c][lane] += l[c * ld + i + lane] * w[i + lane];
-    }
+    for (int c = 0; c < K; ++c) sum[c] += lanes_at(l + c * ld + i) * value;
   }
   Real x[K];
 #pragma GCC unroll 8
   for (int c = 0; c < K; ++c) {
     Real total = 0;
-    for (const Real part : sum[c]) total += part;
-    for (int r = i; r < n; ++r) total += l[c * ld + r] * w[r];
+    for (int lane = 0; lane < lanes<Real>; ++lane) total += sum[c][lane];
     x[c] = w[c] - total;
   }
 #pragma GCC unroll 8
   for (int c = K - 1; c >= 0; --c) {
 #pragma GCC unroll 8
-    for (int r = c + 1; r < K; ++r) x[c] -= l[c * ld + r] * x[r];
+    for (int r = 0; r < c; ++r) x[r] -= l[r * ld + c] * x[c];
     w[c] = x[c];
   }
 }
@@ -240,6 +285,20 @@ struct Analysis {
   Analysis& operator=(const Analysis&) = delete;
 };
 
+// All panels of a front, and where column c of row 0 is among them.
+template <class Real>
+std::size_t panels_size(int rows, int columns) {
+  const int last = (columns - 1) / panel * panel;
+  return static_cast<std::size_t>(panel_at<Real>(rows, last) +
+                                  (columns - last) * panel_ld<Real>(columns - last, rows - last));
+}
+template <class Real>
+Distance column_at(int rows, int columns, int c) {
+  const int k = c / panel * panel;
+  return panel_at<Real>(rows, k) +
+         Distance{c - k} * panel_ld<Real>(std::min(panel, columns - k), rows - k) - k;
+}
+
 std::size_t as_size(int i) { return static_cast<std::size_t>(i); }
 std::size_t square(int n) { return as_size(n) * as_size(n); }
 
@@ -279,13 +338,13 @@ void MultifrontalCholesky<Real>::find_fronts() {
     front.rows = start[s + 1] - start[s];
     front.rows_at = rows_.size();
     front.factor_at = factor_size;
-    factor_size += as_size(front.columns) * as_size(front.rows);
+    factor_size += panels_size<Real>(front.rows, front.columns);
     rows_.insert(rows_.end(), row + start[s] + front.columns, row + start[s + 1]);
     most_rows = std::max(most_rows, front.rows);
     fronts_.push_back(front);
   }
-  factor_.resize(factor_size);
-  front_rows_.resize(as_size(most_rows));
+  factor_.resize(factor_size + lanes<Real>);  // groups of rows below may begin anywhere
+  front_rows_.resize(as_size(most_rows + lanes<Real>));
   if constexpr (!std::is_same_v<Real, double>) rounded_.resize(as_size(pattern_.n));
 }
 
@@ -297,10 +356,11 @@ void MultifrontalCholesky<Real>::place_entries() {
     front.entries_begin = pattern_.column_start[as_size(front.first_column)];
     front.entries_end = pattern_.column_start[as_size(end)];
     for (int column = front.first_column; column < end; ++column) {
-      const int base = (column - front.first_column) * front.rows;
+      const Distance base = column_at<Real>(front.rows, front.columns, column - front.first_column);
       for (int e = pattern_.column_start[as_size(column)];
            e < pattern_.column_start[as_size(column) + 1]; ++e)
-        entry_place_[as_size(e)] = base + place_in(front, pattern_.row_index[as_size(e)]);
+        entry_place_[as_size(e)] =
+            static_cast<int>(base + place_in(front, pattern_.row_index[as_size(e)]));
     }
   }
 }
@@ -351,12 +411,12 @@ void MultifrontalCholesky<Real>::place_updates() {
   bool postordered = true;
   for (Front& front : fronts_) {
     front.update_at = top[front.stack];
-    top[front.stack] += square(front.below());
+    top[front.stack] += square(padded<Real>(front.below()));
     most[front.stack] = std::max(most[front.stack], top[front.stack]);
     std::size_t dropped = 0, lowest = top[1 - front.stack];
     for (int c = front.children_begin; c < front.children_end; ++c) {
       const Front& child = fronts_[as_size(children_[as_size(c)])];
-      dropped += square(child.below());
+      dropped += square(padded<Real>(child.below()));
       lowest = std::min(lowest, child.update_at);
     }
     postordered = postordered && top[1 - front.stack] - lowest == dropped;
@@ -366,26 +426,10 @@ void MultifrontalCholesky<Real>::place_updates() {
     most[0] = most[1] = 0;
     for (Front& front : fronts_) {
       front.update_at = most[front.stack];
-      most[front.stack] += square(front.below());
+      most[front.stack] += square(padded<Real>(front.below()));
     }
   }
   for (const int i : {0, 1}) updates_[i].resize(most[i]);
-}
-
-// Columns [begin, end) of the child's update matrix into a part of the parent's front that begins
-// at the front's row and column `origin`.
-template <class Real>
-void MultifrontalCholesky<Real>::add_update(const Front& child, int begin, int end, Real* into,
-                                            Distance ld, int origin) const {
-  const int* place = parent_place_.data() + child.rows_at;
-  const int below = child.below();
-  const Real* from = updates_[child.stack].data() + child.update_at + Distance{begin} * below;
-  for (int c = begin; c < end; ++c, from += below) {
-    const Distance base = (place[c] - origin) * ld - origin;
-#pragma GCC ivdep  // places differ
-#pragma GCC unroll 4
-    for (int i = c; i < below; ++i) into[base + place[i]] += from[i];
-  }
 }
 
 template <class Real>
@@ -393,23 +437,44 @@ bool MultifrontalCholesky<Real>::factor() {
   for (const Front& front : fronts_) {
     Real* columns = factor_.data() + front.factor_at;
     Real* update = updates_[front.stack].data() + front.update_at;
-    std::fill_n(columns, as_size(front.columns) * as_size(front.rows), Real{0});
+    std::fill_n(columns, panels_size<Real>(front.rows, front.columns), Real{0});
     for (int e = front.entries_begin; e < front.entries_end; ++e)
       columns[entry_place_[as_size(e)]] = static_cast<Real>(values_[as_size(e)]);
     const int* const children_end = children_.data() + front.children_end;
     const int* const children = children_.data() + front.children_begin;
     for (const int* c = children; c < children_end; ++c) {
       const Front& child = fronts_[as_size(*c)];
-      add_update(child, 0, child.own_of_parent, columns, front.rows, 0);
+      add_update(child, 0, child.own_of_parent, [&](int place) {
+        return columns + column_at<Real>(front.rows, front.columns, place);
+      });
     }
     if (!eliminate_columns(front, columns, update)) return false;
     for (const int* c = children; c < children_end; ++c) {
       const Front& child = fronts_[as_size(*c)];
-      add_update(child, child.own_of_parent, child.below(), update, front.below(), front.columns);
+      add_update(child, child.own_of_parent, child.below(), [&](int place) {
+        return update + (place - front.columns) * Distance{padded<Real>(front.below())} -
+               front.columns;
+      });
     }
   }
   failed_column_ = -1;
   return true;
+}
+
+// Columns [begin, end) of a child's update matrix, to where into(row of the parent's front) begins.
+template <class Real>
+template <class Into>
+void MultifrontalCholesky<Real>::add_update(const Front& child, int begin, int end,
+                                            Into into) const {
+  const int* place = parent_place_.data() + child.rows_at;
+  const int below = child.below();
+  const Distance ld = padded<Real>(below);
+  const Real* from = updates_[child.stack].data() + child.update_at + begin * ld;
+  for (int c = begin; c < end; ++c, from += ld) {
+    Real* column = into(place[c]);
+#pragma GCC unroll 4
+    for (int i = c; i < below; ++i) column[place[i]] += from[i];
+  }
 }
 
 template <class Real>
@@ -456,8 +521,8 @@ void MultifrontalCholesky<Real>::substitute(Real* rhs) {
     std::fill_n(w + front.columns, front.below(), Real{0});
     for (int k = 0; k < front.columns; k += panel) {
       const int width = std::min(panel, front.columns - k);
-      forward_of_width<Real>[width](l + k * Distance{front.rows} + k, front.rows, front.rows - k,
-                                    w + k);
+      forward_of_width<Real>[width](l + panel_at<Real>(front.rows, k),
+                                    panel_ld<Real>(width, front.rows - k), front.rows - k, w + k);
     }
     std::copy_n(w, front.columns, x);
     const Real* below = w + front.columns;
@@ -472,10 +537,11 @@ void MultifrontalCholesky<Real>::substitute(Real* rhs) {
     std::copy_n(x, front.columns, w);
     Real* below = w + front.columns;
     for (int i = 0; i < front.below(); ++i) below[i] = rhs[row[i]];
+    std::fill_n(below + front.below(), lanes<Real>, Real{0});
     for (int k = (front.columns - 1) / panel * panel; k >= 0; k -= panel) {
       const int width = std::min(panel, front.columns - k);
-      back_of_width<Real>[width](l + k * Distance{front.rows} + k, front.rows, front.rows - k,
-                                 w + k);
+      back_of_width<Real>[width](l + panel_at<Real>(front.rows, k),
+                                 panel_ld<Real>(width, front.rows - k), front.rows - k, w + k);
     }
     std::copy_n(w, front.columns, x);
   }

@@ -15,8 +15,10 @@
 // children's, the last ones on the other, are read and dropped.
 //
 // The dense steps take panels of up to eight columns, whose number is a template argument: eight
-// columns of the panel against four of the target in one loop over rows, which the compiler turns
-// into vector instructions of any width.
+// columns of the panel against four of the target in one loop over rows, four doubles (eight
+// floats) at once, by the compiler's vector types. Panels lie one after the other, each without the
+// rows above it, and have room for whole groups of rows: most fronts are so small that a loop's
+// remainder would cost more than the loop.
 #pragma once
 
 #include "spd_solver.h"
@@ -38,8 +40,8 @@ class MultifrontalCholesky final : public SpdSolver {
   bool factor() override;
   void solve(double* rhs) override;
   double reciprocal_condition() const override;
-  // Those of L itself; what is stored and computed is about half as much again, for whole
-  // rectangles.
+  // Those of L itself; what is stored is about a third more, for whole groups of rows and merged
+  // supernodes.
   double factor_nonzeros() const override { return nonzeros_; }
   double factor_flops() const override { return flops_; }
   // After factor() returned false: the column whose pivot was too small.
@@ -61,8 +63,8 @@ class MultifrontalCholesky final : public SpdSolver {
   void link_fronts();
   void place_updates();
   int place_in(const Front& front, int row) const;
-  void add_update(const Front& child, int begin, int end, Real* into, std::ptrdiff_t ld,
-                  int origin) const;
+  template <class Into>
+  void add_update(const Front& child, int begin, int end, Into into) const;
   bool eliminate_columns(const Front& front, Real* columns, Real* update);
   void substitute(Real* rhs);
 
@@ -73,7 +75,7 @@ class MultifrontalCholesky final : public SpdSolver {
   std::vector<int> entry_place_;  // of A's entries in their front's columns
   std::vector<int> children_;
   std::vector<int> parent_place_;  // of each of rows_ in the parent's front
-  std::vector<Real> factor_;       // of each front columns x rows, column by column
+  std::vector<Real> factor_;       // the fronts' panels
   std::vector<Real> updates_[2];   // the stacks
   std::vector<Real> pivots_;       // of L D L^T
   std::vector<Real> front_rows_;   // solve(): one number a row of a front
