@@ -23,8 +23,9 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double g = 9.81;
 
-const std::set<std::string> current_direction{"fast_projection", "fast_projection_bdf2",
-                                              "fast_projection_bdf2opt", "icd"};
+const std::set<std::string> current_direction{"fast_projection", "fast_projection_smoothed",
+                                              "fast_projection_bdf2", "fast_projection_bdf2opt",
+                                              "icd"};
 const std::set<std::string> start_direction{"shake", "rattle"};
 const std::set<std::string> strain_limiting{"jacobi", "gauss_seidel", "gauss_seidel_colored"};
 const std::set<std::string> springs{"implicit_springs"};

@@ -5,10 +5,12 @@
 namespace inextensible {
 namespace {
 
-std::string choose(std::string_view wanted, const SymmetricPattern& pattern) {
+std::string choose(std::string_view wanted, const SymmetricPattern& pattern,
+                   ConstraintSystem::Digits digits) {
   if (wanted != "auto") return std::string(wanted);
   if (pattern.entries() == 2 * pattern.n - 1 && pattern.tridiagonal()) return "tridiagonal";
-  return pattern.n < ConstraintSystem::hybrid_rows ? "fixed_pattern" : "hybrid";
+  if (pattern.n >= ConstraintSystem::hybrid_rows) return "hybrid";
+  return digits == ConstraintSystem::Digits::few ? "fixed_pattern_mixed" : "fixed_pattern";
 }
 
 // Without fill, or with an order of its own.
@@ -19,11 +21,11 @@ bool in_natural_order(std::string_view solver) {
 }  // namespace
 
 ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
-                                   std::string_view linear_solver) {
+                                   std::string_view linear_solver, Digits digits) {
   const auto natural = SymmetricPattern::Triangle::upper;
   edges_ = std::make_unique<EdgeConstraints>(problem, strain_limit);
   schur_ = std::make_unique<SchurComplement>(*edges_, problem.vertices(), natural);
-  solver_name_ = choose(linear_solver, schur_->pattern());
+  solver_name_ = choose(linear_solver, schur_->pattern(), digits);
   if (!in_natural_order(solver_name_)) {
     edges_ = std::make_unique<EdgeConstraints>(problem, strain_limit,
                                                fill_reducing_order(schur_->pattern()));

@@ -16,9 +16,11 @@ class ConstraintSystem {
  public:
   // linear_solver: a name of make_spd_solver, or "auto": tridiagonal for a chain, else
   // fixed_pattern, which is the fastest factorization from some 200 rows on (kernels measures it),
-  // and from hybrid_rows on hybrid. For factorizations edges are renumbered once, so that none
-  // permutes.
-  ConstraintSystem(const Problem& problem, double strain_limit, std::string_view linear_solver);
+  // or fixed_pattern_mixed where solves are going to ask for few digits, and from hybrid_rows on
+  // hybrid. For factorizations edges are renumbered once, so that none permutes.
+  enum class Digits { all, few };
+  ConstraintSystem(const Problem& problem, double strain_limit, std::string_view linear_solver,
+                   Digits digits = Digits::all);
 
   const EdgeConstraints& edges() const { return *edges_; }
   const SchurComplement& schur() const { return *schur_; }

@@ -30,18 +30,26 @@ constexpr int patience = 8;
 constexpr double overshoot = 1e8;
 constexpr double inner_band = 0.6;  // of the permissible one
 constexpr double first_forcing = 1e-2, least_forcing = 1e-8, damped_forcing = 1e-4;
+constexpr double smoothing_target = 0.5, over_relaxation = 1.4;
 constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1e8;
 
 }  // namespace
 
 FastProjection::FastProjection(const Problem& problem, const Settings& settings)
-    : system_(problem, settings.strain_limit, settings.linear_solver),
+    : system_(problem, settings.strain_limit, settings.linear_solver,
+              ConstraintSystem::Digits::few),
       max_iterations_(settings.max_iterations),
       min_iterations_(settings.min_iterations),
+      smoothing_sweeps_(settings.smoothing_sweeps),
       best_(3, problem.vertices()),
       u_(3, problem.constraints()),
       mu_(problem.constraints()),
-      excess_(problem.constraints()) {}
+      excess_(problem.constraints()) {
+  if (smoothing_sweeps_ > 0 && system_.solver_name() != "tridiagonal") {
+    sweep_ = std::make_unique<StrainSweep>(
+        StrainSweep::by_mass(problem, {settings.strain_limit, smoothing_target}, over_relaxation));
+  }
+}
 
 StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
                                  WorkCounters& work) {
@@ -65,7 +73,18 @@ StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Pos
         !system_.solve(mu_, work, forcing))  // (7)
       return damped(j, x, work);
     edges.apply(u_, mu_, x);  // (5)
+    if (sweep_) smooth(x, work);
   }
+}
+
+void FastProjection::smooth(Positions& x, WorkCounters& work) {
+  sweep_->load(x);
+  for (int i = 0; i < smoothing_sweeps_; ++i) {
+    const std::int64_t corrected = sweep_->in_turn();
+    work.edge_projections += corrected;
+    if (corrected == 0) break;
+  }
+  sweep_->store(x);
 }
 
 // From best_ on; j iterations are done.

@@ -2,7 +2,10 @@
 // constraint manifold.
 #pragma once
 
+#include <memory>
+
 #include "constraint_system.h"
+#include "strain_sweep.h"
 
 namespace inextensible {
 
@@ -14,6 +17,10 @@ class FastProjection final : public VelocityFilter {
     // Iterations even where the candidate is permissible already: one keeps slack within the limit
     // from building up over steps, at the price of a solve in steps that would need none.
     int min_iterations = 0;
+    // Colored Gauss-Seidel sweeps after each projection, at most. A projection sees the whole
+    // cloth, but only to first order; most of what it leaves is local, and cheaper to mend by
+    // sweeps. Not on chains, where a projection costs no more than some sweeps.
+    int smoothing_sweeps = 0;
     std::string_view linear_solver = "auto";
   };
   FastProjection(const Problem& problem, const Settings& settings);
@@ -22,15 +29,17 @@ class FastProjection final : public VelocityFilter {
   double reciprocal_condition() const override { return system_.reciprocal_condition(); }
 
  private:
+  void smooth(Positions& x, WorkCounters& work);
   StepResult damped(int j, Positions& x, WorkCounters& work);
   double damped_prediction(double damping) const;
 
   ConstraintSystem system_;
-  int max_iterations_, min_iterations_;
-  Positions best_;          // x_j of least constraint error
-  Eigen::Matrix3Xd u_;      // gradient of C at x_j
-  Eigen::VectorXd mu_;      // C(x_j), then h^2 dlambda
-  Eigen::VectorXd excess_;  // C~ of a damped iteration
+  int max_iterations_, min_iterations_, smoothing_sweeps_;
+  std::unique_ptr<StrainSweep> sweep_;  // with smoothing only
+  Positions best_;                      // x_j of least constraint error
+  Eigen::Matrix3Xd u_;                  // gradient of C at x_j
+  Eigen::VectorXd mu_;                  // C(x_j), then h^2 dlambda
+  Eigen::VectorXd excess_;              // C~ of a damped iteration
 };
 
 }  // namespace inextensible

@@ -8,24 +8,11 @@
 #include "gauss_seidel_colored.h"
 
 namespace inextensible {
-namespace {
-
-StrainSweep make_sweep(const Problem& problem, const EdgeConstraints& edges,
-                       const GaussSeidelColored::Settings& settings) {
-  std::vector<double> share_a(edges.wa), share_b(edges.wb);
-  for (std::size_t k = 0; k < share_a.size(); ++k) {
-    share_a[k] = settings.relaxation * (edges.wa[k] / (edges.wa[k] + edges.wb[k]));
-    share_b[k] = settings.relaxation - share_a[k];
-  }
-  return {problem, {settings.strain_limit, settings.target}, share_a, share_b};
-}
-
-}  // namespace
-
 GaussSeidelColored::GaussSeidelColored(const Problem& problem, const Settings& settings)
     : edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
-      sweep_(make_sweep(problem, edges_, settings)) {}
+      sweep_(StrainSweep::by_mass(problem, {settings.strain_limit, settings.target},
+                                  settings.relaxation)) {}
 
 StepResult GaussSeidelColored::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
                                      WorkCounters& work) {

@@ -79,7 +79,7 @@ std::unique_ptr<Stepper> make_icd(Shared problem, const BackendOptions& o) {
 
 FastProjection::Settings fast_projection_settings(const BackendOptions& o) {
   return {o.strain_limit, integer(o, "max_iterations"), integer(o, "min_iterations"),
-          word(o, "linear_solver")};
+          integer(o, "smoothing_sweeps"), word(o, "linear_solver")};
 }
 
 std::unique_ptr<Stepper> make_fast_projection(Shared problem, const BackendOptions& o) {
@@ -119,12 +119,15 @@ const SettingInfo target{
     "target", 0.0, "a corrected edge is brought to this fraction of the strain limit, 0 to 1"};
 constexpr const char* least_iterations =
     "projections a step even where the candidate is permissible; 1 keeps slack from building up";
+constexpr const char* smoothing = "smoothing_sweeps";
+constexpr const char* smoothing_meaning =
+    "colored Gauss-Seidel sweeps after each projection, at most; none on chains";
 const SettingInfo spd_solver{
     "linear_solver",
     "auto",
     "factorization of J W J^T, or conjugate gradients",
-    {"auto", "tridiagonal", "fixed_pattern", "fixed_pattern_single", "line_cg", "hybrid",
-     "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}};
+    {"auto", "tridiagonal", "fixed_pattern", "fixed_pattern_single", "fixed_pattern_mixed",
+     "line_cg", "hybrid", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal"}};
 
 std::vector<Backend> built_in() {
   return {
@@ -182,13 +185,28 @@ std::vector<Backend> built_in() {
        "Algorithm 1 of Goldenthal et al. 2007",
        Knob::strain_limit,
        true,
-       {projections, {"min_iterations", 0.0, least_iterations}, spd_solver},
+       {projections,
+        {"min_iterations", 0.0, least_iterations},
+        {smoothing, 0.0, smoothing_meaning},
+        spd_solver},
+       make_fast_projection},
+      {"fast_projection_smoothed",
+       "the same, each projection followed by some colored Gauss-Seidel sweeps",
+       Knob::strain_limit,
+       true,
+       {projections,
+        {"min_iterations", 0.0, least_iterations},
+        {smoothing, 30.0, smoothing_meaning},
+        spd_solver},
        make_fast_projection},
       {"fast_projection_bdf2",
        "fast projection inside the two-step formula BDF2: second order",
        Knob::strain_limit,
        true,
-       {projections, {"min_iterations", 1.0, least_iterations}, spd_solver},
+       {projections,
+        {"min_iterations", 1.0, least_iterations},
+        {smoothing, 30.0, smoothing_meaning},
+        spd_solver},
        make_fast_projection_bdf2},
       {"rattle",
        "SHAKE with velocities projected as well (Andersen 1983): second order, no damping",
@@ -202,6 +220,7 @@ std::vector<Backend> built_in() {
        false,
        {projections,
         {"min_iterations", 1.0, least_iterations},
+        {smoothing, 30.0, smoothing_meaning},
         {"blend", 0.48, "of BDF3 in the formula, 0 to 0.48 (A-stable)"},
         spd_solver},
        make_fast_projection_bdf2opt},

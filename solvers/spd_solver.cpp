@@ -9,6 +9,7 @@
 #include "fixed_pattern_cholesky.h"
 #include "hybrid_spd_solver.h"
 #include "line_cg_solver.h"
+#include "mixed_cholesky.h"
 #include "tridiagonal_solver.h"
 
 namespace inextensible {
@@ -53,6 +54,7 @@ std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPatte
   if (name == "fixed_pattern") return std::make_unique<FixedPatternCholesky>(std::move(pattern));
   if (name == "fixed_pattern_single")
     return std::make_unique<MultifrontalCholesky<float>>(std::move(pattern));
+  if (name == "fixed_pattern_mixed") return std::make_unique<MixedCholesky>(std::move(pattern));
   if (name == "line_cg") return std::make_unique<LineCgSolver>(std::move(pattern));
   if (name == "hybrid") return std::make_unique<HybridSpdSolver>(std::move(pattern));
   throw std::invalid_argument("no linear solver '" + std::string(name) + "'");

@@ -72,9 +72,9 @@ class SpdSolver {
 SymmetricPattern::Triangle triangle_of(std::string_view solver);
 
 // name: tridiagonal, block_tridiagonal (3 x 3 blocks; each for such patterns only), eigen_ldlt,
-// cholmod_simplicial, cholmod_supernodal, fixed_pattern, fixed_pattern_single; not direct: line_cg,
-// hybrid. Throws std::invalid_argument for another name or a pattern that the solver cannot
-// take.
+// cholmod_simplicial, cholmod_supernodal, fixed_pattern, fixed_pattern_single, fixed_pattern_mixed;
+// not direct: line_cg, hybrid. Throws std::invalid_argument for another name or a pattern that the
+// solver cannot take.
 std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern);
 
 // An elimination order with little fill: order[i] is the row that comes i-th. The better of AMD and

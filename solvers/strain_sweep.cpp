@@ -93,6 +93,18 @@ StrainSweep::StrainSweep(const Problem& problem, const StrainBand& band,
   }
 }
 
+StrainSweep StrainSweep::by_mass(const Problem& problem, const StrainBand& band,
+                                 double relaxation) {
+  std::vector<double> share_a, share_b;
+  for (const Edge& edge : problem.edges()) {
+    const double wa = problem.inverse_mass()[static_cast<std::size_t>(edge.a)];
+    const double wb = problem.inverse_mass()[static_cast<std::size_t>(edge.b)];
+    share_a.push_back(relaxation * (wa / (wa + wb)));
+    share_b.push_back(relaxation - share_a.back());
+  }
+  return {problem, band, share_a, share_b};
+}
+
 std::int64_t StrainSweep::in_turn() { return sweep<true>(x_); }
 
 std::int64_t StrainSweep::at_once() {

@@ -32,6 +32,9 @@ class StrainSweep {
   StrainSweep(const Problem& problem, const StrainBand& band, const std::vector<double>& share_a,
               const std::vector<double>& share_b);
 
+  // The shares of Gauss-Seidel: by inverse mass, times `relaxation`.
+  static StrainSweep by_mass(const Problem& problem, const StrainBand& band, double relaxation);
+
   // Positions (3 x n) in and out. store() leaves pinned vertices alone.
   void load(const Positions& x) { edges_.load(x, x_); }
   void store(Positions& x) const { edges_.store(x_, x); }

@@ -4,11 +4,13 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "edge_constraints.h"
 #include "fixed_pattern_cholesky.h"
 #include "kkt_system.h"
+#include "mixed_cholesky.h"
 #include "projected_cg.h"
 #include "random_graph.h"
 #include "schur_complement.h"
@@ -132,10 +134,78 @@ TEST(FixedPatternCholesky, InSinglePrecisionRefusesPivotsWithoutDigits) {
   }
 }
 
+// What is left of a refused matrix, NaN included, must not reach the next one: fronts share memory.
+TEST(FixedPatternCholesky, ForgetsAMatrixThatItRefused) {
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const auto graph = random_graph(random, 60, 40, 5, 1e-2);
+    const EdgeConstraints natural(*graph.problem, 0.01);
+    const SchurComplement unordered(natural, 60, SymmetricPattern::Triangle::upper);
+    const EdgeConstraints edges(*graph.problem, 0.01, fill_reducing_order(unordered.pattern()));
+    const SchurComplement schur(edges, 60, SymmetricPattern::Triangle::lower);
+    Eigen::Matrix3Xd u(3, edges.count());
+    edges.gradient(graph.x, u);
+    FixedPatternCholesky used(schur.pattern()), fresh(schur.pattern());
+    for (int bad = edges.count() - 1; bad > 0; bad /= 2) {
+      schur.assemble(u, used.values());
+      const int diagonal = schur.pattern().diagonal(bad);
+      used.values()[diagonal] = std::numeric_limits<double>::quiet_NaN();
+      EXPECT_FALSE(used.factor());
+      used.values()[diagonal] = -std::numeric_limits<double>::infinity();
+      EXPECT_FALSE(used.factor());
+    }
+    schur.assemble(u, used.values());
+    schur.assemble(u, fresh.values());
+    ASSERT_TRUE(used.factor() && fresh.factor());
+    Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(edges.count(), -1, 2), y = x;
+    used.solve(x.data());
+    fresh.solve(y.data());
+    EXPECT_EQ(x, y);
+  }
+}
+
+// Graphs with edges so nearly parallel that single precision has few digits, or none.
+TEST(MixedCholesky, KeepsWhatItIsAskedForInWhicheverPrecisionItTakes) {
+  int in_double = 0, in_single = 0;
+  for (std::uint64_t seed = 0; seed < 5 * seeds; ++seed) {
+    for (const double bend : {1.0, 1e-1, 1e-2, 1e-3}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", bend " + std::to_string(bend));
+      Random random(seed);
+      const auto graph = random_graph(random, 60, 40, 5, 1e-2);
+      Positions x = graph.x;
+      x.bottomRows(2) *= bend;  // towards a line
+      const EdgeConstraints natural(*graph.problem, 0.01);
+      const SchurComplement unordered(natural, 60, SymmetricPattern::Triangle::upper);
+      const EdgeConstraints edges(*graph.problem, 0.01, fill_reducing_order(unordered.pattern()));
+      const SchurComplement schur(edges, 60, SymmetricPattern::Triangle::lower);
+      Eigen::Matrix3Xd u(3, edges.count());
+      edges.gradient(x, u);
+      MixedCholesky solver(schur.pattern());
+      FixedPatternCholesky exact(schur.pattern());
+      schur.assemble(u, solver.values());
+      schur.assemble(u, exact.values());
+      ASSERT_EQ(solver.factor(), exact.factor());
+      const Eigen::MatrixXd matrix = dense_symmetric(schur.pattern(), solver.values());
+      for (const double tolerance : {1e-2, 1e-5, 1e-9}) {
+        const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(
+            matrix.rows(), [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
+        Eigen::VectorXd found = b;
+        ASSERT_TRUE(solver.solve_within(tolerance, found.data()));
+        EXPECT_LE((matrix * found - b).norm(),
+                  tolerance * b.norm() + 1e-14 * matrix.norm() * found.norm());
+        ++(solver.in_double_precision() ? in_double : in_single);
+      }
+    }
+  }
+  EXPECT_GT(in_double, 0);
+  EXPECT_GT(in_single, 0);
+}
+
 // A positive diagonal does not make a matrix positive definite: [1 2; 2 1] has eigenvalue -1.
 TEST(SpdSolver, RefusesAnIndefiniteMatrixWithAPositiveDiagonal) {
   for (const char* name : {"tridiagonal", "eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal",
-                           "fixed_pattern", "fixed_pattern_single"}) {
+                           "fixed_pattern", "fixed_pattern_single", "fixed_pattern_mixed"}) {
     SCOPED_TRACE(name);
     SymmetricPattern pattern;
     pattern.n = 3;
