@@ -553,6 +553,16 @@ double MultifrontalCholesky<Real>::reciprocal_condition() const {
   return double{*low} / double{*high};
 }
 
+template <class Real>
+double MultifrontalCholesky<Real>::least_relative_pivot() const {
+  double least = 1;
+  for (int i = 0; i < pattern_.n; ++i) {
+    const double diagonal = values_[as_size(pattern_.diagonal(i))];
+    least = std::min(least, double{pivots_[as_size(i)]} / diagonal);
+  }
+  return least;
+}
+
 template class MultifrontalCholesky<double>;
 template class MultifrontalCholesky<float>;
 

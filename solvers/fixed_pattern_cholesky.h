@@ -44,6 +44,10 @@ class MultifrontalCholesky final : public SpdSolver {
   // supernodes.
   double factor_nonzeros() const override { return nonzeros_; }
   double factor_flops() const override { return flops_; }
+  // Of the last successful factorization: the smallest pivot over the diagonal entry that it came
+  // from. Unlike reciprocal_condition() it does not see how rows are scaled, as the solve's
+  // accuracy does not.
+  double least_relative_pivot() const;
   // After factor() returned false: the column whose pivot was too small.
   int failed_column() const { return failed_column_; }
 

@@ -16,17 +16,7 @@ GaussSeidelColored::GaussSeidelColored(const Problem& problem, const Settings& s
 
 StepResult GaussSeidelColored::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
                                      WorkCounters& work) {
-  sweep_.load(x);
-  for (int sweeps = 0;; ++sweeps) {
-    const bool gives_up = sweeps == max_iterations_ || (sweeps % 64 == 63 && !sweep_.finite());
-    const std::int64_t projections = gives_up ? 0 : sweep_.in_turn();
-    work.edge_projections += projections;
-    if (projections > 0) continue;
-    sweep_.store(x);
-    if (edges_.permissible(x)) return {Status::ok, sweeps};
-    return refuse(Status::not_converged, sweeps, edges_, x,
-                  gives_up ? "sweep limit" : "an edge has no length");
-  }
+  return sweep_.limit(StrainSweep::Order::in_turn, max_iterations_, edges_, x, work);
 }
 
 }  // namespace inextensible

@@ -8,7 +8,7 @@ namespace inextensible {
 namespace {
 
 // The residual after one solve, relative to the right-hand side, is some roundings times the
-// matrix's condition, of which the pivots are an estimate.
+// condition of the matrix scaled to a unit diagonal, of which the pivots are an estimate.
 constexpr double roundings = 4 * std::numeric_limits<float>::epsilon();
 constexpr int most_refinements = 6;  // each gains more than two digits, or the factor is no good
 
@@ -30,7 +30,9 @@ MixedCholesky::MixedCholesky(SymmetricPattern pattern)
 bool MixedCholesky::factor() {
   single_.set_least_pivot(least_pivot_);
   in_double_ = !single_.factor();
-  return !in_double_ || factor_in_double();
+  if (in_double_) return factor_in_double();
+  accuracy_ = roundings / single_.least_relative_pivot();
+  return true;
 }
 
 bool MixedCholesky::factor_in_double() {
@@ -42,7 +44,7 @@ bool MixedCholesky::factor_in_double() {
 
 bool MixedCholesky::solve_within(double tolerance, double* rhs) {
   if (!in_double_) {
-    const bool enough = tolerance * single_.reciprocal_condition() >= roundings;
+    const bool enough = accuracy_ <= tolerance;
     if (!enough) std::copy_n(rhs, pattern_.n, rhs_.data());
     single_.solve(rhs);
     if (enough || refine(tolerance, rhs)) return true;

@@ -38,6 +38,7 @@ class MixedCholesky final : public SpdSolver {
   MultifrontalCholesky<double> double_;
   std::vector<double> rhs_, residual_;
   bool in_double_ = false;
+  double accuracy_ = 0;  // of a solve in single precision, as the pivots promise it
 };
 
 }  // namespace inextensible

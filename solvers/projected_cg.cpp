@@ -19,6 +19,9 @@
 
 namespace inextensible {
 
+// Of J D^-1 J^T: what a projection leaves of J p, the next Newton step takes up.
+constexpr double projection_tolerance = 1e-4;
+
 std::vector<int> elimination_order(const Problem& problem) {
   const EdgeConstraints natural(problem, 1);
   return fill_reducing_order(
@@ -120,10 +123,14 @@ bool ProjectedCg::factor_directly(WorkCounters& work) {
 
 // r -= J^T q.
 void ProjectedCg::subtract_gradients(const Eigen::VectorXd& q, Positions& r) const {
-  for (std::size_t k = 0; k < edges_.a.size(); ++k) {
-    const auto e = static_cast<Eigen::Index>(k);
-    r.col(edges_.a[k]) += q[e] * u_->col(e);
-    r.col(edges_.b[k]) -= q[e] * u_->col(e);
+  const double* u = u_->data();
+  for (std::size_t k = 0; k < edges_.a.size(); ++k, u += 3) {
+    const double qk = q[static_cast<Eigen::Index>(k)];
+    double *ra = r.data() + 3 * edges_.a[k], *rb = r.data() + 3 * edges_.b[k];
+    for (int i = 0; i < 3; ++i) {
+      ra[i] += qk * u[i];
+      rb[i] -= qk * u[i];
+    }
   }
 }
 
@@ -139,18 +146,18 @@ void ProjectedCg::apply_hessian(const Positions& p, Positions& y) const {
 }
 
 // [ D J^T; J 0 ] [ p; q ] = [ r; c ], c = 0 if there is none: q = (J D^-1 J^T)^-1 (J D^-1 r - c),
-// p = D^-1 (r - J^T q).
-void ProjectedCg::precondition(const Positions& r, const Eigen::VectorXd* c, Positions& p,
+// r -= J^T q, p = D^-1 r.
+bool ProjectedCg::precondition(Positions& r, const Eigen::VectorXd* c, Positions& p,
                                Eigen::VectorXd& q, WorkCounters& work) {
   const auto metric = inverse_metric_.head(problem_.vertices());
   p = r * metric.asDiagonal();
   edges_.rate(*u_, p, q);
   if (c) q -= *c;
-  solver_->solve(q.data());
   ++work.back_solves;
-  p = r;
-  subtract_gradients(q, p);
-  p = p * metric.asDiagonal();
+  if (!solver_->solve_within(projection_tolerance, q.data())) return false;
+  subtract_gradients(q, r);
+  p = r * metric.asDiagonal();
+  return true;
 }
 
 bool ProjectedCg::solve(const Positions& r, const Eigen::VectorXd& c, Positions& p,
@@ -174,10 +181,10 @@ ProjectedCg::Outcome ProjectedCg::finish(Positions& p) const {
 
 ProjectedCg::Outcome ProjectedCg::iterate(const Positions& r, const Eigen::VectorXd& c,
                                           Positions& p, Eigen::VectorXd& q, WorkCounters& work) {
-  precondition(r, &c, p, q, work);
+  residual_ = r;
+  if (!precondition(residual_, &c, p, q, work)) return Outcome::failed;
   apply_hessian(p, image_);
-  residual_ = r - image_;
-  subtract_gradients(q, residual_);
+  residual_ -= image_;
   // |p|^2 in the norm of D.
   double size = 0;
   for (int v = 0; v < problem_.vertices(); ++v)
@@ -185,9 +192,8 @@ ProjectedCg::Outcome ProjectedCg::iterate(const Positions& r, const Eigen::Vecto
   const double goal = settings_.tolerance * settings_.tolerance * size;
   double error = 0;  // of the last iteration
   for (int i = 0;; ++i) {
-    precondition(residual_, nullptr, correction_, dq_, work);
+    if (!precondition(residual_, nullptr, correction_, dq_, work)) return Outcome::failed;
     q += dq_;
-    subtract_gradients(dq_, residual_);
     const double next_error = correction_.cwiseProduct(residual_).sum();
     if (next_error <= goal) return finish(p);
     if (!std::isfinite(next_error) || i == settings_.max_iterations) return Outcome::failed;

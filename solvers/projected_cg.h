@@ -18,7 +18,7 @@ class ProjectedCg final : public KktSolver {
   struct Settings {
     double tolerance = 0.1;  // of the step, in the norm of the preconditioner
     int max_iterations = 100;
-    std::string_view linear_solver = "fixed_pattern";  // for J D^-1 J^T
+    std::string_view linear_solver = "fixed_pattern_mixed";  // for J D^-1 J^T
   };
   // edges: best in elimination_order.
   ProjectedCg(const Problem& problem, const EdgeConstraints& edges, const Settings& settings);
@@ -46,7 +46,7 @@ class ProjectedCg final : public KktSolver {
   Outcome iterate(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
                   WorkCounters& work);
   Outcome finish(Positions& p) const;
-  void precondition(const Positions& r, const Eigen::VectorXd* c, Positions& p, Eigen::VectorXd& q,
+  bool precondition(Positions& r, const Eigen::VectorXd* c, Positions& p, Eigen::VectorXd& q,
                     WorkCounters& work);
   void apply_hessian(const Positions& p, Positions& y) const;
   void subtract_gradients(const Eigen::VectorXd& q, Positions& r) const;

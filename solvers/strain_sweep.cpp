@@ -105,6 +105,21 @@ StrainSweep StrainSweep::by_mass(const Problem& problem, const StrainBand& band,
   return {problem, band, share_a, share_b};
 }
 
+StepResult StrainSweep::limit(Order order, int most_sweeps, const EdgeConstraints& edges,
+                              Positions& x, WorkCounters& work) {
+  load(x);
+  for (int sweeps = 0;; ++sweeps) {
+    const bool gives_up = sweeps == most_sweeps || (sweeps % 64 == 63 && !finite());
+    const std::int64_t corrected = gives_up ? 0 : order == Order::in_turn ? in_turn() : at_once();
+    work.edge_projections += corrected;
+    if (corrected > 0) continue;
+    store(x);
+    if (edges.permissible(x)) return {Status::ok, sweeps};
+    return refuse(Status::not_converged, sweeps, edges, x,
+                  gives_up ? "sweep limit" : "an edge has no length");
+  }
+}
+
 std::int64_t StrainSweep::in_turn() { return sweep<true>(x_); }
 
 std::int64_t StrainSweep::at_once() {

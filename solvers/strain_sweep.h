@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "colored_edges.h"
+#include "constraint_system.h"
 
 namespace inextensible {
 
@@ -39,6 +40,13 @@ class StrainSweep {
   void load(const Positions& x) { edges_.load(x, x_); }
   void store(Positions& x) const { edges_.store(x_, x); }
   bool finite() const { return x_.allFinite(); }
+
+  // Sweeps until one finds nothing to correct, at most `most_sweeps`; the last one, which is the
+  // test of convergence, is not counted. Refuses x if an edge (of `edges`, in any order) is still
+  // beyond its limit.
+  enum class Order { in_turn, at_once };
+  StepResult limit(Order order, int most_sweeps, const EdgeConstraints& edges, Positions& x,
+                   WorkCounters& work);
 
   // One sweep; returns how many edges it corrected. An edge of no length has no direction to be
   // corrected along and counts as none.

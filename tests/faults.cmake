@@ -40,7 +40,7 @@ with_fault(gauss_seidel.cpp "  for (int sweeps = 0;; ++sweeps) {" "  const Delay
 with_fault(fast_projection.cpp "  for (int j = 0, best_j = 0;; ++j) {" "  int extra = 0;\n  for (int j = 0, best_j = 0;; ++j) {")
 with_fault(fast_projection.cpp "j >= min_iterations_)" "j >= min_iterations_ && extra++ > 0)")
 # Jacobi: gives up after three sweeps.
-with_fault(jacobi.cpp "sweeps == max_iterations_" "sweeps == 3")
+with_fault(jacobi.cpp "max_iterations_(settings.max_iterations)" "max_iterations_(3)")
 
 # The copies come first, so that the archive's members of that name are not taken.
 add_executable(bench_with_faults ${fault_sources} $<TARGET_OBJECTS:bench>)
