@@ -1,6 +1,7 @@
 // kernels: the inner pieces of a step, timed one by one by Google Benchmark, so that the cost of a
 // step can be explained from its parts. Names: piece/solver/scene:n. Matrices are those of a cloth
-// in mid-drape and a chain in mid-swing, at the positions that a filter gets. Items are constrained
+// in mid-drape (above 150 vertices a side soon after its start) and a chain in mid-swing, at the
+// positions that a filter gets. Items are constrained
 // edges, or vertices. collision_pass and the solves include a copy of their input, a few percent.
 // floor/...: what the core can do at best. floor_ratio holds a sweep of strain limiting against the
 // square root and the division that an edge costs at least; of_peak and of_bandwidth hold flops of
@@ -57,7 +58,7 @@ const Moment& moment(const std::string& scene, int n) {
   m.h = scene == "drape" ? 0.005 : std::min(0.001, 1.0 / n);
   m.state = m.scene.start;
   const auto stepper = make_stepper("fast_projection", m.scene.problem, {});
-  const int wanted = n > 200000 ? 4 : 40;
+  const int wanted = n > (scene == "drape" ? 150 : 200000) ? 4 : 40;
   int steps = 0;
   while (steps < wanted && stepper->advance(m.state, m.h)) ++steps;
   if (steps < wanted)
@@ -132,12 +133,28 @@ void linear_solver(benchmark::State& state, const std::string& name, bool solve,
   const auto rate = [](double a) { return Counter(a, Counter::kIsIterationInvariantRate); };
   state.counters["nnz_L"] = l.solver->factor_nonzeros();
   if (solve) {
-    const double bytes = l.solver->factor_nonzeros() * sizeof(double);
+    const bool single = name == "fixed_pattern_single" || name == "fixed_pattern_mixed";
+    const double bytes = l.solver->factor_nonzeros() * (single ? sizeof(float) : sizeof(double));
     state.counters["of_bandwidth"] = rate(2 * bytes / harness::read_bandwidth(bytes));
   } else {
     state.counters["flops"] = rate(l.solver->factor_flops());
     state.counters["of_peak"] = rate(l.solver->factor_flops() / harness::peak_flops());
   }
+}
+
+// What a projection asks of a linear solver, to the digits that it asks for.
+void whole_system(benchmark::State& state, const std::string& name, int n) {
+  const Moment& m = moment("drape", n);
+  const Linearized l(m, name);
+  Eigen::VectorXd x = l.c;
+  while (state.KeepRunning()) {
+    l.system.schur().assemble(l.u, l.solver->values());
+    x = l.c;
+    if (!l.solver->factor() || !l.solver->solve_within(1e-2, x.data()))
+      return state.SkipWithError("not positive definite");
+    benchmark::ClobberMemory();
+  }
+  per_item(state, m.problem().constraints());
 }
 
 // What no sweep that corrects every edge can go below: a square root and a division an edge,
@@ -245,7 +262,7 @@ void floor_multiply_add(benchmark::State& state) {
 // includes refinement, or the conjugate gradients to ICD's own tolerance.
 void kkt(benchmark::State& state, const std::string& solver, bool solve, int n) {
   const Moment& m = moment("drape", n);
-  const Linearized l(m, "auto");
+  const Linearized l(m, "fixed_pattern");
   const EdgeConstraints& edges = l.system.edges();
   std::unique_ptr<KktSolver> system;
   if (solver == "projected_cg") {
@@ -301,6 +318,13 @@ benchmark::internal::Benchmark* add(const std::string& name,
   return benchmark::RegisterBenchmark(name.c_str(), body)->Unit(benchmark::kMicrosecond);
 }
 
+void register_systems(int n, const std::vector<std::string>& solvers) {
+  for (const std::string& name : solvers) {
+    add("assemble_factor_solve/" + name + "/drape:" + std::to_string(n),
+        [=](benchmark::State& s) { whole_system(s, name, n); });
+  }
+}
+
 void register_scene(const std::string& scene, int n, const std::vector<std::string>& solvers) {
   using State = benchmark::State;
   const std::string at = "/" + scene + ":" + std::to_string(n);
@@ -351,10 +375,13 @@ int main(int argc, char** argv) {
     add("floor/stream_read/KiB:" + std::to_string(kib),
         [=](benchmark::State& s) { floor_read(s, 1024 * kib); });
   for (const int n : {80, 1000, 100000, 1000000}) register_scene("chain", n, {"tridiagonal"});
-  for (const int n : {15, 31, 71, 101})
-    register_scene("drape", n,
-                   {"eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern",
-                    "fixed_pattern_single", "line_cg"});
+  const std::vector<std::string> solvers{"eigen_ldlt",           "cholmod_simplicial",
+                                         "cholmod_supernodal",   "fixed_pattern",
+                                         "fixed_pattern_single", "line_cg"};
+  for (const int n : {15, 31, 71, 101}) register_scene("drape", n, solvers);
+  for (const int n : {15, 31, 71, 101, 201, 501})
+    register_systems(n, {"eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern",
+                         "fixed_pattern_mixed", "line_cg"});
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

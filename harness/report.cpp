@@ -74,7 +74,7 @@ void Progress::finish() {
 
 namespace {
 
-constexpr int name_width = 21;
+constexpr int name_width = 26;
 
 // s; adaptive: the mean one.
 double step_length(const PointResult& point) {
@@ -187,7 +187,7 @@ void print_growth(std::ostream& out, const std::vector<const PointResult*>& poin
       {"memory (GiB)",
        [](const PointResult& p) { return number_text(p.peak_rss_bytes / (1 << 30), 3); }},
   }};
-  constexpr int cell_width = 19;
+  constexpr int cell_width = 22;
   out << "growth of the time a step with vertices (exponent, 95 % interval), and the largest "
          "size:\n"
       << std::left << std::setw(name_width) << "" << std::setw(cell_width) << "exponent"

@@ -195,7 +195,7 @@ StabilityOutcome run_stability(const std::vector<HardCase>& cases, const Stabili
 }
 
 void print_stability(std::ostream& out, const StabilityOutcome& outcome) {
-  constexpr int row_width = 21, cell_width = 17;
+  constexpr int row_width = 26, cell_width = 17;
   const auto table = [&](const std::string& title, const std::vector<std::string>& rows,
                          const std::vector<std::string>& columns, auto text) {
     if (rows.empty()) return;

@@ -39,7 +39,7 @@ TABLE: dict[str, SolverStyle] = {
     "shake": SolverStyle("SHAKE", GREEN, "D", (8, 2), size=4.6),
     "icd": SolverStyle("ICD (implicit constraint direction)", PURPLE, "X", (3, 1.2), size=6.3),
     "fast_projection": SolverStyle("fast projection", BLUE, "o", (), width=2.0),
-    "fast_projection_smoothed": SolverStyle("fast projection, smoothed by sweeps", BLUE, "p", (4, 1), width=1.6, size=6.5),
+    "fast_projection_smoothed": SolverStyle("fast projection, smoothed", BLUE, "p", (4, 1), width=1.6, size=6.5),
     "fast_projection_bdf2": SolverStyle("fast projection in BDF2", BLUE, "h", (2, 1, 2, 4), width=1.6, size=6.5),
     "fast_projection_bdf2opt": SolverStyle("fast projection in BDF2 with BDF3", VERMILLION, "H", (4, 1, 1, 1), width=1.6, size=6.5),
     "rattle": SolverStyle("RATTLE (SHAKE with velocities)", GREEN, "d", (2, 2), size=6),
