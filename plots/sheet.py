@@ -17,7 +17,7 @@ from style import ALARM, SolverStyle
 PNG_DPI = 150
 
 # All lengths in inches. Placing by hand keeps the panels' size the same, however long caption and legend are.
-LEFT, GAP, RIGHT = 1.2, 0.75, 0.2
+LEFT, GAP, RIGHT = 1.45, 0.75, 0.2
 MAIN_WIDTH, LEGEND_WIDTH = 4.5, 2.8
 MAIN_HEIGHT, STEPS_HEIGHT, ROW_HEIGHT = 3.3, 1.7, 0.16
 BETWEEN, X_LABEL, LINE_HEIGHT = 0.14, 0.5, 0.15
