@@ -1,6 +1,7 @@
 #include "scene.h"
 
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 #include <sstream>
 
@@ -186,6 +187,31 @@ std::pair<int, int> count_cloth(const SceneParameters& p) {
   return {n * n, 2 * n * (n - 1)};
 }
 
+using ParameterInfos = std::vector<SceneParameterInfo>;
+
+ParameterInfos cloth_parameters(int n) {
+  return {
+      {"n", static_cast<double>(n), "vertices along each side", 2, 4000, true},
+      {"side", 1, "m", 0, 1e6},
+      {"mass", 0.2, "total, kg", 0, 1e6},
+      {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
+      {"shear", 0.1, "spring stiffness on both diagonals of each quad, N/m; 0: no springs at all",
+       -1e-300, 1e9}};
+}
+
+ParameterInfos sphere_parameters() {
+  return {{"radius", 0.25, "of the sphere, m; 0: no collider at all", -1e-300, 1e6},
+          {"subdivisions", 3, "of the icosahedron; 3: 1,280 triangles", 0, 6, true},
+          {"gap", 0.001, "between sphere and cloth at the start, m", -1e-300, 1e6},
+          {"friction", 0.3, "Coulomb coefficient", -1e-300, 1e3}};
+}
+
+ParameterInfos joined(std::initializer_list<ParameterInfos> parts) {
+  ParameterInfos all;
+  for (const ParameterInfos& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 const std::vector<SceneType>& table() {
   static const std::vector<SceneType> rows = {
       {"chain",
@@ -201,52 +227,19 @@ const std::vector<SceneType>& table() {
          const int n = static_cast<int>(p.at("n"));
          return std::pair(n, n - 1);
        }},
-      {"drape",
-       "a square of cloth that falls onto a polygonal sphere",
-       "n",
-       {{"n", 71, "vertices along each side", 2, 4000, true},
-        {"side", 1, "m", 0, 1e6},
-        {"mass", 0.2, "total, kg", 0, 1e6},
-        {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
-        {"shear", 0.1, "spring stiffness on both diagonals of each quad, N/m; 0: no springs at all",
-         -1e-300, 1e9},
-        {"radius", 0.25, "of the sphere, m; 0: no collider at all", -1e-300, 1e6},
-        {"subdivisions", 3, "of the icosahedron; 3: 1,280 triangles", 0, 6, true},
-        {"gap", 0.001, "between sphere and cloth at the start, m", -1e-300, 1e6},
-        {"friction", 0.3, "Coulomb coefficient", -1e-300, 1e3},
-        {"duration", 1, "s", 0, 1e4}},
-       build_drape,
-       count_cloth},
+      {"drape", "a square of cloth that falls onto a polygonal sphere", "n",
+       joined({cloth_parameters(71), sphere_parameters(), {{"duration", 1, "s", 0, 1e4}}}),
+       build_drape, count_cloth},
       {"folded_drape",
-       "the drape, from a start in folds that shear it: as hard as mid-fall, at any size",
-       "n",
-       {{"n", 71, "vertices along each side", 2, 4000, true},
-        {"side", 1, "m", 0, 1e6},
-        {"mass", 0.2, "total, kg", 0, 1e6},
-        {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
-        {"shear", 0.1, "spring stiffness on both diagonals of each quad, N/m; 0: no springs at all",
-         -1e-300, 1e9},
-        {"folds", 0.8, "slope of three waves each way, rad; 0: flat", -1e-300, 1.2},
-        {"speed", 0, "downwards, at the start, m/s", -1e4, 1e4},
-        {"radius", 0.25, "of the sphere, m; 0: no collider at all", -1e-300, 1e6},
-        {"subdivisions", 3, "of the icosahedron; 3: 1,280 triangles", 0, 6, true},
-        {"gap", 0.001, "between sphere and cloth at the start, m", -1e-300, 1e6},
-        {"friction", 0.3, "Coulomb coefficient", -1e-300, 1e3},
-        {"duration", 0.02, "s", 0, 1e4}},
-       build_drape,
-       count_cloth},
-      {"patch",
-       "a square of cloth, pinned at two corners of one edge, swings down (Figure 1)",
-       "n",
-       {{"n", 31, "vertices along each side", 2, 4000, true},
-        {"side", 1, "m", 0, 1e6},
-        {"mass", 0.2, "total, kg", 0, 1e6},
-        {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
-        {"shear", 0.1, "spring stiffness on both diagonals of each quad, N/m; 0: no springs at all",
-         -1e-300, 1e9},
-        {"duration", 1, "s", 0, 1e4}},
-       build_patch,
-       count_cloth},
+       "the drape, from a start in folds that shear it: as hard as mid-fall, at any size", "n",
+       joined({cloth_parameters(71),
+               {{"folds", 0.8, "slope of three waves each way, rad; 0: flat", -1e-300, 1.2},
+                {"speed", 0, "downwards, at the start, m/s", -1e4, 1e4}},
+               sphere_parameters(),
+               {{"duration", 0.02, "s", 0, 1e4}}}),
+       build_drape, count_cloth},
+      {"patch", "a square of cloth, pinned at two corners of one edge, swings down (Figure 1)", "n",
+       joined({cloth_parameters(31), {{"duration", 1, "s", 0, 1e4}}}), build_patch, count_cloth},
       {"taut_row",
        "a straight chain between two pins at its full length: J W J^T is singular",
        "n",
