@@ -1,8 +1,8 @@
 // kernels: the inner pieces of a step, timed one by one by Google Benchmark, so that the cost of a
 // step can be explained from its parts. Names: piece/solver/scene:n. Matrices are those of a cloth
 // in mid-drape (above 150 vertices a side soon after its start) and a chain in mid-swing, at the
-// positions that a filter gets. Items are constrained
-// edges, or vertices. collision_pass and the solves include a copy of their input, a few percent.
+// positions that a filter gets. Items are constrained edges, or vertices. collision_pass and the
+// solves include a copy of their input, a few percent.
 // floor/...: what the core can do at best. floor_ratio holds a sweep of strain limiting against the
 // square root and the division that an edge costs at least; of_peak and of_bandwidth hold flops of
 // a factorization against the peak, and bytes of the factor, read twice by a solve, against the
@@ -133,7 +133,7 @@ void linear_solver(benchmark::State& state, const std::string& name, bool solve,
   const auto rate = [](double a) { return Counter(a, Counter::kIsIterationInvariantRate); };
   state.counters["nnz_L"] = l.solver->factor_nonzeros();
   if (solve) {
-    const bool single = name == "fixed_pattern_single" || name == "fixed_pattern_mixed";
+    const bool single = name == "fixed_pattern_single";
     const double bytes = l.solver->factor_nonzeros() * (single ? sizeof(float) : sizeof(double));
     state.counters["of_bandwidth"] = rate(2 * bytes / harness::read_bandwidth(bytes));
   } else {

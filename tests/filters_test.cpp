@@ -195,8 +195,6 @@ TEST(FastProjection, FirstIterationIsIcdsFirstNewtonIteration) {
   }
 }
 
-// Theorem 1: ICD's solution extremizes the M-norm distance to the candidate over {C = 0}.
-// Perturbations along the null space of J, pulled back onto the manifold, must not come closer.
 // Where sweeps pay, they replace projections; the step ends where it would have ended, as far as
 // the limit says where that is.
 TEST(FastProjection, SmoothedTakesFewerProjectionsToNearlyTheSamePlace) {
@@ -224,6 +222,8 @@ TEST(FastProjection, SmoothedTakesFewerProjectionsToNearlyTheSamePlace) {
   EXPECT_LT(smoothed_projections, 0.8 * projections);
 }
 
+// Theorem 1: ICD's solution extremizes the M-norm distance to the candidate over {C = 0}.
+// Perturbations along the null space of J, pulled back onto the manifold, must not come closer.
 TEST(Icd, SolutionIsTheClosestPointOfTheManifold) {
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -49,9 +49,7 @@ TEST(SpdSolver, IsBackwardStableOnGraphsOfUnequalMassesInTheFillReducingOrder) {
       SCOPED_TRACE(name + ", seed " + std::to_string(seed));
       Random random(seed);
       const auto graph = random_graph(random, 60, 40, 5, 1e-4);
-      const EdgeConstraints natural(*graph.problem, 0.01);
-      const SchurComplement unordered(natural, 60, SymmetricPattern::Triangle::upper);
-      const EdgeConstraints edges(*graph.problem, 0.01, fill_reducing_order(unordered.pattern()));
+      const EdgeConstraints edges(*graph.problem, 0.01, elimination_order(*graph.problem));
       const SchurComplement schur(edges, 60, triangle_of(name));
       Eigen::Matrix3Xd u(3, edges.count());
       edges.gradient(graph.x, u);
@@ -140,9 +138,7 @@ TEST(FixedPatternCholesky, ForgetsAMatrixThatItRefused) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const auto graph = random_graph(random, 60, 40, 5, 1e-2);
-    const EdgeConstraints natural(*graph.problem, 0.01);
-    const SchurComplement unordered(natural, 60, SymmetricPattern::Triangle::upper);
-    const EdgeConstraints edges(*graph.problem, 0.01, fill_reducing_order(unordered.pattern()));
+    const EdgeConstraints edges(*graph.problem, 0.01, elimination_order(*graph.problem));
     const SchurComplement schur(edges, 60, SymmetricPattern::Triangle::lower);
     Eigen::Matrix3Xd u(3, edges.count());
     edges.gradient(graph.x, u);
@@ -175,9 +171,7 @@ TEST(MixedCholesky, KeepsWhatItIsAskedForInWhicheverPrecisionItTakes) {
       const auto graph = random_graph(random, 60, 40, 5, 1e-2);
       Positions x = graph.x;
       x.bottomRows(2) *= bend;  // towards a line
-      const EdgeConstraints natural(*graph.problem, 0.01);
-      const SchurComplement unordered(natural, 60, SymmetricPattern::Triangle::upper);
-      const EdgeConstraints edges(*graph.problem, 0.01, fill_reducing_order(unordered.pattern()));
+      const EdgeConstraints edges(*graph.problem, 0.01, elimination_order(*graph.problem));
       const SchurComplement schur(edges, 60, SymmetricPattern::Triangle::lower);
       Eigen::Matrix3Xd u(3, edges.count());
       edges.gradient(x, u);
