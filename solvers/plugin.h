@@ -26,8 +26,9 @@
 #include <iterator>
 #include <span>
 
-#include "constraint_system.h"
-#include "registry.h"
+#include "inextensible/registry.h"
+#include "inextensible/stepping/velocity_filter.h"
+#include "inextensible/systems/constraint_system.h"
 
 // Counts up whenever these headers change what a plug-in relies on.
 #define INEXTENSIBLE_PLUGIN_ABI 2

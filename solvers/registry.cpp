@@ -1,20 +1,20 @@
-#include "registry.h"
+#include "inextensible/registry.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "bdf2_stepper.h"
-#include "dense_reference.h"
-#include "fast_projection.h"
-#include "gauss_seidel.h"
-#include "gauss_seidel_colored.h"
-#include "icd.h"
-#include "implicit_springs.h"
-#include "jacobi.h"
-#include "rattle.h"
-#include "shake.h"
-#include "unconstrained.h"
+#include "inextensible/methods/dense_oracle.h"
+#include "inextensible/methods/fast_projection.h"
+#include "inextensible/methods/gauss_seidel.h"
+#include "inextensible/methods/gauss_seidel_colored.h"
+#include "inextensible/methods/icd.h"
+#include "inextensible/methods/implicit_springs.h"
+#include "inextensible/methods/jacobi.h"
+#include "inextensible/methods/null_filter.h"
+#include "inextensible/methods/rattle.h"
+#include "inextensible/methods/shake.h"
+#include "inextensible/stepping/bdf2_stepper.h"
 
 namespace inextensible {
 namespace {

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "stepper.h"
+#include "inextensible/stepping/stepper.h"
 
 namespace inextensible {
 

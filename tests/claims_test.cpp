@@ -1,6 +1,6 @@
 // Verdicts on the paper's claims follow from points by the stated rules: invented points in, known
 // verdicts out.
-#include "claims.h"
+#include "harness/claims/claims.h"
 
 #include <gtest/gtest.h>
 

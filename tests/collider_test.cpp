@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "inextensible/problem/triangle_collider.h"
 #include "random_mesh.h"
-#include "triangle_collider.h"
 
 namespace inextensible {
 namespace {

@@ -1,6 +1,6 @@
 // Colored edges over grids, chains, random graphs and stars: every edge once, no vertex twice in a
 // color; sweeps over them against loops over the problem's own edges, written out.
-#include "colored_edges.h"
+#include "inextensible/methods/colored_edges.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,10 @@
 #include <map>
 #include <set>
 
-#include "constraint_system.h"
+#include "inextensible/methods/strain_pass.h"
+#include "inextensible/registry.h"
+#include "inextensible/systems/constraint_system.h"
 #include "random_graph.h"
-#include "registry.h"
-#include "strain_sweep.h"
 
 namespace inextensible {
 namespace {

@@ -1,6 +1,6 @@
 // The statistics of a comparison against scipy's numbers and against themselves; its verdicts, its
 // gate, its baseline and its reports.
-#include "comparison.h"
+#include "harness/compare/comparison.h"
 
 #include <gtest/gtest.h>
 
@@ -9,13 +9,13 @@
 #include <fstream>
 #include <random>
 
-#include "comparison_report.h"
-#include "context.h"
-#include "files.h"
-#include "point_json.h"
-#include "result_file.h"
-#include "statistics.h"
-#include "usage_error.h"
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/statistics.h"
+#include "harness/compare/comparison_report.h"
+#include "harness/points/context.h"
+#include "harness/points/point_json.h"
+#include "harness/points/result_file.h"
 
 namespace harness {
 namespace {

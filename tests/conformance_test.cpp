@@ -1,6 +1,6 @@
 // `bench check` must tell sound solvers from broken ones, and say what is broken: each solver here
 // is fast projection with one fault, and fails the check that is meant for it and no other.
-#include "conformance.h"
+#include "harness/stability/conformance.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <map>
 #include <set>
 
-#include "fast_projection.h"
-#include "registry.h"
-#include "stability.h"
+#include "harness/stability/stability.h"
+#include "inextensible/methods/fast_projection.h"
+#include "inextensible/registry.h"
 
 namespace inextensible {
 namespace {

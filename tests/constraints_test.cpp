@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "edge_constraints.h"
-#include "eigen_ldlt_solver.h"
+#include "inextensible/linear/eigen_ldlt.h"
+#include "inextensible/linear/lu.h"
+#include "inextensible/problem/edge_constraints.h"
+#include "inextensible/systems/schur_complement.h"
 #include "random_mesh.h"
-#include "schur_complement.h"
-#include "unsymmetric_solver.h"
 
 namespace inextensible {
 namespace {

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <vector>
 
-#include "bdf2_stepper.h"
-#include "fast_projection.h"
-#include "fit.h"
-#include "forces.h"
-#include "pendulum.h"
-#include "reference.h"
-#include "registry.h"
-#include "scene.h"
+#include "harness/base/fit.h"
+#include "harness/judge/reference.h"
+#include "harness/scenes/pendulum.h"
+#include "harness/scenes/scene.h"
+#include "inextensible/methods/fast_projection.h"
+#include "inextensible/problem/forces.h"
+#include "inextensible/registry.h"
+#include "inextensible/stepping/bdf2_stepper.h"
 
 namespace harness {
 namespace {

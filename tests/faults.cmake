@@ -7,18 +7,18 @@ function(with_fault file from to)
   if(copy IN_LIST fault_sources)  # another fault in the same file
     file(READ ${copy} text)
   else()
-    file(READ ${PROJECT_SOURCE_DIR}/solvers/${file} text)
+    file(READ ${PROJECT_SOURCE_DIR}/solvers/methods/${file} text)
   endif()
   string(FIND "${text}" "${from}" place)
   if(place EQUAL -1)
-    message(FATAL_ERROR "tests/faults.cmake: solvers/${file} no longer holds '${from}'")
+    message(FATAL_ERROR "tests/faults.cmake: solvers/methods/${file} no longer holds '${from}'")
   endif()
   string(REPLACE "${from}" "${to}" text "${text}")
   file(CONFIGURE OUTPUT ${copy} CONTENT "${text}" @ONLY)  # touched only if it changes
   list(APPEND fault_sources ${copy})
   list(REMOVE_DUPLICATES fault_sources)
   set(fault_sources ${fault_sources} PARENT_SCOPE)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/solvers/${file})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/solvers/methods/${file})
 endfunction()
 
 set(fault_sources)
@@ -44,5 +44,4 @@ with_fault(jacobi.cpp "max_iterations_(settings.max_iterations)" "max_iterations
 
 # The copies come first, so that the archive's members of that name are not taken.
 add_executable(bench_with_faults ${fault_sources} $<TARGET_OBJECTS:bench>)
-target_include_directories(bench_with_faults PRIVATE ${PROJECT_SOURCE_DIR}/solvers)
-target_link_libraries(bench_with_faults PRIVATE inextensible_harness)
+target_link_libraries(bench_with_faults PRIVATE harness)

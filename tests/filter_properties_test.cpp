@@ -7,10 +7,10 @@
 #include <bit>
 #include <cmath>
 
-#include "edge_constraints.h"
-#include "fast_projection.h"
+#include "inextensible/methods/fast_projection.h"
+#include "inextensible/problem/edge_constraints.h"
+#include "inextensible/registry.h"
 #include "random_graph.h"
-#include "registry.h"
 
 namespace inextensible {
 namespace {

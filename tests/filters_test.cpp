@@ -6,11 +6,11 @@
 #include <bit>
 #include <cmath>
 
-#include "dense_reference.h"
-#include "fast_projection.h"
-#include "icd.h"
+#include "inextensible/methods/dense_oracle.h"
+#include "inextensible/methods/fast_projection.h"
+#include "inextensible/methods/icd.h"
+#include "inextensible/registry.h"
 #include "random_mesh.h"
-#include "registry.h"
 
 namespace inextensible {
 namespace {

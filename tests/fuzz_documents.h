@@ -4,11 +4,11 @@
 
 #include <string>
 
-#include "claims.h"
-#include "result_file.h"
-#include "suite.h"
-#include "sweep.h"
-#include "usage_error.h"
+#include "harness/base/errors.h"
+#include "harness/claims/claims.h"
+#include "harness/points/result_file.h"
+#include "harness/points/suite.h"
+#include "harness/run/sweep.h"
 
 namespace harness::testing {
 

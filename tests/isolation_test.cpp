@@ -1,5 +1,5 @@
 // Points in child processes: whatever a child does to itself is one point's status.
-#include "isolation.h"
+#include "harness/run/isolation.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -10,9 +10,10 @@
 #include <fstream>
 #include <thread>
 
-#include "child_process.h"
-#include "hard_case.h"
-#include "point_json.h"
+#include "harness/base/child_process.h"
+#include "harness/points/point_json.h"
+#include "harness/stability/hard_case.h"
+#include "harness/stability/trial_isolation.h"
 
 namespace harness {
 namespace {

@@ -1,9 +1,9 @@
 // Job scripts as text; tests/emit_test.sh and tests/slurm_test.sh run them.
-#include "job_script.h"
+#include "harness/run/job_script.h"
 
 #include <gtest/gtest.h>
 
-#include "usage_error.h"
+#include "harness/base/errors.h"
 
 namespace harness {
 namespace {

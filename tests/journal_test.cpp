@@ -1,5 +1,5 @@
 // Journals and shards: whatever a sweep is cut into, its parts are the whole.
-#include "journal.h"
+#include "harness/run/journal.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -9,11 +9,11 @@
 #include <fstream>
 #include <random>
 
-#include "files.h"
-#include "merge.h"
-#include "point_json.h"
-#include "result_file.h"
-#include "usage_error.h"
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/points/point_json.h"
+#include "harness/points/result_file.h"
+#include "harness/run/merge.h"
 
 namespace harness {
 namespace {

@@ -6,10 +6,10 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "fast_projection.h"
-#include "hybrid_spd_solver.h"
+#include "inextensible/linear/hybrid.h"
+#include "inextensible/methods/fast_projection.h"
+#include "inextensible/systems/schur_complement.h"
 #include "random_mesh.h"
-#include "schur_complement.h"
 
 namespace inextensible {
 namespace {

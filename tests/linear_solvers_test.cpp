@@ -7,14 +7,14 @@
 #include <limits>
 #include <utility>
 
-#include "edge_constraints.h"
-#include "fixed_pattern_cholesky.h"
-#include "kkt_system.h"
-#include "mixed_cholesky.h"
-#include "projected_cg.h"
+#include "inextensible/linear/lu.h"
+#include "inextensible/linear/mixed_cholesky.h"
+#include "inextensible/linear/multifrontal_cholesky.h"
+#include "inextensible/problem/edge_constraints.h"
+#include "inextensible/systems/kkt_system.h"
+#include "inextensible/systems/projected_cg.h"
+#include "inextensible/systems/schur_complement.h"
 #include "random_graph.h"
-#include "schur_complement.h"
-#include "unsymmetric_solver.h"
 
 namespace inextensible {
 namespace {

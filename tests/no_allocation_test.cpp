@@ -6,8 +6,8 @@
 #include <atomic>
 #include <cstdlib>
 
-#include "registry.h"
-#include "scene.h"
+#include "harness/scenes/scene.h"
+#include "inextensible/registry.h"
 
 namespace {
 std::atomic<long> allocations{0};

@@ -1,5 +1,5 @@
 // Interleaved pairs with a fake clock: no process runs here.
-#include "pairs.h"
+#include "harness/compare/pairs.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 // loads them.
 #include <stdexcept>
 
-#include "plugin.h"
-#include "unconstrained.h"
+#include "inextensible/methods/null_filter.h"
+#include "inextensible/plugin.h"
 
 namespace {
 

@@ -5,10 +5,10 @@
 
 #include <cstdlib>
 
-#include "constraint_system.h"
+#include "harness/stability/trial_judge.h"
+#include "inextensible/registry.h"
+#include "inextensible/systems/constraint_system.h"
 #include "random_graph.h"
-#include "registry.h"
-#include "witness.h"
 
 namespace inextensible {
 namespace {

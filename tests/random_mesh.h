@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <random>
 
-#include "problem.h"
+#include "inextensible/problem/problem.h"
 
 namespace inextensible::testing {
 

@@ -1,6 +1,6 @@
 // References: the pendulum in angles against closed forms and against the dense equations of
 // motion, and what is stored.
-#include "reference.h"
+#include "harness/judge/reference.h"
 
 #include <gsl/gsl_sf_ellint.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <fstream>
 #include <random>
 
-#include "pendulum.h"
-#include "usage_error.h"
+#include "harness/base/errors.h"
+#include "harness/scenes/pendulum.h"
 
 namespace harness {
 namespace {

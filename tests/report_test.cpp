@@ -1,5 +1,5 @@
 // What a sweep prints at its end: how time grows with size.
-#include "report.h"
+#include "harness/run/report.h"
 
 #include <gtest/gtest.h>
 

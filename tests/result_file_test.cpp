@@ -1,5 +1,5 @@
 // Every written file fits configs/result.schema.json, every suite fits configs/suite.schema.json.
-#include "result_file.h"
+#include "harness/points/result_file.h"
 
 #include <gtest/gtest.h>
 
@@ -12,14 +12,14 @@
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
 
-#include "baseline.h"
-#include "context.h"
-#include "files.h"
-#include "gate.h"
-#include "point_json.h"
-#include "stability.h"
-#include "sweep.h"
-#include "usage_error.h"
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/compare/baseline.h"
+#include "harness/compare/gate.h"
+#include "harness/points/context.h"
+#include "harness/points/point_json.h"
+#include "harness/run/sweep.h"
+#include "harness/stability/stability.h"
 
 namespace harness {
 namespace {

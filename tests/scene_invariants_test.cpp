@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "forces.h"
-#include "registry.h"
-#include "scene.h"
+#include "harness/scenes/scene.h"
+#include "inextensible/problem/forces.h"
+#include "inextensible/registry.h"
 
 namespace harness {
 namespace {

@@ -1,6 +1,6 @@
 // Scenes against design.md, the pendulum's exact solution, and the counters of the issue's
 // throw-away program.
-#include "scene.h"
+#include "harness/scenes/scene.h"
 
 #include <gsl/gsl_fit.h>
 #include <gsl/gsl_sf_ellint.h>
@@ -9,11 +9,11 @@
 
 #include <cmath>
 
-#include "edge_constraints.h"
-#include "forces.h"
-#include "registry.h"
-#include "schur_complement.h"
-#include "triangle_collider.h"
+#include "inextensible/problem/edge_constraints.h"
+#include "inextensible/problem/forces.h"
+#include "inextensible/problem/triangle_collider.h"
+#include "inextensible/registry.h"
+#include "inextensible/systems/schur_complement.h"
 
 namespace harness {
 namespace {

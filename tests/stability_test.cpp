@@ -1,5 +1,5 @@
 // The hard cases: the witness sees what it is there to see, and the outcomes that theory fixes.
-#include "stability.h"
+#include "harness/stability/stability.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "witness.h"
+#include "harness/stability/trial_judge.h"
 
 namespace {
 

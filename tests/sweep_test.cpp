@@ -1,12 +1,12 @@
 // The step search and the interleaved repetitions, with a fake clock: no solver runs here.
-#include "sweep.h"
+#include "harness/run/sweep.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
 
-#include "usage_error.h"
+#include "harness/base/errors.h"
 
 namespace harness {
 namespace {

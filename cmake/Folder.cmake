@@ -1,0 +1,33 @@
+# A folder of sources is a target of its own and sees only the folders that it names: an include of any other does not compile.
+#
+#   add_folder(linear SOURCES spd_solver.cpp tridiagonal.cpp USES problem LINKS SuiteSparse::CHOLMOD)
+#
+# SOURCES  of the folder that lies beside the calling CMakeLists.txt
+# USES     folders added before, with all that they use
+# LINKS    libraries, for this folder's sources alone
+# Headers are included as <prefix>/<folder>/<file>, where `folder_prefix` is the caller's ("inextensible" or "harness"); that is
+# how they are installed too. In the build folder a link for each target shows its headers alone under that name.
+function(add_folder folder)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;USES;LINKS")
+  set(target ${folder_prefix}_${folder})
+  list(TRANSFORM arg_SOURCES PREPEND ${folder}/)
+  list(TRANSFORM arg_USES PREPEND ${folder_prefix}_)
+  add_library(${target} ${folder_library_type} ${arg_SOURCES})
+  folder_headers(${target} ${folder})
+  target_link_libraries(${target} PUBLIC ${folder_base} ${arg_USES} PRIVATE ${arg_LINKS} project_warnings)
+endfunction()
+
+# The include path of a folder's headers; without a folder, of those that lie beside the calling CMakeLists.txt.
+function(folder_headers target)
+  set(root ${PROJECT_BINARY_DIR}/include/${target})
+  file(MAKE_DIRECTORY ${root}/${folder_prefix})
+  if(ARGN)
+    set(names ${ARGN})
+  else()
+    file(GLOB names RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.h)
+  endif()
+  foreach(name IN LISTS names)
+    file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${name} ${root}/${folder_prefix}/${name} SYMBOLIC)
+  endforeach()
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${root}>)
+endfunction()

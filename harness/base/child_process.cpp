@@ -1,0 +1,197 @@
+#include "harness/base/child_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <new>
+#include <stdexcept>
+
+namespace harness {
+namespace {
+
+constexpr int poll_interval = 50;  // ms
+constexpr double kill_after = 2;   // s after SIGTERM
+constexpr char returned_mark = 'r', threw_mark = 'x';
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+[[noreturn]] void fail(const char* what) {
+  throw std::runtime_error(std::string("cannot run a point in a child process: ") + what + ": " +
+                           std::strerror(errno));
+}
+
+struct Unmap {
+  void operator()(Heartbeat* p) const { munmap(p, sizeof(Heartbeat)); }
+};
+
+std::unique_ptr<Heartbeat, Unmap> shared_heartbeat() {
+  void* place =
+      mmap(nullptr, sizeof(Heartbeat), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (place == MAP_FAILED) fail("mmap");
+  return std::unique_ptr<Heartbeat, Unmap>(new (place) Heartbeat);
+}
+
+// Processes that the kernel has killed for want of memory, ever; 0 where it does not tell.
+long out_of_memory_kills() {
+  std::ifstream statistics("/proc/vmstat");
+  std::string key;
+  for (long value = 0; statistics >> key >> value;) {
+    if (key == "oom_kill") return value;
+  }
+  return 0;
+}
+
+void set_limit(int resource, double bytes) {
+  const rlimit limit{static_cast<rlim_t>(bytes), static_cast<rlim_t>(bytes)};
+  setrlimit(resource, &limit);
+}
+
+void write_all(int pipe, const std::string& text) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t written = write(pipe, text.data() + done, text.size() - done);
+    if (written < 0 && errno != EINTR) return;  // the parent is gone
+    if (written > 0) done += static_cast<std::size_t>(written);
+  }
+}
+
+[[noreturn]] void be_child(const std::function<std::string(Heartbeat&)>& work, Heartbeat& heartbeat,
+                           double memory, pid_t parent, int pipe) {
+  std::signal(SIGINT, SIG_IGN);
+  std::signal(SIGTERM, SIG_DFL);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);  // it died before that
+  set_limit(RLIMIT_CORE, 0);
+  if (memory > 0) set_limit(RLIMIT_AS, memory);
+  std::string text;
+  try {
+    text = returned_mark + work(heartbeat);
+  } catch (const std::exception& error) {
+    text = threw_mark + std::string(error.what());
+  }
+  write_all(pipe, text);
+  _exit(0);  // no destructors: the parent's objects are not ours
+}
+
+// Reads until the child closes its end, and sees to it that it does.
+void attend(pid_t child, int pipe, const Heartbeat& heartbeat, const ChildLimits& limits,
+            ChildOutcome& outcome) {
+  const double grace = 0.5 + 0.1 * limits.timeout;
+  double terminated = 0;
+  const auto terminate = [&](ChildOutcome::End why) {
+    outcome.end = why;
+    terminated = now();
+    kill(child, SIGTERM);
+  };
+  std::array<char, 65536> buffer{};
+  for (;;) {
+    pollfd ready{pipe, POLLIN, 0};
+    if (poll(&ready, 1, poll_interval) > 0) {
+      const ssize_t count = read(pipe, buffer.data(), buffer.size());
+      if (count == 0) return;
+      if (count > 0) outcome.text.append(buffer.data(), static_cast<std::size_t>(count));
+      continue;
+    }
+    if (terminated > 0) {
+      if (now() > terminated + kill_after) kill(child, SIGKILL);
+    } else if (limits.interrupted && limits.interrupted()) {
+      terminate(ChildOutcome::End::interrupted);
+    } else if (now() > heartbeat.begin + limits.timeout + grace) {
+      terminate(ChildOutcome::End::timed_out);
+    }
+  }
+}
+
+// A SIGTERM that ended the child may have been meant for the whole job, and reach this process a
+// moment later.
+bool interrupted_soon(const ChildLimits& limits) {
+  for (int i = 0; i < 10 && limits.interrupted; ++i) {
+    if (limits.interrupted()) return true;
+    poll(nullptr, 0, 20);
+  }
+  return false;
+}
+
+}  // namespace
+
+void Heartbeat::restart() { begin = now(); }
+
+std::string signal_text(int signal) {
+  const char* name = sigabbrev_np(signal);
+  return (name ? "SIG" + std::string(name) : "signal " + std::to_string(signal)) + " (" +
+         strsignal(signal) + ")";
+}
+
+ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
+                          const ChildLimits& limits) {
+  // While children are attended, only those that take longer than poll_interval are interrupted: a
+  // series of short ones is here.
+  ChildOutcome outcome;
+  if (limits.interrupted && limits.interrupted()) {
+    outcome.end = ChildOutcome::End::interrupted;
+    return outcome;
+  }
+  const auto heartbeat = shared_heartbeat();
+  heartbeat->restart();
+  std::array<int, 2> pipe{};
+  if (pipe2(pipe.data(), O_CLOEXEC) != 0) fail("pipe");
+  const long kills = out_of_memory_kills();
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child < 0) {
+    const int reason = errno;
+    close(pipe[0]);
+    close(pipe[1]);
+    errno = reason;
+    fail("fork");
+  }
+  if (child == 0) {
+    close(pipe[0]);
+    be_child(work, *heartbeat, limits.memory, parent, pipe[1]);
+  }
+  close(pipe[1]);
+  attend(child, pipe[0], *heartbeat, limits, outcome);
+  close(pipe[0]);
+  int status = 0;
+  rusage usage{};
+  while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
+  }
+  outcome.peak_rss_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
+  outcome.step = heartbeat->step;
+  outcome.time = heartbeat->time;
+  outcome.out_of_memory = out_of_memory_kills() > kills;
+  outcome.code = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
+  if (outcome.end != ChildOutcome::End::returned) return outcome;
+  if (WIFSIGNALED(status)) {
+    const bool for_all = outcome.code == SIGTERM && interrupted_soon(limits);
+    outcome.end = for_all ? ChildOutcome::End::interrupted : ChildOutcome::End::killed;
+  } else if (outcome.code != 0 || outcome.text.empty()) {
+    outcome.end = ChildOutcome::End::exited;
+  } else {
+    if (outcome.text.front() == threw_mark) outcome.end = ChildOutcome::End::threw;
+    outcome.text.erase(0, 1);
+  }
+  return outcome;
+}
+
+std::string ending(const ChildOutcome& outcome) {
+  if (outcome.end == ChildOutcome::End::killed) return "killed by " + signal_text(outcome.code);
+  if (outcome.end == ChildOutcome::End::exited)
+    return "ended with exit code " + std::to_string(outcome.code);
+  return outcome.text;  // of the exception
+}
+
+}  // namespace harness

@@ -1,0 +1,51 @@
+// Work done in a child process of its own: what it does to memory, how it ends and how long it
+// takes stay there.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace harness {
+
+// Shared by child and parent, so that the parent knows where a child is, or was when it died.
+struct Heartbeat {
+  std::atomic<double> begin{0};  // s, steady clock: when the part began that the time-out is for
+  std::atomic<std::int64_t> step{-1};
+  std::atomic<double> time{0};  // s, simulated
+
+  void restart();  // begin = now
+};
+
+struct ChildLimits {
+  double timeout = 60;                          // s from Heartbeat::begin on
+  double memory = 0;                            // bytes of address space; 0: no limit
+  std::function<bool()> interrupted = nullptr;  // asked some times a second
+};
+
+struct ChildOutcome {
+  enum class End { returned, threw, exited, killed, timed_out, interrupted };
+  End end = End::returned;
+  std::string text;  // what the work returned, or what() of what it threw
+  int code = 0;      // exit code, or the signal that ended it
+  double peak_rss_bytes = 0;
+  bool out_of_memory = false;  // the kernel's out-of-memory killer was at work meanwhile
+  std::int64_t step = -1;      // the heartbeat's last
+  double time = 0;
+};
+
+// Runs work in a forked child. One that outlives its time-out (with a little grace: work that can,
+// ends itself) gets SIGTERM, and SIGKILL two seconds later; it dies with its parent too, and
+// ignores SIGINT, which is for the parent. After an interruption no child is made. Throws
+// std::runtime_error only if no child can be made. Not for programs with threads.
+ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
+                          const ChildLimits& limits);
+
+// What became of a child that ended by itself, or was ended by others, without a result.
+std::string ending(const ChildOutcome& outcome);
+
+// "SIGSEGV (Segmentation fault)"
+std::string signal_text(int signal);
+
+}  // namespace harness

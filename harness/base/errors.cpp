@@ -1,0 +1,47 @@
+#include "harness/base/errors.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace harness {
+namespace {
+
+// Levenshtein distance, for names of a few letters.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t substitute = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substitute});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+UsageError unknown_name(std::string_view kind, std::string_view name,
+                        const std::vector<std::string>& known) {
+  std::string message = "no " + std::string(kind) + " '" + std::string(name) + "'";
+  const std::string* best = nullptr;
+  std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
+  for (const std::string& candidate : known) {
+    const bool prefix = name.size() >= 2 && candidate.starts_with(name);
+    const std::size_t edits = edit_distance(name, candidate);
+    const std::size_t distance = prefix ? std::min<std::size_t>(edits, 2) : edits;
+    if (distance < least) {
+      least = distance;
+      best = &candidate;
+    }
+  }
+  if (best) message += "; did you mean '" + *best + "'?";
+  message += " (known: ";
+  for (std::size_t i = 0; i < known.size(); ++i) message += (i ? ", " : "") + known[i];
+  return UsageError(message + ")");
+}
+
+}  // namespace harness

@@ -1,0 +1,15 @@
+// Ctrl-C as a flag that loops ask for.
+#pragma once
+
+#include <exception>
+
+namespace harness {
+
+// SIGINT and SIGTERM become a flag from here on; whether one has come.
+void catch_interrupts();
+bool interrupted();
+
+// What a loop throws that was asked to stop.
+class Interrupted : public std::exception {};
+
+}  // namespace harness

@@ -1,0 +1,79 @@
+#include "harness/base/statistics.h"
+
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace harness {
+namespace {
+
+struct Ranking {
+  std::vector<int> doubled;  // ranks of all values, a's first, times two: ties make halves
+  double ties = 0;           // sum of t^3 - t over groups of t equal values
+};
+
+Ranking rank_all(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> all = a;
+  all.insert(all.end(), b.begin(), b.end());
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&all](std::size_t i, std::size_t j) { return all[i] < all[j]; });
+  Ranking ranking;
+  ranking.doubled.resize(all.size());
+  for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
+    while (last < order.size() && all[order[last]] == all[order[first]]) ++last;
+    for (std::size_t i = first; i < last; ++i)
+      ranking.doubled[order[i]] = static_cast<int>(first + 1 + last);  // twice the mean rank
+    const auto t = static_cast<double>(last - first);
+    ranking.ties += t * t * t - t;
+  }
+  return ranking;
+}
+
+// Of all ways to choose n of these ranks, the fraction whose sum is at least `least`.
+double exact_tail(const std::vector<int>& ranks, std::size_t n, int least) {
+  const auto sums = static_cast<std::size_t>(std::accumulate(ranks.begin(), ranks.end(), 0)) + 1;
+  // ways[k][s]: choices of k of the ranks seen so far with sum s. Doubles hold them exactly enough:
+  // (60 over 30) is 1.2e17.
+  std::vector<std::vector<double>> ways(n + 1, std::vector<double>(sums, 0.0));
+  ways[0][0] = 1;
+  for (const int rank : ranks) {
+    const auto r = static_cast<std::size_t>(rank);
+    for (std::size_t k = n; k > 0; --k) {
+      for (std::size_t s = sums - 1; s >= r; --s) ways[k][s] += ways[k - 1][s - r];
+    }
+  }
+  const auto all = std::accumulate(ways[n].begin(), ways[n].end(), 0.0);
+  return std::accumulate(ways[n].begin() + least, ways[n].end(), 0.0) / all;
+}
+
+double normal_tail(double u, double n1, double n2, double ties) {
+  const double n = n1 + n2;
+  const double variance = n1 * n2 / 12 * (n + 1 - ties / (n * (n - 1)));
+  if (variance <= 0) return 1;  // all values are equal
+  return gsl_cdf_ugaussian_Q((u - n1 * n2 / 2 - 0.5) / std::sqrt(variance));
+}
+
+}  // namespace
+
+double mann_whitney_greater(const std::vector<double>& a, const std::vector<double>& b) {
+  if (a.empty() || b.empty()) return 1;
+  const Ranking ranking = rank_all(a, b);
+  const int sum = std::accumulate(
+      ranking.doubled.begin(), ranking.doubled.begin() + static_cast<std::ptrdiff_t>(a.size()), 0);
+  if (a.size() + b.size() <= exact_up_to) return exact_tail(ranking.doubled, a.size(), sum);
+  const auto n1 = static_cast<double>(a.size()), n2 = static_cast<double>(b.size());
+  return normal_tail(sum / 2.0 - n1 * (n1 + 1) / 2, n1, n2, ranking.ties);
+}
+
+double least_possible_p(std::size_t a, std::size_t b) {
+  double choices = 1;  // not by logarithms: 1/20 must not come out below 0.05
+  for (std::size_t i = 1; i <= a; ++i)
+    choices = choices * static_cast<double>(b + i) / static_cast<double>(i);
+  return 1 / choices;
+}
+
+}  // namespace harness

@@ -1,0 +1,237 @@
+// bench ab: two builds of this program timed against each other.
+#include <unistd.h>
+
+#include <filesystem>
+#include <iostream>
+
+#include "harness/base/child_program.h"
+#include "harness/base/errors.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/paths.h"
+#include "harness/cli/commands.h"
+#include "harness/cli/compare_options.h"
+#include "harness/compare/pairs.h"
+#include "harness/points/result_file.h"
+#include "harness/run/runner.h"
+
+namespace harness {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr double point_timeout = 60;  // s, of one run
+constexpr double sweep_timeout = 3600;
+
+struct AbCommand : CompareOptions {
+  std::string old_binary, new_binary, suite = "quick", solver, scene, filter, exclude;
+  int pairs = 15, confirming = 25;
+  // s that a process measures at least, so that runs of a millisecond are seen often enough for one
+  // of them to be undisturbed, and starting the process does not dominate.
+  double least_measured = 0.05;
+
+  const std::string& binary(Side side) const {
+    return side == Side::old_one ? old_binary : new_binary;
+  }
+};
+
+// A folder that goes away again.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "bench-ab-XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
+    path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  fs::path path_;
+};
+
+ProgramResult run_or_interrupt(const std::vector<std::string>& words, const std::string& input,
+                               double timeout) {
+  ProgramResult result = run_program(words, input, timeout, interrupted);
+  if (interrupted()) throw Interrupted();
+  return result;
+}
+
+void check_binary(const std::string& path) {
+  if (!fs::is_regular_file(path) || access(path.c_str(), X_OK) != 0)
+    throw UsageError("'" + path + "' is no program");
+  const ProgramResult help = run_or_interrupt({path, "point", "--help"}, "", point_timeout);
+  if (help.exit_code != 0 || help.out.find("--samples") == std::string::npos)
+    throw NotComparable("'" + path +
+                        "' has no command `point`, which times single points: it was built from a "
+                        "commit before that");
+}
+
+// What the old program finds best; the new one runs the same.
+json old_result(const AbCommand& options) {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("old.json");
+  std::vector<std::string> words{options.old_binary, "--sweep", "strain"};
+  const bool file = options.suite.find_first_of("/.") != std::string::npos;
+  for (const auto& [option, value] :
+       {std::pair(file ? "--config" : "--profile", options.suite),
+        std::pair("--solver", options.solver), std::pair("--scene", options.scene),
+        std::pair("--filter", options.filter), std::pair("--exclude", options.exclude),
+        std::pair("--out", out)}) {
+    if (!value.empty()) words.insert(words.end(), {option, value});
+  }
+  words.insert(words.end(), {"--reps", "1", "--no-plots"});
+  const ProgramResult ran = run_or_interrupt(words, "", sweep_timeout);
+  const std::string said = ran.last_error_line();
+  if (ran.exit_code == usage_error)
+    throw UsageError(said.starts_with("bench: ") ? said.substr(7) : said);
+  if (ran.exit_code != success)
+    throw std::runtime_error("the sweep of '" + options.old_binary + "' did not end: " + said);
+  return read_result(out);
+}
+
+// A point of a result as what is to be run: with the stiffness that was found for it.
+json spec_json(const json& point) {
+  json spec;
+  for (const char* key :
+       {"sweep", "scene", "scene_parameters", "resolution", "vertices", "constraints", "solver",
+        "settings", "strain_limit", "step", "adaptive", "seed"}) {
+    if (point.contains(key)) spec[key] = point.at(key);
+  }
+  const json& options = point.at("options");
+  if (options.contains("stiffness")) spec["settings"]["stiffness"] = options.at("stiffness");
+  return spec;
+}
+
+std::vector<PairedPoint> best_points(const json& result, double least_measured) {
+  std::vector<PairedPoint> points;
+  for (const json& point : result.at("points")) {
+    if (!point.value("best", false)) continue;
+    const double seconds = point.at("seconds_per_simulated_second").at("min").get<double>() *
+                           point.at("duration").get<double>();
+    PairedPoint paired;
+    paired.spec = spec_json(point);
+    paired.id = point.at("id");
+    paired.samples = samples_for(seconds, least_measured);
+    points.push_back(std::move(paired));
+  }
+  return points;
+}
+
+// In place of a point that no process has printed.
+json failed_point(const PairedPoint& point, const ProgramResult& ran) {
+  json printed = point.spec;
+  printed["id"] = point.id;
+  printed["status"] = ran.timed_out                  ? "timeout"
+                      : ran.exit_code == usage_error ? "unsupported"
+                                                     : "crashed";
+  printed["status_detail"] = ran.last_error_line();
+  printed["work"] = json::object();
+  printed["max_strain"] = nullptr;
+  printed["error"] = json::object();
+  return printed;
+}
+
+json run_one(const AbCommand& options, Side side, const PairedPoint& point) {
+  const double timeout = point_timeout * (point.samples + 1);
+  const ProgramResult ran =
+      run_or_interrupt({options.binary(side), "point", "--samples", std::to_string(point.samples)},
+                       point.spec.dump() + "\n", timeout);
+  json printed = json::parse(ran.out, nullptr, false);
+  return ran.exit_code == success && printed.is_object() ? printed : failed_point(point, ran);
+}
+
+// Counters are told and fail nothing, unless a gate was asked for: here times are the question.
+Gate gate_of(const AbCommand& options) {
+  if (!options.gate.empty()) return read_gate(options.gate);
+  Gate gate = read_gate(source_path("configs/gate.json"));
+  gate.counter_rule = CounterRule::inform;
+  gate.errors.clear();
+  return gate;
+}
+
+// One process of each says whether their counters compare.
+Comparability comparability_of(const AbCommand& options, const PairedPoint& point) {
+  const auto fingerprint = [&](Side side) {
+    return run_one(options, side, point)
+        .value("counters_fingerprint", side == Side::old_one ? "" : "?");
+  };
+  Comparability can;
+  if (fingerprint(Side::old_one) != fingerprint(Side::new_one))
+    can.no_counters = "compiler, flags or libraries differ";
+  return can;
+}
+
+int run_ab(const AbCommand& options) {
+  const Gate gate = gate_of(options);
+  if (!gate.times) throw UsageError("gate '" + options.gate + "': bench ab is about times");
+  check_reports(options);
+  catch_interrupts();
+  try {
+    check_binary(options.old_binary);
+    check_binary(options.new_binary);
+    std::cerr << "looking for the best steps of " << options.old_binary << " ..." << std::endl;
+    std::vector<PairedPoint> points = best_points(old_result(options), options.least_measured);
+    if (points.empty())
+      throw NotComparable("'" + options.old_binary + "' has no point that runs to its end");
+    const Comparability can = comparability_of(options, points.front());
+    std::cerr << points.size() << " points, " << options.pairs << " pairs each ..." << std::endl;
+    const RunOne run = [&](Side side, const PairedPoint& point) {
+      return run_one(options, side, point);
+    };
+    Comparison comparison =
+        compare_in_pairs(std::move(points), options.pairs, options.confirming, gate, can, run);
+    if (!can.counters()) comparison.notes.push_back("counters not compared: " + can.no_counters);
+    return report_comparison(comparison, options, "bench ab");
+  } catch (const NotComparable& reason) {
+    std::cerr << "bench: " << reason.what() << '\n';
+    return not_comparable;
+  } catch (const Interrupted&) {
+    return interrupted_exit;
+  }
+}
+
+}  // namespace
+
+void add_ab_command(CLI::App& app, Chosen& chosen) {
+  const auto given = std::make_shared<AbCommand>();
+  AbCommand& options = *given;
+  CLI::App* command = app.add_subcommand(
+      "ab",
+      "two builds of this program against each other, in interleaved pairs of runs; exit 3 if "
+      "a point has become slower, 4 if one fails");
+  command->add_option("old", options.old_binary, "the program before")
+      ->required()
+      ->type_name("OLD");
+  command->add_option("new", options.new_binary, "the program after")->required()->type_name("NEW");
+  command->add_option("--suite", options.suite, "profile or suite file; default quick")
+      ->type_name("NAME");
+  command->add_option("--pairs", options.pairs, "processes of each a point; default 15")
+      ->check(CLI::Range(4, 1000))  // fewer are never significant
+      ->type_name("N");
+  command->add_option("--confirm", options.confirming, "pairs of the second look; default 25")
+      ->check(CLI::Range(4, 1000))
+      ->type_name("N");
+  command
+      ->add_option("--seconds", options.least_measured,
+                   "what a process measures at least, in as many runs as it takes; default 0.05")
+      ->check(CLI::Range(1e-3, 60.0))
+      ->type_name("S");
+  command->add_option("--solver", options.solver, "only solvers whose name matches")
+      ->type_name("REGEX");
+  command->add_option("--scene", options.scene, "chain or drape; both if left out")
+      ->type_name("NAME");
+  command->add_option("--filter", options.filter, "only points in whose id this is found")
+      ->type_name("REGEX");
+  command->add_option("--exclude", options.exclude, "without points in whose id this is found")
+      ->type_name("REGEX");
+  add_compare_options(*command, options);
+  command->callback([given, &chosen] { chosen = [given] { return run_ab(*given); }; });
+}
+
+}  // namespace harness

@@ -1,0 +1,91 @@
+// bench compare: two results point by point. bench baseline: a result for the next comparisons.
+#include <iostream>
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/paths.h"
+#include "harness/cli/commands.h"
+#include "harness/cli/compare_options.h"
+#include "harness/points/result_file.h"
+
+namespace harness {
+namespace {
+
+struct CompareCommand : CompareOptions {
+  std::string base;
+  std::vector<std::string> next;
+};
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+int run_compare(const CompareCommand& options) {
+  const Gate gate =
+      read_gate(options.gate.empty() ? source_path("configs/gate.json") : options.gate);
+  const ComparedResult base = read_compared({options.base});
+  const ComparedResult next = read_compared(options.next);
+  check_reports(options);
+  try {
+    const Comparison comparison = compare(base, next, gate);
+    return report_comparison(comparison, options, "bench compare");
+  } catch (const NotComparable& reason) {
+    std::cerr << "bench: " << reason.what() << "; a new baseline: bench baseline "
+              << joined(options.next) << " --out "
+              << (base.baseline ? options.base : "baseline.json") << '\n';
+    return not_comparable;
+  }
+}
+
+int make_baseline(const std::vector<std::string>& files, const std::string& out) {
+  std::vector<nlohmann::json> results;
+  results.reserve(files.size());
+  for (const std::string& file : files) results.push_back(read_result(file));
+  const ComparedResult checked = read_compared(files);  // all that a comparison will ask for
+  if (checked.baseline) throw UsageError("a baseline is made from result files");
+  if (!checked.complete)
+    throw UsageError("'" + checked.path + "' is of an interrupted run: no baseline");
+  check_writable(out);
+  write_atomically(out, baseline_text(baseline_document(results)));
+  std::cout << out << ": " << checked.points.size() << " points" << std::endl;
+  return success;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, Chosen& chosen) {
+  const auto given = std::make_shared<CompareCommand>();
+  CLI::App* command = app.add_subcommand(
+      "compare",
+      "two results point by point; exit 3 for a regression, 4 for new failures, 5 if "
+      "they cannot be compared");
+  command->add_option("base", given->base, "result file or baseline")
+      ->required()
+      ->type_name("BASE.json");
+  command->add_option("new", given->next, "result files; several count as one")
+      ->required()
+      ->type_name("NEW.json");
+  add_compare_options(*command, *given);
+  command->callback([given, &chosen] { chosen = [given] { return run_compare(*given); }; });
+}
+
+void add_baseline_command(CLI::App& app, Chosen& chosen) {
+  struct Given {
+    std::vector<std::string> files;
+    std::string out;
+  };
+  const auto given = std::make_shared<Given>();
+  CLI::App* command = app.add_subcommand(
+      "baseline", "results without times, one point a line, to be compared with later");
+  command->add_option("results", given->files, "result files")
+      ->required()
+      ->type_name("RESULT.json");
+  command->add_option("--out", given->out, "the baseline")->required()->type_name("FILE");
+  command->callback(
+      [given, &chosen] { chosen = [given] { return make_baseline(given->files, given->out); }; });
+}
+
+}  // namespace harness

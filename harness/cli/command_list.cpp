@@ -1,0 +1,91 @@
+// bench list: what there is.
+#include <iostream>
+
+#include "harness/base/errors.h"
+#include "harness/base/paths.h"
+#include "harness/cli/commands.h"
+#include "harness/cli/sweep_options.h"
+#include "harness/stability/hard_case.h"
+
+namespace harness {
+namespace {
+
+void list(const std::string& what) {
+  const auto heading = [&](const char* name) {
+    if (what.empty()) std::cout << (name == std::string("solvers") ? "" : "\n") << name << '\n';
+    return what.empty() || what == name;
+  };
+  if (heading("solvers")) {
+    for (const auto& backend : inextensible::backends()) {
+      std::cout << "  " << backend.name << ": " << backend.summary << '\n';
+      for (const auto& setting : backend.settings) {
+        std::cout << "      " << setting.name << " = ";
+        std::visit([](const auto& value) { std::cout << value; }, setting.initial);
+        std::cout << "  (" << setting.meaning << ")\n";
+      }
+    }
+  }
+  if (heading("scenes")) {
+    for (const auto& type : scene_types()) {
+      std::cout << "  " << type.name << ": " << type.summary << '\n';
+      for (const auto& parameter : type.parameters) {
+        std::cout << "      " << parameter.name << " = " << parameter.initial << "  ("
+                  << parameter.meaning << ")\n";
+      }
+    }
+  }
+  if (what == "cases") {
+    for (const HardCase& c : hard_cases(hard_case_values("paper")))
+      std::cout << "  " << c.name << " (" << c.row << "): " << c.what << '\n';
+  }
+  if (heading("suites")) {
+    for (const std::string& name : profiles()) {
+      const Suite suite = read_suite(source_path("configs/" + name + ".json"));
+      std::cout << "  " << name << ": " << suite.description << '\n';
+    }
+  }
+}
+
+void list_points(const SweepOptions& options) {
+  for (const Search& search : plan(load_suite(options), make_filters(options))) {
+    PointSpec spec = search.base;
+    for (const double step : search.ladder) {
+      spec.step = step;
+      std::cout << spec.id() << '\n';
+    }
+  }
+}
+
+}  // namespace
+
+void add_list_command(CLI::App& app, Chosen& chosen) {
+  struct Given {
+    SweepOptions options;
+    std::string what;
+  };
+  const auto given = std::make_shared<Given>();
+  CLI::App* command = app.add_subcommand(
+      "list",
+      "show what there is: solvers, scenes, suites, cases or points (points: with --sweep)");
+  command
+      ->add_option("what", given->what,
+                   "solvers, scenes, suites, cases or points; the first three if left out")
+      ->type_name("WHAT");
+  add_selection(*command, given->options);
+  command->callback([given, &chosen] {
+    chosen = [given] {
+      const std::vector<std::string> known{"solvers", "scenes", "suites", "cases", "points"};
+      if (given->what == "points") {
+        list_points(given->options);
+      } else if (given->what.empty() ||
+                 std::find(known.begin(), known.end(), given->what) != known.end()) {
+        list(given->what);
+      } else {
+        throw unknown_name("list", given->what, known);
+      }
+      return success;
+    };
+  });
+}
+
+}  // namespace harness

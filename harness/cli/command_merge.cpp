@@ -1,0 +1,45 @@
+// bench merge: joins result files, of shards for instance.
+#include <filesystem>
+#include <iostream>
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/cli/commands.h"
+#include "harness/points/result_file.h"
+#include "harness/run/merge.h"
+#include "harness/run/report.h"
+
+namespace harness {
+
+void add_merge_command(CLI::App& app, Chosen& chosen) {
+  struct Given {
+    std::vector<std::string> files;
+    std::string out;
+    bool allow_mixed = false;
+  };
+  const auto given = std::make_shared<Given>();
+  CLI::App* command = app.add_subcommand("merge", "join result files of one suite, such as shards");
+  command->add_option("results", given->files, "result files")
+      ->required()
+      ->type_name("RESULT.json");
+  command->add_option("--out", given->out, "the joined result file")->required()->type_name("FILE");
+  command->add_flag("--allow-mixed", given->allow_mixed, "though machines or builds differ");
+  command->callback([given, &chosen] {
+    chosen = [given] {
+      std::vector<NamedResult> results;
+      for (const std::string& file : given->files) {
+        results.push_back({std::filesystem::path(file).filename().string(), read_result(file)});
+        if (results.back().document.at("schema") != "inextensible-bench/1")
+          throw UsageError("'" + file + "' is of a stability sweep, which has no shards");
+      }
+      check_writable(given->out);
+      const nlohmann::json whole = merge(results, given->allow_mixed);
+      write_atomically(given->out, whole.dump(1) + "\n");
+      std::cout << whole.at("points").size() << " points of " << results.size() << " files\n"
+                << given->out << '\n';
+      return success;
+    };
+  });
+}
+
+}  // namespace harness

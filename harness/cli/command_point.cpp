@@ -1,0 +1,122 @@
+// bench point: runs single points in this process; what bench ab and other programs build upon.
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "harness/base/errors.h"
+#include "harness/cli/commands.h"
+#include "harness/points/context.h"
+#include "harness/points/point_json.h"
+#include "harness/points/suite.h"
+#include "harness/run/runner.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+
+struct PointCommand {
+  int samples = 1;
+  double timeout = 60;  // s
+};
+
+constexpr double most_steps = 1e8;  // more is a mistake in the step
+
+// What a point says of itself twice must agree: no run stands for another.
+void check_count(const std::string& where, const char* key, int given, int actual) {
+  if (given != actual)
+    throw UsageError(where + ": '" + key + "' is " + std::to_string(given) +
+                     ", but the scene with these parameters has " + std::to_string(actual));
+}
+
+void check_spec(const PointSpec& spec, const std::string& where) {
+  const SceneType* type = find_scene(spec.scene);
+  if (!type)
+    throw UsageError(where + ": " +
+                     unknown_name("scene", spec.scene, names_of(scene_types())).what());
+  const SceneParameters parameters = [&] {
+    try {
+      return complete_parameters(*type, spec.scene_parameters);
+    } catch (const UsageError& error) {
+      throw UsageError(where + ": 'scene_parameters': " + error.what());
+    }
+  }();
+  if (parameters != spec.scene_parameters)
+    throw UsageError(where + ": 'scene_parameters' is " + json(spec.scene_parameters).dump() +
+                     ", must hold every parameter of the scene: " + json(parameters).dump());
+  const auto [vertices, constraints] = type->counts(parameters);
+  check_count(where, "vertices", spec.vertices, vertices);
+  check_count(where, "constraints", spec.constraints, constraints);
+  const auto* backend = inextensible::find_backend(spec.solver);
+  if (!backend)
+    throw UsageError(
+        where + ": " +
+        unknown_name("solver", spec.solver, names_of(inextensible::backends())).what());
+  for (const auto& setting : spec.settings) {
+    const auto known = names_of(backend->settings);
+    if (std::find(known.begin(), known.end(), setting.first) == known.end())
+      throw UsageError(
+          where + ": 'settings': " +
+          unknown_name("setting of solver " + spec.solver, setting.first, known).what());
+  }
+  if (!(spec.strain_limit > 0) || !std::isfinite(spec.strain_limit))
+    throw UsageError(where + ": 'strain_limit' is " + json(spec.strain_limit).dump() +
+                     ", must be above 0");
+  const double duration = parameters.at("duration");
+  if (!(spec.step > 0 && spec.step <= duration && duration / spec.step <= most_steps))
+    throw UsageError(where + ": 'step' is " + json(spec.step).dump() +
+                     ", must be above 0 s and at most the duration, " + json(duration).dump() +
+                     " s");
+}
+
+// One point a line; empty lines do not count. All are checked before the first one runs.
+std::vector<PointSpec> read_specs(std::istream& in) {
+  std::vector<PointSpec> specs;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const std::string where = "point on line " + std::to_string(number);
+    try {
+      specs.push_back(spec_of(json::parse(line)));
+    } catch (const json::exception& error) {
+      throw UsageError(where + ": " + error.what());
+    }
+    check_spec(specs.back(), where);
+  }
+  if (specs.empty())
+    throw UsageError("no point on standard input: give points of a result file, one JSON a line");
+  return specs;
+}
+
+int run_points(const PointCommand& options) {
+  RunLimits limits;
+  limits.timeout = options.timeout;
+  const std::string fingerprint = counters_fingerprint();
+  for (const PointSpec& spec : read_specs(std::cin)) {
+    PointResult point = run_point(spec, limits);
+    for (int i = 1; i < options.samples && point.ok(); ++i) repeat_point(point, limits);
+    json line = to_json(point);
+    line["counters_fingerprint"] = fingerprint;
+    std::cout << line.dump() << std::endl;
+  }
+  return success;
+}
+
+}  // namespace
+
+void add_point_command(CLI::App& app, Chosen& chosen) {
+  const auto given = std::make_shared<PointCommand>();
+  CLI::App* command = app.add_subcommand(
+      "point",
+      "run points of a result file, given as JSON on standard input, one a line; print each as one "
+      "line of JSON");
+  command->add_option("--samples", given->samples, "runs of each, the first one judged; default 1")
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
+  command->add_option("--timeout", given->timeout, "seconds a run may take; default 60")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
+  command->callback([given, &chosen] { chosen = [given] { return run_points(*given); }; });
+}
+
+}  // namespace harness

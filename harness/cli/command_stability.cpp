@@ -1,0 +1,88 @@
+// bench --sweep stability: the matrix of hard cases.
+#include <unistd.h>
+
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/paths.h"
+#include "harness/cli/commands.h"
+#include "harness/cli/sweep_command.h"
+#include "harness/points/context.h"
+#include "harness/stability/stability.h"
+
+namespace harness {
+namespace {
+
+// "ratios=1e3,1e5" into `values`.
+void set_values(HardCaseValues& values, const std::string& given) {
+  const auto equals = given.find('=');
+  const std::string name = given.substr(0, equals);
+  const auto place = values.find(name);
+  if (place == values.end()) {
+    std::vector<std::string> names;
+    for (const auto& entry : values) names.push_back(entry.first);
+    throw unknown_name("value of hard cases", name, names);
+  }
+  place->second.clear();
+  std::istringstream list(equals == std::string::npos ? "" : given.substr(equals + 1));
+  for (std::string item; std::getline(list, item, ',');) {
+    std::size_t read = 0;
+    try {
+      place->second.push_back(std::stod(item, &read));
+    } catch (const std::exception&) {
+      read = 0;
+    }
+    if (read == 0 || read != item.size())
+      throw UsageError("--values " + given + ": '" + item + "' is not a number");
+  }
+  if (place->second.empty())
+    throw UsageError("--values " + given + ": must be NAME=NUMBER,NUMBER,...");
+}
+
+}  // namespace
+
+int stability_command(const SweepCommand& options, const std::vector<std::string>& command) {
+  check_profile(options.profile);
+  StabilityFilters filters;
+  if (!options.solver.empty()) {
+    check_solver_pattern(options.solver);
+    filters.solver = pattern("--solver", options.solver);
+  }
+  if (!options.hard_case.empty()) filters.hard_case = pattern("--case", options.hard_case);
+  HardCaseValues values = hard_case_values(options.profile);
+  for (const std::string& given : options.values) set_values(values, given);
+  const auto cases = hard_cases(values);
+  const std::string out =
+      options.out.empty() ? local_result(options.profile + "-stability.json") : options.out;
+  check_writable(out);
+  const nlohmann::json context = machine_context();
+  catch_interrupts();
+  StabilityEvents events;
+  events.interrupted = interrupted;
+  const bool terminal = isatty(STDERR_FILENO) == 1;
+  events.cell = [terminal](const StabilityCell& cell, std::size_t done, std::size_t all) {
+    if (terminal) {
+      std::cerr << "\r\033[K[" << done << '/' << all << "] " << cell.hard_case->name << '/'
+                << cell.solver << (done == all ? "\n" : "");
+    } else if (done % 100 == 0 || done == all) {
+      std::cerr << '[' << done << '/' << all << "]\n";
+    }
+  };
+  events.largest_step = [](const LargestStep& found) {
+    std::cerr << "largest step, " << found.scene << '/' << found.solver << '\n';
+  };
+  const std::uint64_t seed = options.seed < 0 ? 1 : static_cast<std::uint64_t>(options.seed);
+  const StabilityOutcome outcome = run_stability(cases, filters, seed, events);
+  write_atomically(out, stability_document(context, outcome, seed, command).dump(1) + "\n");
+  print_stability(std::cout, outcome);
+  std::cout << "\nwritten:\n" << out << std::endl;
+  if (!outcome.complete) return interrupted_exit;
+  if (!options.no_plots && draw({out}) != 0) std::cerr << "bench: the figure could not be drawn\n";
+  return outcome.as_expected() ? success : unexpected_outcome;
+}
+
+}  // namespace harness

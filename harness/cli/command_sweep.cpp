@@ -1,0 +1,294 @@
+// bench --sweep strain|resolution|step: runs a suite's sweeps.
+#include <unistd.h>
+
+#include <filesystem>
+#include <iostream>
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/paths.h"
+#include "harness/base/text.h"
+#include "harness/cli/commands.h"
+#include "harness/cli/sweep_command.h"
+#include "harness/points/context.h"
+#include "harness/points/result_file.h"
+#include "harness/run/isolation.h"
+#include "harness/run/journal.h"
+#include "harness/run/noise_probe.h"
+#include "harness/run/report.h"
+#include "harness/run/runner.h"
+
+namespace harness {
+namespace {
+
+// Upper bounds, told before anything runs.
+void dry_run(const Suite& suite, const std::vector<Search>& searches) {
+  std::size_t most = 0;
+  double seconds = 0;
+  for (const Search& search : searches) {
+    most += search.ladder.size();
+    // Coarse figures of one common machine: seconds that a search takes, by constraints.
+    const double size = search.base.constraints;
+    const bool chain = search.base.scene == "chain";
+    const double unit =
+        search.base.solver == "implicit_springs" || search.base.solver == "icd" ? 6e-3 : 2e-3;
+    seconds += std::min(4 * suite.timeout, (chain ? 0.1 : 1.0) * unit * size);
+  }
+  std::cout << searches.size() << " searches for a best step, at most " << most
+            << " points (usually half of them), about " << duration_text(seconds)
+            << " (a rough guess), at most "
+            << duration_text(2 * suite.timeout * static_cast<double>(most)) << '\n';
+}
+
+void tell_missing_references(const Suite& suite, const std::vector<Search>& searches,
+                             ReferenceShelf& shelf) {
+  const auto missing = without_reference(searches, shelf);
+  if (missing.empty()) return;
+  std::string names;
+  for (const auto& [scene, parameters] : missing) {
+    std::string name = reference_name(scene, parameters);
+    names += (names.empty() ? "" : ", ") + name.substr(0, name.rfind(".json"));
+  }
+  if (suite.max_error > 0)
+    throw UsageError("--max-error needs references, missing: " + names +
+                     " (bench reference, with the same scene and profile, makes them)");
+  std::cerr << "bench: no reference, so no trajectory error, for " << names
+            << " (bench reference makes them)\n";
+}
+
+// What chooses points beside the suite.
+nlohmann::json selection(const SweepCommand& options) {
+  return {{"solver", options.solver},
+          {"filter", options.filter},
+          {"exclude", options.exclude},
+          {"shard", options.shard}};
+}
+
+// What is known already: from the journal of a run that did not finish, or from the result of one
+// that did.
+struct Past {
+  Memory memory;
+  nlohmann::json identity, context;  // null: there is none
+  bool finished = false, in_journal = false;
+};
+
+Past look_back(const SweepCommand& options, const std::string& out, const Journal& journal) {
+  const bool again = options.resume || options.rerun_failed;
+  if (journal.points() > 0) {
+    if (again)
+      return {journal.memory(), journal.header().at("identity"), journal.header().at("context"),
+              false, true};
+    if (!options.force)
+      throw UsageError("'" + journal.path() + "' holds " + std::to_string(journal.points()) +
+                       " points of a run that did not finish: --resume goes on with it, --force "
+                       "starts anew");
+  } else if (again && std::filesystem::exists(out)) {
+    const nlohmann::json result = read_result(out);
+    if (result.at("schema") != "inextensible-bench/1")
+      throw UsageError("'" + out + "' is the result of a stability sweep: nothing to resume");
+    Past past;
+    past.memory.learn(result);
+    past.context = result.at("context");
+    past.identity = identity(past.context, past.context.at("suite"),
+                             past.context.value("selection", nlohmann::json::object()));
+    past.finished = result.at("complete");
+    return past;
+  }
+  return {};
+}
+
+void check_same(const Past& past, const nlohmann::json& mine, const std::string& out, bool force) {
+  if (past.identity.is_null() || force) return;
+  const std::string what = difference(past.identity, mine);
+  if (!what.empty())
+    throw UsageError("'" + out + "' is of another build or suite: " + what +
+                     "; --resume --force goes on all the same");
+}
+
+// The journal then holds what `memory` does.
+void begin_journal(Journal& journal, const Past& past, const Memory& memory,
+                   const nlohmann::json& header) {
+  if (!past.in_journal) journal.start(header);
+  for (const auto& [key, known] : past.memory.points) {
+    if (past.in_journal) {
+      if (!memory.points.contains(key)) journal.forget(key);
+    } else if (memory.points.contains(key)) {
+      journal.add(known.point);
+      for (const auto& seconds : known.repetitions) journal.add_repetition(key, seconds);
+    }
+  }
+}
+
+SweepRunners watched(const SweepRunners& inner, Sentinel& sentinel) {
+  SweepRunners runners = inner;
+  runners.run = [run = inner.run, &sentinel](const auto& spec, const auto& limits, auto guess) {
+    sentinel.sample_if_due();
+    return run(spec, limits, guess);
+  };
+  runners.repeat = [repeat = inner.repeat, &sentinel](auto& point, const auto& limits) {
+    sentinel.sample_if_due();
+    repeat(point, limits);
+  };
+  return runners;
+}
+
+void warn_if_busy(const nlohmann::json& context) {
+  const auto& load = context.at("load_avg");
+  const double processors = context.at("num_cpus");
+  if (!load.empty() && load.at(0).get<double>() > 0.5 * processors)
+    std::cerr << "bench: the machine is busy (load " << number_text(load.at(0), 2) << " on "
+              << processors << " processors): times will be noisy\n";
+}
+
+void tell_noise(const nlohmann::json& context) {
+  if (!context.at("sentinel").at("noisy").get<bool>()) return;
+  std::cout << "\nNOISY: a fixed kernel's time varied by "
+            << number_text(100 * context.at("sentinel").at("spread").get<double>(), 2)
+            << " % during the run; counters and errors stand, compare times with care\n";
+}
+
+// The harness's own share of the shortest step that was timed.
+nlohmann::json harness_overhead(const std::vector<PointResult>& points) {
+  nlohmann::json overhead = {{"seconds_per_step", harness_seconds_per_step()}};
+  const PointResult* shortest = nullptr;
+  const auto step_seconds = [](const PointResult& p) { return p.median_seconds() * p.spec.step; };
+  for (const PointResult& point : points) {
+    if (point.ok() && (!shortest || step_seconds(point) < step_seconds(*shortest)))
+      shortest = &point;
+  }
+  if (!shortest) return overhead;
+  overhead["shortest_step"] = step_seconds(*shortest);
+  overhead["of"] = shortest->spec.id();
+  return overhead;
+}
+
+void tell_overhead(const nlohmann::json& overhead) {
+  if (!overhead.contains("of")) return;
+  const double own = overhead.at("seconds_per_step"), step = overhead.at("shortest_step");
+  std::cout << "\nthe harness's own share of the shortest timed step: " << number_text(1e9 * own, 2)
+            << " ns of " << number_text(1e9 * step, 3) << " ns, "
+            << number_text(100 * own / step, 2) << " % (" << overhead.at("of").get<std::string>()
+            << ")\n";
+}
+
+}  // namespace
+
+int sweep_command(const SweepCommand& options, const std::vector<std::string>& command) {
+  const Suite suite = load_suite(options);
+  auto searches = plan(suite, make_filters(options));
+  if (!options.shard.empty()) searches = shard(std::move(searches), parse_shard(options.shard));
+  if (options.dry_run) {
+    dry_run(suite, searches);
+    return success;
+  }
+  const std::string out =
+      options.out.empty() ? local_result(suite.name + "-" + options.sweep + ".json") : options.out;
+  check_writable(out);
+  nlohmann::json context = machine_context();
+  context["selection"] = selection(options);
+  const nlohmann::json mine = identity(context, to_json(suite), context["selection"]);
+  Journal journal(out);
+  const Past past = look_back(options, out, journal);
+  check_same(past, mine, past.in_journal ? journal.path() : out, options.force);
+  if (past.finished && !options.rerun_failed) {
+    std::cout << out << " is complete already\n";
+    return success;
+  }
+  Memory memory = past.memory;
+  if (options.rerun_failed) memory.forget_failures();
+  SweepRunners runners;
+  const auto shelf = std::make_shared<ReferenceShelf>(source_path("results/references"));
+  runners.references = shelf;
+  tell_missing_references(suite, searches, *shelf);
+  warn_if_busy(context);
+  if (!past.identity.is_null())
+    context["resumed"] = {{"from", past.context.at("date")},
+                          {"points", memory.points.size()},
+                          {"difference", difference(past.identity, mine)}};
+  begin_journal(journal, past, memory,
+                {{"pid", getpid()}, {"identity", mine}, {"context", context}});
+
+  catch_interrupts();
+  Progress progress(std::cerr, isatty(STDERR_FILENO) == 1);
+  SweepEvents events;
+  events.point = [&](const PointResult& p, std::size_t s, std::size_t all) {
+    progress.point(p, s, all);
+  };
+  events.repetition = [&](std::size_t done, std::size_t all) { progress.repetition(done, all); };
+  events.interrupted = interrupted;
+  Sentinel sentinel;
+  sentinel.sample();
+  const ProcessorTicks ticks = processor_ticks();
+  if (!options.in_process) runners = isolated(runners, options.memory);
+  const SweepOutcome outcome = run_sweep(
+      suite, searches, events, journaled(watched(runners, sentinel), journal, std::move(memory)));
+  progress.finish();
+  sentinel.sample();
+  context["sentinel"] = sentinel.to_json();
+  context["stolen"] = stolen_share(ticks, processor_ticks());
+  context["harness_overhead"] = harness_overhead(outcome.points);
+
+  write_atomically(out, result_document(context, suite, command, outcome.complete, outcome.points,
+                                        shelf->summaries())
+                                .dump(1) +
+                            "\n");
+  print_table(std::cout, outcome.points);
+  tell_overhead(context["harness_overhead"]);
+  tell_noise(context);
+  std::cout << "\nwritten:\n" << out << std::endl;
+  if (!outcome.complete) {
+    std::cerr << "bench: interrupted; the same command with --resume goes on from here\n";
+    return interrupted_exit;
+  }
+  journal.remove();
+  if (!options.no_plots && draw({out}) != 0) std::cerr << "bench: the figures could not be drawn\n";
+  return success;
+}
+
+void add_sweep_command(CLI::App& app, Chosen& chosen, const std::vector<std::string>& command) {
+  const auto given = std::make_shared<SweepCommand>();
+  SweepCommand& options = *given;
+  add_selection(app, options);
+  app.add_option("--out", options.out, "result file; default results/local/<profile>-<axis>.json")
+      ->type_name("FILE");
+  add_measurement(app, options);
+  app.add_option("--memory", options.memory, "address space a point may have, e.g. 4G")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("BYTES");
+  app.add_flag("--resume", options.resume, "go on with an interrupted run of the same --out");
+  app.add_flag("--rerun-failed", options.rerun_failed,
+               "as --resume, also after a finished run, and run again what failed");
+  app.add_flag(
+      "--force", options.force,
+      "drop an interrupted run; with --resume: go on though it is of another build or suite");
+  app.add_flag("--in-process", options.in_process,
+               "no child process a point, for debuggers and profilers");
+  app.add_option("--shard", options.shard,
+                 "i/N: the i-th of N parts; all solvers of a scene and size are in one of them")
+      ->type_name("I/N");
+  app.add_option("--case", options.hard_case,
+                 "stability: only cases in whose name this is found, e.g. 'Q[12]'")
+      ->type_name("REGEX");
+  app.add_option("--values", options.values,
+                 "stability: what a family of cases runs over, e.g. ratios=1e3,1e5 (distances, "
+                 "limits, ratios, links, sides, scales)")
+      ->type_name("NAME=LIST");
+  app.add_flag("--dry-run", options.dry_run, "say what would run and how long, and stop");
+  app.add_flag("--no-plots", options.no_plots, "no figures at the end");
+
+  app.callback([given, &app, &chosen, &command] {
+    if (!app.get_subcommands().empty()) return;
+    chosen = [given, &command] {
+      if (given->sweep.empty())
+        throw UsageError(
+            "nothing to do: give --sweep strain, resolution, step or stability (see bench --help)");
+      if (given->sweep == "stability") return stability_command(*given, command);
+      if (!given->hard_case.empty() || !given->values.empty())
+        throw UsageError("--case and --values go with --sweep stability");
+      return sweep_command(*given, command);
+    };
+  });
+}
+
+}  // namespace harness

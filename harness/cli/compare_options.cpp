@@ -1,0 +1,35 @@
+#include "harness/cli/compare_options.h"
+
+#include <iostream>
+
+#include "harness/base/files.h"
+#include "harness/cli/commands.h"
+#include "harness/compare/comparison_report.h"
+
+namespace harness {
+
+void add_compare_options(CLI::App& to, CompareOptions& options) {
+  to.add_option("--gate", options.gate, "what passes; see configs/gate.json")->type_name("FILE");
+  to.add_option("--junit", options.junit, "also write JUnit XML, one test case a point")
+      ->type_name("FILE");
+  to.add_option("--markdown", options.markdown, "also write the table in Markdown")
+      ->type_name("FILE");
+}
+
+void check_reports(const CompareOptions& options) {
+  for (const std::string& path : {options.junit, options.markdown}) {
+    if (!path.empty()) check_writable(path);
+  }
+}
+
+int report_comparison(const Comparison& comparison, const CompareOptions& options,
+                      const std::string& name) {
+  if (!options.junit.empty()) write_atomically(options.junit, junit_xml(comparison, name));
+  if (!options.markdown.empty())
+    write_atomically(options.markdown, markdown_table(comparison, name));
+  print_comparison(std::cout, comparison);
+  if (comparison.any(is_failure)) return unexpected_outcome;
+  return comparison.any(is_regression) ? regression : success;
+}
+
+}  // namespace harness

@@ -1,0 +1,25 @@
+// What the commands that compare have in common: a gate, and reports beside the table on stdout.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "harness/compare/comparison.h"
+
+namespace harness {
+
+struct CompareOptions {
+  std::string gate, junit, markdown;
+};
+
+void add_compare_options(CLI::App& to, CompareOptions& options);
+
+// Throws UsageError for a report that cannot be written, before anything is done.
+void check_reports(const CompareOptions& options);
+
+// Prints the comparison, writes the reports; the exit code (commands.h): a failure outranks a
+// regression. name: of the JUnit suite and the Markdown heading.
+int report_comparison(const Comparison& comparison, const CompareOptions& options,
+                      const std::string& name);
+
+}  // namespace harness

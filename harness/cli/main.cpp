@@ -1,0 +1,114 @@
+// bench: the command line.
+#include <filesystem>
+#include <iostream>
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/cli/commands.h"
+#include "harness/points/context.h"
+#include "harness/points/plugins.h"
+
+namespace harness {
+namespace {
+
+// A result is no place for a machine's folders.
+std::vector<std::string> command_words(int argc, char** argv) {
+  std::vector<std::string> words{"bench"};
+  for (int i = 1; i < argc; ++i) {
+    const std::filesystem::path argument(argv[i]);
+    words.push_back(argument.is_absolute() ? argument.filename().string() : argument.string());
+  }
+  return words;
+}
+
+// Before and after a command's name, any number of times.
+void add_plugin_option(CLI::App& app, std::vector<std::string>& files) {
+  std::vector<CLI::App*> places = app.get_subcommands([](const CLI::App*) { return true; });
+  places.push_back(&app);
+  for (CLI::App* place : places) {
+    place
+        ->add_option_function<std::vector<std::string>>(
+            "--plugin",
+            [&files](const auto& given) { files.insert(files.end(), given.begin(), given.end()); },
+            "load solvers of your own from a shared library (solvers/plugin.h); repeatable")
+        ->allow_extra_args(false)
+        ->type_name("FILE");
+  }
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{
+      "bench: which solver keeps cloth and chains from stretching fastest, at which strain, at "
+      "which size.\n"
+      "\n"
+      "  bench --sweep strain                     Figures 4a and 5a of Goldenthal et al. 2007, in "
+      "under 5 minutes\n"
+      "  bench --sweep resolution --scene chain   Figure 4b\n"
+      "  bench --sweep strain --profile quick     a first look, in under a minute\n"
+      "  bench plot RESULT.json                   draws the figures of a result file again\n"
+      "  bench --sweep step --scene chain         time against error, and a table of time to reach "
+      "an error\n"
+      "  bench --sweep stability                  hard cases: which solver breaks where\n"
+      "  bench reference                          the trajectories that errors are measured "
+      "against\n"
+      "  bench claims RESULT.json ...             the paper's claims, decided by measurements\n"
+      "  bench emit slurm --shards 8 ... > job.sh  the same on many machines, under Slurm or GNU "
+      "parallel\n"
+      "  bench check --solver NAME                whether a solver keeps what every solver must\n"
+      "  bench compare BASE.json NEW.json         what has become slower or fails now, for CI\n"
+      "  bench ab OLD_BINARY NEW_BINARY           two builds against each other, in interleaved "
+      "runs\n"
+      "  bench list                               solvers, scenes and suites with their "
+      "settings\n"};
+  app.set_version_flag("--version", std::string("bench ") + version());
+  const std::vector<std::string> command = command_words(argc, argv);
+  Chosen chosen;
+  add_sweep_command(app, chosen, command);
+  add_plot_command(app, chosen);
+  add_reference_command(app, chosen);
+  add_claims_command(app, chosen);
+  add_emit_command(app, chosen);
+  add_compare_command(app, chosen);
+  add_baseline_command(app, chosen);
+  add_point_command(app, chosen);
+  add_ab_command(app, chosen);
+  add_history_command(app, chosen);
+  add_list_command(app, chosen);
+  add_merge_command(app, chosen);
+  add_check_command(app, chosen);
+  std::vector<std::string> plugins;
+  add_plugin_option(app, plugins);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    std::cerr << "bench: " << error.what() << " (see bench --help)\n";
+    return usage_error;
+  }
+  for (const std::string& file : plugins) load_plugin(file);
+  for (const Plugin& plugin : loaded_plugins()) {
+    if (!plugin.optimized)
+      std::cerr << "bench: plug-in '" << plugin.file
+                << "' was compiled without optimization: its times say nothing\n";
+  }
+  return chosen();
+}
+
+}  // namespace
+}  // namespace harness
+
+int main(int argc, char** argv) {
+  harness::use_one_thread();
+  try {
+    return harness::run(argc, argv);
+  } catch (const harness::UsageError& error) {
+    std::cerr << "bench: " << error.what() << '\n';
+    return harness::usage_error;
+  } catch (const harness::FileError& error) {
+    std::cerr << "bench: " << error.what() << '\n';
+    return harness::internal_error;
+  } catch (const std::exception& error) {
+    std::cerr << "bench: internal error: " << error.what() << '\n';
+    return harness::internal_error;
+  }
+}

@@ -1,0 +1,190 @@
+#include "harness/cli/sweep_options.h"
+
+#include <algorithm>
+
+#include "harness/base/errors.h"
+#include "harness/base/paths.h"
+#include "harness/base/text.h"
+#include "harness/cli/commands.h"
+
+namespace harness {
+
+namespace {
+
+// "5" or "5..40".
+std::pair<int, int> parse_reps(const std::string& text) {
+  static const std::regex form(R"((\d{1,4})(?:\.\.(\d{1,4}))?)");
+  std::smatch match;
+  if (!std::regex_match(text, match, form) || std::stoi(match[1]) < 1)
+    throw UsageError("--reps is '" + text + "', must be a number from 1 on, or two: 5..40");
+  const int least = std::stoi(match[1]), most = match[2].matched ? std::stoi(match[2]) : 0;
+  if (match[2].matched && most < least)
+    throw UsageError("--reps is '" + text + "', whose second number is below the first");
+  return {least, most};
+}
+
+// For all sweeps a ladder that ends earlier or later.
+void cut_ladders(Suite& suite, double finest) {
+  for (SweepSpec& sweep : suite.sweeps) {
+    if (sweep.adaptive)
+      throw UsageError("--finest does not go with adaptive steps, which have no ladder");
+    if (finest > sweep.coarsest)
+      throw UsageError("--finest " + number_text(finest) + " leaves no step: the ladder of " +
+                       sweep.scene + " begins at " + number_text(sweep.coarsest) + " s");
+    sweep.finest = finest;
+  }
+}
+
+}  // namespace
+
+void add_selection(CLI::App& to, SweepOptions& options) {
+  to.add_option("--sweep", options.sweep, "axis: strain (limit), resolution, step or stability")
+      ->type_name("AXIS");
+  to.add_option("--scene", options.scene, "chain or drape; both if left out")->type_name("NAME");
+  to.add_option("--solver", options.solver, "only solvers whose name matches, e.g. 'shake|icd'")
+      ->type_name("REGEX");
+  to.add_option("--filter", options.filter, "only points in whose id this is found")
+      ->type_name("REGEX");
+  to.add_option("--exclude", options.exclude, "without points in whose id this is found")
+      ->type_name("REGEX");
+  to.add_option("--profile", options.profile,
+                "quick (< 1 min), default (about 5 min) or paper (an hour and a half)")
+      ->type_name("NAME");
+  to.add_option("--config", options.config, "a suite of your own instead of a profile")
+      ->type_name("FILE");
+}
+
+void add_measurement(CLI::App& to, SweepOptions& options) {
+  to.add_option("--reps", options.reps,
+                "runs of each best point; 5..40: more until the median is known to --rel-ci")
+      ->type_name("N");
+  to.add_option("--rel-ci", options.rel_ci,
+                "half width of the median's 95 % confidence interval over the median, default 0.02")
+      ->check(CLI::PositiveNumber)
+      ->type_name("R");
+  to.add_option("--timeout", options.timeout, "seconds a point may take")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
+  to.add_option("--step", options.step,
+                "search (each solver's best step, default), all (the whole ladder) or adaptive "
+                "(one run from the coarsest step, halved where the solver refuses it)")
+      ->type_name("HOW");
+  to.add_option("--finest", options.finest, "smallest step of the ladder instead of the suite's")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
+  to.add_option("--max-error", options.max_error,
+                "also find the fastest step within this trajectory error, over the scene's size")
+      ->check(CLI::PositiveNumber)
+      ->type_name("E");
+  to.add_option("--seed", options.seed, "of random orders")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("N");
+}
+
+std::vector<std::string> profiles() { return {"quick", "default", "paper", "large"}; }
+
+void check_profile(const std::string& name) {
+  const auto known = profiles();
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    throw unknown_name("profile", name, known);
+}
+
+std::regex pattern(const std::string& option, const std::string& text) {
+  try {
+    return std::regex(text, std::regex::ECMAScript | std::regex::icase);
+  } catch (const std::regex_error& error) {
+    throw UsageError(option + " '" + text + "' is not a regular expression: " + error.what());
+  }
+}
+
+void check_solver_pattern(const std::string& text) {
+  const std::vector<std::string> names = names_of(inextensible::backends());
+  const std::regex expression = pattern("--solver", text);
+  for (const std::string& name : names) {
+    if (std::regex_match(name, expression)) return;
+  }
+  throw unknown_name("solver", text, names);
+}
+
+std::string suite_path(const SweepOptions& options) {
+  if (!options.scene.empty() && !find_scene(options.scene))
+    throw unknown_name("scene", options.scene, names_of(scene_types()));
+  if (!options.config.empty()) return options.config;
+  check_profile(options.profile);
+  return source_path("configs/" + options.profile + ".json");
+}
+
+Suite load_suite(const SweepOptions& options) {
+  if (!options.solver.empty()) check_solver_pattern(options.solver);
+  const std::string path = suite_path(options);
+  Suite suite = read_suite(path);
+  std::vector<std::string> kinds = sweep_kinds();
+  if (std::find(kinds.begin(), kinds.end(), options.sweep) == kinds.end()) {
+    kinds.emplace_back("stability");
+    throw unknown_name("sweep", options.sweep, kinds);
+  }
+  std::erase_if(suite.sweeps, [&](const SweepSpec& s) {
+    return s.sweep != options.sweep || (!options.scene.empty() && s.scene != options.scene);
+  });
+  if (suite.sweeps.empty())
+    throw UsageError("'" + path + "' has no such sweep: --sweep " + options.sweep + " --scene " +
+                     options.scene);
+  if (options.step != "search" && options.step != "adaptive" && options.step != "all")
+    throw unknown_name("step", options.step, {"search", "adaptive", "all"});
+  if (options.step == "adaptive") {
+    if (options.sweep == "step")
+      throw UsageError("--step adaptive does not go with --sweep step, whose steps are fixed");
+    for (SweepSpec& sweep : suite.sweeps) sweep.adaptive = true;
+    suite.name += "-adaptive";  // files and figures of their own
+  } else if (options.step == "all" && options.sweep != "step") {
+    for (SweepSpec& sweep : suite.sweeps) sweep.every_step = true;
+    suite.name += "-all";
+  }
+  if (!options.reps.empty()) std::tie(suite.reps, suite.most_reps) = parse_reps(options.reps);
+  if (options.rel_ci > 0) suite.rel_ci = options.rel_ci;
+  if (options.finest > 0) cut_ladders(suite, options.finest);
+  if (options.timeout > 0) suite.timeout = options.timeout;
+  if (options.max_error > 0) suite.max_error = options.max_error;
+  if (options.seed >= 0) suite.seed = static_cast<std::uint64_t>(options.seed);
+  // A solver that is no contestant joins when it is asked for by its own name.
+  if (const auto* backend = inextensible::find_backend(options.solver);
+      backend && !backend->contestant) {
+    for (SweepSpec& sweep : suite.sweeps) sweep.solvers = {options.solver};
+  }
+  return suite;
+}
+
+SweepFilters make_filters(const SweepOptions& options) {
+  SweepFilters filters;
+  if (!options.solver.empty()) filters.solver = pattern("--solver", options.solver);
+  if (!options.filter.empty()) filters.include = pattern("--filter", options.filter);
+  if (!options.exclude.empty()) filters.exclude = pattern("--exclude", options.exclude);
+  return filters;
+}
+
+Shard parse_shard(const std::string& text) {
+  static const std::regex form(R"((\d{1,6})/(\d{1,6}))");
+  std::smatch match;
+  if (!std::regex_match(text, match, form))
+    throw UsageError("--shard is '" + text + "', must be i/N, such as 2/5");
+  const Shard shard{std::stoul(match[1]), std::stoul(match[2])};
+  if (shard.index < 1 || shard.index > shard.count)
+    throw UsageError("--shard is '" + text + "', but i must be from 1 to N");
+  return shard;
+}
+
+std::vector<std::pair<std::string, SceneParameters>> without_reference(
+    const std::vector<Search>& searches, ReferenceShelf& shelf) {
+  std::map<std::string, std::pair<std::string, SceneParameters>> missing;
+  for (const Search& search : searches) {
+    const auto& [scene, parameters] = std::pair(search.base.scene, search.base.scene_parameters);
+    if (!shelf.find(scene, parameters))
+      missing[reference_name(scene, parameters)] = {scene, parameters};
+  }
+  std::vector<std::pair<std::string, SceneParameters>> list;
+  list.reserve(missing.size());
+  for (auto& [name, scene] : missing) list.push_back(std::move(scene));
+  return list;
+}
+
+}  // namespace harness

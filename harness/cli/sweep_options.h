@@ -1,0 +1,42 @@
+// The options that select what a sweep runs, shared by several commands.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "harness/run/sweep.h"
+
+namespace harness {
+
+struct SweepOptions {
+  std::string sweep, scene, solver, filter, exclude, config, profile = "default", step = "search";
+  std::string reps;  // "5", or "5..40" with rel_ci
+  double timeout = 0, max_error = 0, rel_ci = 0, finest = 0;
+  std::int64_t seed = -1;
+};
+
+// --sweep, --scene, --solver, --filter, --exclude, --profile and --config.
+void add_selection(CLI::App& to, SweepOptions& options);
+
+// --reps, --rel-ci, --timeout, --step, --max-error and --seed.
+void add_measurement(CLI::App& to, SweepOptions& options);
+
+std::vector<std::string> profiles();
+// All of these throw UsageError for what does not exist.
+void check_profile(const std::string& name);
+// A solver given as a plain name must exist; anything else is a regular expression that must match
+// some name.
+void check_solver_pattern(const std::string& text);
+std::regex pattern(const std::string& option, const std::string& text);
+std::string suite_path(const SweepOptions& options);
+Suite load_suite(const SweepOptions& options);
+SweepFilters make_filters(const SweepOptions& options);
+// "2/5"; throws UsageError unless 1 <= i <= N.
+Shard parse_shard(const std::string& text);
+
+// Scenes of the plan without a reference: their points carry no trajectory error.
+std::vector<std::pair<std::string, SceneParameters>> without_reference(
+    const std::vector<Search>& searches, ReferenceShelf& shelf);
+
+}  // namespace harness

@@ -1,0 +1,175 @@
+#include "harness/compare/baseline.h"
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/text.h"
+#include "harness/compare/gate.h"
+#include "harness/points/context.h"
+#include "harness/points/result_file.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr const char* baseline_schema = "inextensible-baseline/1";
+constexpr int error_digits = 6;  // enough for a ratio; the rest is noise in a diff
+
+std::string spec_hash(const json& point) {
+  const json spec = {point.at("scene_parameters"), point.value("settings", json::object()),
+                     point.value("adaptive", false), point.at("seed")};
+  return fnv1a(spec.dump());
+}
+
+const json& error_of(const json& point, const std::string& name) {
+  static const json none;
+  const json& place = name == "max_strain" ? point : point.at("error");
+  return place.contains(name) ? place.at(name) : none;
+}
+
+json read_any(const std::string& path) {
+  json document;
+  const std::string text = read_file(path, "result file");
+  document = json::parse(text, nullptr, false);
+  if (document.is_object() && document.value("schema", json()) == baseline_schema) return document;
+  document = parse_result(text, path);
+  if (document.at("schema") != "inextensible-bench/1")
+    throw UsageError("'" + path +
+                     "' is the result of a stability sweep, which cannot be compared: it has its "
+                     "expected outcomes in the program");
+  return document;
+}
+
+// Whether the steps of this point's search were chosen by their times.
+bool searched(const json& suite, const ComparedPoint& point) {
+  if (point.sweep == "step") return false;
+  const std::string scene = point.id.substr(0, point.id.find('/'));
+  for (const json& sweep : suite.at("sweeps")) {
+    if (sweep.at("sweep") != point.sweep || sweep.at("scene") != scene) continue;
+    const json steps = sweep.value("steps", json::object());
+    if (steps.value("all", false) || steps.value("adaptive", false)) return false;
+  }
+  return true;
+}
+
+void append(ComparedResult& to, const json& document, const std::string& path) {
+  try {
+    const json& context = document.at("context");
+    for (const json& entry : document.at("points")) {
+      ComparedPoint point = compared_point(entry);
+      point.searched = searched(context.at("suite"), point);
+      to.points.push_back(std::move(point));
+    }
+    to.complete = to.complete && document.value("complete", true);
+    to.baseline = to.baseline || document.at("schema") == baseline_schema;
+    if (to.context.is_null()) {
+      to.context = context;
+      return;
+    }
+    for (const char* key : {"fingerprint", "counters_fingerprint"}) {
+      if (to.context.value(key, "") != context.value(key, ""))
+        throw UsageError("'" + to.path + "' and '" + path +
+                         "' are not of one build on one machine, so they are not one result");
+    }
+  } catch (const json::exception& error) {
+    throw UsageError("'" + path + "' is not a result file: " + error.what());
+  }
+}
+
+std::string command_line(const json& words) {
+  std::string line;
+  for (const json& word : words) {
+    const std::string text = word.get<std::string>();
+    const bool plain = text.find_first_of(" |()$*?^'\"[]\\") == std::string::npos;
+    line += (line.empty() ? "" : " ") + (plain ? text : "'" + text + "'");
+  }
+  return line;
+}
+
+ordered_json rounded(const json& value) {
+  if (!value.is_number()) return nullptr;
+  return std::stod(number_text(value.get<double>(), error_digits));
+}
+
+ordered_json baseline_point(const json& point) {
+  ordered_json errors = ordered_json::object();
+  for (const std::string& name : error_names()) {
+    if (name != "max_strain") errors[name] = rounded(error_of(point, name));
+  }
+  return {{"sweep", point.at("sweep")},
+          {"id", point.at("id")},
+          {"status", point.at("status")},
+          {"spec", spec_hash(point)},
+          {"work", point.at("work")},
+          {"max_strain", rounded(point.at("max_strain"))},
+          {"error", errors}};
+}
+
+}  // namespace
+
+ComparedPoint compared_point(const json& p) {
+  ComparedPoint point;
+  p.at("sweep").get_to(point.sweep);
+  p.at("id").get_to(point.id);
+  p.at("status").get_to(point.status);
+  point.detail = p.value("status_detail", "");
+  point.spec = p.contains("spec") ? p.at("spec").get<std::string>() : spec_hash(p);
+  point.best = p.value("best", false);
+  p.at("work").get_to(point.counters);
+  for (const std::string& name : error_names()) {
+    if (const json& value = error_of(p, name); value.is_number())
+      point.errors[name] = value.get<double>();
+  }
+  const json seconds = p.value("seconds_per_simulated_second", json());
+  if (seconds.is_object()) seconds.at("samples").get_to(point.samples);
+  return point;
+}
+
+ComparedResult read_compared(const std::vector<std::string>& paths) {
+  ComparedResult result;
+  for (const std::string& path : paths) {
+    if (result.path.empty()) result.path = path;
+    append(result, read_any(path), path);
+  }
+  return result;
+}
+
+ordered_json baseline_document(const std::vector<json>& results) {
+  const json& context = results.front().at("context");
+  ordered_json suite = context.at("suite"), commands = ordered_json::array(), points;
+  points = ordered_json::array();
+  suite["sweeps"] = ordered_json::array();
+  for (const json& result : results) {
+    commands.push_back(command_line(result.at("context").at("command")));
+    for (const json& sweep : result.at("context").at("suite").at("sweeps"))
+      suite["sweeps"].push_back(ordered_json(sweep));
+    for (const json& point : result.at("points")) points.push_back(baseline_point(point));
+  }
+  return {{"schema", baseline_schema},
+          {"context",
+           {{"counters_fingerprint", context.value("counters_fingerprint", "")},
+            {"build", context.at("build")},
+            {"libraries", context.at("libraries")},
+            {"command", commands},
+            {"suite", suite}}},
+          {"points", points}};
+}
+
+std::string baseline_text(const ordered_json& document) {
+  std::string text = "{\n\"schema\": " + document.at("schema").dump() + ",\n\"context\": {";
+  std::string separator = "\n";
+  for (const auto& [key, value] : document.at("context").items()) {
+    text += separator + ordered_json(key).dump() + ": " + value.dump();
+    separator = ",\n";
+  }
+  text += "\n},\n\"points\": [";
+  separator = "\n";
+  for (const auto& point : document.at("points")) {
+    text += separator + point.dump();
+    separator = ",\n";
+  }
+  return text + "\n]\n}\n";
+}
+
+}  // namespace harness

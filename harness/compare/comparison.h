@@ -1,0 +1,77 @@
+// Two results point by point: what has become slower, what fails now. The rule for times is that of
+// rustc-perf and asv put together: a rank test and two ratios, all of which must agree.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "harness/compare/baseline.h"
+#include "harness/compare/gate.h"
+
+namespace harness {
+
+enum class Change {
+  same,
+  faster,
+  slower,         // in time, or more work; a regression
+  changed,        // less work under the rule "exact", or a larger error; a regression
+  ambiguous,      // cannot be decided; no regression
+  newly_failing,  // ran in the base
+  fixed,
+  missing,  // of the base's points
+  added,    // written NEW
+};
+const char* to_string(Change change);  // "SAME", ...
+bool is_regression(Change change);
+bool is_failure(Change change);
+
+struct PointChange {
+  Change change = Change::same;
+  std::string sweep, id;
+  std::vector<std::string> reasons;  // one line each, for people
+  bool too_few = false;              // nothing to say but that times had too few runs
+
+  std::string text() const;  // the reasons in one line
+};
+
+struct TimeChange {
+  Change change = Change::same;  // same, faster, slower or ambiguous
+  std::string reason;            // "" if same
+  bool too_few = false;          // ambiguous for want of samples
+};
+
+// Samples of the same unit. Faster and slower are judged alike, from the faster side.
+TimeChange compare_times(const std::vector<double>& base, const std::vector<double>& next,
+                         const Gate& gate);
+
+// What of two results can be compared at all.
+struct Comparability {
+  std::string no_counters, no_times;  // why not; "" if they can
+  bool counters() const { return no_counters.empty(); }
+  bool times() const { return no_times.empty(); }
+};
+Comparability comparability(const ComparedResult& base, const ComparedResult& next,
+                            const Gate& gate);
+
+// One point in both. Times are left out unless `can.times()`, counters unless `can.counters()`.
+PointChange compare_point(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
+                          const Comparability& can);
+
+struct Comparison {
+  std::vector<PointChange> points;  // of the base in its order, then new ones
+  std::vector<std::string> notes;   // what was not compared, and why
+
+  std::size_t count(Change change) const;
+  bool any(bool (*is)(Change)) const;
+};
+
+// Build, machine or scenes differ so much that no verdict would mean anything.
+class NotComparable : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+Comparison compare(const ComparedResult& base, const ComparedResult& next, const Gate& gate);
+
+}  // namespace harness

@@ -1,0 +1,43 @@
+// Two programs timed against each other: single points in processes of their own, in interleaved
+// pairs, so that what the machine does meanwhile falls on both.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "harness/compare/comparison.h"
+
+namespace harness {
+
+enum class Side { old_one, new_one };
+
+// One point to be timed.
+struct PairedPoint {
+  nlohmann::json spec;          // what `bench point` reads
+  std::string id;               // of the point
+  int samples = 1;              // runs in one process
+  ComparedPoint before, after;  // what the processes said; samples: one time a process
+};
+
+// Runs one process on one point; what `bench point` printed.
+using RunOne = std::function<nlohmann::json(Side, const PairedPoint&)>;
+
+// A process's figure: the least of its runs. Interruptions only ever add, and what differs from
+// process to process (where its memory lies) is in every one of its runs.
+double process_time(const nlohmann::json& printed);
+
+// Runs in one process, so that a process measures for at least `least` seconds. seconds: one run.
+int samples_for(double seconds, double least);
+
+// `pairs` rounds over all points; the sides take turns in coming first (ABBA). A point that has
+// failed on either side is left alone from then on.
+void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne& run);
+
+// run_pairs, then once more, from scratch, with `confirming` pairs for points whose times have
+// changed: only what is found both times counts.
+Comparison compare_in_pairs(std::vector<PairedPoint> points, int pairs, int confirming,
+                            const Gate& gate, const Comparability& can, const RunOne& run);
+
+}  // namespace harness

@@ -1,0 +1,159 @@
+#include "harness/judge/judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "inextensible/problem/forces.h"
+
+namespace harness {
+
+using inextensible::Positions;
+using inextensible::State;
+
+namespace {
+
+constexpr double time_tolerance = 1e-9;  // s; states add up their steps
+
+}  // namespace
+
+Judge::Judge(const Scene& scene, const Options& options) : scene_(scene), options_(options) {
+  options_.sample_every = std::max(1, options_.sample_every);
+  if (options_.residual_of_limit > 0) probe_.emplace(scene.problem, options_.residual_of_limit);
+  const auto& problem = *scene.problem;
+  start_energy_ = inextensible::potential_energy(problem, scene.start.x) +
+                  inextensible::kinetic_energy(problem, scene.start.v);
+  energy_scale_ = problem.total_mass() * problem.gravity().norm() * scene.size;
+}
+
+Judge::Range Judge::strain_range(const Positions& x) const {
+  const auto& edges = scene_.problem->edges();
+  const auto& rest = scene_.problem->rest_length();
+  double low = 1, high = 1;  // of |d|^2 / l^2
+  bool finite = true;
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const double q = (x.col(edges[k].b) - x.col(edges[k].a)).squaredNorm() / (rest[k] * rest[k]);
+    finite = finite && std::isfinite(q);
+    low = std::min(low, q);
+    high = std::max(high, q);
+  }
+  if (!finite)
+    return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  const double stretch = std::sqrt(high) - 1;
+  return {std::max(stretch, 1 - std::sqrt(low)), stretch};
+}
+
+void Judge::before(const State& state, double h) {
+  if (probe_ && (steps_ + 1) % options_.sample_every == 0) {
+    if (const auto residuals = probe_->of_step(state, h))
+      running_.residuals.push_back({state.time + h, residuals->first, residuals->last});
+  }
+  // A sample in the middle of a step is interpolated.
+  if (options_.reference && next_ < options_.reference->times.size() &&
+      options_.reference->times[next_] < state.time + h - time_tolerance) {
+    start_ = state;
+  }
+}
+
+// Distances to the reference at the samples that the last step has reached.
+void Judge::compare(const State& state) {
+  const Reference& reference = *options_.reference;
+  for (; next_ < reference.times.size() && reference.times[next_] <= state.time + time_tolerance;
+       ++next_) {
+    const double time = reference.times[next_];
+    const bool inside = time < state.time - time_tolerance;
+    const double part = inside ? (time - start_.time) / (state.time - start_.time) : 1;
+    const Positions x = inside ? Positions((1 - part) * start_.x + part * state.x) : state.x;
+    if (next_ < reference.positions.size()) {
+      squares_ += std::pow(rms_distance(scene_, x, reference.positions[next_]), 2);
+      most_ = std::max(most_, max_distance(scene_, x, reference.positions[next_]));
+      gap_squares_ += std::pow(reference.gap[next_], 2);
+      ++compared_;
+    } else {
+      const ShapeStatistics shape = shape_statistics(scene_, x);
+      const ShapeStatistics& wanted = reference.shape[next_];
+      shape_squares_.potential_energy +=
+          std::pow(shape.potential_energy - wanted.potential_energy, 2);
+      shape_squares_.corner_height += std::pow(shape.corner_height - wanted.corner_height, 2);
+      shape_squares_.shadow += std::pow(shape.shadow - wanted.shadow, 2);
+      ++shapes_;
+    }
+  }
+}
+
+double Judge::after(const Positions& filtered, const State& state, bool counts) {
+  const Range range = strain_range(filtered);
+  running_.max_strain = std::max(running_.max_strain, range.most);
+  running_.max_stretch = std::max(running_.max_stretch, range.stretch);
+  if (scene_.problem->collider()) {
+    const double after = strain_range(state.x).most;
+    const double before = running_.max_strain_after_collision;
+    running_.max_strain_after_collision = std::isnan(before) ? after : std::max(before, after);
+  }
+  if (counts && ++steps_ % options_.sample_every == 0) sample(filtered, state);
+  if (options_.reference) compare(state);
+  return range.most;
+}
+
+void Judge::sample(const Positions& filtered, const State& state) {
+  const auto& problem = *scene_.problem;
+  const auto& edges = problem.edges();
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const double length = (filtered.col(edges[k].b) - filtered.col(edges[k].a)).norm();
+    strains_.push_back(std::abs(length / problem.rest_length()[k] - 1));
+  }
+  const double kinetic = inextensible::kinetic_energy(problem, state.v);
+  kinetic_sum_ += kinetic;
+  ++samples_;
+  const auto raise = [](double& figure, double value) {
+    figure = std::isnan(figure) ? value : std::max(figure, value);
+  };
+  if (scene_.conserves_energy) {
+    const double energy = kinetic + inextensible::potential_energy(problem, state.x);
+    raise(running_.energy_drift, std::abs(energy - start_energy_) / energy_scale_);
+  }
+  for (const auto& mirror : scene_.mirrors) {
+    const Eigen::Matrix3d reflect =
+        Eigen::Matrix3d::Identity() - 2 * mirror.normal * mirror.normal.transpose();
+    double worst = 0;
+    for (Eigen::Index v = 0; v < state.x.cols(); ++v) {
+      const auto image = mirror.image[static_cast<std::size_t>(v)];
+      worst = std::max(worst, (reflect * state.x.col(v) - state.x.col(image)).squaredNorm());
+    }
+    raise(running_.symmetry_defect, std::sqrt(worst) / scene_.size);
+  }
+}
+
+Verdict Judge::verdict() const {
+  Verdict verdict = running_;
+  if (samples_ > 0) {
+    verdict.kinetic_energy_mean = kinetic_sum_ / samples_;
+    double squares = 0;
+    for (const double strain : strains_) squares += strain * strain;
+    verdict.rms_strain = std::sqrt(squares / static_cast<double>(strains_.size()));
+    verdict.p99_strain = quantile(strains_, 0.99);
+  }
+  if (!verdict.residuals.empty()) {
+    const auto count = static_cast<double>(verdict.residuals.size());
+    verdict.residual_first = verdict.residual_last = 0;
+    for (const auto& residual : verdict.residuals) {
+      verdict.residual_first += residual.first / count;
+      verdict.residual_last += residual.last / count;
+    }
+  }
+  if (!options_.reference) return verdict;
+  verdict.reference = reference_name(options_.reference->scene, options_.reference->parameters);
+  verdict.valid_until = options_.reference->valid_until;
+  if (compared_ > 0) {
+    verdict.trajectory = std::sqrt(squares_ / compared_);
+    verdict.trajectory_max = most_;
+    verdict.gap = std::sqrt(gap_squares_ / compared_);
+  }
+  if (shapes_ > 0) {
+    verdict.shape_potential_energy = std::sqrt(shape_squares_.potential_energy / shapes_);
+    verdict.shape_corner_height = std::sqrt(shape_squares_.corner_height / shapes_);
+    verdict.shape_shadow = std::sqrt(shape_squares_.shadow / shapes_);
+  }
+  return verdict;
+}
+
+}  // namespace harness

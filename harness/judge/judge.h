@@ -1,0 +1,58 @@
+// The harness judges, never the solver: strain, energy, symmetry and errors recomputed from
+// positions, off the clock.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "harness/judge/reference.h"
+#include "harness/judge/residual.h"
+#include "harness/points/point.h"
+#include "harness/scenes/scene.h"
+
+namespace harness {
+
+class Judge {
+ public:
+  struct Options {
+    int sample_every = 1;  // full statistics are taken at every so manieth step
+    std::shared_ptr<const Reference> reference = nullptr;
+    // The residual of fast projection with this strain limit; 0: none.
+    double residual_of_limit = 0;
+  };
+  Judge(const Scene& scene, const Options& options);
+
+  // Before and after each accepted step of h seconds. filtered: positions before the collision
+  // filter. `after` returns the step's largest |strain|, infinite if a position is not finite.
+  void before(const inextensible::State& state, double h);
+  // counts: whether the step counts towards sample_every (a step controller's parts do not).
+  double after(const inextensible::Positions& filtered, const inextensible::State& state,
+               bool counts = true);
+  Verdict verdict() const;
+
+ private:
+  struct Range {
+    double most = 0, stretch = 0;
+  };
+  Range strain_range(const inextensible::Positions& x) const;
+  void sample(const inextensible::Positions& filtered, const inextensible::State& state);
+  void compare(const inextensible::State& state);
+
+  const Scene& scene_;
+  Options options_;
+  int steps_ = 0;
+  Verdict running_;
+  std::vector<double> strains_;  // |strain| of every edge at every sampled instant
+  double start_energy_, energy_scale_;
+  double kinetic_sum_ = 0;
+  int samples_ = 0;
+
+  std::optional<ResidualProbe> probe_;
+  inextensible::State start_;  // of the step, where a sample lies inside it
+  std::size_t next_ = 0;       // of the reference's samples
+  double squares_ = 0, most_ = 0, gap_squares_ = 0;
+  int compared_ = 0, shapes_ = 0;
+  ShapeStatistics shape_squares_;
+};
+
+}  // namespace harness

@@ -1,0 +1,179 @@
+#include "harness/points/context.h"
+
+#include <cholmod.h>
+#include <gnu/libc-version.h>
+#include <gsl/gsl_version.h>
+#include <omp.h>
+#include <sys/utsname.h>
+#include <umfpack.h>
+#include <unistd.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "build_info.h"  // made by CMake
+#include "harness/base/files.h"
+#include "harness/points/plugins.h"
+
+extern "C" {  // OpenBLAS; its own header clashes with GSL's
+void openblas_set_num_threads(int threads);
+int openblas_get_num_threads();
+char* openblas_get_config();
+char* openblas_get_corename();
+}
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+
+std::string first_line(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  return line;
+}
+
+std::string cpu_field(const std::string& name) {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    const auto colon = line.find(':');
+    if (line.starts_with(name) && colon != std::string::npos && colon + 2 <= line.size())
+      return line.substr(colon + 2);
+  }
+  return "";
+}
+
+json caches() {
+  json list = json::array();
+  for (int index = 0; index < 8; ++index) {
+    const std::string folder =
+        "/sys/devices/system/cpu/cpu0/cache/index" + std::to_string(index) + "/";
+    const std::string size = first_line(folder + "size");
+    if (size.empty()) break;
+    list.push_back({{"type", first_line(folder + "type")},
+                    {"level", std::atoi(first_line(folder + "level").c_str())},
+                    {"size", std::atol(size.c_str()) * 1024},
+                    {"num_sharing", 1}});
+  }
+  return list;
+}
+
+// Output of git in the source folder, "" without git or outside a checkout.
+std::string git(const std::string& arguments) {
+  const std::string command = "git -C '" INEXTENSIBLE_SOURCE_DIR "' " + arguments + " 2>/dev/null";
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+  std::string text;
+  std::array<char, 256> buffer{};
+  while (pipe && fgets(buffer.data(), buffer.size(), pipe.get())) text += buffer.data();
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text;
+}
+
+std::string now() {
+  const std::time_t time = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&time, &local);
+  std::array<char, 64> text{};
+  const std::size_t length = std::strftime(text.data(), text.size(), "%FT%T%z", &local);
+  return std::string(text.data(), length).insert(length - 2, ":");
+}
+
+json libraries_json() {
+  const auto dotted = [](auto... parts) {
+    std::string text;
+    ((text += (text.empty() ? "" : ".") + std::to_string(parts)), ...);
+    return text;
+  };
+  return {{"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+          {"cholmod", dotted(CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION)},
+          {"umfpack", dotted(UMFPACK_MAIN_VERSION, UMFPACK_SUB_VERSION, UMFPACK_SUBSUB_VERSION)},
+          {"gsl", GSL_VERSION},
+          {"blas",
+           {{"name", std::string(openblas_get_config())},
+            {"core", std::string(openblas_get_corename())},
+            {"threads", openblas_get_num_threads()}}}};
+}
+
+}  // namespace
+
+std::string fnv1a(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const unsigned char c : text) hash = (hash ^ c) * 0x100000001b3ULL;
+  std::ostringstream hex;
+  hex << std::hex << hash;
+  return hex.str();
+}
+
+const char* version() { return INEXTENSIBLE_VERSION; }
+
+void use_one_thread() {
+  openblas_set_num_threads(1);
+  omp_set_max_active_levels(0);  // CHOLMOD's num_threads clause outvotes OMP_NUM_THREADS
+}
+
+std::string counters_fingerprint() {
+  json libraries = libraries_json();
+  // Not its kernel, which OPENBLAS_CORETYPE chooses: "OpenBLAS 0.3.21" of "OpenBLAS 0.3.21 ...
+  // Zen".
+  const std::string blas = libraries["blas"]["name"];
+  libraries["blas"] = blas.substr(0, blas.find(' ', blas.find(' ') + 1));
+  libraries["libc"] = gnu_get_libc_version();  // its mathematics is part of every trajectory
+  utsname system{};
+  if (uname(&system) == 0) libraries["instruction set"] = system.machine;
+  const std::string flags = INEXTENSIBLE_FLAGS;
+  const bool native = flags.find("=native") != std::string::npos;
+  return fnv1a(INEXTENSIBLE_COMPILER + flags + (native ? cpu_field("model name") : "") +
+               libraries.dump());
+}
+
+json machine_context() {
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  std::array<double, 3> load{};
+  const bool load_known = getloadavg(load.data(), 3) == 3;
+  const std::string governor = first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
+  const std::string commit = git("rev-parse HEAD");
+  const json build = {{"git", commit},
+                      {"dirty", !git("status --porcelain --untracked-files=no").empty()},
+                      {"binary", fnv1a(read_file("/proc/self/exe", "program"))},
+                      {"compiler", INEXTENSIBLE_COMPILER},
+                      {"flags", INEXTENSIBLE_FLAGS},
+                      {"type", INEXTENSIBLE_BUILD_TYPE}};
+  const json libraries = libraries_json();
+  const std::string cpu = cpu_field("model name");
+  json context = {
+      {"date", now()},
+      {"host_name", host.data()},
+      {"executable", "bench"},
+      {"num_cpus", std::thread::hardware_concurrency()},
+      {"mhz_per_cpu", static_cast<int>(std::atof(cpu_field("cpu MHz").c_str()))},
+      {"cpu_model", cpu},
+      {"cpu_scaling_enabled", !governor.empty() && governor != "performance"},
+      {"cpu_scaling_governor", governor},
+      {"caches", caches()},
+      {"load_avg", load_known ? json(load) : json::array()},
+      {"library_build_type", std::string(INEXTENSIBLE_BUILD_TYPE) == "Debug" ? "debug" : "release"},
+      {"build", build},
+      {"libraries", libraries},
+      {"counters_fingerprint", counters_fingerprint()},
+      {"fingerprint",
+       fnv1a(cpu + INEXTENSIBLE_COMPILER + INEXTENSIBLE_FLAGS + commit + libraries.dump())}};
+  for (const Plugin& plugin : loaded_plugins()) {
+    context["plugins"].push_back({{"file", plugin.file},
+                                  {"version", plugin.version},
+                                  {"solvers", plugin.solvers},
+                                  {"optimized", plugin.optimized}});
+  }
+  return context;
+}
+
+}  // namespace harness

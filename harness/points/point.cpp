@@ -1,0 +1,65 @@
+#include "harness/points/point.h"
+
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_statistics.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace harness {
+
+std::string PointSpec::id() const {
+  std::ostringstream text;
+  text << scene << '/' << solver << "/n:" << vertices << "/strain:" << strain_limit << "/h:";
+  if (adaptive) {
+    text << "adaptive";
+  } else {
+    text << step;
+  }
+  return text.str();
+}
+
+const char* to_string(PointStatus status) {
+  switch (status) {
+    case PointStatus::ok:
+      return "ok";
+    case PointStatus::strain_missed:
+      return "strain_missed";
+    case PointStatus::not_converged:
+      return "not_converged";
+    case PointStatus::diverged:
+      return "diverged";
+    case PointStatus::timeout:
+      return "timeout";
+    case PointStatus::out_of_memory:
+      return "out_of_memory";
+    case PointStatus::crashed:
+      return "crashed";
+    case PointStatus::unsupported:
+      return "unsupported";
+    case PointStatus::skipped:
+      return "skipped";
+  }
+  return "?";
+}
+
+double quantile(std::vector<double> samples, double fraction) {
+  if (samples.empty()) return unknown;
+  std::sort(samples.begin(), samples.end());
+  return gsl_stats_quantile_from_sorted_data(samples.data(), 1, samples.size(), fraction);
+}
+
+double median_uncertainty(std::vector<double> samples) {
+  std::sort(samples.begin(), samples.end());
+  const auto n = static_cast<unsigned>(samples.size());
+  // The median lies below the k-th smallest sample with the chance of fewer than k heads in n
+  // throws of a coin.
+  unsigned k = 0;
+  while (2 * (k + 1) <= n && gsl_cdf_binomial_P(k, 0.5, n) <= 0.025) ++k;
+  if (k == 0) return std::numeric_limits<double>::infinity();
+  return 0.5 * (samples[n - k] - samples[k - 1]) / quantile(samples, 0.5);
+}
+
+double PointResult::median_seconds() const { return quantile(samples, 0.5); }
+
+}  // namespace harness

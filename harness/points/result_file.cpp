@@ -1,0 +1,70 @@
+#include "harness/points/result_file.h"
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/points/point_json.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+
+// One entry a repetition, in Google Benchmark's own format; compare.py reads them.
+void add_benchmarks(json& list, const PointResult& point, int family) {
+  for (std::size_t i = 0; i < point.samples.size(); ++i) {
+    const double microseconds = point.samples[i] * 1e6;
+    list.push_back({{"name", point.spec.id()},
+                    {"run_name", point.spec.id()},
+                    {"run_type", "iteration"},
+                    {"family_index", family},
+                    {"per_family_instance_index", 0},
+                    {"repetitions", point.samples.size()},
+                    {"repetition_index", i},
+                    {"threads", 1},
+                    {"iterations", 1},
+                    {"real_time", microseconds},
+                    {"cpu_time", microseconds},
+                    {"time_unit", "us"}});
+  }
+}
+
+}  // namespace
+
+json result_document(json context, const Suite& suite, const std::vector<std::string>& command,
+                     bool complete, const std::vector<PointResult>& points, json references) {
+  context["command"] = command;
+  context["suite"] = to_json(suite);
+  context["seed"] = suite.seed;
+  json list = json::array(), benchmarks = json::array();
+  int family = 0;
+  for (const PointResult& point : points) {
+    list.push_back(to_json(point));
+    if (point.ok()) add_benchmarks(benchmarks, point, family++);
+  }
+  return {{"schema", "inextensible-bench/1"},
+          {"complete", complete},
+          {"context", context},
+          {"points", list},
+          {"references", std::move(references)},
+          {"benchmarks", benchmarks}};
+}
+
+json read_result(const std::string& path) {
+  return parse_result(read_file(path, "result file"), path);
+}
+
+json parse_result(const std::string& text, const std::string& path) {
+  try {
+    json document = json::parse(text);
+    const std::string schema = document.is_object() ? document.value("schema", "") : "";
+    if (schema != "inextensible-bench/1" && schema != "inextensible-stability/1")
+      throw UsageError("'" + path +
+                       "' is not a result file: its schema is neither \"inextensible-bench/1\" nor "
+                       "\"inextensible-stability/1\"");
+    return document;
+  } catch (const json::exception& error) {
+    throw UsageError("'" + path + "' is not a result file: " + error.what());
+  }
+}
+
+}  // namespace harness

@@ -1,0 +1,25 @@
+// The result file, schema inextensible-bench/1 (configs/result.schema.json).
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "harness/points/point.h"
+#include "harness/points/suite.h"
+
+namespace harness {
+
+// context: machine_context() as it was before the sweep ran. references:
+// ReferenceShelf::summaries().
+nlohmann::json result_document(nlohmann::json context, const Suite& suite,
+                               const std::vector<std::string>& command, bool complete,
+                               const std::vector<PointResult>& points,
+                               nlohmann::json references = nlohmann::json::array());
+
+// A document of either kind of result: of a sweep or of a stability sweep. Throws UsageError,
+// naming the file, for anything else.
+nlohmann::json read_result(const std::string& path);
+nlohmann::json parse_result(const std::string& text, const std::string& path);
+
+}  // namespace harness

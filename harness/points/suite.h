@@ -1,0 +1,48 @@
+// A suite: what a sweep runs. Read from JSON (configs/*.json, schema configs/suite.schema.json),
+// strict about keys.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "harness/points/point.h"
+
+namespace harness {
+
+struct SweepSpec {
+  std::string sweep;  // "strain", "resolution" or "step"
+  std::string scene;
+  std::vector<std::string> solvers;
+  std::vector<double> limits;    // strain and step sweep: the axis; resolution sweep: one
+  std::vector<int> resolutions;  // resolution sweep: the axis; the others: one
+  double coarsest = 1.0 / 25, finest = 1.0 / 25600;  // s, ends of the step ladder
+  bool adaptive = false;    // a step controller from `coarsest` down, instead of the ladder
+  bool every_step = false;  // the whole ladder instead of a search; step sweeps always do
+  SceneParameters scene_parameters;
+  std::map<std::string, inextensible::Settings> solver_options;
+};
+
+struct Suite {
+  std::string name, description, profile;
+  std::uint64_t seed = 1;
+  int reps = 3;          // runs of each best point, the first one included
+  int most_reps = 0;     // above reps: more of them until the median is known to rel_ci
+  double rel_ci = 0.02;  // half width of the median's 95 % confidence interval over the median
+  double timeout = 60;   // s a point
+  double max_error = 0;  // trajectory error that `best_at_error` points respect; 0: none is sought
+  std::vector<SweepSpec> sweeps;
+};
+
+std::vector<std::string> sweep_kinds();
+
+// Throws UsageError, naming file, key and value, for anything that is not a suite.
+Suite read_suite(const std::string& path);
+// The same of a text; `path` is for messages.
+Suite parse_suite(const std::string& text, const std::string& path);
+// parse_suite() reads it back.
+nlohmann::json to_json(const Suite& suite);
+
+nlohmann::json to_json(const inextensible::Settings& settings);
+
+}  // namespace harness

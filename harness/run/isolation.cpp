@@ -1,0 +1,84 @@
+#include "harness/run/isolation.h"
+
+#include "harness/base/child_process.h"
+#include "harness/base/text.h"
+#include "harness/points/point_json.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+using End = ChildOutcome::End;
+
+ChildLimits child_limits(const RunLimits& limits, double memory) {
+  return {limits.timeout, memory, limits.interrupted};
+}
+
+RunLimits inside(const RunLimits& limits, Heartbeat& heartbeat) {
+  RunLimits inner = limits;
+  inner.interrupted = nullptr;  // the parent's business
+  inner.heartbeat = &heartbeat;
+  return inner;
+}
+
+std::string place(const ChildOutcome& outcome) {
+  if (outcome.step < 0) return "before the first step";
+  return "in step " + std::to_string(outcome.step) + " (t = " + number_text(outcome.time) + " s)";
+}
+
+// Status and detail of a point whose child did not come back.
+void explain(const ChildOutcome& outcome, const RunLimits& limits, PointResult& point) {
+  if (outcome.end == End::timed_out) {
+    point.status = PointStatus::timeout;
+    point.detail = "longer than " + number_text(limits.timeout) + " s, stuck " + place(outcome) +
+                   "; ended with " + signal_text(outcome.code);
+  } else {
+    const bool starved = outcome.end == End::killed && outcome.out_of_memory;
+    point.status = starved ? PointStatus::out_of_memory : PointStatus::crashed;
+    point.detail =
+        ending(outcome) + " " + place(outcome) + (starved ? "; the kernel was out of memory" : "");
+  }
+  point.peak_rss_bytes = outcome.peak_rss_bytes;
+}
+
+}  // namespace
+
+SweepRunners isolated(const SweepRunners& inner, double memory) {
+  SweepRunners runners;
+  runners.references = inner.references;
+  runners.run = [run = inner.run, memory](const PointSpec& spec, const RunLimits& limits,
+                                          std::optional<double> guess) {
+    if (limits.references)  // read once, here, not in every child
+      limits.references->find(spec.scene, spec.scene_parameters);
+    const ChildOutcome outcome = run_in_child(
+        [&](Heartbeat& heartbeat) {
+          return to_json(run(spec, inside(limits, heartbeat), guess)).dump();
+        },
+        child_limits(limits, memory));
+    if (outcome.end == End::interrupted) throw Interrupted();
+    if (outcome.end == End::returned) return point_of(json::parse(outcome.text));
+    PointResult point;
+    point.spec = spec;
+    explain(outcome, limits, point);
+    return point;
+  };
+  runners.repeat = [repeat = inner.repeat, memory](PointResult& point, const RunLimits& limits) {
+    const std::size_t before = point.samples.size();
+    const ChildOutcome outcome = run_in_child(
+        [&](Heartbeat& heartbeat) {
+          PointResult again = point;
+          repeat(again, inside(limits, heartbeat));
+          again.samples.erase(again.samples.begin(),
+                              again.samples.begin() + static_cast<std::ptrdiff_t>(before));
+          return json(again.samples).dump();
+        },
+        child_limits(limits, memory));
+    if (outcome.end == End::interrupted) throw Interrupted();
+    if (outcome.end != End::returned) return;  // no sample more
+    for (const double sample : json::parse(outcome.text).get<std::vector<double>>())
+      point.samples.push_back(sample);
+  };
+  return runners;
+}
+
+}  // namespace harness

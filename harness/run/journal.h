@@ -1,0 +1,83 @@
+// The journal of a sweep, beside its result file: every finished run is a line of it, synced, so
+// that whatever ends the program ends no more than one run. A sweep that is taken up again is run
+// once more with the journal for a memory: what it remembers is not run, so every decision falls as
+// it fell before, and the rest follows.
+//
+// Lines are JSON: the header {"schema", "pid", "identity", "context"}, then {"point": {...}} for a
+// run,
+// {"repeat": key, "seconds": [...]} for a repetition (empty: it failed) and {"forget": key}.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "harness/run/sweep.h"
+
+namespace harness {
+
+// What has been run already, by what was run.
+struct Memory {
+  struct Known {
+    PointResult point;                            // with its first sample alone
+    std::deque<std::vector<double>> repetitions;  // in the order in which they were run
+  };
+  std::map<std::string, Known> points;
+
+  // Of a result file: as if its runs had just been made.
+  void learn(const nlohmann::json& result);
+  void forget_failures();
+};
+
+// All of a point that is not measured: two runs of one key may stand for each other.
+std::string key_of(const PointSpec& spec);
+
+// What must agree for one run to go on where another stopped. build_context: machine_context();
+// selection: options that choose points.
+nlohmann::json identity(const nlohmann::json& build_context, const nlohmann::json& suite,
+                        const nlohmann::json& selection);
+// The first difference, in words: "compiler is 'GNU 13', was 'GNU 12'"; "" if there is none.
+std::string difference(const nlohmann::json& was, const nlohmann::json& is);
+
+class Journal {
+ public:
+  // Opens or makes the journal of the result file `out`, and holds it against other processes until
+  // the destructor. Throws UsageError if another process is writing this output, or the file is not
+  // a journal.
+  explicit Journal(const std::string& out);
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
+  const std::string& path() const { return path_; }
+  const nlohmann::json& header() const { return header_; }  // null: new
+  const Memory& memory() const { return memory_; }          // as it was found
+  std::size_t points() const { return memory_.points.size(); }
+
+  void start(const nlohmann::json& header);  // empties it first
+  // All of these sync, and throw FileError where the disk is full or the file has been removed
+  // meanwhile; what was written before is then still whole.
+  void add(const PointResult& point);
+  void add_repetition(const std::string& key, const std::vector<double>& seconds);
+  void forget(const std::string& key);
+
+  void remove();  // the result file is written: nothing to take up
+
+ private:
+  void lock();
+  void read();
+  void append(const nlohmann::json& line);
+
+  std::string out_, path_;
+  int file_ = -1;
+  std::size_t length_ = 0;  // bytes, whole lines
+  nlohmann::json header_;
+  Memory memory_;
+};
+
+// Runners that look into `memory` first and write what `inner` does to the journal, which must
+// outlive them.
+SweepRunners journaled(const SweepRunners& inner, Journal& journal, Memory memory);
+
+}  // namespace harness

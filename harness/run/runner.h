@@ -1,0 +1,36 @@
+// Runs one point: makes the scene and the solver, finds the solver's knob where it has one, steps,
+// judges.
+#pragma once
+
+#include <functional>
+
+#include "harness/base/interrupt.h"
+#include "harness/judge/reference.h"
+#include "harness/points/point.h"
+
+namespace harness {
+
+struct Heartbeat;
+
+struct RunLimits {
+  double timeout = 60;      // s of wall time, for calibration and for the measured run each
+  double hopeless = 1e300;  // s of stepping after which a run cannot be the best any more
+  std::function<bool()> interrupted = nullptr;           // asked after every step
+  std::shared_ptr<ReferenceShelf> references = nullptr;  // null: no errors against references
+  Heartbeat* heartbeat = nullptr;                        // told of every step; see child_process.h
+};
+
+// One measured run; its time is the first sample. guess: a stiffness to begin calibration from,
+// where one is needed. Throws Interrupted, and nothing else: whatever goes wrong is the point's
+// status.
+PointResult run_point(const PointSpec& spec, const RunLimits& limits,
+                      std::optional<double> guess = {});
+
+// Once more, for time alone: the judge stays out. Appends a sample.
+void repeat_point(PointResult& point, const RunLimits& limits);
+
+// What a timed step costs beyond the step, in seconds: the runner's time for steps of the solver
+// `null` on two vertices, less the time of the same steps called one after the other.
+double harness_seconds_per_step();
+
+}  // namespace harness

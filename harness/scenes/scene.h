@@ -1,0 +1,63 @@
+// Scenes: what is simulated. A scene has parameters with defaults and builds a problem and its
+// initial state; it knows nothing of solvers.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "inextensible/problem/problem.h"
+
+namespace harness {
+
+using SceneParameters = std::map<std::string, double>;
+
+struct SceneParameterInfo {
+  const char* name;
+  double initial;
+  const char* meaning;  // with its unit
+  double low, high;     // permitted range, low exclusive unless `integer`
+  bool integer = false;
+};
+
+struct Scene {
+  std::shared_ptr<const inextensible::Problem> problem;
+  inextensible::State start;
+  double duration = 1;  // s
+  double size = 1;      // m, what errors are divided by
+  // A plane (through the origin, unit normal) that mirrors the scene onto itself, and each vertex's
+  // mirror image. For the chain it is the plane of its motion, and each vertex its own image.
+  struct Mirror {
+    Eigen::Vector3d normal;
+    std::vector<int> image;
+  };
+  std::vector<Mirror> mirrors;
+  bool conserves_energy = false;  // nothing dissipates: energy drift is an error
+  // Of a cloth, for shape statistics: its corners, and triangles that cover it.
+  std::vector<int> corners;
+  std::vector<std::array<int, 3>> triangles;
+};
+
+struct SceneType {
+  const char* name;
+  const char* summary;
+  const char* resolution;  // the parameter that a resolution sweep turns
+  std::vector<SceneParameterInfo> parameters;
+  Scene (*build)(const SceneParameters& complete);
+  // Vertices and constraints, without building anything.
+  std::pair<int, int> (*counts)(const SceneParameters& complete);
+};
+
+std::span<const SceneType> scene_types();
+const SceneType* find_scene(std::string_view name);
+
+// The scene's parameters with `given` put in. Throws UsageError, naming the parameter, for unknown
+// or impossible ones.
+SceneParameters complete_parameters(const SceneType& type, const SceneParameters& given);
+
+}  // namespace harness

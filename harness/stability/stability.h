@@ -1,0 +1,62 @@
+// `bench --sweep stability`: the matrix of hard cases and solvers, the largest stable steps, and
+// the degrees of freedom that constraints leave.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <ostream>
+#include <regex>
+
+#include "harness/stability/hard_case.h"
+
+namespace harness {
+
+struct StabilityCell {
+  const HardCase* hard_case;
+  std::string solver;
+  TrialResult result;
+  const Expectation* expectation;
+  std::set<Outcome> allowed = {};  // those of the expectation; of strangers, see allowed_outcomes
+  bool expected = true;            // the outcome is one of them
+};
+
+// What a solver may do in a case at its own step. Theory knows nothing of a solver from outside:
+// where others survive it may also refuse or be slow, but a wrong result is one.
+std::set<Outcome> allowed_outcomes(const Expectation& expectation, const std::string& solver);
+
+struct LargestStep {
+  std::string scene, solver;
+  double step = unknown;     // s, the largest at which one second was survived within the limit
+  double failing = unknown;  // s, the next larger one that was tried and failed
+  std::string detail;        // why that one failed
+};
+
+struct StabilityFilters {
+  std::optional<std::regex> solver;     // must match the solver's whole name
+  std::optional<std::regex> hard_case;  // must be found in a row's or a case's name
+};
+
+struct StabilityOutcome {
+  std::vector<StabilityCell> cells;
+  std::vector<LargestStep> largest_steps;
+  std::vector<Freedom> freedom;
+  bool complete = true;  // false: interrupted
+  bool as_expected() const;
+};
+
+struct StabilityEvents {
+  std::function<void(const StabilityCell&, std::size_t done, std::size_t all)> cell =
+      [](auto&&...) {};
+  std::function<void(const LargestStep&)> largest_step = [](auto&&...) {};
+  std::function<bool()> interrupted = [] { return false; };
+};
+
+// Throws UsageError if nothing matches. `cases` must outlive the outcome.
+StabilityOutcome run_stability(const std::vector<HardCase>& cases, const StabilityFilters& filters,
+                               std::uint64_t seed, const StabilityEvents& events);
+
+void print_stability(std::ostream& out, const StabilityOutcome& outcome);
+nlohmann::json stability_document(nlohmann::json context, const StabilityOutcome& outcome,
+                                  std::uint64_t seed, const std::vector<std::string>& command);
+
+}  // namespace harness

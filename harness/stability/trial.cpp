@@ -1,0 +1,112 @@
+#include "harness/stability/trial.h"
+
+#include <optional>
+#include <sstream>
+
+#include "harness/base/clock.h"
+#include "harness/stability/trial_judge.h"
+#include "inextensible/registry.h"
+#include "inextensible/stepping/step_controller.h"
+
+namespace harness {
+namespace {
+
+using inextensible::State;
+
+// One attempt, with or without the step controller.
+Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::uint64_t seed,
+                bool controlled, TrialResult& result) {
+  const auto begin = Clock::now();
+  inextensible::check_state(*trial.scene.problem, trial.scene.start);
+  const auto settings = trial.settings.find(backend.name);
+  const auto stepper = inextensible::make_stepper(
+      backend.name, trial.scene.problem,
+      {trial.strain_limit, seed,
+       settings == trial.settings.end() ? inextensible::Settings{} : settings->second});
+  inextensible::StepController controller(
+      *stepper, {.largest = trial.step, .most_halvings = controlled ? 10 : 0});
+  State state = trial.scene.start;
+  Witness witness(trial, backend.knob == inextensible::Knob::strain_limit);
+  std::optional<Outcome> outcome;
+  for (int i = 0; i < trial.steps && !outcome;) {
+    if (trial.disturb && controller.aligned()) trial.disturb(state, i);
+    witness.before(state);
+    const auto factorizations = stepper->work().factorizations;
+    const auto step = controller.advance(state);
+    if (!step) {
+      std::ostringstream text;
+      text << "step " << stepper->work().steps << ": " << inextensible::to_string(step.status)
+           << ", " << step.detail;
+      if (step.worst_edge >= 0) text << "; edge " << step.worst_edge;
+      result.detail = text.str();
+      outcome = Outcome::refused;
+      break;
+    }
+    if (stepper->work().factorizations > factorizations) {
+      const double condition = stepper->reciprocal_condition();
+      if (!(condition >= result.reciprocal_condition)) result.reciprocal_condition = condition;
+    }
+    outcome = witness.after(stepper->filtered_positions(), state, controller.last(), result);
+    if (controller.aligned()) ++i;
+    if (!outcome && i < trial.steps && since(begin) > trial.timeout) {
+      result.detail = "stopped after " + std::to_string(stepper->work().steps) + " steps";
+      outcome = Outcome::timeout;
+    }
+  }
+  result.work = stepper->work();
+  if (controlled) result.smallest_step = controller.smallest();
+  return outcome.value_or(Outcome::survived);
+}
+
+}  // namespace
+
+const char* to_string(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::survived:
+      return "survived";
+    case Outcome::survived_smaller:
+      return "survived_smaller";
+    case Outcome::refused:
+      return "refused";
+    case Outcome::diverged:
+      return "diverged";
+    case Outcome::wrong:
+      return "wrong";
+    case Outcome::timeout:
+      return "timeout";
+    case Outcome::crashed:
+      return "crashed";
+  }
+  return "?";
+}
+
+TrialResult run_trial(const std::function<Trial()>& build, const std::string& solver,
+                      std::uint64_t seed) {
+  TrialResult result;
+  const auto begin = Clock::now();
+  const inextensible::Backend& backend = *inextensible::find_backend(solver);
+  try {
+    const Trial trial = build();
+    result.fixed = result.outcome = attempt(trial, backend, seed, false, result);
+    if (result.fixed == Outcome::refused) {
+      TrialResult again;
+      again.outcome = attempt(trial, backend, seed, true, again);
+      again.fixed = result.fixed;
+      if (again.outcome == Outcome::survived) again.outcome = Outcome::survived_smaller;
+      again.detail = result.detail + (again.detail == result.detail || again.detail.empty()
+                                          ? ""
+                                          : "; with smaller steps: " + again.detail);
+      result = std::move(again);
+    }
+  } catch (const std::invalid_argument& error) {
+    result.fixed = result.outcome = Outcome::refused;
+    result.detail = std::string("at the door: ") + error.what();
+  } catch (const std::bad_alloc&) {
+    result.fixed = result.outcome = Outcome::refused;
+    result.detail = "an allocation failed";
+  }
+  result.seconds = since(begin);
+  return result;
+}
+
+}  // namespace harness

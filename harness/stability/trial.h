@@ -1,0 +1,65 @@
+// One solver put through one hard case, and what the harness makes of it. No timing contest: the
+// question is whether the solver survives, and whether it is honest.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+
+#include "harness/points/point.h"
+#include "harness/scenes/scene.h"
+
+namespace harness {
+
+enum class Outcome {
+  survived,          // every step taken at the case's own step, all checks passed
+  survived_smaller,  // as before, after a step controller had halved some steps
+  refused,           // a clean refusal: at the door or in a step, state untouched
+  diverged,          // positions or strains out of all proportion
+  wrong,             // claimed success, and a check says otherwise
+  timeout,
+  crashed,  // took its process with it
+};
+const char* to_string(Outcome outcome);
+
+// What is put through the solver. A trial fails nothing by itself: `judge_...` say what must hold.
+struct Trial {
+  Scene scene;
+  double step = 0.01;  // s
+  int steps = 1;
+  double strain_limit = 0.01;
+  std::map<std::string, inextensible::Settings> settings;  // by solver
+  // Changes the state before a step (moves a pin, adds noise). Energy is then not judged.
+  std::function<void(inextensible::State& state, int step)> disturb = nullptr;
+  // Energy may exceed the start's by this fraction of the scale (weight times size, plus kinetic
+  // energy at the start). Negative: not judged. A start that violates the limit sets energy free in
+  // its first step; it is judged from there on.
+  double energy_tolerance = 0.05;
+  // m: how far vertices may go within the permissible band. A filter may take all of it back in one
+  // step of h seconds, which makes kinetic energy of up to M (1.5 slack / h)^2 / 2 on top of the
+  // above (1.5: the velocity of BDF2; 1 for one-step methods).
+  double slack = 0;
+  double momentum_tolerance = 1e-8;  // relative to what flows in a step
+  double timeout = 10;               // s of wall time, looked at between steps
+};
+
+struct TrialResult {
+  Outcome fixed = Outcome::refused;  // at the trial's own step
+  Outcome outcome =
+      Outcome::refused;            // the same, or with the step controller where that was refused
+  std::string detail;              // of `fixed` if that failed: which step, why, which edge
+  double smallest_step = unknown;  // s, with the step controller
+  double max_strain = unknown;     // before the collision filter
+  double energy_gain = unknown;  // largest (E - E_0) / scale; negative: energy was lost throughout
+  double momentum_defect = unknown;       // largest, relative; where nothing outside acts
+  double reciprocal_condition = unknown;  // worst of the linear systems
+  double seconds = 0;                     // wall, both attempts
+  inextensible::WorkCounters work;        // of the last attempt
+};
+
+// Never throws: what goes wrong is the outcome. `build` makes the trial; a std::invalid_argument
+// out of it (an impossible problem) is a refusal at the door.
+TrialResult run_trial(const std::function<Trial()>& build, const std::string& solver,
+                      std::uint64_t seed);
+
+}  // namespace harness

@@ -1,0 +1,37 @@
+// What every use of CHOLMOD on a SymmetricPattern needs.
+#pragma once
+
+#include <cholmod.h>
+
+#include "inextensible/linear/spd_solver.h"
+
+namespace inextensible {
+
+// The pattern with these values as CHOLMOD's matrix; both must outlive it. values null: the pattern
+// alone.
+inline cholmod_sparse cholmod_view(const SymmetricPattern& pattern, double* values) {
+  cholmod_sparse matrix{};
+  matrix.nrow = matrix.ncol = static_cast<std::size_t>(pattern.n);
+  matrix.nzmax = static_cast<std::size_t>(pattern.entries());
+  matrix.p = const_cast<int*>(pattern.column_start.data());
+  matrix.i = const_cast<int*>(pattern.row_index.data());
+  matrix.x = values;
+  matrix.stype = pattern.triangle == SymmetricPattern::Triangle::upper ? 1 : -1;
+  matrix.itype = CHOLMOD_INT;
+  matrix.xtype = values ? CHOLMOD_REAL : CHOLMOD_PATTERN;
+  matrix.dtype = CHOLMOD_DOUBLE;
+  matrix.sorted = matrix.packed = 1;
+  return matrix;
+}
+
+// Starts `common` for matrices that are in elimination order already (fill_reducing_order), without
+// messages.
+inline void cholmod_start_natural(cholmod_common& common) {
+  cholmod_start(&common);
+  common.print = 0;
+  common.nmethods = 1;
+  common.method[0].ordering = CHOLMOD_NATURAL;
+  common.postorder = 0;
+}
+
+}  // namespace inextensible

@@ -1,0 +1,159 @@
+#include "inextensible/linear/lu.h"
+
+#include <umfpack.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <new>
+
+extern "C" {  // LAPACK
+void dgttrf_(const int* n, double* dl, double* d, double* du, double* du2, int* ipiv, int* info);
+void dgttrs_(const char* trans, const int* n, const int* nrhs, const double* dl, const double* d,
+             const double* du, const double* du2, const int* ipiv, double* b, const int* ldb,
+             int* info);
+}
+
+namespace inextensible {
+namespace {
+
+constexpr double singular_rcond = 1e-15;
+
+class UmfpackSolver final : public UnsymmetricSolver {
+ public:
+  UmfpackSolver(std::vector<int> column_start, std::vector<int> row_index)
+      : column_start_(std::move(column_start)),
+        row_index_(std::move(row_index)),
+        values_(row_index_.size()),
+        solution_(column_start_.size() - 1),
+        int_work_(column_start_.size() - 1),
+        work_(5 * (column_start_.size() - 1)) {
+    umfpack_di_defaults(control_.data());
+    control_[UMFPACK_IRSTEP] = 0;  // callers refine where they need it
+  }
+
+  ~UmfpackSolver() override {
+    umfpack_di_free_numeric(&numeric_);
+    umfpack_di_free_symbolic(&symbolic_);
+  }
+  UmfpackSolver(const UmfpackSolver&) = delete;
+  UmfpackSolver& operator=(const UmfpackSolver&) = delete;
+
+  double* values() override { return values_.data(); }
+
+  bool factor() override {
+    if (!std::all_of(values_.begin(), values_.end(), [](double v) { return std::isfinite(v); }))
+      return false;
+    const int n = static_cast<int>(solution_.size());
+    if (!symbolic_) {  // with values, so that the strategy suits the matrix; then reused
+      const int status =
+          umfpack_di_symbolic(n, n, column_start_.data(), row_index_.data(), values_.data(),
+                              &symbolic_, control_.data(), info_.data());
+      if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();
+      if (status != UMFPACK_OK) return false;
+    }
+    umfpack_di_free_numeric(&numeric_);
+    const int status = umfpack_di_numeric(column_start_.data(), row_index_.data(), values_.data(),
+                                          symbolic_, &numeric_, control_.data(), info_.data());
+    if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();
+    return status == UMFPACK_OK && info_[UMFPACK_RCOND] > singular_rcond;
+  }
+
+  void solve(double* rhs) override {
+    umfpack_di_wsolve(UMFPACK_A, column_start_.data(), row_index_.data(), values_.data(),
+                      solution_.data(), rhs, numeric_, control_.data(), info_.data(),
+                      int_work_.data(), work_.data());
+    std::copy(solution_.begin(), solution_.end(), rhs);
+  }
+
+  double reciprocal_condition() const override { return info_[UMFPACK_RCOND]; }
+  double factor_nonzeros() const override { return info_[UMFPACK_LNZ] + info_[UMFPACK_UNZ]; }
+  double factor_flops() const override { return info_[UMFPACK_FLOPS]; }
+
+ private:
+  std::vector<int> column_start_, row_index_;
+  std::vector<double> values_, solution_;
+  std::vector<int> int_work_;
+  std::vector<double> work_;
+  std::array<double, UMFPACK_CONTROL> control_{};
+  std::array<double, UMFPACK_INFO> info_{};
+  void* symbolic_ = nullptr;
+  void* numeric_ = nullptr;
+};
+
+class TridiagonalLuSolver final : public UnsymmetricSolver {
+ public:
+  explicit TridiagonalLuSolver(int n)
+      : n_(n),
+        values_(size(3 * n - 2)),
+        lower_(size(n)),
+        diagonal_(size(n)),
+        upper_(size(n)),
+        upper2_(size(n)),
+        pivot_(size(n)) {}
+
+  double* values() override { return values_.data(); }
+
+  bool factor() override {
+    double largest = 0;
+    const double* value = values_.data();  // column j: (j-1, j), (j, j), (j+1, j)
+    for (std::size_t j = 0; j < diagonal_.size(); ++j) {
+      if (j > 0) upper_[j - 1] = *value++;
+      diagonal_[j] = *value++;
+      if (j + 1 < diagonal_.size()) lower_[j] = *value++;
+      largest = std::max(largest, std::abs(diagonal_[j]));
+    }
+    int info = 0;
+    dgttrf_(&n_, lower_.data(), diagonal_.data(), upper_.data(), upper2_.data(), pivot_.data(),
+            &info);
+    return info == 0 && std::all_of(diagonal_.begin(), diagonal_.end(), [largest](double d) {
+             return std::abs(d) > singular_rcond * largest && std::isfinite(d);
+           });
+  }
+
+  void solve(double* rhs) override {
+    const int one = 1;
+    int info = 0;
+    dgttrs_("N", &n_, &one, lower_.data(), diagonal_.data(), upper_.data(), upper2_.data(),
+            pivot_.data(), rhs, &n_, &info);
+  }
+
+  double reciprocal_condition() const override {
+    const auto pivots = Eigen::Map<const Eigen::ArrayXd>(diagonal_.data(), n_).abs();
+    return pivots.minCoeff() / pivots.maxCoeff();
+  }
+  double factor_nonzeros() const override { return 5.0 * n_; }
+  double factor_flops() const override { return 8.0 * n_; }
+
+ private:
+  static std::size_t size(int n) { return static_cast<std::size_t>(n); }
+
+  int n_;
+  std::vector<double> values_, lower_, diagonal_, upper_, upper2_;
+  std::vector<int> pivot_;
+};
+
+bool tridiagonal(const std::vector<int>& column_start, const std::vector<int>& row_index) {
+  const int n = static_cast<int>(column_start.size()) - 1;
+  if (static_cast<int>(row_index.size()) != 3 * n - 2) return false;
+  for (int j = 0; j < n; ++j) {
+    for (int i = column_start[static_cast<std::size_t>(j)];
+         i < column_start[static_cast<std::size_t>(j) + 1]; ++i) {
+      if (std::abs(row_index[static_cast<std::size_t>(i)] - j) > 1) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+std::unique_ptr<UnsymmetricSolver> make_unsymmetric_solver(std::vector<int> column_start,
+                                                           std::vector<int> row_index) {
+  if (tridiagonal(column_start, row_index)) {
+    return std::make_unique<TridiagonalLuSolver>(static_cast<int>(column_start.size()) - 1);
+  }
+  return std::make_unique<UmfpackSolver>(std::move(column_start), std::move(row_index));
+}
+
+}  // namespace inextensible

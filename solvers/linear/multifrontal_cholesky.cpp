@@ -1,0 +1,569 @@
+#include "inextensible/linear/multifrontal_cholesky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <stdexcept>
+#include <type_traits>
+
+#include "inextensible/linear/cholmod_symbolic.h"
+
+namespace inextensible {
+namespace {
+
+using Distance = std::ptrdiff_t;
+
+constexpr int panel = 8;   // columns eliminated at once
+constexpr int target = 4;  // columns updated at once
+// Single precision computes a pivot to about seven digits of its diagonal entry: what is less than
+// this of it says nothing.
+template <class Real>
+constexpr double least_trusted_pivot = sizeof(Real) == sizeof(float) ? 1e-5 : 0;
+
+// ---- Dense steps, all on column-major storage ----
+//
+// Rows are taken in whole groups of `lanes`, the last one with rows that do not exist: storage has
+// room for them, and they hold zeros where they are summed up.
+
+constexpr int vector_bytes = 32;
+template <class Real>
+constexpr int lanes = vector_bytes / sizeof(Real);
+template <class Real>
+constexpr int padded(int n) {
+  return (n + lanes<Real> - 1) / lanes<Real> * lanes<Real>;
+}
+// Rows that a panel of K columns and n rows, its triangle's included, has room for.
+template <class Real>
+constexpr int panel_ld(int K, int n) {
+  return padded<Real>(K % lanes<Real> == 0 ? n : n + lanes<Real> - 1);
+}
+
+template <class Real>
+struct Vector {
+  typedef Real type __attribute__((vector_size(vector_bytes), aligned(sizeof(Real)), may_alias));
+};
+template <class Real>
+auto& lanes_at(Real* p) {
+  return *reinterpret_cast<typename Vector<Real>::type*>(p);
+}
+template <class Real>
+const auto& lanes_at(const Real* p) {
+  return *reinterpret_cast<const typename Vector<Real>::type*>(p);
+}
+
+// Eliminates the K columns of a panel of n rows: the triangle of K rows, then the rows below, each
+// independent of the others. Leaves unit columns of L (their ones are not written) and the pivots.
+// Returns the first column whose pivot is not above its bound, K if all are.
+template <int K, class Real>
+int eliminate(Real* l, Distance ld, int n, const Real* bound, Real* pivots) {
+  Real triangle[K][K], inverse[K];  // lower; 1 / pivot
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) {
+#pragma GCC unroll 8
+    for (int r = c; r < K; ++r) triangle[r][c] = l[c * ld + r];
+  }
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) {
+    const Real d = triangle[c][c];
+    if (!(d > bound[c])) return c;  // the negation catches NaN
+    pivots[c] = d;
+    inverse[c] = 1 / d;
+    Real scaled[K];
+#pragma GCC unroll 8
+    for (int r = c + 1; r < K; ++r) {
+      scaled[r] = triangle[r][c];
+      l[c * ld + r] = triangle[r][c] *= inverse[c];
+    }
+#pragma GCC unroll 8
+    for (int k = c + 1; k < K; ++k) {
+#pragma GCC unroll 8
+      for (int r = k; r < K; ++r) triangle[r][k] -= triangle[r][c] * scaled[k];
+    }
+  }
+  for (int i = K; i < n; i += lanes<Real>) {
+    typename Vector<Real>::type y[K];  // rows of L D
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) y[c] = lanes_at(l + c * ld + i);
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) {
+#pragma GCC unroll 8
+      for (int k = c + 1; k < K; ++k) y[k] -= y[c] * triangle[k][c];
+      lanes_at(l + c * ld + i) = y[c] * inverse[c];
+    }
+  }
+  return K;
+}
+
+// J columns of C less those of P D P^T, from row j on, where the first of them is column j; P is n
+// x K. With `begin` C is not read: it begins as zero. Entries above the diagonal are written too,
+// and never read.
+template <int K, int J, bool begin, class Real>
+void subtract_columns(const Real* p, Distance ld_p, const Real* d, int n, int j, Real* c,
+                      Distance ld_c) {
+  Real factor[K][J];
+#pragma GCC unroll 8
+  for (int k = 0; k < K; ++k) {
+#pragma GCC unroll 4
+    for (int t = 0; t < J; ++t) factor[k][t] = d[k] * p[k * ld_p + j + t];
+  }
+  c += j * ld_c;
+  for (int i = j / lanes<Real> * lanes<Real>; i < n; i += lanes<Real>) {
+    typename Vector<Real>::type sum[J] = {};
+#pragma GCC unroll 8
+    for (int k = 0; k < K; ++k) {
+      const auto& value = lanes_at(p + k * ld_p + i);
+#pragma GCC unroll 4
+      for (int t = 0; t < J; ++t) sum[t] += value * factor[k][t];
+    }
+#pragma GCC unroll 4
+    for (int t = 0; t < J; ++t) {
+      auto& result = lanes_at(c + t * ld_c + i);
+      result = begin ? -sum[t] : result - sum[t];
+    }
+  }
+}
+
+// The first m columns of the lower triangle of C (n rows) less those of P D P^T.
+template <int K, bool begin, class Real>
+void subtract_product(const Real* p, Distance ld_p, const Real* d, int n, int m, Real* c,
+                      Distance ld_c) {
+  int j = 0;
+  for (; j + target <= m; j += target)
+    subtract_columns<K, target, begin>(p, ld_p, d, n, j, c, ld_c);
+  for (; j < m; ++j) subtract_columns<K, 1, begin>(p, ld_p, d, n, j, c, ld_c);
+}
+
+// Where the panel that begins at column k lies among a front's panels, of `rows` rows: they lie one
+// after the other, each without the rows above its own.
+template <class Real>
+Distance panel_at(int rows, int k) {
+  return Distance{k} * (padded<Real>(rows) - (k - panel) / 2);
+}
+
+// A front on its way: `own` columns of `rows` rows, in panels, and the update matrix of the rows
+// below them, of padded(rows - own) rows and columns, which the first panel begins.
+template <class Real>
+struct Trapezoid {
+  Real* columns;
+  int rows, own;
+  Real* update;
+};
+
+// The panel of K columns at column k: eliminated, and taken from the own columns right of it and
+// from the update matrix.
+template <int K, class Real>
+int take_panel(const Trapezoid<Real>& front, int k, const Real* bound, Real* pivots) {
+  const int n = front.rows - k, below = front.rows - front.own;
+  const Distance ld = panel_ld<Real>(K, n);
+  Real* l = front.columns + panel_at<Real>(front.rows, k);
+  const int bad = eliminate<K>(l, ld, n, bound, pivots);
+  if (bad < K) return bad;
+  if constexpr (K == panel) {
+    for (int r = k + panel; r < front.own; r += panel) {
+      const int width = std::min(panel, front.own - r), rows = front.rows - r;
+      subtract_product<K, false>(l + (r - k), ld, pivots, rows, width,
+                                 front.columns + panel_at<Real>(front.rows, r),
+                                 Distance{panel_ld<Real>(width, rows)});
+    }
+  }
+  const Real* p = l + (front.own - k);
+  const int all = padded<Real>(below);
+  if (k == 0) {
+    subtract_product<K, true>(p, ld, pivots, below, all, front.update, all);
+  } else {
+    subtract_product<K, false>(p, ld, pivots, below, all, front.update, all);
+  }
+  return K;
+}
+
+template <class Real>
+using TakePanel = int (*)(const Trapezoid<Real>& front, int k, const Real* bound, Real* pivots);
+template <class Real>
+constexpr TakePanel<Real> take_panel_of_width[] = {nullptr,       take_panel<1>, take_panel<2>,
+                                                   take_panel<3>, take_panel<4>, take_panel<5>,
+                                                   take_panel<6>, take_panel<7>, take_panel<panel>};
+
+// K columns of forward substitution on the front's rows w: the triangle, then the rows below it.
+template <int K, class Real>
+void substitute_forward(const Real* l, Distance ld, int n, Real* w) {
+  Real x[K];
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) x[c] = w[c];
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) {
+#pragma GCC unroll 8
+    for (int r = c + 1; r < K; ++r) x[r] -= l[c * ld + r] * x[c];
+  }
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) w[c] = x[c];
+  for (int i = K; i < n; i += lanes<Real>) {
+    auto sum = lanes_at(w + i);
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) sum -= lanes_at(l + c * ld + i) * x[c];
+    lanes_at(w + i) = sum;
+  }
+}
+
+// K columns of back substitution: the rows below, then the triangle.
+template <int K, class Real>
+void substitute_back(const Real* l, Distance ld, int n, Real* w) {
+  typename Vector<Real>::type sum[K] = {};
+  for (int i = K; i < n; i += lanes<Real>) {
+    const auto& value = lanes_at(w + i);
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) sum[c] += lanes_at(l + c * ld + i) * value;
+  }
+  Real x[K];
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) {
+    Real total = 0;
+    for (int lane = 0; lane < lanes<Real>; ++lane) total += sum[c][lane];
+    x[c] = w[c] - total;
+  }
+#pragma GCC unroll 8
+  for (int c = K - 1; c >= 0; --c) {
+#pragma GCC unroll 8
+    for (int r = 0; r < c; ++r) x[r] -= l[r * ld + c] * x[c];
+    w[c] = x[c];
+  }
+}
+
+template <class Real>
+using Substitute = void (*)(const Real* l, Distance ld, int n, Real* w);
+template <class Real>
+constexpr Substitute<Real> forward_of_width[] = {nullptr,
+                                                 substitute_forward<1>,
+                                                 substitute_forward<2>,
+                                                 substitute_forward<3>,
+                                                 substitute_forward<4>,
+                                                 substitute_forward<5>,
+                                                 substitute_forward<6>,
+                                                 substitute_forward<7>,
+                                                 substitute_forward<panel>};
+template <class Real>
+constexpr Substitute<Real> back_of_width[] = {nullptr,
+                                              substitute_back<1>,
+                                              substitute_back<2>,
+                                              substitute_back<3>,
+                                              substitute_back<4>,
+                                              substitute_back<5>,
+                                              substitute_back<6>,
+                                              substitute_back<7>,
+                                              substitute_back<panel>};
+
+// ---- CHOLMOD's symbolic analysis ----
+
+struct Analysis {
+  cholmod_common common{};
+  cholmod_factor* factor = nullptr;
+
+  explicit Analysis(const SymmetricPattern& pattern) {
+    cholmod_start_natural(common);
+    common.supernodal = CHOLMOD_SUPERNODAL;
+    // Supernodes are merged less than CHOLMOD does for its BLAS calls: short loops cost less here,
+    // and every zero stored is read again in solve().
+    const struct {
+      std::size_t columns;
+      double zeros;
+    } relaxed[3] = {{4, 0.5}, {8, 0.1}, {16, 0.02}};
+    for (int i = 0; i < 3; ++i) {
+      common.nrelax[i] = relaxed[i].columns;
+      common.zrelax[i] = relaxed[i].zeros;
+    }
+    cholmod_sparse matrix = cholmod_view(pattern, nullptr);
+    factor = cholmod_analyze(&matrix, &common);
+    if (!factor) {
+      cholmod_finish(&common);
+      throw std::bad_alloc();
+    }
+  }
+  ~Analysis() {
+    cholmod_free_factor(&factor, &common);
+    cholmod_finish(&common);
+  }
+  Analysis(const Analysis&) = delete;
+  Analysis& operator=(const Analysis&) = delete;
+};
+
+// All panels of a front, and where column c of row 0 is among them.
+template <class Real>
+std::size_t panels_size(int rows, int columns) {
+  const int last = (columns - 1) / panel * panel;
+  return static_cast<std::size_t>(panel_at<Real>(rows, last) +
+                                  (columns - last) * panel_ld<Real>(columns - last, rows - last));
+}
+template <class Real>
+Distance column_at(int rows, int columns, int c) {
+  const int k = c / panel * panel;
+  return panel_at<Real>(rows, k) +
+         Distance{c - k} * panel_ld<Real>(std::min(panel, columns - k), rows - k) - k;
+}
+
+std::size_t as_size(int i) { return static_cast<std::size_t>(i); }
+std::size_t square(int n) { return as_size(n) * as_size(n); }
+
+}  // namespace
+
+template <class Real>
+MultifrontalCholesky<Real>::MultifrontalCholesky(SymmetricPattern pattern)
+    : pattern_(std::move(pattern)),
+      values_(as_size(pattern_.entries())),
+      pivots_(as_size(pattern_.n)) {
+  if (pattern_.triangle != SymmetricPattern::Triangle::lower)
+    throw std::invalid_argument("fixed_pattern reads the lower triangle");
+  find_fronts();
+  place_entries();
+  link_fronts();
+  place_updates();
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::find_fronts() {
+  const Analysis analysis(pattern_);
+  const cholmod_factor& f = *analysis.factor;
+  const auto* super = static_cast<const int*>(f.super);
+  const auto* start = static_cast<const int*>(f.pi);
+  const auto* row = static_cast<const int*>(f.s);
+  const auto* count = static_cast<const int*>(f.ColCount);
+  for (int column = 0; column < pattern_.n; ++column) {
+    nonzeros_ += count[column];
+    flops_ += static_cast<double>(square(count[column]));
+  }
+  std::size_t factor_size = 0;
+  int most_rows = 0;
+  for (std::size_t s = 0; s < f.nsuper; ++s) {
+    Front front{};
+    front.first_column = super[s];
+    front.columns = super[s + 1] - super[s];
+    front.rows = start[s + 1] - start[s];
+    front.rows_at = rows_.size();
+    front.factor_at = factor_size;
+    factor_size += panels_size<Real>(front.rows, front.columns);
+    rows_.insert(rows_.end(), row + start[s] + front.columns, row + start[s + 1]);
+    most_rows = std::max(most_rows, front.rows);
+    fronts_.push_back(front);
+  }
+  factor_.resize(factor_size + lanes<Real>);  // groups of rows below may begin anywhere
+  front_rows_.resize(as_size(most_rows + lanes<Real>));
+  if constexpr (!std::is_same_v<Real, double>) rounded_.resize(as_size(pattern_.n));
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::place_entries() {
+  entry_place_.resize(values_.size());
+  for (Front& front : fronts_) {
+    const int end = front.first_column + front.columns;
+    front.entries_begin = pattern_.column_start[as_size(front.first_column)];
+    front.entries_end = pattern_.column_start[as_size(end)];
+    for (int column = front.first_column; column < end; ++column) {
+      const Distance base = column_at<Real>(front.rows, front.columns, column - front.first_column);
+      for (int e = pattern_.column_start[as_size(column)];
+           e < pattern_.column_start[as_size(column) + 1]; ++e)
+        entry_place_[as_size(e)] =
+            static_cast<int>(base + place_in(front, pattern_.row_index[as_size(e)]));
+    }
+  }
+}
+
+// The place of a row of the matrix among a front's rows.
+template <class Real>
+int MultifrontalCholesky<Real>::place_in(const Front& front, int row) const {
+  if (row < front.first_column + front.columns) return row - front.first_column;
+  const auto begin = rows_.begin() + static_cast<Distance>(front.rows_at);
+  return front.columns +
+         static_cast<int>(std::lower_bound(begin, begin + front.below(), row) - begin);
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::link_fronts() {
+  std::vector<int> front_of(as_size(pattern_.n));
+  for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    for (int c = 0; c < fronts_[f].columns; ++c)
+      front_of[as_size(fronts_[f].first_column + c)] = static_cast<int>(f);
+  }
+  std::vector<std::vector<int>> children(fronts_.size());
+  parent_place_.resize(rows_.size());
+  for (std::size_t f = fronts_.size(); f-- > 0;) {  // parents come later: from the roots down
+    Front& front = fronts_[f];
+    if (front.below() == 0) continue;
+    const auto parent = as_size(front_of[as_size(rows_[front.rows_at])]);
+    children[parent].push_back(static_cast<int>(f));
+    front.stack = 1 - fronts_[parent].stack;
+    const int parent_columns = fronts_[parent].columns;
+    for (int i = 0; i < front.below(); ++i) {
+      const int place = place_in(fronts_[parent], rows_[front.rows_at + as_size(i)]);
+      parent_place_[front.rows_at + as_size(i)] = place;
+      front.own_of_parent += place < parent_columns;
+    }
+  }
+  for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    fronts_[f].children_begin = static_cast<int>(children_.size());
+    children_.insert(children_.end(), children[f].begin(), children[f].end());
+    fronts_[f].children_end = static_cast<int>(children_.size());
+  }
+}
+
+// In a postorder a front's children are the last ones on their stack. In another order every update
+// matrix has a place of its own.
+template <class Real>
+void MultifrontalCholesky<Real>::place_updates() {
+  std::size_t top[2] = {0, 0}, most[2] = {0, 0};
+  bool postordered = true;
+  for (Front& front : fronts_) {
+    front.update_at = top[front.stack];
+    top[front.stack] += square(padded<Real>(front.below()));
+    most[front.stack] = std::max(most[front.stack], top[front.stack]);
+    std::size_t dropped = 0, lowest = top[1 - front.stack];
+    for (int c = front.children_begin; c < front.children_end; ++c) {
+      const Front& child = fronts_[as_size(children_[as_size(c)])];
+      dropped += square(padded<Real>(child.below()));
+      lowest = std::min(lowest, child.update_at);
+    }
+    postordered = postordered && top[1 - front.stack] - lowest == dropped;
+    top[1 - front.stack] = lowest;
+  }
+  if (!postordered) {
+    most[0] = most[1] = 0;
+    for (Front& front : fronts_) {
+      front.update_at = most[front.stack];
+      most[front.stack] += square(padded<Real>(front.below()));
+    }
+  }
+  for (const int i : {0, 1}) updates_[i].resize(most[i]);
+}
+
+template <class Real>
+bool MultifrontalCholesky<Real>::factor() {
+  for (const Front& front : fronts_) {
+    Real* columns = factor_.data() + front.factor_at;
+    Real* update = updates_[front.stack].data() + front.update_at;
+    std::fill_n(columns, panels_size<Real>(front.rows, front.columns), Real{0});
+    for (int e = front.entries_begin; e < front.entries_end; ++e)
+      columns[entry_place_[as_size(e)]] = static_cast<Real>(values_[as_size(e)]);
+    const int* const children_end = children_.data() + front.children_end;
+    const int* const children = children_.data() + front.children_begin;
+    for (const int* c = children; c < children_end; ++c) {
+      const Front& child = fronts_[as_size(*c)];
+      add_update(child, 0, child.own_of_parent, [&](int place) {
+        return columns + column_at<Real>(front.rows, front.columns, place);
+      });
+    }
+    if (!eliminate_columns(front, columns, update)) return false;
+    for (const int* c = children; c < children_end; ++c) {
+      const Front& child = fronts_[as_size(*c)];
+      add_update(child, child.own_of_parent, child.below(), [&](int place) {
+        return update + (place - front.columns) * Distance{padded<Real>(front.below())} -
+               front.columns;
+      });
+    }
+  }
+  failed_column_ = -1;
+  return true;
+}
+
+// Columns [begin, end) of a child's update matrix, to where into(row of the parent's front) begins.
+template <class Real>
+template <class Into>
+void MultifrontalCholesky<Real>::add_update(const Front& child, int begin, int end,
+                                            Into into) const {
+  const int* place = parent_place_.data() + child.rows_at;
+  const int below = child.below();
+  const Distance ld = padded<Real>(below);
+  const Real* from = updates_[child.stack].data() + child.update_at + begin * ld;
+  for (int c = begin; c < end; ++c, from += ld) {
+    Real* column = into(place[c]);
+#pragma GCC unroll 4
+    for (int i = c; i < below; ++i) column[place[i]] += from[i];
+  }
+}
+
+template <class Real>
+bool MultifrontalCholesky<Real>::eliminate_columns(const Front& front, Real* columns,
+                                                   Real* update) {
+  Real bound[panel];
+  const double least = std::max(least_pivot_, least_trusted_pivot<Real>);
+  for (int k = 0; k < front.columns; k += panel) {
+    const int width = std::min(panel, front.columns - k), column = front.first_column + k;
+    for (int c = 0; c < width; ++c)
+      bound[c] = static_cast<Real>(least * values_[as_size(pattern_.diagonal(column + c))]);
+    const int good = take_panel_of_width<Real>[width]({columns, front.rows, front.columns, update},
+                                                      k, bound, pivots_.data() + column);
+    if (good < width) {
+      failed_column_ = column + good;
+      return false;
+    }
+  }
+  return true;
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::solve(double* rhs) {
+  if constexpr (std::is_same_v<Real, double>) {
+    substitute(rhs);
+  } else {  // scaled, so that no magnitude is out of range
+    double largest = 0;
+    for (int i = 0; i < pattern_.n; ++i) largest = std::max(largest, std::abs(rhs[i]));
+    if (!(largest > 0)) return;
+    for (int i = 0; i < pattern_.n; ++i) rounded_[as_size(i)] = static_cast<Real>(rhs[i] / largest);
+    substitute(rounded_.data());
+    for (int i = 0; i < pattern_.n; ++i) rhs[i] = largest * double{rounded_[as_size(i)]};
+  }
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::substitute(Real* rhs) {
+  Real* w = front_rows_.data();
+  for (const Front& front : fronts_) {  // L y = rhs
+    const Real* l = factor_.data() + front.factor_at;
+    const int* row = rows_.data() + front.rows_at;
+    Real* x = rhs + front.first_column;
+    std::copy_n(x, front.columns, w);
+    std::fill_n(w + front.columns, front.below(), Real{0});
+    for (int k = 0; k < front.columns; k += panel) {
+      const int width = std::min(panel, front.columns - k);
+      forward_of_width<Real>[width](l + panel_at<Real>(front.rows, k),
+                                    panel_ld<Real>(width, front.rows - k), front.rows - k, w + k);
+    }
+    std::copy_n(w, front.columns, x);
+    const Real* below = w + front.columns;
+    for (int i = 0; i < front.below(); ++i) rhs[row[i]] += below[i];
+  }
+  for (std::size_t i = 0; i < pivots_.size(); ++i) rhs[i] /= pivots_[i];
+  for (std::size_t f = fronts_.size(); f-- > 0;) {  // L^T x = D^-1 y
+    const Front& front = fronts_[f];
+    const Real* l = factor_.data() + front.factor_at;
+    const int* row = rows_.data() + front.rows_at;
+    Real* x = rhs + front.first_column;
+    std::copy_n(x, front.columns, w);
+    Real* below = w + front.columns;
+    for (int i = 0; i < front.below(); ++i) below[i] = rhs[row[i]];
+    std::fill_n(below + front.below(), lanes<Real>, Real{0});
+    for (int k = (front.columns - 1) / panel * panel; k >= 0; k -= panel) {
+      const int width = std::min(panel, front.columns - k);
+      back_of_width<Real>[width](l + panel_at<Real>(front.rows, k),
+                                 panel_ld<Real>(width, front.rows - k), front.rows - k, w + k);
+    }
+    std::copy_n(w, front.columns, x);
+  }
+}
+
+template <class Real>
+double MultifrontalCholesky<Real>::reciprocal_condition() const {
+  const auto [low, high] = std::minmax_element(pivots_.begin(), pivots_.end());
+  return double{*low} / double{*high};
+}
+
+template <class Real>
+double MultifrontalCholesky<Real>::least_relative_pivot() const {
+  double least = 1;
+  for (int i = 0; i < pattern_.n; ++i) {
+    const double diagonal = values_[as_size(pattern_.diagonal(i))];
+    least = std::min(least, double{pivots_[as_size(i)]} / diagonal);
+  }
+  return least;
+}
+
+template class MultifrontalCholesky<double>;
+template class MultifrontalCholesky<float>;
+
+}  // namespace inextensible

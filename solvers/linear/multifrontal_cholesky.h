@@ -1,0 +1,93 @@
+// L D L^T of positive definite matrices that share one pattern, for thousands of factorizations:
+// the multifrontal method (Duff and Reid 1983; Liu 1992), with everything that depends on the
+// pattern alone done once.
+//
+// Columns of L with (nearly) the same rows below form a supernode. Its front is a dense lower
+// trapezoid over those rows: the entries of A in its columns, plus what its children in the
+// elimination tree leave over. The columns are eliminated by dense steps; what that subtracts from
+// the rows below, with what the children leave over there, is the front's update matrix, for its
+// parent.
+//
+// Fixed by the pattern, and so made in the constructor: supernodes and their rows (CHOLMOD's
+// analysis), the place of every entry of A in its front, the place of every row of an update matrix
+// in the parent's front, and the place of every update matrix. Those lie on two stacks, one for
+// even and one for odd depths of the tree: a front's update matrix is made on one while its
+// children's, the last ones on the other, are read and dropped.
+//
+// The dense steps take panels of up to eight columns, whose number is a template argument: eight
+// columns of the panel against four of the target in one loop over rows, four doubles (eight
+// floats) at once, by the compiler's vector types. Panels lie one after the other, each without the
+// rows above it, and have room for whole groups of rows: most fronts are so small that a loop's
+// remainder would cost more than the loop.
+#pragma once
+
+#include "inextensible/linear/spd_solver.h"
+
+namespace inextensible {
+
+// Real: double, or float for half the memory and twice the numbers an instruction, where seven
+// digits are enough: as the linear solver of an iteration that corrects itself, or of one that is
+// preconditioned.
+template <class Real>
+class MultifrontalCholesky final : public SpdSolver {
+ public:
+  // Reads the lower triangle, in elimination order, postordered (fill_reducing_order). Throws
+  // std::invalid_argument for the upper one, std::bad_alloc if CHOLMOD's analysis runs out of
+  // memory.
+  explicit MultifrontalCholesky(SymmetricPattern pattern);
+
+  double* values() override { return values_.data(); }
+  bool factor() override;
+  void solve(double* rhs) override;
+  double reciprocal_condition() const override;
+  // Those of L itself; what is stored is about a third more, for whole groups of rows and merged
+  // supernodes.
+  double factor_nonzeros() const override { return nonzeros_; }
+  double factor_flops() const override { return flops_; }
+  // Of the last successful factorization: the smallest pivot over the diagonal entry that it came
+  // from. Unlike reciprocal_condition() it does not see how rows are scaled, as the solve's
+  // accuracy does not.
+  double least_relative_pivot() const;
+  // After factor() returned false: the column whose pivot was too small.
+  int failed_column() const { return failed_column_; }
+
+ private:
+  struct Front {
+    int first_column, columns, rows;   // rows: the own columns' and those below
+    int entries_begin, entries_end;    // of A, in the pattern's order
+    int children_begin, children_end;  // in children_
+    int own_of_parent;                 // of its rows below, how many are own columns of the parent
+    int stack;                         // 0 or 1, the depth's parity: where the update matrix is
+    std::size_t rows_at, factor_at, update_at;
+    int below() const { return rows - columns; }
+  };
+
+  void find_fronts();
+  void place_entries();
+  void link_fronts();
+  void place_updates();
+  int place_in(const Front& front, int row) const;
+  template <class Into>
+  void add_update(const Front& child, int begin, int end, Into into) const;
+  bool eliminate_columns(const Front& front, Real* columns, Real* update);
+  void substitute(Real* rhs);
+
+  SymmetricPattern pattern_;
+  std::vector<double> values_;
+  std::vector<Front> fronts_;     // in elimination order
+  std::vector<int> rows_;         // of the matrix, below each front's own columns, ascending
+  std::vector<int> entry_place_;  // of A's entries in their front's columns
+  std::vector<int> children_;
+  std::vector<int> parent_place_;  // of each of rows_ in the parent's front
+  std::vector<Real> factor_;       // the fronts' panels
+  std::vector<Real> updates_[2];   // the stacks
+  std::vector<Real> pivots_;       // of L D L^T
+  std::vector<Real> front_rows_;   // solve(): one number a row of a front
+  std::vector<Real> rounded_;      // solve() in single precision: the right-hand side
+  double nonzeros_ = 0, flops_ = 0;
+  int failed_column_ = -1;
+};
+
+using FixedPatternCholesky = MultifrontalCholesky<double>;
+
+}  // namespace inextensible

@@ -1,0 +1,59 @@
+// Linear solvers for symmetric positive definite systems that are factored many times with one
+// pattern.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "inextensible/linear/symmetric_pattern.h"
+
+namespace inextensible {
+
+// Use: write the matrix to values() in the pattern's order, factor(), solve() any number of times.
+// The matrix is factored in its own order; permute it first (fill_reducing_order).
+class SpdSolver {
+ public:
+  SpdSolver() = default;
+  virtual ~SpdSolver() = default;
+  SpdSolver(const SpdSolver&) = delete;
+  SpdSolver& operator=(const SpdSolver&) = delete;
+
+  virtual double* values() = 0;  // entries() numbers, in the pattern's order
+  // false: not positive definite (or not finite), that is, a pivot of L D L^T is not above
+  // least_pivot times the diagonal entry that it came from. (The supernodal code has no such pivots
+  // to look at and takes any positive one.)
+  virtual bool factor() = 0;
+  // 0 (the default) takes every positive pivot; 1e-10, say, refuses matrices in which ten digits
+  // are lost.
+  void set_least_pivot(double relative) { least_pivot_ = relative; }
+  virtual void solve(
+      double* rhs) = 0;  // n numbers, overwritten by the solution; after a successful factor()
+  // As solve(), but iterative solvers stop once |b - A x| <= tolerance |b|; direct ones are as
+  // exact as they are. false: not reached, or not positive definite after all; rhs is then
+  // unspecified.
+  virtual bool solve_within(double /*tolerance*/, double* rhs) {
+    solve(rhs);
+    return true;
+  }
+  static constexpr double tightest = 1e-12;              // tolerance that is sure to be reached
+  virtual std::int64_t iterations() const { return 0; }  // of all solves; direct solvers have none
+  // An estimate, of the last successful factorization: smallest over largest pivot of L D L^T.
+  virtual double reciprocal_condition() const = 0;
+  virtual double factor_nonzeros() const = 0;
+  virtual double factor_flops() const = 0;  // of one factorization
+
+ protected:
+  double least_pivot_ = 0;
+};
+
+// The triangle that the named solver reads.
+SymmetricPattern::Triangle triangle_of(std::string_view solver);
+
+// name: tridiagonal, block_tridiagonal (3 x 3 blocks; each for such patterns only), eigen_ldlt,
+// cholmod_simplicial, cholmod_supernodal, fixed_pattern, fixed_pattern_single, fixed_pattern_mixed;
+// not direct: line_cg, hybrid. Throws std::invalid_argument for another name or a pattern that the
+// solver cannot take.
+std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern);
+
+}  // namespace inextensible

@@ -1,0 +1,89 @@
+#include "inextensible/methods/dense_oracle.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace inextensible {
+namespace {
+
+constexpr double tolerance = 1e-12;  // of C and F, in rest lengths
+
+// J (m x 3n) with zero columns at pinned vertices.
+Eigen::MatrixXd dense_jacobian(const EdgeConstraints& edges, const Positions& x) {
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(edges.count(), 3 * x.cols());
+  for (int k = 0; k < edges.count(); ++k) {
+    const auto e = static_cast<std::size_t>(k);
+    const Eigen::RowVector3d u =
+        2 * edges.inverse_rest_length[e] * (x.col(edges.b[e]) - x.col(edges.a[e])).transpose();
+    if (edges.wa[e] > 0) jacobian.block<1, 3>(k, 3 * edges.a[e]) = -u;
+    if (edges.wb[e] > 0) jacobian.block<1, 3>(k, 3 * edges.b[e]) = u;
+  }
+  return jacobian;
+}
+
+}  // namespace
+
+DenseReference::DenseReference(const Problem& problem)
+    : problem_(problem),
+      edges_(problem, tolerance),
+      mu_(Eigen::VectorXd::Zero(problem.constraints())) {
+  if (problem.vertices() > largest_problem) {
+    throw std::invalid_argument("solver 'reference' is dense, for at most " +
+                                std::to_string(largest_problem) + " vertices; this problem has " +
+                                std::to_string(problem.vertices()));
+  }
+}
+
+StepResult DenseReference::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
+                                 WorkCounters& work) {
+  const Eigen::Index n3 = 3 * x.cols(), m = edges_.count();
+  const Positions x0 = x;
+  Eigen::VectorXd mass(n3), mu = Eigen::VectorXd::Zero(m), c(m);
+  for (Eigen::Index i = 0; i < n3; ++i) mass[i] = problem_.mass()[static_cast<std::size_t>(i / 3)];
+  Eigen::Matrix3Xd u(3, m);
+  const double goal = tolerance * problem_.shortest_rest_length();
+  constexpr int iteration_limit = 200;
+  for (int j = 0; j < iteration_limit; ++j) {
+    edges_.linearize(x, u, c);
+    const Eigen::MatrixXd jacobian = dense_jacobian(edges_, x);
+    const Positions displacement = x - x0;
+    const Eigen::VectorXd force =
+        mass.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(displacement.data(), n3)) +
+        jacobian.transpose() * mu;
+    if (c.cwiseAbs().maxCoeff() <= goal &&
+        (force.cwiseQuotient(mass)).cwiseAbs().maxCoeff() <= goal) {
+      mu_ = mu;
+      return {Status::ok, j};
+    }
+    Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(n3 + m, n3 + m);
+    kkt.diagonal().head(n3) = mass;
+    for (Eigen::Index k = 0; k < m; ++k) {
+      const auto e = static_cast<std::size_t>(k);
+      const double curvature = 2 * mu[k] * edges_.inverse_rest_length[e];
+      for (int axis = 0; axis < 3; ++axis) {
+        const Eigen::Index a = 3 * edges_.a[e] + axis, b = 3 * edges_.b[e] + axis;
+        if (edges_.wa[e] > 0) kkt(a, a) += curvature;
+        if (edges_.wb[e] > 0) kkt(b, b) += curvature;
+        if (edges_.wa[e] > 0 && edges_.wb[e] > 0) kkt(a, b) = kkt(b, a) = kkt(a, b) - curvature;
+      }
+    }
+    kkt.bottomLeftCorner(m, n3) = jacobian;
+    kkt.topRightCorner(n3, m) = jacobian.transpose();
+    Eigen::VectorXd rhs(n3 + m);
+    rhs << -force, -c;
+    const Eigen::VectorXd step = kkt.fullPivLu().solve(rhs);
+    ++work.assemblies;
+    ++work.factorizations;
+    ++work.back_solves;
+    // A step may not move a vertex by more than a quarter of an edge: slow, but it stays with the
+    // nearest solution.
+    const double longest = step.head(n3).cwiseAbs().maxCoeff();
+    const double scale = std::min(1.0, 0.25 * problem_.shortest_rest_length() / longest);
+    x += scale * Eigen::Map<const Positions>(step.data(), 3, x.cols());
+    mu += scale * step.tail(m);
+    if (!x.allFinite()) break;
+  }
+  return refuse(Status::not_converged, iteration_limit, edges_, x, "iteration limit");
+}
+
+}  // namespace inextensible

@@ -1,0 +1,28 @@
+// Registered as `reference`, no contestant: the M-closest point of {C = 0} (ICD = SAP, Goldenthal
+// et al. 2007, Theorem 1) to 1e-12, by dense Newton with full pivoting. Slow and obvious: the
+// oracle of the tests, for small n.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "inextensible/stepping/velocity_filter.h"
+#include "inextensible/systems/constraint_system.h"
+
+namespace inextensible {
+
+class DenseReference final : public VelocityFilter {
+ public:
+  static constexpr int largest_problem = 600;  // vertices
+  // Throws std::invalid_argument for more vertices than largest_problem.
+  explicit DenseReference(const Problem& problem);
+  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+  // Multipliers h^2 lambda of the last accepted step, one an edge, kg m.
+  const Eigen::VectorXd& multipliers() const { return mu_; }
+
+ private:
+  const Problem& problem_;
+  EdgeConstraints edges_;
+  Eigen::VectorXd mu_;
+};
+
+}  // namespace inextensible

@@ -1,0 +1,146 @@
+// Algorithm 1 line by line. With mu = h^2 dlambda the step h drops out of equations 5 and 7:
+//   (J W J^T) mu = C(x_j),   x_{j+1} = x_j - W J^T mu,   J = J(x_j).
+// Loops: one pass over edges, one assembly, one factorization, one solve and one pass over edges an
+// iteration.
+//
+// Where J W J^T is singular or nearly so (a row pulled straight between two pins, Q3) that step
+// does not exist or overshoots. When several iterations have not lowered |C|, or one has raised it
+// beyond all measure, the best x_j is taken up again, and the rest of the step is Levenberg's and
+// Marquardt's (1963) with the damping rule of Nielsen (1999):
+//   (J W J^T + damping D) mu = C~,   D the diagonal,
+// which minimizes |C~ + J dx|^2 + damping |dx|^2 in the norms of D^-1 and M. C~ is what of C lies
+// outside the inner part of the permissible band: a straight row at full length has no neighbour
+// with C = 0, but many permissible ones.
+//
+// Iterative linear solvers solve (7) to a residual of a fraction of |C(x_j)|, the forcing term of
+// an inexact Newton method: 1e-2 at first, then as |C| has fallen, squared (Eisenstat and Walker
+// 1996, choice 2), which keeps the convergence of order two.
+#include "inextensible/methods/fast_projection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace inextensible {
+namespace {
+
+// Iterations without a new least |C|: Newton often recovers from a rise or two. But not from this
+// one of |C|^2, where J W J^T was singular in all but rounding, and digits are lost on the way.
+constexpr int patience = 8;
+constexpr double overshoot = 1e8;
+constexpr double inner_band = 0.6;  // of the permissible one
+constexpr double first_forcing = 1e-2, least_forcing = 1e-8, damped_forcing = 1e-4;
+constexpr double smoothing_target = 0.5, over_relaxation = 1.4;
+constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1e8;
+
+}  // namespace
+
+FastProjection::FastProjection(const Problem& problem, const Settings& settings)
+    : system_(problem, settings.strain_limit, settings.linear_solver,
+              ConstraintSystem::Digits::few),
+      max_iterations_(settings.max_iterations),
+      min_iterations_(settings.min_iterations),
+      smoothing_sweeps_(settings.smoothing_sweeps),
+      best_(3, problem.vertices()),
+      u_(3, problem.constraints()),
+      mu_(problem.constraints()),
+      excess_(problem.constraints()) {
+  if (smoothing_sweeps_ > 0 && system_.solver_name() != "tridiagonal") {
+    sweep_ = std::make_unique<StrainSweep>(
+        StrainSweep::by_mass(problem, {settings.strain_limit, smoothing_target}, over_relaxation));
+  }
+}
+
+StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
+                                 WorkCounters& work) {
+  const EdgeConstraints& edges = system_.edges();
+  double error = std::numeric_limits<double>::infinity();  // |C|^2 at best_
+  double last_error = error, forcing = first_forcing;
+  for (int j = 0, best_j = 0;; ++j) {
+    if (edges.linearize(x, u_, mu_) && j >= min_iterations_) return {Status::ok, j};
+    if (j == max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
+    const double next_error = mu_.squaredNorm();
+    if (next_error < error) {
+      error = next_error;
+      best_ = x;
+      best_j = j;
+    } else if (j == 0) {
+      return refuse(Status::not_finite, j, edges, x, "overflow");
+    }
+    if (j > 0) forcing = std::clamp(0.9 * next_error / last_error, least_forcing, first_forcing);
+    last_error = next_error;
+    if (j - best_j == patience || !(next_error < overshoot * error) || !system_.factor(u_, work) ||
+        !system_.solve(mu_, work, forcing))  // (7)
+      return damped(j, x, work);
+    edges.apply(u_, mu_, x);  // (5)
+    if (sweep_) smooth(x, work);
+  }
+}
+
+void FastProjection::smooth(Positions& x, WorkCounters& work) {
+  sweep_->load(x);
+  for (int i = 0; i < smoothing_sweeps_; ++i) {
+    const std::int64_t corrected = sweep_->in_turn();
+    work.edge_projections += corrected;
+    if (corrected == 0) break;
+  }
+  sweep_->store(x);
+}
+
+// From best_ on; j iterations are done.
+StepResult FastProjection::damped(int j, Positions& x, WorkCounters& work) {
+  const EdgeConstraints& edges = system_.edges();
+  double damping = first_damping, growth = 2;
+  double error = 0;
+  for (bool taken_back = true;; ++j) {
+    if (taken_back) {
+      ++work.line_search_steps;
+      x = best_;
+      edges.linearize(x, u_, mu_);
+      edges.excess(inner_band, mu_);
+      error = mu_.squaredNorm();
+    }
+    if (j >= max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
+    excess_ = mu_;
+    while (damping < largest_damping &&
+           !(system_.factor(u_, work, damping) && system_.solve(mu_, work, damped_forcing))) {
+      damping *= 10;
+      mu_ = excess_;
+    }
+    if (!(damping < largest_damping)) {
+      return refuse(Status::not_converged, j, edges, x,
+                    "no damped projection lowers the constraint error");
+    }
+    const double predicted_error = damped_prediction(damping);
+    edges.apply(u_, mu_, x);
+    if (edges.linearize(x, u_, mu_)) return {Status::ok, j + 1};
+    edges.excess(inner_band, mu_);
+    const double next_error = mu_.squaredNorm();
+    taken_back = !(next_error < error);
+    if (taken_back) {
+      damping *= growth;
+      growth *= 2;
+    } else {
+      const double gain = (error - next_error) / (error - predicted_error);
+      damping *= std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3));
+      damping = std::max(damping, least_damping);
+      growth = 2;
+      error = next_error;
+      best_ = x;
+    }
+  }
+}
+
+// |C~ + J dx|^2 = |damping D mu|^2: what the linear model leaves of the error.
+double FastProjection::damped_prediction(double damping) const {
+  const EdgeConstraints& edges = system_.edges();
+  double sum = 0;
+  for (std::size_t k = 0; k < edges.wa.size(); ++k) {
+    const auto e = static_cast<Eigen::Index>(k);
+    const double d = (edges.wa[k] + edges.wb[k]) * u_.col(e).squaredNorm();
+    sum += std::pow(damping * d * mu_[e], 2);
+  }
+  return sum;
+}
+
+}  // namespace inextensible

@@ -1,0 +1,46 @@
+// Fast projection (Goldenthal et al. 2007, Algorithm 1): steps of least M-norm towards the
+// constraint manifold.
+#pragma once
+
+#include <memory>
+
+#include "inextensible/methods/strain_pass.h"
+#include "inextensible/stepping/velocity_filter.h"
+#include "inextensible/systems/constraint_system.h"
+
+namespace inextensible {
+
+class FastProjection final : public VelocityFilter {
+ public:
+  struct Settings {
+    double strain_limit = 0.01;
+    int max_iterations = 200;
+    // Iterations even where the candidate is permissible already: one keeps slack within the limit
+    // from building up over steps, at the price of a solve in steps that would need none.
+    int min_iterations = 0;
+    // Colored Gauss-Seidel sweeps after each projection, at most. A projection sees the whole
+    // cloth, but only to first order; most of what it leaves is local, and cheaper to mend by
+    // sweeps. Not on chains, where a projection costs no more than some sweeps.
+    int smoothing_sweeps = 0;
+    std::string_view linear_solver = "auto";
+  };
+  FastProjection(const Problem& problem, const Settings& settings);
+  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+  const char* linear_solver() const override { return system_.solver_name().c_str(); }
+  double reciprocal_condition() const override { return system_.reciprocal_condition(); }
+
+ private:
+  void smooth(Positions& x, WorkCounters& work);
+  StepResult damped(int j, Positions& x, WorkCounters& work);
+  double damped_prediction(double damping) const;
+
+  ConstraintSystem system_;
+  int max_iterations_, min_iterations_, smoothing_sweeps_;
+  std::unique_ptr<StrainSweep> sweep_;  // with smoothing only
+  Positions best_;                      // x_j of least constraint error
+  Eigen::Matrix3Xd u_;                  // gradient of C at x_j
+  Eigen::VectorXd mu_;                  // C(x_j), then h^2 dlambda
+  Eigen::VectorXd excess_;              // C~ of a damped iteration
+};
+
+}  // namespace inextensible

@@ -1,0 +1,29 @@
+// Gauss-Seidel strain limiting in colors: as gauss_seidel, but edges that share no vertex are
+// corrected side by side, as limiters for parallel processors do (Fratarcangeli, Tibaldo and
+// Pellacini 2016).
+#pragma once
+
+#include "inextensible/methods/strain_pass.h"
+#include "inextensible/stepping/velocity_filter.h"
+#include "inextensible/systems/constraint_system.h"
+
+namespace inextensible {
+
+class GaussSeidelColored final : public VelocityFilter {
+ public:
+  struct Settings {
+    double strain_limit = 0.01;
+    int max_iterations = 100000;  // sweeps a step
+    double target = 0;            // a corrected edge is brought to |strain| = target * strain_limit
+    double relaxation = 1;        // of that correction; 1: Gauss-Seidel, above: over-relaxation
+  };
+  GaussSeidelColored(const Problem& problem, const Settings& settings);
+  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+
+ private:
+  EdgeConstraints edges_;
+  int max_iterations_;
+  StrainSweep sweep_;
+};
+
+}  // namespace inextensible

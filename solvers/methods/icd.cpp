@@ -1,0 +1,154 @@
+// Newton on F(dx, lambda) = dx + h^2 W J(x0 + dx)^T lambda = 0 and C(x0 + dx) = 0 together, mu =
+// h^2 lambda:
+//   [ M + H(mu)  J^T ] [ p ]   [ M dx + J^T mu ]
+//   [ J           0  ] [ q ] = [ C             ] ,   dx -= p, mu -= q.
+// Globalization (Nocedal and Wright 2006, chapter 18): where M + H is indefinite on the
+// constraints' null space, negative multipliers are left out of H; a step is backtracked until
+// either the residual |F|^2 + |C|^2 or the exact penalty 1/2 |dx|_M^2 + nu |C|_1, whose minimum is
+// the closest point of Theorem 1, falls enough. Multipliers start from the last accepted step's
+// forces; if that fails, once more from zero, whose first iteration is fast projection's. The
+// linear system is solved to a few percent by projected conjugate gradients, or factored. Loops:
+// one assembly, one factorization, several solves and one or more evaluations an iteration.
+#include "inextensible/methods/icd.h"
+
+#include <cmath>
+
+#include "inextensible/systems/kkt_system.h"
+#include "inextensible/systems/projected_cg.h"
+
+namespace inextensible {
+namespace {
+
+constexpr int line_search_limit = 12;
+constexpr double sufficient_decrease = 1e-4;
+
+// Without fill, as on a chain, factoring the saddle-point matrix is cheaper than any iteration; and
+// where it is small it costs little, and a full Newton step leaves less of F than is asked for.
+constexpr int many_edges = 600;
+std::string choose(std::string_view wanted, const Problem& problem) {
+  if (wanted != "auto") return std::string(wanted);
+  const bool fill = problem.constraints() >= problem.vertices();
+  return fill && problem.constraints() >= many_edges ? "projected_cg" : "quasi_definite";
+}
+
+}  // namespace
+
+Icd::Icd(const Problem& problem, const Settings& settings)
+    : problem_(problem),
+      linear_solver_(choose(settings.linear_solver, problem)),
+      edges_(problem, settings.strain_limit,
+             linear_solver_ == "projected_cg" ? elimination_order(problem) : std::vector<int>{}),
+      max_iterations_(settings.max_iterations),
+      direction_tolerance_(settings.direction_tolerance * settings.strain_limit *
+                           problem.shortest_rest_length()),
+      mass_(Eigen::Map<const Eigen::VectorXd>(problem.mass().data(), problem.vertices()) /
+            problem.total_mass() * problem.vertices()) {
+  if (linear_solver_ == "projected_cg") {
+    kkt_ = std::make_unique<ProjectedCg>(problem, edges_,
+                                         ProjectedCg::Settings{settings.cg_tolerance});
+  } else {
+    kkt_ = std::make_unique<KktSystem>(problem, edges_, linear_solver_);
+  }
+  for (Positions* p : {&x0_, &trial_, &dx_, &trial_dx_, &f_, &dp_})
+    p->resize(3, problem.vertices());
+  u_.resize(3, problem.constraints());
+  for (Eigen::VectorXd* v : {&c_, &mu_, &trial_mu_, &dq_}) v->resize(problem.constraints());
+  previous_lambda_ = Eigen::VectorXd::Zero(problem.constraints());
+}
+
+// u_, c_, f_, largest_f_ and merit_ at x0 + dx (in trial_) with multipliers trial_mu_.
+void Icd::evaluate(const Positions& dx) {
+  permissible_ = edges_.linearize(trial_, u_, c_);
+  f_ = dx * mass_.asDiagonal();
+  for (std::size_t k = 0; k < edges_.a.size(); ++k) {
+    const auto e = static_cast<Eigen::Index>(k);
+    f_.col(edges_.a[k]) -= trial_mu_[e] * u_.col(e);
+    f_.col(edges_.b[k]) += trial_mu_[e] * u_.col(e);
+  }
+  for (const int vertex : problem_.pinned()) f_.col(vertex).setZero();
+  double sum = 0, largest = 0;
+  for (Eigen::Index v = 0; v < f_.cols(); ++v) {
+    const double squared = f_.col(v).squaredNorm() / (mass_[v] * mass_[v]);
+    sum += squared;
+    if (!(squared <= largest)) largest = squared;
+  }
+  largest_f_ = std::sqrt(largest);
+  merit_ = sum + c_.squaredNorm();
+}
+
+StepResult Icd::apply(const Positions& /*x_start*/, double h, Positions& x, WorkCounters& work) {
+  if (edges_.permissible(x)) return {Status::ok, 0};  // dx = 0, lambda = 0 solves both equations
+  x0_ = x;
+  mu_ = previous_lambda_ * (h * h);
+  StepResult result = newton(h, x, work);
+  if (!result && previous_lambda_.squaredNorm() > 0) {
+    const int spent = result.iterations;
+    x = x0_;
+    mu_.setZero();
+    result = newton(h, x, work);
+    result.iterations += spent;
+  }
+  return result;
+}
+
+bool Icd::direction(bool convex, WorkCounters& work) {
+  return kkt_->factor(u_, mu_, convex, work) && kkt_->solve(f_, c_, dp_, dq_, work);
+}
+
+// Leaves the accepted step in trial_dx_, trial_mu_ and trial_.
+bool Icd::line_search(WorkCounters& work) {
+  const double merit = merit_;
+  const double nu = 2 * (mu_ - dq_).cwiseAbs().maxCoeff();
+  const auto penalty = [&](const Positions& dx) {
+    return 0.5 * dx.colwise().squaredNorm().dot(mass_) + nu * c_.cwiseAbs().sum();
+  };
+  const double penalty_here = penalty(dx_);
+  const double slope =
+      -(dx_.cwiseProduct(dp_).colwise().sum()).dot(mass_) - nu * c_.cwiseAbs().sum();
+  double step = 1;
+  for (int halvings = 0; halvings <= line_search_limit; ++halvings, step *= 0.5) {
+    trial_dx_ = dx_ - step * dp_;
+    trial_ = x0_ + trial_dx_;
+    trial_mu_ = mu_ - step * dq_;
+    evaluate(trial_dx_);
+    if (merit_ <= (1 - 2 * sufficient_decrease * step) * merit) return true;  // false on NaN
+    if (slope < 0 && penalty(trial_dx_) <= penalty_here + sufficient_decrease * step * slope)
+      return true;
+    ++work.line_search_steps;
+  }
+  return false;
+}
+
+StepResult Icd::newton(double h, Positions& x, WorkCounters& work) {
+  dx_.setZero();
+  trial_ = x0_;
+  trial_mu_ = mu_;
+  evaluate(dx_);
+  for (int j = 0;; ++j) {
+    if (permissible_ && largest_f_ <= direction_tolerance_) {
+      previous_lambda_ = mu_ / (h * h);
+      return {Status::ok, j};
+    }
+    if (j == max_iterations_)
+      return refuse(Status::not_converged, j, edges_, trial_, "iteration limit");
+    if (!direction(false, work))
+      return refuse(Status::singular, j, edges_, trial_, "the Newton matrix is singular");
+    if (!line_search(work)) {
+      // Once more with the convex matrix, from the same place; evaluate() restores what the search
+      // overwrote.
+      const bool was_convex = kkt_->convexified();
+      trial_ = x0_ + dx_;
+      trial_mu_ = mu_;
+      evaluate(dx_);
+      if (was_convex || !direction(true, work) || !line_search(work)) {
+        return refuse(Status::not_converged, j, edges_, trial_,
+                      "no step along Newton's direction makes progress");
+      }
+    }
+    dx_.swap(trial_dx_);
+    mu_.swap(trial_mu_);
+    x = trial_;
+  }
+}
+
+}  // namespace inextensible

@@ -1,0 +1,52 @@
+// Implicit constraint direction (Goldenthal et al. 2007, section 4.1): constraint forces act along
+// J at the end of the step.
+#pragma once
+
+#include "inextensible/stepping/velocity_filter.h"
+#include "inextensible/systems/constraint_system.h"
+#include "inextensible/systems/kkt_solver.h"
+
+namespace inextensible {
+
+class Icd final : public VelocityFilter {
+ public:
+  struct Settings {
+    double strain_limit = 0.01;
+    int max_iterations = 50;
+    // |F| of every vertex must fall below this times strain_limit times the shortest rest length
+    // (m).
+    double direction_tolerance = 0.1;
+    // projected_cg, quasi_definite, umfpack, or "auto": the first, but on chains and small cloth
+    // (below 600 edges) the second.
+    std::string_view linear_solver = "auto";
+    double cg_tolerance = 0.03;  // of projected_cg
+  };
+  Icd(const Problem& problem, const Settings& settings);
+  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+  const char* linear_solver() const override { return linear_solver_.c_str(); }
+  double reciprocal_condition() const override { return kkt_->reciprocal_condition(); }
+
+ private:
+  void evaluate(const Positions& dx);
+  bool direction(bool convex, WorkCounters& work);
+  bool line_search(WorkCounters& work);
+  StepResult newton(double h, Positions& x, WorkCounters& work);
+
+  const Problem& problem_;
+  std::string linear_solver_;
+  EdgeConstraints edges_;
+  std::unique_ptr<KktSolver> kkt_;
+  int max_iterations_;
+  double direction_tolerance_;  // m
+  Eigen::VectorXd mass_;        // scaled by the mean mass, as mu is
+
+  Positions x0_, trial_, dx_, trial_dx_, f_, dp_;  // f_ = M F = M dx + J^T mu
+  Eigen::Matrix3Xd u_;
+  Eigen::VectorXd c_, mu_, trial_mu_, dq_;
+  bool permissible_ = false;
+  double largest_f_ = 0;             // m, over vertices
+  double merit_ = 0;                 // sum of |F|^2 and C^2, m^2
+  Eigen::VectorXd previous_lambda_;  // of the last accepted step, 1/kg-scaled: mu / h^2
+};
+
+}  // namespace inextensible

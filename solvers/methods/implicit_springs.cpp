@@ -1,0 +1,293 @@
+// A backward Euler step minimizes  E(x) = 1/2 |x - (x^n + h v^n + h^2 g)|_M^2 + h^2 V(x),  V =
+// stretch and shear springs. Newton with each spring's Hessian projected to be positive
+// semidefinite (a compressed spring's negative stiffness across its direction is dropped; Choi and
+// Ko 2002, Teran et al. 2005) always descends; backtracking on E. Loops: one assembly,
+// factorization and solve, and one or more energy evaluations, an iteration.
+#include "inextensible/methods/implicit_springs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace inextensible {
+namespace {
+
+constexpr int line_search_limit = 30;
+constexpr double sufficient_decrease = 1e-4;
+constexpr double rounding = 1e-14;
+
+// Vertex blocks of the Hessian, one triangle, as vertex graph: column f holds itself and its
+// neighbours of lower place.
+SymmetricPattern vertex_graph(int n, const std::vector<Edge>& pairs) {
+  std::vector<std::vector<int>> columns(static_cast<std::size_t>(n));
+  for (int f = 0; f < n; ++f) columns[static_cast<std::size_t>(f)].push_back(f);
+  for (const auto [a, b] : pairs)
+    columns[static_cast<std::size_t>(std::max(a, b))].push_back(std::min(a, b));
+  SymmetricPattern graph;
+  graph.n = n;
+  graph.column_start.push_back(0);
+  for (auto& column : columns) {
+    std::sort(column.begin(), column.end());
+    column.erase(std::unique(column.begin(), column.end()), column.end());
+    graph.row_index.insert(graph.row_index.end(), column.begin(), column.end());
+    graph.column_start.push_back(graph.entries());
+  }
+  return graph;
+}
+
+// The 3 x 3 block pattern of a vertex graph. The lower triangle is written as the transposed graph,
+// column by column.
+SymmetricPattern expand(const SymmetricPattern& graph, SymmetricPattern::Triangle triangle) {
+  const auto n = static_cast<std::size_t>(graph.n);
+  std::vector<std::vector<int>> rows(n);  // per column of the result
+  for (std::size_t j = 0; j < n; ++j) {
+    for (int i = graph.column_start[j]; i < graph.column_start[j + 1]; ++i) {
+      const int row = graph.row_index[static_cast<std::size_t>(i)];
+      if (triangle == SymmetricPattern::Triangle::upper) {
+        rows[j].push_back(row);
+      } else {
+        rows[static_cast<std::size_t>(row)].push_back(static_cast<int>(j));
+      }
+    }
+  }
+  SymmetricPattern pattern;
+  pattern.n = 3 * graph.n;
+  pattern.triangle = triangle;
+  pattern.column_start.push_back(0);
+  for (std::size_t j = 0; j < n; ++j) {
+    for (int c = 0; c < 3; ++c) {
+      for (const int row : rows[j]) {
+        for (int r = 0; r < 3; ++r) {
+          const bool diagonal = row == static_cast<int>(j);
+          const bool stored =
+              !diagonal || (triangle == SymmetricPattern::Triangle::upper ? r <= c : r >= c);
+          if (stored) pattern.row_index.push_back(3 * row + r);
+        }
+      }
+      pattern.column_start.push_back(pattern.entries());
+    }
+  }
+  return pattern;
+}
+
+// Index of the first stored entry of block (i, j) in each of the three columns of the pattern's
+// triangle.
+std::array<int, 3> block_begin(const SymmetricPattern& pattern, int i, int j) {
+  const bool upper = pattern.triangle == SymmetricPattern::Triangle::upper;
+  const int row = upper ? std::min(i, j) : std::max(i, j),
+            column = upper ? std::max(i, j) : std::min(i, j);
+  std::array<int, 3> begin{};
+  for (int c = 0; c < 3; ++c) {
+    const auto col = static_cast<std::size_t>(3 * column + c);
+    const auto first = pattern.row_index.begin() + pattern.column_start[col];
+    const auto last = pattern.row_index.begin() + pattern.column_start[col + 1];
+    begin[static_cast<std::size_t>(c)] =
+        static_cast<int>(std::lower_bound(first, last, 3 * row) - pattern.row_index.begin());
+  }
+  return begin;
+}
+
+// Whether vertices are numbered along chains: every spring joins one to the next.
+bool chains(const std::vector<Edge>& pairs) {
+  return std::all_of(pairs.begin(), pairs.end(), [](Edge e) { return std::abs(e.a - e.b) == 1; });
+}
+
+}  // namespace
+
+ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Settings& settings)
+    : Stepper(std::move(shared)),
+      max_iterations_(settings.max_iterations),
+      step_tolerance_(settings.newton_tolerance * settings.strain_limit *
+                      problem().shortest_rest_length()) {
+  const Problem& p = problem();
+  std::vector<int> place(static_cast<std::size_t>(p.vertices()), -1);
+  for (int v = 0; v < p.vertices(); ++v) {
+    if (p.inverse_mass()[static_cast<std::size_t>(v)] == 0) continue;
+    place[static_cast<std::size_t>(v)] = static_cast<int>(free_vertex_.size());
+    free_vertex_.push_back(v);
+  }
+  const auto add = [&](Edge e, double rest, double k) {
+    springs_.push_back({e.a, e.b, -1, -1, rest, k, {}});
+  };
+  for (std::size_t k = 0; k < p.edges().size(); ++k) {
+    add(p.edges()[k], p.rest_length()[k], settings.stiffness / p.rest_length()[k]);
+  }
+  if (const Springs* shear = p.shear()) {
+    for (std::size_t k = 0; k < shear->edges.size(); ++k)
+      add(shear->edges[k], shear->rest_length[k], shear->stiffness[k]);
+  }
+  const auto free_pairs = [&] {
+    std::vector<Edge> pairs;
+    for (const Spring& s : springs_) {
+      const Edge pair{place[static_cast<std::size_t>(s.a)], place[static_cast<std::size_t>(s.b)]};
+      if (pair.a >= 0 && pair.b >= 0) pairs.push_back(pair);
+    }
+    return pairs;
+  };
+  const int n = static_cast<int>(free_vertex_.size());
+  std::vector<Edge> pairs = free_pairs();
+  linear_solver_ = settings.linear_solver != "auto" ? std::string(settings.linear_solver)
+                   : chains(pairs)                  ? "block_tridiagonal"
+                                                    : "fixed_pattern";
+  if (linear_solver_ == "block_tridiagonal") {
+    // Where one chain ends and the next begins the matrix holds zeros.
+    for (int f = 1; f < n; ++f) pairs.push_back({f - 1, f});
+  } else {
+    const std::vector<int> order = fill_reducing_order(vertex_graph(n, pairs));
+    std::vector<int> ordered(free_vertex_.size());
+    for (std::size_t f = 0; f < ordered.size(); ++f) {
+      ordered[f] = free_vertex_[static_cast<std::size_t>(order[f])];
+      place[static_cast<std::size_t>(ordered[f])] = static_cast<int>(f);
+    }
+    free_vertex_ = std::move(ordered);
+    pairs = free_pairs();
+  }
+  SymmetricPattern pattern = expand(vertex_graph(n, pairs), triangle_of(linear_solver_));
+  for (int f = 0; f < n; ++f) {
+    const auto [x, y, z] = block_begin(pattern, f, f);
+    diagonal_.push_back(pattern.triangle == SymmetricPattern::Triangle::upper
+                            ? Places{x, y, y + 1, z, z + 1, z + 2}
+                            : Places{x, x + 1, y, x + 2, y + 1, z});
+    free_mass_.push_back(
+        p.mass()[static_cast<std::size_t>(free_vertex_[static_cast<std::size_t>(f)])]);
+  }
+  for (Spring& s : springs_) {
+    s.fa = place[static_cast<std::size_t>(s.a)];
+    s.fb = place[static_cast<std::size_t>(s.b)];
+    if (s.fa < 0 || s.fb < 0) continue;
+    const auto begin = block_begin(pattern, s.fa, s.fb);
+    std::copy(begin.begin(), begin.end(), s.coupling);
+  }
+  entries_ = static_cast<std::size_t>(pattern.entries());
+  solver_ = make_spd_solver(linear_solver_, std::move(pattern));
+  inertial_.resize(3, p.vertices());
+  trial_.resize(3, p.vertices());
+  gradient_.resize(3 * n);
+  step_.resize(3 * n);
+}
+
+double ImplicitSprings::energy(const Positions& x, double h) const {
+  double inertia = 0, potential = 0;
+  for (std::size_t f = 0; f < free_vertex_.size(); ++f) {
+    inertia +=
+        free_mass_[f] * (x.col(free_vertex_[f]) - inertial_.col(free_vertex_[f])).squaredNorm();
+  }
+  const double* p = x.data();
+  for (const Spring& s : springs_) {
+    const double* pa = p + 3 * s.a;
+    const double* pb = p + 3 * s.b;
+    const double d0 = pb[0] - pa[0], d1 = pb[1] - pa[1], d2 = pb[2] - pa[2];
+    const double elongation = std::sqrt(d0 * d0 + d1 * d1 + d2 * d2) - s.rest;
+    potential += s.k * elongation * elongation;
+  }
+  return 0.5 * (inertia + h * h * potential);
+}
+
+// gradient_ and the solver's matrix: M + h^2 sum of projected spring Hessians, at x.
+void ImplicitSprings::assemble(const Positions& x, double h) {
+  double* value = solver_->values();
+  std::fill(value, value + entries_, 0.0);
+  const double* p = x.data();
+  double* g = gradient_.data();
+  for (std::size_t f = 0; f < free_vertex_.size(); ++f) {
+    const double m = free_mass_[f];
+    const Places& at = diagonal_[f];
+    value[at.xx] = value[at.yy] = value[at.zz] = m;
+    const double* from = inertial_.data() + 3 * free_vertex_[f];
+    const double* to = p + 3 * free_vertex_[f];
+    for (std::size_t i = 0; i < 3; ++i) g[3 * f + i] = m * (to[i] - from[i]);
+  }
+  for (const Spring& s : springs_) {
+    const double* pa = p + 3 * s.a;
+    const double* pb = p + 3 * s.b;
+    const double dx = pb[0] - pa[0], dy = pb[1] - pa[1], dz = pb[2] - pa[2];
+    const double squared = dx * dx + dy * dy + dz * dz;
+    const double inverse_length = squared > 0 ? 1 / std::sqrt(squared) : 0;
+    const double stiffness = h * h * s.k;
+    // Over the spring's vector; one of length zero has no direction and no force.
+    const double pull = squared > 0 ? stiffness * (1 - s.rest * inverse_length) : 0;
+    // h^2 k (t I + (1 - t) n n^T), t = the projected transverse stiffness.
+    const double transverse = std::max(pull, 0.0);
+    const double along = (stiffness - transverse) * (inverse_length * inverse_length);
+    const double xx = along * dx * dx + transverse, xy = along * dx * dy, xz = along * dx * dz,
+                 yy = along * dy * dy + transverse, yz = along * dy * dz,
+                 zz = along * dz * dz + transverse;
+    const auto add = [&](int f, double signed_pull) {
+      const Places& at = diagonal_[static_cast<std::size_t>(f)];
+      value[at.xx] += xx, value[at.xy] += xy, value[at.yy] += yy;
+      value[at.xz] += xz, value[at.yz] += yz, value[at.zz] += zz;
+      double* gf = g + 3 * f;
+      gf[0] += signed_pull * dx, gf[1] += signed_pull * dy, gf[2] += signed_pull * dz;
+    };
+    if (s.fa >= 0) add(s.fa, -pull);
+    if (s.fb >= 0) add(s.fb, pull);
+    if (s.fa < 0 || s.fb < 0) continue;
+    double* cx = value + s.coupling[0];  // the block is symmetric: either orientation
+    double* cy = value + s.coupling[1];
+    double* cz = value + s.coupling[2];
+    cx[0] -= xx, cx[1] -= xy, cx[2] -= xz;
+    cy[0] -= xy, cy[1] -= yy, cy[2] -= yz;
+    cz[0] -= xz, cz[1] -= yz, cz[2] -= zz;
+  }
+}
+
+StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
+  const Eigen::Vector3d fall = h * h * problem().gravity();
+  inertial_ = state.x + h * state.v;
+  inertial_.colwise() += fall;
+  for (const int vertex : problem().pinned()) inertial_.col(vertex) = state.x.col(vertex);
+
+  // Newton starts from whichever is lower: the free flight or the start of the step.
+  const double flight = energy(inertial_, h), rest = energy(state.x, h);
+  double current = std::min(flight, rest);
+  x = flight <= rest ? inertial_ : state.x;
+  work_.spring_evaluations += 2 * static_cast<std::int64_t>(springs_.size());
+
+  for (int j = 0;; ++j) {
+    if (j == max_iterations_) return {Status::not_converged, j, -1, 0, "iteration limit"};
+    assemble(x, h);
+    ++work_.assemblies;
+    ++work_.factorizations;
+    if (!solver_->factor()) {
+      return {std::isfinite(current) ? Status::singular : Status::not_finite, j, -1, 0,
+              "the Newton matrix is singular"};
+    }
+    work_.factor_nonzeros = solver_->factor_nonzeros();
+    work_.factor_flops = solver_->factor_flops();
+    step_ = -gradient_;
+    solver_->solve(step_.data());
+    ++work_.back_solves;
+
+    const double slope = gradient_.dot(step_);
+    const double longest = std::sqrt(Eigen::Map<const Positions>(step_.data(), 3, step_.size() / 3)
+                                         .colwise()
+                                         .squaredNorm()
+                                         .maxCoeff());
+    double scale = 1;
+    for (int halvings = 0;; ++halvings) {
+      trial_ = x;
+      for (std::size_t f = 0; f < free_vertex_.size(); ++f) {
+        trial_.col(free_vertex_[f]) += scale * step_.segment<3>(static_cast<Eigen::Index>(3 * f));
+      }
+      const double next = energy(trial_, h);
+      work_.spring_evaluations += static_cast<std::int64_t>(springs_.size());
+      // Near the minimum the decrease drowns in rounding: a step below the tolerance is then taken
+      // as it is.
+      if (next <= current + sufficient_decrease * scale * slope || longest <= step_tolerance_) {
+        current = next;
+        break;
+      }
+      // The decrease that is left is below the energy's rounding error: this is the minimum.
+      if (-slope <= rounding * current) return {Status::ok, j + 1};
+      if (halvings == line_search_limit || !std::isfinite(slope)) {
+        return {Status::not_converged, j, -1, 0,
+                "no step along Newton's direction lowers the energy"};
+      }
+      scale *= 0.5;
+      ++work_.line_search_steps;
+    }
+    x.swap(trial_);
+    if (scale == 1 && longest <= step_tolerance_) return {Status::ok, j + 1};
+  }
+}
+
+}  // namespace inextensible

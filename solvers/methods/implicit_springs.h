@@ -1,0 +1,59 @@
+// Implicit stiff springs (Baraff and Witkin 1998 and their kin): backward Euler with stretching as
+// springs.
+//
+// Edge k has stiffness EA / l_k, so strain = tension / EA at any resolution. The method has no
+// strain limit of its own: EA is its knob, and the harness finds the one that keeps a run within
+// the limit.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "inextensible/linear/spd_solver.h"
+#include "inextensible/stepping/velocity_filter.h"
+
+namespace inextensible {
+
+class ImplicitSprings final : public Stepper {
+ public:
+  struct Settings {
+    double stiffness = 1e4;      // EA, N
+    double strain_limit = 0.01;  // only sets the accuracy of Newton's iteration
+    int max_iterations = 100;
+    // Newton stops when its step moves no vertex by more than this times strain_limit times the
+    // shortest rest length.
+    double newton_tolerance = 0.1;
+    std::string_view linear_solver = "auto";
+  };
+  ImplicitSprings(std::shared_ptr<const Problem> problem, const Settings& settings);
+  const char* linear_solver() const override { return linear_solver_.c_str(); }
+  double reciprocal_condition() const override { return solver_->reciprocal_condition(); }
+
+ private:
+  StepResult solve(const State& state, double h, Positions& x) override;
+  double energy(const Positions& x, double h) const;
+  void assemble(const Positions& x, double h);
+
+  struct Spring {
+    int a, b;         // vertices
+    int fa, fb;       // their places among the free vertices in elimination order, -1 if pinned
+    double rest, k;   // m, N/m
+    int coupling[3];  // where each column of the coupling block begins among the matrix's values
+  };
+  std::string linear_solver_;
+  int max_iterations_;
+  double step_tolerance_;  // m
+  std::vector<Spring> springs_;
+  std::vector<int> free_vertex_;  // in elimination order
+  std::vector<double> free_mass_;
+  struct Places {  // of a diagonal block's numbers among the matrix's values
+    int xx, xy, yy, xz, yz, zz;
+  };
+  std::vector<Places> diagonal_;  // one a free vertex
+  std::size_t entries_ = 0;
+  std::unique_ptr<SpdSolver> solver_;
+  Positions inertial_, trial_;  // x + h v + h^2 g, and a line search's positions
+  Eigen::VectorXd gradient_, step_;
+};
+
+}  // namespace inextensible

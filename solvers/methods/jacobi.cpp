@@ -1,0 +1,47 @@
+// Averaging: edge k's correction is divided by the mean valence of its ends, weighted by their
+// inverse masses,
+//   omega_k = (w_a + w_b) / (w_a deg_a + w_b deg_b),
+// the same factor at both ends, so momentum is kept (dividing by each vertex's own valence would
+// not). Linearized, the sweep is x -= W J^T S J x with every row of S J W J^T summing in absolute
+// value to at most 1, hence all its eigenvalues lie in [0, 1]: it converges at any valence and any
+// masses, and up to relaxation 2. The default, 1.8, takes about a third fewer sweeps than the plain
+// average on the drape.
+//
+// All edges are independent, so that they are swept in colors (strain_sweep.cpp) and summed without
+// conflicts. A sweep that corrects nothing is the test of convergence and is not counted. Loops:
+// one pass over edges, one over vertices.
+#include "inextensible/methods/jacobi.h"
+
+namespace inextensible {
+namespace {
+
+StrainSweep make_sweep(const Problem& problem, const EdgeConstraints& edges,
+                       const Jacobi::Settings& settings) {
+  std::vector<int> valence(static_cast<std::size_t>(problem.vertices()), 0);
+  for (const Edge& e : problem.edges()) {
+    ++valence[static_cast<std::size_t>(e.a)];
+    ++valence[static_cast<std::size_t>(e.b)];
+  }
+  std::vector<double> share_a(edges.wa), share_b(edges.wb);
+  for (std::size_t k = 0; k < share_a.size(); ++k) {
+    const double weighted = edges.wa[k] * valence[static_cast<std::size_t>(edges.a[k])] +
+                            edges.wb[k] * valence[static_cast<std::size_t>(edges.b[k])];
+    share_a[k] *= settings.relaxation / weighted;
+    share_b[k] *= settings.relaxation / weighted;
+  }
+  return {problem, {settings.strain_limit, settings.target}, share_a, share_b};
+}
+
+}  // namespace
+
+Jacobi::Jacobi(const Problem& problem, const Settings& settings)
+    : edges_(problem, settings.strain_limit),
+      max_iterations_(settings.max_iterations),
+      sweep_(make_sweep(problem, edges_, settings)) {}
+
+StepResult Jacobi::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
+                         WorkCounters& work) {
+  return sweep_.limit(StrainSweep::Order::at_once, max_iterations_, edges_, x, work);
+}
+
+}  // namespace inextensible

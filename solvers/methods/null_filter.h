@@ -1,0 +1,18 @@
+// Registered as `null`, no contestant: the unconstrained step alone, to measure what the scene and
+// the harness cost.
+#pragma once
+
+#include "inextensible/stepping/velocity_filter.h"
+
+namespace inextensible {
+
+class Unconstrained final : public VelocityFilter {
+ public:
+  explicit Unconstrained(const Problem& /*problem*/) {}
+  StepResult apply(const Positions& /*x_start*/, double /*h*/, Positions& /*x*/,
+                   WorkCounters& /*work*/) override {
+    return {};
+  }
+};
+
+}  // namespace inextensible

@@ -1,0 +1,138 @@
+// Newton on C(x0 - W J(x^n)^T mu) = 0 with mu = h^2 lambda. Its matrix J(x_j) W J(x^n)^T is
+// replaced by J(x^n) W J(x^n)^T, symmetric and factored once a step; where that does not halve the
+// constraint error, the true matrix at the best iterate so far is built, unsymmetric, and kept
+// until it fails in turn. A step along its direction that does not lower the error is halved.
+// The equations have spurious solutions far away; the closest point of the manifold is at most
+// twice as far from x^n (on it) as x0 is, so what is farther, slack apart, is refused. Loops: one
+// assembly and factorization a step, one solve and two passes over edges an iteration.
+#include "inextensible/methods/shake.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace inextensible {
+namespace {
+
+constexpr double shortest_step = 1e-3;  // of Newton's
+// Of iterative linear solvers: a frozen matrix converges linearly anyway.
+constexpr double inner_tolerance = 1e-2;
+constexpr const char* no_solution = "the iterative linear solver did not converge";
+
+}  // namespace
+
+Shake::Shake(const Problem& problem, const Settings& settings)
+    : system_(problem, settings.strain_limit, settings.linear_solver),
+      problem_(problem),
+      slack_(settings.strain_limit * problem.longest_rest_length() *
+             std::sqrt(problem.total_mass())),
+      max_iterations_(settings.max_iterations),
+      min_iterations_(settings.min_iterations),
+      u_start_(3, problem.constraints()),
+      u_(3, problem.constraints()),
+      c_(problem.constraints()),
+      mu_(problem.constraints()),
+      best_(3, problem.vertices()) {}
+
+StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, WorkCounters& work) {
+  const EdgeConstraints& edges = system_.edges();
+  enum class Matrix {
+    start,
+    kept,
+    here
+  } matrix = Matrix::start;  // kept, here: the true one of an earlier, of this iterate
+  double error = 0;          // |C| at best_
+  double reach = 0;          // |x^{n+1} - x^n| of an honest solution
+  for (int j = 0;; ++j) {
+    if (edges.linearize(x, u_, c_) && j >= min_iterations_) {
+      if (j > 0 && distance(x_start, x) > reach)
+        return refuse(Status::not_converged, j, edges, x, "a spurious solution, far from x^n");
+      return {Status::ok, j};
+    }
+    if (j == max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
+    const double next_error = c_.norm();
+    if (j == 0) {
+      reach = edges.permissible(x_start) ? 2 * distance(x_start, x) + slack_
+                                         : std::numeric_limits<double>::infinity();
+      if (!factor_start(x_start, work)) {
+        return refuse(Status::singular, j, edges, x,
+                      "J W J^T at the start of the step is not positive definite");
+      }
+    } else if (next_error < 0.5 * error) {
+      if (matrix == Matrix::here) matrix = Matrix::kept;
+    } else if (matrix == Matrix::here &&
+               !(next_error < error)) {  // Newton's own direction: a shorter step
+      if (mu_.norm() < shortest_step * full_step_) {
+        return refuse(Status::not_converged, j, edges, x,
+                      "no step along J(x^n) lowers the constraint error");
+      }
+      ++work.line_search_steps;
+      mu_ *= 0.5;
+      x = best_;
+      edges.apply(u_start_, mu_, x);
+      continue;
+    } else {
+      if (!(next_error < error)) {
+        x = best_;
+        edges.linearize(x, u_, c_);
+      }
+      if (!rebuild(work))
+        return refuse(Status::singular, j, edges, x, "J(x_j) W J(x^n)^T is singular");
+      matrix = Matrix::here;
+    }
+    error = c_.norm();
+    best_ = x;
+    mu_ = c_;
+    if (matrix == Matrix::start) {
+      if (!system_.solve(mu_, work, inner_tolerance))
+        return refuse(Status::singular, j, edges, x, no_solution);
+    } else {
+      current_solver_->solve(mu_.data());
+      ++work.back_solves;
+    }
+    full_step_ = mu_.norm();
+    edges.apply(u_start_, mu_, x);
+  }
+}
+
+bool Shake::factor_start(const Positions& x_start, WorkCounters& work) {
+  if (factored_ && x_factored_ == x_start) return true;
+  factored_ = false;
+  system_.edges().gradient(x_start, u_start_);
+  return system_.factor(u_start_, work);
+}
+
+StepResult Shake::project_velocity(const Positions& x, Positions& v, WorkCounters& work) {
+  const EdgeConstraints& edges = system_.edges();
+  if (!factor_start(x, work)) {
+    return refuse(Status::singular, 0, edges, x,
+                  "J W J^T at the end of the step is not positive definite");
+  }
+  x_factored_ = x;
+  factored_ = true;
+  edges.rate(u_start_, v, mu_);  // J v
+  if (!system_.solve(mu_, work)) return refuse(Status::singular, 0, edges, x, no_solution);
+  edges.apply(u_start_, mu_, v);
+  return {};
+}
+
+double Shake::distance(const Positions& x_start, const Positions& x) const {
+  double sum = 0;
+  for (Eigen::Index v = 0; v < x.cols(); ++v)
+    sum += problem_.mass()[static_cast<std::size_t>(v)] * (x.col(v) - x_start.col(v)).squaredNorm();
+  return std::sqrt(sum);
+}
+
+bool Shake::rebuild(WorkCounters& work) {
+  if (!current_) {
+    current_ = std::make_unique<UnsymmetricSchurComplement>(system_.edges(), problem_.vertices());
+    current_solver_ = make_unsymmetric_solver(current_->column_start, current_->row_index);
+  }
+  current_->assemble(u_, u_start_, current_solver_->values());
+  ++work.assemblies;
+  ++work.factorizations;
+  return current_solver_->factor();
+}
+
+}  // namespace inextensible

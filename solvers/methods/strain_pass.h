@@ -1,0 +1,69 @@
+// Sweeps of strain corrections over colored edges: what jacobi and gauss_seidel_colored share. They
+// differ in where corrections go: to the positions themselves, or to a sum that is added at the
+// end.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "inextensible/methods/colored_edges.h"
+#include "inextensible/systems/constraint_system.h"
+
+namespace inextensible {
+
+// Which edges are corrected, and what to, in q = |d|^2 / l^2 and |d| / l.
+struct StrainBand {
+  // target: of the strain limit, 0 to 1. The band is a few roundings narrower than what is
+  // permissible, so that no rounding comes between a sweep that finds nothing to correct and the
+  // check.
+  StrainBand(double strain_limit, double target);
+
+  bool violated(double q) const {  // true on NaN
+    return static_cast<int>(q < low) | static_cast<int>(!(q <= high));
+  }
+
+  double low, high;
+  double target_low, target_high;
+};
+
+class StrainSweep {
+ public:
+  // A correction moves the ends of edge k by share_a[k] and share_b[k] of what it takes to bring
+  // the edge to the target.
+  StrainSweep(const Problem& problem, const StrainBand& band, const std::vector<double>& share_a,
+              const std::vector<double>& share_b);
+
+  // The shares of Gauss-Seidel: by inverse mass, times `relaxation`.
+  static StrainSweep by_mass(const Problem& problem, const StrainBand& band, double relaxation);
+
+  // Positions (3 x n) in and out. store() leaves pinned vertices alone.
+  void load(const Positions& x) { edges_.load(x, x_); }
+  void store(Positions& x) const { edges_.store(x_, x); }
+  bool finite() const { return x_.allFinite(); }
+
+  // Sweeps until one finds nothing to correct, at most `most_sweeps`; the last one, which is the
+  // test of convergence, is not counted. Refuses x if an edge (of `edges`, in any order) is still
+  // beyond its limit.
+  enum class Order { in_turn, at_once };
+  StepResult limit(Order order, int most_sweeps, const EdgeConstraints& edges, Positions& x,
+                   WorkCounters& work);
+
+  // One sweep; returns how many edges it corrected. An edge of no length has no direction to be
+  // corrected along and counts as none.
+  std::int64_t in_turn();  // in the order of edges(), each from where the last one left its ends
+  std::int64_t at_once();  // all from the same positions
+
+  const ColoredEdges& edges() const { return edges_; }
+
+ private:
+  template <bool in_place>
+  std::int64_t sweep(ColoredEdges::Places& to);
+
+  ColoredEdges edges_;
+  StrainBand band_;
+  Eigen::ArrayXd inverse_square_;  // 1 / l^2, by entry
+  Eigen::ArrayXd share_a_, share_b_;
+  ColoredEdges::Places x_, correction_;
+};
+
+}  // namespace inextensible

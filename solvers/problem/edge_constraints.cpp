@@ -1,0 +1,120 @@
+#include "inextensible/problem/edge_constraints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace inextensible {
+
+EdgeConstraints::EdgeConstraints(const Problem& problem, double strain_limit,
+                                 std::vector<int> order)
+    : permissible_low(strain_limit < 1 ? (1 - strain_limit) * (1 - strain_limit) : 0),
+      permissible_high((1 + strain_limit) * (1 + strain_limit)),
+      order_(std::move(order)) {
+  const auto m = static_cast<std::size_t>(problem.constraints());
+  for (auto* array : {&a, &b}) array->resize(m);
+  for (auto* array : {&rest_length, &inverse_rest_length, &wa, &wb}) array->resize(m);
+  for (std::size_t k = 0; k < m; ++k) {
+    const auto e = static_cast<std::size_t>(problem_edge(static_cast<int>(k)));
+    a[k] = problem.edges()[e].a;
+    b[k] = problem.edges()[e].b;
+    rest_length[k] = problem.rest_length()[e];
+    inverse_rest_length[k] = 1 / rest_length[k];
+    wa[k] = problem.inverse_mass()[static_cast<std::size_t>(a[k])];
+    wb[k] = problem.inverse_mass()[static_cast<std::size_t>(b[k])];
+  }
+}
+
+bool EdgeConstraints::linearize(const Positions& x, Eigen::Matrix3Xd& u, Eigen::VectorXd& c) const {
+  const double* p = x.data();
+  double* uk = u.data();
+  double* ck = c.data();
+  const auto m = static_cast<std::size_t>(count());
+  int violations = 0;
+  for (std::size_t k = 0; k < m; ++k, uk += 3) {
+    const double* pa = p + 3 * a[k];
+    const double* pb = p + 3 * b[k];
+    const double il = inverse_rest_length[k];
+    const double s0 = (pb[0] - pa[0]) * il, s1 = (pb[1] - pa[1]) * il, s2 = (pb[2] - pa[2]) * il;
+    const double q = s0 * s0 + s1 * s1 + s2 * s2;  // |d|^2 / l^2
+    uk[0] = 2 * s0;
+    uk[1] = 2 * s1;
+    uk[2] = 2 * s2;
+    ck[k] = rest_length[k] * (q - 1);
+    violations += !(q >= permissible_low && q <= permissible_high);  // the negation catches NaN
+  }
+  return violations == 0;
+}
+
+void EdgeConstraints::gradient(const Positions& x, Eigen::Matrix3Xd& u) const {
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    u.col(static_cast<Eigen::Index>(k)) = 2 * inverse_rest_length[k] * (x.col(b[k]) - x.col(a[k]));
+  }
+}
+
+void EdgeConstraints::excess(double fraction, Eigen::VectorXd& c) const {
+  const double low = fraction * (permissible_low - 1), high = fraction * (permissible_high - 1);
+  for (std::size_t k = 0; k < rest_length.size(); ++k) {
+    double& ck = c[static_cast<Eigen::Index>(k)];
+    ck -= std::clamp(ck, low * rest_length[k], high * rest_length[k]);
+  }
+}
+
+void EdgeConstraints::rate(const Eigen::Matrix3Xd& u, const Positions& v,
+                           Eigen::VectorXd& c) const {
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    c[i] = u.col(i).dot(v.col(b[k]) - v.col(a[k]));
+  }
+}
+
+bool EdgeConstraints::permissible(const Positions& x) const {
+  constexpr std::size_t block =
+      128;  // long enough to vectorize, short enough that a violation is found soon
+  const double* p = x.data();
+  const std::size_t m = a.size();
+  for (std::size_t begin = 0; begin < m; begin += block) {
+    const std::size_t end = std::min(begin + block, m);
+    int violations = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const double* pa = p + 3 * a[k];
+      const double* pb = p + 3 * b[k];
+      const double il = inverse_rest_length[k];
+      const double s0 = (pb[0] - pa[0]) * il, s1 = (pb[1] - pa[1]) * il, s2 = (pb[2] - pa[2]) * il;
+      const double q = s0 * s0 + s1 * s1 + s2 * s2;
+      violations += !(q >= permissible_low && q <= permissible_high);
+    }
+    if (violations != 0) return false;
+  }
+  return true;
+}
+
+EdgeConstraints::Worst EdgeConstraints::worst(const Positions& x) const {
+  Worst worst;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    double strain = (x.col(b[k]) - x.col(a[k])).norm() * inverse_rest_length[k] - 1;
+    if (!std::isfinite(strain)) strain = std::numeric_limits<double>::infinity();
+    if (worst.edge < 0 || std::abs(strain) > std::abs(worst.strain)) {
+      worst = {problem_edge(static_cast<int>(k)), strain};
+    }
+  }
+  return worst;
+}
+
+void EdgeConstraints::apply(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
+                            Positions& x) const {
+  double* p = x.data();
+  const double* uk = u.data();
+  for (std::size_t k = 0; k < a.size(); ++k, uk += 3) {
+    double* pa = p + 3 * a[k];
+    double* pb = p + 3 * b[k];
+    const double ma = wa[k] * mu[static_cast<Eigen::Index>(k)];
+    const double mb = wb[k] * mu[static_cast<Eigen::Index>(k)];
+    for (int i = 0; i < 3; ++i) {
+      pa[i] += ma * uk[i];
+      pb[i] -= mb * uk[i];
+    }
+  }
+}
+
+}  // namespace inextensible

@@ -1,0 +1,61 @@
+// The inextensibility constraints C_k(x) = |x_b - x_a|^2 / l_k - l_k and their gradient (Goldenthal
+// et al. 2007, eqs. 1-2).
+//
+// Row k of J = grad C holds +u_k at b and -u_k at a, with u_k = 2 (x_b - x_a) / l_k; J is never
+// stored, only u (3 x m).
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "inextensible/problem/problem.h"
+
+namespace inextensible {
+
+// The edges of a problem as arrays, in an order of the caller's choice (a fill-reducing one, say).
+class EdgeConstraints {
+ public:
+  // order[k] is the problem's edge at place k; empty: the problem's own order.
+  EdgeConstraints(const Problem& problem, double strain_limit, std::vector<int> order = {});
+
+  int count() const { return static_cast<int>(a.size()); }
+  int problem_edge(int k) const { return order_.empty() ? k : order_[static_cast<std::size_t>(k)]; }
+
+  // u (3 x m) and C (m) at x (3 x n). Returns whether the strain of every edge is permissible;
+  // false on NaN.
+  bool linearize(const Positions& x, Eigen::Matrix3Xd& u, Eigen::VectorXd& c) const;
+
+  // u alone: the start-of-step direction.
+  void gradient(const Positions& x, Eigen::Matrix3Xd& u) const;
+
+  // c_k (m entries, C on entry) becomes how far it lies outside `fraction` of the permissible band,
+  // 0 inside.
+  void excess(double fraction, Eigen::VectorXd& c) const;
+
+  // dC/dt = J v (m entries), J given by u, v 3 x n.
+  void rate(const Eigen::Matrix3Xd& u, const Positions& v, Eigen::VectorXd& c) const;
+
+  // Whether |strain| <= limit on every edge; leaves early when not. False on NaN.
+  bool permissible(const Positions& x) const;
+
+  // The edge (problem's number) of largest |strain|, and that strain; a non-finite edge counts as
+  // infinite.
+  struct Worst {
+    int edge = -1;
+    double strain = 0;
+  };
+  Worst worst(const Positions& x) const;
+
+  // x -= W J^T mu, J given by u; mu (m entries) is h^2 lambda.
+  void apply(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, Positions& x) const;
+
+  std::vector<int> a, b;
+  std::vector<double> rest_length, inverse_rest_length;
+  std::vector<double> wa, wb;                // inverse masses of both ends
+  double permissible_low, permissible_high;  // bounds on |d|^2 / l^2
+
+ private:
+  std::vector<int> order_;
+};
+
+}  // namespace inextensible

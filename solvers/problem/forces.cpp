@@ -1,0 +1,81 @@
+#include "inextensible/problem/forces.h"
+
+#include <cmath>
+
+namespace inextensible {
+namespace {
+
+// y += scale W f of each spring: f pulls b towards a with stiffness (|d| - r).
+void add_spring_acceleration(const Springs& springs, const std::vector<double>& w,
+                             const Positions& x, double scale, Positions& y) {
+  const double* p = x.data();
+  double* q = y.data();
+  for (std::size_t k = 0; k < springs.edges.size(); ++k) {
+    const auto [a, b] = springs.edges[k];
+    const double* pa = p + 3 * a;
+    const double* pb = p + 3 * b;
+    const double d0 = pb[0] - pa[0], d1 = pb[1] - pa[1], d2 = pb[2] - pa[2];
+    const double length = std::sqrt(d0 * d0 + d1 * d1 + d2 * d2);
+    // A spring of length zero has no direction; its force is taken as zero.
+    const double f =
+        length > 0 ? scale * springs.stiffness[k] * (1 - springs.rest_length[k] / length) : 0;
+    const double fa = f * w[static_cast<std::size_t>(a)], fb = f * w[static_cast<std::size_t>(b)];
+    double* qa = q + 3 * a;
+    double* qb = q + 3 * b;
+    qa[0] += fa * d0;
+    qa[1] += fa * d1;
+    qa[2] += fa * d2;
+    qb[0] -= fb * d0;
+    qb[1] -= fb * d1;
+    qb[2] -= fb * d2;
+  }
+}
+
+}  // namespace
+
+void add_acceleration(const Problem& problem, const Positions& x, double scale, Positions& y,
+                      WorkCounters& work) {
+  const Eigen::Vector3d fall = scale * problem.gravity();
+  y.colwise() += fall;
+  const Springs* shear = problem.shear();
+  if (!shear) return;
+  add_spring_acceleration(*shear, problem.inverse_mass(), x, scale, y);
+  work.spring_evaluations += static_cast<std::int64_t>(shear->edges.size());
+}
+
+void unconstrained_step(const Problem& problem, const State& state, double h, Positions& x0,
+                        WorkCounters& work) {
+  x0 = state.x + h * state.v;
+  add_acceleration(problem, state.x, h * h, x0, work);
+  for (const int vertex : problem.pinned()) x0.col(vertex) = state.x.col(vertex);
+}
+
+double spring_energy(const Springs& springs, const Positions& x) {
+  double energy = 0;
+  for (std::size_t k = 0; k < springs.edges.size(); ++k) {
+    const auto [a, b] = springs.edges[k];
+    const double elongation = (x.col(b) - x.col(a)).norm() - springs.rest_length[k];
+    energy += 0.5 * springs.stiffness[k] * elongation * elongation;
+  }
+  return energy;
+}
+
+double potential_energy(const Problem& problem, const Positions& x) {
+  // Term by term: Eigen's own sums go by the address of what they add up, so that equal runs would
+  // differ by a rounding.
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    moment += problem.mass()[static_cast<std::size_t>(i)] * x.col(i);
+  double energy = -problem.gravity().dot(moment);
+  if (const Springs* shear = problem.shear()) energy += spring_energy(*shear, x);
+  return energy;
+}
+
+double kinetic_energy(const Problem& problem, const Positions& v) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < v.cols(); ++i)
+    sum += problem.mass()[static_cast<std::size_t>(i)] * v.col(i).squaredNorm();
+  return 0.5 * sum;
+}
+
+}  // namespace inextensible

@@ -1,0 +1,25 @@
+// Forces other than inextensibility, and the unconstrained step.
+#pragma once
+
+#include "inextensible/problem/problem.h"
+#include "inextensible/problem/work_counters.h"
+
+namespace inextensible {
+
+// x0 = x + h v + h^2 (g - W grad V_shear(x)); pinned vertices stay. Symplectic Euler, V explicit.
+void unconstrained_step(const Problem& problem, const State& state, double h, Positions& x0,
+                        WorkCounters& work);
+
+// y += scale (g - W grad V_shear(x)), the acceleration by everything but inextensibility. Pinned
+// vertices get gravity too; the caller puts them back.
+void add_acceleration(const Problem& problem, const Positions& x, double scale, Positions& y,
+                      WorkCounters& work);
+
+// Energy of linear springs, J.
+double spring_energy(const Springs& springs, const Positions& x);
+
+// Potential energy of gravity (zero at the origin) and shear, J.
+double potential_energy(const Problem& problem, const Positions& x);
+double kinetic_energy(const Problem& problem, const Positions& v);
+
+}  // namespace inextensible

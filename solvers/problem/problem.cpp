@@ -1,0 +1,106 @@
+#include "inextensible/problem/problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace inextensible {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what, std::size_t index, const std::string& why) {
+  throw std::invalid_argument(what + " " + std::to_string(index) + ": " + why);
+}
+
+void check_positive(const std::vector<double>& values, const char* what, const char* quantity) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(values[i] > 0) || !std::isfinite(values[i])) {
+      refuse(what, i,
+             std::string(quantity) + " is " + std::to_string(values[i]) +
+                 ", must be positive and finite");
+    }
+  }
+}
+
+void check_edges(const std::vector<Edge>& edges, std::size_t vertices, const char* what) {
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const auto [a, b] = edges[k];
+    const auto exists = [&](int vertex) {
+      return vertex >= 0 && static_cast<std::size_t>(vertex) < vertices;
+    };
+    if (!exists(a) || !exists(b)) {
+      refuse(what, k,
+             "joins vertices " + std::to_string(a) + " and " + std::to_string(b) +
+                 ", but there are only " + std::to_string(vertices));
+    }
+    if (a == b) refuse(what, k, "joins vertex " + std::to_string(a) + " with itself");
+  }
+}
+
+}  // namespace
+
+Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
+  const std::size_t n = parts_.mass.size();
+  if (n == 0) throw std::invalid_argument("a problem needs at least one vertex");
+  if (parts_.rest_length.size() != parts_.edges.size()) {
+    throw std::invalid_argument("there are " + std::to_string(parts_.edges.size()) + " edges but " +
+                                std::to_string(parts_.rest_length.size()) + " rest lengths");
+  }
+  check_positive(parts_.mass, "vertex", "mass");
+  check_positive(parts_.rest_length, "edge", "rest length");
+  check_edges(parts_.edges, n, "edge");
+  if (!parts_.gravity.allFinite()) throw std::invalid_argument("gravity is not finite");
+
+  inverse_mass_.resize(n);
+  std::transform(parts_.mass.begin(), parts_.mass.end(), inverse_mass_.begin(),
+                 [](double m) { return 1 / m; });
+  for (const int vertex : parts_.pinned) {
+    if (vertex < 0 || static_cast<std::size_t>(vertex) >= n) {
+      throw std::invalid_argument("pinned vertex " + std::to_string(vertex) + " does not exist");
+    }
+    inverse_mass_[static_cast<std::size_t>(vertex)] = 0;
+  }
+  for (std::size_t k = 0; k < parts_.edges.size(); ++k) {
+    const auto [a, b] = parts_.edges[k];
+    if (inverse_mass_[static_cast<std::size_t>(a)] + inverse_mass_[static_cast<std::size_t>(b)] ==
+        0) {
+      refuse("edge", k, "both ends are pinned, so nothing can keep its length; leave it out");
+    }
+  }
+  if (parts_.shear) {
+    const Springs& shear = *parts_.shear;
+    if (shear.rest_length.size() != shear.edges.size() ||
+        shear.stiffness.size() != shear.edges.size()) {
+      throw std::invalid_argument(
+          "shear springs: edges, rest lengths and stiffnesses differ in number");
+    }
+    check_edges(shear.edges, n, "shear spring");
+    check_positive(shear.rest_length, "shear spring", "rest length");
+    check_positive(shear.stiffness, "shear spring", "stiffness");
+  }
+  total_mass_ = std::accumulate(parts_.mass.begin(), parts_.mass.end(), 0.0);
+  if (!parts_.rest_length.empty()) {
+    const auto [shortest, longest] =
+        std::minmax_element(parts_.rest_length.begin(), parts_.rest_length.end());
+    shortest_rest_length_ = *shortest;
+    longest_rest_length_ = *longest;
+  }
+}
+
+void check_state(const Problem& problem, const State& state) {
+  const auto check = [&](const Positions& p, const char* quantity) {
+    if (p.cols() != problem.vertices()) {
+      throw std::invalid_argument(std::string(quantity) + " holds " + std::to_string(p.cols()) +
+                                  " vertices, the problem " + std::to_string(problem.vertices()));
+    }
+    for (Eigen::Index i = 0; i < p.cols(); ++i) {
+      if (!p.col(i).allFinite())
+        refuse("vertex", static_cast<std::size_t>(i), std::string(quantity) + " is not finite");
+    }
+  };
+  check(state.x, "position");
+  check(state.v, "velocity");
+}
+
+}  // namespace inextensible

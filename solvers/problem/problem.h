@@ -1,0 +1,82 @@
+// The problem that every backend solves: point masses joined by edges that must keep their rest
+// length.
+//
+// Notation of Goldenthal et al. 2007 throughout: x, v are 3 x n (one column a vertex; m and m/s), W
+// = M^-1 is the diagonal inverse mass matrix (1/kg; 0 = pinned), l_k is the rest length of
+// warp/weft edge k = (a, b) in metres. Gravity is always there; shear and a collider are optional
+// parts, and a part that is absent costs nothing.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "inextensible/problem/collider.h"
+
+namespace inextensible {
+
+using Positions = Eigen::Matrix3Xd;  // one column a vertex, contiguous x y z
+
+struct Edge {
+  int a, b;
+};
+
+// Linear springs, energy k/2 (|x_b - x_a| - r)^2. Shear: both diagonals of each quad (paper,
+// section 3).
+struct Springs {
+  std::vector<Edge> edges;
+  std::vector<double> rest_length;  // m
+  std::vector<double> stiffness;    // N/m
+};
+
+// What a problem is made from; see Problem for the conditions.
+struct ProblemParts {
+  std::vector<double> mass;              // kg, one a vertex
+  std::vector<int> pinned;               // vertices that never move
+  std::vector<Edge> edges;               // constrained (warp and weft) edges
+  std::vector<double> rest_length;       // m, one a constrained edge
+  Eigen::Vector3d gravity{0, -9.81, 0};  // m/s^2
+  std::optional<Springs> shear;
+  std::shared_ptr<const Collider> collider;  // null: nothing to collide with
+};
+
+// Immutable. The constructor throws std::invalid_argument, naming the vertex or edge, unless masses
+// and lengths are positive and finite, edges join two different existing vertices that are not both
+// pinned, and all arrays fit.
+class Problem {
+ public:
+  explicit Problem(ProblemParts parts);
+
+  int vertices() const { return static_cast<int>(parts_.mass.size()); }
+  int constraints() const { return static_cast<int>(parts_.edges.size()); }
+  const std::vector<double>& mass() const { return parts_.mass; }
+  const std::vector<double>& inverse_mass() const { return inverse_mass_; }
+  const std::vector<int>& pinned() const { return parts_.pinned; }
+  const std::vector<Edge>& edges() const { return parts_.edges; }
+  const std::vector<double>& rest_length() const { return parts_.rest_length; }
+  double shortest_rest_length() const { return shortest_rest_length_; }
+  double longest_rest_length() const { return longest_rest_length_; }  // 0 without edges
+  double total_mass() const { return total_mass_; }
+  const Eigen::Vector3d& gravity() const { return parts_.gravity; }
+  const Springs* shear() const { return parts_.shear ? &*parts_.shear : nullptr; }
+  const Collider* collider() const { return parts_.collider.get(); }
+
+ private:
+  ProblemParts parts_;
+  std::vector<double> inverse_mass_;
+  double shortest_rest_length_ = 0, longest_rest_length_ = 0, total_mass_ = 0;
+};
+
+struct State {
+  Positions x;      // m
+  Positions v;      // m/s
+  double time = 0;  // s
+};
+
+// Throws std::invalid_argument, naming the vertex, if shapes differ from the problem's or a number
+// is not finite.
+void check_state(const Problem& problem, const State& state);
+
+}  // namespace inextensible

@@ -1,0 +1,272 @@
+#include "inextensible/problem/triangle_collider.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace inextensible {
+namespace {
+
+using Eigen::Vector3d;
+
+// Cells farther inside than this many cell diagonals ask all triangles.
+constexpr double deep_cells = 1;
+
+const Vector3d& corner(const TriangleMesh& mesh, int triangle, int i) {
+  return mesh.vertices[static_cast<std::size_t>(
+      mesh.triangles[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(i)])];
+}
+
+}  // namespace
+
+TriangleMesh icosphere(const Vector3d& centre, double radius, int subdivisions) {
+  const double t = (1 + std::sqrt(5.0)) / 2;
+  TriangleMesh mesh;
+  mesh.vertices = {{-1, t, 0},  {1, t, 0},  {-1, -t, 0}, {1, -t, 0}, {0, -1, t},  {0, 1, t},
+                   {0, -1, -t}, {0, 1, -t}, {t, 0, -1},  {t, 0, 1},  {-t, 0, -1}, {-t, 0, 1}};
+  mesh.triangles = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                    {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                    {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                    {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+  for (Vector3d& v : mesh.vertices) v.normalize();
+  for (int level = 0; level < subdivisions; ++level) {
+    std::map<std::pair<int, int>, int> middle;
+    const auto midpoint = [&](int i, int j) {
+      const auto [place, fresh] =
+          middle.try_emplace(std::minmax(i, j), static_cast<int>(mesh.vertices.size()));
+      if (fresh) {
+        const Vector3d sum =
+            mesh.vertices[static_cast<std::size_t>(i)] + mesh.vertices[static_cast<std::size_t>(j)];
+        mesh.vertices.push_back(sum.normalized());
+      }
+      return place->second;
+    };
+    std::vector<std::array<int, 3>> finer;
+    for (const auto& [i, j, k] : mesh.triangles) {
+      const int ij = midpoint(i, j), jk = midpoint(j, k), ki = midpoint(k, i);
+      finer.insert(finer.end(), {{i, ij, ki}, {j, jk, ij}, {k, ki, jk}, {ij, jk, ki}});
+    }
+    mesh.triangles = std::move(finer);
+  }
+  for (Vector3d& v : mesh.vertices) v = centre + radius * v;
+  return mesh;
+}
+
+TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
+    : mesh_(std::move(mesh)), friction_(friction) {
+  const auto count = mesh_.triangles.size();
+  // Pseudonormals: a face's own normal; the sum of both faces' at an edge; the angle-weighted sum
+  // at a corner.
+  std::vector<Vector3d> at_vertex(mesh_.vertices.size(), Vector3d::Zero());
+  std::map<std::pair<int, int>, std::pair<Vector3d, int>> at_edge;
+  std::vector<Vector3d> face(count);
+  for (std::size_t f = 0; f < count; ++f) {
+    const auto& triangle = mesh_.triangles[f];
+    std::array<Vector3d, 3> p;
+    for (int i = 0; i < 3; ++i)
+      p[static_cast<std::size_t>(i)] = corner(mesh_, static_cast<int>(f), i);
+    face[f] = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector3d next = (p[(i + 1) % 3] - p[i]).normalized(),
+                     last = (p[(i + 2) % 3] - p[i]).normalized();
+      at_vertex[static_cast<std::size_t>(triangle[i])] +=
+          std::acos(std::clamp(next.dot(last), -1.0, 1.0)) * face[f];
+      auto& [sum, faces] =
+          at_edge.try_emplace(std::minmax(triangle[i], triangle[(i + 1) % 3]), Vector3d::Zero(), 0)
+              .first->second;
+      sum += face[f];
+      ++faces;
+    }
+  }
+  for (const auto& [edge, normal] : at_edge) {
+    if (normal.second != 2) {
+      throw std::invalid_argument(
+          "collider: edge (" + std::to_string(edge.first) + ", " + std::to_string(edge.second) +
+          ") has " + std::to_string(normal.second) + " triangles, a closed mesh has 2");
+    }
+  }
+  pseudonormal_.resize(count);
+  for (std::size_t f = 0; f < count; ++f) {
+    const auto& triangle = mesh_.triangles[f];
+    pseudonormal_[f][0] = face[f];
+    for (std::size_t i = 0; i < 3; ++i) {
+      pseudonormal_[f][1 + i] =
+          at_edge.at(std::minmax(triangle[i], triangle[(i + 1) % 3])).first.normalized();
+      pseudonormal_[f][4 + i] = at_vertex[static_cast<std::size_t>(triangle[i])].normalized();
+    }
+  }
+
+  double volume = 0;
+  convex_ = true;
+  for (std::size_t f = 0; f < count; ++f) {
+    const Vector3d& p = corner(mesh_, static_cast<int>(f), 0);
+    volume += p.dot((corner(mesh_, static_cast<int>(f), 1) - p)
+                        .cross(corner(mesh_, static_cast<int>(f), 2) - p));
+    for (const Vector3d& v : mesh_.vertices) {
+      convex_ = convex_ && (v - p).dot(face[f]) <= 1e-9 * p.norm();
+    }
+  }
+  if (!(volume > 0)) {
+    throw std::invalid_argument(
+        "collider: the mesh is inside out; its triangles must be "
+        "counter-clockwise seen from outside");
+  }
+
+  Vector3d high = low_ = mesh_.vertices.front();
+  for (const Vector3d& v : mesh_.vertices) {
+    low_ = low_.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  const Vector3d margin =
+      Vector3d::Constant(1e-9 * (high - low_).norm());  // no vertex on the grid's own border
+  low_ -= margin;
+  cell_size_ = (high + margin - low_) / resolution;
+  inverse_cell_size_ = cell_size_.cwiseInverse();
+  all_.resize(count);
+  std::iota(all_.begin(), all_.end(), 0);
+  cell_.assign(static_cast<std::size_t>(resolution) * resolution * resolution, outside);
+  refine(Eigen::Vector3i::Zero(), resolution, all_);
+}
+
+std::size_t TriangleCollider::cell_index(const Eigen::Vector3i& cell) const {
+  return static_cast<std::size_t>((cell[2] * resolution + cell[1]) * resolution + cell[0]);
+}
+
+// candidates: every triangle that is nearest to some point of the block of size^3 cells that begins
+// at `cell`.
+void TriangleCollider::refine(const Eigen::Vector3i& cell, int size,
+                              const std::vector<int>& candidates) {
+  const Vector3d centre =
+      low_ + cell_size_.cwiseProduct(cell.cast<double>() + Vector3d::Constant(0.5 * size));
+  const double half_diagonal = 0.5 * size * cell_size_.norm();
+  std::vector<double> distance(candidates.size());
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    distance[i] = std::sqrt(closest(candidates[i], centre).squared);
+    least = std::min(least, distance[i]);
+  }
+  if (least > half_diagonal) {  // the surface does not pass through
+    const bool inside = nearest_among(candidates, centre).signed_distance < 0;
+    if (!inside) return;
+    if (least > half_diagonal + deep_cells * cell_size_.norm()) {
+      for (int k = 0; k < size; ++k) {
+        for (int j = 0; j < size; ++j) {
+          for (int i = 0; i < size; ++i) cell_[cell_index(cell + Eigen::Vector3i(i, j, k))] = deep;
+        }
+      }
+      return;
+    }
+  }
+  std::vector<int> kept;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (distance[i] <= (least + 2 * half_diagonal) * (1 + 1e-12)) kept.push_back(candidates[i]);
+  }
+  if (size == 1) {
+    cell_[cell_index(cell)] = static_cast<int>(lists_.size());
+    lists_.push_back(static_cast<int>(kept.size()));
+    lists_.insert(lists_.end(), kept.begin(), kept.end());
+    return;
+  }
+  for (int octant = 0; octant < 8; ++octant) {
+    const Eigen::Vector3i offset(octant & 1, (octant >> 1) & 1, octant >> 2);
+    refine(cell + size / 2 * offset, size / 2, kept);
+  }
+}
+
+// Ericson, Real-Time Collision Detection (2005), section 5.1.5.
+TriangleCollider::Closest TriangleCollider::closest(int triangle, const Vector3d& p) const {
+  const Vector3d &a = corner(mesh_, triangle, 0), &b = corner(mesh_, triangle, 1),
+                 &c = corner(mesh_, triangle, 2);
+  const auto at = [&p](const Vector3d& q, int feature) {
+    return Closest{q, (p - q).squaredNorm(), feature};
+  };
+  const Vector3d ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return at(a, 4);
+  const Vector3d bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return at(b, 5);
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return at(a + d1 / (d1 - d3) * ab, 1);
+  const Vector3d cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return at(c, 6);
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return at(a + d2 / (d2 - d6) * ac, 3);
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+    return at(b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), 2);
+  const double sum = va + vb + vc;
+  return at(a + vb / sum * ab + vc / sum * ac, 0);
+}
+
+template <class Triangles>
+TriangleCollider::Nearest TriangleCollider::nearest_among(const Triangles& triangles,
+                                                          const Vector3d& p) const {
+  Closest best{Vector3d::Zero(), std::numeric_limits<double>::infinity(), 0};
+  int owner = 0;
+  for (const int triangle : triangles) {
+    const Closest here = closest(triangle, p);
+    if (here.squared < best.squared) {
+      best = here;
+      owner = triangle;
+    }
+  }
+  const Vector3d& normal =
+      pseudonormal_[static_cast<std::size_t>(owner)][static_cast<std::size_t>(best.feature)];
+  const double distance = std::sqrt(best.squared);
+  return {best.point, normal, (p - best.point).dot(normal) < 0 ? -distance : distance};
+}
+
+TriangleCollider::Nearest TriangleCollider::nearest_by_all(const Vector3d& p) const {
+  return nearest_among(all_, p);
+}
+
+std::span<const int> TriangleCollider::list(int cell) const {
+  if (cell == deep) return all_;
+  return {lists_.begin() + cell + 1,
+          static_cast<std::size_t>(lists_[static_cast<std::size_t>(cell)])};
+}
+
+TriangleCollider::Nearest TriangleCollider::nearest(const Vector3d& p) const {
+  const Vector3d scaled = (p - low_).cwiseProduct(inverse_cell_size_);
+  if ((scaled.array() >= 0).all() && (scaled.array() < resolution).all()) {
+    const int cell = cell_[cell_index(scaled.cast<int>())];
+    if (cell != outside) return nearest_among(list(cell), p);
+  }
+  return nearest_by_all(p);
+}
+
+void TriangleCollider::resolve(const Eigen::Matrix3Xd& x_start,
+                               const std::vector<double>& inverse_mass, Eigen::Matrix3Xd& x,
+                               WorkCounters& work) const {
+  for (Eigen::Index v = 0; v < x.cols(); ++v) {
+    const Vector3d scaled = (x.col(v) - low_).cwiseProduct(inverse_cell_size_);
+    if (!((scaled.array() >= 0).all() && (scaled.array() < resolution).all())) continue;
+    const int cell = cell_[cell_index(scaled.cast<int>())];
+    if (cell == outside || inverse_mass[static_cast<std::size_t>(v)] == 0) continue;
+    const std::span<const int> triangles = list(cell);
+    work.triangle_tests += static_cast<std::int64_t>(triangles.size());
+    const Nearest contact = nearest_among(triangles, x.col(v));
+    if (contact.signed_distance >= 0) continue;
+    ++work.contacts;
+    // Out along the shortest way; then friction takes up to mu times that way off the tangential
+    // displacement.
+    const Vector3d normal = (contact.point - x.col(v)) / -contact.signed_distance;
+    const Vector3d displacement = contact.point - x_start.col(v);
+    const Vector3d tangential = displacement - displacement.dot(normal) * normal;
+    const double slide = tangential.norm(), grip = friction_ * -contact.signed_distance;
+    const double kept = slide > grip ? 1 - grip / slide : 0;
+    const Vector3d place = contact.point - (1 - kept) * tangential;
+    // Where the mesh is not convex, friction's way back may lead into it.
+    const bool inside = !convex_ && kept < 1 && nearest(place).signed_distance < 0;
+    x.col(v) = inside ? contact.point : place;
+  }
+}
+
+}  // namespace inextensible

@@ -1,0 +1,74 @@
+// Collision of vertices against a closed triangle mesh: signed distance from the nearest triangle,
+// with the sign from angle-weighted pseudonormals (Baerentzen and Aanaes 2005), Coulomb friction on
+// displacements (Bridson et al. 2002).
+//
+// A uniform grid over the mesh's box lists for each cell every triangle that is nearest to some
+// point of the cell (exact: those no farther from the cell's centre than the nearest one plus the
+// cell's diagonal), found by refining an octree. Cells that lie wholly outside are empty, so a
+// vertex away from the mesh costs one look-up.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "inextensible/problem/collider.h"
+
+namespace inextensible {
+
+struct TriangleMesh {
+  std::vector<Eigen::Vector3d> vertices;      // m
+  std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside; closed
+};
+
+// Icosahedron whose faces are split in four `subdivisions` times and pushed out to the sphere: 20 *
+// 4^subdivisions faces. Mirror symmetric in all three coordinate planes through its centre.
+TriangleMesh icosphere(const Eigen::Vector3d& centre, double radius, int subdivisions);
+
+class TriangleCollider final : public Collider {
+ public:
+  // friction: Coulomb coefficient. Throws std::invalid_argument for a mesh that is not closed.
+  TriangleCollider(TriangleMesh mesh, double friction);
+
+  void resolve(const Eigen::Matrix3Xd& x_start, const std::vector<double>& inverse_mass,
+               Eigen::Matrix3Xd& x, WorkCounters& work) const override;
+  int triangles() const override { return static_cast<int>(mesh_.triangles.size()); }
+
+  struct Nearest {
+    Eigen::Vector3d point;   // on the mesh, m
+    Eigen::Vector3d normal;  // outward pseudonormal there, unit
+    double signed_distance;  // m, negative inside
+  };
+  // By way of the grid inside the mesh's box; exact. Outside the box the answer comes from all
+  // triangles.
+  Nearest nearest(const Eigen::Vector3d& p) const;
+  // The slow, obvious route: over all triangles. The oracle of the tests.
+  Nearest nearest_by_all(const Eigen::Vector3d& p) const;
+
+ private:
+  struct Closest {  // on one triangle
+    Eigen::Vector3d point;
+    double squared;
+    int feature;  // 0 face; 1, 2, 3 edge after corner feature - 1; 4, 5, 6 corner feature - 4
+  };
+  Closest closest(int triangle, const Eigen::Vector3d& p) const;
+  template <class Triangles>
+  Nearest nearest_among(const Triangles& triangles, const Eigen::Vector3d& p) const;
+  void refine(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);
+  // The triangles to ask for a point in this cell, not outside.
+  std::span<const int> list(int cell) const;
+  std::size_t cell_index(const Eigen::Vector3i& cell) const;
+
+  static constexpr int resolution = 32;          // cells an axis, a power of two
+  static constexpr int outside = -1, deep = -2;  // cells without a list
+  TriangleMesh mesh_;
+  double friction_;
+  bool convex_ = false;
+  std::vector<std::array<Eigen::Vector3d, 7>> pseudonormal_;  // per triangle, by feature
+  Eigen::Vector3d low_, cell_size_, inverse_cell_size_;
+  std::vector<int> all_;  // 0, 1, 2, ...
+  // Of each cell: where its list begins in lists_ (its length first), or outside or deep.
+  std::vector<int> cell_;
+  std::vector<int> lists_;
+};
+
+}  // namespace inextensible

@@ -1,0 +1,100 @@
+#include "inextensible/stepping/bdf2_stepper.h"
+
+#include "inextensible/problem/forces.h"
+#include "inextensible/stepping/lap.h"
+
+namespace inextensible {
+namespace {
+
+constexpr double largest_growth = 2;  // of the step; variable-step BDF2 is stable below 1 + sqrt 2
+
+}  // namespace
+
+// y^{n+1} = now y^n + before y^{n-1} + earlier y^{n-2} + beta_h y'^{n+1}.
+Bdf2Stepper::Coefficients Bdf2Stepper::coefficients(double h) const {
+  if (blend_ > 0 && h == h_before_ && h == h_earlier_) {
+    const double scale = 1 / (1.5 + blend_ / 3);
+    return {(2 + blend_) * scale, -(0.5 + blend_) * scale, blend_ / 3 * scale, h * scale};
+  }
+  const double w = h / h_before_, alpha = (1 + w) * (1 + w) / (1 + 2 * w);
+  return {alpha, 1 - alpha, 0, h * (1 + w) / (1 + 2 * w)};
+}
+
+Bdf2Stepper::Bdf2Stepper(std::shared_ptr<const Problem> problem,
+                         std::unique_ptr<VelocityFilter> filter, double blend)
+    : Stepper(std::move(problem)), filter_(std::move(filter)), blend_(blend) {
+  const Eigen::Index n = problem_->vertices();
+  for (Positions* p : {&x_before_, &v_before_, &x_known_, &v_known_, &acceleration_})
+    p->resize(3, n);
+  if (problem_->shear()) x_ahead_.resize(3, n);
+  if (blend_ > 0) {
+    x_earlier_.resize(3, n);
+    v_earlier_.resize(3, n);
+  }
+}
+
+void Bdf2Stepper::restart(const State& state, double h) {
+  x_before_ = state.x - h * state.v + (0.5 * h * h) * acceleration_;
+  v_before_ = state.v - h * acceleration_;
+  x_known_ = state.x;
+  v_known_ = state.v;
+  h_before_ = h;
+  h_earlier_ = 0;
+  ++restarts_;
+}
+
+StepResult Bdf2Stepper::solve(const State& state, double h, Positions& x) {
+  Lap lap(phases_wanted_);
+  acceleration_.setZero();
+  if (problem_->shear()) x_ahead_ = state.x + h * state.v;
+  add_acceleration(*problem_, x_ahead_, 1, acceleration_, work_);
+  for (const int vertex : problem_->pinned()) acceleration_.col(vertex).setZero();
+  const bool known = h_before_ > 0 && h <= largest_growth * h_before_ && state.x == x_known_ &&
+                     state.v == v_known_;
+  if (!known) restart(state, h);
+  const Coefficients c = coefficients(h);
+  // In one pass: the formula for x with the formula for v in it.
+  x = c.now * (state.x + c.beta_h * state.v) + c.before * (x_before_ + c.beta_h * v_before_) +
+      (c.beta_h * c.beta_h) * acceleration_;
+  if (c.earlier != 0) x += c.earlier * (x_earlier_ + c.beta_h * v_earlier_);
+  for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
+  phases_.unconstrained += lap();
+  const StepResult result = filter_->apply(state.x, h, x, work_);
+  phases_.filter += lap();
+  return result;
+}
+
+StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Positions& filtered,
+                                       const Positions& x, Positions& v) {
+  Lap lap(phases_wanted_);
+  const Coefficients c = coefficients(h);
+  v = (x - c.now * start.x - c.before * x_before_) * (1 / c.beta_h);
+  if (c.earlier != 0) v -= (c.earlier / c.beta_h) * x_earlier_;
+  if (blend_ > 0) {
+    x_earlier_.swap(x_before_);
+    v_earlier_.swap(v_before_);
+    h_earlier_ = h_before_;
+  }
+  x_before_ = start.x;
+  v_before_ = start.v;
+  if (problem_->collider()) {
+    for (Eigen::Index i = 0; i < x.cols(); ++i) {
+      if (x.col(i) == filtered.col(i)) continue;
+      v.col(i) = (x.col(i) - start.x.col(i)) / h;
+      x_before_.col(i) = x.col(i) - h * v.col(i) + (0.5 * h * h) * acceleration_.col(i);
+      v_before_.col(i) = v.col(i) - h * acceleration_.col(i);
+      if (blend_ > 0) {
+        x_earlier_.col(i) = x.col(i) - 2 * h * v.col(i) + (2 * h * h) * acceleration_.col(i);
+        v_earlier_.col(i) = v.col(i) - 2 * h * acceleration_.col(i);
+      }
+    }
+  }
+  for (const int vertex : problem_->pinned()) v.col(vertex).setZero();
+  x_known_ = x;
+  v_known_ = v;
+  h_before_ = h;
+  phases_.unconstrained += lap();
+  return {};
+}
+
+}  // namespace inextensible

@@ -1,0 +1,47 @@
+// Takes any backend through steps that it refuses: halves the step from the untouched state, and
+// doubles it again after successes.
+//
+// Steps are largest / 2^k and begin at multiples of themselves, so that every multiple of `largest`
+// is met exactly, whatever happened in between.
+#pragma once
+
+#include <cstdint>
+
+#include "inextensible/stepping/stepper.h"
+
+namespace inextensible {
+
+class StepController {
+ public:
+  struct Settings {
+    double largest = 1.0 / 25;  // s, > 0
+    int most_halvings = 14;     // below largest / 2^14 it gives up; 0 to 30
+    int patience = 4;           // accepted steps of one size before the next larger one is tried
+  };
+  // The stepper must outlive the controller and take no other steps meanwhile.
+  StepController(Stepper& stepper, const Settings& settings);
+
+  // Takes one step of next() seconds, which it may have to shorten first. A refusal is the one at
+  // the smallest step, and leaves the state untouched. Refused attempts are in the stepper's
+  // counter rejected_steps.
+  StepResult advance(State& state);
+
+  // s: of the last accepted step; of the smallest accepted one; of the next attempt.
+  double last() const { return last_; }
+  double smallest() const { return smallest_; }
+  double next() const;
+  // Whether the accepted steps add up to a multiple of `largest`.
+  bool aligned() const { return place_ == 0; }
+
+ private:
+  std::int64_t ticks() const { return std::int64_t{1} << (settings_.most_halvings - halvings_); }
+
+  Stepper& stepper_;
+  Settings settings_;
+  int halvings_ = 0;
+  int successes_ = 0;       // at this size
+  std::int64_t place_ = 0;  // within the largest step, in units of the smallest
+  double last_ = 0, smallest_;
+};
+
+}  // namespace inextensible

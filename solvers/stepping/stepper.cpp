@@ -1,0 +1,53 @@
+#include "inextensible/stepping/stepper.h"
+
+#include <cmath>
+
+#include "inextensible/problem/forces.h"
+#include "inextensible/stepping/lap.h"
+
+namespace inextensible {
+
+Stepper::Stepper(std::shared_ptr<const Problem> problem)
+    : problem_(std::move(problem)),
+      next_(3, problem_->vertices()),
+      velocity_(3, problem_->vertices()) {
+  if (problem_->collider()) filtered_.resize(3, problem_->vertices());
+}
+
+StepResult Stepper::advance(State& state, double h) {
+  StepResult result = solve(state, h, next_);
+  work_.iterations += result.iterations;
+  if (!result) {
+    ++work_.rejected_steps;
+    return result;
+  }
+  if (const Collider* collider = problem_->collider()) {
+    Lap lap(phases_wanted_);
+    filtered_ = next_;
+    collider->resolve(state.x, problem_->inverse_mass(), next_, work_);
+    phases_.collision += lap();
+  }
+  // A sum is not finite if any term is not.
+  if (!std::isfinite(next_.sum())) {
+    ++work_.rejected_steps;
+    return {Status::not_finite, result.iterations, -1, 0, "a position overflowed"};
+  }
+  const StepResult end = end_velocities(state, h, filtered_positions(), next_, velocity_);
+  if (!end) {
+    ++work_.rejected_steps;
+    return end;
+  }
+  state.v.swap(velocity_);
+  state.x = next_;
+  state.time += h;
+  ++work_.steps;
+  return result;
+}
+
+StepResult Stepper::end_velocities(const State& start, double h, const Positions& /*filtered*/,
+                                   const Positions& x, Positions& v) {
+  v = (x - start.x) * (1 / h);
+  return {};
+}
+
+}  // namespace inextensible

@@ -1,0 +1,69 @@
+// What every backend offers: advance a state by h, or refuse and leave it bit for bit as it was.
+//
+// A step is: inextensible positions from the state (a backend's own business), then the collision
+// filter, then v = (x^{n+1} - x^n) / h. Constraint methods are velocity filters behind one common
+// unconstrained step; a method that treats stretching inside its time stepper (implicit springs)
+// derives from Stepper directly.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "inextensible/problem/problem.h"
+#include "inextensible/problem/step_result.h"
+#include "inextensible/problem/work_counters.h"
+
+namespace inextensible {
+
+struct PhaseSeconds {
+  double unconstrained = 0, filter = 0, collision = 0;
+};
+
+class Stepper {
+ public:
+  explicit Stepper(std::shared_ptr<const Problem> problem);
+  virtual ~Stepper() = default;
+  Stepper(const Stepper&) = delete;
+  Stepper& operator=(const Stepper&) = delete;
+
+  // Advances `state` (shapes as the problem's, finite) by h > 0 seconds. On refusal the state is
+  // untouched. Allocates nothing after the first call, but for what the library factorizations do
+  // inside.
+  StepResult advance(State& state, double h);
+
+  // Positions of the last accepted step after the inextensibility filter and before the collision
+  // filter: where strain is measured. Meaningful until the next call of advance.
+  const Positions& filtered_positions() const { return problem_->collider() ? filtered_ : next_; }
+
+  const Problem& problem() const { return *problem_; }
+  const WorkCounters& work() const { return work_; }
+  // Seconds spent in each phase of the steps since measure_phases(true); it is off at first.
+  const PhaseSeconds& phases() const { return phases_; }
+  void measure_phases(bool wanted) { phases_wanted_ = wanted; }
+  // The linear solver in use, "" for methods without one.
+  virtual const char* linear_solver() const { return ""; }
+  // Of the last linear system that was factored, an estimate from its pivots; 1 for methods without
+  // one. Meaningful after a step that counted a factorization and did not end `singular`.
+  virtual double reciprocal_condition() const { return 1; }
+
+ protected:
+  // Writes the inextensible positions at the end of the step to x; adds to work_ and phases_.
+  virtual StepResult solve(const State& state, double h, Positions& x) = 0;
+
+  // Writes the velocities at the end of the step to v, from the positions x after the collision
+  // filter; `filtered` are those before it, the same object where there is no collider. One-step
+  // methods take v = (x - x^n) / h. A method that remembers earlier steps does so here; it may
+  // still refuse.
+  virtual StepResult end_velocities(const State& start, double h, const Positions& filtered,
+                                    const Positions& x, Positions& v);
+
+  std::shared_ptr<const Problem> problem_;
+  WorkCounters work_;
+  PhaseSeconds phases_;
+  bool phases_wanted_ = false;  // for Lap
+
+ private:
+  Positions next_, filtered_, velocity_;
+};
+
+}  // namespace inextensible

@@ -1,0 +1,43 @@
+// A constraint method as a filter of velocities, and the stepper that such a filter makes.
+#pragma once
+
+#include <memory>
+
+#include "inextensible/stepping/stepper.h"
+
+namespace inextensible {
+
+// A velocity filter: takes start-of-step and candidate positions, moves the candidate onto the
+// constraint manifold.
+class VelocityFilter {
+ public:
+  VelocityFilter() = default;
+  virtual ~VelocityFilter() = default;
+  VelocityFilter(const VelocityFilter&) = delete;
+  VelocityFilter& operator=(const VelocityFilter&) = delete;
+
+  // x_start = x^n and x = x0 (both 3 x n) in, x = x^{n+1} out; the filtered velocity is (x -
+  // x_start) / h. On refusal x is unspecified. Pinned vertices keep their place bit for bit.
+  virtual StepResult apply(const Positions& x_start, double h, Positions& x,
+                           WorkCounters& work) = 0;
+
+  virtual const char* linear_solver() const { return ""; }
+  virtual double reciprocal_condition() const { return 1; }  // as the stepper's
+};
+
+// v* = v - h W grad V(x), x0 = x + h v*, filter: the pipeline of the paper's section 4.4 with V
+// (gravity, shear) explicit.
+class FilterStepper final : public Stepper {
+ public:
+  FilterStepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter);
+  const char* linear_solver() const override { return filter_->linear_solver(); }
+  double reciprocal_condition() const override { return filter_->reciprocal_condition(); }
+  VelocityFilter& filter() { return *filter_; }
+
+ private:
+  StepResult solve(const State& state, double h, Positions& x) override;
+
+  std::unique_ptr<VelocityFilter> filter_;
+};
+
+}  // namespace inextensible

@@ -1,0 +1,66 @@
+#include "inextensible/systems/constraint_system.h"
+
+#include <cmath>
+
+namespace inextensible {
+namespace {
+
+std::string choose(std::string_view wanted, const SymmetricPattern& pattern,
+                   ConstraintSystem::Digits digits) {
+  if (wanted != "auto") return std::string(wanted);
+  if (pattern.entries() == 2 * pattern.n - 1 && pattern.tridiagonal()) return "tridiagonal";
+  if (pattern.n >= ConstraintSystem::hybrid_rows) return "hybrid";
+  return digits == ConstraintSystem::Digits::few ? "fixed_pattern_mixed" : "fixed_pattern";
+}
+
+// Without fill, or with an order of its own.
+bool in_natural_order(std::string_view solver) {
+  return solver == "tridiagonal" || solver == "line_cg" || solver == "hybrid";
+}
+
+}  // namespace
+
+ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
+                                   std::string_view linear_solver, Digits digits) {
+  const auto natural = SymmetricPattern::Triangle::upper;
+  edges_ = std::make_unique<EdgeConstraints>(problem, strain_limit);
+  schur_ = std::make_unique<SchurComplement>(*edges_, problem.vertices(), natural);
+  solver_name_ = choose(linear_solver, schur_->pattern(), digits);
+  if (!in_natural_order(solver_name_)) {
+    edges_ = std::make_unique<EdgeConstraints>(problem, strain_limit,
+                                               fill_reducing_order(schur_->pattern()));
+    schur_ =
+        std::make_unique<SchurComplement>(*edges_, problem.vertices(), triangle_of(solver_name_));
+  }
+  solver_ = make_spd_solver(solver_name_, schur_->pattern());
+  solver_->set_least_pivot(least_pivot);
+}
+
+bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, WorkCounters& work, double damping) {
+  schur_->assemble(u, solver_->values());
+  if (damping > 0) schur_->scale_diagonal(1 + damping, solver_->values());
+  ++work.assemblies;
+  ++work.factorizations;
+  const bool factored = solver_->factor();
+  work.factor_nonzeros = solver_->factor_nonzeros();
+  work.factor_flops = solver_->factor_flops();
+  return factored;
+}
+
+bool ConstraintSystem::solve(Eigen::VectorXd& mu, WorkCounters& work, double tolerance) {
+  const std::int64_t before = solver_->iterations();
+  const bool solved = solver_->solve_within(tolerance, mu.data());
+  ++work.back_solves;
+  work.linear_iterations += solver_->iterations() - before;
+  return solved;
+}
+
+StepResult refuse(Status status, int iterations, const EdgeConstraints& edges, const Positions& x,
+                  const char* detail) {
+  const auto worst = edges.worst(x);
+  if (!std::isfinite(worst.strain))
+    return {Status::not_finite, iterations, worst.edge, worst.strain, "overflow"};
+  return {status, iterations, worst.edge, worst.strain, detail};
+}
+
+}  // namespace inextensible

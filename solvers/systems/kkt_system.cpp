@@ -1,0 +1,270 @@
+#include "inextensible/systems/kkt_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace inextensible {
+namespace {
+
+constexpr double regularization = 1e-10;      // relative to J W J^T, of order one after scaling
+constexpr double refinement_goal = 1e-10;     // relative residual
+constexpr double acceptable_residual = 1e-6;  // Newton converges as well with a step this accurate
+constexpr int refinement_limit = 8;
+
+// Upper-triangular compressed columns of a set of (row, column) places; find() gives an entry's
+// index.
+class UpperPattern {
+ public:
+  explicit UpperPattern(int n) : columns_(static_cast<std::size_t>(n)) {}
+  void add(int i, int j) {
+    columns_[static_cast<std::size_t>(std::max(i, j))].push_back(std::min(i, j));
+  }
+  SymmetricPattern compress() {
+    SymmetricPattern pattern;
+    pattern.n = static_cast<int>(columns_.size());
+    pattern.column_start.push_back(0);
+    for (auto& column : columns_) {
+      std::sort(column.begin(), column.end());
+      column.erase(std::unique(column.begin(), column.end()), column.end());
+      pattern.row_index.insert(pattern.row_index.end(), column.begin(), column.end());
+      pattern.column_start.push_back(pattern.entries());
+    }
+    return pattern;
+  }
+
+ private:
+  std::vector<std::vector<int>> columns_;
+};
+
+int find(const SymmetricPattern& pattern, int i, int j) {
+  const auto column = static_cast<std::size_t>(std::max(i, j));
+  const auto begin = pattern.row_index.begin() + pattern.column_start[column];
+  const auto end = pattern.row_index.begin() + pattern.column_start[column + 1];
+  return static_cast<int>(std::lower_bound(begin, end, std::min(i, j)) - pattern.row_index.begin());
+}
+
+}  // namespace
+
+KktSolver::KktSolver(const Problem& problem)
+    : mean_mass_(problem.total_mass() / static_cast<double>(problem.vertices())) {}
+
+KktSystem::KktSystem(const Problem& problem, const EdgeConstraints& edges,
+                     std::string_view linear_solver)
+    : KktSolver(problem), edges_(edges), umfpack_only_(linear_solver == "umfpack") {
+  const auto n = static_cast<std::size_t>(problem.vertices());
+  vertex_unknown_.assign(n, -1);
+  for (std::size_t v = 0; v < n; ++v) {
+    if (problem.inverse_mass()[v] == 0) continue;
+    vertex_unknown_[v] = 3 * static_cast<int>(scaled_mass_.size());
+    scaled_mass_.push_back(problem.mass()[v] / mean_mass_);
+  }
+  multiplier_offset_ = 3 * static_cast<int>(scaled_mass_.size());
+  size_ = multiplier_offset_ + edges.count();
+
+  std::vector<Edge> ends(static_cast<std::size_t>(edges.count()));
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    ends[k] = {vertex_unknown_[static_cast<std::size_t>(edges.a[k])],
+               vertex_unknown_[static_cast<std::size_t>(edges.b[k])]};
+  }
+  build_pattern(ends);
+  for (Eigen::VectorXd* v : {&rhs_, &solution_, &residual_}) v->resize(size_);
+  if (!umfpack_only_) ldlt_ = std::make_unique<EigenLdltSolver>(pattern_, /*indefinite=*/true);
+}
+
+void KktSystem::build_pattern(const std::vector<Edge>& ends) {
+  const auto visit = [&](auto&& entry) {  // every entry of the upper triangle, in unknowns
+    for (int i = 0; i < size_; ++i) entry(i, i);
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      const int multiplier = multiplier_offset_ + static_cast<int>(k);
+      for (int axis = 0; axis < 3; ++axis) {
+        const int a = ends[k].a + axis, b = ends[k].b + axis;
+        if (ends[k].a >= 0) entry(a, multiplier);
+        if (ends[k].b >= 0) entry(b, multiplier);
+        if (ends[k].a >= 0 && ends[k].b >= 0) entry(a, b);
+      }
+    }
+  };
+  UpperPattern unordered(size_);
+  visit([&](int i, int j) { unordered.add(i, j); });
+  const std::vector<int> order = fill_reducing_order(unordered.compress());
+  place_.resize(static_cast<std::size_t>(size_));
+  for (int i = 0; i < size_; ++i)
+    place_[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] = i;
+  const auto place = [&](int unknown) { return place_[static_cast<std::size_t>(unknown)]; };
+  UpperPattern ordered(size_);
+  visit([&](int i, int j) { ordered.add(place(i), place(j)); });
+  pattern_ = ordered.compress();
+  matrix_.resize(static_cast<std::size_t>(pattern_.entries()));
+
+  const auto index = [&](int i, int j) { return find(pattern_, place(i), place(j)); };
+  vertex_places_.resize(scaled_mass_.size());
+  for (std::size_t v = 0; v < vertex_places_.size(); ++v) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const int i = 3 * static_cast<int>(v) + axis;
+      vertex_places_[v].diagonal[axis] = index(i, i);
+    }
+  }
+  edge_places_.resize(ends.size());
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    const int multiplier = multiplier_offset_ + static_cast<int>(k);
+    EdgePlaces& places = edge_places_[k];
+    places.lower = index(multiplier, multiplier);
+    for (int axis = 0; axis < 3; ++axis) {
+      const int a = ends[k].a + axis, b = ends[k].b + axis;
+      places.at_a[axis] = ends[k].a >= 0 ? index(a, multiplier) : -1;
+      places.at_b[axis] = ends[k].b >= 0 ? index(b, multiplier) : -1;
+      places.coupling[axis] = ends[k].a >= 0 && ends[k].b >= 0 ? index(a, b) : -1;
+    }
+  }
+}
+
+void KktSystem::assemble(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex) {
+  std::fill(matrix_.begin(), matrix_.end(), 0.0);
+  const auto at = [this](int i) -> double& { return matrix_[static_cast<std::size_t>(i)]; };
+  for (std::size_t v = 0; v < vertex_places_.size(); ++v) {
+    for (const int diagonal : vertex_places_[v].diagonal) at(diagonal) = scaled_mass_[v];
+  }
+  for (std::size_t k = 0; k < edge_places_.size(); ++k) {
+    const EdgePlaces& places = edge_places_[k];
+    const double multiplier = mu[static_cast<Eigen::Index>(k)];
+    const double curvature =
+        convex && multiplier < 0 ? 0 : 2 * multiplier * edges_.inverse_rest_length[k];
+    const int a = vertex_unknown_[static_cast<std::size_t>(edges_.a[k])];
+    const int b = vertex_unknown_[static_cast<std::size_t>(edges_.b[k])];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double gradient = u(axis, static_cast<Eigen::Index>(k));
+      if (a >= 0) {
+        at(vertex_places_[static_cast<std::size_t>(a / 3)].diagonal[axis]) += curvature;
+        at(places.at_a[axis]) -= gradient;
+      }
+      if (b >= 0) {
+        at(vertex_places_[static_cast<std::size_t>(b / 3)].diagonal[axis]) += curvature;
+        at(places.at_b[axis]) += gradient;
+      }
+      if (a >= 0 && b >= 0) at(places.coupling[axis]) -= curvature;
+    }
+  }
+}
+
+bool KktSystem::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex,
+                       WorkCounters& work) {
+  for (;; convex = true) {
+    assemble(u, mu, convex);
+    convexified_ = convex;
+    ++work.assemblies;
+    using_umfpack_ = umfpack_only_;
+    if (umfpack_only_) return factor_umfpack(work);
+    std::copy(matrix_.begin(), matrix_.end(), ldlt_->values());
+    for (const EdgePlaces& places : edge_places_) ldlt_->values()[places.lower] = -regularization;
+    ++work.factorizations;
+    if (!ldlt_->factor()) return factor_umfpack(work);
+    work.factor_nonzeros = ldlt_->factor_nonzeros();
+    work.factor_flops = ldlt_->factor_flops();
+    if (convex || ldlt_->negative_pivots() == edges_.count()) return true;
+  }
+}
+
+bool KktSystem::factor_umfpack(WorkCounters& work) {
+  if (!lu_) {  // the full pattern, made when first needed
+    struct Entry {
+      int column, row, upper;
+    };
+    std::vector<Entry> entries;
+    for (int j = 0; j < size_; ++j) {
+      for (int i = pattern_.column_start[static_cast<std::size_t>(j)];
+           i < pattern_.column_start[static_cast<std::size_t>(j) + 1]; ++i) {
+        const int row = pattern_.row_index[static_cast<std::size_t>(i)];
+        entries.push_back({j, row, i});
+        if (row != j) entries.push_back({row, j, i});
+      }
+    }
+    std::sort(entries.begin(), entries.end(), [](const Entry& p, const Entry& q) {
+      return p.column != q.column ? p.column < q.column : p.row < q.row;
+    });
+    std::vector<int> column_start(static_cast<std::size_t>(size_) + 1, 0), row_index;
+    for (const Entry& entry : entries) {
+      ++column_start[static_cast<std::size_t>(entry.column) + 1];
+      row_index.push_back(entry.row);
+      full_from_upper_.push_back(entry.upper);
+    }
+    std::partial_sum(column_start.begin(), column_start.end(), column_start.begin());
+    lu_ = make_unsymmetric_solver(std::move(column_start), std::move(row_index));
+  }
+  using_umfpack_ = true;
+  for (std::size_t i = 0; i < full_from_upper_.size(); ++i) {
+    lu_->values()[i] = matrix_[static_cast<std::size_t>(full_from_upper_[i])];
+  }
+  ++work.factorizations;
+  if (!lu_->factor()) return false;
+  work.factor_nonzeros = lu_->factor_nonzeros();
+  work.factor_flops = lu_->factor_flops();
+  return true;
+}
+
+void KktSystem::residual() {
+  residual_ = rhs_;
+  for (int j = 0; j < size_; ++j) {
+    double sum = 0;
+    const double xj = solution_[j];
+    for (int i = pattern_.column_start[static_cast<std::size_t>(j)];
+         i < pattern_.column_start[static_cast<std::size_t>(j) + 1]; ++i) {
+      const int row = pattern_.row_index[static_cast<std::size_t>(i)];
+      const double value = matrix_[static_cast<std::size_t>(i)];
+      sum += value * solution_[row];
+      if (row != j) residual_[row] -= value * xj;
+    }
+    residual_[j] -= sum;
+  }
+}
+
+bool KktSystem::solve(const Positions& r, const Eigen::VectorXd& c, Positions& p,
+                      Eigen::VectorXd& q, WorkCounters& work) {
+  for (std::size_t v = 0; v < vertex_unknown_.size(); ++v) {
+    const int first = vertex_unknown_[v];
+    if (first < 0) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      rhs_[place_[static_cast<std::size_t>(first + axis)]] = r(axis, static_cast<Eigen::Index>(v));
+    }
+  }
+  for (Eigen::Index k = 0; k < c.size(); ++k)
+    rhs_[place_[static_cast<std::size_t>(multiplier_offset_ + k)]] = c[k];
+
+  const double scale = rhs_.norm();
+  for (;;) {
+    solution_.setZero();
+    residual_ = rhs_;
+    double error = scale;
+    for (int i = 0; i < refinement_limit && error > refinement_goal * scale; ++i) {
+      if (using_umfpack_) {
+        lu_->solve(residual_.data());
+      } else {
+        ldlt_->solve(residual_.data());
+      }
+      ++work.back_solves;
+      solution_ += residual_;
+      residual();
+      const double next = residual_.norm();
+      if (!(next < 0.5 * error) && i > 0) {
+        error = next;
+        break;
+      }
+      error = next;
+    }
+    if (error <= acceptable_residual * scale) break;  // false on NaN
+    if (using_umfpack_ || !factor_umfpack(work)) return false;
+  }
+
+  for (std::size_t v = 0; v < vertex_unknown_.size(); ++v) {
+    const int first = vertex_unknown_[v];
+    for (int axis = 0; axis < 3; ++axis) {
+      p(axis, static_cast<Eigen::Index>(v)) =
+          first < 0 ? 0 : solution_[place_[static_cast<std::size_t>(first + axis)]];
+    }
+  }
+  for (Eigen::Index k = 0; k < c.size(); ++k)
+    q[k] = solution_[place_[static_cast<std::size_t>(multiplier_offset_ + k)]];
+  return true;
+}
+
+}  // namespace inextensible

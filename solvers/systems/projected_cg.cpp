@@ -1,0 +1,216 @@
+// A = M + H is a scalar matrix, the same for x, y and z, and D, its diagonal, is near it where
+// tensions are moderate. So the saddle-point matrix with D in place of A is the preconditioner: its
+// Schur complement J D^-1 J^T has the pattern of fast projection's J W J^T and is factored like it.
+// With a p that solves J p = c to begin with, every correction that it gives lies in J's null
+// space: the iteration is that of conjugate gradients for p alone, on A restricted to there, and
+// the multipliers q fall out of the projections. Residuals have their part along J^T taken off at
+// every step, which keeps the iteration from losing digits to it (section 6 of the paper).
+//
+// Newton's method needs no more than a few percent of accuracy. Where curvature d^T A d is not
+// positive, A is indefinite on the null space, and the step so far is taken (Dembo and Steihaug
+// 1983); if there is none yet, the convex H is. Where J D^-1 J^T is singular or conjugate gradients
+// get nowhere, the factored saddle-point matrix takes over. Loops: one assembly and one
+// factorization a Newton iteration; one solve and four passes over edges an iteration here.
+#include "inextensible/systems/projected_cg.h"
+
+#include <cmath>
+
+#include "inextensible/systems/constraint_system.h"
+
+namespace inextensible {
+
+// Of J D^-1 J^T: what a projection leaves of J p, the next Newton step takes up.
+constexpr double projection_tolerance = 1e-4;
+
+std::vector<int> elimination_order(const Problem& problem) {
+  const EdgeConstraints natural(problem, 1);
+  return fill_reducing_order(
+      SchurComplement(natural, problem.vertices(), SymmetricPattern::Triangle::upper).pattern());
+}
+
+ProjectedCg::ProjectedCg(const Problem& problem, const EdgeConstraints& edges,
+                         const Settings& settings)
+    : KktSolver(problem),
+      problem_(problem),
+      edges_(edges),
+      settings_(settings),
+      pattern_(SchurComplement(edges, problem.vertices(), triangle_of(settings.linear_solver))
+                   .pattern()),
+      solver_(make_spd_solver(settings.linear_solver, pattern_)),
+      mass_(Eigen::Map<const Eigen::VectorXd>(problem.mass().data(), problem.vertices()) /
+            mean_mass_),
+      curvature_(edges.count()),
+      inverse_metric_(problem.vertices() + 1),
+      dq_(edges.count()) {
+  solver_->set_least_pivot(ConstraintSystem::least_pivot);
+  for (Positions* p : {&residual_, &direction_, &image_, &correction_})
+    p->resize(3, problem.vertices());
+  find_meetings();
+}
+
+void ProjectedCg::find_meetings() {
+  const Meeting nowhere{problem_.vertices(), 0};
+  for (int l = 0; l < pattern_.n; ++l) {
+    const auto ul = static_cast<std::size_t>(l);
+    for (int i = pattern_.column_start[ul]; i < pattern_.column_start[ul + 1]; ++i) {
+      const auto k = static_cast<std::size_t>(pattern_.row_index[static_cast<std::size_t>(i)]);
+      Meeting met[2] = {nowhere, nowhere};
+      int count = 0;
+      for (const bool at_b : {false, true}) {
+        const int vertex = at_b ? edges_.b[ul] : edges_.a[ul];
+        if (edges_.a[k] == vertex) met[count++] = {vertex, at_b ? -1.0 : 1.0};
+        if (edges_.b[k] == vertex) met[count++] = {vertex, at_b ? 1.0 : -1.0};
+      }
+      first_.push_back(met[0]);
+      second_.push_back(met[1]);
+    }
+  }
+}
+
+void ProjectedCg::set_curvature(bool convex) {
+  convexified_ = convex;
+  for (int k = 0; k < edges_.count(); ++k) {
+    const double mu = (*mu_)[k];
+    curvature_[k] =
+        convex && mu < 0 ? 0 : 2 * mu * edges_.inverse_rest_length[static_cast<std::size_t>(k)];
+  }
+}
+
+bool ProjectedCg::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex,
+                         WorkCounters& work) {
+  u_ = &u;
+  mu_ = &mu;
+  convex_ = convex;
+  direct_in_use_ = false;
+  set_curvature(convex);
+  // D: M and what tension adds to the diagonal.
+  inverse_metric_.head(problem_.vertices()) = mass_;
+  for (std::size_t k = 0; k < edges_.a.size(); ++k) {
+    const double tension = std::max(curvature_[static_cast<Eigen::Index>(k)], 0.0);
+    inverse_metric_[edges_.a[k]] += tension;
+    inverse_metric_[edges_.b[k]] += tension;
+  }
+  inverse_metric_ = inverse_metric_.cwiseInverse();
+  for (const int vertex : problem_.pinned()) inverse_metric_[vertex] = 0;
+  inverse_metric_[problem_.vertices()] = 0;
+
+  double* value = solver_->values();
+  std::size_t i = 0;
+  for (int l = 0; l < pattern_.n; ++l) {
+    const auto end =
+        static_cast<std::size_t>(pattern_.column_start[static_cast<std::size_t>(l) + 1]);
+    for (; i < end; ++i) {
+      const double weight = first_[i].sign * inverse_metric_[first_[i].vertex] +
+                            second_[i].sign * inverse_metric_[second_[i].vertex];
+      value[i] = weight * u.col(pattern_.row_index[i]).dot(u.col(l));
+    }
+  }
+  ++work.assemblies;
+  ++work.factorizations;
+  if (!solver_->factor()) return factor_directly(work);
+  work.factor_nonzeros = solver_->factor_nonzeros();
+  work.factor_flops = solver_->factor_flops();
+  return true;
+}
+
+bool ProjectedCg::factor_directly(WorkCounters& work) {
+  if (!direct_) direct_ = std::make_unique<KktSystem>(problem_, edges_, "quasi_definite");
+  direct_in_use_ = true;
+  const bool factored = direct_->factor(*u_, *mu_, convex_, work);
+  convexified_ = direct_->convexified();
+  return factored;
+}
+
+// r -= J^T q.
+void ProjectedCg::subtract_gradients(const Eigen::VectorXd& q, Positions& r) const {
+  const double* u = u_->data();
+  for (std::size_t k = 0; k < edges_.a.size(); ++k, u += 3) {
+    const double qk = q[static_cast<Eigen::Index>(k)];
+    double *ra = r.data() + 3 * edges_.a[k], *rb = r.data() + 3 * edges_.b[k];
+    for (int i = 0; i < 3; ++i) {
+      ra[i] += qk * u[i];
+      rb[i] -= qk * u[i];
+    }
+  }
+}
+
+// y = (M + H) p.
+void ProjectedCg::apply_hessian(const Positions& p, Positions& y) const {
+  y = p * mass_.asDiagonal();
+  for (std::size_t k = 0; k < edges_.a.size(); ++k) {
+    const Eigen::Vector3d pull =
+        curvature_[static_cast<Eigen::Index>(k)] * (p.col(edges_.b[k]) - p.col(edges_.a[k]));
+    y.col(edges_.a[k]) -= pull;
+    y.col(edges_.b[k]) += pull;
+  }
+}
+
+// [ D J^T; J 0 ] [ p; q ] = [ r; c ], c = 0 if there is none: q = (J D^-1 J^T)^-1 (J D^-1 r - c),
+// r -= J^T q, p = D^-1 r.
+bool ProjectedCg::precondition(Positions& r, const Eigen::VectorXd* c, Positions& p,
+                               Eigen::VectorXd& q, WorkCounters& work) {
+  const auto metric = inverse_metric_.head(problem_.vertices());
+  p = r * metric.asDiagonal();
+  edges_.rate(*u_, p, q);
+  if (c) q -= *c;
+  ++work.back_solves;
+  if (!solver_->solve_within(projection_tolerance, q.data())) return false;
+  subtract_gradients(q, r);
+  p = r * metric.asDiagonal();
+  return true;
+}
+
+bool ProjectedCg::solve(const Positions& r, const Eigen::VectorXd& c, Positions& p,
+                        Eigen::VectorXd& q, WorkCounters& work) {
+  if (direct_in_use_) return direct_->solve(r, c, p, q, work);
+  Outcome outcome = iterate(r, c, p, q, work);
+  if (outcome == Outcome::negative_curvature) {
+    set_curvature(true);
+    outcome = iterate(r, c, p, q, work);
+  }
+  if (outcome == Outcome::converged) return true;
+  return factor_directly(work) && direct_->solve(r, c, p, q, work);
+}
+
+// Translations change no edge, so that p's share of them is known exactly: what is left of the
+// residual over the total mass. Linear momentum is kept to rounding this way.
+ProjectedCg::Outcome ProjectedCg::finish(Positions& p) const {
+  if (problem_.pinned().empty()) p.colwise() += residual_.rowwise().sum() / mass_.sum();
+  return Outcome::converged;
+}
+
+ProjectedCg::Outcome ProjectedCg::iterate(const Positions& r, const Eigen::VectorXd& c,
+                                          Positions& p, Eigen::VectorXd& q, WorkCounters& work) {
+  residual_ = r;
+  if (!precondition(residual_, &c, p, q, work)) return Outcome::failed;
+  apply_hessian(p, image_);
+  residual_ -= image_;
+  // |p|^2 in the norm of D.
+  double size = 0;
+  for (int v = 0; v < problem_.vertices(); ++v)
+    if (inverse_metric_[v] > 0) size += p.col(v).squaredNorm() / inverse_metric_[v];
+  const double goal = settings_.tolerance * settings_.tolerance * size;
+  double error = 0;  // of the last iteration
+  for (int i = 0;; ++i) {
+    if (!precondition(residual_, nullptr, correction_, dq_, work)) return Outcome::failed;
+    q += dq_;
+    const double next_error = correction_.cwiseProduct(residual_).sum();
+    if (next_error <= goal) return finish(p);
+    if (!std::isfinite(next_error) || i == settings_.max_iterations) return Outcome::failed;
+    if (i == 0) {
+      direction_ = correction_;
+    } else {
+      direction_ = correction_ + (next_error / error) * direction_;
+    }
+    error = next_error;
+    apply_hessian(direction_, image_);
+    for (const int vertex : problem_.pinned()) image_.col(vertex).setZero();
+    const double curvature = direction_.cwiseProduct(image_).sum();
+    if (!(curvature > 0)) return i > 0 ? finish(p) : Outcome::negative_curvature;
+    const double step = error / curvature;
+    p += step * direction_;
+    residual_ -= step * image_;
+  }
+}
+
+}  // namespace inextensible
