@@ -147,7 +147,8 @@ class Examination {
     determinism();
     consistency();
     tell(Grade::not_applicable, "allocations",
-         "not counted here; tests/no_allocation_test.cpp shows how: none in a step after the first",
+         "not counted here; tests/solvers/methods/no_allocation_test.cpp shows how: none in a step "
+         "after the first",
          "");
     hard_cases();
     return std::move(findings_);

@@ -6,7 +6,7 @@
 #include <random>
 #include <sstream>
 
-#include "fuzz_documents.h"
+#include "harness/points/fuzz_documents.h"
 
 namespace {
 

@@ -1,12 +1,13 @@
 // The collider on a mesh that is not convex, where the sign of the distance is hard: against
 // closest points by another formula and the winding number.
+#include "inextensible/problem/triangle_collider.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "inextensible/problem/triangle_collider.h"
-#include "random_mesh.h"
+#include "support/random_mesh.h"
 
 namespace inextensible {
 namespace {

@@ -10,7 +10,7 @@
 #include "inextensible/methods/fast_projection.h"
 #include "inextensible/methods/icd.h"
 #include "inextensible/registry.h"
-#include "random_mesh.h"
+#include "support/random_mesh.h"
 
 namespace inextensible {
 namespace {

@@ -12,7 +12,7 @@
 #include "inextensible/methods/strain_pass.h"
 #include "inextensible/registry.h"
 #include "inextensible/systems/constraint_system.h"
-#include "random_graph.h"
+#include "support/random_graph.h"
 
 namespace inextensible {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "random_mesh.h"
+#include "support/random_mesh.h"
 
 namespace inextensible::testing {
 

@@ -14,7 +14,7 @@
 #include "inextensible/systems/kkt_system.h"
 #include "inextensible/systems/projected_cg.h"
 #include "inextensible/systems/schur_complement.h"
-#include "random_graph.h"
+#include "support/random_graph.h"
 
 namespace inextensible {
 namespace {

@@ -9,7 +9,7 @@
 #include "inextensible/linear/hybrid.h"
 #include "inextensible/methods/fast_projection.h"
 #include "inextensible/systems/schur_complement.h"
-#include "random_mesh.h"
+#include "support/random_mesh.h"
 
 namespace inextensible {
 namespace {

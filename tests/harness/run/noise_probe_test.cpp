@@ -1,12 +1,12 @@
 // The fixed kernel that tells a noisy machine from a quiet one, with noise of our own making.
+#include "harness/run/noise_probe.h"
+
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
-
-#include "harness/run/noise_probe.h"
 
 namespace harness {
 namespace {

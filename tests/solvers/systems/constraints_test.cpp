@@ -9,7 +9,7 @@
 #include "inextensible/linear/lu.h"
 #include "inextensible/problem/edge_constraints.h"
 #include "inextensible/systems/schur_complement.h"
-#include "random_mesh.h"
+#include "support/random_mesh.h"
 
 namespace inextensible {
 namespace {

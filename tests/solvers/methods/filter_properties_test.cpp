@@ -10,7 +10,7 @@
 #include "inextensible/methods/fast_projection.h"
 #include "inextensible/problem/edge_constraints.h"
 #include "inextensible/registry.h"
-#include "random_graph.h"
+#include "support/random_graph.h"
 
 namespace inextensible {
 namespace {

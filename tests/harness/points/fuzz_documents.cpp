@@ -1,6 +1,6 @@
 // libFuzzer target for suites and result files: cmake --preset fuzz, then
 //   build/fuzz/tests/fuzz_documents -max_total_time=60 corpus/ configs/
-#include "fuzz_documents.h"
+#include "harness/points/fuzz_documents.h"
 
 #include <cstddef>
 #include <cstdint>

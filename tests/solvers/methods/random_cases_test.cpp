@@ -8,7 +8,7 @@
 #include "harness/stability/trial_judge.h"
 #include "inextensible/registry.h"
 #include "inextensible/systems/constraint_system.h"
-#include "random_graph.h"
+#include "support/random_graph.h"
 
 namespace inextensible {
 namespace {

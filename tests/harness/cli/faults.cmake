@@ -11,7 +11,7 @@ function(with_fault file from to)
   endif()
   string(FIND "${text}" "${from}" place)
   if(place EQUAL -1)
-    message(FATAL_ERROR "tests/faults.cmake: solvers/methods/${file} no longer holds '${from}'")
+    message(FATAL_ERROR "tests/harness/cli/faults.cmake: solvers/methods/${file} no longer holds '${from}'")
   endif()
   string(REPLACE "${from}" "${to}" text "${text}")
   file(CONFIGURE OUTPUT ${copy} CONTENT "${text}" @ONLY)  # touched only if it changes
