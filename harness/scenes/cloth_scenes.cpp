@@ -1,0 +1,122 @@
+#include "harness/scenes/cloth_scenes.h"
+
+#include <cmath>
+#include <initializer_list>
+#include <numbers>
+
+#include "harness/scenes/meshes.h"
+#include "inextensible/problem/triangle_collider.h"
+
+namespace harness {
+namespace {
+
+// One of the two curves whose sum is a folded cloth: n points, links of length l, in waves of the
+// slope A sin(2 pi w s) over the arc length s, mirrored about its middle to the last bit. Columns:
+// (along, up), the lowest at up = 0.
+Eigen::Matrix2Xd waves(int n, double l, double slope) {
+  constexpr double count = 3;
+  Eigen::Matrix2Xd p(2, n);
+  const auto link = [&](double from_middle) -> Eigen::Vector2d {  // in links
+    const double angle = slope * std::sin(2 * std::numbers::pi * count * from_middle / (n - 1));
+    return {l * std::cos(angle), l * std::sin(angle)};
+  };
+  const int right = n / 2;  // the middle vertex, or the first one right of the middle link
+  p.col(right) = n % 2 == 1 ? Eigen::Vector2d(0, 0) : Eigen::Vector2d(0.5 * l, 0);
+  for (int j = right + 1; j < n; ++j) p.col(j) = p.col(j - 1) + link(j - 0.5 - 0.5 * (n - 1));
+  for (int j = 0; j < n / 2; ++j) p.col(j) << -p(0, n - 1 - j), p(1, n - 1 - j);
+  p.row(1).array() -= p.row(1).minCoeff();
+  return p;
+}
+
+// In waves, `folds` steep, the lowest point at the height y. A sum of two curves keeps the length
+// of every link: a Chebyshev net.
+void fold(Scene& scene, const SceneParameters& p, double y) {
+  const int n = static_cast<int>(p.at("n"));
+  const Eigen::Matrix2Xd wave = waves(n, square_link(p), p.at("folds"));
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j)
+      scene.start.x.col(i * n + j) << wave(0, j), y + wave(1, j) + wave(1, i), wave(0, i);
+  }
+}
+
+// Above a polygonal sphere that is centred at the origin.
+Scene build_drape(const SceneParameters& p) {
+  const double y = p.at("radius") + p.at("gap");
+  Draft cloth = vertex_square(p, y);
+  if (p.contains("folds") && p.at("folds") > 0) fold(cloth.scene, p, y);
+  if (p.contains("speed")) cloth.scene.start.v.row(1).setConstant(-p.at("speed"));
+  if (p.at("radius") > 0) {
+    cloth.parts.collider = std::make_shared<const inextensible::TriangleCollider>(
+        inextensible::icosphere(Eigen::Vector3d::Zero(), p.at("radius"),
+                                static_cast<int>(p.at("subdivisions"))),
+        p.at("friction"));
+  }
+  return finished(std::move(cloth));
+}
+
+// Pinned at two corners of one edge, which is straight at full length between them.
+Scene build_patch(const SceneParameters& p) {
+  Draft cloth = vertex_square(p, 0);
+  cloth.parts.pinned = {cloth.scene.corners[0], cloth.scene.corners[1]};
+  cloth.scene.mirrors.pop_back();  // the pins break front to back
+  cloth.scene.conserves_energy = true;
+  return finished(std::move(cloth));
+}
+
+using ParameterInfos = std::vector<SceneParameterInfo>;
+
+ParameterInfos cloth_parameters(int n) {
+  return {
+      {"n", static_cast<double>(n), "vertices along each side", 2, 4000, true},
+      {"side", 1, "m", 0, 1e6},
+      {"mass", 0.2, "total, kg", 0, 1e6},
+      {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
+      {"shear", 0.1, "spring stiffness on both diagonals of each quad, N/m; 0: no springs at all",
+       -1e-300, 1e9}};
+}
+
+ParameterInfos sphere_parameters() {
+  return {{"radius", 0.25, "of the sphere, m; 0: no collider at all", -1e-300, 1e6},
+          {"subdivisions", 3, "of the icosahedron; 3: 1,280 triangles", 0, 6, true},
+          {"gap", 0.001, "between sphere and cloth at the start, m", -1e-300, 1e6},
+          {"friction", 0.3, "Coulomb coefficient", -1e-300, 1e3}};
+}
+
+ParameterInfos joined(std::initializer_list<ParameterInfos> parts) {
+  ParameterInfos all;
+  for (const ParameterInfos& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+}  // namespace
+
+SceneType drape_scene() {
+  return {"drape",
+          "a square of cloth that falls onto a polygonal sphere",
+          "n",
+          joined({cloth_parameters(71), sphere_parameters(), {{"duration", 1, "s", 0, 1e4}}}),
+          build_drape,
+          count_square};
+}
+
+SceneType folded_drape_scene() {
+  return {"folded_drape",
+          "the drape, from a start in folds that shear it: as hard as mid-fall, at any size",
+          "n",
+          joined({cloth_parameters(71),
+                  {{"folds", 0.8, "slope of three waves each way, rad; 0: flat", -1e-300, 1.2},
+                   {"speed", 0, "downwards, at the start, m/s", -1e4, 1e4}},
+                  sphere_parameters(),
+                  {{"duration", 0.02, "s", 0, 1e4}}}),
+          build_drape,
+          count_square};
+}
+
+SceneType patch_scene() {
+  return {
+      "patch",     "a square of cloth, pinned at two corners of one edge, swings down (Figure 1)",
+      "n",         joined({cloth_parameters(31), {{"duration", 1, "s", 0, 1e4}}}),
+      build_patch, count_square};
+}
+
+}  // namespace harness

@@ -1,0 +1,12 @@
+// Scenes of a square of cloth.
+#pragma once
+
+#include "harness/scenes/scene.h"
+
+namespace harness {
+
+SceneType drape_scene();
+SceneType folded_drape_scene();
+SceneType patch_scene();
+
+}  // namespace harness

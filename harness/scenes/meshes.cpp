@@ -1,0 +1,110 @@
+#include "harness/scenes/meshes.h"
+
+#include <cmath>
+
+namespace harness {
+namespace {
+
+int whole(const SceneParameters& p, const char* name) { return static_cast<int>(p.at(name)); }
+
+// Springs of one stiffness on both diagonals of each quad.
+inextensible::Springs diagonals(int n, double link, double stiffness) {
+  inextensible::Springs springs;
+  const auto vertex = [n](int i, int j) { return i * n + j; };
+  for (int i = 0; i + 1 < n; ++i) {
+    for (int j = 0; j + 1 < n; ++j) {
+      springs.edges.push_back({vertex(i, j), vertex(i + 1, j + 1)});
+      springs.edges.push_back({vertex(i, j + 1), vertex(i + 1, j)});
+    }
+  }
+  springs.rest_length.assign(springs.edges.size(), std::sqrt(2.0) * link);
+  springs.stiffness.assign(springs.edges.size(), stiffness);
+  return springs;
+}
+
+}  // namespace
+
+Scene finished(Draft draft) {
+  draft.scene.problem = std::make_shared<const inextensible::Problem>(std::move(draft.parts));
+  return std::move(draft.scene);
+}
+
+Draft vertex_row(const SceneParameters& p) {
+  const int n = whole(p, "n");
+  const double link = row_link(p);
+  Draft row;
+  row.parts.mass.assign(static_cast<std::size_t>(n), p.at("mass") / n);
+  row.parts.gravity = {0, -p.at("gravity"), 0};
+  row.scene.start.x.setZero(3, n);
+  row.scene.start.v.setZero(3, n);
+  Scene::Mirror plane{{0, 0, 1}, {}};
+  for (int i = 0; i < n; ++i) {
+    plane.image.push_back(i);
+    if (i == 0) continue;
+    row.parts.edges.push_back({i - 1, i});
+    row.parts.rest_length.push_back(link);
+  }
+  row.scene.duration = p.at("duration");
+  row.scene.size = p.at("length");
+  row.scene.mirrors.push_back(std::move(plane));
+  return row;
+}
+
+Draft vertex_square(const SceneParameters& p, double y) {
+  const int n = whole(p, "n");
+  const double side = p.at("side"), l = square_link(p);
+  Draft square;
+  inextensible::ProblemParts& parts = square.parts;
+  Scene& scene = square.scene;
+  const auto count = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+  parts.mass.assign(count, p.at("mass") / (n * n));
+  parts.gravity = {0, -p.at("gravity"), 0};
+  scene.start.x.resize(3, n * n);
+  scene.start.v.setZero(3, n * n);
+  Scene::Mirror left_right{{1, 0, 0}, {}}, front_back{{0, 0, 1}, {}};
+  const auto vertex = [n](int i, int j) { return i * n + j; };
+  const auto constrain = [&](int a, int b) {
+    parts.edges.push_back({a, b});
+    parts.rest_length.push_back(l);
+  };
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      // (2 j - (n - 1)) is exactly antisymmetric, so that the start is mirror symmetric to the last
+      // bit.
+      scene.start.x.col(vertex(i, j)) << 0.5 * l * (2 * j - (n - 1)), y,
+          0.5 * l * (2 * i - (n - 1));
+      left_right.image.push_back(vertex(i, n - 1 - j));
+      front_back.image.push_back(vertex(n - 1 - i, j));
+      if (j + 1 < n) constrain(vertex(i, j), vertex(i, j + 1));  // weft
+      if (i + 1 < n) constrain(vertex(i, j), vertex(i + 1, j));  // warp
+    }
+  }
+  if (p.at("shear") > 0) parts.shear = diagonals(n, l, p.at("shear"));
+  scene.duration = p.at("duration");
+  scene.size = side;
+  scene.mirrors = {std::move(left_right), std::move(front_back)};
+  scene.corners = {vertex(0, 0), vertex(0, n - 1), vertex(n - 1, 0), vertex(n - 1, n - 1)};
+  for (int i = 0; i + 1 < n; ++i) {
+    for (int j = 0; j + 1 < n; ++j) {
+      scene.triangles.push_back({vertex(i, j), vertex(i, j + 1), vertex(i + 1, j)});
+      scene.triangles.push_back({vertex(i + 1, j + 1), vertex(i, j + 1), vertex(i + 1, j)});
+    }
+  }
+  return square;
+}
+
+double row_link(const SceneParameters& p) { return p.at("length") / (whole(p, "n") - 1); }
+
+double square_link(const SceneParameters& p) { return p.at("side") / (whole(p, "n") - 1); }
+
+std::pair<int, int> count_row(const SceneParameters& p) {
+  const int n = whole(p, "n");
+  return {n, n - 1};
+}
+
+std::pair<int, int> count_square(const SceneParameters& p) {
+  const int n = whole(p, "n");
+  return {n * n, 2 * n * (n - 1)};
+}
+
+}  // namespace harness
