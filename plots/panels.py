@@ -14,7 +14,7 @@ from results import Curve, FigureData
 from style import GREY, LIGHT_GREY, SolverStyle
 
 Styles = dict[str, SolverStyle]
-COARSEST_STEP = 1 / 25  # the ladder of steps starts here (docs: measuring.md)
+COARSEST_STEP = 1 / 25  # the ladder of steps starts here (docs/measuring.md)
 CLIP_RATIO = 20.0       # a solver this many times slower than the fastest one leaves the linear panel at its top
 ARROW = "\u2191"         # "this point lies above the axes"
 

@@ -1,5 +1,5 @@
-// A point of a sweep: what is run, and what came of it (the measuring rules: see README, "What is
-// measured").
+// A point of a sweep: what is run, and what came of it. docs/measuring.md says what each figure
+// means.
 #pragma once
 
 #include <limits>

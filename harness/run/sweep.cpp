@@ -33,8 +33,8 @@ std::vector<double> step_ladder(const SweepSpec& sweep) {
   return ladder;
 }
 
-// The step search of measuring.md: from coarse to fine until the time has risen twice in a row;
-// with a neighbour's best step, from there in both directions. A failure counts as a rise, and
+// The step search of docs/measuring.md: from coarse to fine until the time has risen twice in a
+// row; with a neighbour's best step, from there in both directions. A failure counts as a rise, and
 // before the first success as a reason to go finer. Points that miss max_error count as failures;
 // once that error has grown twice in a row towards finer steps (slack within the limit then
 // dominates it), finer ones are hopeless.

@@ -1,5 +1,5 @@
-// Scenes against design.md, the pendulum's exact solution, and the counters of the issue's
-// throw-away program.
+// Scenes as they are meant to be, against the pendulum's exact solution, and counters against those
+// of an independent program.
 #include "harness/scenes/scene.h"
 
 #include <gsl/gsl_fit.h>

@@ -1,0 +1,172 @@
+#!/usr/bin/python3
+"""Checks that the documents say what is in the tree.
+
+    tests/docs/check_docs.py          names everything that is wrong, exit code 1
+    tests/docs/check_docs.py --fix    first brings line numbers, and paths of files that have moved, up to date
+
+A document may quote code as
+
+    `path/to/file.cpp:12`: `text of that line`
+
+and the text must then stand in that line of that file. Links between documents and paths in backticks must exist, Markdown
+files that comments name too, and docs/measuring.md must name every field of a point that the schema of result files knows.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+QUOTE = re.compile(r"`([\w./-]+\.\w+):(\d+)`: `([^`]+)`")
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+BACKTICKS = re.compile(r"`([^`\n]+)`")
+PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
+NAMED_DOCUMENT = re.compile(r"[\w/.-]*\w\.md\b")
+SOURCES = ("solvers", "harness", "tests", "plots", "cmake", "configs")
+SOURCE_SUFFIXES = {".cpp", ".h", ".py", ".sh", ".cmake", ".txt", ".json"}
+
+
+def documents() -> list[Path]:
+    return [path for path in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md") if path.exists()] + sorted(
+        (ROOT / "docs").rglob("*.md"))
+
+
+def files_of_tree() -> list[Path]:
+    """All files of the sources; without git too, in an unpacked archive."""
+    return [path for folder in SOURCES for path in sorted((ROOT / folder).rglob("*"))
+            if path.is_file() and path.suffix in SOURCE_SUFFIXES]
+
+
+def lines_with(path: Path, text: str) -> list[int]:
+    if not path.is_file():
+        return []
+    return [number for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1) if text in line]
+
+
+def found_again(path: str, line: int, text: str) -> tuple[str, int] | None:
+    """Where the text stands now: in the same file, or in the only file that has it."""
+    here = lines_with(ROOT / path, text)
+    if here:
+        return path, min(here, key=lambda number: abs(number - line))
+    if (ROOT / path).exists():
+        candidates = [file for file in files_of_tree() if file.parent != ROOT / "tests"]
+    else:
+        candidates = [file for file in files_of_tree() if file.name == Path(path).name] or files_of_tree()
+    holders = [(file, lines_with(file, text)) for file in candidates]
+    holders = [(file, lines) for file, lines in holders if lines]
+    if len(holders) != 1:
+        return None
+    file, lines = holders[0]
+    return str(file.relative_to(ROOT)), lines[0]
+
+
+def fix() -> None:
+    for document in documents():
+        text = document.read_text(encoding="utf-8")
+
+        def renewed(match: re.Match[str]) -> str:
+            place = found_again(match[1], int(match[2]), match[3])
+            return f"`{place[0]}:{place[1]}`: `{match[3]}`" if place else match[0]
+
+        new = QUOTE.sub(renewed, text)
+        if new != text:
+            document.write_text(new, encoding="utf-8")
+            print(f"{document.relative_to(ROOT)}: brought up to date")
+
+
+def quotes(document: Path) -> list[str]:
+    errors = []
+    for path, line, text in QUOTE.findall(document.read_text(encoding="utf-8")):
+        here = lines_with(ROOT / path, text)
+        if not (ROOT / path).is_file():
+            errors.append(f"{path} does not exist")
+        elif not here:
+            errors.append(f"{path} does not hold '{text}'")
+        elif int(line) not in here:
+            errors.append(f"{path}: '{text}' is in line {here[0]}, not {line} (run tests/docs/check_docs.py --fix)")
+    return errors
+
+
+def heading_anchors(document: Path) -> set[str]:
+    headings = re.findall(r"^#+ (.*)$", document.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def links(document: Path) -> list[str]:
+    errors = []
+    for target in LINK.findall(document.read_text(encoding="utf-8")):
+        if re.match(r"\w+:", target):
+            continue
+        name, _, anchor = target.partition("#")
+        place = (document.parent / name).resolve() if name else document
+        if not place.exists():
+            errors.append(f"link to {target}, which does not exist")
+        elif anchor and place.suffix == ".md" and anchor not in heading_anchors(place):
+            errors.append(f"link to {target}: there is no such heading")
+    return errors
+
+
+def without_blocks(text: str) -> str:
+    return re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
+
+
+def paths(document: Path) -> list[str]:
+    """What looks like a path into one of the tree's folders is one."""
+    errors = []
+    folders = {path.name for path in ROOT.iterdir() if path.is_dir()} - {"build", ".git"}
+    for quoted in BACKTICKS.findall(without_blocks(document.read_text(encoding="utf-8"))):
+        path = quoted.split(":")[0].split(" ")[0].removeprefix("./")
+        if not PATH.fullmatch(path) or path.split("/")[0] not in folders or path.startswith("results/local"):
+            continue
+        if not list(ROOT.glob(path.rstrip("/"))):
+            errors.append(f"`{quoted}`: {path} does not exist")
+    return errors
+
+
+def named_documents() -> list[str]:
+    errors = []
+    for file in files_of_tree():
+        if file == Path(__file__).resolve():
+            continue
+        for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
+            for name in NAMED_DOCUMENT.findall(line):
+                if not (ROOT / name).exists() and not (file.parent / name).exists() and "/dev/" not in line:
+                    errors.append(f"{file.relative_to(ROOT)}:{number} names {name}, which does not exist")
+    return errors
+
+
+def fields_of(schema: object) -> set[str]:
+    """Names of all properties below."""
+    if isinstance(schema, list):
+        return set().union(*map(fields_of, schema))
+    if not isinstance(schema, dict):
+        return set()
+    names = set(schema["properties"]) if isinstance(schema.get("properties"), dict) else set()
+    return names.union(*map(fields_of, schema.values()))
+
+
+def measured() -> list[str]:
+    definitions = json.loads((ROOT / "configs/result.schema.json").read_text(encoding="utf-8"))["definitions"]
+    fields = set().union(*(fields_of(definitions[name]) for name in definitions if name != "benchmark"))
+    statuses = set(definitions["point"]["properties"]["status"]["enum"])
+    explained = set(BACKTICKS.findall((ROOT / "docs/measuring.md").read_text(encoding="utf-8")))
+    return [f"docs/measuring.md does not explain `{name}`" for name in sorted(fields | statuses)
+            if name not in explained and name not in {"error", "work"}]
+
+
+def main() -> int:
+    if "--fix" in sys.argv[1:]:
+        fix()
+    errors = [f"{document.relative_to(ROOT)}: {error}" for document in documents()
+              for check in (quotes, links, paths) for error in check(document)]
+    errors += named_documents() + measured()
+    for error in errors:
+        print(error)
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
