@@ -39,21 +39,4 @@ HardCaseValues hard_case_values(const std::string& profile);
 // values: all of the above. Throws UsageError, naming it, for a value that makes no scene.
 std::vector<HardCase> hard_cases(const HardCaseValues& values);
 
-// Largest stable step: scenes with a default step range.
-struct StabilityScene {
-  std::string name;
-  std::function<Trial(double step)> build;  // one simulated second
-  double largest, smallest;                 // s
-};
-std::vector<StabilityScene> stability_scenes();
-
-// Degrees of freedom that constrained edges leave: 3 per free vertex less the rank of J
-// (SuiteSparseQR), at randomly displaced positions, so that the figure is that of a cloth in
-// general position (claim C14).
-struct Freedom {
-  std::string mesh;
-  int vertices, constraints, rank, degrees_of_freedom;
-};
-std::vector<Freedom> degrees_of_freedom(int n);
-
 }  // namespace harness

@@ -7,7 +7,9 @@
 #include <ostream>
 #include <regex>
 
+#include "harness/stability/freedom.h"
 #include "harness/stability/hard_case.h"
+#include "harness/stability/stability_scenes.h"
 
 namespace harness {
 

@@ -1,0 +1,46 @@
+// What hard cases are built from: small meshes, and trials of them.
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "harness/stability/trial.h"
+
+namespace harness::case_parts {
+
+constexpr double g = 9.81;  // m/s^2, the gravity of every mesh unless it is changed
+
+struct Mesh {
+  inextensible::ProblemParts parts;
+  inextensible::State start;
+  double size = 1;  // m
+};
+
+// n vertices in one place, each of `mass` kg, without edges.
+Mesh points(int n, double mass);
+void join(Mesh& mesh, int a, int b, double rest_length);  // by an edge, m
+// `links` links on a line from the origin along `direction` (unit), 1 m and 1 kg in all; `pinned`
+// at the origin.
+Mesh chain(int links, const Eigen::Vector3d& direction = {1, 0, 0}, bool pinned = true);
+// n x n vertices, 1 m wide and 0.2 kg, horizontal, without shear; pinned at two corners of one
+// edge. diagonals: one of each quad is constrained too.
+Mesh cloth(int n, bool diagonals = false);
+
+// A scene of scene_types() with some parameters given.
+Scene scene_of(const char* name, const SceneParameters& given);
+
+// `steps` steps of `step` seconds; without `steps`, the scene's whole duration.
+Trial trial_of(Scene scene, double step, int steps, double strain_limit = 0.01);
+Trial trial_of(Scene scene, double step, double strain_limit = 0.01);
+Trial trial_of(Mesh mesh, double step, int steps, double strain_limit = 0.01);
+
+// The closest point of the manifold is at most twice as far from the start as the candidate is, so
+// that a velocity filter may return up to four times the candidate's kinetic energy: an
+// energy_tolerance.
+constexpr double closest_point_energy = 3;
+
+// Displaces every vertex that is not pinned by up to `size` m in each coordinate.
+void add_noise(inextensible::Positions& x, const std::vector<int>& pinned, double size,
+               std::mt19937_64& random);
+
+}  // namespace harness::case_parts

@@ -1,0 +1,59 @@
+#include "harness/stability/freedom.h"
+
+#include <SuiteSparseQR.hpp>
+#include <random>
+
+#include "harness/stability/case_parts.h"
+
+namespace harness {
+namespace {
+
+// Rank of the Jacobian of | d |^2 / l over all coordinates.
+int rank_of_jacobian(const case_parts::Mesh& mesh, cholmod_common& common) {
+  const auto rows = mesh.parts.edges.size(), columns = 3 * mesh.parts.mass.size();
+  cholmod_triplet* triplet =
+      cholmod_l_allocate_triplet(rows, columns, 6 * rows, 0, CHOLMOD_REAL, &common);
+  auto* row = static_cast<SuiteSparse_long*>(triplet->i);
+  auto* column = static_cast<SuiteSparse_long*>(triplet->j);
+  auto* value = static_cast<double*>(triplet->x);
+  for (std::size_t k = 0; k < rows; ++k) {
+    const auto [a, b] = mesh.parts.edges[k];
+    const Eigen::Vector3d u =
+        2 * (mesh.start.x.col(b) - mesh.start.x.col(a)) / mesh.parts.rest_length[k];
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const bool at_b : {false, true}) {
+        row[triplet->nnz] = static_cast<SuiteSparse_long>(k);
+        column[triplet->nnz] = 3 * (at_b ? b : a) + axis;
+        value[triplet->nnz++] = at_b ? u[axis] : -u[axis];
+      }
+    }
+  }
+  cholmod_sparse* j = cholmod_l_triplet_to_sparse(triplet, triplet->nnz, &common);
+  SuiteSparseQR_factorization<double>* qr =
+      SuiteSparseQR_factorize<double>(SPQR_ORDERING_DEFAULT, SPQR_DEFAULT_TOL, j, &common);
+  const auto rank = static_cast<int>(qr->rank);
+  SuiteSparseQR_free(&qr, &common);
+  cholmod_l_free_sparse(&j, &common);
+  cholmod_l_free_triplet(&triplet, &common);
+  return rank;
+}
+
+}  // namespace
+
+std::vector<Freedom> degrees_of_freedom(int n) {
+  std::vector<Freedom> list;
+  cholmod_common common{};
+  cholmod_l_start(&common);
+  for (const bool triangles : {false, true}) {
+    case_parts::Mesh mesh = case_parts::cloth(n, triangles);
+    std::mt19937_64 random(1);
+    case_parts::add_noise(mesh.start.x, {}, 0.2 / (n - 1), random);
+    const int rank = rank_of_jacobian(mesh, common);
+    list.push_back({triangles ? "triangles" : "quads", n * n,
+                    static_cast<int>(mesh.parts.edges.size()), rank, 3 * n * n - rank});
+  }
+  cholmod_l_finish(&common);
+  return list;
+}
+
+}  // namespace harness
