@@ -8,19 +8,31 @@ A document may quote code as
 
     `path/to/file.cpp:12`: `text of that line`
 
-and the text must then stand in that line of that file. Links between documents and paths in backticks must exist, Markdown
-files that comments name too, and docs/measuring.md must name every field of a point that the schema of result files knows.
+and the text must then stand in that line of that file. A paragraph may say where its numbers come from,
+
+    <!-- results/paper-strain.json strain drape 0.01: jacobi / fast_projection = 3.5 -->
+
+and the number must then be in the paragraph and follow from the file, to its last digit. `strain` (with a limit) and `resolution`
+(with a number of vertices) mean the time of a best point, `error` (with a largest error) the least time within it, `after
+collision` (with a limit) the strain of a best point; the unit is s, ms or %, none for a ratio or s. Links between documents and
+paths in backticks must exist, Markdown files that comments name too, and docs/measuring.md must name every field of a point that
+the schema of result files knows.
 """
 
 from __future__ import annotations
 
+import functools
 import json
+import math
 import re
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 QUOTE = re.compile(r"`([\w./-]+\.\w+):(\d+)`: `([^`]+)`")
+NUMBER = re.compile(r"<!-- (\S+\.json) ([a-z ]+) (\w+) ([\d.]+): (\w+)(?: / (\w+))? = ([\d.]+) ?(s|ms|%|) -->")
+COMMENTED = re.compile(r"<!--.*?-->", re.DOTALL)
+UNITS = {"": 1, "s": 1, "ms": 1e-3, "%": 0.01}
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
@@ -88,6 +100,59 @@ def quotes(document: Path) -> list[str]:
             errors.append(f"{path} does not hold '{text}'")
         elif int(line) not in here:
             errors.append(f"{path}: '{text}' is in line {here[0]}, not {line} (run tests/docs/check_docs.py --fix)")
+    return errors
+
+
+@functools.cache
+def points_of(file: str) -> list[dict]:
+    return json.loads((ROOT / file).read_text(encoding="utf-8"))["points"]
+
+
+def measured_value(file: str, quantity: str, scene: str, place: float, solver: str) -> float:
+    """What the file says; raises LookupError where it says nothing."""
+    points = [p for p in points_of(file) if p["scene"] == scene and p["solver"] == solver and p["status"] == "ok"]
+    if quantity == "error":
+        times = [p["seconds_per_simulated_second"]["median"] for p in points
+                 if p["sweep"] == "step" and (p["error"]["trajectory"] or math.inf) <= place]
+        if not times:
+            raise LookupError("no such point")
+        return min(times)
+    axis = "vertices" if quantity == "resolution" else "strain_limit"
+    sweep = "resolution" if quantity == "resolution" else "strain"
+    points = [p for p in points if p["sweep"] == sweep and p["best"] and math.isclose(p[axis], place)]
+    if sweep == "strain":  # the largest size, as in figures
+        points = [p for p in points if p["vertices"] == max(q["vertices"] for q in points)]
+    if len(points) != 1:
+        raise LookupError(f"{len(points)} such points")
+    return (points[0]["max_strain_after_collision"] if quantity == "after collision"
+            else points[0]["seconds_per_simulated_second"]["median"])
+
+
+def numbers(document: Path) -> list[str]:
+    errors = []
+    text = without_blocks(document.read_text(encoding="utf-8"))
+    for paragraph in re.split(r"\n(?=\* |\n)", text):
+        words = COMMENTED.sub("", paragraph)
+        for comment in COMMENTED.findall(paragraph):
+            match = NUMBER.fullmatch(comment)
+            if not match:
+                if ".json" in comment:
+                    errors.append(f"cannot read {comment}")
+                continue
+            file, quantity, scene, place, solver, rival, number, unit = match.groups()
+            try:
+                value = measured_value(file, quantity, scene, float(place), solver) / UNITS[unit]
+                if rival:
+                    value /= measured_value(file, quantity, scene, float(place), rival)
+            except (OSError, LookupError, ValueError) as error:
+                errors.append(f"{comment}: {error}")
+                continue
+            decimals = len(number.partition(".")[2])
+            if f"{value:.{decimals}f}" != number:
+                errors.append(f"{comment}: it is {value:.4g}")
+            wanted = number + (f" {unit}" if unit else "")
+            if not re.search(rf"(?<![\d.]){re.escape(wanted)}(?![\d]|\.\d)", words):
+                errors.append(f"{comment}: the paragraph does not say {wanted}")
     return errors
 
 
@@ -162,7 +227,7 @@ def main() -> int:
     if "--fix" in sys.argv[1:]:
         fix()
     errors = [f"{document.relative_to(ROOT)}: {error}" for document in documents()
-              for check in (quotes, links, paths) for error in check(document)]
+              for check in (quotes, numbers, links, paths) for error in check(document)]
     errors += named_documents() + measured()
     for error in errors:
         print(error)
