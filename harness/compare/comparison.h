@@ -66,7 +66,7 @@ struct Comparison {
   bool any(bool (*is)(Change)) const;
 };
 
-// Build, machine or scenes differ so much that no verdict would mean anything.
+// Build, machine or scenes differ so much that no comparison would mean anything.
 class NotComparable : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -134,12 +134,12 @@ std::string junit_xml(const Comparison& comparison, const std::string& name) {
   for (const PointChange& point : comparison.points) {
     text << "<testcase classname=\"" << xml(class_name(point)) << "\" name=\"" << xml(point.id)
          << "\"";
-    const std::string verdict = to_string(point.change);
+    const std::string change = to_string(point.change);
     if (fails(point.change)) {
-      text << "><failure type=\"" << verdict << "\" message=\""
-           << xml(verdict + ": " + point.text()) << "\"/></testcase>\n";
+      text << "><failure type=\"" << change << "\" message=\"" << xml(change + ": " + point.text())
+           << "\"/></testcase>\n";
     } else if (point.change != Change::same || !point.reasons.empty()) {
-      text << "><system-out>" << xml(verdict + ": " + point.text()) << "</system-out></testcase>\n";
+      text << "><system-out>" << xml(change + ": " + point.text()) << "</system-out></testcase>\n";
     } else {
       text << "/>\n";
     }
@@ -151,10 +151,10 @@ std::string junit_xml(const Comparison& comparison, const std::string& name) {
 std::string markdown_table(const Comparison& comparison, const std::string& title) {
   std::string text = "### " + cell(title) + "\n\n" + counts(comparison) + "\n";
   const auto list = sorted_changes(comparison);
-  if (!list.empty()) text += "\n| verdict | sweep | point | what |\n|---|---|---|---|\n";
+  if (!list.empty()) text += "\n| change | sweep | point | what |\n|---|---|---|---|\n";
   for (const PointChange* point : list) {
-    const std::string verdict = cell(to_string(point->change));
-    text += "| " + (fails(point->change) ? "**" + verdict + "**" : verdict) + " | " +
+    const std::string change = cell(to_string(point->change));
+    text += "| " + (fails(point->change) ? "**" + change + "**" : change) + " | " +
             cell(point->sweep) + " | " + cell(point->id) + " | " + cell(point->text()) + " |\n";
   }
   for (const std::string& note : all_notes(comparison)) text += "\nNote: " + cell(note) + "\n";

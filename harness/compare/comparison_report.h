@@ -8,7 +8,8 @@
 
 namespace harness {
 
-// A table of the points that are not SAME, the notes, and how many there are of each verdict.
+// A table of the points that are not SAME, the notes, and how many there are of each kind of
+// change.
 void print_comparison(std::ostream& out, const Comparison& comparison);
 
 // JUnit XML: one test case a point; regressions and failures are its failures. name: the suite's.

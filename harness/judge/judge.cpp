@@ -123,37 +123,38 @@ void Judge::sample(const Positions& filtered, const State& state) {
   }
 }
 
-Verdict Judge::verdict() const {
-  Verdict verdict = running_;
+Measures Judge::measures() const {
+  Measures measures = running_;
   if (samples_ > 0) {
-    verdict.kinetic_energy_mean = kinetic_sum_ / samples_;
+    measures.kinetic_energy_mean = kinetic_sum_ / samples_;
     double squares = 0;
     for (const double strain : strains_) squares += strain * strain;
-    verdict.rms_strain = std::sqrt(squares / static_cast<double>(strains_.size()));
-    verdict.p99_strain = quantile(strains_, 0.99);
+    measures.rms_strain = std::sqrt(squares / static_cast<double>(strains_.size()));
+    measures.p99_strain = quantile(strains_, 0.99);
   }
-  if (!verdict.residuals.empty()) {
-    const auto count = static_cast<double>(verdict.residuals.size());
-    verdict.residual_first = verdict.residual_last = 0;
-    for (const auto& residual : verdict.residuals) {
-      verdict.residual_first += residual.first / count;
-      verdict.residual_last += residual.last / count;
+  if (!measures.residuals.empty()) {
+    const auto count = static_cast<double>(measures.residuals.size());
+    measures.residual_first = measures.residual_last = 0;
+    for (const auto& residual : measures.residuals) {
+      measures.residual_first += residual.first / count;
+      measures.residual_last += residual.last / count;
     }
+    if (!options_.residual_series) measures.residuals.clear();
   }
-  if (!options_.reference) return verdict;
-  verdict.reference = reference_name(options_.reference->scene, options_.reference->parameters);
-  verdict.valid_until = options_.reference->valid_until;
+  if (!options_.reference) return measures;
+  measures.reference = reference_name(options_.reference->scene, options_.reference->parameters);
+  measures.valid_until = options_.reference->valid_until;
   if (compared_ > 0) {
-    verdict.trajectory = std::sqrt(squares_ / compared_);
-    verdict.trajectory_max = most_;
-    verdict.gap = std::sqrt(gap_squares_ / compared_);
+    measures.trajectory = std::sqrt(squares_ / compared_);
+    measures.trajectory_max = most_;
+    measures.gap = std::sqrt(gap_squares_ / compared_);
   }
   if (shapes_ > 0) {
-    verdict.shape_potential_energy = std::sqrt(shape_squares_.potential_energy / shapes_);
-    verdict.shape_corner_height = std::sqrt(shape_squares_.corner_height / shapes_);
-    verdict.shape_shadow = std::sqrt(shape_squares_.shadow / shapes_);
+    measures.shape_potential_energy = std::sqrt(shape_squares_.potential_energy / shapes_);
+    measures.shape_corner_height = std::sqrt(shape_squares_.corner_height / shapes_);
+    measures.shape_shadow = std::sqrt(shape_squares_.shadow / shapes_);
   }
-  return verdict;
+  return measures;
 }
 
 }  // namespace harness

@@ -19,6 +19,7 @@ class Judge {
     std::shared_ptr<const Reference> reference = nullptr;
     // The residual of fast projection with this strain limit; 0: none.
     double residual_of_limit = 0;
+    bool residual_series = false;  // the residual over time too, not its means alone
   };
   Judge(const Scene& scene, const Options& options);
 
@@ -28,7 +29,7 @@ class Judge {
   // counts: whether the step counts towards sample_every (a step controller's parts do not).
   double after(const inextensible::Positions& filtered, const inextensible::State& state,
                bool counts = true);
-  Verdict verdict() const;
+  Measures measures() const;
 
  private:
   struct Range {
@@ -41,7 +42,7 @@ class Judge {
   const Scene& scene_;
   Options options_;
   int steps_ = 0;
-  Verdict running_;
+  Measures running_;
   std::vector<double> strains_;  // |strain| of every edge at every sampled instant
   double start_energy_, energy_scale_;
   double kinetic_sum_ = 0;

@@ -45,7 +45,7 @@ const char* to_string(PointStatus status);
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // written as null
 
 // The judge's figures, from positions alone, off the clock.
-struct Verdict {
+struct Measures {
   double max_strain = 0, max_stretch = 0;             // over all steps
   double p99_strain = unknown, rms_strain = unknown;  // over edges and sampled instants
   double max_strain_after_collision = unknown;        // over all steps, with a collider only
@@ -81,8 +81,7 @@ struct PointResult {
   std::optional<double> stiffness;  // EA, N, found by calibration
   inextensible::PhaseSeconds phases;
   inextensible::WorkCounters work;
-  Verdict verdict;
-  double claimed_strain = unknown;
+  Measures measures;
   double smallest_step = unknown;  // s, of the accepted ones of a step controller
   int steps_planned = 0;
   std::string linear_solver;

@@ -18,12 +18,9 @@ json seconds_json(const std::vector<double>& samples) {
           {"samples", samples}};
 }
 
-// series: with the residual over time; one sweep that holds it is enough.
-json error_json(const Verdict& v, bool series) {
+json error_json(const Measures& v) {
   json residuals = json::array();
-  if (series) {
-    for (const auto& r : v.residuals) residuals.push_back({r.time, r.first, r.last});
-  }
+  for (const auto& r : v.residuals) residuals.push_back({r.time, r.first, r.last});
   return {{"energy_drift", number(v.energy_drift)},
           {"symmetry_defect", number(v.symmetry_defect)},
           {"reference", v.reference.empty() ? json(nullptr) : json(v.reference)},
@@ -58,9 +55,9 @@ PointStatus status_of(const std::string& text) {
   throw json::other_error::create(501, "'" + text + "' is no status of a point", nullptr);
 }
 
-Verdict verdict_of(const json& p) {
+Measures measures_of(const json& p) {
   const json& e = p.at("error");
-  Verdict v;
+  Measures v;
   v.max_strain = number_of(p.at("max_strain"));
   v.max_stretch = number_of(p.at("max_stretch"));
   v.p99_strain = number_of(p.at("p99_strain"));
@@ -109,7 +106,7 @@ json to_json(const inextensible::WorkCounters& w) {
 
 json to_json(const PointResult& point) {
   const PointSpec& spec = point.spec;
-  const Verdict& v = point.verdict;
+  const Measures& v = point.measures;
   const json settings = to_json(spec.settings);  // of the suite
   json options = settings;
   if (point.stiffness) options["stiffness"] = *point.stiffness;
@@ -147,7 +144,7 @@ json to_json(const PointResult& point) {
           {"rms_strain", number(v.rms_strain)},
           {"max_strain_after_collision", number(v.max_strain_after_collision)},
           {"kinetic_energy_mean", number(v.kinetic_energy_mean)},
-          {"error", error_json(v, spec.sweep == "step")},
+          {"error", error_json(v)},
           {"work", work},
           {"peak_rss_bytes", point.peak_rss_bytes},
           {"best", point.best},
@@ -209,7 +206,7 @@ PointResult point_of(const json& p) {
   phases.at("collision").get_to(point.phases.collision);
   point.work = work_of(p.at("work"));
   point.calibration_runs = p.at("work").value("calibration_runs", 0);
-  point.verdict = verdict_of(p);
+  point.measures = measures_of(p);
   point.smallest_step = number_of(p.value("smallest_step", json(nullptr)));
   point.steps_planned =
       static_cast<int>(std::lround(p.at("duration").get<double>() / point.spec.step));

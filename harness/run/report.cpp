@@ -124,7 +124,7 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
   for (const PointResult* point : points) {
     if (std::find(solvers.begin(), solvers.end(), point->spec.solver) == solvers.end())
       solvers.push_back(point->spec.solver);
-    if (std::isfinite(point->verdict.gap)) gap = std::max(gap, point->verdict.gap);
+    if (std::isfinite(point->measures.gap)) gap = std::max(gap, point->measures.gap);
   }
   out << '\n'
       << scene << ", step sweep: seconds per simulated second to reach a trajectory error "
@@ -138,7 +138,7 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
     for (const double target : targets) {
       const PointResult* fastest = nullptr;
       for (const PointResult* point : points) {
-        if (point->spec.solver != solver || !point->ok() || !(point->verdict.trajectory <= target))
+        if (point->spec.solver != solver || !point->ok() || !(point->measures.trajectory <= target))
           continue;
         if (!fastest || point->median_seconds() < fastest->median_seconds()) fastest = point;
       }

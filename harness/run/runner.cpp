@@ -45,7 +45,7 @@ struct Run {
   PointStatus status = PointStatus::ok;
   std::string detail;
   double seconds = 0;  // of stepping alone
-  Verdict verdict;
+  Measures measures;
   std::unique_ptr<inextensible::Stepper> stepper;
   double setup_seconds = 0;
   double smallest_step = unknown;
@@ -88,6 +88,8 @@ class PointRunner {
       // Where growth is the question, a probe that needs the solver's own memory again is not.
       if (spec_.solver == "fast_projection" && !spec_.adaptive && spec_.sweep != "resolution")
         judging.residual_of_limit = spec_.strain_limit;
+      // A figure draws the series of step sweeps; for the others it would fill files unread.
+      judging.residual_series = spec_.sweep == "step";
     }
     Judge judge(scene_, judging);
     inextensible::State state = scene_.start;
@@ -144,12 +146,12 @@ class PointRunner {
         break;
       }
     }
-    run.verdict = judge.verdict();
-    const bool missed = !(run.verdict.max_strain <= spec_.strain_limit * (1 + 1e-9));
+    run.measures = judge.measures();
+    const bool missed = !(run.measures.max_strain <= spec_.strain_limit * (1 + 1e-9));
     if (judged && run.status == PointStatus::ok && missed &&
         backend_.knob != inextensible::Knob::none) {
       run.status = PointStatus::strain_missed;
-      run.detail = "maximum strain " + std::to_string(run.verdict.max_strain);
+      run.detail = "maximum strain " + std::to_string(run.measures.max_strain);
     }
     return run;
   }
@@ -251,7 +253,7 @@ class Calibration {
       detail_ = "calibration, " + run.detail;
       return std::log(2.0);
     }
-    const double f = std::log(std::max(run.verdict.max_strain, 1e-300) / limit);
+    const double f = std::log(std::max(run.measures.max_strain, 1e-300) / limit);
     if (f <= 0 && (!best_ || log_stiffness < std::log10(*best_))) {
       best_ = std::pow(10, log_stiffness);
       best_excess_ = f;
@@ -290,7 +292,7 @@ void fill(PointResult& point, Run& run) {
   point.status = run.status;
   point.detail = run.detail;
   point.setup_seconds = run.setup_seconds;
-  point.verdict = run.verdict;
+  point.measures = run.measures;
   point.smallest_step = run.smallest_step;
   point.phases = run.stepper->phases();
   point.work = run.stepper->work();

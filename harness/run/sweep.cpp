@@ -67,7 +67,7 @@ class StepSearch {
 
  private:
   bool permissible(const PointResult& point) const {
-    return point.ok() && (std::isinf(max_error_) || point.verdict.trajectory <= max_error_);
+    return point.ok() && (std::isinf(max_error_) || point.measures.trajectory <= max_error_);
   }
 
   bool consider(std::size_t rung, const PointResult& point) {
@@ -93,8 +93,8 @@ class StepSearch {
         ++timeouts;
       }
       if (point.ok() && !permissible(point)) {
-        error_rises = point.verdict.trajectory > last_error ? error_rises + 1 : 0;
-        last_error = point.verdict.trajectory;
+        error_rises = point.measures.trajectory > last_error ? error_rises + 1 : 0;
+        last_error = point.measures.trajectory;
       }
       if (rises == 2 || timeouts == 2 || error_rises == 2) return;
     }

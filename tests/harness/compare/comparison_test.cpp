@@ -315,12 +315,12 @@ json one_result() {
   point.status = PointStatus::ok;
   point.samples = {0.25};
   point.work.iterations = 1234567;
-  point.verdict.max_strain = 0.00987654321;
-  point.verdict.trajectory = 0.0123456789;
+  point.measures.max_strain = 0.00987654321;
+  point.measures.trajectory = 0.0123456789;
   PointResult failed = point;
   failed.spec.step = 0.02;
   failed.status = PointStatus::diverged;
-  failed.verdict.max_strain = std::numeric_limits<double>::infinity();
+  failed.measures.max_strain = std::numeric_limits<double>::infinity();
   return json::parse(
       result_document(machine_context(), Suite(), {"bench"}, true, {point, failed}).dump());
 }

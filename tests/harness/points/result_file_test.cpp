@@ -92,8 +92,8 @@ TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchemaAndComesBackAsItWas) {
 TEST(ResultFile, WritesNullForNumbersThatAreNotFinite) {
   PointResult point;
   point.spec.scene_parameters = {{"duration", 1}};
-  point.verdict.max_strain = std::numeric_limits<double>::infinity();
-  point.verdict.rms_strain = std::nan("");
+  point.measures.max_strain = std::numeric_limits<double>::infinity();
+  point.measures.rms_strain = std::nan("");
   const json written = json::parse(to_json(point).dump());
   EXPECT_TRUE(written["max_strain"].is_null());
   EXPECT_TRUE(written["rms_strain"].is_null());

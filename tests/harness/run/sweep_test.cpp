@@ -177,7 +177,7 @@ SweepRunners erring(SweepRunners runners, double slope) {
   runners.run = [slope, run = runners.run](const PointSpec& spec, const RunLimits& limits,
                                            std::optional<double> guess) {
     PointResult point = run(spec, limits, guess);
-    point.verdict.trajectory = slope * spec.step * (spec.strain_limit < 0.05 ? 10 : 1);
+    point.measures.trajectory = slope * spec.step * (spec.strain_limit < 0.05 ? 10 : 1);
     return point;
   };
   return runners;
