@@ -1,0 +1,53 @@
+#include "harness/judge/reference.h"
+#include "harness/scenes/pendulum.h"
+#include "harness/stability/checks.h"
+
+namespace harness {
+
+using inextensible::Knob;
+using inextensible::Positions;
+using inextensible::State;
+using inextensible::StepResult;
+
+Findings check_consistency(const Examinee& solver) {
+  const char* check = "consistency";
+  constexpr int links = 7;
+  constexpr double largest_error = 0.01;  // of the fine run, over the scene's size
+  const Case c = scene_case("chain of 8", "chain", {{"n", links + 1}}, 0.32 / 80, 80);
+  std::vector<Positions> ends;
+  for (const int refinement : {1, 2, 16}) {
+    Case fine = c;
+    fine.limit = 1e-6;
+    const auto stepper = solver.stepper(fine);
+    State state = c.scene.start;
+    for (int i = 0; i < refinement * c.steps; ++i) {
+      if (const StepResult result = stepper->advance(state, c.step / refinement); !result)
+        return {
+            judged(false, check,
+                   text("not measured: refuses h = 1/", 250 * refinement,
+                        " s on a falling chain of 8 at strain limit 1e-6: ", result.detail),
+                   "an easy scene; look at the iteration limit and at what ends the iteration")};
+    }
+    ends.push_back(state.x);
+  }
+  const double coarse = rms_distance(c.scene, ends[0], ends[2]),
+               half = rms_distance(c.scene, ends[1], ends[2]);
+  const std::string measured = text("halving h takes the distance to its own fine run from ",
+                                    coarse, " to ", half, " (allowed ", 0.7 * coarse, ")");
+  const char* advice =
+      "what a step changes must vanish with h: look for a damping, a relaxation or an offset a "
+      "step that does not know h";
+  const bool converges = half <= 0.7 * coarse || coarse < 1e-9;
+  if (solver.backend.knob == Knob::none) return {judged(converges, check, measured, advice)};
+  Pendulum exact({std::vector<double>(links, 1.0 / (links + 1)),
+                  std::vector<double>(links, 1.0 / links), 9.81},
+                 std::vector<double>(links, 0.0));
+  exact.advance(c.step * c.steps, 1e-12);
+  const double error = rms_distance(c.scene, ends[2], exact.positions());
+  return {judged(converges && error <= largest_error, check,
+                 text(measured, ", and that is ", error, " from the exact motion (allowed ",
+                      largest_error, ")"),
+                 advice)};
+}
+
+}  // namespace harness

@@ -1,0 +1,86 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "harness/stability/checks.h"
+
+namespace harness {
+
+using Eigen::Vector3d;
+using inextensible::Positions;
+using inextensible::Problem;
+using inextensible::State;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Vector3d linear_momentum(const Problem& problem, const Positions& v) {
+  return v * Eigen::Map<const Eigen::VectorXd>(problem.mass().data(), problem.vertices());
+}
+
+// About the centre of mass.
+Vector3d spin(const Problem& problem, const State& state) {
+  const Vector3d centre = linear_momentum(problem, state.x) / problem.total_mass();
+  Vector3d sum = Vector3d::Zero();
+  for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
+    const Vector3d arm = state.x.col(i) - centre, velocity = state.v.col(i);
+    sum += problem.mass()[static_cast<std::size_t>(i)] * arm.cross(velocity);
+  }
+  return sum;
+}
+
+constexpr double momentum_duration = 0.04;  // s
+constexpr double momentum_tolerance = 1e-9, spin_tolerance = 1e-6;
+
+// Raises `linear` to the largest relative change of linear momentum in a step; infinite if refused.
+double loss_of_spin(const Examinee& solver, const Case& c, double step, double& linear) {
+  const Problem& problem = *c.scene.problem;
+  const auto stepper = solver.stepper(c);
+  State state = c.scene.start;
+  const Vector3d start = spin(problem, state);
+  double scale = 0;
+  for (Eigen::Index i = 0; i < state.v.cols(); ++i)
+    scale += problem.mass()[static_cast<std::size_t>(i)] * state.v.col(i).norm();
+  for (int i = 0; i < std::lround(momentum_duration / step); ++i) {
+    const Vector3d before = linear_momentum(problem, state.v);
+    if (!stepper->advance(state, step)) return infinity;
+    linear = std::max(linear, (linear_momentum(problem, state.v) - before).norm() / scale);
+  }
+  return (spin(problem, state) - start).norm() / (scale * c.scene.size);
+}
+
+}  // namespace
+
+Findings check_momentum(const Examinee& solver) {
+  double linear = 0, coarse = 0, fine = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Case c = net(seed, 5, 0, 0.5, 0.002, 0, 1e-4);
+    coarse += loss_of_spin(solver, c, c.step, linear) / 4;
+    fine += loss_of_spin(solver, c, c.step / 4, linear) / 4;
+  }
+  if (std::isinf(coarse + fine)) {
+    Findings refused;
+    for (const char* check : {"linear momentum", "angular momentum"})
+      refused.push_back(
+          judged(false, check, "not measured: it refuses a step of 0.002 s of a free net",
+                 "strain limit 0.0001, speeds of 0.5 m/s, edges of 1 m: a small correction"));
+    return refused;
+  }
+  const double allowed = std::max(0.6 * coarse, spin_tolerance);
+  return {judged(linear <= momentum_tolerance, "linear momentum",
+                 text("changes by ", linear, " of its scale in a step (allowed ",
+                      momentum_tolerance, ")"),
+                 "nothing outside acts: corrections of an edge's two ends, times their masses, "
+                 "must cancel "
+                 "(share by inverse mass)"),
+          judged(fine <= allowed, "angular momentum",
+                 text("changes by ", coarse, " of its scale at h, ", fine, " at h/4 (allowed ",
+                      allowed, ": it vanishes with the step)"),
+                 "corrections must act along their edge, at its direction within the step; about "
+                 "the origin "
+                 "or along fixed axes they do torque")};
+}
+
+}  // namespace harness

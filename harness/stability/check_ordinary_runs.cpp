@@ -1,0 +1,140 @@
+#include <algorithm>
+#include <functional>
+
+#include "harness/base/text.h"
+#include "harness/stability/checks.h"
+#include "harness/stability/trial_judge.h"
+#include "inextensible/stepping/step_controller.h"
+
+namespace harness {
+
+using inextensible::Knob;
+using inextensible::Positions;
+using inextensible::Problem;
+using inextensible::State;
+using inextensible::Stepper;
+using inextensible::StepResult;
+using inextensible::WorkCounters;
+
+namespace {
+
+std::vector<std::int64_t> counts_of(const WorkCounters& w) {
+  return {w.steps,
+          w.rejected_steps,
+          w.iterations,
+          w.assemblies,
+          w.factorizations,
+          w.back_solves,
+          w.linear_iterations,
+          w.edge_projections,
+          w.line_search_steps,
+          w.spring_evaluations,
+          w.triangle_tests,
+          w.contacts};
+}
+
+// All that ordinary runs tell, in one pass over them.
+struct Ordinary {
+  int steps = 0, smaller = 0;  // smaller: accepted ones shorter than the case's own
+  std::string stopped;
+  int moved_pins = 0, places = 0;
+  std::string first_moved;
+  double worst = 0;  // strain over limit
+  std::string worst_place;
+  std::string wrong_count;
+};
+
+void look(const Case& c, const Stepper& stepper, const State& state, Ordinary& all) {
+  const Problem& problem = *c.scene.problem;
+  const std::string place = text(c.name, ", step ", stepper.work().steps);
+  for (const int pin : problem.pinned()) {
+    ++all.places;
+    const Positions now = state.x.col(pin), start = c.scene.start.x.col(pin);
+    if (same_bits(now, start)) continue;
+    if (all.moved_pins++ == 0)
+      all.first_moved =
+          text("vertex ", pin, " is pinned but moved by ", (now - start).norm(), " m at ", place);
+  }
+  const WorstEdge worst = worst_edge(problem, stepper.filtered_positions());
+  if (worst.strain / c.limit > all.worst) {
+    all.worst = worst.strain / c.limit;
+    all.worst_place = text("edge ", worst.edge, " at ", place);
+  }
+}
+
+void drive(const Examinee& solver, const Case& c, Ordinary& all) {
+  const auto stepper = solver.stepper(c);
+  inextensible::StepController controller(*stepper, {.largest = c.step, .most_halvings = 10});
+  State state = c.scene.start;
+  std::int64_t accepted = 0;
+  while (state.time < (c.steps - 0.5) * c.step || !controller.aligned()) {
+    const std::vector<std::int64_t> before = counts_of(stepper->work());
+    const StepResult result = controller.advance(state);
+    if (!result) {
+      all.stopped = text(c.name, " at t = ", state.time, " s, steps down to ", controller.next(),
+                         " s: ", to_string(result.status), ", ", result.detail);
+      return;
+    }
+    ++accepted;
+    ++all.steps;
+    if (controller.last() < c.step) ++all.smaller;
+    look(c, *stepper, state, all);
+    const std::vector<std::int64_t> after = counts_of(stepper->work());
+    const bool falls =
+        !std::equal(before.begin(), before.end(), after.begin(), std::less_equal<>());
+    if (all.wrong_count.empty() &&
+        (falls || stepper->work().steps != accepted || result.iterations < 0))
+      all.wrong_count = text(falls ? "a counter fell" : "steps or iterations are wrong", " at ",
+                             c.name, ", step ", accepted);
+  }
+}
+
+}  // namespace
+
+Findings check_ordinary_runs(const Examinee& solver) {
+  std::vector<Case> cases{scene_case("chain of 20", "chain", {{"n", 20}}, 1.0 / 400, 80),
+                          scene_case("drape of 9 x 9", "drape", {{"n", 9}}, 1.0 / 400, 60)};
+  for (std::uint64_t seed = 1; seed <= 4; ++seed)
+    cases.push_back(net(seed, 5, 2, 2, 0.005, 10, 0.005));
+  Ordinary all;
+  std::string stopped;
+  for (const Case& c : cases) {
+    drive(solver, c, all);
+    if (stopped.empty()) stopped = all.stopped;
+  }
+  Findings findings;
+  findings.push_back(judged(
+      stopped.empty(), "steps",
+      stopped.empty() ? text(all.steps, " steps of a chain, a drape and nets, ", all.smaller,
+                             " of them smaller than asked for")
+                      : "it does not get through " + stopped,
+      "easy scenes: at small steps the candidate nearly meets the limit; look at the iteration "
+      "limit and at what ends the iteration"));
+  findings.push_back(judged(
+      all.moved_pins == 0, "pins",
+      text(all.moved_pins, " of ", all.places, " places of pinned vertices changed (allowed 0)"),
+      all.first_moved +
+          ": a pinned vertex's inverse mass is 0; do not write to it, rounding moves it too"));
+  if (solver.keeps_a_limit()) {
+    findings.push_back(judged(
+        all.worst <= 1 + 1e-9, "limit",
+        text("largest strain ", number_text(all.worst, 4), " of the limit (allowed 1)"),
+        all.worst_place +
+            ": return ok only where every edge keeps | |d| / l - 1 | <= strain_limit "
+            "(EdgeConstraints::permissible), before the collision filter; refuse otherwise"));
+  } else {
+    findings.push_back(
+        not_applicable("limit", text(solver.backend.knob == Knob::stiffness
+                                         ? "no limit of its own, sweeps search its stiffness"
+                                         : "promises no limit",
+                                     "; here ", number_text(all.worst, 4), " of it")));
+  }
+  findings.push_back(judged(
+      all.wrong_count.empty(), "counters",
+      all.wrong_count.empty() ? "steps are counted and no counter falls" : all.wrong_count,
+      "only add to the WorkCounters that apply() is given, and return the iterations of this "
+      "step alone"));
+  return findings;
+}
+
+}  // namespace harness

@@ -1,0 +1,54 @@
+// What the checks of conformance.h share: the solver under examination, and the cases it is put
+// through.
+#pragma once
+
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "harness/scenes/scene.h"
+#include "harness/stability/conformance.h"
+#include "inextensible/registry.h"
+
+namespace harness {
+
+// Some steps of one scene.
+struct Case {
+  std::string name;
+  Scene scene;
+  double step;  // s
+  int steps;
+  double limit;  // strain
+};
+Case scene_case(const std::string& name, const char* type, const SceneParameters& given,
+                double step, int steps);
+// A crumpled net of n x n vertices about 1 m apart, masses over a decade, weightless; the first
+// `pins` are pinned; speeds up to `speed` m/s in each coordinate.
+Case net(std::uint64_t seed, int n, int pins, double speed, double step, int steps, double limit);
+
+struct Examinee {
+  const inextensible::Backend& backend;
+  const ConformanceOptions& options;
+
+  bool keeps_a_limit() const { return backend.knob == inextensible::Knob::strain_limit; }
+  std::unique_ptr<inextensible::Stepper> stepper(const Case& c) const;
+};
+
+// What a check says; `advice` is kept for a failure only.
+Finding judged(bool passed, const std::string& check, const std::string& measured,
+               const std::string& advice);
+Finding not_applicable(const std::string& check, const std::string& why);
+
+bool same_bits(const inextensible::Positions& a, const inextensible::Positions& b);
+bool same_bits(const inextensible::State& a, const inextensible::State& b);
+
+// All parts in a row, numbers with three digits.
+template <class... Parts>
+std::string text(const Parts&... parts) {
+  std::ostringstream stream;
+  stream.precision(3);
+  (stream << ... << parts);
+  return stream.str();
+}
+
+}  // namespace harness
