@@ -2,45 +2,13 @@
 // is its own file pair and one row in registry.cpp, or a plug-in (plugin.h).
 #pragma once
 
-#include <map>
 #include <memory>
 #include <span>
-#include <string>
 #include <string_view>
-#include <variant>
-#include <vector>
 
-#include "inextensible/stepping/stepper.h"
+#include "inextensible/methods/backend.h"
 
 namespace inextensible {
-
-// A setting of one backend, with its default and, for words, what may be chosen.
-struct SettingInfo {
-  const char* name;
-  std::variant<double, const char*> initial;
-  const char* meaning;
-  std::vector<const char*> choices = {};
-};
-
-using Settings = std::map<std::string, std::variant<double, std::string>>;
-
-struct BackendOptions {
-  double strain_limit = 0.01;  // permissible |strain|, > 0
-  std::uint64_t seed = 1;      // of methods that draw random numbers
-  Settings settings = {};      // the backend's own; missing ones take their default
-};
-
-// What the harness may turn to make a run keep its strain limit.
-enum class Knob { strain_limit, stiffness, none };
-
-struct Backend {
-  const char* name;
-  const char* summary;  // one line
-  Knob knob;
-  bool contestant;  // appears in figures and rankings
-  std::vector<SettingInfo> settings;
-  std::unique_ptr<Stepper> (*make)(std::shared_ptr<const Problem>, const BackendOptions&);
-};
 
 std::span<const Backend> backends();
 // Appends rows from outside this library. At program start, before anything else: what backends()

@@ -2,18 +2,17 @@
 #pragma once
 
 #include <set>
-#include <string>
 
-#include "harness/stability/trial.h"
+#include "harness/stability/hard_case.h"
 
 namespace harness::case_parts {
 
 // Solvers, by where they take the constraint direction.
-extern const std::set<std::string> current_direction;  // at the iterate
-extern const std::set<std::string> start_direction;    // at the step's start
-extern const std::set<std::string> strain_limiting;    // edge after edge
-extern const std::set<std::string> springs;
-extern const std::set<std::string> everyone;
+constexpr auto current_direction = inextensible::Direction::current;
+constexpr auto start_direction = inextensible::Direction::start;
+constexpr auto strain_limiting = inextensible::Direction::local;
+constexpr auto springs = inextensible::Direction::springs;
+extern const Solvers everyone;
 
 extern const std::set<Outcome> survives, refuses;
 extern const std::set<Outcome> either;  // survives or refuses

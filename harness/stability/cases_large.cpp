@@ -13,8 +13,9 @@ using namespace case_parts;
 void add_large(std::vector<HardCase>& cases, const HardCaseValues& values) {
   const auto budget = [](Trial& trial) {  // edge visits that strain limiting may spend on a step
     const double sweeps = std::max(100.0, 2e8 / trial.scene.problem->constraints());
-    for (const std::string& name : strain_limiting)
-      trial.settings[name] = {{"max_iterations", std::min(1e5, std::floor(sweeps))}};
+    for (const auto& backend : inextensible::backends())
+      if (backend.direction == strain_limiting && inextensible::is_built_in(backend.name))
+        trial.settings[backend.name] = {{"max_iterations", std::min(1e5, std::floor(sweeps))}};
   };
   for (const double value : values.at("links")) {
     const int n = static_cast<int>(value);

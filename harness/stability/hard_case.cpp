@@ -40,6 +40,12 @@ void check_values(const HardCaseValues& values) {
 
 }  // namespace
 
+bool Solvers::contains(const std::string& solver) const {
+  if (everyone() || names_.contains(solver)) return true;
+  const auto* backend = inextensible::find_backend(solver);
+  return direction_ && backend && backend->direction == *direction_;
+}
+
 HardCaseValues hard_case_values(const std::string& profile) {
   HardCaseValues values{{"distances", {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}},
                         {"limits", {0.01, 0.001}},

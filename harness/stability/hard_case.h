@@ -3,20 +3,40 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "harness/stability/trial.h"
+#include "inextensible/registry.h"
 
 namespace harness {
+
+// The solvers that an expectation speaks of: those whose constraint forces take their direction
+// from the same place, those named, or all.
+class Solvers {
+ public:
+  Solvers() = default;
+  Solvers(inextensible::Direction direction) : direction_(direction) {}
+  Solvers(std::initializer_list<std::string> names) : names_(names) {}
+
+  bool everyone() const { return !direction_ && names_.empty(); }
+  bool contains(const std::string& solver) const;
+  const std::set<std::string>& names() const { return names_; }
+
+ private:
+  std::optional<inextensible::Direction> direction_;
+  std::set<std::string> names_;
+};
 
 // What solvers do in a case at its own, fixed step. The first expectation that names a solver
 // counts. With smaller steps (after a refusal) solvers may survive, refuse or take too long;
 // `diverged` and `wrong` only where an expectation allows them.
 struct Expectation {
-  std::set<std::string> solvers;  // empty: all
+  Solvers solvers;
   std::set<Outcome> allowed;
   std::string why;
 };

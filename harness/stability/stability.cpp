@@ -22,9 +22,8 @@ constexpr double told_energy_gain = 0.05;
 constexpr int bisections = 3;  // between the first step that survives and the one above: to 9 %
 
 const Expectation& expectation_of(const HardCase& hard_case, const std::string& solver) {
-  return *std::find_if(
-      hard_case.expectations.begin(), hard_case.expectations.end(),
-      [&](const Expectation& e) { return e.solvers.empty() || e.solvers.contains(solver); });
+  return *std::find_if(hard_case.expectations.begin(), hard_case.expectations.end(),
+                       [&](const Expectation& e) { return e.solvers.contains(solver); });
 }
 
 bool acceptable(const std::set<Outcome>& allowed, const TrialResult& result) {

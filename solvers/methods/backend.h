@@ -1,0 +1,69 @@
+// A method as the program knows it: one row, which stands in the method's own .cpp, or in a plug-in
+// (plugin.h). What the rest of the program must know of a method it asks the row for; nothing asks
+// for a method by its name.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "inextensible/stepping/stepper.h"
+
+namespace inextensible {
+
+// Numbers from `least` to `largest`; `open`: without these two themselves.
+struct Range {
+  double least = 0;
+  double largest = std::numeric_limits<double>::infinity();
+  bool open = false;
+
+  bool contains(double number) const;  // false on NaN and infinities
+};
+
+// A setting of one backend, with its default, what may be chosen (for words), and between which
+// numbers.
+struct SettingInfo {
+  const char* name;
+  std::variant<double, const char*> initial;
+  const char* meaning;
+  std::vector<const char*> choices = {};
+  Range range = {};
+  bool whole = false;                 // a count: integers only
+  std::optional<Range> tunable = {};  // where a search for the best value may look
+};
+
+using Settings = std::map<std::string, std::variant<double, std::string>>;
+
+struct BackendOptions {
+  double strain_limit = 0.01;  // permissible |strain|, > 0
+  std::uint64_t seed = 1;      // of methods that draw random numbers
+  Settings settings = {};      // the backend's own; missing ones take their default
+};
+
+// What the harness may turn to make a run keep its strain limit.
+enum class Knob { strain_limit, stiffness, none };
+
+// Where a method's constraint forces take their direction from: each edge from its own ends in turn
+// (local), the gradient at the start of the step, at the current iterate and so at last at the
+// end of the step, or from springs.
+enum class Direction { none, local, start, current, springs };
+
+struct Backend {
+  const char* name;     // a-z, 0-9 and _
+  const char* summary;  // one line
+  Knob knob;
+  bool contestant;  // appears in figures and rankings
+  std::vector<SettingInfo> settings;
+  std::unique_ptr<Stepper> (*make)(std::shared_ptr<const Problem>, const BackendOptions&);
+  Direction direction = Direction::none;
+  const char* citation = "";  // author and year
+  const char* label = "";     // in figures; empty: the name
+  const char* family = "";    // the method whose colour it shares in figures; empty: its own
+};
+
+}  // namespace inextensible
