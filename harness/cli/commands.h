@@ -26,6 +26,7 @@ void add_sweep_command(CLI::App& app, Chosen& chosen, const std::vector<std::str
 void add_reference_command(CLI::App& app, Chosen& chosen);
 void add_list_command(CLI::App& app, Chosen& chosen);
 void add_claims_command(CLI::App& app, Chosen& chosen);
+void add_results_command(CLI::App& app, Chosen& chosen);
 void add_merge_command(CLI::App& app, Chosen& chosen);
 void add_plot_command(CLI::App& app, Chosen& chosen);
 void add_emit_command(CLI::App& app, Chosen& chosen);

@@ -67,6 +67,7 @@ int run(int argc, char** argv) {
   add_plot_command(app, chosen);
   add_reference_command(app, chosen);
   add_claims_command(app, chosen);
+  add_results_command(app, chosen);
   add_emit_command(app, chosen);
   add_compare_command(app, chosen);
   add_baseline_command(app, chosen);

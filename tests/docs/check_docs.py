@@ -37,7 +37,6 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
 NAMED_DOCUMENT = re.compile(r"[\w/.-]*\w\.md\b")
-COMMENT = re.compile(r"^.*?(?://|#|$)")  # all before the comment
 SOURCES = ("solvers", "harness", "tests", "plots", "cmake", "configs")
 SOURCE_SUFFIXES = {".cpp", ".h", ".py", ".sh", ".cmake", ".txt", ".json"}
 
@@ -197,8 +196,9 @@ def named_documents() -> list[str]:
     for file in files_of_tree():
         if file == Path(__file__).resolve():
             continue
+        mark = "//" if file.suffix in {".cpp", ".h"} else "#"
         for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
-            for name in NAMED_DOCUMENT.findall(COMMENT.sub("", line)):
+            for name in NAMED_DOCUMENT.findall(line.partition(mark)[2]):
                 if not (ROOT / name).exists():
                     errors.append(f"{file.relative_to(ROOT)}:{number} names {name}, which does not exist")
     return errors

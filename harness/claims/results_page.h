@@ -1,0 +1,22 @@
+// What result files say, as a page of Markdown tables (docs/results.md).
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace harness {
+
+struct NamedResult {
+  std::string name;  // of its file, as the page gives it
+  nlohmann::json document;
+};
+
+// results: of sweeps and stability sweeps; the claims are decided by these. growth: only for tables
+// of growth, so that a sweep at a fixed step does not take part in contests of best steps.
+// Throws UsageError for documents that lack something.
+void print_results_page(std::ostream& out, const std::vector<NamedResult>& results,
+                        const std::vector<NamedResult>& growth);
+
+}  // namespace harness

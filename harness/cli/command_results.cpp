@@ -1,0 +1,68 @@
+// bench results: tables of what result files say, as a page of Markdown.
+#include <iostream>
+#include <sstream>
+
+#include "harness/base/files.h"
+#include "harness/claims/results_page.h"
+#include "harness/cli/commands.h"
+#include "harness/points/result_file.h"
+
+namespace harness {
+namespace {
+
+struct Given {
+  std::vector<std::string> results, growth;
+  std::string out;
+};
+
+std::vector<NamedResult> read(const std::vector<std::string>& files) {
+  std::vector<NamedResult> results;
+  results.reserve(files.size());
+  for (const std::string& file : files) results.push_back({file, read_result(file)});
+  return results;
+}
+
+// The page begins with the command that makes it again.
+std::string page(const Given& given) {
+  std::ostringstream out;
+  out << "# Results\n\nThis page is generated; do not edit it. The command, which gives every file "
+         "that the numbers come from:\n\n```sh\n./bench results";
+  for (const std::string& file : given.results) out << " \\\n  " << file;
+  if (!given.growth.empty()) out << " \\\n  --growth";
+  for (const std::string& file : given.growth) out << ' ' << file;
+  if (!given.out.empty()) out << " \\\n  --out " << given.out;
+  out << "\n```\n\nNumbers are medians. [measuring.md](measuring.md) says what they mean, and "
+         "which "
+         "rankings are provisional; a dash: no step of that solver met the limit.\n\n";
+  print_results_page(out, read(given.results), read(given.growth));
+  return out.str();
+}
+
+}  // namespace
+
+void add_results_command(CLI::App& app, Chosen& chosen) {
+  const auto given = std::make_shared<Given>();
+  CLI::App* command = app.add_subcommand(
+      "results", "tables of what result files say, in Markdown (docs/results.md)");
+  command
+      ->add_option("results", given->results,
+                   "result files; of points that several have, the first one's count for claims")
+      ->required()
+      ->type_name("RESULT.json ...");
+  command->add_option("--growth", given->growth, "result files for the tables of growth alone")
+      ->type_name("RESULT.json ...");
+  command->add_option("--out", given->out, "the page; default: standard output")->type_name("FILE");
+  command->callback([given, &chosen] {
+    chosen = [given] {
+      if (given->out.empty()) {
+        std::cout << page(*given);
+      } else {
+        check_writable(given->out);
+        write_atomically(given->out, page(*given));
+      }
+      return success;
+    };
+  });
+}
+
+}  // namespace harness
