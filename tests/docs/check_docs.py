@@ -15,8 +15,8 @@ and the text must then stand in that line of that file. A paragraph may say wher
 and the number must then be in the paragraph and follow from the file, to its last digit. `strain` (with a limit) and `resolution`
 (with a number of vertices) mean the time of a best point, `error` (with a largest error) the least time within it, `after
 collision` (with a limit) the strain of a best point; the unit is s, ms or %, none for a ratio or s. Links between documents and
-paths in backticks must exist, Markdown files that comments name too, and docs/measuring.md must name every field of a point that
-the schema of result files knows.
+paths in backticks must exist, Markdown files that comments name too, and docs/measuring.md must name every field of a point, every
+counter and every status.
 """
 
 from __future__ import annotations
@@ -204,23 +204,24 @@ def named_documents() -> list[str]:
     return errors
 
 
-def fields_of(schema: object) -> set[str]:
-    """Names of all properties below."""
-    if isinstance(schema, list):
-        return set().union(*map(fields_of, schema))
-    if not isinstance(schema, dict):
+def names_in(value: object) -> set[str]:
+    """Keys of all objects in it, but of those whose keys a suite or a scene chooses."""
+    if isinstance(value, list):
+        return set().union(*map(names_in, value))
+    if not isinstance(value, dict):
         return set()
-    names = set(schema["properties"]) if isinstance(schema.get("properties"), dict) else set()
-    return names.union(*map(fields_of, schema.values()))
+    chosen = {"settings", "options", "scene_parameters"}
+    return set(value).union(*(names_in(part) for name, part in value.items() if name not in chosen))
 
 
 def measured() -> list[str]:
-    definitions = json.loads((ROOT / "configs/result.schema.json").read_text(encoding="utf-8"))["definitions"]
-    fields = set().union(*(fields_of(definitions[name]) for name in definitions if name != "benchmark"))
-    statuses = set(definitions["point"]["properties"]["status"]["enum"])
+    fields = set().union(*(names_in(points_of(file)[0]) for file in ("results/paper-strain.json", "results/default-step.json")))
+    counters = (ROOT / "solvers/problem/work_counters.h").read_text(encoding="utf-8")
+    fields |= set(re.findall(r"^  (?:std::int64_t|double) (\w+) = 0;", counters, re.MULTILINE))
+    statuses = {name for file in (ROOT / "harness/points").glob("point*")
+                for name in re.findall(r"\bPointStatus::(\w+)", file.read_text(encoding="utf-8"))}
     explained = set(BACKTICKS.findall((ROOT / "docs/measuring.md").read_text(encoding="utf-8")))
-    return [f"docs/measuring.md does not explain `{name}`" for name in sorted(fields | statuses)
-            if name not in explained and name not in {"error", "work"}]
+    return [f"docs/measuring.md does not explain `{name}`" for name in sorted((fields | statuses) - explained - {"error", "work"})]
 
 
 def main() -> int:

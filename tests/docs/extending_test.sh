@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# What docs/extending.md says to add is added to a copy of the sources, built, and run. Slow: it compiles the program.
+#
+# In the page, a comment before a block of code says where the block goes:
+#   <!-- new file: path -->           the block is the file
+#   <!-- path, after: some text -->   the block follows the first line that holds the text
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+tree=$PWD/tree
+fail() { echo "extending_test: $*" >&2; exit 1; }
+
+rm -rf "$tree"
+mkdir "$tree"
+(cd "$root" && tar c CMakeLists.txt CMakePresets.json cmake configs harness plots results/references solvers) | tar x -C "$tree"
+
+/usr/bin/python3 - "$root/docs/extending.md" "$tree" <<'PYTHON'
+import re
+import sys
+from pathlib import Path
+
+page, tree = Path(sys.argv[1]).read_text(encoding="utf-8"), Path(sys.argv[2])
+blocks = re.findall(r"<!-- (?:new file: (\S+)|(\S+), after: (.+?)) -->\n\n?```\w*\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+if not blocks:
+    sys.exit("the page has nothing to add")
+for new, path, anchor, code in blocks:
+    if new:
+        place = tree / new
+        if place.exists():
+            sys.exit(f"{new} is there already")
+        place.write_text(code, encoding="utf-8")
+        continue
+    place = tree / path
+    lines = place.read_text(encoding="utf-8").splitlines(keepends=True)
+    at = next((i for i, line in enumerate(lines) if anchor in line), None)
+    if at is None:
+        sys.exit(f"{path} has no line with '{anchor}'")
+    lines.insert(at + 1, code)
+    place.write_text("".join(lines), encoding="utf-8")
+print(f"{len(blocks)} pieces added")
+PYTHON
+
+cd "$tree"
+cmake --preset portable -DBUILD_TESTING=OFF >../configure.log 2>&1 || { cat ../configure.log; fail "not configured"; }
+cmake --build build/portable --target bench >../build.log 2>&1 || { grep -E 'error|FAILED' ../build.log; fail "not built"; }
+bench=$tree/build/portable/bench
+
+"$bench" list solvers | grep '^ *symmetric_sweeps:' >/dev/null || fail "the filter is not listed"
+"$bench" list scenes | grep '^ *swing:' >/dev/null || fail "the scene is not listed"
+"$bench" check --solver symmetric_sweeps --quick || fail "the filter does not conform"
+
+cat >../tiny.json <<'JSON'
+{
+  "name": "tiny", "description": "the new scene", "profile": "tiny", "seed": 1, "reps": 1, "timeout": 20,
+  "sweeps": [{"sweep": "strain", "scene": "swing", "limits": [0.01], "scene_parameters": {"n": 10, "duration": 0.2}}]
+}
+JSON
+"$bench" --sweep strain --config ../tiny.json --solver 'symmetric_sweeps|fast_projection' --no-plots --out ../tiny-result.json \
+  >../sweep.log || { cat ../sweep.log; fail "the sweep failed"; }
+/usr/bin/python3 - ../tiny-result.json <<'PYTHON'
+import json
+import sys
+
+points = json.load(open(sys.argv[1], encoding="utf-8"))["points"]
+best = {p["solver"]: p for p in points if p["best"]}
+assert set(best) == {"symmetric_sweeps", "fast_projection"}, set(best)
+assert all(p["scene"] == "swing" for p in points)
+PYTHON
