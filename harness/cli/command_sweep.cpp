@@ -120,14 +120,14 @@ void begin_journal(Journal& journal, const Past& past, const Memory& memory,
   }
 }
 
-SweepRunners watched(const SweepRunners& inner, Sentinel& sentinel) {
+SweepRunners watched(const SweepRunners& inner, NoiseProbe& noise_probe) {
   SweepRunners runners = inner;
-  runners.run = [run = inner.run, &sentinel](const auto& spec, const auto& limits, auto guess) {
-    sentinel.sample_if_due();
+  runners.run = [run = inner.run, &noise_probe](const auto& spec, const auto& limits, auto guess) {
+    noise_probe.sample_if_due();
     return run(spec, limits, guess);
   };
-  runners.repeat = [repeat = inner.repeat, &sentinel](auto& point, const auto& limits) {
-    sentinel.sample_if_due();
+  runners.repeat = [repeat = inner.repeat, &noise_probe](auto& point, const auto& limits) {
+    noise_probe.sample_if_due();
     repeat(point, limits);
   };
   return runners;
@@ -217,15 +217,16 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   };
   events.repetition = [&](std::size_t done, std::size_t all) { progress.repetition(done, all); };
   events.interrupted = interrupted;
-  Sentinel sentinel;
-  sentinel.sample();
+  NoiseProbe noise_probe;
+  noise_probe.sample();
   const ProcessorTicks ticks = processor_ticks();
   if (!options.in_process) runners = isolated(runners, options.memory);
-  const SweepOutcome outcome = run_sweep(
-      suite, searches, events, journaled(watched(runners, sentinel), journal, std::move(memory)));
+  const SweepOutcome outcome =
+      run_sweep(suite, searches, events,
+                journaled(watched(runners, noise_probe), journal, std::move(memory)));
   progress.finish();
-  sentinel.sample();
-  context["sentinel"] = sentinel.to_json();
+  noise_probe.sample();
+  context["sentinel"] = noise_probe.to_json();
   context["stolen"] = stolen_share(ticks, processor_ticks());
   context["harness_overhead"] = harness_overhead(outcome.points);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/judge/measures.h"
 #include "inextensible/problem/forces.h"
 
 namespace harness {
@@ -19,27 +20,8 @@ constexpr double time_tolerance = 1e-9;  // s; states add up their steps
 Judge::Judge(const Scene& scene, const Options& options) : scene_(scene), options_(options) {
   options_.sample_every = std::max(1, options_.sample_every);
   if (options_.residual_of_limit > 0) probe_.emplace(scene.problem, options_.residual_of_limit);
-  const auto& problem = *scene.problem;
-  start_energy_ = inextensible::potential_energy(problem, scene.start.x) +
-                  inextensible::kinetic_energy(problem, scene.start.v);
-  energy_scale_ = problem.total_mass() * problem.gravity().norm() * scene.size;
-}
-
-Judge::Range Judge::strain_range(const Positions& x) const {
-  const auto& edges = scene_.problem->edges();
-  const auto& rest = scene_.problem->rest_length();
-  double low = 1, high = 1;  // of |d|^2 / l^2
-  bool finite = true;
-  for (std::size_t k = 0; k < edges.size(); ++k) {
-    const double q = (x.col(edges[k].b) - x.col(edges[k].a)).squaredNorm() / (rest[k] * rest[k]);
-    finite = finite && std::isfinite(q);
-    low = std::min(low, q);
-    high = std::max(high, q);
-  }
-  if (!finite)
-    return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  const double stretch = std::sqrt(high) - 1;
-  return {std::max(stretch, 1 - std::sqrt(low)), stretch};
+  start_energy_ = total_energy(*scene.problem, scene.start);
+  energy_scale_ = energy_scale(scene);
 }
 
 void Judge::before(const State& state, double h) {
@@ -81,11 +63,11 @@ void Judge::compare(const State& state) {
 }
 
 double Judge::after(const Positions& filtered, const State& state, bool counts) {
-  const Range range = strain_range(filtered);
+  const StrainRange range = strain_range(*scene_.problem, filtered);
   running_.max_strain = std::max(running_.max_strain, range.most);
   running_.max_stretch = std::max(running_.max_stretch, range.stretch);
   if (scene_.problem->collider()) {
-    const double after = strain_range(state.x).most;
+    const double after = strain_range(*scene_.problem, state.x).most;
     const double before = running_.max_strain_after_collision;
     running_.max_strain_after_collision = std::isnan(before) ? after : std::max(before, after);
   }
@@ -96,17 +78,10 @@ double Judge::after(const Positions& filtered, const State& state, bool counts) 
 
 void Judge::sample(const Positions& filtered, const State& state) {
   const auto& problem = *scene_.problem;
-  const auto& edges = problem.edges();
-  for (std::size_t k = 0; k < edges.size(); ++k) {
-    const double length = (filtered.col(edges[k].b) - filtered.col(edges[k].a)).norm();
-    strains_.push_back(std::abs(length / problem.rest_length()[k] - 1));
-  }
+  append_strains(problem, filtered, strains_);
   const double kinetic = inextensible::kinetic_energy(problem, state.v);
   kinetic_sum_ += kinetic;
   ++samples_;
-  const auto raise = [](double& figure, double value) {
-    figure = std::isnan(figure) ? value : std::max(figure, value);
-  };
   if (scene_.conserves_energy) {
     const double energy = kinetic + inextensible::potential_energy(problem, state.x);
     raise(running_.energy_drift, std::abs(energy - start_energy_) / energy_scale_);

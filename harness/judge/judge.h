@@ -32,10 +32,6 @@ class Judge {
   Measures measures() const;
 
  private:
-  struct Range {
-    double most = 0, stretch = 0;
-  };
-  Range strain_range(const inextensible::Positions& x) const;
   void sample(const inextensible::Positions& filtered, const inextensible::State& state);
   void compare(const inextensible::State& state);
 

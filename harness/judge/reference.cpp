@@ -11,6 +11,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
+#include "harness/judge/measures.h"
 #include "harness/points/context.h"
 #include "harness/scenes/pendulum.h"
 #include "inextensible/problem/forces.h"
@@ -117,7 +118,7 @@ Path swing(const Scene& scene, double disturbance, const std::vector<double>& ti
            double* energy_drift) {
   Pendulum pendulum = pendulum_of(scene, disturbance);
   const double start = pendulum.energy();
-  const double scale = scene.problem->total_mass() * scene.problem->gravity().norm() * scene.size;
+  const double scale = energy_scale(scene);
   Path path;
   for (const double time : times) {
     pendulum.advance(time, pendulum_tolerance);
@@ -266,9 +267,7 @@ std::vector<ShapeStatistics> shape_of(const json& rows) {
 
 ShapeStatistics shape_statistics(const Scene& scene, const Positions& x) {
   ShapeStatistics shape;
-  shape.potential_energy =
-      inextensible::potential_energy(*scene.problem, x) /
-      (scene.problem->total_mass() * scene.problem->gravity().norm() * scene.size);
+  shape.potential_energy = inextensible::potential_energy(*scene.problem, x) / energy_scale(scene);
   for (const int corner : scene.corners)
     shape.corner_height += x(1, corner) / scene.size / static_cast<double>(scene.corners.size());
   if (!scene.triangles.empty()) shape.shadow = shadow_area(scene, x);

@@ -28,7 +28,7 @@ double kernel(std::vector<double>& data) {
 
 // Long enough, 50 ms or so, that a processor shared with others is seen: they get turns of some
 // milliseconds.
-void Sentinel::sample() {
+void NoiseProbe::sample() {
   constexpr std::size_t doubles = 32768;
   constexpr int runs = 50;
   std::vector<double> data(doubles, 1.0);
@@ -38,11 +38,11 @@ void Sentinel::sample() {
   samples_.push_back({since(start_), sum / runs});
 }
 
-void Sentinel::sample_if_due() {
+void NoiseProbe::sample_if_due() {
   if (samples_.empty() || since(start_) - samples_.back().at >= every_) sample();
 }
 
-double Sentinel::spread() const {
+double NoiseProbe::spread() const {
   if (samples_.empty()) return 0;
   const auto [low, high] =
       std::minmax_element(samples_.begin(), samples_.end(),
@@ -50,7 +50,7 @@ double Sentinel::spread() const {
   return high->seconds / low->seconds - 1;
 }
 
-nlohmann::json Sentinel::to_json() const {
+nlohmann::json NoiseProbe::to_json() const {
   nlohmann::json at = nlohmann::json::array(), seconds = nlohmann::json::array();
   for (const Sample& s : samples_) {
     at.push_back(s.at);

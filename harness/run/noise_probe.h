@@ -8,13 +8,13 @@
 
 namespace harness {
 
-class Sentinel {
+class NoiseProbe {
  public:
   // Spread (largest over smallest time, less 1) from which on the machine counts as noisy.
   static constexpr double noisy_from = 0.1;
 
   // every: s between samples.
-  explicit Sentinel(double every = 60) : every_(every) {}
+  explicit NoiseProbe(double every = 60) : every_(every) {}
 
   void sample();
   void sample_if_due();

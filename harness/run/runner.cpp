@@ -15,6 +15,7 @@
 #include "harness/base/clock.h"
 #include "harness/base/text.h"
 #include "harness/judge/judge.h"
+#include "harness/judge/measures.h"
 #include "inextensible/stepping/step_controller.h"
 
 namespace harness {
@@ -22,7 +23,6 @@ namespace {
 
 using inextensible::Status;
 
-constexpr double diverged_strain = 10;
 constexpr int sampled_instants = 100;  // a run, for statistics that need sorting
 
 // A read of the clock takes tens of nanoseconds, the step of a short chain a few hundred. So steps

@@ -1,35 +1,19 @@
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "harness/judge/measures.h"
 #include "harness/stability/checks.h"
 
 namespace harness {
 
 using Eigen::Vector3d;
-using inextensible::Positions;
 using inextensible::Problem;
 using inextensible::State;
 
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-Vector3d linear_momentum(const Problem& problem, const Positions& v) {
-  return v * Eigen::Map<const Eigen::VectorXd>(problem.mass().data(), problem.vertices());
-}
-
-// About the centre of mass.
-Vector3d spin(const Problem& problem, const State& state) {
-  const Vector3d centre = linear_momentum(problem, state.x) / problem.total_mass();
-  Vector3d sum = Vector3d::Zero();
-  for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
-    const Vector3d arm = state.x.col(i) - centre, velocity = state.v.col(i);
-    sum += problem.mass()[static_cast<std::size_t>(i)] * arm.cross(velocity);
-  }
-  return sum;
-}
 
 constexpr double momentum_duration = 0.04;  // s
 constexpr double momentum_tolerance = 1e-9, spin_tolerance = 1e-6;
@@ -39,7 +23,7 @@ double loss_of_spin(const Examinee& solver, const Case& c, double step, double& 
   const Problem& problem = *c.scene.problem;
   const auto stepper = solver.stepper(c);
   State state = c.scene.start;
-  const Vector3d start = spin(problem, state);
+  const Vector3d start = angular_momentum(problem, state);
   double scale = 0;
   for (Eigen::Index i = 0; i < state.v.cols(); ++i)
     scale += problem.mass()[static_cast<std::size_t>(i)] * state.v.col(i).norm();
@@ -48,7 +32,7 @@ double loss_of_spin(const Examinee& solver, const Case& c, double step, double& 
     if (!stepper->advance(state, step)) return infinity;
     linear = std::max(linear, (linear_momentum(problem, state.v) - before).norm() / scale);
   }
-  return (spin(problem, state) - start).norm() / (scale * c.scene.size);
+  return (angular_momentum(problem, state) - start).norm() / (scale * c.scene.size);
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 #include <functional>
 
 #include "harness/base/text.h"
+#include "harness/judge/measures.h"
 #include "harness/stability/checks.h"
-#include "harness/stability/trial_judge.h"
 #include "inextensible/stepping/step_controller.h"
 
 namespace harness {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <variant>
 
+#include "harness/judge/measures.h"
 #include "harness/stability/checks.h"
-#include "harness/stability/trial_judge.h"
 #include "inextensible/problem/forces.h"
 
 namespace harness {

@@ -1,32 +1,18 @@
 #include "harness/stability/trial_judge.h"
 
 #include <cmath>
-#include <limits>
-#include <sstream>
 
 #include "harness/base/text.h"
+#include "harness/judge/measures.h"
 #include "inextensible/problem/forces.h"
 
 namespace harness {
 namespace {
 
 using inextensible::Positions;
-using inextensible::Problem;
 using inextensible::State;
 
-constexpr double diverged_strain = 10;
 constexpr double diverged_distance = 1e6;  // in scene sizes
-
-Eigen::Vector3d momentum(const Problem& problem, const State& state) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (Eigen::Index v = 0; v < state.v.cols(); ++v)
-    sum += problem.mass()[static_cast<std::size_t>(v)] * state.v.col(v);
-  return sum;
-}
-
-void raise(double& figure, double value) {
-  figure = std::isnan(figure) ? value : std::max(figure, value);
-}
 
 Outcome fail(TrialResult& result, Outcome outcome, const std::string& why) {
   result.detail = why;
@@ -35,34 +21,22 @@ Outcome fail(TrialResult& result, Outcome outcome, const std::string& why) {
 
 }  // namespace
 
-WorstEdge worst_edge(const Problem& problem, const Positions& x) {
-  WorstEdge worst;
-  for (std::size_t k = 0; k < problem.edges().size(); ++k) {
-    const auto [a, b] = problem.edges()[k];
-    const double strain = std::abs((x.col(b) - x.col(a)).norm() / problem.rest_length()[k] - 1);
-    if (!(strain <= worst.strain))
-      worst = {std::isnan(strain) ? std::numeric_limits<double>::infinity() : strain, k};
-  }
-  return worst;
-}
-
 Witness::Witness(const Trial& trial, bool limit_promised)
     : trial_(trial),
       problem_(*trial.scene.problem),
       limit_promised_(limit_promised),
       mass_(problem_.total_mass()),
       free_(problem_.pinned().empty() && !problem_.collider()) {
-  scale_ = mass_ * problem_.gravity().norm() * trial.scene.size +
-           inextensible::kinetic_energy(problem_, trial.scene.start.v);
+  scale_ = energy_scale(trial.scene) + inextensible::kinetic_energy(problem_, trial.scene.start.v);
   judged_ = trial.energy_tolerance >= 0 && !trial.disturb && scale_ > 0;
   // What a start that violates the limit releases is known after the first step.
   if (worst_edge(problem_, trial.scene.start.x).strain <= trial.strain_limit)
-    energy_ = energy(trial.scene.start);
+    energy_ = total_energy(problem_, trial.scene.start);
 }
 
 void Witness::before(const State& state) {
   start_ = state;
-  if (free_) momentum_ = momentum(problem_, state);
+  if (free_) momentum_ = linear_momentum(problem_, state.v);
 }
 
 std::optional<Outcome> Witness::after(const Positions& filtered, const State& state, double h,
@@ -91,22 +65,17 @@ std::optional<Outcome> Witness::after(const Positions& filtered, const State& st
   }
   if (!judged_) return {};
   if (!energy_) {
-    energy_ = energy(state);
+    energy_ = total_energy(problem_, state);
     scale_ = std::max(scale_, *energy_);
     return {};
   }
-  const double gain = (energy(state) - *energy_) / scale_;
+  const double gain = (total_energy(problem_, state) - *energy_) / scale_;
   raise(result.energy_gain, gain);
   const double release = 0.5 * mass_ * std::pow(1.5 * trial_.slack / h, 2) / scale_;
   if (!(gain <= trial_.energy_tolerance + release))
     return fail(result, Outcome::wrong,
                 "energy out of nothing, " + number_text(gain) + " of its scale");
   return {};
-}
-
-double Witness::energy(const State& state) const {
-  return inextensible::potential_energy(problem_, state.x) +
-         inextensible::kinetic_energy(problem_, state.v);
 }
 
 // |change of momentum - weight h| over what flows in the step; positions are known to rounding
@@ -116,7 +85,7 @@ double Witness::momentum_defect(const State& state, double h) const {
   const double fastest = state.v.colwise().norm().maxCoeff() + start_.v.colwise().norm().maxCoeff();
   const double flow =
       mass_ * (fastest + h * problem_.gravity().norm()) + 1e-6 * mass_ * trial_.scene.size / h;
-  return (momentum(problem_, state) - expected).norm() / flow;
+  return (linear_momentum(problem_, state.v) - expected).norm() / flow;
 }
 
 }  // namespace harness

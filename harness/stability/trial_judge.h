@@ -8,13 +8,6 @@
 
 namespace harness {
 
-// The harness's own word on strain: the edge of largest | |d| / l - 1 |, infinite if not a number.
-struct WorstEdge {
-  double strain = 0;
-  std::size_t edge = 0;
-};
-WorstEdge worst_edge(const inextensible::Problem& problem, const inextensible::Positions& x);
-
 class Witness {
  public:
   // limit_promised: the solver claims to keep the trial's strain limit. The trial must outlive
@@ -29,7 +22,6 @@ class Witness {
                                const inextensible::State& state, double h, TrialResult& result);
 
  private:
-  double energy(const inextensible::State& state) const;
   double momentum_defect(const inextensible::State& state, double h) const;
 
   const Trial& trial_;

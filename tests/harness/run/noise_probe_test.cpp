@@ -19,12 +19,12 @@ void stay_here() {
   ASSERT_EQ(sched_setaffinity(0, sizeof here, &here), 0);
 }
 
-TEST(Sentinel, SeesThatOthersTakeTheProcessor) {
-  Sentinel sentinel;
-  EXPECT_EQ(sentinel.spread(), 0);
-  EXPECT_FALSE(sentinel.noisy());
+TEST(NoiseProbe, SeesThatOthersTakeTheProcessor) {
+  NoiseProbe noise_probe;
+  EXPECT_EQ(noise_probe.spread(), 0);
+  EXPECT_FALSE(noise_probe.noisy());
   stay_here();
-  sentinel.sample();
+  noise_probe.sample();
   pid_t others[4];
   for (pid_t& other : others) {
     other = fork();
@@ -33,18 +33,18 @@ TEST(Sentinel, SeesThatOthersTakeTheProcessor) {
       }
     }
   }
-  sentinel.sample();
+  noise_probe.sample();
   for (const pid_t other : others) {
     kill(other, SIGKILL);
     waitpid(other, nullptr, 0);
   }
-  ASSERT_EQ(sentinel.samples().size(), 2u);
-  EXPECT_TRUE(sentinel.noisy()) << "spread " << sentinel.spread();
-  EXPECT_TRUE(sentinel.to_json().at("noisy").get<bool>());
+  ASSERT_EQ(noise_probe.samples().size(), 2u);
+  EXPECT_TRUE(noise_probe.noisy()) << "spread " << noise_probe.spread();
+  EXPECT_TRUE(noise_probe.to_json().at("noisy").get<bool>());
 }
 
-TEST(Sentinel, SamplesWhenItIsDue) {
-  Sentinel seldom(3600), always(0);
+TEST(NoiseProbe, SamplesWhenItIsDue) {
+  NoiseProbe seldom(3600), always(0);
   for (int i = 0; i < 3; ++i) {
     seldom.sample_if_due();
     always.sample_if_due();

@@ -1,0 +1,48 @@
+// What the harness reads off positions and velocities: the one place where strain, momentum and
+// energy are computed for the judge, the hard cases and `bench check`.
+#pragma once
+
+#include <vector>
+
+#include "harness/scenes/scene.h"
+
+namespace harness {
+
+// Above this strain a run has diverged: edges are no longer what they were by any count.
+constexpr double diverged_strain = 10;
+
+// Strain of an edge: |d| / l - 1. All infinite if a position is not finite.
+struct StrainRange {
+  double most = 0;     // largest |strain|
+  double stretch = 0;  // largest strain, at least 0
+};
+// x: 3 x vertices, m.
+StrainRange strain_range(const inextensible::Problem& problem, const inextensible::Positions& x);
+
+// The edge of largest |strain|, the first of several.
+struct WorstEdge {
+  double strain = 0;
+  std::size_t edge = 0;
+};
+WorstEdge worst_edge(const inextensible::Problem& problem, const inextensible::Positions& x);
+
+// Appends every edge's |strain|.
+void append_strains(const inextensible::Problem& problem, const inextensible::Positions& x,
+                    std::vector<double>& strains);
+
+// kg m/s, of the velocities v (3 x vertices, m/s).
+Eigen::Vector3d linear_momentum(const inextensible::Problem& problem,
+                                const inextensible::Positions& v);
+// kg m^2/s, about the centre of mass.
+Eigen::Vector3d angular_momentum(const inextensible::Problem& problem,
+                                 const inextensible::State& state);
+
+// J, kinetic and potential.
+double total_energy(const inextensible::Problem& problem, const inextensible::State& state);
+// J, weight times size: what energies are compared with.
+double energy_scale(const Scene& scene);
+
+// The larger of both; a figure that is not yet known (NaN) becomes the value.
+void raise(double& figure, double value);
+
+}  // namespace harness
