@@ -16,6 +16,7 @@
 #include "harness/run/isolation.h"
 #include "harness/run/journal.h"
 #include "harness/run/noise_probe.h"
+#include "harness/run/overhead.h"
 #include "harness/run/report.h"
 #include "harness/run/runner.h"
 

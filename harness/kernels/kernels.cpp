@@ -3,11 +3,11 @@
 // in mid-drape (above 150 vertices a side soon after its start) and a chain in mid-swing, at the
 // positions that a filter gets. Items are constrained edges, or vertices. collision_pass and the
 // solves include a copy of their input, a few percent.
-// floor/...: what the core can do at best. floor_ratio holds a sweep of strain limiting against the
-// square root and the division that an edge costs at least; of_peak and of_bandwidth hold flops of
-// a factorization against the peak, and bytes of the factor, read twice by a solve, against the
-// bandwidth at which an array of the factor's size is read (the library prints such ratios with
-// "/s" behind them).
+// floor/...: what the core can do at best. floor_ratio holds a pass of strain limiting over all
+// edges against the square root and the division that an edge costs at least; of_peak and
+// of_bandwidth hold flops of a factorization against the peak, and bytes of the factor, read twice
+// by a solve, against the bandwidth at which an array of the factor's size is read (the library
+// prints such ratios with "/s" behind them).
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -157,7 +157,7 @@ void whole_system(benchmark::State& state, const std::string& name, int n) {
   per_item(state, m.problem().constraints());
 }
 
-// What no sweep that corrects every edge can go below: a square root and a division an edge,
+// What no pass that corrects every edge can go below: a square root and a division an edge,
 // independent of each other, in the first-level cache.
 void sqrt_div(std::array<double, 1024>& lengths) {
   for (double& q : lengths) q = 1.5 - 0.5 / std::sqrt(q);
@@ -181,10 +181,10 @@ double sqrt_div_seconds() {
   return seconds;
 }
 
-// One sweep over a cloth stretched by a fifth, so that every edge is corrected. A call that
-// may not sweep at all costs the checks, the refusal and the clock: that is taken off.
+// One pass over a cloth stretched by a fifth, so that every edge is corrected. A call that
+// may not pass at all costs the checks, the refusal and the clock: that is taken off.
 template <class Filter>
-void sweep(benchmark::State& state, int n) {
+void strain_pass(benchmark::State& state, int n) {
   const Moment& m = moment("drape", n);
   typename Filter::Settings settings;
   settings.max_iterations = 1;
@@ -346,11 +346,13 @@ void register_scene(const std::string& scene, int n, const std::vector<std::stri
     }
     return;
   }
-  add("sweep/gauss_seidel" + at, [=](State& s) { sweep<GaussSeidel>(s, n); })->UseManualTime();
-  add("sweep/gauss_seidel_colored" + at, [=](State& s) {
-    sweep<GaussSeidelColored>(s, n);
+  add("strain_pass/gauss_seidel" + at, [=](State& s) {
+    strain_pass<GaussSeidel>(s, n);
   })->UseManualTime();
-  add("sweep/jacobi" + at, [=](State& s) { sweep<Jacobi>(s, n); })->UseManualTime();
+  add("strain_pass/gauss_seidel_colored" + at, [=](State& s) {
+    strain_pass<GaussSeidelColored>(s, n);
+  })->UseManualTime();
+  add("strain_pass/jacobi" + at, [=](State& s) { strain_pass<Jacobi>(s, n); })->UseManualTime();
   add("collision_pass" + at, [=](State& s) { vertex_pass(s, true, scene, n); });
   for (const std::string name : {"projected_cg", "quasi_definite", "umfpack"}) {
     add("icd_factor/" + name + at, [=](State& s) { kkt(s, name, false, n); });

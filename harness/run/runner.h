@@ -29,8 +29,4 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits,
 // Once more, for time alone: the judge stays out. Appends a sample.
 void repeat_point(PointResult& point, const RunLimits& limits);
 
-// What a timed step costs beyond the step, in seconds: the runner's time for steps of the solver
-// `null` on two vertices, less the time of the same steps called one after the other.
-double harness_seconds_per_step();
-
 }  // namespace harness

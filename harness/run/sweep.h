@@ -5,41 +5,12 @@
 
 #include <functional>
 #include <optional>
-#include <regex>
 #include <vector>
 
-#include "harness/points/suite.h"
+#include "harness/run/plan.h"
 #include "harness/run/runner.h"
 
 namespace harness {
-
-struct SweepFilters {
-  std::optional<std::regex> solver;   // must match the solver's whole name
-  std::optional<std::regex> include;  // must be found in a point's id
-  std::optional<std::regex> exclude;  // must not
-};
-
-// One best step to be found.
-struct Search {
-  PointSpec base;              // all but the step
-  std::vector<double> ladder;  // s, coarse to fine; those that the filters leave
-  // Searches of one family (same sweep, scene, size and solver) come from loose to tight; each
-  // starts from the step that was best in the one before.
-  std::size_t family = 0;
-  bool every_step = false;  // the whole ladder, whatever the times are
-};
-
-// Throws UsageError if no point is left.
-std::vector<Search> plan(const Suite& suite, const SweepFilters& filters);
-
-// The index-th, from 1 on, of count parts.
-struct Shard {
-  std::size_t index = 1, count = 1;
-};
-// All searches of one (sweep, scene, size) are in one part, large sizes spread first, so that no
-// comparison crosses machines; possibly none. The parts of a plan are the whole, and a search does
-// not depend on the part it is in.
-std::vector<Search> shard(std::vector<Search> searches, const Shard& part);
 
 // What a sweep tells while it runs.
 struct SweepEvents {

@@ -12,10 +12,10 @@ using namespace case_parts;
 
 void add_large(std::vector<HardCase>& cases, const HardCaseValues& values) {
   const auto budget = [](Trial& trial) {  // edge visits that strain limiting may spend on a step
-    const double sweeps = std::max(100.0, 2e8 / trial.scene.problem->constraints());
+    const double passes = std::max(100.0, 2e8 / trial.scene.problem->constraints());
     for (const auto& backend : inextensible::backends())
       if (backend.direction == strain_limiting && inextensible::is_built_in(backend.name))
-        trial.settings[backend.name] = {{"max_iterations", std::min(1e5, std::floor(sweeps))}};
+        trial.settings[backend.name] = {{"max_iterations", std::min(1e5, std::floor(passes))}};
   };
   for (const double value : values.at("links")) {
     const int n = static_cast<int>(value);
@@ -27,7 +27,7 @@ void add_large(std::vector<HardCase>& cases, const HardCaseValues& values) {
                        budget(trial);
                        return trial;
                      },
-                     {{strain_limiting, slow, "information travels an edge a sweep"},
+                     {{strain_limiting, slow, "information travels an edge a pass"},
                       {start_direction, slow, "links turn farther in a step the shorter they are"},
                       {everyone, slow, ""}}});
   }

@@ -26,7 +26,7 @@ void add_taut(std::vector<HardCase>& cases, const HardCaseValues& values) {
                      [=] { return taut(trial_of(row(1), 1.0 / 200, limit)); },
                      {{start_direction, either, "J(x^n) is singular at the start (Q4)"},
                       {current_direction, survives, "the permissible band has an interior"},
-                      {everyone, slow, "information travels an edge a sweep"}}});
+                      {everyone, slow, "information travels an edge a pass"}}});
     cases.push_back({"1 m patch",
                      "patch/" + number_text(limit),
                      "15 x 15 cloth, pinned 1 m apart, falling; strain limit " + number_text(limit),
@@ -37,7 +37,7 @@ void add_taut(std::vector<HardCase>& cases, const HardCaseValues& values) {
                      {{start_direction, either, "J(x^n) is singular at the start (Q4)"},
                       {{"icd"}, either, "at full length no multipliers exist"},
                       {current_direction, survives, "Figure 1 of the paper"},
-                      {everyone, slow, "information travels an edge a sweep"}}});
+                      {everyone, slow, "information travels an edge a pass"}}});
   }
   const std::vector<Expectation> impossible{{springs, survives, "springs stretch"},
                                             {everyone, refuses, "nothing can satisfy it"}};

@@ -1,0 +1,96 @@
+#include "harness/run/plan.h"
+
+#include <algorithm>
+#include <map>
+
+#include "harness/base/errors.h"
+
+namespace harness {
+namespace {
+
+bool selected(const SweepFilters& filters, const PointSpec& spec) {
+  const std::string id = spec.id();
+  return (!filters.include || std::regex_search(id, *filters.include)) &&
+         (!filters.exclude || !std::regex_search(id, *filters.exclude));
+}
+
+std::vector<double> step_ladder(const SweepSpec& sweep) {
+  if (sweep.adaptive) return {sweep.coarsest};
+  std::vector<double> ladder;
+  for (double h = sweep.coarsest; h >= sweep.finest * (1 - 1e-9); h /= 2) ladder.push_back(h);
+  return ladder;
+}
+
+}  // namespace
+
+std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
+  std::vector<Search> searches;
+  std::size_t family = 0;
+  for (const SweepSpec& sweep : suite.sweeps) {
+    const SceneType& type = *find_scene(sweep.scene);
+    std::vector<double> limits = sweep.limits;
+    std::sort(limits.rbegin(), limits.rend());  // loose to tight
+    std::vector<int> resolutions = sweep.resolutions;
+    std::sort(resolutions.begin(), resolutions.end());
+    for (const std::string& solver : sweep.solvers) {
+      if (filters.solver && !std::regex_match(solver, *filters.solver)) continue;
+      for (const int resolution : resolutions) {
+        SceneParameters given = sweep.scene_parameters;
+        given[type.resolution] = resolution;
+        PointSpec base;
+        base.sweep = sweep.sweep;
+        base.scene = sweep.scene;
+        base.scene_parameters = complete_parameters(type, given);
+        base.resolution = resolution;
+        const auto [vertices, constraints] = type.counts(base.scene_parameters);
+        base.vertices = vertices;
+        base.constraints = constraints;
+        base.solver = solver;
+        if (const auto options = sweep.solver_options.find(solver);
+            options != sweep.solver_options.end()) {
+          base.settings = options->second;
+        }
+        base.seed = suite.seed;
+        base.adaptive = sweep.adaptive;
+        for (const double limit : limits) {
+          Search search{base, {}, family, sweep.every_step || sweep.sweep == "step"};
+          search.base.strain_limit = limit;
+          for (const double step : step_ladder(sweep)) {
+            search.base.step = step;
+            if (selected(filters, search.base)) search.ladder.push_back(step);
+          }
+          if (!search.ladder.empty()) searches.push_back(std::move(search));
+        }
+        ++family;
+      }
+    }
+  }
+  if (searches.empty())
+    throw UsageError("no point is left: the filters exclude every point of the suite");
+  return searches;
+}
+
+std::vector<Search> shard(std::vector<Search> searches, const Shard& part) {
+  // Work grows with constraints times limits.
+  std::map<std::pair<std::string, SceneParameters>, double> load;
+  const auto group = [](const Search& s) {
+    return std::pair(s.base.scene, s.base.scene_parameters);
+  };
+  for (const Search& s : searches) load[group(s)] += s.base.constraints;
+  std::vector<std::pair<double, std::pair<std::string, SceneParameters>>> largest;
+  largest.reserve(load.size());
+  for (const auto& [name, size] : load) largest.emplace_back(size, name);
+  std::stable_sort(largest.begin(), largest.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<double> filled(part.count, 0);
+  std::map<std::pair<std::string, SceneParameters>, std::size_t> place;
+  for (const auto& [size, name] : largest) {
+    const auto least = std::min_element(filled.begin(), filled.end());
+    *least += size;
+    place[name] = static_cast<std::size_t>(least - filled.begin()) + 1;
+  }
+  std::erase_if(searches, [&](const Search& s) { return place.at(group(s)) != part.index; });
+  return searches;
+}
+
+}  // namespace harness

@@ -1,0 +1,147 @@
+#include "harness/run/point_runner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "harness/base/child_process.h"
+#include "harness/base/text.h"
+#include "harness/judge/judge.h"
+#include "harness/judge/measures.h"
+#include "inextensible/stepping/step_controller.h"
+
+namespace harness {
+
+using inextensible::Status;
+
+namespace {
+
+constexpr int sampled_instants = 100;  // a run, for statistics that need sorting
+
+// A read of the clock takes tens of nanoseconds, the step of a short chain a few hundred. So steps
+// are timed in blocks of at least this length where the judge need not look in between, and a run
+// whose judged steps are shorter is made again without him, for its time.
+constexpr double shortest_block = 2e-5;  // s
+std::string refusal(const inextensible::StepResult& result, std::int64_t step, double time) {
+  std::ostringstream text;
+  text << "step " << step << " (t = " << time << " s): " << inextensible::to_string(result.status)
+       << ", " << result.detail << " after " << result.iterations << " iterations";
+  if (result.worst_edge >= 0 && std::isfinite(result.worst_strain)) {
+    text << "; edge " << result.worst_edge << " strained by " << result.worst_strain;
+  }
+  return text.str();
+}
+
+}  // namespace
+
+PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
+    : spec_(spec),
+      limits_(limits),
+      start_(Clock::now()),
+      scene_(find_scene(spec.scene)->build(spec.scene_parameters)),
+      backend_(*inextensible::find_backend(spec.solver)),
+      steps_(static_cast<int>(std::lround(scene_.duration / spec.step))) {
+  if (limits.references) reference_ = limits.references->find(spec.scene, spec.scene_parameters);
+}
+
+Run PointRunner::run(const inextensible::Settings& settings, bool judged, double stop_at) const {
+  Run run;
+  const auto setup = Clock::now();
+  run.stepper = inextensible::make_stepper(spec_.solver, scene_.problem,
+                                           {spec_.strain_limit, spec_.seed, settings});
+  run.setup_seconds = since(setup);
+  run.stepper->measure_phases(judged);
+  Judge::Options judging{steps_ / sampled_instants};
+  if (judged && stop_at == diverged_strain) {
+    judging.reference = reference_;
+    // Where growth is the question, a probe that needs the solver's own memory again is not.
+    if (spec_.solver == "fast_projection" && !spec_.adaptive && spec_.sweep != "resolution")
+      judging.residual_of_limit = spec_.strain_limit;
+    // A figure draws the series of step sweeps; for the others it would fill files unread.
+    judging.residual_series = spec_.sweep == "step";
+  }
+  Judge judge(scene_, judging);
+  inextensible::State state = scene_.start;
+  std::optional<inextensible::StepController> controller;
+  if (spec_.adaptive) {
+    controller.emplace(*run.stepper, inextensible::StepController::Settings{.largest = spec_.step});
+  }
+  beat(0, 0);
+  int block = 1;  // steps that are timed as one
+  for (int i = 0; i < steps_;) {
+    if (judged) judge.before(state, spec_.step);
+    inextensible::StepResult result;
+    bool whole = true;
+    const auto before = Clock::now();
+    for (int k = 0; k < block && i < steps_; ++k) {
+      result = controller ? controller->advance(state) : run.stepper->advance(state, spec_.step);
+      if (!result) break;
+      whole = !controller || controller->aligned();
+      if (whole) ++i;
+      beat(i, state.time);
+    }
+    const double seconds = since(before);
+    run.seconds += seconds;
+    if (!judged && seconds < shortest_block) block *= 2;
+    if (!result) {
+      run.status =
+          result.status == Status::not_finite ? PointStatus::diverged : PointStatus::not_converged;
+      run.detail = refusal(result, run.stepper->work().steps, state.time);
+      if (controller)
+        run.detail += "; at the smallest step, " + number_text(controller->next()) + " s";
+      break;
+    }
+    if (controller) run.smallest_step = controller->smallest();
+    if (judged) {
+      const double strain = judge.after(run.stepper->filtered_positions(), state, whole);
+      if (backend_.knob != inextensible::Knob::none && !(strain <= stop_at)) {
+        run.status =
+            !(strain <= diverged_strain) ? PointStatus::diverged : PointStatus::strain_missed;
+        run.detail = "strain " + std::to_string(strain) + " at step " +
+                     std::to_string(run.stepper->work().steps - 1);
+        break;
+      }
+    }
+    if (limits_.interrupted && limits_.interrupted()) throw Interrupted();
+    const bool slow = run.seconds > limits_.hopeless;
+    if ((slow || since(start_) > limits_.timeout) && i < steps_) {
+      std::ostringstream text;
+      text << "longer than " << (slow ? limits_.hopeless : limits_.timeout) << " s"
+           << (slow ? ", several times the best step's time" : "")
+           << "; stopped at t = " << state.time << " s";
+      run.status = PointStatus::timeout;
+      run.detail = text.str();
+      break;
+    }
+  }
+  run.measures = judge.measures();
+  const bool missed = !(run.measures.max_strain <= spec_.strain_limit * (1 + 1e-9));
+  if (judged && run.status == PointStatus::ok && missed &&
+      backend_.knob != inextensible::Knob::none) {
+    run.status = PointStatus::strain_missed;
+    run.detail = "maximum strain " + std::to_string(run.measures.max_strain);
+  }
+  return run;
+}
+
+double PointRunner::bare_seconds_per_step() const {
+  const auto stepper = inextensible::make_stepper(spec_.solver, scene_.problem,
+                                                  {spec_.strain_limit, spec_.seed, {}});
+  inextensible::State state = scene_.start;
+  const auto before = Clock::now();
+  for (int i = 0; i < steps_; ++i) stepper->advance(state, spec_.step);
+  return since(before) / steps_;
+}
+
+void PointRunner::restart_clock() {
+  start_ = Clock::now();
+  if (limits_.heartbeat) limits_.heartbeat->restart();
+}
+// Where this run is, for the process that watches over it. In whatever order it sees that.
+void PointRunner::beat(int step, double time) const {
+  if (!limits_.heartbeat) return;
+  limits_.heartbeat->step.store(step, std::memory_order_relaxed);
+  limits_.heartbeat->time.store(time, std::memory_order_relaxed);
+}
+
+}  // namespace harness

@@ -1,0 +1,57 @@
+// The run of one point's scene by its solver, once or several times.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "harness/base/clock.h"
+#include "harness/run/runner.h"
+#include "inextensible/registry.h"
+
+namespace harness {
+
+struct Run {
+  PointStatus status = PointStatus::ok;
+  std::string detail;
+  double seconds = 0;  // of stepping alone
+  Measures measures;
+  std::unique_ptr<inextensible::Stepper> stepper;
+  double setup_seconds = 0;
+  double smallest_step = unknown;
+};
+
+// Scenes are the same for every run of a point; the stepper is made anew each time.
+class PointRunner {
+ public:
+  // Both must outlive this. Throws std::invalid_argument for a scene that makes no problem.
+  PointRunner(const PointSpec& spec, const RunLimits& limits);
+
+  // judged: with the judge, whose looks are not timed. The run is cut short once its strain exceeds
+  // stop_at; the errors against a reference are measured only where that is diverged_strain.
+  // Throws Interrupted.
+  Run run(const inextensible::Settings& settings, bool judged, double stop_at) const;
+
+  // The same steps with nothing around them.
+  double bare_seconds_per_step() const;
+
+  void restart_clock();
+  bool out_of_time() const { return since(start_) > limits_.timeout; }
+  const inextensible::Backend& backend() const { return backend_; }
+  const PointSpec& spec() const { return spec_; }
+  int steps() const { return steps_; }
+  double seconds_per_step(const Run& run) const { return run.seconds / steps_; }
+  double weight() const { return scene_.problem->total_mass() * scene_.problem->gravity().norm(); }
+
+ private:
+  void beat(int step, double time) const;
+
+  const PointSpec& spec_;
+  const RunLimits& limits_;
+  Clock::time_point start_;
+  Scene scene_;
+  const inextensible::Backend& backend_;
+  int steps_;
+  std::shared_ptr<const Reference> reference_;
+};
+
+}  // namespace harness
