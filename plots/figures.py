@@ -1,19 +1,19 @@
 #!/usr/bin/python3
 """Draws the figures of a result file: cost over permissible strain and over resolution, each solver at its best step, and
-for step sweeps time against error, error over step, and the residual of fast projection; for a stability sweep the matrix
+for step sweeps time against error, error over step, and the residual that a solver leaves; for a stability sweep the matrix
 of hard cases.
 
     plots/figures.py results/figure4.json [--out DIR] [--format svg,png]
 
 writes <stem>-figure4a.svg and so on, and prints each path it wrote. Needs Debian's python3-matplotlib and nothing else.
-results.py reads and sorts the points; cost.py, precision.py and matrix.py draw, the first two on sheets (sheet.py) of
-panels (panels.py); looks are set in style.py; caption.py has the words.
+drawings/ has one file a figure; parts/ what they are put together from.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Callable
 
@@ -26,25 +26,35 @@ except ImportError:
     print("figures.py: matplotlib is missing (Debian: apt-get install python3-matplotlib)", file=sys.stderr)
     sys.exit(2)
 
-import cost
-import matrix
-import precision
-from results import STABILITY_SCHEMA, Json, ResultError, figures_in, load, runs_in
-from sheet import save
-from style import RC
+from parts.legend import legend_of
+from parts.result_file import Json, ResultError, load
+from parts.sheet import save
+from parts.style import RC
 
+# Which figures there are, in the order that they are drawn in: the files of drawings/ (see there).
+FIGURES = [import_module(f"drawings.{name}") for name in (
+    "cost_over_strain",      # Figures 4a and 5a of the paper
+    "cost_over_resolution",  # Figures 4b and 5b
+    "growth",
+    "work_precision",
+    "slack",
+    "residual",              # Figure 3
+    "hard_cases",
+)]
 FORMATS = ("svg", "png")
 
 
-def all_figures(document: Json) -> list[tuple[str, Callable[[], Figure]]]:
+def all_figures(document: Json) -> dict[str, Callable[[], Figure]]:
     """Names of the figures that the document has points for, and what draws them."""
-    if document["schema"] == STABILITY_SCHEMA:
-        return [("matrix", lambda: matrix.draw(document))]
-    figures = [(data.name, lambda data=data: cost.draw(data, document)) for data in figures_in(document)]
-    figures += [(f"{data.name}-growth", lambda data=data: cost.draw_growth(data, document))
-                for data in figures_in(document) if data.sweep == "resolution"]
-    for data in runs_in(document):
-        figures += [(name, lambda data=data, draw=draw: draw(data, document)) for name, draw in precision.figures_of(data)]
+    legend = legend_of(document)
+    figures: dict[str, Callable[[], Figure]] = {}
+    for drawing in FIGURES:
+        for name, draw in drawing.figures_of(document, legend):
+            number = 2
+            unique = name
+            while unique in figures:  # names that differ only in what no file name can hold
+                unique, number = f"{name}-{number}", number + 1
+            figures[unique] = draw
     return figures
 
 
@@ -67,8 +77,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
 
 def run(arguments: list[str]) -> None:
     options = parse(arguments)
-    document = load(options.result)
-    figures = all_figures(document)
+    figures = all_figures(load(options.result))
     if not figures:
         raise ResultError(f"{options.result}: no points to draw")
     folder = options.out or options.result.parent
@@ -77,7 +86,7 @@ def run(arguments: list[str]) -> None:
     except OSError as error:
         raise ResultError(f"cannot make folder {folder}: {error.strerror}") from error
     with matplotlib.rc_context(RC):
-        for name, draw in figures:
+        for name, draw in figures.items():
             figure = draw()
             for suffix in options.format:
                 path = folder / f"{options.result.stem}-{name}.{suffix}"

@@ -4,40 +4,39 @@ from __future__ import annotations
 
 from typing import Any
 
-from results import FigureData, Json, NOT_CHOSEN, TOO_WRONG, adaptive, is_number
+from parts.best_points import FigureData, number_in_paper
+from parts.legend import Legend
+from parts.result_file import OK, Json, is_number, object_in, positive, suite_of
+from parts.step_runs import RunsData
+from parts.words import clean
 
-SUBJECTS = {
-    ("chain", "strain"): "Figure 4a - chain: cost over permissible strain",
-    ("chain", "resolution"): "Figure 4b - chain: cost over resolution",
-    ("drape", "strain"): "Figure 5a - drape over a sphere: cost over permissible strain",
-    ("drape", "resolution"): "Figure 5b - drape over a sphere: cost over resolution",
-}
-MEANINGS = {
-    "T": "timeout", "D": "diverged", "N": "not converged", "S": "strain limit missed", "U": "unsupported",
-    "O": "out of memory", "C": "crashed", "K": "skipped", TOO_WRONG: "trajectory error above the limit", NOT_CHOSEN: "ran, but no step was chosen as best",
-}
+ERROR_LABEL = "trajectory error over the scene's size"
+SUBJECTS = {"drape": "drape over a sphere"}
+
 
 
 def title_of(figure: FigureData) -> str:
     axis = "permissible strain" if figure.sweep == "strain" else "resolution"
-    title = SUBJECTS.get((figure.scene, figure.sweep), f"{figure.scene}: cost over {axis}")
+    number = number_in_paper(figure.scene, figure.sweep)
+    title = f"{SUBJECTS.get(figure.scene, clean(figure.scene))}: cost over {axis}"
+    title = f"Figure {number} - {title}" if number else title
     return title if figure.max_error is None else f"{title}, at a trajectory error of at most {percent(figure.max_error)}"
 
 
 def warnings_of(document: Json) -> list[str]:
     """What a reader must not overlook; drawn in bold above the axes."""
     warnings = []
-    if _suite(document).get("profile") == "quick":
+    if suite_of(document).get("profile") == "quick":
         warnings.append("QUICK PROFILE - not the paper's sizes")
     if document.get("complete") is not True:
         warnings.append("INCOMPLETE - the run was cut short, points are missing")
     return warnings
 
 
-def caption_of(figure: FigureData, document: Json) -> list[str]:
+def caption_of(figure: FigureData, document: Json, legend: Legend) -> list[str]:
     """The caption's paragraphs, each to be wrapped to the figure's width."""
     paragraphs = [_scene_sentence(figure), _method_sentence(figure, document)]
-    failures = _failure_key(figure, document)
+    failures = _failure_key(figure, legend)
     if failures:
         paragraphs.append(failures)
     paragraphs.append(origin_sentence(document))
@@ -59,7 +58,7 @@ def scene_sentence(scene: str, size: str, points: list[Json]) -> str:
     durations = {point["duration"] for point in points if is_number(point.get("duration"))}
     if durations:
         parts.append(" or ".join(f"{d:g}" for d in sorted(durations)) + " s simulated")
-    return f"Scene {scene}: " + ", ".join(parts) + "."
+    return f"Scene {clean(scene)}: " + ", ".join(parts) + "."
 
 
 def _common_parameters(points: list[Json]) -> list[str]:
@@ -70,13 +69,13 @@ def _common_parameters(points: list[Json]) -> list[str]:
     first = scene_parameters[0]
     same = [key for key in first if all(key in other and other[key] == first[key] for other in scene_parameters)]
     said = ("n", "N", "vertices", "resolution", "duration")  # these stand in the sentence already
-    return [f"{key.replace('_', ' ')} {plain(first[key])}" for key in same if key not in said]
+    return [f"{clean(key.replace('_', ' '))} {plain(first[key])}" for key in same if key not in said]
 
 
 def _method_sentence(figure: FigureData, document: Json) -> str:
-    suite = _suite(document)
+    suite = suite_of(document)
     text = "Each solver at its own best time step (panel of best steps); "
-    if adaptive(figure.points):
+    if figure.adaptive:
         text = "Adaptive steps: from the coarsest one on, halved where the solver refuses it (panel of mean steps); "
     if figure.max_error is not None:
         text = (f"Each solver at its fastest time step whose trajectory error is at most {percent(figure.max_error)} of the "
@@ -85,7 +84,7 @@ def _method_sentence(figure: FigureData, document: Json) -> str:
     if reps == 1:
         text += "one run a point"
     else:
-        text += f"median of {reps} repetitions" if is_number(reps) else "median"
+        text += f"median of {plain(reps)} repetitions" if is_number(reps) else "median"
     if any(best.q3 > best.q1 for curve in figure.curves.values() for best in curve.best):
         text += ", bars from the first to the third quartile"
     settings = [f"timeout {suite['timeout']:g} s" if is_number(suite.get("timeout")) else "",
@@ -94,24 +93,19 @@ def _method_sentence(figure: FigureData, document: Json) -> str:
     return "; ".join([text] + [setting for setting in settings if setting]) + "."
 
 
-def _failure_key(figure: FigureData, document: Json) -> str:
-    letters = {letter for name, curve in figure.curves.items() if name != "null"
+def _failure_key(figure: FigureData, legend: Legend) -> str:
+    letters = {letter for name, curve in figure.curves.items() if legend.competes(name)
                for failure in curve.failures for letter in failure.letters}
     if not letters:
         return ""
-    meanings = dict(MEANINGS)
-    limit = _suite(document).get("timeout")
-    if is_number(limit):
-        meanings["T"] += f" (T alone: every step took longer than {limit:g} s)"
-    key = ", ".join(f"{letter} = {meanings[letter]}" for letter in meanings if letter in letters)
     return ("A mark above the axes: every step tried failed, the letters say how, from the coarsest step to the finest: "
-            f"{key}.")
+            f"{legend.key(letters)}.")
 
 
 def origin_sentence(document: Json) -> str:
     """Machine, build, date. Executable, command line and host name stay out: they tell of a host, not of a method."""
-    context = _object(document.get("context"))
-    build = _object(context.get("build"))
+    context = object_in(document, "context")
+    build = object_in(context, "build")
     edited = " + uncommitted changes" if build.get("dirty") is True else ""
     parts = [plain(context["cpu_model"]) if context.get("cpu_model") else "",
              f"{plain(context['num_cpus'])} CPUs" if is_number(context.get("num_cpus")) else "",
@@ -123,16 +117,20 @@ def origin_sentence(document: Json) -> str:
     return " ".join([text] + [warning + "." for warning in warnings_of(document)])
 
 
-def _suite(document: Json) -> Json:
-    return _object(_object(document.get("context")).get("suite"))
+def validity(data: RunsData) -> str:
+    until = [object_in(point, "error").get("valid_until") for point in data.points if point["status"] == OK]
+    known = sorted(time for time in until if positive(time))
+    return f" Errors up to t = {known[0]:g} s, as far as the reference can be trusted." if known else ""
+
+
+def timing(document: Json) -> str:
+    suite = suite_of(document)
+    limit = f"; timeout {suite['timeout']:g} s" if is_number(suite.get("timeout")) else ""
+    return f"Median of {plain(suite.get('reps', 1))} runs a point; profile {plain(suite.get('profile', '?'))}{limit}."
 
 
 def _seed(document: Json) -> Any:
-    return _object(document.get("context")).get("seed", _suite(document).get("seed"))
-
-
-def _object(value: Any) -> Json:
-    return value if isinstance(value, dict) else {}
+    return object_in(document, "context").get("seed", suite_of(document).get("seed"))
 
 
 def plain(value: Any) -> str:
@@ -142,8 +140,8 @@ def plain(value: Any) -> str:
     if is_number(value):
         return f"{value:g}" if isinstance(value, float) else str(value)
     if isinstance(value, list):
-        return " x ".join(plain(item) for item in value)
-    text = " ".join(str(value).split())
+        return clean(" x ".join(plain(item) for item in value))
+    text = clean(value)
     return text.rstrip("/").rsplit("/", 1)[-1] if text.startswith(("/", "~", "./", "../")) else text
 
 

@@ -1,0 +1,45 @@
+"""Curves with their solver's look, and lines of known slope to read them against."""
+
+from __future__ import annotations
+
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from parts.best_points import FigureData
+from parts.style import GREY, SolverStyle
+
+Styles = dict[str, SolverStyle]
+
+
+def draw_curves(axes: Axes, figure: FigureData, styles: Styles, x_factor: float = 1.0) -> None:
+    """Median over x with thin bars from the first to the third quartile."""
+    for order, (solver, style) in enumerate(styles.items()):
+        best = figure.curves[solver].best
+        if not best:
+            continue
+        x = [b.x * x_factor for b in best]
+        y = [b.seconds for b in best]
+        z = 10 + len(styles) - order if style.contestant else 2
+        if style.contestant:  # for the others a bar would be heavier than the line
+            bars = [[b.seconds - b.q1 for b in best], [b.q3 - b.seconds for b in best]]
+            axes.errorbar(x, y, yerr=bars, fmt="none", ecolor=style.color, elinewidth=0.7, capsize=1.8, capthick=0.7,
+                          zorder=z)
+        axes.add_line(line_of(style, x, y, zorder=z))
+
+
+def line_of(style: SolverStyle, x: list[float], y: list[float], **more: float) -> Line2D:
+    """Line with the solver's look; the thin white rim keeps markers apart where curves run on top of one another."""
+    line = Line2D(x, y, color=style.color, marker=style.marker, markersize=style.size, linewidth=style.width, **more)
+    line.set_linestyle((0, style.dashes) if style.dashes else "-")
+    if style.marker not in ("+", "x", "1"):  # these have no face that a rim could surround
+        line.set(markeredgecolor="white", markeredgewidth=0.5)
+    return line
+
+
+def draw_slopes(axes: Axes) -> None:
+    """Faint lines of slope 1 and 2 through the lower left corner, to read the curves' slopes against."""
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    for power in (1, 2):
+        end = min(right, left * (high / low) ** (1 / power))
+        axes.plot([left, end], [low, low * (end / left) ** power], color=GREY, linewidth=0.6, linestyle=(0, (1, 3)),
+                  zorder=1)

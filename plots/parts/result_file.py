@@ -1,0 +1,103 @@
+"""Reads a result file of schema inextensible-bench/1 or inextensible-stability/1 and checks what figures rely on."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+SCHEMA = "inextensible-bench/1"
+STABILITY_SCHEMA = "inextensible-stability/1"
+SWEEPS = ("strain", "resolution", "step")
+OK = "ok"  # the status of a run that has times to show; all others are failures, whatever their names
+
+Json = dict[str, Any]
+
+
+class ResultError(Exception):
+    """The file cannot be drawn; the message is one line for the user."""
+
+
+def load(path: Path) -> Json:
+    """The parsed file, with every point that a figure needs checked."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "not a text file"
+        raise ResultError(f"cannot read {path}: {reason}") from error
+    try:
+        document = json.loads(text, parse_constant=_refuse_constant)
+    except (ValueError, RecursionError) as error:
+        raise ResultError(f"{path} is not valid JSON: {error}") from error
+    if isinstance(document, dict) and document.get("schema") == STABILITY_SCHEMA:
+        _check_stability(document, path)
+        return document
+    if not isinstance(document, dict) or document.get("schema") != SCHEMA:
+        found = document.get("schema") if isinstance(document, dict) else None
+        raise ResultError(f"{path} is not a result file: schema is {json.dumps(found)[:60]}, expected \"{SCHEMA}\"")
+    points = document.get("points")
+    if not isinstance(points, list):
+        raise ResultError(f"{path} has no list of points")
+    for number, point in enumerate(points):
+        if not isinstance(point, dict):
+            raise ResultError(f"{path}: points[{number}] is not an object")
+        if point.get("sweep") in SWEEPS:
+            _check(point, f"{path}: points[{number}]")
+    return document
+
+
+def _check_stability(document: Json, path: Path) -> None:
+    for name, keys in (("matrix", ("row", "case", "solver", "outcome")), ("largest_steps", ("scene", "solver"))):
+        entries = document.get(name)
+        if not isinstance(entries, list):
+            raise ResultError(f"{path} has no list of {name}")
+        for number, entry in enumerate(entries):
+            if not isinstance(entry, dict) or not all(isinstance(entry.get(key), str) for key in keys):
+                raise ResultError(f"{path}: {name}[{number}] needs the texts {', '.join(keys)}")
+
+
+def _refuse_constant(name: str) -> None:
+    raise ValueError(f"{name} is not a JSON number")
+
+
+def is_number(value: Any) -> bool:
+    """Finite, and of a size that an axis can hold."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and (value == 0 or 1e-60 <= abs(value) <= 1e60)
+
+
+def positive(value: Any) -> bool:
+    return is_number(value) and value > 0
+
+
+def object_in(parent: Any, key: str) -> Json:
+    """The object under a key, {} where there is none."""
+    value = parent.get(key) if isinstance(parent, dict) else None
+    return value if isinstance(value, dict) else {}
+
+
+def points_of(document: Json) -> list[Json]:
+    """The points that load has checked; a stability result has none."""
+    if document["schema"] != SCHEMA:
+        return []
+    return [point for point in document.get("points", []) if point.get("sweep") in SWEEPS]
+
+
+def suite_of(document: Json) -> Json:
+    return object_in(object_in(document, "context"), "suite")
+
+
+def _check(point: Json, where: str) -> None:
+    """Only what the drawing relies on; configs/result.schema.json is the full description."""
+    for key in ("scene", "solver", "status"):
+        if not isinstance(point.get(key), str) or not point[key]:
+            raise ResultError(f"{where} has no {key}")
+    for key in ("vertices", "strain_limit"):
+        if not positive(point.get(key)):
+            raise ResultError(f"{where} needs a positive number as {key}")
+    if point.get("best") is True and median_of(point) is None:
+        raise ResultError(f"{where} is marked best but has no positive median of seconds_per_simulated_second")
+
+
+def median_of(point: Json) -> float | None:
+    median = object_in(point, "seconds_per_simulated_second").get("median")
+    return float(median) if positive(median) else None

@@ -1,0 +1,59 @@
+"""Words that fit: texts from result files made harmless, measured, cut and wrapped to a width."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import text_to_path
+
+FONT = "DejaVu Sans"
+ELLIPSIS = "\u2026"
+LONGEST = 160  # characters of one value from a file
+FILE_NAME = 60
+
+
+def clean(text: Any) -> str:
+    """One line of characters that can be printed: no control characters, which no SVG may hold, and no endless names."""
+    line = " ".join("".join(c if c.isprintable() else " " for c in str(text)).split())
+    return line if len(line) <= LONGEST else line[:LONGEST - 1] + ELLIPSIS
+
+
+def file_part(text: str) -> str:
+    """A text as part of a file's name."""
+    return "".join(c if c.isascii() and c.isalnum() or c in "-_" else "_" for c in text)[:FILE_NAME]
+
+
+@lru_cache(maxsize=4096)
+def inches(text: str, size: float, weight: str = "normal") -> float:
+    """Width of a line of text; `size` in points."""
+    return text_to_path.get_text_width_height_descent(text, FontProperties(family=FONT, size=size, weight=weight), False)[0] / 72
+
+
+def shorten(text: str, width: float, size: float, weight: str = "normal") -> str:
+    """The text, or as much of its beginning as is `width` inches wide."""
+    if inches(text, size, weight) <= width:
+        return text
+    while text and inches(text + ELLIPSIS, size, weight) > width:
+        text = text[:-1]
+    return text.rstrip() + ELLIPSIS
+
+
+def wrap(text: str, width: float, size: float, weight: str = "normal") -> list[str]:
+    """Lines at most `width` inches wide, broken between words, and within those that are wider alone."""
+    lines: list[str] = []
+    line = ""
+    for word in text.split():
+        longer = f"{line} {word}" if line else word
+        if inches(longer, size, weight) <= width:
+            line = longer
+            continue
+        if line:
+            lines.append(line)
+        line = word
+        while len(line) > 1 and inches(line, size, weight) > width:
+            end = next(end for end in range(len(line) - 1, 0, -1) if end == 1 or inches(line[:end], size, weight) <= width)
+            lines.append(line[:end])
+            line = line[end:]
+    return lines + [line] if line else lines

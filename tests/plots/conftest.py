@@ -1,0 +1,1 @@
+import documents  # noqa: F401  puts plots/ on the path, for all tests

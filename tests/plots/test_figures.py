@@ -1,0 +1,235 @@
+"""Every figure is drawn: its scales, labels, curves, legend, caption and failures are those that its points ask for."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex, to_rgba
+from matplotlib.patches import Rectangle
+
+import figures
+from documents import (STEPS, axes_with, curves, document, drawn, legend_labels, marks, point, resolution_sweep, stability,
+                       step_sweep, strain_sweep, strips, texts_outside, words_of)
+
+DOCUMENTS = {"strain": strain_sweep(), "resolution": resolution_sweep(), "step": step_sweep(), "stability": stability()}
+
+
+def test_each_registered_figure_is_drawn_by_one_of_these_documents() -> None:
+    drawn_by = set()
+    for result in DOCUMENTS.values():
+        legend = figures.legend_of(result)
+        drawn_by |= {module.__name__ for module in figures.FIGURES if module.figures_of(result, legend)}
+    assert drawn_by == {module.__name__ for module in figures.FIGURES}
+
+
+def test_each_drawing_is_registered_once() -> None:
+    folder = figures.Path(figures.__file__).parent / "drawings"
+    files = {f"drawings.{path.stem}" for path in folder.glob("*.py")} - {"drawings.__init__", "drawings.times_over_results"}
+    names = [module.__name__ for module in figures.FIGURES]
+    assert sorted(names) == sorted(files)
+
+
+@pytest.mark.parametrize("name", DOCUMENTS)
+def test_no_words_run_out_of_a_figure(name: str) -> None:
+    for picture, figure in drawn(DOCUMENTS[name]).items():
+        assert texts_outside(figure) == [], picture
+
+
+# ---- numbers of the paper -------------------------------------------------------------------------------------------
+
+@pytest.mark.parametrize("make, scene, name, title", [
+    (strain_sweep, "chain", "figure4a", "Figure 4a - chain: cost over permissible strain"),
+    (resolution_sweep, "chain", "figure4b", "Figure 4b - chain: cost over resolution"),
+    (strain_sweep, "drape", "figure5a", "Figure 5a - drape over a sphere: cost over permissible strain"),
+    (resolution_sweep, "drape", "figure5b", "Figure 5b - drape over a sphere: cost over resolution"),
+    (strain_sweep, "flag", "flag-strain", "flag: cost over permissible strain"),
+    (resolution_sweep, "flag", "flag-resolution", "flag: cost over resolution"),
+])
+def test_figures_have_the_papers_numbers(make, scene: str, name: str, title: str) -> None:
+    pictures = drawn(make(scene))
+    assert pictures[name].texts[0].get_text() == title
+
+
+def test_two_sizes_of_a_scene_are_two_figures() -> None:
+    result = strain_sweep()
+    result["points"] += [point("shake", vertices=20, limit=limit, best=True) for limit in (0.1, 0.01)]
+    assert list(drawn(result)) == ["figure4a-n20", "figure4a-n80"]
+
+
+# ---- cost over strain -----------------------------------------------------------------------------------------------
+
+def test_cost_over_strain() -> None:
+    figure = drawn(strain_sweep())["figure4a"]
+    main, steps = axes_with(figure, ylabel="wall seconds per simulated second"), axes_with(figure, "permissible strain (%)")
+    assert (main.get_xscale(), main.get_yscale(), steps.get_yscale()) == ("log", "log", "log")
+    assert steps.get_ylabel() == "best time step (s)"
+    assert legend_labels(figure) == ["Jacobi strain limiting", "SHAKE", "fast projection"]
+    found = {line.get_color(): line for line in curves(main)}
+    assert len(found) == len(curves(main)) == 3
+    blue = found["#0072B2"]
+    assert np.allclose(blue.get_xdata(), [0.1, 1, 10])
+    assert np.allclose(blue.get_ydata(), [0.01 / limit**0.5 for limit in (0.001, 0.01, 0.1)])
+    assert len(found["#E69F00"].get_xdata()) == 2, "Jacobi's failed limit is no point of its curve"
+
+
+def test_a_failure_has_its_letters_above_the_axes_and_in_the_caption() -> None:
+    figure = drawn(strain_sweep())["figure4a"]
+    (strip,) = strips(figure)
+    assert [label.get_text() for label in strip.get_yticklabels()] == ["jacobi"]
+    assert marks(strip) == ["DT"], "from the coarsest step to the finest"
+    assert [list(line.get_xdata()) for line in strip.lines] == [[pytest.approx(0.1)]]
+    assert "D = diverged, T = timeout." in words_of(figure)
+
+
+def test_what_was_measured_where_and_how_stands_beneath() -> None:
+    words = words_of(drawn(strain_sweep())["figure4a"])
+    assert "Scene chain: 80 vertices, gravity 9.81, 1 s simulated." in words
+    assert "median of 3 repetitions, bars from the first to the third quartile; timeout 5 s; profile default; seed 1." in words
+    assert "Measured on Model 7; 2 CPUs; build release; 2026-11-21 22:39; commit a2e87d4fef63." in words
+    assert "box" not in words, "the host's name tells nothing of a method"
+
+
+def test_warnings() -> None:
+    result = strain_sweep(profile="quick")
+    assert "QUICK PROFILE" in words_of(drawn(result)["figure4a"]) and "INCOMPLETE" not in words_of(drawn(result)["figure4a"])
+    assert "INCOMPLETE" in words_of(drawn({**strain_sweep(), "complete": False})["figure4a"])
+
+
+def test_equal_error_shows_only_runs_within_the_limit() -> None:
+    result = document([point("shake", limit=limit, best=True, best_at_error=True) for limit in (0.1, 0.01)] +
+                      [point("jacobi", limit=limit, best=True, error={"trajectory": 0.5}) for limit in (0.1, 0.01)],
+                      max_error=0.03)
+    pictures = drawn(result)
+    assert list(pictures) == ["figure4a", "figure4a-equal-error"]
+    figure = pictures["figure4a-equal-error"]
+    assert "at a trajectory error of at most 3 %" in words_of(figure)
+    assert marks(strips(figure)[0]) == ["E", "E"] and "E = trajectory error above the limit" in words_of(figure)
+    assert strips(pictures["figure4a"]) == []
+
+
+def test_adaptive_steps_are_means() -> None:
+    result = document([point("shake", limit=limit, best=True, adaptive=True, step=0.04) for limit in (0.1, 0.01)])
+    figure = drawn(result)["figure4a-adaptive"]
+    steps = axes_with(figure, ylabel="mean time step (s)")
+    assert set(np.concatenate([line.get_ydata() for line in steps.lines])) == {0.01}, "1 s in 100 accepted steps"
+
+
+def test_who_does_not_compete_needs_no_best_and_has_no_failures() -> None:
+    result = strain_sweep()
+    result["points"] += [point("null", limit=0.1, seconds=1e-3, status="strain_missed"),
+                         point("null", limit=0.01, seconds=1e-3, status="strain_missed"),
+                         point("null", limit=0.001, seconds=None, status="timeout")]
+    figure = drawn(result)["figure4a"]
+    assert legend_labels(figure)[-1] == "scene without inextensibility"
+    assert [label.get_text() for label in strips(figure)[0].get_yticklabels()] == ["jacobi"]
+    grey = [line for line in axes_with(figure, ylabel="wall seconds").lines if line.get_color() == "#7F7F7F"]
+    assert [len(line.get_xdata()) for line in grey] == [2]
+
+
+# ---- cost over resolution, growth -----------------------------------------------------------------------------------
+
+def test_cost_over_resolution_is_drawn_on_linear_and_on_log_axes() -> None:
+    figure = drawn(resolution_sweep())["figure5b"]
+    linear, steps = axes_with(figure, "vertices (linear axes)"), axes_with(figure, "vertices (log axes")
+    assert (linear.get_xscale(), linear.get_yscale()) == ("linear", "linear")
+    (log,) = [axes for axes in figure.axes if axes.get_shared_x_axes().joined(axes, steps) and axes is not steps
+              and axes.get_yscale() == "log"]
+    assert log.get_xscale() == "log"
+    assert len(curves(linear)) == len(curves(log)) == 3
+    assert legend_labels(figure) == ["SHAKE", "ICD (implicit constraint direction)", "fast projection"]
+    assert [marks(strip) for strip in strips(figure)][1] == ["N"]
+    assert "permissible strain 1 %" in words_of(figure) and "100 to 1,600 vertices" in words_of(figure)
+
+
+def test_a_point_above_the_linear_axes_has_an_arrow_with_its_value() -> None:
+    result = resolution_sweep(solvers=("fast_projection", "shake"))
+    result["points"] += [point("jacobi", "resolution", "drape", vertices, seconds=9000.0, best=True) for vertices in (100, 400)]
+    (strip,) = strips(drawn(result)["figure5b"])  # of the linear panel; the log one holds all points
+    assert marks(strip) == ["\u2191 9e+03 s", "\u2191"]
+    assert strip.get_title(loc="right").endswith("(\u2191)")
+
+
+def test_growth_has_slopes_in_its_legend() -> None:
+    figure = drawn(resolution_sweep())["figure5b-growth"]
+    axes = axes_with(figure, "vertices (log axes", "wall seconds of a step")
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    assert legend_labels(figure) == ["SHAKE: 1.50", "ICD (implicit constraint direction)", "fast projection: 1.00"]
+    blue = curves(axes, "#0072B2")[0]
+    assert np.allclose(blue.get_ydata(), [1e-4 * vertices * 0.01 for vertices in (100, 400, 1600)]), "times the step"
+
+
+# ---- step sweeps ----------------------------------------------------------------------------------------------------
+
+def test_time_against_error() -> None:
+    figure = drawn(step_sweep())["work-precision-chain"]
+    axes = axes_with(figure, "trajectory error over the scene's size", "wall seconds per simulated second")
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    assert legend_labels(figure) == ["SHAKE", "fast projection"]
+    assert len(curves(axes)) == 2
+    assert marks(strips(figure)[0]) == ["L"], "no step finer than SHAKE's best failed: its ladder ended"
+    assert "L = the ladder ended" in words_of(figure) and "Errors up to t = 0.5 s" in words_of(figure)
+
+
+def test_errors_that_the_reference_cannot_tell_are_hollow() -> None:
+    result = document([point("shake", "step", step=step, seconds=1e-3 / step,
+                             error={"trajectory": step, "gap": 0.004, "valid_until": 1.0}) for step in STEPS])
+    axes = axes_with(drawn(result)["work-precision-chain"], "trajectory error")
+    hollow = [line for line in axes.lines if line.get_markerfacecolor() == "white"]
+    assert [list(line.get_xdata()) for line in hollow] == [[0.01]]
+    (curve,) = curves(axes, "#009E73")
+    assert [curve.get_xdata()[place] for place in curve.get_markevery()] == [0.02, 0.04], "no filled mark beneath"
+
+
+def test_error_over_step_at_the_loose_and_the_tight_limit() -> None:
+    figure = drawn(step_sweep())["slack-chain"]
+    loose, tight = axes_with(figure, "strain limit 1 %"), axes_with(figure, "strain limit 0.01 %")
+    for axes in (loose, tight):
+        assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+        (blue,) = curves(axes, "#0072B2")
+        assert np.allclose(blue.get_xdata(), sorted(STEPS)) and np.allclose(blue.get_ydata(), sorted(STEPS))
+    assert [marks(strip) for strip in strips(figure)] == [["N"], ["N"]]
+    assert "N = not converged" in words_of(figure)
+
+
+def test_residual_of_whoever_has_one() -> None:
+    figure = drawn(step_sweep(residuals_of=("shake",)))["residual-chain"]
+    assert words_of(figure).startswith("chain: residual of SHAKE Scene chain")
+    over_time, over_step = axes_with(figure, "time (s)", "mean |F| (m)"), axes_with(figure, "time step (s)")
+    assert over_time.get_yscale() == over_step.get_xscale() == over_step.get_yscale() == "log"
+    assert len(over_time.lines) == 4 and {line.get_color() for line in over_time.lines} == {"#009E73"}
+    assert [text.get_text() for text in over_step.get_legend().get_texts()] == ["first iteration: slope 2.00",
+                                                                                "last iteration: slope 3.00"]
+    assert "permissible strain 0.01 %" in words_of(figure), "the tightest limit"
+
+
+def test_two_solvers_with_residuals_have_a_figure_each() -> None:
+    names = list(drawn(step_sweep(residuals_of=("fast_projection", "shake"))))
+    assert [name for name in names if "residual" in name] == ["residual-fast_projection-chain", "residual-shake-chain"]
+    assert not any("residual" in name for name in drawn(step_sweep(residuals_of=())))
+
+
+# ---- stability ------------------------------------------------------------------------------------------------------
+
+def test_matrix_of_hard_cases() -> None:
+    figure = drawn(stability())["matrix"]
+    (axes,) = figure.axes
+    words = [text.get_text() for text in axes.texts]
+    assert words[:2] == ["SHAKE", "fast projection"]
+    assert {"Q1", "whip", "S", "R  E0.6", "S1 D1 !", "1/4", "none", "chain of 20"} <= set(words)
+    frames = {text: patch for text in ("S1 D1 !", "R  E0.6") for patch in axes.patches if isinstance(patch, Rectangle)
+              for box in [axes.texts[words.index(text)].get_position()]
+              if patch.get_x() < box[0] < patch.get_x() + patch.get_width()
+              and patch.get_y() < box[1] < patch.get_y() + patch.get_height()}
+    assert to_hex(frames["S1 D1 !"].get_facecolor()).upper() == "#C2553B", "the colour of the worst outcome"
+    assert frames["S1 D1 !"].get_edgecolor() == to_rgba("black") and frames["S1 D1 !"].get_linewidth() == 2
+    assert frames["R  E0.6"].get_linewidth() < 1
+    assert "1 outcomes are not as their cases expect" in words_of(figure) and "D = diverged" in words_of(figure)
+
+
+def test_outcomes_are_those_of_the_legend() -> None:
+    result = stability()
+    result["legend"]["statuses"] = [{"name": name, "letter": letter, "meaning": f"it {name}"} for name, letter in
+                                    (("survived", "v"), ("refused", "x"), ("diverged", "y"))]
+    figure = drawn(result)["matrix"]
+    assert "v1 y1 !" in [text.get_text() for text in figure.axes[0].texts]
+    assert "v = it survived, x = it refused, y = it diverged" in words_of(figure)
