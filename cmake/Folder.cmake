@@ -5,16 +5,31 @@
 # SOURCES  of the folder that lies beside the calling CMakeLists.txt
 # USES     folders added before, with all that they use
 # LINKS    libraries, for this folder's sources alone
+# LIGHT    sources in which nothing is timed and nothing computes for long: compiled with less optimization, in two thirds of the time
 # Headers are included as <prefix>/<folder>/<file>, where `folder_prefix` is the caller's ("inextensible" or "harness"); that is
 # how they are installed too. In the build folder a link for each target shows its headers alone under that name.
 function(add_folder folder)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;USES;LINKS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIGHT;USES;LINKS")
   set(target ${folder_prefix}_${folder})
   list(TRANSFORM arg_SOURCES PREPEND ${folder}/)
+  list(TRANSFORM arg_LIGHT PREPEND ${folder}/)
   list(TRANSFORM arg_USES PREPEND ${folder_prefix}_)
-  add_library(${target} ${folder_library_type} ${arg_SOURCES})
+  add_library(${target} ${folder_library_type} ${arg_SOURCES} ${arg_LIGHT})
+  if(NOT arg_SOURCES)
+    light(${target})
+  elseif(arg_LIGHT)
+    set_property(SOURCE ${arg_LIGHT} APPEND PROPERTY COMPILE_OPTIONS ${light_option})
+  endif()
   folder_headers(${target} ${folder})
   target_link_libraries(${target} PUBLIC ${folder_base} ${arg_USES} PRIVATE ${arg_LINKS} project_warnings)
+endfunction()
+
+set(light_option $<$<CONFIG:Release>:-O1>)
+
+# The same for a whole target, which then also shares the precompiled headers of `folder_precompiled`, a target with that option.
+function(light target)
+  target_compile_options(${target} PRIVATE ${light_option})
+  target_precompile_headers(${target} REUSE_FROM ${folder_precompiled})
 endfunction()
 
 # The include path of a folder's headers; without a folder, of those that lie beside the calling CMakeLists.txt.

@@ -97,16 +97,18 @@ configure() {
   cpu_features >"$dir/.cpu"
 }
 
-# compile FOLDER TARGET: announces itself, unless there is nothing to do.
+# compile FOLDER TARGETS: announces itself, unless there is nothing to do. TARGETS are words in one argument.
 compile() {
-  local dir=$1 target=$2 message='building what changed ...'
-  [[ $(ninja -C "$dir" -n "$target" 2>/dev/null) == *'no work to do'* ]] && return
-  [[ -e $dir/bench ]] || message='building (once, about a minute) ...'
-  say "$message"
-  quietly ninja -C "$dir" "$target"
+  local dir=$1 targets plan files
+  read -ra targets <<<"$2"
+  plan=$(ninja -C "$dir" -n "${targets[@]}" 2>/dev/null)
+  [[ $plan != *'no work to do'* ]] || return 0
+  files=$(grep -c 'Building CXX object' <<<"$plan")
+  say "building, $files files to compile ..."
+  quietly ninja -C "$dir" "${targets[@]}"
 }
 
-# build_preset FOLDER PRESET TARGET [CMAKE_ARGUMENT...]: always configures, so that the arguments are in force.
+# build_preset FOLDER PRESET TARGETS [CMAKE_ARGUMENT...]: always configures, so that the arguments are in force.
 build_preset() {
   local dir=$1 preset=$2 target=$3
   shift 3
