@@ -19,6 +19,7 @@
 #include "harness/run/overhead.h"
 #include "harness/run/report.h"
 #include "harness/run/runner.h"
+#include "inextensible/registry.h"
 
 namespace harness {
 namespace {
@@ -32,8 +33,8 @@ void dry_run(const Suite& suite, const std::vector<Search>& searches) {
     // Coarse figures of one common machine: seconds that a search takes, by constraints.
     const double size = search.base.constraints;
     const bool chain = search.base.scene == "chain";
-    const double unit =
-        search.base.solver == "implicit_springs" || search.base.solver == "icd" ? 6e-3 : 2e-3;
+    const auto* backend = inextensible::find_backend(search.base.solver);
+    const double unit = backend && backend->slow_steps ? 6e-3 : 2e-3;
     seconds += std::min(4 * suite.timeout, (chain ? 0.1 : 1.0) * unit * size);
   }
   std::cout << searches.size() << " searches for a best step, at most " << most

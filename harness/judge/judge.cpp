@@ -19,16 +19,13 @@ constexpr double time_tolerance = 1e-9;  // s; states add up their steps
 
 Judge::Judge(const Scene& scene, const Options& options) : scene_(scene), options_(options) {
   options_.sample_every = std::max(1, options_.sample_every);
-  if (options_.residual_of_limit > 0) probe_.emplace(scene.problem, options_.residual_of_limit);
+  if (options_.residual) probe_.emplace();
   start_energy_ = total_energy(*scene.problem, scene.start);
   energy_scale_ = energy_scale(scene);
 }
 
 void Judge::before(const State& state, double h) {
-  if (probe_ && (steps_ + 1) % options_.sample_every == 0) {
-    if (const auto residuals = probe_->of_step(state, h))
-      running_.residuals.push_back({state.time + h, residuals->first, residuals->last});
-  }
+  if (probe_ && (steps_ + 1) % options_.sample_every == 0) probe_->watch();
   // A sample in the middle of a step is interpolated.
   if (options_.reference && next_ < options_.reference->times.size() &&
       options_.reference->times[next_] < state.time + h - time_tolerance) {
@@ -71,7 +68,11 @@ double Judge::after(const Positions& filtered, const State& state, bool counts) 
     const double before = running_.max_strain_after_collision;
     running_.max_strain_after_collision = std::isnan(before) ? after : std::max(before, after);
   }
-  if (counts && ++steps_ % options_.sample_every == 0) sample(filtered, state);
+  if (counts && ++steps_ % options_.sample_every == 0) {
+    sample(filtered, state);
+    if (const auto residuals = probe_ ? probe_->residuals() : std::nullopt)
+      running_.residuals.push_back({state.time, residuals->first, residuals->last});
+  }
   if (options_.reference) compare(state);
   return range.most;
 }

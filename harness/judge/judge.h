@@ -17,11 +17,13 @@ class Judge {
   struct Options {
     int sample_every = 1;  // full statistics are taken at every so manieth step
     std::shared_ptr<const Reference> reference = nullptr;
-    // The residual of fast projection with this strain limit; 0: none.
-    double residual_of_limit = 0;
+    bool residual = false;         // is measured where the solver shows its iterates (observer())
     bool residual_series = false;  // the residual over time too, not its means alone
   };
   Judge(const Scene& scene, const Options& options);
+
+  // What the stepper is to be observed by; null: nothing. Valid as long as the judge.
+  inextensible::IterateObserver* observer() { return probe_ ? &*probe_ : nullptr; }
 
   // Before and after each accepted step of h seconds. filtered: positions before the collision
   // filter. `after` returns the step's largest |strain|, infinite if a position is not finite.

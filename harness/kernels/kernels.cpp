@@ -21,6 +21,7 @@
 #include "harness/kernels/hardware_peak.h"
 #include "harness/points/context.h"
 #include "harness/scenes/scene.h"
+#include "inextensible/linear/spd_solvers.h"
 #include "inextensible/methods/gauss_seidel.h"
 #include "inextensible/methods/gauss_seidel_colored.h"
 #include "inextensible/methods/icd.h"

@@ -54,13 +54,13 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
   Judge::Options judging{steps_ / sampled_instants};
   if (judged && stop_at == diverged_strain) {
     judging.reference = reference_;
-    // Where growth is the question, a probe that needs the solver's own memory again is not.
-    if (spec_.solver == "fast_projection" && !spec_.adaptive && spec_.sweep != "resolution")
-      judging.residual_of_limit = spec_.strain_limit;
+    // Where growth is the question, memory for iterates would be part of the answer.
+    judging.residual = backend_.shows_iterates && !spec_.adaptive && spec_.sweep != "resolution";
     // A figure draws the series of step sweeps; for the others it would fill files unread.
     judging.residual_series = spec_.sweep == "step";
   }
   Judge judge(scene_, judging);
+  run.stepper->observe(judge.observer());
   inextensible::State state = scene_.start;
   std::optional<inextensible::StepController> controller;
   if (spec_.adaptive) {
@@ -114,6 +114,7 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
       break;
     }
   }
+  run.stepper->observe(nullptr);
   run.measures = judge.measures();
   const bool missed = !(run.measures.max_strain <= spec_.strain_limit * (1 + 1e-9));
   if (judged && run.status == PointStatus::ok && missed &&

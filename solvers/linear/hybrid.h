@@ -2,6 +2,8 @@
 // that begin easy and may become hard.
 #pragma once
 
+#include <memory>
+
 #include "inextensible/linear/line_cg.h"
 #include "inextensible/linear/multifrontal_cholesky.h"
 

@@ -3,8 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <string_view>
 
 #include "inextensible/linear/symmetric_pattern.h"
 
@@ -46,14 +44,5 @@ class SpdSolver {
  protected:
   double least_pivot_ = 0;
 };
-
-// The triangle that the named solver reads.
-SymmetricPattern::Triangle triangle_of(std::string_view solver);
-
-// name: tridiagonal, block_tridiagonal (3 x 3 blocks; each for such patterns only), eigen_ldlt,
-// cholmod_simplicial, cholmod_supernodal, fixed_pattern, fixed_pattern_single, fixed_pattern_mixed;
-// not direct: line_cg, hybrid. Throws std::invalid_argument for another name or a pattern that the
-// solver cannot take.
-std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern);
 
 }  // namespace inextensible

@@ -1,12 +1,69 @@
 #include "inextensible/methods/backend.h"
 
+#include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
 
 namespace inextensible {
+namespace {
+
+std::string fault_of(const SettingInfo& info, double number) {
+  if (info.range.contains(number) && (!info.whole || number == std::floor(number))) return {};
+  const Range& range = info.range;
+  std::ostringstream text;
+  text << " is " << number << ", must be " << (info.whole ? "an integer" : "finite");
+  text << (range.open ? ", above " : ", at least ") << range.least;
+  if (std::isfinite(range.largest))
+    text << (range.open ? " and below " : " and at most ") << range.largest;
+  return text.str();
+}
+
+std::string fault_of(const SettingInfo& info, const std::string& word) {
+  if (std::find(info.choices.begin(), info.choices.end(), word) != info.choices.end()) return {};
+  std::string choices;
+  for (const char* choice : info.choices) {
+    if (!choices.empty()) choices += ", ";
+    choices += choice;
+  }
+  return " is '" + word + "', must be one of: " + choices;
+}
+
+std::string fault_of(const SettingInfo& info, const std::variant<double, std::string>& value) {
+  if (info.initial.index() != value.index())
+    return value.index() == 0 ? " must be a word" : " must be a number";
+  return std::visit([&info](const auto& v) { return fault_of(info, v); }, value);
+}
+
+}  // namespace
 
 bool Range::contains(double number) const {
   if (!std::isfinite(number)) return false;
   return open ? number > least && number < largest : number >= least && number <= largest;
+}
+
+Settings complete_settings(const Backend& backend, const Settings& given) {
+  Settings all;
+  for (const SettingInfo& info : backend.settings) {
+    if (const auto* text = std::get_if<const char*>(&info.initial)) {
+      all[info.name] = std::string(*text);
+    } else {
+      all[info.name] = std::get<double>(info.initial);
+    }
+  }
+  for (const auto& [name, value] : given) {
+    const auto info = std::find_if(backend.settings.begin(), backend.settings.end(),
+                                   [&name = name](const SettingInfo& s) { return name == s.name; });
+    const std::string fault =
+        info == backend.settings.end() ? " does not exist" : fault_of(*info, value);
+    if (!fault.empty()) {
+      throw std::invalid_argument("solver '" + std::string(backend.name) + "': setting '" + name +
+                                  "'" + fault);
+    }
+    all[name] = value;
+  }
+  return all;
 }
 
 }  // namespace inextensible

@@ -61,9 +61,15 @@ struct Backend {
   std::vector<SettingInfo> settings;
   std::unique_ptr<Stepper> (*make)(std::shared_ptr<const Problem>, const BackendOptions&);
   Direction direction = Direction::none;
-  const char* citation = "";  // author and year
-  const char* label = "";     // in figures; empty: the name
-  const char* family = "";    // the method whose colour it shares in figures; empty: its own
+  const char* citation = "";    // author and year
+  const char* label = "";       // in figures; empty: the name
+  const char* family = "";      // the method whose colour it shares in figures; empty: its own
+  bool shows_iterates = false;  // Stepper::observe sees the iterates and multipliers of each step
+  bool slow_steps = false;      // a step takes a few times as long as most methods': rough guesses
 };
+
+// The given settings, checked, and the defaults of the others. Throws std::invalid_argument, naming
+// solver and setting, for one that does not exist, is of the wrong kind or out of its range.
+Settings complete_settings(const Backend& backend, const Settings& given);
 
 }  // namespace inextensible

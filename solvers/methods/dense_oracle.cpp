@@ -86,4 +86,19 @@ StepResult DenseReference::apply(const Positions& /*x_start*/, double /*h*/, Pos
   return refuse(Status::not_converged, iteration_limit, edges_, x, "iteration limit");
 }
 
+Backend reference_row() {
+  return {.name = "reference",
+          .summary = "dense Newton to 1e-12, small problems: the oracle of the tests",
+          .knob = Knob::none,
+          .contestant = false,
+          .settings = {},
+          .make = [](std::shared_ptr<const Problem> problem,
+                     const BackendOptions&) -> std::unique_ptr<Stepper> {
+            auto filter = std::make_unique<DenseReference>(*problem);
+            return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
+          },
+          .citation = "Goldenthal et al. 2007",
+          .label = "reference (no contestant)"};
+}
+
 }  // namespace inextensible

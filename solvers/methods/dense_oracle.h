@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 
+#include "inextensible/methods/backend.h"
 #include "inextensible/stepping/velocity_filter.h"
 #include "inextensible/systems/constraint_system.h"
 
@@ -24,5 +25,7 @@ class DenseReference final : public VelocityFilter {
   EdgeConstraints edges_;
   Eigen::VectorXd mu_;
 };
+
+Backend reference_row();
 
 }  // namespace inextensible

@@ -21,6 +21,8 @@
 #include <cmath>
 #include <limits>
 
+#include "inextensible/stepping/bdf2_stepper.h"
+
 namespace inextensible {
 namespace {
 
@@ -57,6 +59,7 @@ StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Pos
   double error = std::numeric_limits<double>::infinity();  // |C|^2 at best_
   double last_error = error, forcing = first_forcing;
   for (int j = 0, best_j = 0;; ++j) {
+    if (observer_) show(j, x);
     if (edges.linearize(x, u_, mu_) && j >= min_iterations_) return {Status::ok, j};
     if (j == max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
     const double next_error = mu_.squaredNorm();
@@ -64,6 +67,7 @@ StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Pos
       error = next_error;
       best_ = x;
       best_j = j;
+      if (observer_) best_multipliers_ = multipliers_;
     } else if (j == 0) {
       return refuse(Status::not_finite, j, edges, x, "overflow");
     }
@@ -75,6 +79,17 @@ StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Pos
     edges.apply(u_, mu_, x);  // (5)
     if (sweep_) smooth(x, work);
   }
+}
+
+// Before mu_, the step to x_j, is overwritten. Smoothing moves vertices without multipliers.
+void FastProjection::show(int j, const Positions& x) {
+  if (sweep_) return;
+  if (j == 0) {
+    multipliers_.setZero(mu_.size());
+  } else {
+    multipliers_ += mu_;
+  }
+  observer_->iterate(system_.edges(), j, x, multipliers_);
 }
 
 void FastProjection::smooth(Positions& x, WorkCounters& work) {
@@ -96,6 +111,7 @@ StepResult FastProjection::damped(int j, Positions& x, WorkCounters& work) {
     if (taken_back) {
       ++work.line_search_steps;
       x = best_;
+      if (observer_) multipliers_ = best_multipliers_;
       edges.linearize(x, u_, mu_);
       edges.excess(inner_band, mu_);
       error = mu_.squaredNorm();
@@ -113,6 +129,7 @@ StepResult FastProjection::damped(int j, Positions& x, WorkCounters& work) {
     }
     const double predicted_error = damped_prediction(damping);
     edges.apply(u_, mu_, x);
+    if (observer_) show(j + 1, x);
     if (edges.linearize(x, u_, mu_)) return {Status::ok, j + 1};
     edges.excess(inner_band, mu_);
     const double next_error = mu_.squaredNorm();
@@ -127,6 +144,7 @@ StepResult FastProjection::damped(int j, Positions& x, WorkCounters& work) {
       growth = 2;
       error = next_error;
       best_ = x;
+      if (observer_) best_multipliers_ = multipliers_;
     }
   }
 }
@@ -141,6 +159,92 @@ double FastProjection::damped_prediction(double damping) const {
     sum += std::pow(damping * d * mu_[e], 2);
   }
   return sum;
+}
+
+SettingFields<FastProjection::Settings> FastProjection::fields() {
+  using S = Settings;
+  return {{"max_iterations", &S::max_iterations, "projections a step before it is refused",
+           at_least_one},
+          {"min_iterations", &S::min_iterations, least_iterations, count_from_zero, Range{0, 2}},
+          {"smoothing_sweeps", &S::smoothing_sweeps,
+           "colored Gauss-Seidel sweeps after each projection, at most; none on chains",
+           count_from_zero, Range{0, 120}},
+          schur_solver_field<S>()};
+}
+
+Backend fast_projection_row() {
+  return {.name = "fast_projection",
+          .summary = "Algorithm 1 of Goldenthal et al. 2007",
+          .knob = Knob::strain_limit,
+          .contestant = true,
+          .settings = setting_infos(FastProjection::fields()),
+          .make = make_filter_stepper<FastProjection>,
+          .direction = Direction::current,
+          .citation = "Goldenthal et al. 2007",
+          .label = "fast projection",
+          .shows_iterates = true};
+}
+
+Backend fast_projection_smoothed_row() {
+  Backend row = fast_projection_row();
+  row.name = "fast_projection_smoothed";
+  row.summary = "the same, each projection followed by some colored Gauss-Seidel sweeps";
+  FastProjection::Settings defaults;
+  defaults.smoothing_sweeps = 30;
+  row.settings = setting_infos(FastProjection::fields(), defaults);
+  row.label = "fast projection, smoothed";
+  row.family = "fast_projection";
+  row.shows_iterates = false;  // sweeps have no multipliers to show
+  return row;
+}
+
+namespace {
+
+// Of the time stepper, not of the filter.
+SettingInfo blend() {
+  return {.name = "blend",
+          .initial = 0.48,
+          .meaning = "of BDF3 in the formula; A-stable up to 0.48",
+          .range = {0, 0.48}};
+}
+
+std::unique_ptr<Stepper> make_bdf2(std::shared_ptr<const Problem> problem,
+                                   const BackendOptions& options, double bdf3) {
+  auto filter = std::make_unique<FastProjection>(*problem, settings_of<FastProjection>(options));
+  return std::make_unique<Bdf2Stepper>(std::move(problem), std::move(filter), bdf3);
+}
+
+}  // namespace
+
+Backend fast_projection_bdf2_row() {
+  Backend row = fast_projection_smoothed_row();
+  row.name = "fast_projection_bdf2";
+  row.summary = "fast projection inside the two-step formula BDF2: second order";
+  FastProjection::Settings defaults;
+  defaults.min_iterations = 1;
+  defaults.smoothing_sweeps = 30;
+  row.settings = setting_infos(FastProjection::fields(), defaults);
+  row.make = [](std::shared_ptr<const Problem> problem, const BackendOptions& options) {
+    return make_bdf2(std::move(problem), options, 0);
+  };
+  row.citation = "Goldenthal et al. 2007; English and Bridson 2008";
+  row.label = "fast projection in BDF2";
+  return row;
+}
+
+Backend fast_projection_bdf2opt_row() {
+  Backend row = fast_projection_bdf2_row();
+  row.name = "fast_projection_bdf2opt";
+  row.summary = "the same with half the error constant: BDF2 blended with BDF3";
+  row.contestant = false;
+  row.settings.push_back(blend());
+  row.make = [](std::shared_ptr<const Problem> problem, const BackendOptions& options) {
+    return make_bdf2(std::move(problem), options,
+                     std::get<double>(options.settings.at(blend().name)));
+  };
+  row.citation = "Goldenthal et al. 2007; Vatsa, Carpenter and Lockard 2010";
+  row.label = "fast projection in BDF2 with BDF3";
+  return row;
 }
 
 }  // namespace inextensible

@@ -4,8 +4,8 @@
 
 #include <memory>
 
+#include "inextensible/methods/setting_fields.h"
 #include "inextensible/methods/strain_pass.h"
-#include "inextensible/stepping/velocity_filter.h"
 #include "inextensible/systems/constraint_system.h"
 
 namespace inextensible {
@@ -24,6 +24,7 @@ class FastProjection final : public VelocityFilter {
     int smoothing_sweeps = 0;
     std::string_view linear_solver = "auto";
   };
+  static SettingFields<Settings> fields();
   FastProjection(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
@@ -31,6 +32,7 @@ class FastProjection final : public VelocityFilter {
 
  private:
   void smooth(Positions& x, WorkCounters& work);
+  void show(int j, const Positions& x);
   StepResult damped(int j, Positions& x, WorkCounters& work);
   double damped_prediction(double damping) const;
 
@@ -41,6 +43,15 @@ class FastProjection final : public VelocityFilter {
   Eigen::Matrix3Xd u_;                  // gradient of C at x_j
   Eigen::VectorXd mu_;                  // C(x_j), then h^2 dlambda
   Eigen::VectorXd excess_;              // C~ of a damped iteration
+  // With an observer only: h^2 lambda at x_j and at best_.
+  Eigen::VectorXd multipliers_, best_multipliers_;
 };
+
+Backend fast_projection_row();
+// Each projection followed by some colored Gauss-Seidel sweeps.
+Backend fast_projection_smoothed_row();
+// The same inside BDF2, and BDF2 blended with BDF3 (bdf2_stepper.h).
+Backend fast_projection_bdf2_row();
+Backend fast_projection_bdf2opt_row();
 
 }  // namespace inextensible

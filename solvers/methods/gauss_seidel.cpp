@@ -87,4 +87,24 @@ StepResult GaussSeidel::apply(const Positions& /*x_start*/, double /*h*/, Positi
   }
 }
 
+SettingFields<GaussSeidel::Settings> GaussSeidel::fields() {
+  using S = Settings;
+  return {
+      {"max_iterations", &S::max_iterations, "sweeps a step before it is refused", at_least_one},
+      {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit", fraction,
+       fraction}};
+}
+
+Backend gauss_seidel_row() {
+  return {.name = "gauss_seidel",
+          .summary = "strain limiting, edge after edge in random order",
+          .knob = Knob::strain_limit,
+          .contestant = true,
+          .settings = setting_infos(GaussSeidel::fields()),
+          .make = make_filter_stepper<GaussSeidel>,
+          .direction = Direction::local,
+          .citation = "Bridson, Fedkiw and Anderson 2002; Mueller et al. 2006",
+          .label = "Gauss-Seidel strain limiting"};
+}
+
 }  // namespace inextensible

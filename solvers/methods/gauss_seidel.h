@@ -3,8 +3,8 @@
 // maximum strain is permissible.
 #pragma once
 
+#include "inextensible/methods/setting_fields.h"
 #include "inextensible/methods/strain_pass.h"
-#include "inextensible/stepping/velocity_filter.h"
 #include "inextensible/systems/constraint_system.h"
 
 namespace inextensible {
@@ -17,6 +17,7 @@ class GaussSeidel final : public VelocityFilter {
     double target = 0;            // a corrected edge is brought to |strain| = target * strain_limit
     std::uint64_t seed = 1;
   };
+  static SettingFields<Settings> fields();
   GaussSeidel(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
 
@@ -36,5 +37,7 @@ class GaussSeidel final : public VelocityFilter {
   std::vector<int> permutation_;
   std::uint64_t random_;  // SplitMix64 state
 };
+
+Backend gauss_seidel_row();
 
 }  // namespace inextensible

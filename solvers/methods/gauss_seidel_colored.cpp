@@ -19,4 +19,27 @@ StepResult GaussSeidelColored::apply(const Positions& /*x_start*/, double /*h*/,
   return sweep_.limit(StrainSweep::Order::in_turn, max_iterations_, edges_, x, work);
 }
 
+SettingFields<GaussSeidelColored::Settings> GaussSeidelColored::fields() {
+  using S = Settings;
+  return {
+      {"max_iterations", &S::max_iterations, "sweeps a step before it is refused", at_least_one},
+      {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit", fraction,
+       fraction},
+      {"relaxation", &S::relaxation, "times the correction", Range{0, 2, true},
+       Range{0.5, 1.95}}};
+}
+
+Backend gauss_seidel_colored_row() {
+  return {.name = "gauss_seidel_colored",
+          .summary = "the same, edges that share no vertex side by side in vectors",
+          .knob = Knob::strain_limit,
+          .contestant = true,
+          .settings = setting_infos(GaussSeidelColored::fields()),
+          .make = make_filter_stepper<GaussSeidelColored>,
+          .direction = Direction::local,
+          .citation = "Fratarcangeli, Tibaldo and Pellacini 2016",
+          .label = "Gauss-Seidel strain limiting, colored",
+          .family = "gauss_seidel"};
+}
+
 }  // namespace inextensible

@@ -3,8 +3,8 @@
 // Pellacini 2016).
 #pragma once
 
+#include "inextensible/methods/setting_fields.h"
 #include "inextensible/methods/strain_pass.h"
-#include "inextensible/stepping/velocity_filter.h"
 #include "inextensible/systems/constraint_system.h"
 
 namespace inextensible {
@@ -17,6 +17,7 @@ class GaussSeidelColored final : public VelocityFilter {
     double target = 0;            // a corrected edge is brought to |strain| = target * strain_limit
     double relaxation = 1;        // of that correction; 1: Gauss-Seidel, above: over-relaxation
   };
+  static SettingFields<Settings> fields();
   GaussSeidelColored(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
 
@@ -25,5 +26,7 @@ class GaussSeidelColored final : public VelocityFilter {
   int max_iterations_;
   StrainSweep sweep_;
 };
+
+Backend gauss_seidel_colored_row();
 
 }  // namespace inextensible

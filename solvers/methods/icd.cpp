@@ -1,3 +1,5 @@
+// (2) and (4) are those of Goldenthal et al. 2007.
+//
 // Newton on F(dx, lambda) = dx + h^2 W J(x0 + dx)^T lambda = 0 and C(x0 + dx) = 0 together, mu =
 // h^2 lambda:
 //   [ M + H(mu)  J^T ] [ p ]   [ M dx + J^T mu ]
@@ -58,8 +60,8 @@ Icd::Icd(const Problem& problem, const Settings& settings)
 
 // u_, c_, f_, largest_f_ and merit_ at x0 + dx (in trial_) with multipliers trial_mu_.
 void Icd::evaluate(const Positions& dx) {
-  permissible_ = edges_.linearize(trial_, u_, c_);
-  f_ = dx * mass_.asDiagonal();
+  permissible_ = edges_.linearize(trial_, u_, c_);  // (4) and (2)
+  f_ = dx * mass_.asDiagonal();                     // M times the F of section 4.1
   for (std::size_t k = 0; k < edges_.a.size(); ++k) {
     const auto e = static_cast<Eigen::Index>(k);
     f_.col(edges_.a[k]) -= trial_mu_[e] * u_.col(e);
@@ -149,6 +151,36 @@ StepResult Icd::newton(double h, Positions& x, WorkCounters& work) {
     mu_.swap(trial_mu_);
     x = trial_;
   }
+}
+
+SettingFields<Icd::Settings> Icd::fields() {
+  using S = Settings;
+  return {{"max_iterations", &S::max_iterations, "iterations a step before it is refused",
+           at_least_one},
+          {"direction_tolerance", &S::direction_tolerance,
+           "largest |F| of a vertex, in strain limit times shortest rest length", positive,
+           Range{0.01, 1}},
+          {"cg_tolerance", &S::cg_tolerance, "accuracy of a Newton step by projected_cg",
+           Range{0, 1, true}, Range{0.001, 0.5}},
+          {"linear_solver",
+           &S::linear_solver,
+           "of the KKT system",
+           {},
+           {},
+           {"auto", "projected_cg", "quasi_definite", "umfpack"}}};
+}
+
+Backend icd_row() {
+  return {.name = "icd",
+          .summary = "implicit constraint direction: positions and multipliers together",
+          .knob = Knob::strain_limit,
+          .contestant = true,
+          .settings = setting_infos(Icd::fields()),
+          .make = make_filter_stepper<Icd>,
+          .direction = Direction::current,
+          .citation = "Goldenthal et al. 2007",
+          .label = "ICD (implicit constraint direction)",
+          .slow_steps = true};
 }
 
 }  // namespace inextensible

@@ -2,7 +2,7 @@
 // J at the end of the step.
 #pragma once
 
-#include "inextensible/stepping/velocity_filter.h"
+#include "inextensible/methods/setting_fields.h"
 #include "inextensible/systems/constraint_system.h"
 #include "inextensible/systems/kkt_solver.h"
 
@@ -21,6 +21,7 @@ class Icd final : public VelocityFilter {
     std::string_view linear_solver = "auto";
     double cg_tolerance = 0.03;  // of projected_cg
   };
+  static SettingFields<Settings> fields();
   Icd(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
   const char* linear_solver() const override { return linear_solver_.c_str(); }
@@ -48,5 +49,7 @@ class Icd final : public VelocityFilter {
   double merit_ = 0;                 // sum of |F|^2 and C^2, m^2
   Eigen::VectorXd previous_lambda_;  // of the last accepted step, 1/kg-scaled: mu / h^2
 };
+
+Backend icd_row();
 
 }  // namespace inextensible

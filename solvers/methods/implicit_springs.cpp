@@ -8,83 +8,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "inextensible/linear/spd_solvers.h"
+#include "inextensible/methods/vertex_blocks.h"
+
 namespace inextensible {
 namespace {
 
 constexpr int line_search_limit = 30;
 constexpr double sufficient_decrease = 1e-4;
 constexpr double rounding = 1e-14;
-
-// Vertex blocks of the Hessian, one triangle, as vertex graph: column f holds itself and its
-// neighbours of lower place.
-SymmetricPattern vertex_graph(int n, const std::vector<Edge>& pairs) {
-  std::vector<std::vector<int>> columns(static_cast<std::size_t>(n));
-  for (int f = 0; f < n; ++f) columns[static_cast<std::size_t>(f)].push_back(f);
-  for (const auto [a, b] : pairs)
-    columns[static_cast<std::size_t>(std::max(a, b))].push_back(std::min(a, b));
-  SymmetricPattern graph;
-  graph.n = n;
-  graph.column_start.push_back(0);
-  for (auto& column : columns) {
-    std::sort(column.begin(), column.end());
-    column.erase(std::unique(column.begin(), column.end()), column.end());
-    graph.row_index.insert(graph.row_index.end(), column.begin(), column.end());
-    graph.column_start.push_back(graph.entries());
-  }
-  return graph;
-}
-
-// The 3 x 3 block pattern of a vertex graph. The lower triangle is written as the transposed graph,
-// column by column.
-SymmetricPattern expand(const SymmetricPattern& graph, SymmetricPattern::Triangle triangle) {
-  const auto n = static_cast<std::size_t>(graph.n);
-  std::vector<std::vector<int>> rows(n);  // per column of the result
-  for (std::size_t j = 0; j < n; ++j) {
-    for (int i = graph.column_start[j]; i < graph.column_start[j + 1]; ++i) {
-      const int row = graph.row_index[static_cast<std::size_t>(i)];
-      if (triangle == SymmetricPattern::Triangle::upper) {
-        rows[j].push_back(row);
-      } else {
-        rows[static_cast<std::size_t>(row)].push_back(static_cast<int>(j));
-      }
-    }
-  }
-  SymmetricPattern pattern;
-  pattern.n = 3 * graph.n;
-  pattern.triangle = triangle;
-  pattern.column_start.push_back(0);
-  for (std::size_t j = 0; j < n; ++j) {
-    for (int c = 0; c < 3; ++c) {
-      for (const int row : rows[j]) {
-        for (int r = 0; r < 3; ++r) {
-          const bool diagonal = row == static_cast<int>(j);
-          const bool stored =
-              !diagonal || (triangle == SymmetricPattern::Triangle::upper ? r <= c : r >= c);
-          if (stored) pattern.row_index.push_back(3 * row + r);
-        }
-      }
-      pattern.column_start.push_back(pattern.entries());
-    }
-  }
-  return pattern;
-}
-
-// Index of the first stored entry of block (i, j) in each of the three columns of the pattern's
-// triangle.
-std::array<int, 3> block_begin(const SymmetricPattern& pattern, int i, int j) {
-  const bool upper = pattern.triangle == SymmetricPattern::Triangle::upper;
-  const int row = upper ? std::min(i, j) : std::max(i, j),
-            column = upper ? std::max(i, j) : std::min(i, j);
-  std::array<int, 3> begin{};
-  for (int c = 0; c < 3; ++c) {
-    const auto col = static_cast<std::size_t>(3 * column + c);
-    const auto first = pattern.row_index.begin() + pattern.column_start[col];
-    const auto last = pattern.row_index.begin() + pattern.column_start[col + 1];
-    begin[static_cast<std::size_t>(c)] =
-        static_cast<int>(std::lower_bound(first, last, 3 * row) - pattern.row_index.begin());
-  }
-  return begin;
-}
 
 // Whether vertices are numbered along chains: every spring joins one to the next.
 bool chains(const std::vector<Edge>& pairs) {
@@ -254,7 +186,7 @@ StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
     work_.factor_nonzeros = solver_->factor_nonzeros();
     work_.factor_flops = solver_->factor_flops();
     step_ = -gradient_;
-    solver_->solve(step_.data());
+    solver_->solve(step_.data());  // Newton; Baraff and Witkin (1998) take its first step only
     ++work_.back_solves;
 
     const double slope = gradient_.dot(step_);
@@ -288,6 +220,39 @@ StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
     x.swap(trial_);
     if (scale == 1 && longest <= step_tolerance_) return {Status::ok, j + 1};
   }
+}
+
+SettingFields<ImplicitSprings::Settings> ImplicitSprings::fields() {
+  using S = Settings;
+  std::vector<const char*> solvers{"auto"};
+  for (const SpdSolverRow& row : spd_solvers()) {
+    if (row.takes != Takes::tridiagonal && row.direct && row.precision == Precision::full)
+      solvers.push_back(row.name);
+  }
+  return {
+      {"stiffness", &S::stiffness, "spring stiffness EA in N; sweeps search it", positive},
+      {"max_iterations", &S::max_iterations, "Newton iterations a step before it is refused",
+       at_least_one},
+      {"newton_tolerance", &S::newton_tolerance,
+       "last Newton step, in strain limit times shortest rest length", positive, Range{0.01, 1}},
+      {"linear_solver", &S::linear_solver, "factorization of the Hessian", {}, {}, solvers}};
+}
+
+Backend implicit_springs_row() {
+  return {.name = "implicit_springs",
+          .summary = "backward Euler on stiff springs, Newton with line search",
+          .knob = Knob::stiffness,
+          .contestant = true,
+          .settings = setting_infos(ImplicitSprings::fields()),
+          .make = [](std::shared_ptr<const Problem> problem,
+                     const BackendOptions& options) -> std::unique_ptr<Stepper> {
+            return std::make_unique<ImplicitSprings>(std::move(problem),
+                                                     settings_of<ImplicitSprings>(options));
+          },
+          .direction = Direction::springs,
+          .citation = "Baraff and Witkin 1998",
+          .label = "implicit springs",
+          .slow_steps = true};
 }
 
 }  // namespace inextensible

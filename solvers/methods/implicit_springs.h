@@ -10,7 +10,7 @@
 #include <string>
 
 #include "inextensible/linear/spd_solver.h"
-#include "inextensible/stepping/velocity_filter.h"
+#include "inextensible/methods/setting_fields.h"
 
 namespace inextensible {
 
@@ -25,6 +25,7 @@ class ImplicitSprings final : public Stepper {
     double newton_tolerance = 0.1;
     std::string_view linear_solver = "auto";
   };
+  static SettingFields<Settings> fields();
   ImplicitSprings(std::shared_ptr<const Problem> problem, const Settings& settings);
   const char* linear_solver() const override { return linear_solver_.c_str(); }
   double reciprocal_condition() const override { return solver_->reciprocal_condition(); }
@@ -55,5 +56,7 @@ class ImplicitSprings final : public Stepper {
   Positions inertial_, trial_;  // x + h v + h^2 g, and a line search's positions
   Eigen::VectorXd gradient_, step_;
 };
+
+Backend implicit_springs_row();
 
 }  // namespace inextensible

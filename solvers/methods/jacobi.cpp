@@ -44,4 +44,26 @@ StepResult Jacobi::apply(const Positions& /*x_start*/, double /*h*/, Positions& 
   return sweep_.limit(StrainSweep::Order::at_once, max_iterations_, edges_, x, work);
 }
 
+SettingFields<Jacobi::Settings> Jacobi::fields() {
+  using S = Settings;
+  return {
+      {"max_iterations", &S::max_iterations, "sweeps a step before it is refused", at_least_one},
+      {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit",
+       fraction, fraction},
+      {"relaxation", &S::relaxation, "times the averaged correction", Range{0, 2, true},
+       Range{0.5, 1.95}}};
+}
+
+Backend jacobi_row() {
+  return {.name = "jacobi",
+          .summary = "strain limiting, all edges at once and averaged",
+          .knob = Knob::strain_limit,
+          .contestant = true,
+          .settings = setting_infos(Jacobi::fields()),
+          .make = make_filter_stepper<Jacobi>,
+          .direction = Direction::local,
+          .citation = "Provot 1995; Bridson, Fedkiw and Anderson 2002",
+          .label = "Jacobi strain limiting"};
+}
+
 }  // namespace inextensible

@@ -2,8 +2,8 @@
 // the same state, the corrections averaged, until the maximum strain is permissible.
 #pragma once
 
+#include "inextensible/methods/setting_fields.h"
 #include "inextensible/methods/strain_pass.h"
-#include "inextensible/stepping/velocity_filter.h"
 #include "inextensible/systems/constraint_system.h"
 
 namespace inextensible {
@@ -16,6 +16,7 @@ class Jacobi final : public VelocityFilter {
     double target = 0;            // a corrected edge aims at |strain| = target * strain_limit
     double relaxation = 1.8;      // 1: the plain average; converges below 2
   };
+  static SettingFields<Settings> fields();
   Jacobi(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
 
@@ -24,5 +25,7 @@ class Jacobi final : public VelocityFilter {
   int max_iterations_;
   StrainSweep sweep_;
 };
+
+Backend jacobi_row();
 
 }  // namespace inextensible

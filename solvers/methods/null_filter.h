@@ -2,6 +2,7 @@
 // the harness cost.
 #pragma once
 
+#include "inextensible/methods/backend.h"
 #include "inextensible/stepping/velocity_filter.h"
 
 namespace inextensible {
@@ -14,5 +15,7 @@ class Unconstrained final : public VelocityFilter {
     return {};
   }
 };
+
+Backend null_row();
 
 }  // namespace inextensible

@@ -10,7 +10,7 @@ Rattle::Rattle(std::shared_ptr<const Problem> problem, const Shake::Settings& se
 
 StepResult Rattle::solve(const State& state, double h, Positions& x) {
   Lap lap(phases_wanted_);
-  x = state.x + h * state.v;
+  x = state.x + h * state.v;  // position stage (Andersen 1983)
   add_acceleration(*problem_, state.x, 0.5 * h * h, x, work_);
   for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
   phases_.unconstrained += lap();
@@ -22,13 +22,32 @@ StepResult Rattle::solve(const State& state, double h, Positions& x) {
 StepResult Rattle::end_velocities(const State& start, double h, const Positions& /*filtered*/,
                                   const Positions& x, Positions& v) {
   Lap lap(phases_wanted_);
-  v = (x - start.x) * (1 / h);
+  v = (x - start.x) * (1 / h);  // velocity stage
   add_acceleration(*problem_, x, 0.5 * h, v, work_);
   for (const int vertex : problem_->pinned()) v.col(vertex).setZero();
   phases_.unconstrained += lap();
   const StepResult result = shake_.project_velocity(x, v, work_);
   phases_.filter += lap();
   return result;
+}
+
+Backend rattle_row() {
+  Shake::Settings defaults;
+  defaults.min_iterations = 1;
+  return {.name = "rattle",
+          .summary =
+              "SHAKE with velocities projected as well (Andersen 1983): second order, no damping",
+          .knob = Knob::strain_limit,
+          .contestant = true,
+          .settings = setting_infos(Shake::fields(), defaults),
+          .make = [](std::shared_ptr<const Problem> problem,
+                     const BackendOptions& options) -> std::unique_ptr<Stepper> {
+            return std::make_unique<Rattle>(std::move(problem), settings_of<Shake>(options));
+          },
+          .direction = Direction::start,
+          .citation = "Andersen 1983",
+          .label = "RATTLE (SHAKE with velocities)",
+          .family = "shake"};
 }
 
 }  // namespace inextensible

@@ -24,4 +24,6 @@ class Rattle final : public Stepper {
   Shake shake_;
 };
 
+Backend rattle_row();
+
 }  // namespace inextensible

@@ -1,3 +1,5 @@
+// (5) and (7) are those of Goldenthal et al. 2007, which take J at x_j where SHAKE takes J(x^n).
+//
 // Newton on C(x0 - W J(x^n)^T mu) = 0 with mu = h^2 lambda. Its matrix J(x_j) W J(x^n)^T is
 // replaced by J(x^n) W J(x^n)^T, symmetric and factored once a step; where that does not halve the
 // constraint error, the true matrix at the best iterate so far is built, unsymmetric, and kept
@@ -85,14 +87,14 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, Wo
     best_ = x;
     mu_ = c_;
     if (matrix == Matrix::start) {
-      if (!system_.solve(mu_, work, inner_tolerance))
+      if (!system_.solve(mu_, work, inner_tolerance))  // (7) with J(x^n) on both sides
         return refuse(Status::singular, j, edges, x, no_solution);
     } else {
-      current_solver_->solve(mu_.data());
+      current_solver_->solve(mu_.data());  // (7) with J(x_j) W J(x^n)^T
       ++work.back_solves;
     }
     full_step_ = mu_.norm();
-    edges.apply(u_start_, mu_, x);
+    edges.apply(u_start_, mu_, x);  // (5) with J(x^n)
   }
 }
 
@@ -133,6 +135,26 @@ bool Shake::rebuild(WorkCounters& work) {
   ++work.assemblies;
   ++work.factorizations;
   return current_solver_->factor();
+}
+
+SettingFields<Shake::Settings> Shake::fields() {
+  using S = Settings;
+  return {{"max_iterations", &S::max_iterations, "iterations a step before it is refused",
+           at_least_one},
+          {"min_iterations", &S::min_iterations, least_iterations, count_from_zero, Range{0, 2}},
+          schur_solver_field<S>()};
+}
+
+Backend shake_row() {
+  return {.name = "shake",
+          .summary = "constraint direction from the start of the step",
+          .knob = Knob::strain_limit,
+          .contestant = true,
+          .settings = setting_infos(Shake::fields()),
+          .make = make_filter_stepper<Shake>,
+          .direction = Direction::start,
+          .citation = "Ryckaert, Ciccotti and Berendsen 1977; Barth et al. 1994",
+          .label = "SHAKE"};
 }
 
 }  // namespace inextensible

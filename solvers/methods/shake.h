@@ -4,7 +4,7 @@
 #pragma once
 
 #include "inextensible/linear/lu.h"
-#include "inextensible/stepping/velocity_filter.h"
+#include "inextensible/methods/setting_fields.h"
 #include "inextensible/systems/constraint_system.h"
 
 namespace inextensible {
@@ -17,6 +17,7 @@ class Shake final : public VelocityFilter {
     int min_iterations = 0;  // even where the candidate is permissible already
     std::string_view linear_solver = "auto";
   };
+  static SettingFields<Settings> fields();
   Shake(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
 
@@ -48,5 +49,7 @@ class Shake final : public VelocityFilter {
   std::unique_ptr<UnsymmetricSchurComplement> current_;
   std::unique_ptr<UnsymmetricSolver> current_solver_;
 };
+
+Backend shake_row();
 
 }  // namespace inextensible

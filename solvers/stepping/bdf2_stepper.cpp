@@ -13,9 +13,11 @@ constexpr double largest_growth = 2;  // of the step; variable-step BDF2 is stab
 // y^{n+1} = now y^n + before y^{n-1} + earlier y^{n-2} + beta_h y'^{n+1}.
 Bdf2Stepper::Coefficients Bdf2Stepper::coefficients(double h) const {
   if (blend_ > 0 && h == h_before_ && h == h_earlier_) {
+    // Vatsa, Carpenter and Lockard 2010
     const double scale = 1 / (1.5 + blend_ / 3);
     return {(2 + blend_) * scale, -(0.5 + blend_) * scale, blend_ / 3 * scale, h * scale};
   }
+  // variable-step BDF2 (English and Bridson 2008 for constrained dynamics)
   const double w = h / h_before_, alpha = (1 + w) * (1 + w) / (1 + 2 * w);
   return {alpha, 1 - alpha, 0, h * (1 + w) / (1 + 2 * w)};
 }

@@ -31,6 +31,7 @@ class Bdf2Stepper final : public Stepper {
               double blend = 0);
   const char* linear_solver() const override { return filter_->linear_solver(); }
   double reciprocal_condition() const override { return filter_->reciprocal_condition(); }
+  void observe(IterateObserver* observer) override { filter_->observe(observer); }
 
   // How often the whole history was made anew: first step, foreign state, step grown more than
   // twofold.

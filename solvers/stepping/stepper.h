@@ -15,8 +15,20 @@
 
 namespace inextensible {
 
+class EdgeConstraints;
+
 struct PhaseSeconds {
   double unconstrained = 0, filter = 0, collision = 0;
+};
+
+// Sees the iterates of a step, where a method shows them: for measurements, not for the method.
+class IterateObserver {
+ public:
+  virtual ~IterateObserver() = default;
+  // x_j, from the candidate x_0 on, and the multipliers h^2 lambda_j so far, one for each of
+  // `edges`.
+  virtual void iterate(const EdgeConstraints& edges, int j, const Positions& x,
+                       const Eigen::VectorXd& multipliers) = 0;
 };
 
 class Stepper {
@@ -45,6 +57,9 @@ class Stepper {
   // Of the last linear system that was factored, an estimate from its pivots; 1 for methods without
   // one. Meaningful after a step that counted a factorization and did not end `singular`.
   virtual double reciprocal_condition() const { return 1; }
+  // From the next step on; null: nobody. Methods that show no iterates do nothing. The observer
+  // outlives the stepper, or takes its leave.
+  virtual void observe(IterateObserver* /*observer*/) {}
 
  protected:
   // Writes the inextensible positions at the end of the step to x; adds to work_ and phases_.

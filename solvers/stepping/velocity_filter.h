@@ -23,6 +23,10 @@ class VelocityFilter {
 
   virtual const char* linear_solver() const { return ""; }
   virtual double reciprocal_condition() const { return 1; }  // as the stepper's
+  void observe(IterateObserver* observer) { observer_ = observer; }
+
+ protected:
+  IterateObserver* observer_ = nullptr;
 };
 
 // v* = v - h W grad V(x), x0 = x + h v*, filter: the pipeline of the paper's section 4.4 with V
@@ -32,6 +36,7 @@ class FilterStepper final : public Stepper {
   FilterStepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter);
   const char* linear_solver() const override { return filter_->linear_solver(); }
   double reciprocal_condition() const override { return filter_->reciprocal_condition(); }
+  void observe(IterateObserver* observer) override { filter_->observe(observer); }
   VelocityFilter& filter() { return *filter_; }
 
  private:

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "inextensible/linear/spd_solvers.h"
+
 namespace inextensible {
 namespace {
 
@@ -13,11 +15,6 @@ std::string choose(std::string_view wanted, const SymmetricPattern& pattern,
   return digits == ConstraintSystem::Digits::few ? "fixed_pattern_mixed" : "fixed_pattern";
 }
 
-// Without fill, or with an order of its own.
-bool in_natural_order(std::string_view solver) {
-  return solver == "tridiagonal" || solver == "line_cg" || solver == "hybrid";
-}
-
 }  // namespace
 
 ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
@@ -26,7 +23,7 @@ ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
   edges_ = std::make_unique<EdgeConstraints>(problem, strain_limit);
   schur_ = std::make_unique<SchurComplement>(*edges_, problem.vertices(), natural);
   solver_name_ = choose(linear_solver, schur_->pattern(), digits);
-  if (!in_natural_order(solver_name_)) {
+  if (spd_solver(solver_name_).fills) {
     edges_ = std::make_unique<EdgeConstraints>(problem, strain_limit,
                                                fill_reducing_order(schur_->pattern()));
     schur_ =

@@ -15,6 +15,7 @@
 
 #include <cmath>
 
+#include "inextensible/linear/spd_solvers.h"
 #include "inextensible/systems/constraint_system.h"
 
 namespace inextensible {

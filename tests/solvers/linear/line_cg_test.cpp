@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "inextensible/linear/hybrid.h"
+#include "inextensible/linear/spd_solvers.h"
 #include "inextensible/methods/fast_projection.h"
 #include "inextensible/systems/schur_complement.h"
 #include "support/random_mesh.h"

@@ -10,6 +10,7 @@
 #include "inextensible/linear/lu.h"
 #include "inextensible/linear/mixed_cholesky.h"
 #include "inextensible/linear/multifrontal_cholesky.h"
+#include "inextensible/linear/spd_solvers.h"
 #include "inextensible/problem/edge_constraints.h"
 #include "inextensible/systems/kkt_system.h"
 #include "inextensible/systems/projected_cg.h"

@@ -7,6 +7,7 @@
 
 #include "inextensible/linear/eigen_ldlt.h"
 #include "inextensible/linear/lu.h"
+#include "inextensible/linear/spd_solvers.h"
 #include "inextensible/problem/edge_constraints.h"
 #include "inextensible/systems/schur_complement.h"
 #include "support/random_mesh.h"

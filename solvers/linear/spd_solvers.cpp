@@ -1,0 +1,73 @@
+#include "inextensible/linear/spd_solvers.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "inextensible/linear/block_tridiagonal.h"
+#include "inextensible/linear/cholmod.h"
+#include "inextensible/linear/eigen_ldlt.h"
+#include "inextensible/linear/hybrid.h"
+#include "inextensible/linear/line_cg.h"
+#include "inextensible/linear/mixed_cholesky.h"
+#include "inextensible/linear/multifrontal_cholesky.h"
+#include "inextensible/linear/tridiagonal.h"
+
+namespace inextensible {
+namespace {
+
+template <class Solver, auto... arguments>
+std::unique_ptr<SpdSolver> make(SymmetricPattern pattern) {
+  return std::make_unique<Solver>(std::move(pattern), arguments...);
+}
+
+constexpr auto lower = SymmetricPattern::Triangle::lower;
+constexpr auto upper = SymmetricPattern::Triangle::upper;
+constexpr bool direct = true, iterative = false, fills = true, as_is = false;
+
+// CHOLMOD's supernodal code transposes an upper triangle at every factorization; the up-looking
+// codes a lower one.
+constexpr SpdSolverRow rows[] = {
+    {"tridiagonal", "L D L^T from both ends", upper, direct, Takes::tridiagonal, as_is,
+     Precision::full, make<TridiagonalSolver>},
+    {"block_tridiagonal", "the same of 3 x 3 blocks", upper, direct, Takes::block_tridiagonal,
+     as_is, Precision::full, make<BlockTridiagonalSolver>},
+    {"fixed_pattern", "multifrontal Cholesky, laid out once", lower, direct, Takes::any, fills,
+     Precision::full, make<FixedPatternCholesky>},
+    {"fixed_pattern_single", "the same in single precision", lower, direct, Takes::any, fills,
+     Precision::single, make<MultifrontalCholesky<float>>},
+    {"fixed_pattern_mixed", "the same in single precision where that is enough", lower, direct,
+     Takes::any, fills, Precision::mixed, make<MixedCholesky>},
+    {"line_cg", "conjugate gradients, preconditioned by lines", upper, iterative, Takes::any, as_is,
+     Precision::full, make<LineCgSolver>},
+    {"hybrid", "line_cg while it converges quickly, else fixed_pattern", upper, iterative,
+     Takes::any, as_is, Precision::full, make<HybridSpdSolver>},
+    {"eigen_ldlt", "Eigen's up-looking L D L^T", upper, direct, Takes::any, fills, Precision::full,
+     make<EigenLdltSolver>},
+    {"cholmod_simplicial", "CHOLMOD's simplicial Cholesky", upper, direct, Takes::any, fills,
+     Precision::full, make<CholmodSolver, false>},
+    {"cholmod_supernodal", "CHOLMOD's supernodal Cholesky", lower, direct, Takes::any, fills,
+     Precision::full, make<CholmodSolver, true>},
+};
+
+}  // namespace
+
+std::span<const SpdSolverRow> spd_solvers() { return rows; }
+
+const SpdSolverRow& spd_solver(std::string_view name) {
+  const auto place = std::find_if(std::begin(rows), std::end(rows),
+                                  [name](const SpdSolverRow& row) { return row.name == name; });
+  if (place == std::end(rows))
+    throw std::invalid_argument("no linear solver '" + std::string(name) + "'");
+  return *place;
+}
+
+SymmetricPattern::Triangle triangle_of(std::string_view solver) {
+  return spd_solver(solver).triangle;
+}
+
+std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern) {
+  return spd_solver(name).make(std::move(pattern));
+}
+
+}  // namespace inextensible

@@ -1,0 +1,150 @@
+// What rows and their tables promise: of methods, their settings, and linear solvers.
+#include "inextensible/registry.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "inextensible/linear/spd_solvers.h"
+#include "inextensible/methods/fast_projection.h"
+#include "support/random_mesh.h"
+
+namespace inextensible {
+namespace {
+
+TEST(Registry, RowsSayWhatFiguresNeed) {
+  std::set<std::string> labels;
+  for (const Backend& row : backends()) {
+    SCOPED_TRACE(row.name);
+    EXPECT_TRUE(labels.insert(row.label).second) << row.label;
+    const Backend* family = find_backend(row.family);
+    ASSERT_NE(family, nullptr) << row.family;
+    EXPECT_STREQ(family->family, family->name);
+    EXPECT_EQ(family->direction, row.direction);
+    if (row.contestant) {
+      EXPECT_STRNE(row.citation, "");
+      EXPECT_NE(row.direction, Direction::none);
+    }
+  }
+}
+
+TEST(Registry, DefaultsAndTunableRangesArePermitted) {
+  for (const Backend& row : backends()) {
+    for (const SettingInfo& info : row.settings) {
+      SCOPED_TRACE(std::string(row.name) + ": " + info.name);
+      if (const auto* word = std::get_if<const char*>(&info.initial)) {
+        EXPECT_NO_THROW(complete_settings(row, {{info.name, std::string(*word)}}));
+        continue;
+      }
+      EXPECT_TRUE(info.range.contains(std::get<double>(info.initial)));
+      if (!info.tunable) continue;
+      EXPECT_LT(info.tunable->least, info.tunable->largest);
+      EXPECT_TRUE(info.range.contains(info.tunable->least));
+      EXPECT_TRUE(info.range.contains(info.tunable->largest));
+    }
+  }
+}
+
+std::string refusal(const char* solver, const char* setting,
+                    const std::variant<double, std::string>& value) {
+  try {
+    complete_settings(*find_backend(solver), {{setting, value}});
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Registry, SettingsOutOfRangeAreRefusedByName) {
+  EXPECT_EQ(refusal("jacobi", "relaxation", 2.0),
+            "solver 'jacobi': setting 'relaxation' is 2, must be finite, above 0 and below 2");
+  EXPECT_EQ(refusal("jacobi", "relaxation", 1.99), "");
+  EXPECT_EQ(
+      refusal("shake", "max_iterations", 1.5),
+      "solver 'shake': setting 'max_iterations' is 1.5, must be an integer, at least 1 and at "
+      "most 1e+09");
+  EXPECT_NE(refusal("shake", "max_iterations", 0.0), "");
+  EXPECT_NE(refusal("gauss_seidel", "target", 1.01), "");
+  EXPECT_EQ(refusal("gauss_seidel", "target", 1.0), "");
+  EXPECT_NE(refusal("fast_projection_bdf2opt", "blend", 0.49), "");
+  EXPECT_NE(refusal("icd", "cg_tolerance", std::nan("")), "");
+  EXPECT_EQ(refusal("icd", "cg_tolerance", std::string("low")),
+            "solver 'icd': setting 'cg_tolerance' must be a number");
+  EXPECT_EQ(refusal("icd", "colour", 1.0), "solver 'icd': setting 'colour' does not exist");
+}
+
+TEST(SettingFields, ReachTheStruct) {
+  BackendOptions options{0.25, 7, {}};
+  options.settings =
+      complete_settings(*find_backend("fast_projection_bdf2"),
+                        {{"max_iterations", 12.0}, {"linear_solver", std::string("eigen_ldlt")}});
+  const auto settings = settings_of<FastProjection>(options);
+  EXPECT_EQ(settings.strain_limit, 0.25);
+  EXPECT_EQ(settings.max_iterations, 12);
+  EXPECT_EQ(settings.min_iterations, 1);  // the variant's default
+  EXPECT_EQ(settings.smoothing_sweeps, 30);
+  EXPECT_EQ(settings.linear_solver, "eigen_ldlt");
+}
+
+TEST(LinearSolvers, AreFoundByTheirNames) {
+  for (const SpdSolverRow& row : spd_solvers()) EXPECT_EQ(&spd_solver(row.name), &row);
+  EXPECT_THROW(spd_solver("auto"), std::invalid_argument);
+}
+
+struct Recorder final : IterateObserver {
+  void iterate(const EdgeConstraints& edges, int j, const Positions& x,
+               const Eigen::VectorXd& multipliers) override {
+    if (j == 0) largest = 0;
+    if (j > 0) {  // x_{j+1} = x_j - W J(x_j)^T h^2 dlambda
+      Eigen::Matrix3Xd u(3, multipliers.size());
+      edges.gradient(before, u);
+      Positions step = before - x;
+      edges.apply(u, multipliers - multipliers_before, step);
+      largest = std::max(largest, step.cwiseAbs().maxCoeff());
+    }
+    before = x;
+    multipliers_before = multipliers;
+    last = j;
+  }
+  Positions before;
+  Eigen::VectorXd multipliers_before;
+  int last = -1;
+  double largest = 0;
+};
+
+TEST(Observer, SeesIteratesAndTheirMultipliersAndChangesNothing) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    testing::Random random(seed);
+    const testing::RandomMesh mesh = testing::random_mesh(random, 5, 6, 1);
+    State state{mesh.x, (testing::perturbed(random, mesh, 1) - mesh.x) * 10};
+    State alone = state;
+    const BackendOptions options{1e-6, 1, {}};
+    const auto observed = make_stepper("fast_projection", mesh.problem, options);
+    Recorder recorder;
+    observed->observe(&recorder);
+    const StepResult result = observed->advance(state, 0.01);
+    ASSERT_TRUE(result);
+    EXPECT_GT(result.iterations, 1);
+    EXPECT_EQ(recorder.last, result.iterations);
+    EXPECT_LT(recorder.largest, 1e-10);
+    ASSERT_TRUE(make_stepper("fast_projection", mesh.problem, options)->advance(alone, 0.01));
+    EXPECT_EQ(state.x, alone.x);
+  }
+}
+
+TEST(Observer, IsCalledByThoseThatSayIt) {
+  testing::Random random(1);
+  const testing::RandomMesh mesh = testing::random_mesh(random, 4, 4, 1);
+  for (const Backend& row : backends()) {
+    SCOPED_TRACE(row.name);
+    State state{mesh.x, (testing::perturbed(random, mesh, 1) - mesh.x)};
+    const auto stepper = make_stepper(row.name, mesh.problem, {0.001, 1, {}});
+    Recorder recorder;
+    stepper->observe(&recorder);
+    stepper->advance(state, 0.01);
+    EXPECT_EQ(recorder.last >= 0, row.shows_iterates);
+  }
+}
+
+}  // namespace
+}  // namespace inextensible
