@@ -12,6 +12,16 @@ std::string number_text(double value, int digits) {
   return text.str();
 }
 
+std::string told_apart(double value, double other) {
+  constexpr int all_digits = 17;
+  int digits = 6;
+  if (value != other) {
+    while (digits < all_digits && number_text(value, digits) == number_text(other, digits))
+      ++digits;
+  }
+  return number_text(value, digits);
+}
+
 std::string step_text(double step) { return std::isnan(step) ? "-" : "1/" + number_text(1 / step); }
 
 std::string duration_text(double seconds) {

@@ -8,6 +8,10 @@ namespace harness {
 // With that many significant digits and no trailing zeros; six are what a stream writes by default.
 std::string number_text(double value, int digits = 6);
 
+// With as many digits, six or more, as set it apart from `other`: "0.00010000002", not "0.0001",
+// against a limit of 0.0001.
+std::string told_apart(double value, double other);
+
 // "1/250" for a step of 0.004 s, "-" for none (NaN).
 std::string step_text(double step);
 

@@ -4,6 +4,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
+#include "harness/base/json_text.h"
 #include "harness/base/paths.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/compare_options.h"
@@ -49,7 +50,7 @@ int make_baseline(const std::vector<std::string>& files, const std::string& out)
   if (!checked.complete)
     throw UsageError("'" + checked.path + "' is of an interrupted run: no baseline");
   check_writable(out);
-  write_atomically(out, baseline_text(baseline_document(results)));
+  write_atomically(out, document_text(baseline_document(results)));
   std::cout << out << ": " << checked.points.size() << " points" << std::endl;
   return success;
 }

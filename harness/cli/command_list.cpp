@@ -5,6 +5,8 @@
 #include "harness/base/paths.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/sweep_options.h"
+#include "harness/points/point_fields.h"
+#include "harness/points/schema.h"
 #include "harness/stability/hard_case.h"
 
 namespace harness {
@@ -32,6 +34,26 @@ void list(const std::string& what) {
         std::cout << "      " << parameter.name << " = " << parameter.initial << "  ("
                   << parameter.meaning << ")\n";
       }
+    }
+  }
+  const auto row = [](const char* name, const std::string& meaning) {
+    std::cout << "  " << name << ": " << meaning << '\n';
+  };
+  if (what == "counters") {
+    for (const auto& counter : inextensible::work_counters) row(counter.name, described(counter));
+  }
+  if (what == "metrics") {
+    const auto all = [&row](const auto& table) {
+      for_each_field(table, [&row](const auto& each) { row(each.name, described(each)); });
+    };
+    all(measure_fields);
+    all(result_fields);
+    all(phase_fields);
+  }
+  if (what == "statuses") {
+    for (const auto& status : point_statuses) {
+      const std::string letter = status.letter;
+      row(status.name, status.meaning + (letter.empty() ? "" : " (" + letter + " in figures)"));
     }
   }
   if (what == "cases") {
@@ -66,17 +88,28 @@ void add_list_command(CLI::App& app, Chosen& chosen) {
   const auto given = std::make_shared<Given>();
   CLI::App* command = app.add_subcommand(
       "list",
-      "show what there is: solvers, scenes, suites, cases or points (points: with --sweep)");
+      "show what there is: solvers, scenes, suites, cases, counters, metrics, statuses or points "
+      "(points: with --sweep)");
   command
-      ->add_option("what", given->what,
-                   "solvers, scenes, suites, cases or points; the first three if left out")
+      ->add_option(
+          "what", given->what,
+          "solvers, scenes, suites, cases, counters, metrics, statuses or points; the first three "
+          "if left out; result.schema and its like print that file of configs/ with what "
+          "follows from tables made anew")
       ->type_name("WHAT");
   add_selection(*command, given->options);
   command->callback([given, &chosen] {
     chosen = [given] {
-      const std::vector<std::string> known{"solvers", "scenes", "suites", "cases", "points"};
+      const std::vector<std::string> schemas = generated_schemas();
+      const std::vector<std::string> known{"solvers", "scenes",   "suites",  "cases",
+                                           "points",  "counters", "metrics", "statuses"};
       if (given->what == "points") {
         list_points(given->options);
+      } else if (const auto dot = given->what.find(".schema");
+                 dot != std::string::npos &&
+                 std::find(schemas.begin(), schemas.end(), given->what.substr(0, dot)) !=
+                     schemas.end()) {
+        std::cout << schema_text(given->what.substr(0, dot));
       } else if (given->what.empty() ||
                  std::find(known.begin(), known.end(), given->what) != known.end()) {
         list(given->what);

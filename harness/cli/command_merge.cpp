@@ -6,6 +6,7 @@
 #include "harness/base/files.h"
 #include "harness/cli/commands.h"
 #include "harness/points/result_file.h"
+#include "harness/points/schema.h"
 #include "harness/run/merge.h"
 #include "harness/run/report.h"
 
@@ -29,14 +30,19 @@ void add_merge_command(CLI::App& app, Chosen& chosen) {
       std::vector<NamedResult> results;
       for (const std::string& file : given->files) {
         results.push_back({std::filesystem::path(file).filename().string(), read_result(file)});
-        if (results.back().document.at("schema") != "inextensible-bench/1")
+        if (given->files.size() > 1 &&
+            results.back().document.at("schema") != "inextensible-bench/1")
           throw UsageError("'" + file + "' is of a stability sweep, which has no shards");
       }
       check_writable(given->out);
-      const nlohmann::json whole = merge(results, given->allow_mixed);
-      write_atomically(given->out, whole.dump(1) + "\n");
-      std::cout << whole.at("points").size() << " points of " << results.size() << " files\n"
-                << given->out << '\n';
+      // One file is whole as it is; written again, it is laid out as files are written now.
+      nlohmann::json whole =
+          results.size() == 1 ? results.front().document : merge(results, given->allow_mixed);
+      if (!whole.contains("legend")) whole["legend"] = legend();
+      write_atomically(given->out, result_text(whole));
+      if (whole.contains("points"))
+        std::cout << whole.at("points").size() << " points of " << results.size() << " files\n";
+      std::cout << given->out << '\n';
       return success;
     };
   });

@@ -12,6 +12,7 @@
 #include "harness/cli/commands.h"
 #include "harness/cli/sweep_command.h"
 #include "harness/points/context.h"
+#include "harness/points/result_file.h"
 #include "harness/stability/stability.h"
 
 namespace harness {
@@ -77,7 +78,7 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
   };
   const std::uint64_t seed = options.seed < 0 ? 1 : static_cast<std::uint64_t>(options.seed);
   const StabilityOutcome outcome = run_stability(cases, filters, seed, events);
-  write_atomically(out, stability_document(context, outcome, seed, command).dump(1) + "\n");
+  write_atomically(out, result_text(stability_document(context, outcome, seed, command)));
   print_stability(std::cout, outcome);
   std::cout << "\nwritten:\n" << out << std::endl;
   if (!outcome.complete) return interrupted_exit;

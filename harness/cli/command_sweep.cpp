@@ -232,10 +232,8 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   context["stolen"] = stolen_share(ticks, processor_ticks());
   context["harness_overhead"] = harness_overhead(outcome.points);
 
-  write_atomically(out, result_document(context, suite, command, outcome.complete, outcome.points,
-                                        shelf->summaries())
-                                .dump(1) +
-                            "\n");
+  write_atomically(out, result_text(result_document(context, suite, command, outcome.complete,
+                                                    outcome.points, shelf->summaries())));
   print_table(std::cout, outcome.points);
   tell_overhead(context["harness_overhead"]);
   tell_noise(context);

@@ -156,20 +156,4 @@ ordered_json baseline_document(const std::vector<json>& results) {
           {"points", points}};
 }
 
-std::string baseline_text(const ordered_json& document) {
-  std::string text = "{\n\"schema\": " + document.at("schema").dump() + ",\n\"context\": {";
-  std::string separator = "\n";
-  for (const auto& [key, value] : document.at("context").items()) {
-    text += separator + ordered_json(key).dump() + ": " + value.dump();
-    separator = ",\n";
-  }
-  text += "\n},\n\"points\": [";
-  separator = "\n";
-  for (const auto& point : document.at("points")) {
-    text += separator + point.dump();
-    separator = ",\n";
-  }
-  return text + "\n]\n}\n";
-}
-
 }  // namespace harness

@@ -39,6 +39,5 @@ ComparedPoint compared_point(const nlohmann::json& point);  // of a result file 
 
 // Of result files, as read_result gives them.
 nlohmann::ordered_json baseline_document(const std::vector<nlohmann::json>& results);
-std::string baseline_text(const nlohmann::ordered_json& document);  // one point a line
 
 }  // namespace harness

@@ -28,7 +28,6 @@ struct Gate {
   double error_floor = 1e-9;  // an error below this is rounding
 };
 
-std::vector<std::string> counter_names();
 std::vector<std::string> error_names();
 
 // Both throw UsageError, naming file, key and value, for anything that is not a gate.

@@ -4,6 +4,7 @@
 #include <gsl/gsl_statistics.h>
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 namespace harness {
@@ -17,30 +18,6 @@ std::string PointSpec::id() const {
     text << step;
   }
   return text.str();
-}
-
-const char* to_string(PointStatus status) {
-  switch (status) {
-    case PointStatus::ok:
-      return "ok";
-    case PointStatus::strain_missed:
-      return "strain_missed";
-    case PointStatus::not_converged:
-      return "not_converged";
-    case PointStatus::diverged:
-      return "diverged";
-    case PointStatus::timeout:
-      return "timeout";
-    case PointStatus::out_of_memory:
-      return "out_of_memory";
-    case PointStatus::crashed:
-      return "crashed";
-    case PointStatus::unsupported:
-      return "unsupported";
-    case PointStatus::skipped:
-      return "skipped";
-  }
-  return "?";
 }
 
 double quantile(std::vector<double> samples, double fraction) {

@@ -2,11 +2,12 @@
 // means.
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "harness/points/measures.h"
+#include "harness/points/status.h"
 #include "harness/scenes/scene.h"
 #include "inextensible/registry.h"
 
@@ -27,48 +28,6 @@ struct PointSpec {
 
   std::string id()
       const;  // drape/fast_projection/n:5041/strain:0.01/h:0.004 (adaptive: /h:adaptive)
-};
-
-enum class PointStatus {
-  ok,
-  strain_missed,
-  not_converged,
-  diverged,
-  timeout,
-  out_of_memory,
-  crashed,
-  unsupported,
-  skipped,
-};
-const char* to_string(PointStatus status);
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // written as null
-
-// The judge's figures, from positions alone, off the clock.
-struct Measures {
-  double max_strain = 0, max_stretch = 0;             // over all steps
-  double p99_strain = unknown, rms_strain = unknown;  // over edges and sampled instants
-  double max_strain_after_collision = unknown;        // over all steps, with a collider only
-  double energy_drift =
-      unknown;  // largest |E - E_0| over weight times size, where nothing dissipates
-  double symmetry_defect = unknown;  // largest distance to the mirror image, over the scene's size
-  double kinetic_energy_mean = unknown;  // J, over sampled instants
-
-  // Against a reference, where there is one; all over the scene's size.
-  std::string reference;            // its name, "" if there is none
-  double trajectory = unknown;      // RMS over vertices (by mass) and samples up to valid_until
-  double trajectory_max = unknown;  // largest distance of a vertex
-  double gap = unknown;             // the reference's own uncertainty, as `trajectory`
-  double valid_until = unknown;     // s
-  double shape_potential_energy = unknown, shape_corner_height = unknown,
-         shape_shadow = unknown;  // RMS over samples after valid_until
-  // Fast projection's F, mean over vertices and sampled steps, m, after the first and the last
-  // iteration; and over time.
-  double residual_first = unknown, residual_last = unknown;
-  struct ResidualSample {
-    double time, first, last;  // s, m, m
-  };
-  std::vector<ResidualSample> residuals;
 };
 
 struct PointResult {

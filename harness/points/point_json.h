@@ -3,20 +3,22 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/base/fields_json.h"
 #include "harness/points/point.h"
 
 namespace harness {
 
-// null for a number that is not finite: JSON has no word for it.
-nlohmann::json number(double value);
-double number_of(const nlohmann::json& value);  // NaN for null
+nlohmann::json to_json(const inextensible::Settings& settings);
 nlohmann::json to_json(const inextensible::WorkCounters& work);
 nlohmann::json to_json(const PointResult& point);
-inextensible::WorkCounters work_of(const nlohmann::json& work);
 
-// The way back: to_json(point_of(j)) == j. Both throw json::exception for anything that is not a
-// point.
+// The way back: to_json(point_of(j)) == j. All throw json::exception for anything that is not what
+// they read.
+inextensible::WorkCounters work_of(const nlohmann::json& work);
 PointResult point_of(const nlohmann::json& point);
 PointSpec spec_of(const nlohmann::json& point);
+
+// All of a point that is not measured: two runs of one key may stand for each other.
+std::string key_of(const PointSpec& spec);
 
 }  // namespace harness

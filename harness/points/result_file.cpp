@@ -2,7 +2,9 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
+#include "harness/base/json_text.h"
 #include "harness/points/point_json.h"
+#include "harness/points/schema.h"
 
 namespace harness {
 namespace {
@@ -44,9 +46,18 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
   return {{"schema", "inextensible-bench/1"},
           {"complete", complete},
           {"context", context},
+          {"legend", legend()},
           {"points", list},
           {"references", std::move(references)},
           {"benchmarks", benchmarks}};
+}
+
+std::string result_text(const json& document) {
+  nlohmann::ordered_json ordered;
+  for (const char* first : {"schema", "complete", "context", "legend"})
+    if (document.contains(first)) ordered[first] = document.at(first);
+  for (const auto& [key, value] : document.items()) ordered[key] = value;
+  return document_text(ordered);
 }
 
 json read_result(const std::string& path) {

@@ -17,6 +17,9 @@ nlohmann::json result_document(nlohmann::json context, const Suite& suite,
                                const std::vector<PointResult>& points,
                                nlohmann::json references = nlohmann::json::array());
 
+// As it is written: one point a line.
+std::string result_text(const nlohmann::json& document);
+
 // A document of either kind of result: of a sweep or of a stability sweep. Throws UsageError,
 // naming the file, for anything else.
 nlohmann::json read_result(const std::string& path);

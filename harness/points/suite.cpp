@@ -1,102 +1,16 @@
 #include "harness/points/suite.h"
 
-#include <cmath>
-#include <fstream>
-#include <set>
-#include <sstream>
+#include <algorithm>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
+#include "harness/base/json_reader.h"
+#include "harness/points/point_json.h"
 
 namespace harness {
 namespace {
 
 using nlohmann::json;
-
-// A JSON object whose keys are read one by one; finish() refuses what nobody asked for.
-class Reader {
- public:
-  Reader(const json& object, std::string where) : object_(object), where_(std::move(where)) {
-    if (!object.is_object()) fail("must be an object { ... }");
-  }
-
-  const json* find(const std::string& key) {
-    known_.insert(key);
-    const auto place = object_.find(key);
-    return place == object_.end() ? nullptr : &*place;
-  }
-
-  std::string text(const std::string& key, const std::string& otherwise) {
-    const json* value = find(key);
-    if (!value) return otherwise;
-    if (!value->is_string()) fail_at(key, *value, "a text in quotes");
-    return value->get<std::string>();
-  }
-
-  double number(const std::string& key, double otherwise, double low, bool whole = false) {
-    const json* value = find(key);
-    if (!value) return otherwise;
-    return checked(key, *value, low, whole);
-  }
-
-  std::vector<double> numbers(const std::string& key, double low, bool whole = false) {
-    std::vector<double> result;
-    for (const json& item : list(key)) result.push_back(checked(key, item, low, whole));
-    return result;
-  }
-
-  std::vector<std::string> texts(const std::string& key) {
-    std::vector<std::string> result;
-    for (const json& item : list(key)) {
-      if (!item.is_string()) fail_at(key, item, "a list of texts");
-      result.push_back(item.get<std::string>());
-    }
-    return result;
-  }
-
-  void finish() const {
-    const std::vector<std::string> known(known_.begin(), known_.end());
-    for (const auto& [key, value] : object_.items()) {
-      if (!known_.contains(key))
-        throw UsageError(where_ + ": " + unknown_name("key", key, known).what());
-    }
-  }
-
-  std::string where(const std::string& key) const { return where_ + ": '" + key + "'"; }
-  [[noreturn]] void fail_at(const std::string& key, const json& value,
-                            const std::string& wanted) const {
-    throw UsageError(where(key) + " is " + value.dump() + ", must be " + wanted);
-  }
-
- private:
-  double checked(const std::string& key, const json& value, double low, bool whole) const {
-    const std::string wanted =
-        std::string(whole ? "a whole number" : "a number") +
-        (low < 0              ? ""
-         : (low > 0 && whole) ? " of at least " + std::to_string(static_cast<int>(low))
-                              : " above 0");
-    if (!value.is_number()) fail_at(key, value, wanted);
-    const double number = value.get<double>();
-    const bool fits = whole ? number >= low && number == std::floor(number) : number > low;
-    if (!fits || !std::isfinite(number)) fail_at(key, value, wanted);
-    return number;
-  }
-
-  const json& list(const std::string& key) {
-    static const json none = json::array();
-    const json* value = find(key);
-    if (!value) return none;
-    if (!value->is_array() || value->empty())
-      fail_at(key, *value, "a list [ ... ] that is not empty");
-    return *value;
-  }
-
-  [[noreturn]] void fail(const std::string& why) const { throw UsageError(where_ + ": " + why); }
-
-  const json& object_;
-  std::string where_;
-  std::set<std::string> known_;
-};
 
 inextensible::Settings read_settings(const json& object, const std::string& where,
                                      const inextensible::Backend& backend) {
@@ -122,7 +36,7 @@ inextensible::Settings read_settings(const json& object, const std::string& wher
 }
 
 SweepSpec read_sweep(const json& object, const std::string& where) {
-  Reader reader(object, where);
+  JsonReader reader(object, where);
   SweepSpec spec;
   spec.sweep = reader.text("sweep", "");
   const auto kinds = sweep_kinds();
@@ -148,14 +62,14 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
       throw UsageError(where + ": " +
                        unknown_name("solver", name, names_of(inextensible::backends())).what());
   }
-  spec.limits = reader.numbers("limits", 0);
-  if (const double limit = reader.number("limit", 0, 0); limit > 0) {
+  spec.limits = reader.numbers("limits", Bounds::positive());
+  if (const double limit = reader.number("limit", 0, Bounds::positive()); limit > 0) {
     if (!spec.limits.empty()) throw UsageError(where + ": give 'limit' or 'limits', not both");
     spec.limits = {limit};
   }
   if (spec.limits.empty())
     throw UsageError(where + ": 'limits' is missing, for example \"limits\": [0.1, 0.01]");
-  for (const double n : reader.numbers("resolutions", 2, true))
+  for (const double n : reader.numbers("resolutions", Bounds::whole_number(2)))
     spec.resolutions.push_back(static_cast<int>(n));
   if (const json* parameters = reader.find("scene_parameters")) {
     if (!parameters->is_object())
@@ -174,16 +88,11 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
         place == spec.scene_parameters.end() ? complete.at(type->resolution) : place->second)};
   }
   if (const json* steps = reader.find("steps")) {
-    Reader ladder(*steps, where + ": 'steps'");
-    spec.coarsest = ladder.number("coarsest", spec.coarsest, 0);
-    spec.finest = ladder.number("finest", spec.finest, 0);
-    for (const auto& [key, flag] :
-         {std::pair("adaptive", &spec.adaptive), std::pair("all", &spec.every_step)}) {
-      const json* given = ladder.find(key);
-      if (!given) continue;
-      if (!given->is_boolean()) ladder.fail_at(key, *given, "true or false");
-      *flag = given->get<bool>();
-    }
+    JsonReader ladder(*steps, where + ": 'steps'");
+    spec.coarsest = ladder.number("coarsest", spec.coarsest, Bounds::positive());
+    spec.finest = ladder.number("finest", spec.finest, Bounds::positive());
+    spec.adaptive = ladder.flag("adaptive", spec.adaptive);
+    spec.every_step = ladder.flag("all", spec.every_step);
     ladder.finish();
     if (spec.finest > spec.coarsest)
       throw UsageError(where + ": 'steps': 'finest' is larger than 'coarsest'");
@@ -218,23 +127,18 @@ std::vector<std::string> sweep_kinds() { return {"strain", "resolution", "step"}
 Suite read_suite(const std::string& path) { return parse_suite(read_file(path, "suite"), path); }
 
 Suite parse_suite(const std::string& text, const std::string& path) {
-  json document;
-  try {
-    document = json::parse(text, nullptr, true, /*ignore_comments=*/true);
-  } catch (const json::exception& error) {
-    throw UsageError("'" + path + "' is not JSON: " + error.what());
-  }
-  Reader reader(document, "suite '" + path + "'");
+  const json document = parse_commented(text, path);
+  JsonReader reader(document, "suite '" + path + "'");
   Suite suite;
   suite.name = reader.text("name", "unnamed");
   suite.description = reader.text("description", "");
   suite.profile = reader.text("profile", "custom");
-  suite.seed = static_cast<std::uint64_t>(reader.number("seed", 1, 0, true));
-  suite.reps = static_cast<int>(reader.number("reps", 3, 1, true));
-  suite.most_reps = static_cast<int>(reader.number("most_reps", 0, 0, true));
-  suite.rel_ci = reader.number("rel_ci", suite.rel_ci, 0);
-  suite.timeout = reader.number("timeout", 60, 0);
-  suite.max_error = reader.number("max_error", 0, 0);
+  suite.seed = static_cast<std::uint64_t>(reader.number("seed", 1, Bounds::whole_number(0)));
+  suite.reps = static_cast<int>(reader.number("reps", 3, Bounds::whole_number(1)));
+  suite.most_reps = static_cast<int>(reader.number("most_reps", 0, Bounds::whole_number(0)));
+  suite.rel_ci = reader.number("rel_ci", suite.rel_ci, Bounds::positive());
+  suite.timeout = reader.number("timeout", 60, Bounds::positive());
+  suite.max_error = reader.number("max_error", 0, Bounds::positive());
   const json* sweeps = reader.find("sweeps");
   if (!sweeps || !sweeps->is_array() || sweeps->empty())
     throw UsageError(reader.where("sweeps") + " must be a list of sweeps");
@@ -244,14 +148,6 @@ Suite parse_suite(const std::string& text, const std::string& path) {
   }
   reader.finish();
   return suite;
-}
-
-json to_json(const inextensible::Settings& settings) {
-  json object = json::object();
-  for (const auto& [name, value] : settings) {
-    std::visit([&object, &name = name](const auto& v) { object[name] = v; }, value);
-  }
-  return object;
 }
 
 json to_json(const Suite& suite) {

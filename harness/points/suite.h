@@ -43,6 +43,4 @@ Suite parse_suite(const std::string& text, const std::string& path);
 // parse_suite() reads it back.
 nlohmann::json to_json(const Suite& suite);
 
-nlohmann::json to_json(const inextensible::Settings& settings);
-
 }  // namespace harness

@@ -51,19 +51,6 @@ void learn_line(const json& line, Memory& memory) {
 
 }  // namespace
 
-std::string key_of(const PointSpec& spec) {
-  return json({{"sweep", spec.sweep},
-               {"scene", spec.scene},
-               {"scene_parameters", spec.scene_parameters},
-               {"solver", spec.solver},
-               {"settings", to_json(spec.settings)},
-               {"strain_limit", spec.strain_limit},
-               {"step", spec.step},
-               {"adaptive", spec.adaptive},
-               {"seed", spec.seed}})
-      .dump();
-}
-
 void Memory::learn(const json& result) {
   for (const json& entry : result.at("points")) {
     PointResult point = point_of(entry);

@@ -30,9 +30,6 @@ struct Memory {
   void forget_failures();
 };
 
-// All of a point that is not measured: two runs of one key may stand for each other.
-std::string key_of(const PointSpec& spec);
-
 // What must agree for one run to go on where another stopped. build_context: machine_context();
 // selection: options that choose points.
 nlohmann::json identity(const nlohmann::json& build_context, const nlohmann::json& suite,

@@ -120,7 +120,8 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
   if (judged && run.status == PointStatus::ok && missed &&
       backend_.knob != inextensible::Knob::none) {
     run.status = PointStatus::strain_missed;
-    run.detail = "maximum strain " + std::to_string(run.measures.max_strain);
+    run.detail = "maximum strain " + told_apart(run.measures.max_strain, spec_.strain_limit) +
+                 " above " + number_text(spec_.strain_limit);
   }
   return run;
 }

@@ -10,6 +10,7 @@
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
+#include "harness/points/schema.h"
 #include "harness/stability/trial_isolation.h"
 #include "inextensible/registry.h"
 
@@ -296,6 +297,7 @@ json stability_document(json context, const StabilityOutcome& outcome, std::uint
   return {{"schema", "inextensible-stability/1"},
           {"complete", outcome.complete},
           {"context", context},
+          {"legend", legend()},
           {"matrix", matrix},
           {"largest_steps", steps},
           {"degrees_of_freedom", freedom}};

@@ -51,7 +51,7 @@ std::optional<Outcome> Witness::after(const Positions& filtered, const State& st
   if (limit_promised_ && worst.strain > trial_.strain_limit * (1 + 1e-9)) {
     return fail(result, Outcome::wrong,
                 "success claimed, but edge " + std::to_string(worst.edge) + " is strained by " +
-                    number_text(worst.strain));
+                    told_apart(worst.strain, trial_.strain_limit));
   }
   for (const int pin : problem_.pinned()) {
     if (state.x.col(pin) != start_.x.col(pin))

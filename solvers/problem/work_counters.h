@@ -2,27 +2,68 @@
 // that must not be noisy uses them; counting is one addition per operation on a whole array.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <variant>
 
 namespace inextensible {
 
 struct WorkCounters {
-  std::int64_t steps = 0;               // accepted
-  std::int64_t rejected_steps = 0;      // refused, state untouched
-  std::int64_t iterations = 0;          // Newton or projection iterations, or sweeps over all edges
-  std::int64_t assemblies = 0;          // of the linear system
-  std::int64_t factorizations = 0;      // numeric
-  std::int64_t back_solves = 0;         // one right-hand side, forward and back substitution
-  std::int64_t linear_iterations = 0;   // of iterative linear solvers, of all back_solves
-  std::int64_t edge_projections = 0;    // single edges corrected (strain limiting)
-  std::int64_t line_search_steps = 0;   // steps shortened by a globalization
-  std::int64_t spring_evaluations = 0;  // shear springs, in forces or energies
-  std::int64_t triangle_tests = 0;      // closest-point queries against single triangles
-  std::int64_t contacts = 0;            // vertices moved by the collision filter
-  double factor_nonzeros = 0;           // of L (LU: of L + U), last factorization
-  double factor_flops = 0;              // of one factorization, where known
+  std::int64_t steps = 0;
+  std::int64_t rejected_steps = 0;
+  std::int64_t iterations = 0;
+  std::int64_t assemblies = 0;
+  std::int64_t factorizations = 0;
+  std::int64_t back_solves = 0;
+  std::int64_t linear_iterations = 0;
+  std::int64_t edge_projections = 0;
+  std::int64_t line_search_steps = 0;
+  std::int64_t spring_evaluations = 0;
+  std::int64_t triangle_tests = 0;
+  std::int64_t contacts = 0;
+  double factor_nonzeros = 0;
+  double factor_flops = 0;
 
   bool operator==(const WorkCounters&) const = default;
 };
+
+// What files, gates, schemas and `bench list counters` know of a counter.
+struct WorkCounterInfo {
+  const char* name;
+  std::variant<std::int64_t WorkCounters::*, double WorkCounters::*> member;
+  const char* unit;
+  const char* meaning;
+  bool later = false;  // absent in older files, which did not count it
+};
+
+inline constexpr std::array work_counters{
+    WorkCounterInfo{"steps", &WorkCounters::steps, "steps", "accepted"},
+    WorkCounterInfo{"rejected_steps", &WorkCounters::rejected_steps, "steps",
+                    "refused, state untouched"},
+    WorkCounterInfo{"iterations", &WorkCounters::iterations, "iterations",
+                    "of Newton's method or a projection, or sweeps over all edges"},
+    WorkCounterInfo{"assemblies", &WorkCounters::assemblies, "matrices", "linear systems put up"},
+    WorkCounterInfo{"factorizations", &WorkCounters::factorizations, "matrices",
+                    "numeric factorizations"},
+    WorkCounterInfo{"back_solves", &WorkCounters::back_solves, "right-hand sides",
+                    "forward and back substitutions, one right-hand side each"},
+    WorkCounterInfo{"linear_iterations", &WorkCounters::linear_iterations, "iterations",
+                    "of iterative linear solvers, in all back_solves", true},
+    WorkCounterInfo{"edge_projections", &WorkCounters::edge_projections, "edges",
+                    "single edges corrected (strain limiting)"},
+    WorkCounterInfo{"line_search_steps", &WorkCounters::line_search_steps, "steps",
+                    "shortened by a globalization"},
+    WorkCounterInfo{"spring_evaluations", &WorkCounters::spring_evaluations, "springs",
+                    "shear springs evaluated, in forces or energies"},
+    WorkCounterInfo{"triangle_tests", &WorkCounters::triangle_tests, "triangles",
+                    "closest-point queries against single triangles"},
+    WorkCounterInfo{"contacts", &WorkCounters::contacts, "vertices",
+                    "moved by the collision filter"},
+    WorkCounterInfo{"factor_nonzeros", &WorkCounters::factor_nonzeros, "entries",
+                    "of L (LU: of L + U), last factorization"},
+    WorkCounterInfo{"factor_flops", &WorkCounters::factor_flops, "operations",
+                    "of one factorization in floating point, where known"}};
+static_assert(sizeof(WorkCounters) == work_counters.size() * sizeof(double),
+              "a counter without a row, or a row without a counter");
 
 }  // namespace inextensible

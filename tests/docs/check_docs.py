@@ -218,8 +218,8 @@ def measured() -> list[str]:
     fields = set().union(*(names_in(points_of(file)[0]) for file in ("results/paper-strain.json", "results/default-step.json")))
     counters = (ROOT / "solvers/problem/work_counters.h").read_text(encoding="utf-8")
     fields |= set(re.findall(r"^  (?:std::int64_t|double) (\w+) = 0;", counters, re.MULTILINE))
-    statuses = {name for file in (ROOT / "harness/points").glob("point*")
-                for name in re.findall(r"\bPointStatus::(\w+)", file.read_text(encoding="utf-8"))}
+    schema = json.loads((ROOT / "configs/result.schema.json").read_text(encoding="utf-8"))
+    statuses = set(schema["definitions"]["status"]["enum"])
     explained = set(BACKTICKS.findall((ROOT / "docs/measuring.md").read_text(encoding="utf-8")))
     return [f"docs/measuring.md does not explain `{name}`" for name in sorted((fields | statuses) - explained - {"error", "work"})]
 

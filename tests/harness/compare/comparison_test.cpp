@@ -11,6 +11,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
+#include "harness/base/json_text.h"
 #include "harness/base/statistics.h"
 #include "harness/compare/comparison_report.h"
 #include "harness/points/context.h"
@@ -326,7 +327,7 @@ json one_result() {
 }
 
 TEST(Baseline, HoldsCountersAndRoundedErrorsOnePointALineAndNoTimes) {
-  const std::string text = baseline_text(baseline_document({one_result()}));
+  const std::string text = document_text(baseline_document({one_result()}));
   const json document = json::parse(text);
   ASSERT_EQ(document["points"].size(), 2u);
   const json& point = document["points"][0];
@@ -350,7 +351,7 @@ TEST(Baseline, ComparesAsTheResultItCameFrom) {
   const std::string result = testing::TempDir() + "result.json",
                     baseline = testing::TempDir() + "baseline.json";
   write_atomically(result, one_result().dump());
-  write_atomically(baseline, baseline_text(baseline_document({one_result()})));
+  write_atomically(baseline, document_text(baseline_document({one_result()})));
   const Comparison same = compare(read_compared({baseline}), read_compared({result}), Gate());
   EXPECT_EQ(same.count(Change::same), 2u);
   json worse = one_result();
@@ -382,7 +383,7 @@ TEST(Gate, RefusesWhatItDoesNotKnow) {
            {R"({"times": {"minimum_ratio": 0.9}})", "'minimum_ratio' is 0.9"},
            {R"({"counters": {"rule": "exakt"}})", "did you mean 'exact'?"},
            {R"({"counters": {"names": ["iteration"]}})", "did you mean 'iterations'?"},
-           {R"({"counters": {"names": []}})", "must be a list of counters"},
+           {R"({"counters": {"names": []}})", "'names' is [], must be a list"},
            {R"({"errors": {"max_strain": 0.5}})", "'max_strain' is 0.5"},
            {R"({"errors": {"maxstrain": 2}})", "did you mean 'max_strain'?"}}) {
     const std::string said = message(text);

@@ -14,10 +14,12 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
+#include "harness/base/json_text.h"
 #include "harness/compare/baseline.h"
 #include "harness/compare/gate.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
+#include "harness/points/schema.h"
 #include "harness/run/sweep.h"
 #include "harness/stability/stability.h"
 
@@ -137,6 +139,34 @@ TEST(ResultFile, CommittedResultsFitTheSchema) {
   }
 }
 
+TEST(Schemas, SayWhatTheTablesSay) {
+  for (const std::string& name : generated_schemas()) {
+    const std::string file = "configs/" + name + ".schema.json";
+    EXPECT_EQ(read_file(source(file), "schema"), schema_text(name))
+        << "write it anew: bench list " << name << ".schema > new.json && mv new.json " << file;
+  }
+  const nlohmann::ordered_json stale = {{"definitions", {{"status", {{"enum", {"fine"}}}}}}};
+  EXPECT_EQ(with_tables(stale)["definitions"]["status"]["enum"].size(), point_statuses.size());
+}
+
+TEST(ResultFile, IsOnePointALineAndNamesWhatFiguresShow) {
+  const Suite suite = tiny_suite();
+  PointResult point;
+  point.spec = plan(suite, {}).front().base;
+  const json document = result_document(machine_context(), suite, {"bench"}, true, {point, point});
+  const std::string text = result_text(document);
+  EXPECT_EQ(json::parse(text), document);
+  std::istringstream lines(text);
+  int points = 0;
+  for (std::string line; std::getline(lines, line);) points += line.starts_with(R"({"adaptive")");
+  EXPECT_EQ(points, 2);
+  const json& legend = document["legend"];
+  ASSERT_EQ(legend["solvers"].size(), inextensible::backends().size());
+  EXPECT_EQ(legend["solvers"][0]["name"], inextensible::backends().front().name);
+  ASSERT_EQ(legend["statuses"].size(), point_statuses.size());
+  EXPECT_EQ(legend["statuses"].back()["name"], "skipped");
+}
+
 TEST(ResultFile, OfAStabilitySweepFitsItsSchema) {
   const auto cases = hard_cases(hard_case_values("quick"));
   StabilityFilters filters;
@@ -174,7 +204,7 @@ TEST(Baselines, FitTheirSchema) {
   PointResult point;
   point.spec = plan(suite, {}).front().base;
   const json result = result_document(machine_context(), suite, {"bench"}, true, {point});
-  const json baseline = json::parse(baseline_text(baseline_document({result})));
+  const json baseline = json::parse(document_text(baseline_document({result})));
   EXPECT_EQ(misfits(baseline, "configs/baseline.schema.json"), "");
   json bad = baseline;
   bad["points"][0]["seconds"] = 1;

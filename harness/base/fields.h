@@ -1,0 +1,44 @@
+// A struct's fields as they stand in files: each said once, in a table beside the struct. JSON both
+// ways, schemas, `bench list` and the tests that fill structs at random follow from the table.
+#pragma once
+
+#include <string>
+#include <tuple>
+
+namespace harness {
+
+struct FieldTraits {
+  const char* inside = "";  // the nested object of the file that holds it
+  bool later = false;       // absent in older files; it then keeps its initial value
+  bool nullable = false;    // null in files: a number that is not known, a text that is empty
+  bool positive = false;    // a number above 0, not merely of at least 0
+};
+
+template <class Object, class Value>
+struct Field {
+  using Type = Value;
+  const char* name;
+  Value Object::*member;
+  const char* unit;  // "" of a pure number, a text, an object
+  const char* meaning;
+  FieldTraits traits;
+};
+
+template <class Object, class Value>
+constexpr Field<Object, Value> field(const char* name, Value Object::*member, const char* unit,
+                                     const char* meaning, FieldTraits traits = {}) {
+  return {name, member, unit, meaning, traits};
+}
+
+template <class Table, class Visit>
+constexpr void for_each_field(const Table& table, Visit&& visit) {
+  std::apply([&visit](const auto&... each) { (visit(each), ...); }, table);
+}
+
+// "m/s: how fast"; of a pure number the meaning alone.
+template <class Row>
+std::string described(const Row& row) {
+  return (*row.unit ? std::string(row.unit) + ": " : std::string()) + row.meaning;
+}
+
+}  // namespace harness

@@ -1,0 +1,58 @@
+#include "harness/base/json_text.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string name_of(const std::string& key) { return ordered_json(key).dump() + ": "; }
+
+// {a, b} or [a, b], from what each item is written as.
+template <class Written>
+std::string enclosed(const ordered_json& value, const std::string& separator,
+                     const std::string& end, const Written& written) {
+  std::string text, between = separator;
+  for (const auto& [key, item] : value.items()) {
+    text += between + (value.is_object() ? name_of(key) : "") + written(key, item);
+    between = "," + (separator.empty() ? " " : separator);
+  }
+  return (value.is_object() ? "{" : "[") + text + end + (value.is_object() ? "}" : "]");
+}
+
+std::string folded(const ordered_json& value, std::size_t room, std::size_t width,
+                   std::size_t indent) {
+  const std::string line = line_of(value);
+  if (!value.is_structured() || value.empty() || line.size() <= room) return line;
+  const std::string inner = "\n" + std::string(indent + 2, ' ');
+  return enclosed(value, inner, "\n" + std::string(indent, ' '),
+                  [&](const std::string& key, const ordered_json& item) {
+                    const std::size_t used =
+                        indent + 3 + (value.is_object() ? name_of(key).size() : 0);
+                    return folded(item, width > used ? width - used : 0, width, indent + 2);
+                  });
+}
+
+}  // namespace
+
+std::string line_of(const ordered_json& value) {
+  if (!value.is_structured()) return value.dump();
+  return enclosed(value, "", "",
+                  [](const std::string&, const ordered_json& item) { return line_of(item); });
+}
+
+std::string folded_text(const ordered_json& value, std::size_t width) {
+  return folded(value, width, width, 0) + "\n";
+}
+
+std::string document_text(const ordered_json& document) {
+  return enclosed(document, "\n", "\n",
+                  [](const std::string&, const ordered_json& part) {
+                    if (!part.is_structured() || part.empty()) return line_of(part);
+                    return enclosed(
+                        part, "\n", "\n",
+                        [](const std::string&, const ordered_json& item) { return line_of(item); });
+                  }) +
+         "\n";
+}
+
+}  // namespace harness

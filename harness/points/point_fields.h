@@ -1,0 +1,80 @@
+// The tables of a point's fields; measures.h and work_counters.h hold the others.
+#pragma once
+
+#include "harness/base/fields_json.h"
+#include "harness/points/point.h"
+
+namespace harness {
+
+template <>
+struct FieldCodec<inextensible::Settings> {
+  static nlohmann::json write(const inextensible::Settings& settings, bool nullable);
+  static void read(const nlohmann::json& from, inextensible::Settings& settings, bool nullable);
+  static nlohmann::ordered_json schema(const FieldTraits& traits);
+};
+
+template <>
+struct FieldCodec<PointStatus> {
+  static nlohmann::json write(PointStatus status, bool nullable);
+  static void read(const nlohmann::json& from, PointStatus& status, bool nullable);
+  static nlohmann::ordered_json schema(const FieldTraits& traits);
+};
+
+template <>
+struct FieldCodec<std::vector<ResidualSample>> {
+  static nlohmann::json write(const std::vector<ResidualSample>& series, bool nullable);
+  static void read(const nlohmann::json& from, std::vector<ResidualSample>& series, bool nullable);
+  static nlohmann::ordered_json schema(const FieldTraits& traits);
+};
+
+// What is run: two runs that agree in these may stand for each other.
+inline constexpr std::tuple spec_fields{
+    field("sweep", &PointSpec::sweep, "", "kind of the sweep that it is a point of"),
+    field("scene", &PointSpec::scene, "", "see `bench list scenes`"),
+    field("scene_parameters", &PointSpec::scene_parameters, "", "all of the scene's"),
+    field("solver", &PointSpec::solver, "", "see `bench list solvers`"),
+    field("settings", &PointSpec::settings, "", "the solver's settings as given", {.later = true}),
+    field("strain_limit", &PointSpec::strain_limit, "", "permissible |strain|, 0.01 is 1 %",
+          {.positive = true}),
+    field("step", &PointSpec::step, "s", "adaptive: the largest one", {.positive = true}),
+    field("adaptive", &PointSpec::adaptive, "",
+          "a step controller halves the step where the solver refuses it", {.later = true}),
+    field("seed", &PointSpec::seed, "", "of random orders")};
+
+// What follows from the scene's parameters.
+inline constexpr std::tuple size_fields{
+    field("resolution", &PointSpec::resolution, "", "the scene's own parameter of size",
+          {.positive = true}),
+    field("vertices", &PointSpec::vertices, "vertices", "of the mesh", {.positive = true}),
+    field("constraints", &PointSpec::constraints, "edges", "whose lengths are kept",
+          {.positive = true})};
+
+// What came of it, beside its measures and its work.
+inline constexpr std::tuple result_fields{
+    field("status", &PointResult::status, "", "how the run ended, see `bench list statuses`"),
+    field("status_detail", &PointResult::detail, "", "of a failure: step, time, reason"),
+    field("setup_seconds", &PointResult::setup_seconds, "s", "wall time before the first step"),
+    field("calibration_seconds", &PointResult::calibration_seconds, "s",
+          "wall time of the search for a stiffness"),
+    field("calibration_runs", &PointResult::calibration_runs, "runs",
+          "of the search for a stiffness", {.inside = "work", .later = true}),
+    field("smallest_step", &PointResult::smallest_step, "s", "of the accepted ones; adaptive only",
+          {.later = true, .nullable = true}),
+    field("steps_planned", &PointResult::steps_planned, "steps",
+          "that the duration takes at this step; older files: to be computed", {.later = true}),
+    field("peak_rss_bytes", &PointResult::peak_rss_bytes, "bytes", "largest resident memory"),
+    field("best", &PointResult::best, "",
+          "the fastest step of its solver at its place on the axis"),
+    field("best_at_error", &PointResult::best_at_error, "",
+          "the fastest step within the suite's error limit", {.later = true})};
+
+inline constexpr FieldTraits in_phases{.inside = "phases"};
+inline constexpr std::tuple phase_fields{
+    field("unconstrained", &inextensible::PhaseSeconds::unconstrained, "s",
+          "wall time of the first run in steps without constraints", in_phases),
+    field("filter", &inextensible::PhaseSeconds::filter, "s",
+          "wall time of the first run in the velocity filter", in_phases),
+    field("collision", &inextensible::PhaseSeconds::collision, "s",
+          "wall time of the first run in the collision filter", in_phases)};
+
+}  // namespace harness

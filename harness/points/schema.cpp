@@ -1,0 +1,154 @@
+#include "harness/points/schema.h"
+
+#include "harness/base/files.h"
+#include "harness/base/json_text.h"
+#include "harness/base/paths.h"
+#include "harness/points/point_fields.h"
+#include "harness/points/suite.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json reference_to(const char* definition) {
+  return {{"$ref", std::string("#/definitions/") + definition}};
+}
+
+ordered_json closed_object() {
+  return {{"type", "object"},
+          {"required", ordered_json::array()},
+          {"additionalProperties", false},
+          {"properties", ordered_json::object()}};
+}
+
+void add(ordered_json& object, const char* name, ordered_json schema, bool later) {
+  if (!later) object["required"].push_back(name);
+  object["properties"][name] = std::move(schema);
+}
+
+template <class Table>
+void add_fields(ordered_json& object, const Table& table) {
+  for_each_field(table, [&object](const auto& row) {
+    using Value = typename std::decay_t<decltype(row)>::Type;
+    ordered_json schema = FieldCodec<Value>::schema(row.traits);
+    schema["description"] = described(row);
+    const char* inside = row.traits.inside;
+    if (!*inside) return add(object, row.name, schema, row.traits.later);
+    if (inside == std::string("work")) return;  // work_schema's
+    if (!object["properties"].contains(inside)) add(object, inside, closed_object(), false);
+    add(object["properties"][inside], row.name, schema, row.traits.later);
+  });
+}
+
+ordered_json status_schema() {
+  ordered_json names = ordered_json::array();
+  for (const auto& row : point_statuses) names.push_back(row.name);
+  return {{"enum", names}};
+}
+
+ordered_json work_schema() {
+  ordered_json work = closed_object();
+  for (const auto& counter : inextensible::work_counters) {
+    const bool whole = counter.member.index() == 0;
+    add(work, counter.name,
+        {{"type", whole ? "integer" : "number"},
+         {"minimum", 0},
+         {"description", described(counter)}},
+        counter.later);
+  }
+  for_each_field(result_fields, [&work](const auto& row) {
+    if (row.traits.inside == std::string("work"))
+      add(work, row.name, {{"type", "integer"}, {"minimum", 0}, {"description", described(row)}},
+          row.traits.later);
+  });
+  return work;
+}
+
+ordered_json point_schema() {
+  ordered_json point = closed_object();
+  add(point, "id",
+      {{"type", "string"}, {"description", "scene/solver/n:vertices/strain:limit/h:step"}}, false);
+  add_fields(point, spec_fields);
+  point["properties"]["sweep"] = {{"enum", sweep_kinds()}};
+  add_fields(point, size_fields);
+  add(point, "duration", {{"type", "number"}, {"exclusiveMinimum", 0}, {"description", "s"}},
+      false);
+  add(point, "options",
+      {{"type", "object"},
+       {"description",
+        "the solver's settings as given, the stiffness that was found (N), the linear solver in "
+        "use"}},
+      false);
+  add_fields(point, result_fields);
+  add(point, "seconds_per_simulated_second", reference_to("seconds"), false);
+  add_fields(point, phase_fields);
+  add_fields(point, measure_fields);
+  add(point, "work", reference_to("work"), false);
+  return point;
+}
+
+// A list of objects with these entries.
+ordered_json list_of(const std::vector<std::pair<const char*, const char*>>& entries) {
+  ordered_json item = closed_object();
+  for (const auto& [name, type] : entries) add(item, name, {{"type", type}}, false);
+  return {{"type", "array"}, {"items", item}};
+}
+
+ordered_json legend_schema() {
+  ordered_json schema = closed_object();
+  add(schema, "solvers",
+      list_of({{"name", "string"},
+               {"label", "string"},
+               {"family", "string"},
+               {"contestant", "boolean"}}),
+      false);
+  add(schema, "statuses",
+      list_of({{"name", "string"}, {"letter", "string"}, {"meaning", "string"}}), false);
+  return schema;
+}
+
+}  // namespace
+
+ordered_json with_tables(ordered_json schema) {
+  ordered_json& definitions = schema["definitions"];
+  const auto renew = [&definitions](const char* name, auto made) {
+    if (definitions.contains(name)) definitions[name] = made();
+  };
+  renew("status", status_schema);
+  renew("counter", [] { return ordered_json{{"enum", counter_names()}}; });
+  renew("work", work_schema);
+  renew("point", point_schema);
+  renew("legend", legend_schema);
+  return schema;
+}
+
+std::vector<std::string> generated_schemas() { return {"result", "baseline", "gate", "stability"}; }
+
+std::string schema_text(const std::string& name) {
+  const std::string path = source_path("configs/" + name + ".schema.json");
+  return folded_text(with_tables(ordered_json::parse(read_file(path, "schema"))));
+}
+
+ordered_json legend() {
+  ordered_json solvers = ordered_json::array(), statuses = ordered_json::array();
+  for (const auto& backend : inextensible::backends())
+    solvers.push_back({{"name", backend.name},
+                       {"label", backend.name},
+                       {"family", backend.name},
+                       {"contestant", backend.contestant}});
+  for (const auto& row : point_statuses)
+    statuses.push_back({{"name", row.name}, {"letter", row.letter}, {"meaning", row.meaning}});
+  return {{"solvers", solvers}, {"statuses", statuses}};
+}
+
+std::vector<std::string> counter_names() {
+  std::vector<std::string> names;
+  for (const auto& counter : inextensible::work_counters) names.emplace_back(counter.name);
+  for_each_field(result_fields, [&names](const auto& row) {
+    if (row.traits.inside == std::string("work")) names.emplace_back(row.name);
+  });
+  return names;
+}
+
+}  // namespace harness

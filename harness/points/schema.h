@@ -1,0 +1,25 @@
+// Schemas of files: what the tables of fields say is put into their definitions, the rest is
+// written by hand.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace harness {
+
+// The schema with those of its definitions made anew that follow from tables: "status", "counter",
+// "work", "point", "legend".
+nlohmann::ordered_json with_tables(nlohmann::ordered_json schema);
+
+// As it is to stand in configs/<name>.schema.json; "result", "baseline", "gate", "stability".
+std::string schema_text(const std::string& name);
+std::vector<std::string> generated_schemas();
+
+// Names and meanings that figures show: of all registered solvers, and of statuses.
+nlohmann::ordered_json legend();
+
+// Of `work` in a result file.
+std::vector<std::string> counter_names();
+
+}  // namespace harness
