@@ -65,4 +65,5 @@ points = json.load(open(sys.argv[1], encoding="utf-8"))["points"]
 best = {p["solver"]: p for p in points if p["best"]}
 assert set(best) == {"symmetric_sweeps", "fast_projection"}, set(best)
 assert all(p["scene"] == "swing" for p in points)
+assert all(-1.1 < p["lowest_height"] < 0 for p in best.values()), [p["lowest_height"] for p in best.values()]
 PYTHON
