@@ -134,8 +134,8 @@ ordered_json legend() {
   ordered_json solvers = ordered_json::array(), statuses = ordered_json::array();
   for (const auto& backend : inextensible::backends())
     solvers.push_back({{"name", backend.name},
-                       {"label", backend.name},
-                       {"family", backend.name},
+                       {"label", backend.label},
+                       {"family", backend.family},
                        {"contestant", backend.contestant}});
   for (const auto& row : point_statuses)
     statuses.push_back({{"name", row.name}, {"letter", row.letter}, {"meaning", row.meaning}});
