@@ -91,8 +91,8 @@ SettingFields<GaussSeidel::Settings> GaussSeidel::fields() {
   using S = Settings;
   return {
       {"max_iterations", &S::max_iterations, "sweeps a step before it is refused", at_least_one},
-      {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit", fraction,
-       fraction}};
+      {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit",
+       fraction, fraction}};
 }
 
 Backend gauss_seidel_row() {

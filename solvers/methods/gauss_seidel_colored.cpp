@@ -23,10 +23,9 @@ SettingFields<GaussSeidelColored::Settings> GaussSeidelColored::fields() {
   using S = Settings;
   return {
       {"max_iterations", &S::max_iterations, "sweeps a step before it is refused", at_least_one},
-      {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit", fraction,
-       fraction},
-      {"relaxation", &S::relaxation, "times the correction", Range{0, 2, true},
-       Range{0.5, 1.95}}};
+      {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit",
+       fraction, fraction},
+      {"relaxation", &S::relaxation, "times the correction", Range{0, 2, true}, Range{0.5, 1.95}}};
 }
 
 Backend gauss_seidel_colored_row() {

@@ -41,9 +41,9 @@ print(f"{len(blocks)} pieces added")
 PYTHON
 
 cd "$tree"
-cmake --preset portable -DBUILD_TESTING=OFF >../configure.log 2>&1 || { cat ../configure.log; fail "not configured"; }
-cmake --build build/portable --target bench >../build.log 2>&1 || { grep -E 'error|FAILED' ../build.log; fail "not built"; }
-bench=$tree/build/portable/bench
+cmake --preset debug -DBUILD_TESTING=OFF -DCMAKE_CXX_FLAGS_DEBUG=-O0 >../configure.log 2>&1 || { cat ../configure.log; fail "not configured"; }
+cmake --build build/debug --target bench >../build.log 2>&1 || { grep -E 'error|FAILED' ../build.log; fail "not built"; }
+bench=$tree/build/debug/bench
 
 "$bench" list solvers | grep '^ *symmetric_sweeps:' >/dev/null || fail "the filter is not listed"
 "$bench" list scenes | grep '^ *swing:' >/dev/null || fail "the scene is not listed"

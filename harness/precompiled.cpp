@@ -1,1 +1,0 @@
-// Nothing: CMake wants a source for the target that compiles the shared headers.
