@@ -72,7 +72,7 @@ std::string JsonReader::one_of(const std::string& key, const std::string& otherw
                                const std::vector<std::string>& known, const std::string& kind) {
   const json* value = find(key);
   if (!value) return otherwise;
-  const std::string name = value->is_string() ? value->get<std::string>() : value->dump();
+  std::string name = value->is_string() ? value->get<std::string>() : value->dump();
   if (std::find(known.begin(), known.end(), name) == known.end())
     throw UsageError(where(key) + ": " + unknown_name(kind, name, known).what());
   return name;
