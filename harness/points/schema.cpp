@@ -144,6 +144,7 @@ ordered_json legend() {
 
 std::vector<std::string> counter_names() {
   std::vector<std::string> names;
+  names.reserve(std::size(inextensible::work_counters) + 1);
   for (const auto& counter : inextensible::work_counters) names.emplace_back(counter.name);
   for_each_field(result_fields, [&names](const auto& row) {
     if (row.traits.inside == std::string("work")) names.emplace_back(row.name);
