@@ -61,6 +61,7 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
   }
   Judge judge(scene_, judging);
   run.stepper->observe(judge.observer());
+  run.observed = judge.observer() != nullptr;
   inextensible::State state = scene_.start;
   std::optional<inextensible::StepController> controller;
   if (spec_.adaptive) {

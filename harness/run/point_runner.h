@@ -16,6 +16,7 @@ struct Run {
   double seconds = 0;  // of stepping alone
   Measures measures;
   std::unique_ptr<inextensible::Stepper> stepper;
+  bool observed = false;  // the judge was shown the iterates of its steps
   double setup_seconds = 0;
   double smallest_step = unknown;
 };

@@ -63,7 +63,9 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
     runner.restart_clock();  // the measured run has the whole time-out to itself
     Run run = runner.run(settings, true, diverged_strain);
     fill(point, run);
-    if (point.ok() && runner.seconds_per_step(run) < shortest_judged_step) {
+    // Iterates are kept while the solver's clock runs, so that an observed run's time is not its
+    // own.
+    if (point.ok() && (run.observed || runner.seconds_per_step(run) < shortest_judged_step)) {
       const Run unjudged = runner.run(settings, false, diverged_strain);
       if (unjudged.status == PointStatus::ok) run.seconds = unjudged.seconds;
     }

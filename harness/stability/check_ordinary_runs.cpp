@@ -18,19 +18,15 @@ using inextensible::WorkCounters;
 
 namespace {
 
+// Those that only grow: of a factorization's size the last one is told.
 std::vector<std::int64_t> counts_of(const WorkCounters& w) {
-  return {w.steps,
-          w.rejected_steps,
-          w.iterations,
-          w.assemblies,
-          w.factorizations,
-          w.back_solves,
-          w.linear_iterations,
-          w.edge_projections,
-          w.line_search_steps,
-          w.spring_evaluations,
-          w.triangle_tests,
-          w.contacts};
+  std::vector<std::int64_t> counts;
+  counts.reserve(inextensible::work_counters.size());
+  for (const auto& counter : inextensible::work_counters) {
+    if (const auto* member = std::get_if<std::int64_t WorkCounters::*>(&counter.member))
+      counts.push_back(w.**member);
+  }
+  return counts;
 }
 
 // All that ordinary runs tell, in one pass over them.

@@ -1,7 +1,7 @@
 // Within a color no edge sees another's correction, so that a sweep equals one that visits edges
 // one after the other, color after color. The order is the same in every sweep; the random one of
 // gauss_seidel takes about a third more sweeps. What colors win on one processor is vectors, see
-// strain_sweep.cpp.
+// strain_pass.cpp.
 //
 // A sweep that corrects nothing has seen every edge in its final place: it is the test of
 // convergence, and is not counted. Loops: one pass over edges a sweep.

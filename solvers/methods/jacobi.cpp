@@ -7,7 +7,7 @@
 // masses, and up to relaxation 2. The default, 1.8, takes about a third fewer sweeps than the plain
 // average on the drape.
 //
-// All edges are independent, so that they are swept in colors (strain_sweep.cpp) and summed without
+// All edges are independent, so that they are swept in colors (strain_pass.cpp) and summed without
 // conflicts. A sweep that corrects nothing is the test of convergence and is not counted. Loops:
 // one pass over edges, one over vertices.
 #include "inextensible/methods/jacobi.h"
