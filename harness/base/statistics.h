@@ -1,6 +1,7 @@
 // Two samples of times compared without assumptions about how times are distributed.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 namespace harness {
@@ -14,5 +15,30 @@ constexpr std::size_t exact_up_to = 60;
 
 // The least value that mann_whitney_greater can have for that many values: 1 / (a + b over a).
 double least_possible_p(std::size_t a, std::size_t b);
+
+// Not-a-number for none.
+double median_of(std::vector<double> values);
+
+// A positive number with its 95 % confidence interval; nothing known: from 0 to infinity.
+struct Ratio {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double low = 0, high = std::numeric_limits<double>::infinity();
+
+  bool known() const { return low > 0 && high < std::numeric_limits<double>::infinity(); }
+  bool above(double x) const { return low > x; }
+  bool below(double x) const { return high < x; }
+};
+
+// The median of a over that of b. All values positive.
+//
+// The interval has two sources, and is the wider of the two on each side. (1) The samples: all
+// factors between the two that the exact two-sided Mann-Whitney test does not reject (Hodges and
+// Lehmann 1963; Hollander and Wolfe, Nonparametric Statistical Methods, 4.3). It assumes that times
+// of the two are distributed alike up to that factor, and nothing else. Three samples each cannot
+// exclude anything at 95 %, four can. (2) noise: what 95 % of |log ratio|s stayed below that were
+// measured of a program against itself (an A/A pair; not-a-number: there is none). It holds what no
+// repetition shows: where code and data happened to lie, and what a machine does for minutes.
+Ratio ratio_of_medians(const std::vector<double>& a, const std::vector<double>& b,
+                       double noise = std::numeric_limits<double>::quiet_NaN());
 
 }  // namespace harness

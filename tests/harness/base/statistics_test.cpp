@@ -1,0 +1,149 @@
+// Ratios of medians: the interval has the coverage that it claims, and says nothing where nothing
+// can be known.
+#include "harness/base/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <random>
+
+namespace harness {
+namespace {
+
+using Samples = std::vector<double>;
+
+std::mt19937 seeded() {
+  const unsigned seed = 20071114;
+  std::cout << "seed " << seed << '\n';
+  return std::mt19937(seed);
+}
+
+Samples draw(std::size_t n, const std::function<double()>& one) {
+  Samples samples(n);
+  std::generate(samples.begin(), samples.end(), one);
+  return samples;
+}
+
+// The fraction of trials in which the interval holds the true factor.
+double coverage(int trials, double factor, const std::function<Ratio()>& trial) {
+  int inside = 0;
+  for (int i = 0; i < trials; ++i) {
+    const Ratio ratio = trial();
+    EXPECT_LE(ratio.low, ratio.value);
+    EXPECT_GE(ratio.high, ratio.value);
+    inside += ratio.low <= factor && factor <= ratio.high ? 1 : 0;
+  }
+  return static_cast<double>(inside) / trials;
+}
+
+// Times as a machine gives them: never below a floor, with a tail upwards.
+double skewed(std::mt19937& random) {
+  return 1 + 0.02 * std::exponential_distribution<double>()(random) +
+         (random() % 10 == 0 ? 0.3 : 0.0);
+}
+
+TEST(Ratio, IntervalHasItsCoverageWhateverTheDistribution) {
+  std::mt19937 random = seeded();
+  std::lognormal_distribution<double> log_normal(0, 0.1);
+  for (const auto& [n, trials] : {std::pair(5u, 20000), {9u, 20000}, {25u, 400}}) {
+    const double plain = coverage(trials, 1.3, [&] {
+      return ratio_of_medians(draw(n, [&] { return 1.3 * log_normal(random); }),
+                              draw(n, [&] { return log_normal(random); }));
+    });
+    const double tailed = coverage(trials, 1.3, [&] {
+      return ratio_of_medians(draw(n, [&] { return 1.3 * skewed(random); }),
+                              draw(n, [&] { return skewed(random); }));
+    });
+    std::cout << n << " samples: log-normal " << plain << ", skewed " << tailed << '\n';
+    const double doubt = 3 * std::sqrt(0.95 * 0.05 / trials);
+    EXPECT_GE(plain, 0.95 - doubt);
+    EXPECT_GE(tailed, 0.95 - doubt);
+    EXPECT_LE(plain, 0.97 + doubt);  // discrete: of five samples 96.8 %
+  }
+}
+
+TEST(Ratio, IntervalMatchesTheTablesOfTheTest) {
+  // Of samples that no pair ties, the interval leaves out the c - 1 least and largest quotients;
+  // Hollander and Wolfe's table of the two-sided 5 % test has c = 18 for 9 and 9, 3 for 5 and 5.
+  const auto with = [](int n) {
+    Samples a, b;
+    for (int i = 0; i < n; ++i) {
+      a.push_back(std::exp(0.001 * i));
+      b.push_back(std::exp(-0.1 * i));
+    }
+    Samples quotients;
+    for (const double x : a) {
+      for (const double y : b) quotients.push_back(x / y);
+    }
+    std::sort(quotients.begin(), quotients.end());
+    const Ratio ratio = ratio_of_medians(a, b);
+    const auto place = std::lower_bound(quotients.begin(), quotients.end(), ratio.low * 0.999999);
+    return place - quotients.begin() + 1;
+  };
+  EXPECT_EQ(with(9), 18);
+  EXPECT_EQ(with(5), 3);
+  EXPECT_EQ(with(4), 1);
+}
+
+TEST(Ratio, SamplesOfOtherSpreadsHardlyLoseCoverage) {
+  std::mt19937 random = seeded();
+  std::lognormal_distribution<double> narrow(0, 0.01), wide(0, 0.1);
+  const double covered = coverage(20000, 1.0, [&] {
+    return ratio_of_medians(draw(9, [&] { return narrow(random); }),
+                            draw(9, [&] { return wide(random); }));
+  });
+  std::cout << "spreads of 1 % and 10 %: " << covered << '\n';
+  EXPECT_GE(covered, 0.90);
+}
+
+TEST(Ratio, WithoutSamplesAndWithoutAPairNothingIsKnown) {
+  const Ratio three = ratio_of_medians({1.0, 1.01, 1.02}, {50.0, 51.0, 52.0});
+  EXPECT_FALSE(three.known());
+  EXPECT_FALSE(three.below(1) || three.above(0.001));
+  EXPECT_NEAR(three.value, 1.01 / 51, 1e-12);
+  EXPECT_TRUE(ratio_of_medians({1.0, 1.01, 1.02, 1.03}, {50.0, 51.0, 52.0, 53.0}).below(1));
+  EXPECT_FALSE(ratio_of_medians({}, {1.0}).known());
+  EXPECT_TRUE(std::isnan(ratio_of_medians({}, {1.0}, 0.1).value));
+  const Ratio paired = ratio_of_medians({1.0}, {2.0}, std::log(1.5));
+  EXPECT_NEAR(paired.low, 0.5 / 1.5, 1e-12);
+  EXPECT_NEAR(paired.high, 0.5 * 1.5, 1e-12);
+}
+
+TEST(Ratio, TheWiderOfSamplesAndPairCounts) {
+  const Samples a{1.00, 1.01, 1.02, 1.03, 1.04, 1.05}, b{2.0, 2.01, 2.02, 2.03, 2.04, 2.05};
+  const Ratio samples = ratio_of_medians(a, b), quiet = ratio_of_medians(a, b, 1e-6),
+              noisy = ratio_of_medians(a, b, 0.2);
+  EXPECT_DOUBLE_EQ(quiet.low, samples.low);
+  EXPECT_DOUBLE_EQ(quiet.high, samples.high);
+  EXPECT_NEAR(noisy.low, noisy.value * std::exp(-0.2), 1e-12);
+  EXPECT_NEAR(noisy.high, noisy.value * std::exp(0.2), 1e-12);
+}
+
+// Each place of a sweep has a speed of its own for each of the two names, which no repetition
+// shows: samples alone find differences in nine of ten pairs, the pair's own noise in one of
+// twenty.
+TEST(Ratio, AProgramAgainstItselfShowsNoDifference) {
+  std::mt19937 random = seeded();
+  std::normal_distribution<double> place(0, 0.05), repetition(0, 0.01);
+  const auto sample = [&] {
+    const double here = place(random);
+    return draw(9, [&] { return std::exp(here + repetition(random)); });
+  };
+  Samples log_ratios;
+  for (int i = 0; i < 2000; ++i)
+    log_ratios.push_back(std::abs(std::log(median_of(sample()) / median_of(sample()))));
+  std::sort(log_ratios.begin(), log_ratios.end());
+  const double noise = log_ratios[log_ratios.size() * 95 / 100];
+  const double alone = coverage(5000, 1, [&] { return ratio_of_medians(sample(), sample()); });
+  const double paired =
+      coverage(5000, 1, [&] { return ratio_of_medians(sample(), sample(), noise); });
+  std::cout << "no difference: by samples alone " << alone << ", with the pair " << paired << '\n';
+  EXPECT_LT(alone, 0.6);
+  EXPECT_NEAR(paired, 0.95, 0.02);
+}
+
+}  // namespace
+}  // namespace harness
