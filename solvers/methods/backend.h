@@ -53,6 +53,12 @@ enum class Knob { strain_limit, stiffness, none };
 // end of the step, or from springs.
 enum class Direction { none, local, start, current, springs };
 
+// What time the velocities of a state belong to. half_step: v^n = (x^n - x^{n-1}) / h is that of the
+// middle of the step before, as in symplectic and in backward Euler, hence in every velocity filter
+// behind FilterStepper; such a method starts from start_half_step_back
+// (systems/constrained_acceleration.h). whole_step: x and v are those of one instant.
+enum class Velocities { half_step, whole_step };
+
 struct Backend {
   const char* name;     // a-z, 0-9 and _
   const char* summary;  // one line
@@ -66,6 +72,7 @@ struct Backend {
   const char* family = "";      // the method whose colour it shares in figures; empty: its own
   bool shows_iterates = false;  // Stepper::observe sees the iterates and multipliers of each step
   bool slow_steps = false;      // a step takes a few times as long as most methods': rough guesses
+  Velocities velocities = Velocities::half_step;
 };
 
 // The given settings, checked, and the defaults of the others. Throws std::invalid_argument, naming

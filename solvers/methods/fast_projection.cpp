@@ -229,6 +229,7 @@ Backend fast_projection_bdf2_row() {
   };
   row.citation = "Goldenthal et al. 2007; English and Bridson 2008";
   row.label = "fast projection in BDF2";
+  row.velocities = Velocities::whole_step;
   return row;
 }
 

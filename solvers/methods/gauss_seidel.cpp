@@ -24,6 +24,7 @@ GaussSeidel::GaussSeidel(const Problem& problem, const Settings& settings)
     : edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
       band_(settings.strain_limit, settings.target),
+      relaxation_(settings.relaxation),
       records_(static_cast<std::size_t>(problem.constraints())),
       permutation_(static_cast<std::size_t>(problem.constraints())),
       random_(settings.seed) {
@@ -49,7 +50,10 @@ void GaussSeidel::shuffle() {
 
 std::int64_t GaussSeidel::sweep(Positions& x) const {
   double* p = x.data();
-  const StrainBand band = band_;  // in registers
+  StrainBand band = band_;  // in registers
+  const double relaxation = relaxation_;
+  band.target_low *= relaxation;
+  band.target_high *= relaxation;
   std::int64_t projections = 0;
   for (const int k : permutation_) {
     const EdgeRecord& edge = records_[static_cast<std::size_t>(k)];
@@ -59,7 +63,8 @@ std::int64_t GaussSeidel::sweep(Positions& x) const {
     const double q = (d0 * d0 + d1 * d1 + d2 * d2) * edge.inverse_square;
     if (!band.violated(q)) continue;
     if (q == 0) continue;  // no direction to correct along; the check refuses if it stays so
-    const double excess = 1 - (q < band.low ? band.target_low : band.target_high) / std::sqrt(q);
+    const double excess =
+        relaxation - (q < band.low ? band.target_low : band.target_high) / std::sqrt(q);
     const double sa = edge.share_a * excess, sb = excess - sa;
     pa[0] += sa * d0;
     pa[1] += sa * d1;
@@ -92,7 +97,8 @@ SettingFields<GaussSeidel::Settings> GaussSeidel::fields() {
   return {
       {"max_iterations", &S::max_iterations, "sweeps a step before it is refused", at_least_one},
       {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit",
-       fraction, fraction}};
+       fraction, fraction},
+      {"relaxation", &S::relaxation, "times the correction", Range{0, 2, true}, Range{0.5, 1.95}}};
 }
 
 Backend gauss_seidel_row() {

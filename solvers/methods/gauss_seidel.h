@@ -15,6 +15,7 @@ class GaussSeidel final : public VelocityFilter {
     double strain_limit = 0.01;
     int max_iterations = 100000;  // sweeps a step
     double target = 0;            // a corrected edge is brought to |strain| = target * strain_limit
+    double relaxation = 1;        // of that correction; 1: Gauss-Seidel, above: over-relaxation
     std::uint64_t seed = 1;
   };
   static SettingFields<Settings> fields();
@@ -25,7 +26,7 @@ class GaussSeidel final : public VelocityFilter {
   struct EdgeRecord {  // all that a visit needs
     int a, b;
     double inverse_square;  // 1 / l^2
-    double share_a;         // w_a / (w_a + w_b)
+    double share_a;         // w_a / (w_a + w_b), of the correction
   };
   void shuffle();
   std::int64_t sweep(Positions& x) const;
@@ -33,6 +34,7 @@ class GaussSeidel final : public VelocityFilter {
   EdgeConstraints edges_;
   int max_iterations_;
   StrainBand band_;
+  double relaxation_;
   std::vector<EdgeRecord> records_;
   std::vector<int> permutation_;
   std::uint64_t random_;  // SplitMix64 state

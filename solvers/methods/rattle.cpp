@@ -47,7 +47,8 @@ Backend rattle_row() {
           .direction = Direction::start,
           .citation = "Andersen 1983",
           .label = "RATTLE (SHAKE with velocities)",
-          .family = "shake"};
+          .family = "shake",
+          .velocities = Velocities::whole_step};
 }
 
 }  // namespace inextensible

@@ -1,0 +1,163 @@
+// Constrained accelerations against dense algebra and mechanics, and what starting half a step back
+// does for every method.
+#include "inextensible/systems/constrained_acceleration.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "harness/base/fit.h"
+#include "harness/scenes/pendulum.h"
+#include "inextensible/registry.h"
+#include "support/random_graph.h"
+
+namespace inextensible {
+namespace {
+
+using testing::Random;
+using testing::RandomMesh;
+
+RandomMesh falling(const RandomMesh& mesh, const Eigen::Vector3d& gravity) {
+  const Problem& p = *mesh.problem;
+  return {std::make_shared<const Problem>(
+              ProblemParts{p.mass(), p.pinned(), p.edges(), p.rest_length(), gravity, {}, {}}),
+          mesh.x};
+}
+
+// Random velocities; pinned vertices rest.
+State random_state(Random& random, const RandomMesh& mesh) {
+  return {mesh.x, testing::perturbed(random, mesh, 1) - mesh.x, 0};
+}
+
+// a = W f - W J^T lambda from the definitions.
+TEST(ConstrainedAcceleration, IsThatOfDenseAlgebra) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const RandomMesh mesh = falling(seed % 2 ? testing::random_mesh(random, 5, 6, 3)
+                                             : testing::random_graph(random, 30, 20, 2, 1e-3),
+                                    {1, -9.81, 2});
+    const Problem& p = *mesh.problem;
+    const State state = random_state(random, mesh);
+    const Eigen::MatrixXd j = testing::dense_gradient(p, state.x);
+    const Eigen::MatrixXd wjt = testing::inverse_masses3(p).asDiagonal() * j.transpose();
+    Positions fall = Positions::Zero(3, p.vertices());
+    fall.colwise() += p.gravity();
+    for (const int v : p.pinned()) fall.col(v).setZero();
+    Eigen::VectorXd rhs = j * fall.reshaped();
+    for (int k = 0; k < p.constraints(); ++k) {
+      const auto [a, b] = p.edges()[static_cast<std::size_t>(k)];
+      rhs[k] += 2 / p.rest_length()[static_cast<std::size_t>(k)] *
+                (state.v.col(b) - state.v.col(a)).squaredNorm();
+    }
+    const Eigen::VectorXd expected = fall.reshaped() - wjt * (j * wjt).ldlt().solve(rhs);
+    const Positions a = constrained_acceleration(p, state);
+    EXPECT_LT((a.reshaped() - expected).norm(), 1e-8 * expected.norm());
+    for (const int v : p.pinned()) EXPECT_EQ(a.col(v), Eigen::Vector3d::Zero());
+  }
+}
+
+// Inner forces change neither sum m a nor sum m x cross a.
+TEST(ConstrainedAcceleration, OfAFreeNetHasTheMomentaOfItsWeight) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const RandomMesh mesh = falling(testing::random_mesh(random, 6, 6, 0), {1, -9.81, 2});
+    const Positions a = constrained_acceleration(*mesh.problem, random_state(random, mesh));
+    Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = force;
+    double scale = 0;
+    for (int v = 0; v < mesh.problem->vertices(); ++v) {
+      const double m = mesh.problem->mass()[static_cast<std::size_t>(v)];
+      const Eigen::Vector3d inner = m * (a.col(v) - mesh.problem->gravity());
+      force += inner;
+      torque += Eigen::Vector3d(mesh.x.col(v)).cross(inner);
+      scale += inner.norm();
+    }
+    EXPECT_GT(scale, 0.1);  // there are inner forces
+    EXPECT_LT(force.norm(), 1e-12 * scale);
+    EXPECT_LT(torque.norm(), 1e-11 * scale);
+  }
+}
+
+// A straight row of unequal masses between two pins: J W J^T is singular.
+TEST(ConstrainedAcceleration, OfATautRowIsWhatTheRowCannotHinder) {
+  ProblemParts parts;
+  parts.mass = {1, 2, 0.5, 3, 1};
+  parts.pinned = {0, 4};
+  Positions x = Positions::Zero(3, 5);
+  for (int v = 0; v < 5; ++v) {
+    x(0, v) = v;
+    if (v > 0) parts.edges.push_back({v - 1, v}), parts.rest_length.push_back(1);
+  }
+  parts.gravity = {4, -9, 0};
+  const Positions a = constrained_acceleration(Problem(parts), {x, Positions::Zero(3, 5), 0});
+  for (int v = 1; v < 4; ++v) {
+    EXPECT_NEAR((a.col(v) - Eigen::Vector3d(0, -9, 0)).norm(), 0, 1e-6);
+  }
+}
+
+// An edge of no length has no direction, and no force.
+TEST(ConstrainedAcceleration, KnowsNoForceOfAnEdgeWithoutLength) {
+  ProblemParts parts;
+  parts.mass = {1, 1, 1};
+  parts.pinned = {0};
+  parts.edges = {{0, 1}, {1, 2}};
+  parts.rest_length = {1, 1};
+  Positions x = Positions::Zero(3, 3);
+  x.row(1) << 0, -1, -1;
+  const Positions a = constrained_acceleration(Problem(parts), {x, Positions::Zero(3, 3), 0});
+  EXPECT_NEAR(a.col(1).norm(), 0, 1e-12);
+  EXPECT_NEAR((a.col(2) - parts.gravity).norm(), 0, 1e-12);
+}
+
+State start_of(const Backend& row, const Problem& problem, const State& state, double h) {
+  return row.velocities == Velocities::half_step ? start_half_step_back(problem, state, h) : state;
+}
+
+// Every row says rightly what its velocities are: a free net that moves then falls exactly.
+TEST(StartHalfStepBack, LetsEveryMethodFallExactly) {
+  Random random(3);
+  const RandomMesh mesh = falling(testing::random_mesh(random, 5, 5, 0), {0, -9.81, 0});
+  for (const Backend& row : backends()) {
+    SCOPED_TRACE(row.name);
+    State state{mesh.x, Positions::Zero(3, 25), 0};
+    state.v.colwise() += Eigen::Vector3d(1, 2, 3);
+    const State begin = state;
+    const double h = 0.01;
+    const auto stepper = make_stepper(row.name, mesh.problem, {1e-3, 1, {}});
+    state = start_of(row, *mesh.problem, state, h);
+    for (int i = 0; i < 50; ++i) ASSERT_TRUE(stepper->advance(state, h));
+    Positions exact = begin.x + 0.5 * begin.v;
+    exact.row(1).array() -= 0.5 * 9.81 * 0.25;
+    EXPECT_LT((state.x - exact).cwiseAbs().maxCoeff(), 1e-12);
+  }
+}
+
+// A pendulum of three links, released where all of its links pull, against the equations in angles.
+TEST(StartHalfStepBack, GivesShakeItsSecondOrder) {
+  const std::vector<double> mass{1, 0.5, 2}, length{0.4, 0.3, 0.5}, angle{0.9, -0.4, 0.3};
+  harness::Pendulum pendulum({mass, length, 9.81}, angle);
+  ProblemParts parts;
+  parts.mass = {1, 1, 0.5, 2};
+  parts.pinned = {0};
+  parts.edges = {{0, 1}, {1, 2}, {2, 3}};
+  parts.rest_length = length;
+  const auto problem = std::make_shared<const Problem>(parts);
+  const State begin{pendulum.positions(), Positions::Zero(3, 4), 0};
+  const double duration = 0.3;
+  pendulum.advance(duration, 1e-13);
+  for (const bool back : {true, false}) {
+    std::vector<double> steps, errors;
+    for (double h = duration / 50; steps.size() < 5; h /= 2) {
+      const auto stepper = make_stepper("shake", problem, {1e-12, 1, {}});
+      State state = back ? start_half_step_back(*problem, begin, h) : begin;
+      for (int i = 0; i < std::lround(duration / h); ++i) ASSERT_TRUE(stepper->advance(state, h));
+      steps.push_back(h);
+      errors.push_back((state.x - pendulum.positions()).norm());
+    }
+    EXPECT_NEAR(harness::log_log_slope(steps, errors).value, back ? 2 : 1, 0.1);
+  }
+}
+
+}  // namespace
+}  // namespace inextensible
