@@ -64,7 +64,7 @@ void write_all(int pipe, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t written = write(pipe, text.data() + done, text.size() - done);
     if (written < 0 && errno != EINTR) return;  // the parent is gone
-    if (written > 0) done += static_cast<std::size_t>(written);
+    if (written > 0) done += written;
   }
 }
 
@@ -102,7 +102,7 @@ void attend(pid_t child, int pipe, const Heartbeat& heartbeat, const ChildLimits
     if (poll(&ready, 1, poll_interval) > 0) {
       const ssize_t count = read(pipe, buffer.data(), buffer.size());
       if (count == 0) return;
-      if (count > 0) outcome.text.append(buffer.data(), static_cast<std::size_t>(count));
+      if (count > 0) outcome.text.append(buffer.data(), count);
       continue;
     }
     if (terminated > 0) {

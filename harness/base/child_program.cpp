@@ -40,7 +40,7 @@ std::string contents(FILE* file) {
 // Between fork and exec, so nothing but system calls.
 [[noreturn]] void become(char* const* argv, const std::array<FILE*, 3>& files,
                          const sigset_t& signals) {
-  for (int i = 0; i < 3; ++i) dup2(fileno(files[static_cast<std::size_t>(i)]), i);
+  for (int i = 0; i < 3; ++i) dup2(fileno(files[i]), i);
   sigprocmask(SIG_SETMASK, &signals, nullptr);
   execv(argv[0], argv);
   _exit(127);

@@ -56,7 +56,7 @@ void write_atomically(const std::string& path, const std::string& text) {
   for (std::size_t done = 0; whole && done < text.size();) {
     const ssize_t written = write(file, text.data() + done, text.size() - done);
     whole = written >= 0;
-    if (whole) done += static_cast<std::size_t>(written);
+    if (whole) done += written;
   }
   whole = whole && fsync(file) == 0;
   const int reason = errno;

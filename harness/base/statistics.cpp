@@ -37,12 +37,12 @@ Ranking rank_all(const std::vector<double>& a, const std::vector<double>& b) {
 // [s]: in how many ways n of these ranks add up to s. Doubles hold them exactly enough: (60 over
 // 30) is 1.2e17.
 std::vector<double> ways_to_sum(const std::vector<int>& ranks, std::size_t n) {
-  const auto sums = static_cast<std::size_t>(std::accumulate(ranks.begin(), ranks.end(), 0)) + 1;
+  const std::size_t sums = std::accumulate(ranks.begin(), ranks.end(), 1);
   // ways[k][s]: choices of k of the ranks seen so far with sum s.
   std::vector<std::vector<double>> ways(n + 1, std::vector<double>(sums, 0.0));
   ways[0][0] = 1;
   for (const int rank : ranks) {
-    const auto r = static_cast<std::size_t>(rank);
+    const std::size_t r = rank;
     for (std::size_t k = n; k > 0; --k) {
       for (std::size_t s = sums - 1; s >= r; --s) ways[k][s] += ways[k - 1][s - r];
     }

@@ -27,7 +27,7 @@ std::size_t shares(const std::vector<Search>& searches, std::size_t shards) {
 // What the sweep itself would refuse is refused here, before anything waits in a queue.
 void check_sweep(const Suite& suite, const EmitCommand& given) {
   const auto searches = plan(suite, make_filters(given));
-  const auto shards = static_cast<std::size_t>(given.job.shards);
+  const std::size_t shards = given.job.shards;
   const std::size_t most = shares(searches, shards);
   if (shards > most)
     throw UsageError("--shards " + std::to_string(shards) + ": this sweep has " +

@@ -215,9 +215,8 @@ PointChange compare_point(const ComparedPoint& base, const ComparedPoint& next, 
 }
 
 std::size_t Comparison::count(Change change) const {
-  return static_cast<std::size_t>(
-      std::count_if(points.begin(), points.end(),
-                    [change](const PointChange& point) { return point.change == change; }));
+  return std::count_if(points.begin(), points.end(),
+                       [change](const PointChange& point) { return point.change == change; });
 }
 
 bool Comparison::any(bool (*is)(Change)) const {

@@ -123,9 +123,8 @@ void print_comparison(std::ostream& out, const Comparison& comparison) {
 }
 
 std::string junit_xml(const Comparison& comparison, const std::string& name) {
-  const auto failures = static_cast<std::size_t>(
-      std::count_if(comparison.points.begin(), comparison.points.end(),
-                    [](const PointChange& point) { return fails(point.change); }));
+  const auto failures = std::count_if(comparison.points.begin(), comparison.points.end(),
+                                      [](const PointChange& point) { return fails(point.change); });
   std::ostringstream text;
   const std::string totals = " tests=\"" + std::to_string(comparison.points.size()) +
                              "\" failures=\"" + std::to_string(failures) + "\" errors=\"0\"";

@@ -92,7 +92,7 @@ void Judge::sample(const Positions& filtered, const State& state) {
         Eigen::Matrix3d::Identity() - 2 * mirror.normal * mirror.normal.transpose();
     double worst = 0;
     for (Eigen::Index v = 0; v < state.x.cols(); ++v) {
-      const auto image = mirror.image[static_cast<std::size_t>(v)];
+      const auto image = mirror.image[v];
       worst = std::max(worst, (reflect * state.x.col(v) - state.x.col(image)).squaredNorm());
     }
     raise(running_.symmetry_defect, std::sqrt(worst) / scene_.size);

@@ -77,7 +77,7 @@ Eigen::Vector3d angular_momentum(const Problem& problem, const State& state) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < state.x.cols(); ++i) {
     const Eigen::Vector3d arm = state.x.col(i) - centre, velocity = state.v.col(i);
-    sum += problem.mass()[static_cast<std::size_t>(i)] * arm.cross(velocity);
+    sum += problem.mass()[i] * arm.cross(velocity);
   }
   return sum;
 }

@@ -222,7 +222,7 @@ double shadow_area(const Scene& scene, const Positions& x) {
   constexpr int pixels = 512;
   const double reach = 0.75 * scene.size;  // a square cloth of side 1 reaches 0.71 from its middle
   const double pixel = 2 * reach / pixels;
-  std::vector<char> dark(static_cast<std::size_t>(pixels) * pixels, 0);
+  std::vector<char> dark(pixels * pixels, 0);
   const auto index = [&](double coordinate) {
     return std::clamp(static_cast<int>((coordinate + reach) / pixel), 0, pixels - 1);
   };
@@ -239,7 +239,7 @@ double shadow_area(const Scene& scene, const Positions& x) {
         const Eigen::Vector2d s((i + 0.5) * pixel - reach, (j + 0.5) * pixel - reach);
         if (cross(q - p, s - p) / area >= 0 && cross(r - q, s - q) / area >= 0 &&
             cross(p - r, s - r) / area >= 0)
-          dark[static_cast<std::size_t>(j) * pixels + static_cast<std::size_t>(i)] = 1;
+          dark[j * pixels + i] = 1;
       }
     }
   }
@@ -277,7 +277,7 @@ ShapeStatistics shape_statistics(const Scene& scene, const Positions& x) {
 double rms_distance(const Scene& scene, const Positions& x, const Positions& y) {
   double sum = 0;  // term by term, so that equal runs have equal errors to the last digit
   for (Eigen::Index i = 0; i < x.cols(); ++i)
-    sum += scene.problem->mass()[static_cast<std::size_t>(i)] * (x.col(i) - y.col(i)).squaredNorm();
+    sum += scene.problem->mass()[i] * (x.col(i) - y.col(i)).squaredNorm();
   return std::sqrt(sum / scene.problem->total_mass()) / scene.size;
 }
 

@@ -33,7 +33,7 @@ Draft vertex_row(const SceneParameters& p) {
   const int n = whole(p, "n");
   const double link = row_link(p);
   Draft row;
-  row.parts.mass.assign(static_cast<std::size_t>(n), p.at("mass") / n);
+  row.parts.mass.assign(n, p.at("mass") / n);
   row.parts.gravity = {0, -p.at("gravity"), 0};
   row.scene.start.x.setZero(3, n);
   row.scene.start.v.setZero(3, n);
@@ -56,8 +56,7 @@ Draft vertex_square(const SceneParameters& p, double y) {
   Draft square;
   inextensible::ProblemParts& parts = square.parts;
   Scene& scene = square.scene;
-  const auto count = static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
-  parts.mass.assign(count, p.at("mass") / (n * n));
+  parts.mass.assign(n * n, p.at("mass") / (n * n));
   parts.gravity = {0, -p.at("gravity"), 0};
   scene.start.x.resize(3, n * n);
   scene.start.v.setZero(3, n * n);

@@ -97,9 +97,8 @@ inextensible::Positions Pendulum::positions() const {
   inextensible::Positions x(3, n + 1);
   x.col(0).setZero();
   for (Eigen::Index i = 0; i < n; ++i) {
-    const auto link = static_cast<std::size_t>(i);
-    x.col(i + 1) = x.col(i) + links_.length[link] * Eigen::Vector3d(std::cos(state_[link]),
-                                                                    std::sin(state_[link]), 0);
+    x.col(i + 1) =
+        x.col(i) + links_.length[i] * Eigen::Vector3d(std::cos(state_[i]), std::sin(state_[i]), 0);
   }
   return x;
 }

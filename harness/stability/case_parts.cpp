@@ -10,7 +10,7 @@ using inextensible::Problem;
 
 Mesh points(int n, double mass) {
   Mesh mesh;
-  mesh.parts.mass.assign(static_cast<std::size_t>(n), mass);
+  mesh.parts.mass.assign(n, mass);
   mesh.start.x.setZero(3, n);
   mesh.start.v.setZero(3, n);
   return mesh;

@@ -45,8 +45,7 @@ void add_mass_ratios(std::vector<HardCase>& cases, const HardCaseValues& values)
                        Mesh mesh = cloth(11);
                        mesh.parts.pinned = {0};
                        for (int i = 4; i < 7; ++i)
-                         for (int j = 4; j < 7; ++j)
-                           mesh.parts.mass[static_cast<std::size_t>(11 * i + j)] *= ratio;
+                         for (int j = 4; j < 7; ++j) mesh.parts.mass[11 * i + j] *= ratio;
                        return trial_of(std::move(mesh), 1.0 / 400, 40);
                      },
                      {{strain_limiting, slow, "convergence slows with the ratio"},

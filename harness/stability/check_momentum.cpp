@@ -26,7 +26,7 @@ double loss_of_spin(const Examinee& solver, const Case& c, double step, double& 
   const Vector3d start = angular_momentum(problem, state);
   double scale = 0;
   for (Eigen::Index i = 0; i < state.v.cols(); ++i)
-    scale += problem.mass()[static_cast<std::size_t>(i)] * state.v.col(i).norm();
+    scale += problem.mass()[i] * state.v.col(i).norm();
   for (int i = 0; i < std::lround(momentum_duration / step); ++i) {
     const Vector3d before = linear_momentum(problem, state.v);
     if (!stepper->advance(state, step)) return infinity;

@@ -101,8 +101,8 @@ BlockTridiagonalSolver::BlockTridiagonalSolver(const SymmetricPattern& pattern) 
     throw std::invalid_argument(
         "the linear solver 'block_tridiagonal' needs vertices that form one chain in order");
   }
-  values_.resize(static_cast<std::size_t>(pattern.entries()));
-  rows_.resize(static_cast<std::size_t>(pattern.n / 3));
+  values_.resize(pattern.entries());
+  rows_.resize(pattern.n / 3);
 }
 
 BlockTridiagonalSolver::~BlockTridiagonalSolver() = default;

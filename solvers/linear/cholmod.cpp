@@ -26,7 +26,7 @@ struct CholmodSolver::Library {
 
 CholmodSolver::CholmodSolver(SymmetricPattern pattern, bool supernodal)
     : pattern_(std::move(pattern)),
-      values_(static_cast<std::size_t>(pattern_.entries())),
+      values_(pattern_.entries()),
       library_(std::make_unique<Library>()) {
   Library& c = *library_;
   cholmod_start_natural(c.common);
@@ -36,7 +36,7 @@ CholmodSolver::CholmodSolver(SymmetricPattern pattern, bool supernodal)
   c.matrix = cholmod_view(pattern_, values_.data());
   c.factor = cholmod_analyze(&c.matrix, &c.common);
   if (!c.factor) throw std::bad_alloc();
-  c.rhs.nrow = c.rhs.nzmax = c.rhs.d = static_cast<std::size_t>(pattern_.n);
+  c.rhs.nrow = c.rhs.nzmax = c.rhs.d = pattern_.n;
   c.rhs.ncol = 1;
   c.rhs.xtype = CHOLMOD_REAL;
   c.rhs.dtype = CHOLMOD_DOUBLE;
@@ -57,7 +57,7 @@ bool CholmodSolver::factor() {
   const auto* start = static_cast<const int*>(c.factor->p);
   const auto* value = static_cast<const double*>(c.factor->x);
   for (int i = 0; i < pattern_.n; ++i) {
-    const auto diagonal = static_cast<std::size_t>(pattern_.diagonal(i));
+    const std::size_t diagonal = pattern_.diagonal(i);
     if (!(value[start[i]] > least_pivot_ * values_[diagonal])) return false;
   }
   return true;

@@ -11,8 +11,8 @@ namespace inextensible {
 // alone.
 inline cholmod_sparse cholmod_view(const SymmetricPattern& pattern, double* values) {
   cholmod_sparse matrix{};
-  matrix.nrow = matrix.ncol = static_cast<std::size_t>(pattern.n);
-  matrix.nzmax = static_cast<std::size_t>(pattern.entries());
+  matrix.nrow = matrix.ncol = pattern.n;
+  matrix.nzmax = pattern.entries();
   matrix.p = const_cast<int*>(pattern.column_start.data());
   matrix.i = const_cast<int*>(pattern.row_index.data());
   matrix.x = values;

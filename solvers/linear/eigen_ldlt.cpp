@@ -11,7 +11,7 @@ EigenLdltSolver::EigenLdltSolver(const SymmetricPattern& pattern, bool indefinit
   if (pattern.triangle != SymmetricPattern::Triangle::upper) {
     throw std::invalid_argument("eigen_ldlt reads the upper triangle");
   }
-  const std::vector<double> zeros(static_cast<std::size_t>(pattern.entries()), 0.0);
+  const std::vector<double> zeros(pattern.entries(), 0.0);
   matrix_ = Eigen::Map<const Eigen::SparseMatrix<double>>(pattern.n, pattern.n, pattern.entries(),
                                                           pattern.column_start.data(),
                                                           pattern.row_index.data(), zeros.data());

@@ -17,15 +17,10 @@ namespace {
 constexpr int quick = 40, price = 1000;
 constexpr int first_holiday = 8, longest_holiday = 512;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 }  // namespace
 
 HybridSpdSolver::HybridSpdSolver(SymmetricPattern pattern)
-    : pattern_(pattern),
-      cg_(std::move(pattern)),
-      rhs_(at(pattern_.n)),
-      next_holiday_(first_holiday) {}
+    : pattern_(pattern), cg_(std::move(pattern)), rhs_(pattern_.n), next_holiday_(first_holiday) {}
 
 bool HybridSpdSolver::factor() {
   if (holiday_ > 0) {
@@ -61,27 +56,26 @@ bool HybridSpdSolver::solve_within(double tolerance, double* rhs) {
 void HybridSpdSolver::prepare_factorization() {
   order_ = fill_reducing_order(pattern_);
   std::vector<int> row_of(order_.size());
-  for (int i = 0; i < pattern_.n; ++i) row_of[at(order_[at(i)])] = i;
+  for (int i = 0; i < pattern_.n; ++i) row_of[order_[i]] = i;
   // Lower triangle, column by column, rows ascending: a bucket sort by column of a bucket sort by
   // row.
   struct Entry {
     int row, column, from;
   };
-  std::vector<Entry> entries(at(pattern_.entries())), by_row(entries.size());
+  std::vector<Entry> entries(pattern_.entries()), by_row(entries.size());
   for (int column = 0; column < pattern_.n; ++column) {
-    for (int i = pattern_.column_start[at(column)]; i < pattern_.column_start[at(column) + 1];
-         ++i) {
-      const int p = row_of[at(column)], q = row_of[at(pattern_.row_index[at(i)])];
-      entries[at(i)] = {std::max(p, q), std::min(p, q), i};
+    for (int i = pattern_.column_start[column]; i < pattern_.column_start[column + 1]; ++i) {
+      const int p = row_of[column], q = row_of[pattern_.row_index[i]];
+      entries[i] = {std::max(p, q), std::min(p, q), i};
     }
   }
   const auto sort_by = [n = pattern_.n](int Entry::*key, const std::vector<Entry>& from,
                                         std::vector<Entry>& to) {
-    std::vector<int> start(at(n) + 1);
-    for (const Entry& entry : from) ++start[at(entry.*key) + 1];
-    for (int i = 0; i < n; ++i) start[at(i) + 1] += start[at(i)];
+    std::vector<int> start(n + 1);
+    for (const Entry& entry : from) ++start[entry.*key + 1];
+    for (int i = 0; i < n; ++i) start[i + 1] += start[i];
     std::vector<int> end = start;
-    for (const Entry& entry : from) to[at(end[at(entry.*key)]++)] = entry;
+    for (const Entry& entry : from) to[end[entry.*key]++] = entry;
     return start;
   };
   sort_by(&Entry::row, entries, by_row);
@@ -93,7 +87,7 @@ void HybridSpdSolver::prepare_factorization() {
   ordered.row_index.resize(entries.size());
   for (std::size_t i = 0; i < entries.size(); ++i) {
     ordered.row_index[i] = entries[i].row;
-    place_[at(entries[i].from)] = static_cast<int>(i);
+    place_[entries[i].from] = static_cast<int>(i);
   }
   direct_ = std::make_unique<FixedPatternCholesky>(std::move(ordered));
 }

@@ -47,8 +47,6 @@ namespace {
 // 1/4.
 constexpr double strong = 0.25;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 }  // namespace
 
 // Couplings of each row with all others, and up to two of them chosen as its neighbours on a line.
@@ -72,29 +70,29 @@ struct LineCgSolver::Graph {
   std::vector<Neighbours> neighbours;
 
   explicit Graph(const SymmetricPattern& pattern)
-      : start(at(pattern.n) + 1), line(at(pattern.n)), neighbours(at(pattern.n)) {
+      : start(pattern.n + 1), line(pattern.n), neighbours(pattern.n) {
     for (int l = 0; l < pattern.n; ++l) {
-      for (int i = pattern.column_start[at(l)]; i < pattern.diagonal(l); ++i) {
-        ++start[at(l) + 1];
-        ++start[at(pattern.row_index[at(i)]) + 1];
+      for (int i = pattern.column_start[l]; i < pattern.diagonal(l); ++i) {
+        ++start[l + 1];
+        ++start[pattern.row_index[i] + 1];
       }
     }
     std::partial_sum(start.begin(), start.end(), start.begin());
-    couplings.resize(at(start.back()));
+    couplings.resize(start.back());
     std::vector<int> end(start.begin(), start.end() - 1);
     for (int l = 0; l < pattern.n; ++l) {
-      for (int i = pattern.column_start[at(l)]; i < pattern.diagonal(l); ++i) {
-        const int k = pattern.row_index[at(i)];
-        couplings[at(end[at(l)]++)] = {k, i};
-        couplings[at(end[at(k)]++)] = {l, i};
+      for (int i = pattern.column_start[l]; i < pattern.diagonal(l); ++i) {
+        const int k = pattern.row_index[i];
+        couplings[end[l]++] = {k, i};
+        couplings[end[k]++] = {l, i};
       }
     }
   }
   std::span<const Coupling> of(int row) const {
-    return {couplings.data() + start[at(row)], couplings.data() + start[at(row) + 1]};
+    return {couplings.data() + start[row], couplings.data() + start[row + 1]};
   }
   int root(int row) {
-    while (line[at(row)] != row) row = line[at(row)] = line[at(line[at(row)])];
+    while (line[row] != row) row = line[row] = line[line[row]];
     return row;
   }
   // Calls visit(row) along every line, from the end of smaller number on.
@@ -102,11 +100,11 @@ struct LineCgSolver::Graph {
   void walk(Visit visit) const {
     std::vector<bool> seen(neighbours.size());
     for (int first = 0; first < static_cast<int>(neighbours.size()); ++first) {
-      if (seen[at(first)] || neighbours[at(first)].count() == 2) continue;
+      if (seen[first] || neighbours[first].count() == 2) continue;
       for (int row = first, before = -1; row >= 0;) {
-        seen[at(row)] = true;
+        seen[row] = true;
         visit(row, before);
-        const auto& [next, unused] = neighbours[at(row)];
+        const auto& [next, unused] = neighbours[row];
         const int on = next[0] >= 0 && next[0] != before ? next[0] : next[1];
         before = std::exchange(row, on == before ? -1 : on);
       }
@@ -115,7 +113,7 @@ struct LineCgSolver::Graph {
 };
 
 LineCgSolver::LineCgSolver(SymmetricPattern pattern)
-    : pattern_(std::move(pattern)), values_(at(pattern_.entries())) {
+    : pattern_(std::move(pattern)), values_(pattern_.entries()) {
   if (pattern_.triangle != SymmetricPattern::Triangle::upper)
     throw std::invalid_argument("the linear solver 'line_cg' reads the upper triangle");
 }
@@ -139,11 +137,11 @@ void LineCgSolver::join_strongest(Graph& graph) const {
   };
   std::vector<Candidate> candidates;
   for (int l = 0; l < pattern_.n; ++l) {
-    const double d = values_[at(pattern_.diagonal(l))];
-    for (int i = pattern_.column_start[at(l)]; i < pattern_.diagonal(l); ++i) {
-      const int k = pattern_.row_index[at(i)];
-      const double scale = std::sqrt(d * values_[at(pattern_.diagonal(k))]);
-      const double strength = std::abs(values_[at(i)]) / scale;
+    const double d = values_[pattern_.diagonal(l)];
+    for (int i = pattern_.column_start[l]; i < pattern_.diagonal(l); ++i) {
+      const int k = pattern_.row_index[i];
+      const double scale = std::sqrt(d * values_[pattern_.diagonal(k)]);
+      const double strength = std::abs(values_[i]) / scale;
       if (strength >= strong) candidates.push_back({static_cast<float>(strength), k, l, i});
     }
   }
@@ -151,33 +149,33 @@ void LineCgSolver::join_strongest(Graph& graph) const {
                    [](const Candidate& p, const Candidate& q) { return p.strength > q.strength; });
   std::iota(graph.line.begin(), graph.line.end(), 0);
   for (const auto& [strength, k, l, place] : candidates) {
-    if (graph.neighbours[at(k)].count() == 2 || graph.neighbours[at(l)].count() == 2) continue;
+    if (graph.neighbours[k].count() == 2 || graph.neighbours[l].count() == 2) continue;
     const int i = graph.root(k), j = graph.root(l);
     if (i == j) continue;
-    graph.line[at(i)] = j;
-    graph.neighbours[at(k)].add(l, place);
-    graph.neighbours[at(l)].add(k, place);
+    graph.line[i] = j;
+    graph.neighbours[k].add(l, place);
+    graph.neighbours[l].add(k, place);
   }
 }
 
 // A row that is coupled with an earlier one of its line, other than its predecessor, begins a new
 // line: the tridiagonal part of a line is then all of its submatrix, and so positive definite.
 void LineCgSolver::cut_chords(Graph& graph) const {
-  std::vector<int> name(at(pattern_.n), -1);
+  std::vector<int> name(pattern_.n, -1);
   std::vector<std::pair<int, int>> cuts;
   int line = -1;
   graph.walk([&](int row, int before) {
     bool cut = before < 0;
     if (!cut) {
       for (const auto& [other, unused] : graph.of(row))
-        cut = cut || (other != before && name[at(other)] == line);
+        cut = cut || (other != before && name[other] == line);
       if (cut) cuts.emplace_back(before, row);
     }
-    name[at(row)] = cut ? ++line : line;
+    name[row] = cut ? ++line : line;
   });
   for (const auto& [before, row] : cuts) {
-    graph.neighbours[at(before)].remove(row);
-    graph.neighbours[at(row)].remove(before);
+    graph.neighbours[before].remove(row);
+    graph.neighbours[row].remove(before);
   }
   graph.line = std::move(name);
 }
@@ -186,48 +184,47 @@ void LineCgSolver::cut_chords(Graph& graph) const {
 // first (Halldorsson and Radhakrishnan 1997).
 void LineCgSolver::choose_families(const Graph& graph) {
   lines_ = 1 + *std::max_element(graph.line.begin(), graph.line.end());
-  std::vector<int> couplings(at(lines_), 0), order(at(lines_));
-  std::vector<std::vector<int>> rows(at(lines_));
+  std::vector<int> couplings(lines_, 0), order(lines_);
+  std::vector<std::vector<int>> rows(lines_);
   for (int row = 0; row < pattern_.n; ++row) {
-    const int line = graph.line[at(row)];
-    couplings[at(line)] += static_cast<int>(graph.of(row).size());
-    rows[at(line)].push_back(row);
+    const int line = graph.line[row];
+    couplings[line] += static_cast<int>(graph.of(row).size());
+    rows[line].push_back(row);
   }
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
-                   [&](int p, int q) { return couplings[at(p)] < couplings[at(q)]; });
-  family_of_.assign(at(pattern_.n), -1);
+                   [&](int p, int q) { return couplings[p] < couplings[q]; });
+  family_of_.assign(pattern_.n, -1);
   for (const int line : order) {
     bool free = true;
-    for (const int row : rows[at(line)]) {
+    for (const int row : rows[line]) {
       for (const auto& [other, unused] : graph.of(row))
-        free = free && (graph.line[at(other)] == line || family_of_[at(other)] != 0);
+        free = free && (graph.line[other] == line || family_of_[other] != 0);
     }
-    for (const int row : rows[at(line)]) family_of_[at(row)] = free ? 0 : 1;
+    for (const int row : rows[line]) family_of_[row] = free ? 0 : 1;
   }
 }
 
 void LineCgSolver::place_rows(const Graph& graph) {
-  std::vector<int> before(at(pattern_.n), -1), link(at(pattern_.n), -1);
+  std::vector<int> before(pattern_.n, -1), link(pattern_.n, -1);
   graph.walk([&](int row, int previous) {
-    before[at(row)] = previous;
+    before[row] = previous;
     if (previous < 0) return;
-    const auto& near = graph.neighbours[at(row)];
-    link[at(row)] = near.at[near.row[1] == previous];
+    const auto& near = graph.neighbours[row];
+    link[row] = near.at[near.row[1] == previous];
   });
-  place_.assign(at(pattern_.n), -1);
+  place_.assign(pattern_.n, -1);
   std::vector<int> chain;
   for (int first = 0; first < pattern_.n; ++first) {
-    for (int row = first; row >= 0 && place_[at(row)] < 0; row = before[at(row)])
-      chain.push_back(row);
+    for (int row = first; row >= 0 && place_[row] < 0; row = before[row]) chain.push_back(row);
     for (; !chain.empty(); chain.pop_back()) {
       const int row = chain.back();
-      Family& family = family_of_[at(row)] == 0 ? eliminated_ : kept_;
-      place_[at(row)] = family.size();
-      family.previous.push_back(before[at(row)] < 0 ? family.size() : place_[at(before[at(row)])]);
+      Family& family = family_of_[row] == 0 ? eliminated_ : kept_;
+      place_[row] = family.size();
+      family.previous.push_back(before[row] < 0 ? family.size() : place_[before[row]]);
       family.row.push_back(row);
       family.diagonal_at.push_back(pattern_.diagonal(row));
-      family.link_at.push_back(link[at(row)]);
+      family.link_at.push_back(link[row]);
     }
   }
   for (Family* family : {&eliminated_, &kept_}) {
@@ -239,11 +236,11 @@ void LineCgSolver::place_rows(const Graph& graph) {
 void LineCgSolver::place_couplings(const Graph& graph) {
   for (Couplings* couplings : {&across_, &among_}) couplings->start.push_back(0);
   for (int k = 0; k < kept_.size(); ++k) {
-    const int row = kept_.row[at(k)];
+    const int row = kept_.row[k];
     for (const auto& [other, place] : graph.of(row)) {
       const bool crosses = eliminated(other);
-      const int column = place_[at(other)];
-      if (!crosses && (column > k || place == kept_.link_at[at(k)])) continue;
+      const int column = place_[other];
+      if (!crosses && (column > k || place == kept_.link_at[k])) continue;
       Couplings& couplings = crosses ? across_ : among_;
       couplings.column.push_back(column);
       couplings.at.push_back(place);
@@ -253,8 +250,8 @@ void LineCgSolver::place_couplings(const Graph& graph) {
   }
   for (Couplings* couplings : {&across_, &among_}) couplings->value.resize(couplings->at.size());
   for (auto* vector : {&solution_, &residual_, &direction_, &line_direction_, &product_})
-    vector->resize(at(kept_.size()));
-  beyond_.resize(at(eliminated_.size()));
+    vector->resize(kept_.size());
+  beyond_.resize(eliminated_.size());
 }
 
 // ---- Factorization ------------------------------------------------------------------------------
@@ -275,7 +272,7 @@ bool LineCgSolver::Family::factor(const double* values, double least_pivot) {
     link[k] = 0;
     if (link_at[k] >= 0) {
       link[k] = values[link_at[k]];
-      pivot -= link[k] * link[k] * inverse_pivot[at(previous[k])];
+      pivot -= link[k] * link[k] * inverse_pivot[previous[k]];
     }
     if (!(pivot > least_pivot * a)) return false;  // the negation catches NaN
     inverse_pivot[k] = 1 / pivot;
@@ -313,9 +310,9 @@ double LineCgSolver::Family::solve(const double* b, double* x) const {
 
 void LineCgSolver::solve_lines(double* x) {
   for (const auto& [family, vector] : {std::pair(&eliminated_, &beyond_), {&kept_, &product_}}) {
-    for (int k = 0; k < family->size(); ++k) (*vector)[at(k)] = x[family->row[at(k)]];
+    for (int k = 0; k < family->size(); ++k) (*vector)[k] = x[family->row[k]];
     family->solve(vector->data(), vector->data());
-    for (int k = 0; k < family->size(); ++k) x[family->row[at(k)]] = (*vector)[at(k)];
+    for (int k = 0; k < family->size(); ++k) x[family->row[k]] = (*vector)[k];
   }
 }
 
@@ -342,21 +339,21 @@ double LineCgSolver::multiply(const double* p, double* q) {
   std::fill(beyond_.begin(), beyond_.end(), 0.0);
   const int n = kept_.size();
   for (int k = 0; k < n; ++k) {
-    for (int i = across_.start[at(k)]; i < across_.start[at(k) + 1]; ++i)
-      y[across_.column[at(i)]] += across_.value[at(i)] * p[k];
+    for (int i = across_.start[k]; i < across_.start[k + 1]; ++i)
+      y[across_.column[i]] += across_.value[i] * p[k];
   }
   eliminated_.solve(y, y);
   for (int k = 0; k < n; ++k) {
-    for (int i = among_.start[at(k)]; i < among_.start[at(k) + 1]; ++i) {
-      q[k] += among_.value[at(i)] * p[among_.column[at(i)]];
-      q[among_.column[at(i)]] += among_.value[at(i)] * p[k];
+    for (int i = among_.start[k]; i < among_.start[k + 1]; ++i) {
+      q[k] += among_.value[i] * p[among_.column[i]];
+      q[among_.column[i]] += among_.value[i] * p[k];
     }
   }
   double sum = 0;
   for (int k = 0; k < n; ++k) {
     double qk = q[k];
-    for (int i = across_.start[at(k)]; i < across_.start[at(k) + 1]; ++i)
-      qk -= across_.value[at(i)] * y[across_.column[at(i)]];
+    for (int i = across_.start[k]; i < across_.start[k + 1]; ++i)
+      qk -= across_.value[i] * y[across_.column[i]];
     q[k] = qk;
     sum += p[k] * qk;
   }
@@ -374,13 +371,13 @@ bool LineCgSolver::solve_within(double tolerance, double* rhs) {
   const double enough = tolerance * tolerance * norm;
 
   // r = b_B - C T_A^-1 b_A
-  for (int k = 0; k < eliminated_.size(); ++k) beyond_[at(k)] = rhs[eliminated_.row[at(k)]];
+  for (int k = 0; k < eliminated_.size(); ++k) beyond_[k] = rhs[eliminated_.row[k]];
   eliminated_.solve(beyond_.data(), beyond_.data());
   double error = 0;
   for (int k = 0; k < n; ++k) {
-    r[k] = rhs[kept_.row[at(k)]];
-    for (int i = across_.start[at(k)]; i < across_.start[at(k) + 1]; ++i)
-      r[k] -= across_.value[at(i)] * beyond_[at(across_.column[at(i)])];
+    r[k] = rhs[kept_.row[k]];
+    for (int i = across_.start[k]; i < across_.start[k + 1]; ++i)
+      r[k] -= across_.value[i] * beyond_[across_.column[i]];
     error += r[k] * r[k];
     x[k] = p[k] = tp[k] = 0;
   }
@@ -408,14 +405,14 @@ bool LineCgSolver::solve_within(double tolerance, double* rhs) {
   }
 
   // x_A = T_A^-1 (b_A - C^T x_B)
-  for (int k = 0; k < eliminated_.size(); ++k) beyond_[at(k)] = rhs[eliminated_.row[at(k)]];
+  for (int k = 0; k < eliminated_.size(); ++k) beyond_[k] = rhs[eliminated_.row[k]];
   for (int k = 0; k < n; ++k) {
-    for (int i = across_.start[at(k)]; i < across_.start[at(k) + 1]; ++i)
-      beyond_[at(across_.column[at(i)])] -= across_.value[at(i)] * x[k];
-    rhs[kept_.row[at(k)]] = x[k];
+    for (int i = across_.start[k]; i < across_.start[k + 1]; ++i)
+      beyond_[across_.column[i]] -= across_.value[i] * x[k];
+    rhs[kept_.row[k]] = x[k];
   }
   eliminated_.solve(beyond_.data(), beyond_.data());
-  for (int k = 0; k < eliminated_.size(); ++k) rhs[eliminated_.row[at(k)]] = beyond_[at(k)];
+  for (int k = 0; k < eliminated_.size(); ++k) rhs[eliminated_.row[k]] = beyond_[k];
   return reached;
 }
 

@@ -35,7 +35,7 @@ class LineCgSolver final : public SpdSolver {
   int lines() const { return lines_; }
   // x = diag(T_A, T_B)^-1 x, rows as in the matrix: every line's own system.
   void solve_lines(double* x);
-  bool eliminated(int row) const { return family_of_[static_cast<std::size_t>(row)] == 0; }
+  bool eliminated(int row) const { return family_of_[row] == 0; }
 
  private:
   // Rows of lines, each after its predecessor on the line, otherwise in the order given.

@@ -85,13 +85,7 @@ class UmfpackSolver final : public UnsymmetricSolver {
 class TridiagonalLuSolver final : public UnsymmetricSolver {
  public:
   explicit TridiagonalLuSolver(int n)
-      : n_(n),
-        values_(size(3 * n - 2)),
-        lower_(size(n)),
-        diagonal_(size(n)),
-        upper_(size(n)),
-        upper2_(size(n)),
-        pivot_(size(n)) {}
+      : n_(n), values_(3 * n - 2), lower_(n), diagonal_(n), upper_(n), upper2_(n), pivot_(n) {}
 
   double* values() override { return values_.data(); }
 
@@ -127,8 +121,6 @@ class TridiagonalLuSolver final : public UnsymmetricSolver {
   double factor_flops() const override { return 8.0 * n_; }
 
  private:
-  static std::size_t size(int n) { return static_cast<std::size_t>(n); }
-
   int n_;
   std::vector<double> values_, lower_, diagonal_, upper_, upper2_;
   std::vector<int> pivot_;
@@ -138,9 +130,8 @@ bool tridiagonal(const std::vector<int>& column_start, const std::vector<int>& r
   const int n = static_cast<int>(column_start.size()) - 1;
   if (static_cast<int>(row_index.size()) != 3 * n - 2) return false;
   for (int j = 0; j < n; ++j) {
-    for (int i = column_start[static_cast<std::size_t>(j)];
-         i < column_start[static_cast<std::size_t>(j) + 1]; ++i) {
-      if (std::abs(row_index[static_cast<std::size_t>(i)] - j) > 1) return false;
+    for (int i = column_start[j]; i < column_start[j + 1]; ++i) {
+      if (std::abs(row_index[i] - j) > 1) return false;
     }
   }
   return true;

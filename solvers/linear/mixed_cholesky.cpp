@@ -24,7 +24,7 @@ MixedCholesky::MixedCholesky(SymmetricPattern pattern)
     : pattern_(std::move(pattern)),
       single_(pattern_),
       double_(pattern_),
-      rhs_(static_cast<std::size_t>(pattern_.n)),
+      rhs_(pattern_.n),
       residual_(rhs_.size()) {}
 
 bool MixedCholesky::factor() {
@@ -71,15 +71,14 @@ bool MixedCholesky::refine(double tolerance, double* x) {
 void MixedCholesky::subtract_product(const double* x) {
   const double* value = single_.values();
   for (int column = 0; column < pattern_.n; ++column) {
-    const auto c = static_cast<std::size_t>(column);
-    int e = pattern_.column_start[c];
+    int e = pattern_.column_start[column];
     double sum = value[e] * x[column];  // the diagonal entry comes first
-    for (++e; e < pattern_.column_start[c + 1]; ++e) {
-      const int row = pattern_.row_index[static_cast<std::size_t>(e)];
-      residual_[static_cast<std::size_t>(row)] -= value[e] * x[column];
+    for (++e; e < pattern_.column_start[column + 1]; ++e) {
+      const int row = pattern_.row_index[e];
+      residual_[row] -= value[e] * x[column];
       sum += value[e] * x[row];
     }
-    residual_[c] -= sum;
+    residual_[column] -= sum;
   }
 }
 

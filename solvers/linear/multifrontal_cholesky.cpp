@@ -289,8 +289,8 @@ struct Analysis {
 template <class Real>
 std::size_t panels_size(int rows, int columns) {
   const int last = (columns - 1) / panel * panel;
-  return static_cast<std::size_t>(panel_at<Real>(rows, last) +
-                                  (columns - last) * panel_ld<Real>(columns - last, rows - last));
+  return panel_at<Real>(rows, last) +
+         (columns - last) * panel_ld<Real>(columns - last, rows - last);
 }
 template <class Real>
 Distance column_at(int rows, int columns, int c) {
@@ -299,16 +299,13 @@ Distance column_at(int rows, int columns, int c) {
          Distance{c - k} * panel_ld<Real>(std::min(panel, columns - k), rows - k) - k;
 }
 
-std::size_t as_size(int i) { return static_cast<std::size_t>(i); }
-std::size_t square(int n) { return as_size(n) * as_size(n); }
+std::size_t square(std::size_t n) { return n * n; }
 
 }  // namespace
 
 template <class Real>
 MultifrontalCholesky<Real>::MultifrontalCholesky(SymmetricPattern pattern)
-    : pattern_(std::move(pattern)),
-      values_(as_size(pattern_.entries())),
-      pivots_(as_size(pattern_.n)) {
+    : pattern_(std::move(pattern)), values_(pattern_.entries()), pivots_(pattern_.n) {
   if (pattern_.triangle != SymmetricPattern::Triangle::lower)
     throw std::invalid_argument("fixed_pattern reads the lower triangle");
   find_fronts();
@@ -344,8 +341,8 @@ void MultifrontalCholesky<Real>::find_fronts() {
     fronts_.push_back(front);
   }
   factor_.resize(factor_size + lanes<Real>);  // groups of rows below may begin anywhere
-  front_rows_.resize(as_size(most_rows + lanes<Real>));
-  if constexpr (!std::is_same_v<Real, double>) rounded_.resize(as_size(pattern_.n));
+  front_rows_.resize(most_rows + lanes<Real>);
+  if constexpr (!std::is_same_v<Real, double>) rounded_.resize(pattern_.n);
 }
 
 template <class Real>
@@ -353,14 +350,12 @@ void MultifrontalCholesky<Real>::place_entries() {
   entry_place_.resize(values_.size());
   for (Front& front : fronts_) {
     const int end = front.first_column + front.columns;
-    front.entries_begin = pattern_.column_start[as_size(front.first_column)];
-    front.entries_end = pattern_.column_start[as_size(end)];
+    front.entries_begin = pattern_.column_start[front.first_column];
+    front.entries_end = pattern_.column_start[end];
     for (int column = front.first_column; column < end; ++column) {
       const Distance base = column_at<Real>(front.rows, front.columns, column - front.first_column);
-      for (int e = pattern_.column_start[as_size(column)];
-           e < pattern_.column_start[as_size(column) + 1]; ++e)
-        entry_place_[as_size(e)] =
-            static_cast<int>(base + place_in(front, pattern_.row_index[as_size(e)]));
+      for (int e = pattern_.column_start[column]; e < pattern_.column_start[column + 1]; ++e)
+        entry_place_[e] = static_cast<int>(base + place_in(front, pattern_.row_index[e]));
     }
   }
 }
@@ -376,23 +371,23 @@ int MultifrontalCholesky<Real>::place_in(const Front& front, int row) const {
 
 template <class Real>
 void MultifrontalCholesky<Real>::link_fronts() {
-  std::vector<int> front_of(as_size(pattern_.n));
+  std::vector<int> front_of(pattern_.n);
   for (std::size_t f = 0; f < fronts_.size(); ++f) {
     for (int c = 0; c < fronts_[f].columns; ++c)
-      front_of[as_size(fronts_[f].first_column + c)] = static_cast<int>(f);
+      front_of[fronts_[f].first_column + c] = static_cast<int>(f);
   }
   std::vector<std::vector<int>> children(fronts_.size());
   parent_place_.resize(rows_.size());
   for (std::size_t f = fronts_.size(); f-- > 0;) {  // parents come later: from the roots down
     Front& front = fronts_[f];
     if (front.below() == 0) continue;
-    const auto parent = as_size(front_of[as_size(rows_[front.rows_at])]);
+    const int parent = front_of[rows_[front.rows_at]];
     children[parent].push_back(static_cast<int>(f));
     front.stack = 1 - fronts_[parent].stack;
     const int parent_columns = fronts_[parent].columns;
     for (int i = 0; i < front.below(); ++i) {
-      const int place = place_in(fronts_[parent], rows_[front.rows_at + as_size(i)]);
-      parent_place_[front.rows_at + as_size(i)] = place;
+      const int place = place_in(fronts_[parent], rows_[front.rows_at + i]);
+      parent_place_[front.rows_at + i] = place;
       front.own_of_parent += place < parent_columns;
     }
   }
@@ -415,7 +410,7 @@ void MultifrontalCholesky<Real>::place_updates() {
     most[front.stack] = std::max(most[front.stack], top[front.stack]);
     std::size_t dropped = 0, lowest = top[1 - front.stack];
     for (int c = front.children_begin; c < front.children_end; ++c) {
-      const Front& child = fronts_[as_size(children_[as_size(c)])];
+      const Front& child = fronts_[children_[c]];
       dropped += square(padded<Real>(child.below()));
       lowest = std::min(lowest, child.update_at);
     }
@@ -439,18 +434,18 @@ bool MultifrontalCholesky<Real>::factor() {
     Real* update = updates_[front.stack].data() + front.update_at;
     std::fill_n(columns, panels_size<Real>(front.rows, front.columns), Real{0});
     for (int e = front.entries_begin; e < front.entries_end; ++e)
-      columns[entry_place_[as_size(e)]] = static_cast<Real>(values_[as_size(e)]);
+      columns[entry_place_[e]] = static_cast<Real>(values_[e]);
     const int* const children_end = children_.data() + front.children_end;
     const int* const children = children_.data() + front.children_begin;
     for (const int* c = children; c < children_end; ++c) {
-      const Front& child = fronts_[as_size(*c)];
+      const Front& child = fronts_[*c];
       add_update(child, 0, child.own_of_parent, [&](int place) {
         return columns + column_at<Real>(front.rows, front.columns, place);
       });
     }
     if (!eliminate_columns(front, columns, update)) return false;
     for (const int* c = children; c < children_end; ++c) {
-      const Front& child = fronts_[as_size(*c)];
+      const Front& child = fronts_[*c];
       add_update(child, child.own_of_parent, child.below(), [&](int place) {
         return update + (place - front.columns) * Distance{padded<Real>(front.below())} -
                front.columns;
@@ -485,7 +480,7 @@ bool MultifrontalCholesky<Real>::eliminate_columns(const Front& front, Real* col
   for (int k = 0; k < front.columns; k += panel) {
     const int width = std::min(panel, front.columns - k), column = front.first_column + k;
     for (int c = 0; c < width; ++c)
-      bound[c] = static_cast<Real>(least * values_[as_size(pattern_.diagonal(column + c))]);
+      bound[c] = static_cast<Real>(least * values_[pattern_.diagonal(column + c)]);
     const int good = take_panel_of_width<Real>[width]({columns, front.rows, front.columns, update},
                                                       k, bound, pivots_.data() + column);
     if (good < width) {
@@ -504,9 +499,9 @@ void MultifrontalCholesky<Real>::solve(double* rhs) {
     double largest = 0;
     for (int i = 0; i < pattern_.n; ++i) largest = std::max(largest, std::abs(rhs[i]));
     if (!(largest > 0)) return;
-    for (int i = 0; i < pattern_.n; ++i) rounded_[as_size(i)] = static_cast<Real>(rhs[i] / largest);
+    for (int i = 0; i < pattern_.n; ++i) rounded_[i] = static_cast<Real>(rhs[i] / largest);
     substitute(rounded_.data());
-    for (int i = 0; i < pattern_.n; ++i) rhs[i] = largest * double{rounded_[as_size(i)]};
+    for (int i = 0; i < pattern_.n; ++i) rhs[i] = largest * double{rounded_[i]};
   }
 }
 
@@ -557,8 +552,8 @@ template <class Real>
 double MultifrontalCholesky<Real>::least_relative_pivot() const {
   double least = 1;
   for (int i = 0; i < pattern_.n; ++i) {
-    const double diagonal = values_[as_size(pattern_.diagonal(i))];
-    least = std::min(least, double{pivots_[as_size(i)]} / diagonal);
+    const double diagonal = values_[pattern_.diagonal(i)];
+    least = std::min(least, double{pivots_[i]} / diagonal);
   }
   return least;
 }

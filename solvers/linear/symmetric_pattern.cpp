@@ -7,9 +7,8 @@ namespace {
 // it.
 bool near_diagonal(const SymmetricPattern& pattern, int size) {
   for (int column = 0; column < pattern.n; ++column) {
-    const auto c = static_cast<std::size_t>(column);
-    for (int i = pattern.column_start[c]; i < pattern.column_start[c + 1]; ++i) {
-      const int distance = pattern.row_index[static_cast<std::size_t>(i)] / size - column / size;
+    for (int i = pattern.column_start[column]; i < pattern.column_start[column + 1]; ++i) {
+      const int distance = pattern.row_index[i] / size - column / size;
       if (distance < -1 || distance > 1) return false;
     }
   }

@@ -22,8 +22,7 @@ struct SymmetricPattern {
   // The place of a column's diagonal entry: rows ascend, so it is the last of an upper triangle's
   // column and the first of a lower's.
   int diagonal(int column) const {
-    const auto i = static_cast<std::size_t>(column);
-    return triangle == Triangle::upper ? column_start[i + 1] - 1 : column_start[i];
+    return triangle == Triangle::upper ? column_start[column + 1] - 1 : column_start[column];
   }
 };
 

@@ -9,8 +9,7 @@
 
 namespace inextensible {
 
-TridiagonalSolver::TridiagonalSolver(const SymmetricPattern& pattern)
-    : n_(static_cast<std::size_t>(pattern.n)) {
+TridiagonalSolver::TridiagonalSolver(const SymmetricPattern& pattern) : n_(pattern.n) {
   if (!pattern.tridiagonal() || pattern.triangle != SymmetricPattern::Triangle::upper ||
       pattern.entries() != 2 * pattern.n - 1) {
     throw std::invalid_argument(

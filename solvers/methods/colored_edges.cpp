@@ -23,8 +23,6 @@ namespace {
 constexpr int bridge = 4;  // so many fillers cost less than the end of a block
 constexpr std::size_t least_run = ColoredEdges::width / 2;  // shorter ones are listed
 
-std::size_t as_size(int i) { return static_cast<std::size_t>(i); }
-
 int round_up(int count, int multiple) { return (count + multiple - 1) / multiple * multiple; }
 
 // The most frequent difference of vertex numbers but 1, if one edge in eight has it.
@@ -61,7 +59,7 @@ class ColoredEdges::Palette {
     return is_free(link.a, color) && is_free(link.b, color);
   }
   int first_fit(const Link& link) const {
-    int color = std::max(first_free_[as_size(link.a)], first_free_[as_size(link.b)]);
+    int color = std::max(first_free_[link.a], first_free_[link.b]);
     while (!fits(link, color)) ++color;
     return color;
   }
@@ -73,14 +71,14 @@ class ColoredEdges::Palette {
 
  private:
   bool is_free(int place, int color) const {
-    const auto& taken = taken_[as_size(place)];
-    return as_size(color) >= taken.size() || !taken[as_size(color)];
+    const auto& taken = taken_[place];
+    return color >= std::ssize(taken) || !taken[color];
   }
   void take(int place, int color) {
-    auto& taken = taken_[as_size(place)];
-    if (taken.size() <= as_size(color)) taken.resize(as_size(color) + 1, false);
-    taken[as_size(color)] = true;
-    int& first = first_free_[as_size(place)];
+    auto& taken = taken_[place];
+    if (std::ssize(taken) <= color) taken.resize(color + 1, false);
+    taken[color] = true;
+    int& first = first_free_[place];
     while (!is_free(place, first)) ++first;
   }
 
@@ -100,20 +98,20 @@ void ColoredEdges::number_vertices(const Problem& problem) {
   const int rows = (n + stride - 1) / stride, half_row = (stride + 1) / 2;
   // `width` more than needed, for the fillers at the end of a block.
   lane_ = round_up(half_row * ((rows + 1) / 2) + width, 8);
-  vertex_.assign(as_size(lane_ * (rows > 1 ? 4 : 2)), 0);
+  vertex_.assign(lane_ * (rows > 1 ? 4 : 2), 0);
   for (int v = 0; v < n; ++v) {
     const int i = v / stride, j = v % stride;
     place_.push_back((2 * (i % 2) + j % 2) * lane_ + i / 2 * half_row + j / 2);
-    vertex_[as_size(place_.back())] = v;
-    if (problem.inverse_mass()[as_size(v)] > 0) moving_.push_back(v);
+    vertex_[place_.back()] = v;
+    if (problem.inverse_mass()[v] > 0) moving_.push_back(v);
   }
 }
 
 std::vector<ColoredEdges::Link> ColoredEdges::links_by_kind(const Problem& problem) const {
   std::vector<Link> links;
   for (int k = 0; k < problem.constraints(); ++k) {
-    const Edge e = problem.edges()[as_size(k)];
-    const int p = place_[as_size(e.a)], q = place_[as_size(e.b)], a = std::min(p, q);
+    const Edge e = problem.edges()[k];
+    const int p = place_[e.a], q = place_[e.b], a = std::min(p, q);
     links.push_back({a / lane_, std::abs(q - p), a, std::max(p, q), k, p > q, 0});
   }
   std::sort(links.begin(), links.end(), [](const Link& p, const Link& q) {
@@ -224,7 +222,7 @@ void ColoredEdges::store(const Places& places, Positions& x) const {
   for (int axis = 0; axis < 3; ++axis) {
     const double* from = places.col(axis).data();
     double* to = x.data() + axis;
-    for (const int v : moving_) to[3 * v] = from[place_[as_size(v)]];
+    for (const int v : moving_) to[3 * v] = from[place_[v]];
   }
 }
 

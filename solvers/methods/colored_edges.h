@@ -32,8 +32,8 @@ class ColoredEdges {
   const std::vector<int>& b() const { return b_; }
   const std::vector<int>& problem_edge() const { return problem_edge_; }
   // Whether a() is the place of the problem's b.
-  bool turned(int entry) const { return turned_[static_cast<std::size_t>(entry)]; }
-  int vertex(int place) const { return vertex_[static_cast<std::size_t>(place)]; }
+  bool turned(int entry) const { return turned_[entry]; }
+  int vertex(int place) const { return vertex_[place]; }
 
   // Positions by place: x, y and z apart. Places without a vertex copy vertex 0, so that they are
   // finite where it is. store() leaves pinned vertices alone.

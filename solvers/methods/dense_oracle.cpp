@@ -12,11 +12,10 @@ constexpr double tolerance = 1e-12;  // of C and F, in rest lengths
 Eigen::MatrixXd dense_jacobian(const EdgeConstraints& edges, const Positions& x) {
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(edges.count(), 3 * x.cols());
   for (int k = 0; k < edges.count(); ++k) {
-    const auto e = static_cast<std::size_t>(k);
     const Eigen::RowVector3d u =
-        2 * edges.inverse_rest_length[e] * (x.col(edges.b[e]) - x.col(edges.a[e])).transpose();
-    if (edges.wa[e] > 0) jacobian.block<1, 3>(k, 3 * edges.a[e]) = -u;
-    if (edges.wb[e] > 0) jacobian.block<1, 3>(k, 3 * edges.b[e]) = u;
+        2 * edges.inverse_rest_length[k] * (x.col(edges.b[k]) - x.col(edges.a[k])).transpose();
+    if (edges.wa[k] > 0) jacobian.block<1, 3>(k, 3 * edges.a[k]) = -u;
+    if (edges.wb[k] > 0) jacobian.block<1, 3>(k, 3 * edges.b[k]) = u;
   }
   return jacobian;
 }
@@ -39,7 +38,7 @@ StepResult DenseReference::apply(const Positions& /*x_start*/, double /*h*/, Pos
   const Eigen::Index n3 = 3 * x.cols(), m = edges_.count();
   const Positions x0 = x;
   Eigen::VectorXd mass(n3), mu = Eigen::VectorXd::Zero(m), c(m);
-  for (Eigen::Index i = 0; i < n3; ++i) mass[i] = problem_.mass()[static_cast<std::size_t>(i / 3)];
+  for (Eigen::Index i = 0; i < n3; ++i) mass[i] = problem_.mass()[i / 3];
   Eigen::Matrix3Xd u(3, m);
   const double goal = tolerance * problem_.shortest_rest_length();
   constexpr int iteration_limit = 200;
@@ -58,13 +57,12 @@ StepResult DenseReference::apply(const Positions& /*x_start*/, double /*h*/, Pos
     Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(n3 + m, n3 + m);
     kkt.diagonal().head(n3) = mass;
     for (Eigen::Index k = 0; k < m; ++k) {
-      const auto e = static_cast<std::size_t>(k);
-      const double curvature = 2 * mu[k] * edges_.inverse_rest_length[e];
+      const double curvature = 2 * mu[k] * edges_.inverse_rest_length[k];
       for (int axis = 0; axis < 3; ++axis) {
-        const Eigen::Index a = 3 * edges_.a[e] + axis, b = 3 * edges_.b[e] + axis;
-        if (edges_.wa[e] > 0) kkt(a, a) += curvature;
-        if (edges_.wb[e] > 0) kkt(b, b) += curvature;
-        if (edges_.wa[e] > 0 && edges_.wb[e] > 0) kkt(a, b) = kkt(b, a) = kkt(a, b) - curvature;
+        const Eigen::Index a = 3 * edges_.a[k] + axis, b = 3 * edges_.b[k] + axis;
+        if (edges_.wa[k] > 0) kkt(a, a) += curvature;
+        if (edges_.wb[k] > 0) kkt(b, b) += curvature;
+        if (edges_.wa[k] > 0 && edges_.wb[k] > 0) kkt(a, b) = kkt(b, a) = kkt(a, b) - curvature;
       }
     }
     kkt.bottomLeftCorner(m, n3) = jacobian;

@@ -25,8 +25,8 @@ GaussSeidel::GaussSeidel(const Problem& problem, const Settings& settings)
       max_iterations_(settings.max_iterations),
       band_(settings.strain_limit, settings.target),
       relaxation_(settings.relaxation),
-      records_(static_cast<std::size_t>(problem.constraints())),
-      permutation_(static_cast<std::size_t>(problem.constraints())),
+      records_(problem.constraints()),
+      permutation_(problem.constraints()),
       random_(settings.seed) {
   std::iota(permutation_.begin(), permutation_.end(), 0);
   for (std::size_t k = 0; k < records_.size(); ++k) {
@@ -56,7 +56,7 @@ std::int64_t GaussSeidel::sweep(Positions& x) const {
   band.target_high *= relaxation;
   std::int64_t projections = 0;
   for (const int k : permutation_) {
-    const EdgeRecord& edge = records_[static_cast<std::size_t>(k)];
+    const EdgeRecord& edge = records_[k];
     double* pa = p + 3 * edge.a;
     double* pb = p + 3 * edge.b;
     const double d0 = pb[0] - pa[0], d1 = pb[1] - pa[1], d2 = pb[2] - pa[2];

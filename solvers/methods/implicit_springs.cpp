@@ -31,10 +31,10 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Se
       step_tolerance_(settings.newton_tolerance * settings.strain_limit *
                       problem().shortest_rest_length()) {
   const Problem& p = problem();
-  std::vector<int> place(static_cast<std::size_t>(p.vertices()), -1);
+  std::vector<int> place(p.vertices(), -1);
   for (int v = 0; v < p.vertices(); ++v) {
-    if (p.inverse_mass()[static_cast<std::size_t>(v)] == 0) continue;
-    place[static_cast<std::size_t>(v)] = static_cast<int>(free_vertex_.size());
+    if (p.inverse_mass()[v] == 0) continue;
+    place[v] = static_cast<int>(free_vertex_.size());
     free_vertex_.push_back(v);
   }
   const auto add = [&](Edge e, double rest, double k) {
@@ -50,7 +50,7 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Se
   const auto free_pairs = [&] {
     std::vector<Edge> pairs;
     for (const Spring& s : springs_) {
-      const Edge pair{place[static_cast<std::size_t>(s.a)], place[static_cast<std::size_t>(s.b)]};
+      const Edge pair{place[s.a], place[s.b]};
       if (pair.a >= 0 && pair.b >= 0) pairs.push_back(pair);
     }
     return pairs;
@@ -67,8 +67,8 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Se
     const std::vector<int> order = fill_reducing_order(vertex_graph(n, pairs));
     std::vector<int> ordered(free_vertex_.size());
     for (std::size_t f = 0; f < ordered.size(); ++f) {
-      ordered[f] = free_vertex_[static_cast<std::size_t>(order[f])];
-      place[static_cast<std::size_t>(ordered[f])] = static_cast<int>(f);
+      ordered[f] = free_vertex_[order[f]];
+      place[ordered[f]] = static_cast<int>(f);
     }
     free_vertex_ = std::move(ordered);
     pairs = free_pairs();
@@ -79,17 +79,16 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Se
     diagonal_.push_back(pattern.triangle == SymmetricPattern::Triangle::upper
                             ? Places{x, y, y + 1, z, z + 1, z + 2}
                             : Places{x, x + 1, y, x + 2, y + 1, z});
-    free_mass_.push_back(
-        p.mass()[static_cast<std::size_t>(free_vertex_[static_cast<std::size_t>(f)])]);
+    free_mass_.push_back(p.mass()[free_vertex_[f]]);
   }
   for (Spring& s : springs_) {
-    s.fa = place[static_cast<std::size_t>(s.a)];
-    s.fb = place[static_cast<std::size_t>(s.b)];
+    s.fa = place[s.a];
+    s.fb = place[s.b];
     if (s.fa < 0 || s.fb < 0) continue;
     const auto begin = block_begin(pattern, s.fa, s.fb);
     std::copy(begin.begin(), begin.end(), s.coupling);
   }
-  entries_ = static_cast<std::size_t>(pattern.entries());
+  entries_ = pattern.entries();
   solver_ = make_spd_solver(linear_solver_, std::move(pattern));
   inertial_.resize(3, p.vertices());
   trial_.resize(3, p.vertices());
@@ -144,7 +143,7 @@ void ImplicitSprings::assemble(const Positions& x, double h) {
                  yy = along * dy * dy + transverse, yz = along * dy * dz,
                  zz = along * dz * dz + transverse;
     const auto add = [&](int f, double signed_pull) {
-      const Places& at = diagonal_[static_cast<std::size_t>(f)];
+      const Places& at = diagonal_[f];
       value[at.xx] += xx, value[at.xy] += xy, value[at.yy] += yy;
       value[at.xz] += xz, value[at.yz] += yz, value[at.zz] += zz;
       double* gf = g + 3 * f;

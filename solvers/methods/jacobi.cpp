@@ -17,15 +17,14 @@ namespace {
 
 StrainSweep make_sweep(const Problem& problem, const EdgeConstraints& edges,
                        const Jacobi::Settings& settings) {
-  std::vector<int> valence(static_cast<std::size_t>(problem.vertices()), 0);
+  std::vector<int> valence(problem.vertices(), 0);
   for (const Edge& e : problem.edges()) {
-    ++valence[static_cast<std::size_t>(e.a)];
-    ++valence[static_cast<std::size_t>(e.b)];
+    ++valence[e.a];
+    ++valence[e.b];
   }
   std::vector<double> share_a(edges.wa), share_b(edges.wb);
   for (std::size_t k = 0; k < share_a.size(); ++k) {
-    const double weighted = edges.wa[k] * valence[static_cast<std::size_t>(edges.a[k])] +
-                            edges.wb[k] * valence[static_cast<std::size_t>(edges.b[k])];
+    const double weighted = edges.wa[k] * valence[edges.a[k]] + edges.wb[k] * valence[edges.b[k]];
     share_a[k] *= settings.relaxation / weighted;
     share_b[k] *= settings.relaxation / weighted;
   }

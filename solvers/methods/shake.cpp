@@ -122,7 +122,7 @@ StepResult Shake::project_velocity(const Positions& x, Positions& v, WorkCounter
 double Shake::distance(const Positions& x_start, const Positions& x) const {
   double sum = 0;
   for (Eigen::Index v = 0; v < x.cols(); ++v)
-    sum += problem_.mass()[static_cast<std::size_t>(v)] * (x.col(v) - x_start.col(v)).squaredNorm();
+    sum += problem_.mass()[v] * (x.col(v) - x_start.col(v)).squaredNorm();
   return std::sqrt(sum);
 }
 

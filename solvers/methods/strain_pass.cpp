@@ -81,14 +81,13 @@ StrainSweep::StrainSweep(const Problem& problem, const StrainBand& band,
       x_(edges_.make_places()),
       correction_(edges_.make_places()) {
   for (int k = 0; k < edges_.entries(); ++k) {
-    const int edge = edges_.problem_edge()[static_cast<std::size_t>(k)];
+    const int edge = edges_.problem_edge()[k];
     inverse_square_[k] = share_a_[k] = share_b_[k] = 0;  // q = 0: never corrected
     if (edge < 0) continue;
-    const auto e = static_cast<std::size_t>(edge);
-    const double l = problem.rest_length()[e];
+    const double l = problem.rest_length()[edge];
     inverse_square_[k] = 1 / (l * l);
-    share_a_[k] = share_a[e];
-    share_b_[k] = share_b[e];
+    share_a_[k] = share_a[edge];
+    share_b_[k] = share_b[edge];
     if (edges_.turned(k)) std::swap(share_a_[k], share_b_[k]);
   }
 }
@@ -97,8 +96,8 @@ StrainSweep StrainSweep::by_mass(const Problem& problem, const StrainBand& band,
                                  double relaxation) {
   std::vector<double> share_a, share_b;
   for (const Edge& edge : problem.edges()) {
-    const double wa = problem.inverse_mass()[static_cast<std::size_t>(edge.a)];
-    const double wb = problem.inverse_mass()[static_cast<std::size_t>(edge.b)];
+    const double wa = problem.inverse_mass()[edge.a];
+    const double wb = problem.inverse_mass()[edge.b];
     share_a.push_back(relaxation * (wa / (wa + wb)));
     share_b.push_back(relaxation - share_a.back());
   }

@@ -5,10 +5,9 @@
 namespace inextensible {
 
 SymmetricPattern vertex_graph(int n, const std::vector<Edge>& pairs) {
-  std::vector<std::vector<int>> columns(static_cast<std::size_t>(n));
-  for (int f = 0; f < n; ++f) columns[static_cast<std::size_t>(f)].push_back(f);
-  for (const auto [a, b] : pairs)
-    columns[static_cast<std::size_t>(std::max(a, b))].push_back(std::min(a, b));
+  std::vector<std::vector<int>> columns(n);
+  for (int f = 0; f < n; ++f) columns[f].push_back(f);
+  for (const auto [a, b] : pairs) columns[std::max(a, b)].push_back(std::min(a, b));
   SymmetricPattern graph;
   graph.n = n;
   graph.column_start.push_back(0);
@@ -22,15 +21,15 @@ SymmetricPattern vertex_graph(int n, const std::vector<Edge>& pairs) {
 }
 
 SymmetricPattern expand(const SymmetricPattern& graph, SymmetricPattern::Triangle triangle) {
-  const auto n = static_cast<std::size_t>(graph.n);
+  const std::size_t n = graph.n;
   std::vector<std::vector<int>> rows(n);  // per column of the result
   for (std::size_t j = 0; j < n; ++j) {
     for (int i = graph.column_start[j]; i < graph.column_start[j + 1]; ++i) {
-      const int row = graph.row_index[static_cast<std::size_t>(i)];
+      const int row = graph.row_index[i];
       if (triangle == SymmetricPattern::Triangle::upper) {
         rows[j].push_back(row);
       } else {
-        rows[static_cast<std::size_t>(row)].push_back(static_cast<int>(j));
+        rows[row].push_back(static_cast<int>(j));
       }
     }
   }
@@ -60,11 +59,10 @@ std::array<int, 3> block_begin(const SymmetricPattern& pattern, int i, int j) {
             column = upper ? std::max(i, j) : std::min(i, j);
   std::array<int, 3> begin{};
   for (int c = 0; c < 3; ++c) {
-    const auto col = static_cast<std::size_t>(3 * column + c);
+    const std::size_t col = 3 * column + c;
     const auto first = pattern.row_index.begin() + pattern.column_start[col];
     const auto last = pattern.row_index.begin() + pattern.column_start[col + 1];
-    begin[static_cast<std::size_t>(c)] =
-        static_cast<int>(std::lower_bound(first, last, 3 * row) - pattern.row_index.begin());
+    begin[c] = static_cast<int>(std::lower_bound(first, last, 3 * row) - pattern.row_index.begin());
   }
   return begin;
 }

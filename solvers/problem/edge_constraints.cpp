@@ -11,17 +11,17 @@ EdgeConstraints::EdgeConstraints(const Problem& problem, double strain_limit,
     : permissible_low(strain_limit < 1 ? (1 - strain_limit) * (1 - strain_limit) : 0),
       permissible_high((1 + strain_limit) * (1 + strain_limit)),
       order_(std::move(order)) {
-  const auto m = static_cast<std::size_t>(problem.constraints());
+  const std::size_t m = problem.constraints();
   for (auto* array : {&a, &b}) array->resize(m);
   for (auto* array : {&rest_length, &inverse_rest_length, &wa, &wb}) array->resize(m);
   for (std::size_t k = 0; k < m; ++k) {
-    const auto e = static_cast<std::size_t>(problem_edge(static_cast<int>(k)));
+    const std::size_t e = problem_edge(static_cast<int>(k));
     a[k] = problem.edges()[e].a;
     b[k] = problem.edges()[e].b;
     rest_length[k] = problem.rest_length()[e];
     inverse_rest_length[k] = 1 / rest_length[k];
-    wa[k] = problem.inverse_mass()[static_cast<std::size_t>(a[k])];
-    wb[k] = problem.inverse_mass()[static_cast<std::size_t>(b[k])];
+    wa[k] = problem.inverse_mass()[a[k]];
+    wb[k] = problem.inverse_mass()[b[k]];
   }
 }
 
@@ -29,7 +29,7 @@ bool EdgeConstraints::linearize(const Positions& x, Eigen::Matrix3Xd& u, Eigen::
   const double* p = x.data();
   double* uk = u.data();
   double* ck = c.data();
-  const auto m = static_cast<std::size_t>(count());
+  const std::size_t m = count();
   int violations = 0;
   for (std::size_t k = 0; k < m; ++k, uk += 3) {
     const double* pa = p + 3 * a[k];

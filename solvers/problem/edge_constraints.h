@@ -19,7 +19,7 @@ class EdgeConstraints {
   EdgeConstraints(const Problem& problem, double strain_limit, std::vector<int> order = {});
 
   int count() const { return static_cast<int>(a.size()); }
-  int problem_edge(int k) const { return order_.empty() ? k : order_[static_cast<std::size_t>(k)]; }
+  int problem_edge(int k) const { return order_.empty() ? k : order_[k]; }
 
   // u (3 x m) and C (m) at x (3 x n). Returns whether the strain of every edge is permissible;
   // false on NaN.

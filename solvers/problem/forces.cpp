@@ -19,7 +19,7 @@ void add_spring_acceleration(const Springs& springs, const std::vector<double>& 
     // A spring of length zero has no direction; its force is taken as zero.
     const double f =
         length > 0 ? scale * springs.stiffness[k] * (1 - springs.rest_length[k] / length) : 0;
-    const double fa = f * w[static_cast<std::size_t>(a)], fb = f * w[static_cast<std::size_t>(b)];
+    const double fa = f * w[a], fb = f * w[b];
     double* qa = q + 3 * a;
     double* qb = q + 3 * b;
     qa[0] += fa * d0;
@@ -64,8 +64,7 @@ double potential_energy(const Problem& problem, const Positions& x) {
   // Term by term: Eigen's own sums go by the address of what they add up, so that equal runs would
   // differ by a rounding.
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = 0; i < x.cols(); ++i)
-    moment += problem.mass()[static_cast<std::size_t>(i)] * x.col(i);
+  for (Eigen::Index i = 0; i < x.cols(); ++i) moment += problem.mass()[i] * x.col(i);
   double energy = -problem.gravity().dot(moment);
   if (const Springs* shear = problem.shear()) energy += spring_energy(*shear, x);
   return energy;
@@ -73,8 +72,7 @@ double potential_energy(const Problem& problem, const Positions& x) {
 
 double kinetic_energy(const Problem& problem, const Positions& v) {
   double sum = 0;
-  for (Eigen::Index i = 0; i < v.cols(); ++i)
-    sum += problem.mass()[static_cast<std::size_t>(i)] * v.col(i).squaredNorm();
+  for (Eigen::Index i = 0; i < v.cols(); ++i) sum += problem.mass()[i] * v.col(i).squaredNorm();
   return 0.5 * sum;
 }
 

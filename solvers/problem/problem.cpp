@@ -5,6 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace inextensible {
 namespace {
@@ -26,9 +27,7 @@ void check_positive(const std::vector<double>& values, const char* what, const c
 void check_edges(const std::vector<Edge>& edges, std::size_t vertices, const char* what) {
   for (std::size_t k = 0; k < edges.size(); ++k) {
     const auto [a, b] = edges[k];
-    const auto exists = [&](int vertex) {
-      return vertex >= 0 && static_cast<std::size_t>(vertex) < vertices;
-    };
+    const auto exists = [&](int vertex) { return vertex >= 0 && std::cmp_less(vertex, vertices); };
     if (!exists(a) || !exists(b)) {
       refuse(what, k,
              "joins vertices " + std::to_string(a) + " and " + std::to_string(b) +
@@ -56,15 +55,14 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   std::transform(parts_.mass.begin(), parts_.mass.end(), inverse_mass_.begin(),
                  [](double m) { return 1 / m; });
   for (const int vertex : parts_.pinned) {
-    if (vertex < 0 || static_cast<std::size_t>(vertex) >= n) {
+    if (vertex < 0 || std::cmp_greater_equal(vertex, n)) {
       throw std::invalid_argument("pinned vertex " + std::to_string(vertex) + " does not exist");
     }
-    inverse_mass_[static_cast<std::size_t>(vertex)] = 0;
+    inverse_mass_[vertex] = 0;
   }
   for (std::size_t k = 0; k < parts_.edges.size(); ++k) {
     const auto [a, b] = parts_.edges[k];
-    if (inverse_mass_[static_cast<std::size_t>(a)] + inverse_mass_[static_cast<std::size_t>(b)] ==
-        0) {
+    if (inverse_mass_[a] + inverse_mass_[b] == 0) {
       refuse("edge", k, "both ends are pinned, so nothing can keep its length; leave it out");
     }
   }
@@ -95,8 +93,7 @@ void check_state(const Problem& problem, const State& state) {
                                   " vertices, the problem " + std::to_string(problem.vertices()));
     }
     for (Eigen::Index i = 0; i < p.cols(); ++i) {
-      if (!p.col(i).allFinite())
-        refuse("vertex", static_cast<std::size_t>(i), std::string(quantity) + " is not finite");
+      if (!p.col(i).allFinite()) refuse("vertex", i, std::string(quantity) + " is not finite");
     }
   };
   check(state.x, "position");

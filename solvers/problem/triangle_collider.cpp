@@ -18,8 +18,7 @@ using Eigen::Vector3d;
 constexpr double deep_cells = 1;
 
 const Vector3d& corner(const TriangleMesh& mesh, int triangle, int i) {
-  return mesh.vertices[static_cast<std::size_t>(
-      mesh.triangles[static_cast<std::size_t>(triangle)][static_cast<std::size_t>(i)])];
+  return mesh.vertices[mesh.triangles[triangle][i]];
 }
 
 }  // namespace
@@ -40,8 +39,7 @@ TriangleMesh icosphere(const Vector3d& centre, double radius, int subdivisions) 
       const auto [place, fresh] =
           middle.try_emplace(std::minmax(i, j), static_cast<int>(mesh.vertices.size()));
       if (fresh) {
-        const Vector3d sum =
-            mesh.vertices[static_cast<std::size_t>(i)] + mesh.vertices[static_cast<std::size_t>(j)];
+        const Vector3d sum = mesh.vertices[i] + mesh.vertices[j];
         mesh.vertices.push_back(sum.normalized());
       }
       return place->second;
@@ -68,14 +66,12 @@ TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
   for (std::size_t f = 0; f < count; ++f) {
     const auto& triangle = mesh_.triangles[f];
     std::array<Vector3d, 3> p;
-    for (int i = 0; i < 3; ++i)
-      p[static_cast<std::size_t>(i)] = corner(mesh_, static_cast<int>(f), i);
+    for (int i = 0; i < 3; ++i) p[i] = corner(mesh_, static_cast<int>(f), i);
     face[f] = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
     for (std::size_t i = 0; i < 3; ++i) {
       const Vector3d next = (p[(i + 1) % 3] - p[i]).normalized(),
                      last = (p[(i + 2) % 3] - p[i]).normalized();
-      at_vertex[static_cast<std::size_t>(triangle[i])] +=
-          std::acos(std::clamp(next.dot(last), -1.0, 1.0)) * face[f];
+      at_vertex[triangle[i]] += std::acos(std::clamp(next.dot(last), -1.0, 1.0)) * face[f];
       auto& [sum, faces] =
           at_edge.try_emplace(std::minmax(triangle[i], triangle[(i + 1) % 3]), Vector3d::Zero(), 0)
               .first->second;
@@ -97,7 +93,7 @@ TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
     for (std::size_t i = 0; i < 3; ++i) {
       pseudonormal_[f][1 + i] =
           at_edge.at(std::minmax(triangle[i], triangle[(i + 1) % 3])).first.normalized();
-      pseudonormal_[f][4 + i] = at_vertex[static_cast<std::size_t>(triangle[i])].normalized();
+      pseudonormal_[f][4 + i] = at_vertex[triangle[i]].normalized();
     }
   }
 
@@ -129,12 +125,12 @@ TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
   inverse_cell_size_ = cell_size_.cwiseInverse();
   all_.resize(count);
   std::iota(all_.begin(), all_.end(), 0);
-  cell_.assign(static_cast<std::size_t>(resolution) * resolution * resolution, outside);
+  cell_.assign(resolution * resolution * resolution, outside);
   refine(Eigen::Vector3i::Zero(), resolution, all_);
 }
 
 std::size_t TriangleCollider::cell_index(const Eigen::Vector3i& cell) const {
-  return static_cast<std::size_t>((cell[2] * resolution + cell[1]) * resolution + cell[0]);
+  return (cell[2] * resolution + cell[1]) * resolution + cell[0];
 }
 
 // candidates: every triangle that is nearest to some point of the block of size^3 cells that begins
@@ -217,8 +213,7 @@ TriangleCollider::Nearest TriangleCollider::nearest_among(const Triangles& trian
       owner = triangle;
     }
   }
-  const Vector3d& normal =
-      pseudonormal_[static_cast<std::size_t>(owner)][static_cast<std::size_t>(best.feature)];
+  const Vector3d& normal = pseudonormal_[owner][best.feature];
   const double distance = std::sqrt(best.squared);
   return {best.point, normal, (p - best.point).dot(normal) < 0 ? -distance : distance};
 }
@@ -229,8 +224,7 @@ TriangleCollider::Nearest TriangleCollider::nearest_by_all(const Vector3d& p) co
 
 std::span<const int> TriangleCollider::list(int cell) const {
   if (cell == deep) return all_;
-  return {lists_.begin() + cell + 1,
-          static_cast<std::size_t>(lists_[static_cast<std::size_t>(cell)])};
+  return {lists_.begin() + cell + 1, static_cast<std::size_t>(lists_[cell])};
 }
 
 TriangleCollider::Nearest TriangleCollider::nearest(const Vector3d& p) const {
@@ -249,7 +243,7 @@ void TriangleCollider::resolve(const Eigen::Matrix3Xd& x_start,
     const Vector3d scaled = (x.col(v) - low_).cwiseProduct(inverse_cell_size_);
     if (!((scaled.array() >= 0).all() && (scaled.array() < resolution).all())) continue;
     const int cell = cell_[cell_index(scaled.cast<int>())];
-    if (cell == outside || inverse_mass[static_cast<std::size_t>(v)] == 0) continue;
+    if (cell == outside || inverse_mass[v] == 0) continue;
     const std::span<const int> triangles = list(cell);
     work.triangle_tests += static_cast<std::int64_t>(triangles.size());
     const Nearest contact = nearest_among(triangles, x.col(v));

@@ -24,10 +24,9 @@ Sparse regular_schur_complement(const EdgeConstraints& edges, const Eigen::Matri
                                 int vertices) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int k = 0; k < edges.count(); ++k) {
-    const auto e = static_cast<std::size_t>(k);
     for (int axis = 0; axis < 3; ++axis) {
-      entries.emplace_back(3 * edges.a[e] + axis, k, -std::sqrt(edges.wa[e]) * u(axis, k));
-      entries.emplace_back(3 * edges.b[e] + axis, k, std::sqrt(edges.wb[e]) * u(axis, k));
+      entries.emplace_back(3 * edges.a[k] + axis, k, -std::sqrt(edges.wa[k]) * u(axis, k));
+      entries.emplace_back(3 * edges.b[k] + axis, k, std::sqrt(edges.wb[k]) * u(axis, k));
     }
   }
   Sparse transposed(3 * vertices, edges.count());  // W^(1/2) J^T
@@ -57,9 +56,8 @@ Positions constrained_acceleration(const Problem& problem, const State& state) {
   edges.gradient(state.x, u);
   Eigen::VectorXd curvature(problem.constraints());  // J' v
   for (int k = 0; k < edges.count(); ++k) {
-    const auto e = static_cast<std::size_t>(k);
-    curvature[k] = 2 * edges.inverse_rest_length[e] *
-                   (state.v.col(edges.b[e]) - state.v.col(edges.a[e])).squaredNorm();
+    curvature[k] = 2 * edges.inverse_rest_length[k] *
+                   (state.v.col(edges.b[k]) - state.v.col(edges.a[k])).squaredNorm();
   }
   const Eigen::SimplicialLDLT<Sparse> ldlt(regular_schur_complement(edges, u, problem.vertices()));
   Eigen::VectorXd violation(problem.constraints());

@@ -16,10 +16,8 @@ constexpr int refinement_limit = 8;
 // index.
 class UpperPattern {
  public:
-  explicit UpperPattern(int n) : columns_(static_cast<std::size_t>(n)) {}
-  void add(int i, int j) {
-    columns_[static_cast<std::size_t>(std::max(i, j))].push_back(std::min(i, j));
-  }
+  explicit UpperPattern(int n) : columns_(n) {}
+  void add(int i, int j) { columns_[std::max(i, j)].push_back(std::min(i, j)); }
   SymmetricPattern compress() {
     SymmetricPattern pattern;
     pattern.n = static_cast<int>(columns_.size());
@@ -38,7 +36,7 @@ class UpperPattern {
 };
 
 int find(const SymmetricPattern& pattern, int i, int j) {
-  const auto column = static_cast<std::size_t>(std::max(i, j));
+  const std::size_t column = std::max(i, j);
   const auto begin = pattern.row_index.begin() + pattern.column_start[column];
   const auto end = pattern.row_index.begin() + pattern.column_start[column + 1];
   return static_cast<int>(std::lower_bound(begin, end, std::min(i, j)) - pattern.row_index.begin());
@@ -52,7 +50,7 @@ KktSolver::KktSolver(const Problem& problem)
 KktSystem::KktSystem(const Problem& problem, const EdgeConstraints& edges,
                      std::string_view linear_solver)
     : KktSolver(problem), edges_(edges), umfpack_only_(linear_solver == "umfpack") {
-  const auto n = static_cast<std::size_t>(problem.vertices());
+  const std::size_t n = problem.vertices();
   vertex_unknown_.assign(n, -1);
   for (std::size_t v = 0; v < n; ++v) {
     if (problem.inverse_mass()[v] == 0) continue;
@@ -62,10 +60,9 @@ KktSystem::KktSystem(const Problem& problem, const EdgeConstraints& edges,
   multiplier_offset_ = 3 * static_cast<int>(scaled_mass_.size());
   size_ = multiplier_offset_ + edges.count();
 
-  std::vector<Edge> ends(static_cast<std::size_t>(edges.count()));
+  std::vector<Edge> ends(edges.count());
   for (std::size_t k = 0; k < ends.size(); ++k) {
-    ends[k] = {vertex_unknown_[static_cast<std::size_t>(edges.a[k])],
-               vertex_unknown_[static_cast<std::size_t>(edges.b[k])]};
+    ends[k] = {vertex_unknown_[edges.a[k]], vertex_unknown_[edges.b[k]]};
   }
   build_pattern(ends);
   for (Eigen::VectorXd* v : {&rhs_, &solution_, &residual_}) v->resize(size_);
@@ -88,14 +85,13 @@ void KktSystem::build_pattern(const std::vector<Edge>& ends) {
   UpperPattern unordered(size_);
   visit([&](int i, int j) { unordered.add(i, j); });
   const std::vector<int> order = fill_reducing_order(unordered.compress());
-  place_.resize(static_cast<std::size_t>(size_));
-  for (int i = 0; i < size_; ++i)
-    place_[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] = i;
-  const auto place = [&](int unknown) { return place_[static_cast<std::size_t>(unknown)]; };
+  place_.resize(size_);
+  for (int i = 0; i < size_; ++i) place_[order[i]] = i;
+  const auto place = [&](int unknown) { return place_[unknown]; };
   UpperPattern ordered(size_);
   visit([&](int i, int j) { ordered.add(place(i), place(j)); });
   pattern_ = ordered.compress();
-  matrix_.resize(static_cast<std::size_t>(pattern_.entries()));
+  matrix_.resize(pattern_.entries());
 
   const auto index = [&](int i, int j) { return find(pattern_, place(i), place(j)); };
   vertex_places_.resize(scaled_mass_.size());
@@ -121,7 +117,7 @@ void KktSystem::build_pattern(const std::vector<Edge>& ends) {
 
 void KktSystem::assemble(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex) {
   std::fill(matrix_.begin(), matrix_.end(), 0.0);
-  const auto at = [this](int i) -> double& { return matrix_[static_cast<std::size_t>(i)]; };
+  const auto at = [this](int i) -> double& { return matrix_[i]; };
   for (std::size_t v = 0; v < vertex_places_.size(); ++v) {
     for (const int diagonal : vertex_places_[v].diagonal) at(diagonal) = scaled_mass_[v];
   }
@@ -130,16 +126,16 @@ void KktSystem::assemble(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, b
     const double multiplier = mu[static_cast<Eigen::Index>(k)];
     const double curvature =
         convex && multiplier < 0 ? 0 : 2 * multiplier * edges_.inverse_rest_length[k];
-    const int a = vertex_unknown_[static_cast<std::size_t>(edges_.a[k])];
-    const int b = vertex_unknown_[static_cast<std::size_t>(edges_.b[k])];
+    const int a = vertex_unknown_[edges_.a[k]];
+    const int b = vertex_unknown_[edges_.b[k]];
     for (int axis = 0; axis < 3; ++axis) {
       const double gradient = u(axis, static_cast<Eigen::Index>(k));
       if (a >= 0) {
-        at(vertex_places_[static_cast<std::size_t>(a / 3)].diagonal[axis]) += curvature;
+        at(vertex_places_[a / 3].diagonal[axis]) += curvature;
         at(places.at_a[axis]) -= gradient;
       }
       if (b >= 0) {
-        at(vertex_places_[static_cast<std::size_t>(b / 3)].diagonal[axis]) += curvature;
+        at(vertex_places_[b / 3].diagonal[axis]) += curvature;
         at(places.at_b[axis]) += gradient;
       }
       if (a >= 0 && b >= 0) at(places.coupling[axis]) -= curvature;
@@ -172,9 +168,8 @@ bool KktSystem::factor_umfpack(WorkCounters& work) {
     };
     std::vector<Entry> entries;
     for (int j = 0; j < size_; ++j) {
-      for (int i = pattern_.column_start[static_cast<std::size_t>(j)];
-           i < pattern_.column_start[static_cast<std::size_t>(j) + 1]; ++i) {
-        const int row = pattern_.row_index[static_cast<std::size_t>(i)];
+      for (int i = pattern_.column_start[j]; i < pattern_.column_start[j + 1]; ++i) {
+        const int row = pattern_.row_index[i];
         entries.push_back({j, row, i});
         if (row != j) entries.push_back({row, j, i});
       }
@@ -182,9 +177,9 @@ bool KktSystem::factor_umfpack(WorkCounters& work) {
     std::sort(entries.begin(), entries.end(), [](const Entry& p, const Entry& q) {
       return p.column != q.column ? p.column < q.column : p.row < q.row;
     });
-    std::vector<int> column_start(static_cast<std::size_t>(size_) + 1, 0), row_index;
+    std::vector<int> column_start(size_ + 1, 0), row_index;
     for (const Entry& entry : entries) {
-      ++column_start[static_cast<std::size_t>(entry.column) + 1];
+      ++column_start[entry.column + 1];
       row_index.push_back(entry.row);
       full_from_upper_.push_back(entry.upper);
     }
@@ -193,7 +188,7 @@ bool KktSystem::factor_umfpack(WorkCounters& work) {
   }
   using_umfpack_ = true;
   for (std::size_t i = 0; i < full_from_upper_.size(); ++i) {
-    lu_->values()[i] = matrix_[static_cast<std::size_t>(full_from_upper_[i])];
+    lu_->values()[i] = matrix_[full_from_upper_[i]];
   }
   ++work.factorizations;
   if (!lu_->factor()) return false;
@@ -207,10 +202,9 @@ void KktSystem::residual() {
   for (int j = 0; j < size_; ++j) {
     double sum = 0;
     const double xj = solution_[j];
-    for (int i = pattern_.column_start[static_cast<std::size_t>(j)];
-         i < pattern_.column_start[static_cast<std::size_t>(j) + 1]; ++i) {
-      const int row = pattern_.row_index[static_cast<std::size_t>(i)];
-      const double value = matrix_[static_cast<std::size_t>(i)];
+    for (int i = pattern_.column_start[j]; i < pattern_.column_start[j + 1]; ++i) {
+      const int row = pattern_.row_index[i];
+      const double value = matrix_[i];
       sum += value * solution_[row];
       if (row != j) residual_[row] -= value * xj;
     }
@@ -224,11 +218,10 @@ bool KktSystem::solve(const Positions& r, const Eigen::VectorXd& c, Positions& p
     const int first = vertex_unknown_[v];
     if (first < 0) continue;
     for (int axis = 0; axis < 3; ++axis) {
-      rhs_[place_[static_cast<std::size_t>(first + axis)]] = r(axis, static_cast<Eigen::Index>(v));
+      rhs_[place_[first + axis]] = r(axis, static_cast<Eigen::Index>(v));
     }
   }
-  for (Eigen::Index k = 0; k < c.size(); ++k)
-    rhs_[place_[static_cast<std::size_t>(multiplier_offset_ + k)]] = c[k];
+  for (Eigen::Index k = 0; k < c.size(); ++k) rhs_[place_[multiplier_offset_ + k]] = c[k];
 
   const double scale = rhs_.norm();
   for (;;) {
@@ -258,12 +251,10 @@ bool KktSystem::solve(const Positions& r, const Eigen::VectorXd& c, Positions& p
   for (std::size_t v = 0; v < vertex_unknown_.size(); ++v) {
     const int first = vertex_unknown_[v];
     for (int axis = 0; axis < 3; ++axis) {
-      p(axis, static_cast<Eigen::Index>(v)) =
-          first < 0 ? 0 : solution_[place_[static_cast<std::size_t>(first + axis)]];
+      p(axis, static_cast<Eigen::Index>(v)) = first < 0 ? 0 : solution_[place_[first + axis]];
     }
   }
-  for (Eigen::Index k = 0; k < c.size(); ++k)
-    q[k] = solution_[place_[static_cast<std::size_t>(multiplier_offset_ + k)]];
+  for (Eigen::Index k = 0; k < c.size(); ++k) q[k] = solution_[place_[multiplier_offset_ + k]];
   return true;
 }
 

@@ -52,13 +52,12 @@ ProjectedCg::ProjectedCg(const Problem& problem, const EdgeConstraints& edges,
 void ProjectedCg::find_meetings() {
   const Meeting nowhere{problem_.vertices(), 0};
   for (int l = 0; l < pattern_.n; ++l) {
-    const auto ul = static_cast<std::size_t>(l);
-    for (int i = pattern_.column_start[ul]; i < pattern_.column_start[ul + 1]; ++i) {
-      const auto k = static_cast<std::size_t>(pattern_.row_index[static_cast<std::size_t>(i)]);
+    for (int i = pattern_.column_start[l]; i < pattern_.column_start[l + 1]; ++i) {
+      const std::size_t k = pattern_.row_index[i];
       Meeting met[2] = {nowhere, nowhere};
       int count = 0;
       for (const bool at_b : {false, true}) {
-        const int vertex = at_b ? edges_.b[ul] : edges_.a[ul];
+        const int vertex = at_b ? edges_.b[l] : edges_.a[l];
         if (edges_.a[k] == vertex) met[count++] = {vertex, at_b ? -1.0 : 1.0};
         if (edges_.b[k] == vertex) met[count++] = {vertex, at_b ? 1.0 : -1.0};
       }
@@ -72,8 +71,7 @@ void ProjectedCg::set_curvature(bool convex) {
   convexified_ = convex;
   for (int k = 0; k < edges_.count(); ++k) {
     const double mu = (*mu_)[k];
-    curvature_[k] =
-        convex && mu < 0 ? 0 : 2 * mu * edges_.inverse_rest_length[static_cast<std::size_t>(k)];
+    curvature_[k] = convex && mu < 0 ? 0 : 2 * mu * edges_.inverse_rest_length[k];
   }
 }
 
@@ -98,8 +96,7 @@ bool ProjectedCg::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, b
   double* value = solver_->values();
   std::size_t i = 0;
   for (int l = 0; l < pattern_.n; ++l) {
-    const auto end =
-        static_cast<std::size_t>(pattern_.column_start[static_cast<std::size_t>(l) + 1]);
+    const std::size_t end = pattern_.column_start[l + 1];
     for (; i < end; ++i) {
       const double weight = first_[i].sign * inverse_metric_[first_[i].vertex] +
                             second_[i].sign * inverse_metric_[second_[i].vertex];

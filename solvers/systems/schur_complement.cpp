@@ -14,20 +14,19 @@ struct Entry {
 // duplicates.
 template <class Add>
 void for_each_column(const EdgeConstraints& edges, int vertices, Add add) {
-  std::vector<std::vector<int>> incident(static_cast<std::size_t>(vertices));
+  std::vector<std::vector<int>> incident(vertices);
   for (int k = 0; k < edges.count(); ++k) {
-    incident[static_cast<std::size_t>(edges.a[static_cast<std::size_t>(k)])].push_back(k);
-    incident[static_cast<std::size_t>(edges.b[static_cast<std::size_t>(k)])].push_back(k);
+    incident[edges.a[k]].push_back(k);
+    incident[edges.b[k]].push_back(k);
   }
   std::vector<Entry> column;
   for (int l = 0; l < edges.count(); ++l) {
-    const auto ul = static_cast<std::size_t>(l);
     column.clear();
     for (const bool at_b : {false, true}) {
-      const int vertex = at_b ? edges.b[ul] : edges.a[ul];
-      const double w = at_b ? edges.wb[ul] : edges.wa[ul];
-      for (const int k : incident[static_cast<std::size_t>(vertex)]) {
-        const bool same_end = (edges.b[static_cast<std::size_t>(k)] == vertex) == at_b;
+      const int vertex = at_b ? edges.b[l] : edges.a[l];
+      const double w = at_b ? edges.wb[l] : edges.wa[l];
+      for (const int k : incident[vertex]) {
+        const bool same_end = (edges.b[k] == vertex) == at_b;
         column.push_back({k, same_end ? w : -w});
       }
     }
@@ -73,8 +72,8 @@ void SchurComplement::assemble(const Eigen::Matrix3Xd& u, double* values) const 
   const double* w = weight_.data();
   for (int l = 0; l < pattern_.n; ++l) {
     const double* ul = g + 3 * l;
-    const int end = pattern_.column_start[static_cast<std::size_t>(l) + 1];
-    for (int i = pattern_.column_start[static_cast<std::size_t>(l)]; i < end; ++i) {
+    const int end = pattern_.column_start[l + 1];
+    for (int i = pattern_.column_start[l]; i < end; ++i) {
       values[i] = w[i] * dot3(g + 3 * row[i], ul);
     }
   }
@@ -100,8 +99,7 @@ void UnsymmetricSchurComplement::assemble(const Eigen::Matrix3Xd& left,
   for (std::size_t l = 0; l + 1 < column_start.size(); ++l) {
     const double* ul = right.data() + 3 * l;
     for (int i = column_start[l]; i < column_start[l + 1]; ++i) {
-      const auto e = static_cast<std::size_t>(i);
-      values[i] = weight[e] * dot3(left.data() + 3 * row_index[e], ul);
+      values[i] = weight[i] * dot3(left.data() + 3 * row_index[i], ul);
     }
   }
 }

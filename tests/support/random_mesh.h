@@ -37,8 +37,8 @@ inline RandomMesh random_mesh(Random& random, int rows, int columns, int pinned)
       if (i > 0) parts.edges.push_back({v, v - columns});  // both orientations occur
     }
   }
-  std::vector<int> order(static_cast<std::size_t>(n));
-  for (int v = 0; v < n; ++v) order[static_cast<std::size_t>(v)] = v;
+  std::vector<int> order(n);
+  for (int v = 0; v < n; ++v) order[v] = v;
   std::shuffle(order.begin(), order.end(), random);
   parts.pinned.assign(order.begin(), order.begin() + pinned);
   std::erase_if(parts.edges, [&](Edge e) {
@@ -57,7 +57,7 @@ inline RandomMesh random_mesh(Random& random, int rows, int columns, int pinned)
 inline Positions perturbed(Random& random, const RandomMesh& mesh, double size) {
   Positions x = mesh.x;
   for (Eigen::Index v = 0; v < x.cols(); ++v) {
-    if (mesh.problem->inverse_mass()[static_cast<std::size_t>(v)] == 0) continue;
+    if (mesh.problem->inverse_mass()[v] == 0) continue;
     for (int i = 0; i < 3; ++i) x(i, v) += uniform(random, -size, size);
   }
   return x;
@@ -67,9 +67,8 @@ inline Positions perturbed(Random& random, const RandomMesh& mesh, double size) 
 inline Eigen::MatrixXd dense_gradient(const Problem& problem, const Positions& x) {
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(problem.constraints(), 3 * x.cols());
   for (int k = 0; k < problem.constraints(); ++k) {
-    const auto e = static_cast<std::size_t>(k);
-    const auto [a, b] = problem.edges()[e];
-    const Eigen::RowVector3d u = 2 / problem.rest_length()[e] * (x.col(b) - x.col(a)).transpose();
+    const auto [a, b] = problem.edges()[k];
+    const Eigen::RowVector3d u = 2 / problem.rest_length()[k] * (x.col(b) - x.col(a)).transpose();
     jacobian.block<1, 3>(k, 3 * a) = -u;
     jacobian.block<1, 3>(k, 3 * b) = u;
   }
@@ -78,8 +77,7 @@ inline Eigen::MatrixXd dense_gradient(const Problem& problem, const Positions& x
 
 inline Eigen::VectorXd inverse_masses3(const Problem& problem) {
   Eigen::VectorXd w(3 * problem.vertices());
-  for (Eigen::Index i = 0; i < w.size(); ++i)
-    w[i] = problem.inverse_mass()[static_cast<std::size_t>(i / 3)];
+  for (Eigen::Index i = 0; i < w.size(); ++i) w[i] = problem.inverse_mass()[i / 3];
   return w;
 }
 

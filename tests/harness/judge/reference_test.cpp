@@ -21,9 +21,8 @@ using inextensible::Positions;
 
 Pendulum::Links uniform_links(int n, double total_mass, double total_length) {
   // As the scene `chain` of n + 1 vertices: mass by vertex, the pinned one has its share.
-  const auto count = static_cast<std::size_t>(n);
-  return {std::vector<double>(count, total_mass / (n + 1)),
-          std::vector<double>(count, total_length / n), 9.81};
+  return {std::vector<double>(n, total_mass / (n + 1)), std::vector<double>(n, total_length / n),
+          9.81};
 }
 
 TEST(Pendulum, OfOneLinkSwingsWithTheEllipticPeriod) {
@@ -65,18 +64,16 @@ TEST(Pendulum, RatesFulfilLagrangesEquations) {
     double scale = 0, worst = 0;
     for (int i = 0; i < n; ++i) {
       double sum = 0, from_i = 0;
-      for (int k = i; k < n; ++k) from_i += links.mass[static_cast<std::size_t>(k)];
-      const auto I = static_cast<std::size_t>(i), N = static_cast<std::size_t>(n);
+      for (int k = i; k < n; ++k) from_i += links.mass[k];
       for (int j = 0; j < n; ++j) {
-        const auto J = static_cast<std::size_t>(j);
         double tail = 0;
-        for (int k = std::max(i, j); k < n; ++k) tail += links.mass[static_cast<std::size_t>(k)];
-        const double ll = tail * links.length[I] * links.length[J];
-        sum += ll * (std::cos(state[I] - state[J]) * rate[N + J] +
-                     std::sin(state[I] - state[J]) * state[N + J] * state[N + J]);
-        scale += std::abs(ll * rate[N + J]);
+        for (int k = std::max(i, j); k < n; ++k) tail += links.mass[k];
+        const double ll = tail * links.length[i] * links.length[j];
+        sum += ll * (std::cos(state[i] - state[j]) * rate[n + j] +
+                     std::sin(state[i] - state[j]) * state[n + j] * state[n + j]);
+        scale += std::abs(ll * rate[n + j]);
       }
-      sum += links.gravity * links.length[I] * std::cos(state[I]) * from_i;
+      sum += links.gravity * links.length[i] * std::cos(state[i]) * from_i;
       worst = std::max(worst, std::abs(sum));
     }
     EXPECT_LT(worst, 1e-12 * (scale + 1));

@@ -22,7 +22,7 @@ std::string text_of(const std::filesystem::path& path) {
 
 // One to four spoilt places: bytes changed, cut out, doubled or put in from a list of nuisances.
 std::string spoil(std::string text, std::mt19937_64& random) {
-  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
+  const auto below = [&](std::size_t n) { return random() % n; };
   static const std::vector<std::string> nuisances{
       "null",   "-1",  "1e999",   "0",      "\"\"",
       "[]",     "{}",  "true",    "1e-320", "18446744073709551616",

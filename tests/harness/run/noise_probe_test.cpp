@@ -15,7 +15,7 @@ namespace {
 void stay_here() {
   cpu_set_t here;
   CPU_ZERO(&here);
-  CPU_SET(static_cast<std::size_t>(sched_getcpu()), &here);
+  CPU_SET(sched_getcpu(), &here);
   ASSERT_EQ(sched_setaffinity(0, sizeof here, &here), 0);
 }
 

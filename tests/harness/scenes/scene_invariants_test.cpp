@@ -69,8 +69,7 @@ TEST(Drape, OfFullSizeKeepsItsMirrorSymmetryUntilFirstContact) {
         for (Eigen::Index v = 0; v < state.x.cols(); ++v) {
           const Eigen::Vector3d reflected =
               state.x.col(v) - 2 * mirror.normal.dot(state.x.col(v)) * mirror.normal;
-          defect = std::max(
-              defect, (reflected - state.x.col(mirror.image[static_cast<std::size_t>(v)])).norm());
+          defect = std::max(defect, (reflected - state.x.col(mirror.image[v])).norm());
         }
         EXPECT_LT(defect, 1e-9) << "step " << steps;
       }

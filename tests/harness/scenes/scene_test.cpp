@@ -96,7 +96,7 @@ TEST(Drape, KeepsItsMirrorSymmetryUnderADirectFilterUntilContact) {
     for (Eigen::Index v = 0; v < state.x.cols(); ++v) {
       const Eigen::Vector3d reflected =
           state.x.col(v) - 2 * mirror.normal.dot(state.x.col(v)) * mirror.normal;
-      EXPECT_LT((reflected - state.x.col(mirror.image[static_cast<std::size_t>(v)])).norm(), 1e-9);
+      EXPECT_LT((reflected - state.x.col(mirror.image[v])).norm(), 1e-9);
     }
   }
 }
@@ -217,9 +217,7 @@ Eigen::Vector3d press(double sideways, double friction) {
   // The centre of a face; tangent, normal and the point in its frame.
   const auto mesh = inextensible::icosphere(Eigen::Vector3d::Zero(), 0.25, 0);
   const auto& t = mesh.triangles[0];
-  const Eigen::Vector3d a = mesh.vertices[static_cast<std::size_t>(t[0])],
-                        b = mesh.vertices[static_cast<std::size_t>(t[1])],
-                        c = mesh.vertices[static_cast<std::size_t>(t[2])];
+  const Eigen::Vector3d a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];
   const Eigen::Vector3d centre = (a + b + c) / 3, tangent = (b - a).normalized(),
                         normal = centre.normalized();
   Eigen::Matrix3Xd start(3, 1), x(3, 1);

@@ -21,8 +21,6 @@ using testing::random_mesh;
 using testing::uniform;
 constexpr std::uint64_t seeds = 20;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 // The upper triangle of a dense matrix, entries that are exactly 0 left out but on the diagonal.
 SymmetricPattern pattern_of(const Eigen::MatrixXd& matrix) {
   SymmetricPattern pattern;
@@ -40,8 +38,8 @@ SymmetricPattern pattern_of(const Eigen::MatrixXd& matrix) {
 void write(const Eigen::MatrixXd& matrix, const SymmetricPattern& pattern, SpdSolver& solver) {
   double* value = solver.values();
   for (int j = 0; j < pattern.n; ++j) {
-    for (int i = pattern.column_start[at(j)]; i < pattern.column_start[at(j) + 1]; ++i)
-      *value++ = matrix(pattern.row_index[at(i)], j);
+    for (int i = pattern.column_start[j]; i < pattern.column_start[j + 1]; ++i)
+      *value++ = matrix(pattern.row_index[i], j);
   }
 }
 

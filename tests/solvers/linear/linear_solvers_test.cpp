@@ -29,9 +29,8 @@ const std::vector<std::string> general_solvers = {"eigen_ldlt", "fixed_pattern",
 Eigen::MatrixXd dense_symmetric(const SymmetricPattern& pattern, const double* values) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(pattern.n, pattern.n);
   for (int j = 0; j < pattern.n; ++j) {
-    for (int i = pattern.column_start[static_cast<std::size_t>(j)];
-         i < pattern.column_start[static_cast<std::size_t>(j) + 1]; ++i) {
-      const int row = pattern.row_index[static_cast<std::size_t>(i)];
+    for (int i = pattern.column_start[j]; i < pattern.column_start[j + 1]; ++i) {
+      const int row = pattern.row_index[i];
       matrix(row, j) = matrix(j, row) = values[i];
     }
   }
@@ -88,11 +87,10 @@ void expect_any_order_to_agree_with_a_dense_factorization(double tolerance) {
     MultifrontalCholesky<Real> solver(pattern);
     Eigen::VectorXd sum = Eigen::VectorXd::Ones(n);  // of absolute values beside the diagonal
     for (int j = 0; j < n; ++j) {
-      for (int e = pattern.diagonal(j) + 1;
-           e < pattern.column_start[static_cast<std::size_t>(j) + 1]; ++e) {
+      for (int e = pattern.diagonal(j) + 1; e < pattern.column_start[j + 1]; ++e) {
         solver.values()[e] = testing::uniform(random, -1, 1);
         sum[j] += std::abs(solver.values()[e]);
-        sum[pattern.row_index[static_cast<std::size_t>(e)]] += std::abs(solver.values()[e]);
+        sum[pattern.row_index[e]] += std::abs(solver.values()[e]);
       }
     }
     for (int j = 0; j < n; ++j) solver.values()[pattern.diagonal(j)] = sum[j];
@@ -215,10 +213,8 @@ TEST(SpdSolver, RefusesAnIndefiniteMatrixWithAPositiveDiagonal) {
     const auto solver = make_spd_solver(name, pattern);
     const auto fill = [&](double off_diagonal) {
       for (int j = 0; j < 3; ++j) {
-        for (int i = pattern.column_start[static_cast<std::size_t>(j)];
-             i < pattern.column_start[static_cast<std::size_t>(j) + 1]; ++i) {
-          solver->values()[i] =
-              pattern.row_index[static_cast<std::size_t>(i)] == j ? 1 : off_diagonal;
+        for (int i = pattern.column_start[j]; i < pattern.column_start[j + 1]; ++i) {
+          solver->values()[i] = pattern.row_index[i] == j ? 1 : off_diagonal;
         }
       }
     };
@@ -245,9 +241,8 @@ SymmetricPattern chain_pattern(int rows, int block) {
 
 void write_upper(const SymmetricPattern& pattern, const Eigen::MatrixXd& matrix, double* values) {
   for (int j = 0; j < pattern.n; ++j) {
-    for (int e = pattern.column_start[static_cast<std::size_t>(j)];
-         e < pattern.column_start[static_cast<std::size_t>(j) + 1]; ++e)
-      values[e] = matrix(pattern.row_index[static_cast<std::size_t>(e)], j);
+    for (int e = pattern.column_start[j]; e < pattern.column_start[j + 1]; ++e)
+      values[e] = matrix(pattern.row_index[e], j);
   }
 }
 
@@ -434,9 +429,8 @@ TEST(UnsymmetricSolver, SeesDependentRowsWithoutAnyZeroColumn) {
     const auto solver = make_unsymmetric_solver(start, rows);
     // n = 3: [1 1 0; 1 2 1; 0 1 1], whose middle row is the sum of the others. n = 4: all ones.
     for (int j = 0; j < n; ++j) {
-      for (int i = start[static_cast<std::size_t>(j)]; i < start[static_cast<std::size_t>(j) + 1];
-           ++i) {
-        const int row = rows[static_cast<std::size_t>(i)];
+      for (int i = start[j]; i < start[j + 1]; ++i) {
+        const int row = rows[i];
         solver->values()[i] = n == 3 && row == 1 && j == 1 ? 2 : 1;
       }
     }
@@ -451,11 +445,10 @@ Eigen::MatrixXd dense_kkt(const Problem& problem, const Positions& x, const Eige
                           double mean_mass) {
   const Eigen::Index n3 = 3 * x.cols(), m = mu.size();
   Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(n3 + m, n3 + m);
-  for (Eigen::Index i = 0; i < n3; ++i)
-    kkt(i, i) = problem.mass()[static_cast<std::size_t>(i / 3)] / mean_mass;
+  for (Eigen::Index i = 0; i < n3; ++i) kkt(i, i) = problem.mass()[i / 3] / mean_mass;
   for (Eigen::Index k = 0; k < m; ++k) {
-    const auto [a, b] = problem.edges()[static_cast<std::size_t>(k)];
-    const double curvature = 2 * mu[k] / problem.rest_length()[static_cast<std::size_t>(k)];
+    const auto [a, b] = problem.edges()[k];
+    const double curvature = 2 * mu[k] / problem.rest_length()[k];
     for (int axis = 0; axis < 3; ++axis) {
       kkt(3 * a + axis, 3 * a + axis) += curvature;
       kkt(3 * b + axis, 3 * b + axis) += curvature;

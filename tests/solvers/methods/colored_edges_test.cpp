@@ -21,8 +21,6 @@ using Eigen::Vector3d;
 using testing::Random;
 using testing::RandomMesh;
 
-std::size_t as_size(int i) { return static_cast<std::size_t>(i); }
-
 // rows x columns, numbered row after row as the scenes do; unit masses and lengths.
 Problem woven(int rows, int columns) {
   ProblemParts parts;
@@ -40,9 +38,9 @@ Problem woven(int rows, int columns) {
 
 Problem star(int rays) {
   ProblemParts parts;
-  parts.mass.assign(as_size(rays + 1), 1);
+  parts.mass.assign(rays + 1, 1);
   for (int v = 1; v <= rays; ++v) parts.edges.push_back({0, v});
-  parts.rest_length.assign(as_size(rays), 1);
+  parts.rest_length.assign(rays, 1);
   return Problem(std::move(parts));
 }
 
@@ -50,14 +48,13 @@ Problem star(int rays) {
 Problem doubled(int times) {
   ProblemParts parts;
   parts.mass.assign(40, 1);
-  for (int v = 0; v + 1 < 40; ++v)
-    parts.edges.insert(parts.edges.end(), as_size(times), {v, v + 1});
+  for (int v = 0; v + 1 < 40; ++v) parts.edges.insert(parts.edges.end(), times, {v, v + 1});
   parts.rest_length.assign(parts.edges.size(), 1);
   return Problem(std::move(parts));
 }
 
 void expect_valid(const Problem& problem, const ColoredEdges& colored) {
-  std::vector<int> seen(as_size(problem.constraints()), 0);
+  std::vector<int> seen(problem.constraints(), 0);
   std::map<int, std::set<int>> vertices_of_color;
   int next = 0;
   for (const ColoredEdges::Block& block : colored.blocks()) {
@@ -66,18 +63,18 @@ void expect_valid(const Problem& problem, const ColoredEdges& colored) {
     next += block.count;
     std::set<int> of_edges, of_fillers;  // places in this block
     for (int k = block.first; k < next; ++k) {
-      const int a = colored.a()[as_size(k)], b = colored.b()[as_size(k)];
+      const int a = colored.a()[k], b = colored.b()[k];
       if (block.adjacent) {
-        ASSERT_EQ(a, colored.a()[as_size(block.first)] + k - block.first);
-        ASSERT_EQ(b, colored.b()[as_size(block.first)] + k - block.first);
+        ASSERT_EQ(a, colored.a()[block.first] + k - block.first);
+        ASSERT_EQ(b, colored.b()[block.first] + k - block.first);
       }
-      const int edge = colored.problem_edge()[as_size(k)];
+      const int edge = colored.problem_edge()[k];
       auto& places = edge < 0 ? of_fillers : of_edges;
       const bool a_is_new = places.insert(a).second, b_is_new = places.insert(b).second;
       EXPECT_TRUE((a_is_new && b_is_new) || (edge < 0 && !block.adjacent)) << "place twice";
       if (edge < 0) continue;
-      ++seen[as_size(edge)];
-      Edge e = problem.edges()[as_size(edge)];
+      ++seen[edge];
+      Edge e = problem.edges()[edge];
       if (colored.turned(k)) std::swap(e.a, e.b);
       EXPECT_EQ(colored.vertex(a), e.a);
       EXPECT_EQ(colored.vertex(b), e.b);
@@ -95,7 +92,7 @@ TEST(ColoredEdges, HoldEveryEdgeOnceAndNoVertexTwiceInAColor) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    const auto size = [&](int most) { return 1 + static_cast<int>(random() % as_size(most)); };
+    const auto size = [&](int most) { return 1 + static_cast<int>(random() % most); };
     const int rows = 1 + size(30), columns = 1 + size(30), pinned = size(3);
     const auto mesh = testing::random_mesh(random, rows, columns, pinned);
     expect_valid(*mesh.problem, ColoredEdges(*mesh.problem));
@@ -132,7 +129,7 @@ TEST(ColoredEdges, BringPositionsThereAndBackBitForBit) {
   Positions back = Positions::Constant(3, x.cols(), 7);
   colored.store(places, back);
   for (int v = 0; v < x.cols(); ++v) {
-    const bool pinned = mesh.problem->inverse_mass()[as_size(v)] == 0;
+    const bool pinned = mesh.problem->inverse_mass()[v] == 0;
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_EQ(std::bit_cast<std::uint64_t>(back(axis, v)),
                 std::bit_cast<std::uint64_t>(pinned ? 7.0 : x(axis, v)));
@@ -153,15 +150,15 @@ Swept by_the_book(const Problem& problem, const StrainBand& band,
   Swept swept{start};
   for (const int edge : order) {
     if (edge < 0) continue;
-    const auto [a, b] = problem.edges()[as_size(edge)];
+    const auto [a, b] = problem.edges()[edge];
     const Positions& from = in_turn ? swept.x : start;
     const Vector3d d = from.col(b) - from.col(a);
-    const double stretch = d.norm() / problem.rest_length()[as_size(edge)];
+    const double stretch = d.norm() / problem.rest_length()[edge];
     if (stretch == 0 || (stretch * stretch >= band.low && stretch * stretch <= band.high)) continue;
     const double wanted = stretch < 1 ? band.target_low : band.target_high;
     const Vector3d correction = (1 - wanted / stretch) * d;
-    swept.x.col(a) += share_a[as_size(edge)] * correction;
-    swept.x.col(b) -= share_b[as_size(edge)] * correction;
+    swept.x.col(a) += share_a[edge] * correction;
+    swept.x.col(b) -= share_b[edge] * correction;
     ++swept.corrected;
   }
   return swept;
@@ -172,14 +169,13 @@ void expect_sweeps_by_the_book(Random& random, const RandomMesh& mesh) {
   const StrainBand band(0.02, 0.3);
   std::vector<double> share_a, share_b;
   for (const Edge& e : problem.edges()) {
-    const double wa = problem.inverse_mass()[as_size(e.a)],
-                 wb = problem.inverse_mass()[as_size(e.b)];
+    const double wa = problem.inverse_mass()[e.a], wb = problem.inverse_mass()[e.b];
     share_a.push_back(0.6 * wa / (wa + wb));
     share_b.push_back(0.6 * wb / (wa + wb));
   }
   Positions start = testing::perturbed(random, mesh, 0.02);
   const Edge first = problem.edges().front();
-  const bool pinned = problem.inverse_mass()[as_size(first.a)] == 0;
+  const bool pinned = problem.inverse_mass()[first.a] == 0;
   start.col(pinned ? first.b : first.a) = start.col(pinned ? first.a : first.b);  // no length
   StrainSweep sweep(problem, band, share_a, share_b);
   for (const bool in_turn : {true, false}) {

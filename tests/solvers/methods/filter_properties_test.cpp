@@ -52,7 +52,7 @@ Vector3d linear_momentum(const Problem& p, const Positions& v) {
 Vector3d angular_momentum(const Problem& p, const Positions& x, const Positions& v) {
   Vector3d sum = Vector3d::Zero();
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    sum += p.mass()[static_cast<std::size_t>(i)] * Vector3d(x.col(i)).cross(Vector3d(v.col(i)));
+    sum += p.mass()[i] * Vector3d(x.col(i)).cross(Vector3d(v.col(i)));
   }
   return sum;
 }
@@ -103,7 +103,7 @@ TEST_P(Steppers, ShortenOneEdgeByTheClosedForm) {
                                   }).normalized();
     candidate = start;
     for (int v = 0; v < 2; ++v) {
-      if (problem->inverse_mass()[static_cast<std::size_t>(v)] == 0) continue;
+      if (problem->inverse_mass()[v] == 0) continue;
       for (int axis = 0; axis < 3; ++axis)
         candidate(axis, v) += testing::uniform(random, -0.2, 0.2);
     }

@@ -52,9 +52,9 @@ Eigen::Vector3d angular_momentum(const Problem& p, const Positions& x, const Pos
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     const Eigen::Vector3d xi = x.col(i), vi = v.col(i);
-    sum += p.mass()[static_cast<std::size_t>(i)] * Eigen::Vector3d(xi[1] * vi[2] - xi[2] * vi[1],
-                                                                   xi[2] * vi[0] - xi[0] * vi[2],
-                                                                   xi[0] * vi[1] - xi[1] * vi[0]);
+    sum +=
+        p.mass()[i] * Eigen::Vector3d(xi[1] * vi[2] - xi[2] * vi[1], xi[2] * vi[0] - xi[0] * vi[2],
+                                      xi[0] * vi[1] - xi[1] * vi[0]);
   }
   return sum;
 }
@@ -185,8 +185,8 @@ TEST(FastProjection, FirstIterationIsIcdsFirstNewtonIteration) {
         testing::inverse_masses3(*mesh.problem).asDiagonal() * j.transpose();
     Eigen::VectorXd c(mesh.problem->constraints());
     for (int k = 0; k < c.size(); ++k) {
-      const auto [a, b] = mesh.problem->edges()[static_cast<std::size_t>(k)];
-      const double l = mesh.problem->rest_length()[static_cast<std::size_t>(k)];
+      const auto [a, b] = mesh.problem->edges()[k];
+      const double l = mesh.problem->rest_length()[k];
       c[k] = (candidate.col(b) - candidate.col(a)).squaredNorm() / l - l;
     }
     const Eigen::VectorXd dx = -wjt * (j * wjt).ldlt().solve(c);

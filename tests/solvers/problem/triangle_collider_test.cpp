@@ -44,9 +44,8 @@ double distance_to_triangle(const Vector3d& a, const Vector3d& b, const Vector3d
 double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
   double sum = 0;
   for (const auto& t : mesh.triangles) {
-    const Vector3d a = mesh.vertices[static_cast<std::size_t>(t[0])] - p,
-                   b = mesh.vertices[static_cast<std::size_t>(t[1])] - p,
-                   c = mesh.vertices[static_cast<std::size_t>(t[2])] - p;
+    const Vector3d a = mesh.vertices[t[0]] - p, b = mesh.vertices[t[1]] - p,
+                   c = mesh.vertices[t[2]] - p;
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
     sum += 2 * std::atan2(a.dot(b.cross(c)),
                           la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
@@ -70,10 +69,8 @@ TEST(TriangleCollider, DistanceAndSignAreRightOnAMeshThatIsNotConvex) {
       const Vector3d p = random_point(random, i % 3 ? 0.8 : 1.2);  // also beyond the grid's box
       double distance = std::numeric_limits<double>::infinity();
       for (const auto& t : mesh.triangles) {
-        distance = std::min(distance,
-                            distance_to_triangle(mesh.vertices[static_cast<std::size_t>(t[0])],
-                                                 mesh.vertices[static_cast<std::size_t>(t[1])],
-                                                 mesh.vertices[static_cast<std::size_t>(t[2])], p));
+        distance = std::min(distance, distance_to_triangle(mesh.vertices[t[0]], mesh.vertices[t[1]],
+                                                           mesh.vertices[t[2]], p));
       }
       const auto found = collider.nearest(p);
       ASSERT_NEAR(std::abs(found.signed_distance), distance, 1e-12) << p.transpose();

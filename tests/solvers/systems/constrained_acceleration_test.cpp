@@ -46,9 +46,8 @@ TEST(ConstrainedAcceleration, IsThatOfDenseAlgebra) {
     for (const int v : p.pinned()) fall.col(v).setZero();
     Eigen::VectorXd rhs = j * fall.reshaped();
     for (int k = 0; k < p.constraints(); ++k) {
-      const auto [a, b] = p.edges()[static_cast<std::size_t>(k)];
-      rhs[k] += 2 / p.rest_length()[static_cast<std::size_t>(k)] *
-                (state.v.col(b) - state.v.col(a)).squaredNorm();
+      const auto [a, b] = p.edges()[k];
+      rhs[k] += 2 / p.rest_length()[k] * (state.v.col(b) - state.v.col(a)).squaredNorm();
     }
     const Eigen::VectorXd expected = fall.reshaped() - wjt * (j * wjt).ldlt().solve(rhs);
     const Positions a = constrained_acceleration(p, state);
@@ -67,7 +66,7 @@ TEST(ConstrainedAcceleration, OfAFreeNetHasTheMomentaOfItsWeight) {
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = force;
     double scale = 0;
     for (int v = 0; v < mesh.problem->vertices(); ++v) {
-      const double m = mesh.problem->mass()[static_cast<std::size_t>(v)];
+      const double m = mesh.problem->mass()[v];
       const Eigen::Vector3d inner = m * (a.col(v) - mesh.problem->gravity());
       force += inner;
       torque += Eigen::Vector3d(mesh.x.col(v)).cross(inner);

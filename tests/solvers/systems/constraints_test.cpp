@@ -22,9 +22,8 @@ constexpr int seeds = 20;
 Eigen::MatrixXd dense(const SymmetricPattern& pattern, const double* values) {
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(pattern.n, pattern.n);
   for (int j = 0; j < pattern.n; ++j) {
-    for (int i = pattern.column_start[static_cast<std::size_t>(j)];
-         i < pattern.column_start[static_cast<std::size_t>(j) + 1]; ++i) {
-      const int row = pattern.row_index[static_cast<std::size_t>(i)];
+    for (int i = pattern.column_start[j]; i < pattern.column_start[j + 1]; ++i) {
+      const int row = pattern.row_index[i];
       matrix(row, j) = matrix(j, row) = values[i];
     }
   }
@@ -50,10 +49,9 @@ TEST(EdgeConstraints, GradientMatchesCentralDifferencesOfC) {
       shifted.data()[i] -= 2 * step;
       edges.linearize(shifted, ignored, minus);
       for (int k = 0; k < m; ++k) {
-        const auto e = static_cast<std::size_t>(k);
         const int vertex = static_cast<int>(i / 3), axis = static_cast<int>(i % 3);
-        const double expected = vertex == edges.b[e]   ? u(axis, k)
-                                : vertex == edges.a[e] ? -u(axis, k)
+        const double expected = vertex == edges.b[k]   ? u(axis, k)
+                                : vertex == edges.a[k] ? -u(axis, k)
                                                        : 0;
         EXPECT_NEAR((plus[k] - minus[k]) / (2 * step), expected, 1e-8);
       }
@@ -89,10 +87,9 @@ TEST(EdgeConstraints, WorstNamesTheProblemsEdgeInAnyOrder) {
     for (std::size_t k = 0; k < p.edges().size(); ++k) {
       const auto [a, b] = p.edges()[k];
       strain.push_back((x.col(b) - x.col(a)).norm() / p.rest_length()[k] - 1);
-      if (std::abs(strain[k]) > std::abs(strain[static_cast<std::size_t>(expected)]))
-        expected = static_cast<int>(k);
+      if (std::abs(strain[k]) > std::abs(strain[expected])) expected = static_cast<int>(k);
     }
-    const double most = strain[static_cast<std::size_t>(expected)];
+    const double most = strain[expected];
     std::vector<int> order(strain.size());
     std::iota(order.begin(), order.end(), 0);
     std::shuffle(order.begin(), order.end(), random);
@@ -136,7 +133,7 @@ TEST(SchurComplement, EqualsTheDenseProductInBothTriangles) {
     for (const auto triangle :
          {SymmetricPattern::Triangle::lower, SymmetricPattern::Triangle::upper}) {
       const SchurComplement schur(edges, problem.vertices(), triangle);
-      std::vector<double> values(static_cast<std::size_t>(schur.pattern().entries()));
+      std::vector<double> values(schur.pattern().entries());
       schur.assemble(ux, values.data());
       EXPECT_LT((dense(schur.pattern(), values.data()) - jx * w * jx.transpose()).norm(), 1e-11);
     }
@@ -157,7 +154,7 @@ TEST(FillReducingOrder, IsAPermutation) {
   const SchurComplement schur(edges, mesh.problem->vertices(), SymmetricPattern::Triangle::upper);
   std::vector<int> order = fill_reducing_order(schur.pattern());
   std::sort(order.begin(), order.end());
-  for (int i = 0; i < edges.count(); ++i) EXPECT_EQ(order[static_cast<std::size_t>(i)], i);
+  for (int i = 0; i < edges.count(); ++i) EXPECT_EQ(order[i], i);
 }
 
 // The J W J^T of a mesh (a chain for the tridiagonal solver) with its dense form.

@@ -33,8 +33,7 @@ class SymmetricSweeps final : public inextensible::VelocityFilter {
 
  private:
   // Brings an edge that is out of bounds to its rest length; its ends share by inverse mass.
-  void visit(int edge, Positions& x) const {
-    const auto k = static_cast<std::size_t>(edge);
+  void visit(int k, Positions& x) const {
     const Eigen::Vector3d d = x.col(edges_.b[k]) - x.col(edges_.a[k]);
     const double ratio = d.squaredNorm() / (edges_.rest_length[k] * edges_.rest_length[k]);
     const bool inside = ratio >= edges_.permissible_low && ratio <= edges_.permissible_high;
