@@ -33,6 +33,8 @@ Points::Points(const std::vector<json>& results) {
     for (const json& p : result.at("points")) {
       const std::pair key(p.at("id").get<std::string>(), p.at("sweep").get<std::string>());
       if (seen.contains(key) || p.value("adaptive", false)) continue;
+      // Claims are about solvers, each as it competes: under its own name.
+      if (p.value("contestant", p.at("solver")) != p.at("solver")) continue;
       here.insert(key);
       all_.emplace_back(p);
     }

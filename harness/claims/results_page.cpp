@@ -32,6 +32,11 @@ std::string plain(double value, int digits) {
   return number_text(value, std::max(digits, whole));
 }
 
+// Who competes; older files have solvers only.
+std::string name_of(const json& point) {
+  return point.contains("contestant") ? point.at("contestant") : point.at("solver");
+}
+
 bool is_stability(const json& document) { return document.contains("matrix"); }
 
 // sizes_apart: points of each resolution by themselves.
@@ -51,7 +56,7 @@ std::map<std::string, Points> scenes_of(const json& document, const std::string&
 std::vector<std::string> solvers_of(const Points& points) {
   std::vector<std::string> solvers;
   for (const json* p : points) {
-    const std::string solver = p->at("solver");
+    const std::string solver = name_of(*p);
     if (std::find(solvers.begin(), solvers.end(), solver) == solvers.end())
       solvers.push_back(solver);
   }
@@ -81,7 +86,7 @@ class BestPoints {
       if (!p->at("best").get<bool>() || p->at("status") != "ok") continue;
       const double at = p->at(axis);
       if (std::find(places_.begin(), places_.end(), at) == places_.end()) places_.push_back(at);
-      best_[{p->at("solver"), at}] = p;
+      best_[{name_of(*p), at}] = p;
     }
     std::sort(places_.begin(), places_.end());
   }
@@ -175,7 +180,7 @@ void print_time_to_error(std::ostream& out, const NamedResult& result) {
         if (target < 3 * gap) continue;
         const json* fastest = nullptr;
         for (const json* p : points) {
-          const bool fits = p->at("solver") == solver && p->at("status") == "ok" &&
+          const bool fits = name_of(*p) == solver && p->at("status") == "ok" &&
                             number(p->at("error").at("trajectory")) <= target;
           if (fits && (!fastest || median_seconds(*p) < median_seconds(*fastest))) fastest = p;
         }

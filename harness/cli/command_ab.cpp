@@ -99,8 +99,8 @@ json old_result(const AbCommand& options) {
 json spec_json(const json& point) {
   json spec;
   for (const char* key :
-       {"sweep", "scene", "scene_parameters", "resolution", "vertices", "constraints", "solver",
-        "settings", "strain_limit", "step", "adaptive", "seed"}) {
+       {"sweep", "scene", "scene_parameters", "resolution", "vertices", "constraints", "contestant",
+        "solver", "settings", "strain_limit", "step", "adaptive", "seed"}) {
     if (point.contains(key)) spec[key] = point.at(key);
   }
   const json& options = point.at("options");

@@ -47,6 +47,9 @@ void check_spec(const PointSpec& spec, const std::string& where) {
   const auto [vertices, constraints] = type->counts(parameters);
   check_count(where, "vertices", spec.vertices, vertices);
   check_count(where, "constraints", spec.constraints, constraints);
+  if (spec.name().find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
+    throw UsageError(where + ": 'contestant' is " + json(spec.name()).dump() +
+                     ", must be made of a-z, 0-9 and _");
   const auto* backend = inextensible::find_backend(spec.solver);
   if (!backend)
     throw UsageError(

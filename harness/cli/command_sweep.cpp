@@ -1,6 +1,7 @@
 // bench --sweep strain|resolution|step: runs a suite's sweeps.
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 
@@ -12,6 +13,7 @@
 #include "harness/cli/commands.h"
 #include "harness/cli/sweep_command.h"
 #include "harness/points/context.h"
+#include "harness/points/noise.h"
 #include "harness/points/result_file.h"
 #include "harness/run/isolation.h"
 #include "harness/run/journal.h"
@@ -144,6 +146,11 @@ void warn_if_busy(const nlohmann::json& context) {
 }
 
 void tell_noise(const nlohmann::json& context) {
+  if (const auto pair = noise_of(context))
+    std::cout << "\n"
+              << pair->one << " stands there twice: in 95 % of " << pair->places
+              << " places its two times are within " << number_text(100 * std::expm1(pair->q95), 2)
+              << " % of each other; smaller differences between solvers are none\n";
   if (!context.at("sentinel").at("noisy").get<bool>()) return;
   std::cout << "\nNOISY: a fixed kernel's time varied by "
             << number_text(100 * context.at("sentinel").at("spread").get<double>(), 2)
@@ -232,11 +239,12 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   context["stolen"] = stolen_share(ticks, processor_ticks());
   context["harness_overhead"] = harness_overhead(outcome.points);
 
-  write_atomically(out, result_text(result_document(context, suite, command, outcome.complete,
-                                                    outcome.points, shelf->summaries())));
+  const nlohmann::json document = result_document(context, suite, command, outcome.complete,
+                                                  outcome.points, shelf->summaries());
+  write_atomically(out, result_text(document));
   print_table(std::cout, outcome.points);
   tell_overhead(context["harness_overhead"]);
-  tell_noise(context);
+  tell_noise(document.at("context"));
   std::cout << "\nwritten:\n" << out << std::endl;
   if (!outcome.complete) {
     std::cerr << "bench: interrupted; the same command with --resume goes on from here\n";

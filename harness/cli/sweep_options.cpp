@@ -41,7 +41,7 @@ void add_selection(CLI::App& to, SweepOptions& options) {
   to.add_option("--sweep", options.sweep, "axis: strain (limit), resolution, step or stability")
       ->type_name("AXIS");
   to.add_option("--scene", options.scene, "chain or drape; both if left out")->type_name("NAME");
-  to.add_option("--solver", options.solver, "only solvers whose name matches, e.g. 'shake|icd'")
+  to.add_option("--solver", options.solver, "only contestants whose name matches, e.g. 'shake|icd'")
       ->type_name("REGEX");
   to.add_option("--filter", options.filter, "only points in whose id this is found")
       ->type_name("REGEX");
@@ -97,8 +97,11 @@ std::regex pattern(const std::string& option, const std::string& text) {
   }
 }
 
-void check_solver_pattern(const std::string& text) {
-  const std::vector<std::string> names = names_of(inextensible::backends());
+void check_solver_pattern(const std::string& text, const Contestants& contestants) {
+  std::vector<std::string> names = names_of(inextensible::backends());
+  for (const Contestant& c : contestants) {
+    if (!c.own_name()) names.push_back(c.name);
+  }
   const std::regex expression = pattern("--solver", text);
   for (const std::string& name : names) {
     if (std::regex_match(name, expression)) return;
@@ -115,9 +118,9 @@ std::string suite_path(const SweepOptions& options) {
 }
 
 Suite load_suite(const SweepOptions& options) {
-  if (!options.solver.empty()) check_solver_pattern(options.solver);
   const std::string path = suite_path(options);
   Suite suite = read_suite(path);
+  if (!options.solver.empty()) check_solver_pattern(options.solver, contestants_of(suite));
   std::vector<std::string> kinds = sweep_kinds();
   if (std::find(kinds.begin(), kinds.end(), options.sweep) == kinds.end()) {
     kinds.emplace_back("stability");
@@ -149,8 +152,10 @@ Suite load_suite(const SweepOptions& options) {
   // A solver that is no contestant joins when it is asked for by its own name.
   if (const auto* backend = inextensible::find_backend(options.solver);
       backend && !backend->contestant) {
-    for (SweepSpec& sweep : suite.sweeps) sweep.solvers = {options.solver};
+    for (SweepSpec& sweep : suite.sweeps) sweep.contestants = {{options.solver, options.solver}};
   }
+  Contestants left = contestants_of(suite);
+  if (find_contestant(left, suite.same) == left.end()) suite.same.clear();
   return suite;
 }
 

@@ -25,9 +25,8 @@ void add_measurement(CLI::App& to, SweepOptions& options);
 std::vector<std::string> profiles();
 // All of these throw UsageError for what does not exist.
 void check_profile(const std::string& name);
-// A solver given as a plain name must exist; anything else is a regular expression that must match
-// some name.
-void check_solver_pattern(const std::string& text);
+// A regular expression that must match the name of some solver, or of some contestant.
+void check_solver_pattern(const std::string& text, const Contestants& contestants = {});
 std::regex pattern(const std::string& option, const std::string& text);
 std::string suite_path(const SweepOptions& options);
 Suite load_suite(const SweepOptions& options);

@@ -11,7 +11,7 @@ namespace harness {
 
 std::string PointSpec::id() const {
   std::ostringstream text;
-  text << scene << '/' << solver << "/n:" << vertices << "/strain:" << strain_limit << "/h:";
+  text << scene << '/' << name() << "/n:" << vertices << "/strain:" << strain_limit << "/h:";
   if (adaptive) {
     text << "adaptive";
   } else {

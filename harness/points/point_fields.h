@@ -32,6 +32,8 @@ inline constexpr std::tuple spec_fields{
     field("sweep", &PointSpec::sweep, "", "kind of the sweep that it is a point of"),
     field("scene", &PointSpec::scene, "", "see `bench list scenes`"),
     field("scene_parameters", &PointSpec::scene_parameters, "", "all of the scene's"),
+    field("contestant", &PointSpec::contestant, "",
+          "who competes; the solver unless it stands in the run several times", {.later = true}),
     field("solver", &PointSpec::solver, "", "see `bench list solvers`"),
     field("settings", &PointSpec::settings, "", "the solver's settings as given", {.later = true}),
     field("strain_limit", &PointSpec::strain_limit, "", "permissible |strain|, 0.01 is 1 %",
@@ -64,7 +66,7 @@ inline constexpr std::tuple result_fields{
           "that the duration takes at this step; older files: to be computed", {.later = true}),
     field("peak_rss_bytes", &PointResult::peak_rss_bytes, "bytes", "largest resident memory"),
     field("best", &PointResult::best, "",
-          "the fastest step of its solver at its place on the axis"),
+          "the fastest step of its contestant at its place on the axis"),
     field("best_at_error", &PointResult::best_at_error, "",
           "the fastest step within the suite's error limit", {.later = true})};
 

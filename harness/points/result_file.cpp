@@ -3,6 +3,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json_text.h"
+#include "harness/points/noise.h"
 #include "harness/points/point_json.h"
 #include "harness/points/schema.h"
 
@@ -37,6 +38,9 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
   context["command"] = command;
   context["suite"] = to_json(suite);
   context["seed"] = suite.seed;
+  if (!suite.tuned_file.empty())
+    context["tuned"] = {{"file", suite.tuned_file}, {"hash", suite.tuned_hash}};
+  if (const auto noise = pair_noise(points, suite.same)) context["noise"] = to_json(*noise);
   json list = json::array(), benchmarks = json::array();
   int family = 0;
   for (const PointResult& point : points) {
@@ -46,7 +50,7 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
   return {{"schema", "inextensible-bench/1"},
           {"complete", complete},
           {"context", context},
-          {"legend", legend()},
+          {"legend", legend(contestants_of(suite))},
           {"points", list},
           {"references", std::move(references)},
           {"benchmarks", benchmarks}};

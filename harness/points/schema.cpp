@@ -68,7 +68,8 @@ ordered_json work_schema() {
 ordered_json point_schema() {
   ordered_json point = closed_object();
   add(point, "id",
-      {{"type", "string"}, {"description", "scene/solver/n:vertices/strain:limit/h:step"}}, false);
+      {{"type", "string"}, {"description", "scene/contestant/n:vertices/strain:limit/h:step"}},
+      false);
   add_fields(point, spec_fields);
   point["properties"]["sweep"] = {{"enum", sweep_kinds()}};
   add_fields(point, size_fields);
@@ -103,6 +104,12 @@ ordered_json legend_schema() {
                {"family", "string"},
                {"contestant", "boolean"}}),
       false);
+  ordered_json& item = schema["properties"]["solvers"]["items"];
+  add(item, "solver",
+      {{"type", "string"}, {"description", "of a contestant that is not it under its own name"}},
+      true);
+  add(item, "hollow",
+      {{"type", "boolean"}, {"description", "beside the ranking, drawn with hollow marks"}}, true);
   add(schema, "statuses",
       list_of({{"name", "string"}, {"letter", "string"}, {"meaning", "string"}}), false);
   return schema;
@@ -130,13 +137,23 @@ std::string schema_text(const std::string& name) {
   return folded_text(with_tables(ordered_json::parse(read_file(path, "schema"))));
 }
 
-ordered_json legend() {
+ordered_json legend(const Contestants& contestants) {
   ordered_json solvers = ordered_json::array(), statuses = ordered_json::array();
-  for (const auto& backend : inextensible::backends())
+  for (const auto& backend : inextensible::backends()) {
     solvers.push_back({{"name", backend.name},
                        {"label", backend.label},
                        {"family", backend.family},
                        {"contestant", backend.contestant}});
+    for (const Contestant& c : contestants) {
+      if (c.own_name() || c.solver != backend.name) continue;
+      solvers.push_back({{"name", c.name},
+                         {"label", label_of(c)},
+                         {"family", backend.family},
+                         {"contestant", backend.contestant},
+                         {"solver", c.solver},
+                         {"hollow", c.hollow}});
+    }
+  }
   for (const auto& row : point_statuses)
     statuses.push_back({{"name", row.name}, {"letter", row.letter}, {"meaning", row.meaning}});
   return {{"solvers", solvers}, {"statuses", statuses}};

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/points/contestant.h"
+
 namespace harness {
 
 // The schema with those of its definitions made anew that follow from tables: "status", "counter",
@@ -16,8 +18,9 @@ nlohmann::ordered_json with_tables(nlohmann::ordered_json schema);
 std::string schema_text(const std::string& name);
 std::vector<std::string> generated_schemas();
 
-// Names and meanings that figures show: of all registered solvers, and of statuses.
-nlohmann::ordered_json legend();
+// Names and meanings that figures show: of all registered solvers, each followed by contestants
+// that are it under another name, and of statuses.
+nlohmann::ordered_json legend(const Contestants& contestants = {});
 
 // Of `work` in a result file.
 std::vector<std::string> counter_names();

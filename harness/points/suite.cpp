@@ -1,41 +1,38 @@
 #include "harness/points/suite.h"
 
 #include <algorithm>
+#include <optional>
+#include <tuple>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
 #include "harness/points/point_json.h"
+#include "harness/points/tuned.h"
 
 namespace harness {
 namespace {
 
 using nlohmann::json;
 
-inextensible::Settings read_settings(const json& object, const std::string& where,
-                                     const inextensible::Backend& backend) {
-  if (!object.is_object()) throw UsageError(where + ": must be an object { ... }");
-  inextensible::Settings settings;
-  const std::vector<std::string> known = names_of(backend.settings);
-  for (const auto& [key, value] : object.items()) {
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
-      throw UsageError(
-          where + ": " +
-          unknown_name("setting of solver " + std::string(backend.name), key, known).what());
-    }
-    if (value.is_number()) {
-      settings[key] = value.get<double>();
-    } else if (value.is_string()) {
-      settings[key] = value.get<std::string>();
-    } else {
-      throw UsageError(where + ": '" + key + "' is " + value.dump() +
-                       ", must be a number or a text");
-    }
-  }
-  return settings;
+// What a suite says of the contestants of all its sweeps.
+struct Everywhere {
+  std::optional<Tuned> tuned;
+  bool untuned = false;
+  std::string same;
+};
+
+Everywhere read_everywhere(JsonReader& reader) {
+  Everywhere all;
+  if (const std::string file = reader.text("tuned", ""); !file.empty())
+    all.tuned = read_tuned(file);
+  all.untuned = reader.flag("untuned", false);
+  if (all.untuned && !all.tuned) throw UsageError(reader.where("untuned") + " goes with 'tuned'");
+  all.same = reader.text("same", "");
+  return all;
 }
 
-SweepSpec read_sweep(const json& object, const std::string& where) {
+SweepSpec read_sweep(const json& object, const std::string& where, const Everywhere& all) {
   JsonReader reader(object, where);
   SweepSpec spec;
   spec.sweep = reader.text("sweep", "");
@@ -47,21 +44,8 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
   if (!type)
     throw UsageError(where + ": " +
                      unknown_name("scene", spec.scene, names_of(scene_types())).what());
-  spec.solvers = reader.texts("solvers");
-  if (spec.solvers.empty()) {
-    for (const auto& backend : inextensible::backends()) {
-      if (backend.contestant) spec.solvers.emplace_back(backend.name);
-    }
-  }
-  for (const std::string& name : reader.texts("also")) {
-    if (std::find(spec.solvers.begin(), spec.solvers.end(), name) == spec.solvers.end())
-      spec.solvers.push_back(name);
-  }
-  for (const std::string& name : spec.solvers) {
-    if (!inextensible::find_backend(name))
-      throw UsageError(where + ": " +
-                       unknown_name("solver", name, names_of(inextensible::backends())).what());
-  }
+  const json* solvers = reader.find("solvers");
+  spec.contestants = read_contestants(solvers, reader.find("also"), where);
   spec.limits = reader.numbers("limits", Bounds::positive());
   if (const double limit = reader.number("limit", 0, Bounds::positive()); limit > 0) {
     if (!spec.limits.empty()) throw UsageError(where + ": give 'limit' or 'limits', not both");
@@ -104,14 +88,13 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
   if (const json* options = reader.find("solver_options")) {
     if (!options->is_object()) reader.fail_at("solver_options", *options, "an object { ... }");
     for (const auto& [name, value] : options->items()) {
-      const auto* backend = inextensible::find_backend(name);
-      if (!backend)
-        throw UsageError(where + ": 'solver_options': " +
-                         unknown_name("solver", name, names_of(inextensible::backends())).what());
-      spec.solver_options[name] = read_settings(value, where + ": 'solver_options'", *backend);
+      const auto& backend = checked_backend(name, where + ": 'solver_options'");
+      spec.solver_options[name] = read_settings(value, where + ": 'solver_options'", backend);
     }
   }
   reader.finish();
+  if (all.tuned) tune(spec.contestants, *all.tuned, type->kind(), spec.solver_options, all.untuned);
+  add_double(spec.contestants, all.same);
   try {  // impossible values are found before anything runs
     complete_parameters(*type, spec.scene_parameters);
   } catch (const UsageError& error) {
@@ -120,9 +103,37 @@ SweepSpec read_sweep(const json& object, const std::string& where) {
   return spec;
 }
 
+// One name is one solver, in all sweeps, for it has one place in the legend.
+void check_contestants(const Suite& suite, const JsonReader& reader) {
+  std::map<std::string, std::string> solvers;
+  for (const SweepSpec& sweep : suite.sweeps) {
+    for (const Contestant& c : sweep.contestants) {
+      if (const auto [place, fresh] = solvers.emplace(c.name, c.solver); place->second != c.solver)
+        throw UsageError(reader.where("sweeps") + ": '" + c.name + "' is solver '" + place->second +
+                         "' in one sweep and '" + c.solver + "' in another");
+    }
+  }
+  if (!suite.same.empty() && !solvers.contains(suite.same)) {
+    std::vector<std::string> names;
+    for (const auto& entry : solvers) names.push_back(entry.first);
+    throw UsageError(reader.where("same") + ": " +
+                     unknown_name("contestant", suite.same, names).what());
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> sweep_kinds() { return {"strain", "resolution", "step"}; }
+
+Contestants contestants_of(const Suite& suite) {
+  Contestants all;
+  for (const SweepSpec& sweep : suite.sweeps) {
+    for (const Contestant& c : sweep.contestants) {
+      if (find_contestant(all, c.name) == all.end()) all.push_back(c);
+    }
+  }
+  return all;
+}
 
 Suite read_suite(const std::string& path) { return parse_suite(read_file(path, "suite"), path); }
 
@@ -139,13 +150,18 @@ Suite parse_suite(const std::string& text, const std::string& path) {
   suite.rel_ci = reader.number("rel_ci", suite.rel_ci, Bounds::positive());
   suite.timeout = reader.number("timeout", 60, Bounds::positive());
   suite.max_error = reader.number("max_error", 0, Bounds::positive());
+  const Everywhere all = read_everywhere(reader);
+  suite.same = all.same;
+  if (all.tuned)
+    std::tie(suite.tuned_file, suite.tuned_hash) = std::tie(all.tuned->file, all.tuned->hash);
   const json* sweeps = reader.find("sweeps");
   if (!sweeps || !sweeps->is_array() || sweeps->empty())
     throw UsageError(reader.where("sweeps") + " must be a list of sweeps");
   for (std::size_t i = 0; i < sweeps->size(); ++i) {
     suite.sweeps.push_back(
-        read_sweep((*sweeps)[i], "suite '" + path + "': sweeps[" + std::to_string(i) + "]"));
+        read_sweep((*sweeps)[i], "suite '" + path + "': sweeps[" + std::to_string(i) + "]", all));
   }
+  check_contestants(suite, reader);
   reader.finish();
   return suite;
 }
@@ -155,9 +171,11 @@ json to_json(const Suite& suite) {
   for (const SweepSpec& s : suite.sweeps) {
     json options = json::object();
     for (const auto& [solver, settings] : s.solver_options) options[solver] = to_json(settings);
+    json contestants = json::array();
+    for (const Contestant& c : s.contestants) contestants.push_back(to_json(c));
     sweeps.push_back({{"sweep", s.sweep},
                       {"scene", s.scene},
-                      {"solvers", s.solvers},
+                      {"solvers", contestants},
                       {"limits", s.limits},
                       {"resolutions", s.resolutions},
                       {"steps",
@@ -174,6 +192,7 @@ json to_json(const Suite& suite) {
                    {"rel_ci", suite.rel_ci},   {"timeout", suite.timeout},
                    {"sweeps", sweeps}};
   if (suite.max_error > 0) document["max_error"] = suite.max_error;
+  if (!suite.same.empty()) document["same"] = suite.same;
   return document;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/points/contestant.h"
 #include "harness/points/point.h"
 
 namespace harness {
@@ -13,14 +14,14 @@ namespace harness {
 struct SweepSpec {
   std::string sweep;  // "strain", "resolution" or "step"
   std::string scene;
-  std::vector<std::string> solvers;
+  Contestants contestants;
   std::vector<double> limits;    // strain and step sweep: the axis; resolution sweep: one
   std::vector<int> resolutions;  // resolution sweep: the axis; the others: one
   double coarsest = 1.0 / 25, finest = 1.0 / 25600;  // s, ends of the step ladder
   bool adaptive = false;    // a step controller from `coarsest` down, instead of the ladder
   bool every_step = false;  // the whole ladder instead of a search; step sweeps always do
   SceneParameters scene_parameters;
-  std::map<std::string, inextensible::Settings> solver_options;
+  std::map<std::string, inextensible::Settings> solver_options;  // a contestant's own go first
 };
 
 struct Suite {
@@ -31,12 +32,18 @@ struct Suite {
   double rel_ci = 0.02;  // half width of the median's 95 % confidence interval over the median
   double timeout = 60;   // s a point
   double max_error = 0;  // trajectory error that `best_at_error` points respect; 0: none is sought
+  std::string same;      // the contestant that stands in every sweep twice; "": none
+  // The file that the contestants' tuned settings are from, and a hash of what it says; "": none.
+  std::string tuned_file, tuned_hash;
   std::vector<SweepSpec> sweeps;
 };
 
 std::vector<std::string> sweep_kinds();
+// Of all sweeps, each name once.
+Contestants contestants_of(const Suite& suite);
 
-// Throws UsageError, naming file, key and value, for anything that is not a suite.
+// Throws UsageError, naming file, key and value, for anything that is not a suite. What "tuned",
+// "untuned" and "same" say is done already: it is in the contestants.
 Suite read_suite(const std::string& path);
 // The same of a text; `path` is for messages.
 Suite parse_suite(const std::string& text, const std::string& path);

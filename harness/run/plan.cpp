@@ -32,8 +32,8 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
     std::sort(limits.rbegin(), limits.rend());  // loose to tight
     std::vector<int> resolutions = sweep.resolutions;
     std::sort(resolutions.begin(), resolutions.end());
-    for (const std::string& solver : sweep.solvers) {
-      if (filters.solver && !std::regex_match(solver, *filters.solver)) continue;
+    for (const Contestant& contestant : sweep.contestants) {
+      if (filters.solver && !std::regex_match(contestant.name, *filters.solver)) continue;
       for (const int resolution : resolutions) {
         SceneParameters given = sweep.scene_parameters;
         given[type.resolution] = resolution;
@@ -45,10 +45,12 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
         const auto [vertices, constraints] = type.counts(base.scene_parameters);
         base.vertices = vertices;
         base.constraints = constraints;
-        base.solver = solver;
-        if (const auto options = sweep.solver_options.find(solver);
+        base.contestant = contestant.name;
+        base.solver = contestant.solver;
+        base.settings = contestant.settings;
+        if (const auto options = sweep.solver_options.find(contestant.solver);
             options != sweep.solver_options.end()) {
-          base.settings = options->second;
+          base.settings.insert(options->second.begin(), options->second.end());
         }
         base.seed = suite.seed;
         base.adaptive = sweep.adaptive;

@@ -1,4 +1,4 @@
-// What a sweep will search: one best step for each (scene, size, limit, solver) of a suite.
+// What a sweep will search: one best step for each (scene, size, limit, contestant) of a suite.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 namespace harness {
 
 struct SweepFilters {
-  std::optional<std::regex> solver;   // must match the solver's whole name
+  std::optional<std::regex> solver;   // must match the contestant's whole name
   std::optional<std::regex> include;  // must be found in a point's id
   std::optional<std::regex> exclude;  // must not
 };
@@ -19,7 +19,7 @@ struct SweepFilters {
 struct Search {
   PointSpec base;              // all but the step
   std::vector<double> ladder;  // s, coarse to fine; those that the filters leave
-  // Searches of one family (same sweep, scene, size and solver) come from loose to tight; each
+  // Searches of one family (same sweep, scene, size and contestant) come from loose to tight; each
   // starts from the step that was best in the one before.
   std::size_t family = 0;
   bool every_step = false;  // the whole ladder, whatever the times are

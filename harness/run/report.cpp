@@ -89,11 +89,11 @@ void print_best(std::ostream& out, const std::vector<const PointResult*>& points
   std::map<std::pair<std::string, std::string>, std::vector<const PointResult*>> cells;
   for (const PointResult* point : points) {
     const std::string column = axis_text(point->spec);
-    if (std::find(solvers.begin(), solvers.end(), point->spec.solver) == solvers.end())
-      solvers.push_back(point->spec.solver);
+    if (std::find(solvers.begin(), solvers.end(), point->spec.name()) == solvers.end())
+      solvers.push_back(point->spec.name());
     if (std::find(columns.begin(), columns.end(), column) == columns.end())
       columns.push_back(column);
-    cells[{point->spec.solver, column}].push_back(point);
+    cells[{point->spec.name(), column}].push_back(point);
   }
   out << '\n' << title << '\n';
   constexpr int cell_width = 17;
@@ -122,8 +122,8 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
   std::vector<std::string> solvers;
   double gap = 0;
   for (const PointResult* point : points) {
-    if (std::find(solvers.begin(), solvers.end(), point->spec.solver) == solvers.end())
-      solvers.push_back(point->spec.solver);
+    if (std::find(solvers.begin(), solvers.end(), point->spec.name()) == solvers.end())
+      solvers.push_back(point->spec.name());
     if (std::isfinite(point->measures.gap)) gap = std::max(gap, point->measures.gap);
   }
   out << '\n'
@@ -138,7 +138,7 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
     for (const double target : targets) {
       const PointResult* fastest = nullptr;
       for (const PointResult* point : points) {
-        if (point->spec.solver != solver || !point->ok() || !(point->measures.trajectory <= target))
+        if (point->spec.name() != solver || !point->ok() || !(point->measures.trajectory <= target))
           continue;
         if (!fastest || point->median_seconds() < fastest->median_seconds()) fastest = point;
       }
@@ -211,10 +211,10 @@ std::vector<Growth> growths(const std::vector<const PointResult*>& points) {
   std::vector<Growth> all;
   std::map<std::string, std::map<int, const PointResult*>> curves;  // by solver, by vertices
   for (const PointResult* point : points) {
-    if (point->best && point->ok()) curves[point->spec.solver][point->spec.vertices] = point;
+    if (point->best && point->ok()) curves[point->spec.name()][point->spec.vertices] = point;
   }
   for (const PointResult* point : points) {  // in the order of the sweep
-    const auto curve = curves.find(point->spec.solver);
+    const auto curve = curves.find(point->spec.name());
     if (curve == curves.end()) continue;
     std::vector<double> vertices, seconds;
     for (const auto& [size, p] : curve->second) {
@@ -267,7 +267,7 @@ void print_table(std::ostream& out, const std::vector<PointResult>& points) {
   std::map<std::string, int> failures;
   for (const PointResult& point : points) {
     if (!point.ok())
-      ++failures[point.spec.scene + "/" + point.spec.solver + ": " + to_string(point.status)];
+      ++failures[point.spec.scene + "/" + point.spec.name() + ": " + to_string(point.status)];
   }
   if (!failures.empty()) {
     out << "\nsteps that failed, all in the file with their reason:\n";

@@ -109,7 +109,8 @@ SceneType folded_drape_scene() {
                   sphere_parameters(),
                   {{"duration", 0.02, "s", 0, 1e4}}}),
           build_drape,
-          count_square};
+          count_square,
+          "drape"};
 }
 
 SceneType patch_scene() {

@@ -29,6 +29,14 @@ const SceneType* find_scene(std::string_view name) {
   return nullptr;
 }
 
+std::vector<std::string> scene_kinds() {
+  std::vector<std::string> kinds;
+  for (const SceneType& type : table()) {
+    if (!*type.like) kinds.emplace_back(type.name);
+  }
+  return kinds;
+}
+
 SceneParameters complete_parameters(const SceneType& type, const SceneParameters& given) {
   SceneParameters all;
   std::vector<std::string> names;

@@ -51,10 +51,14 @@ struct SceneType {
   Scene (*build)(const SceneParameters& complete);
   // Vertices and constraints, without building anything.
   std::pair<int, int> (*counts)(const SceneParameters& complete);
+  const char* like = "";  // the scene whose tuned settings it takes; empty: its own
+
+  const char* kind() const { return *like ? like : name; }
 };
 
 std::span<const SceneType> scene_types();
 const SceneType* find_scene(std::string_view name);
+std::vector<std::string> scene_kinds();  // of all scenes, each once
 
 // The scene's parameters with `given` put in. Throws UsageError, naming the parameter, for unknown
 // or impossible ones.

@@ -14,7 +14,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullForma
 
 from parts.curves import line_of
 from parts.legend import Legend, legend_of, merged
-from parts.result_file import SCHEMA, Json, ResultError, load, median_of, object_in, points_of
+from parts.result_file import SCHEMA, Json, ResultError, contestant_of, load, median_of, object_in, points_of
 from parts.sheet import GAP, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, add_legend, grid, legend_height, make_sheet
 from parts.style import GREY, styles_for
 from parts.words import clean, shorten
@@ -47,7 +47,7 @@ def entry_of(document: Json, path: Path) -> Entry:
         median = median_of(point)
         if point.get("best") is True and median is not None:
             place = (point["sweep"], point["scene"], point["vertices"], float(point["strain_limit"]))
-            times.setdefault(point["solver"], {})[place] = median
+            times.setdefault(contestant_of(point), {})[place] = median
     machine = (str(context.get("cpu_model")), f"{build.get('compiler')} {build.get('flags')}")
     return Entry(date, clean(build.get("git", ""))[:7], machine, times, legend_of(document))
 

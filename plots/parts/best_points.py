@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from parts.legend import TOO_WRONG, Legend
-from parts.result_file import OK, Json, is_number, median_of, object_in, points_of, positive, suite_of
+from parts.result_file import OK, Json, contestant_of, is_number, median_of, object_in, points_of, positive, suite_of
 from parts.words import file_part
 
 NUMBERS_OF_THE_PAPER = {"chain": "4", "drape": "5"}
@@ -105,7 +105,7 @@ def _file_part(scene: str, sweep: str, fixed: float, alone: bool) -> str:
 def _curves(points: list[Json], axis: str, max_error: float | None, legend: Legend) -> dict[str, Curve]:
     tried: dict[tuple[str, float], list[Json]] = {}
     for point in points:
-        tried.setdefault((point["solver"], float(point[axis])), []).append(point)
+        tried.setdefault((contestant_of(point), float(point[axis])), []).append(point)
     curves: dict[str, Curve] = {}
     for (solver, x), runs in sorted(tried.items(), key=lambda item: item[0]):
         curve = curves.setdefault(solver, Curve())

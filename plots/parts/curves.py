@@ -31,7 +31,9 @@ def line_of(style: SolverStyle, x: list[float], y: list[float], **more: float) -
     """Line with the solver's look; the thin white rim keeps markers apart where curves run on top of one another."""
     line = Line2D(x, y, color=style.color, marker=style.marker, markersize=style.size, linewidth=style.width, **more)
     line.set_linestyle((0, style.dashes) if style.dashes else "-")
-    if style.marker not in ("+", "x", "1"):  # these have no face that a rim could surround
+    if style.hollow:
+        line.set(markerfacecolor="none", markeredgecolor=style.color, markeredgewidth=0.9)
+    elif style.marker not in ("+", "x", "1"):  # these have no face that a rim could surround
         line.set(markeredgecolor="white", markeredgewidth=0.5)
     return line
 

@@ -17,12 +17,15 @@ MEANINGS = {TOO_WRONG: "trajectory error above the limit", NOT_CHOSEN: "ran, but
 
 @dataclass(frozen=True)
 class Solver:
-    """`family` is shared by the variants of a method; `contestant` is false for backends that are shown but not ranked."""
+    """`family` is shared by the variants of a method; `contestant` is false for backends that are shown but not ranked.
+    `solver` is another name's where this is that solver with other settings; `hollow` ones stand beside the ranking."""
 
     name: str
     label: str
     family: str
     contestant: bool
+    solver: str = ""
+    hollow: bool = False
 
 
 @dataclass(frozen=True)
@@ -91,7 +94,8 @@ def _entries(legend: Json, what: str) -> list[Json]:
 def _solver(entry: Json) -> Solver:
     name, label, family = entry["name"], entry.get("label"), entry.get("family")
     return Solver(name, clean(label if label else name.replace("_", " ")), family if isinstance(family, str) else name,
-                  entry.get("contestant") is not False)
+                  entry.get("contestant") is not False, entry["solver"] if isinstance(entry.get("solver"), str) else "",
+                  entry.get("hollow") is True)
 
 
 def _status(entry: Json) -> Status:

@@ -82,6 +82,12 @@ def points_of(document: Json) -> list[Json]:
     return [point for point in document.get("points", []) if point.get("sweep") in SWEEPS]
 
 
+def contestant_of(point: Json) -> str:
+    """Who competes: the solver, or another name of it. Older files have solvers only."""
+    name = point.get("contestant")
+    return name if isinstance(name, str) and name else point["solver"]
+
+
 def suite_of(document: Json) -> Json:
     return object_in(object_in(document, "context"), "suite")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from parts.legend import Legend
-from parts.result_file import OK, Json, is_number, median_of, object_in, points_of, positive
+from parts.result_file import OK, Json, contestant_of, is_number, median_of, object_in, points_of, positive
 from parts.style import SolverStyle, styles_for
 from parts.words import file_part
 
@@ -50,7 +50,7 @@ def step_sweeps_in(document: Json, legend: Legend) -> list[RunsData]:
     """One entry per scene and size that has a step sweep, of the solvers that compete; the others have no error to show."""
     groups: dict[tuple[str, int], list[Json]] = {}
     for point in points_of(document):
-        if point["sweep"] == "step" and legend.competes(point["solver"]):
+        if point["sweep"] == "step" and legend.competes(contestant_of(point)):
             groups.setdefault((point["scene"], point["vertices"]), []).append(point)
     entries = []
     for scene, vertices in sorted(groups):
@@ -65,7 +65,8 @@ def step_sweeps_in(document: Json, legend: Legend) -> list[RunsData]:
 
 
 def _add(data: RunsData, point: Json, legend: Legend) -> None:
-    solver, step, limit, seconds = point["solver"], float(point["step"]), float(point["strain_limit"]), median_of(point)
+    solver, seconds = contestant_of(point), median_of(point)
+    step, limit = float(point["step"]), float(point["strain_limit"])
     runs = data.runs.setdefault(solver, [])
     error = object_in(point, "error")
     distance, gap = error.get("trajectory"), error.get("gap")

@@ -24,7 +24,8 @@ Dashes = tuple[float, ...]  # on, off, on, off ... in points; () is a solid line
 
 @dataclass(frozen=True)
 class SolverStyle:
-    """Look of one solver. `contestant` is false for backends that the figures show but do not rank."""
+    """Look of one solver. `contestant` is false for backends that the figures show but do not rank; `hollow` marks have no
+    face."""
 
     label: str
     color: str
@@ -33,6 +34,7 @@ class SolverStyle:
     width: float = 1.3
     size: float = 5.5
     contestant: bool = True
+    hollow: bool = False
 
 
 @dataclass(frozen=True)
@@ -101,23 +103,34 @@ def parent_of(solver: str, known: Iterable[str]) -> str | None:
 
 
 def _of_legend(legend: Legend) -> dict[str, SolverStyle]:
-    """Colour by the family's number, in order of first appearance; the look by the place within the family."""
+    """Colour by the family's number, in order of first appearance; the look by the place within the family. Hollow ones
+    look like the solver that they are, but hollow; other variants of a solver come after the family's solvers."""
     members: dict[str, list[Solver]] = {}
-    for solver in legend.solvers.values():
-        if solver.contestant:
+    for solver in sorted(legend.solvers.values(), key=lambda solver: bool(solver.solver)):
+        if solver.contestant and not _copies(solver, legend):
             members.setdefault(solver.family, []).append(solver)
     neutral = [solver for solver in legend.solvers.values() if not solver.contestant]
     families = list(members)
     styles: dict[str, SolverStyle] = {}
     for solver in legend.solvers.values():
+        if _copies(solver, legend):
+            continue
         if solver.contestant:
             family = families.index(solver.family)
             color, look = _look_in(family, members[solver.family].index(solver))
         else:
             color, look = GREY, NEUTRAL_LOOKS[neutral.index(solver) % len(NEUTRAL_LOOKS)]
         styles[solver.name] = SolverStyle(solver.label, color, look.marker, look.dashes, look.width, look.size,
-                                          solver.contestant)
-    return styles
+                                          solver.contestant, solver.hollow)
+    for solver in legend.solvers.values():
+        if _copies(solver, legend):
+            styles[solver.name] = replace(styles[solver.solver], label=solver.label, hollow=True, width=0.8)
+    return {name: styles[name] for name in legend.solvers}
+
+
+def _copies(solver: Solver, legend: Legend) -> bool:
+    """Whether it takes the look of another."""
+    return solver.hollow and solver.solver in legend.solvers and not legend.solvers[solver.solver].solver
 
 
 def _look_in(family: int, place: int) -> tuple[str, Look]:

@@ -109,7 +109,7 @@ def points_of(file: str) -> list[dict]:
 
 def measured_value(file: str, quantity: str, scene: str, place: float, solver: str) -> float:
     """What the file says; raises LookupError where it says nothing."""
-    points = [p for p in points_of(file) if p["scene"] == scene and p["solver"] == solver and p["status"] == "ok"]
+    points = [p for p in points_of(file) if p["scene"] == scene and p.get("contestant", p["solver"]) == solver and p["status"] == "ok"]
     if quantity == "error":
         times = [p["seconds_per_simulated_second"]["median"] for p in points
                  if p["sweep"] == "step" and (p["error"]["trajectory"] or math.inf) <= place]

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 import parts
-from documents import SOLVERS, drawn, legend, legend_labels, marks, strain_sweep, strips, words_of
+from documents import (SOLVERS, Json, axes_with, curves, drawn, legend, legend_labels, marks, point, strain_sweep, strips,
+                       words_of)
 from parts.legend import Legend, legend_of, merged
 from parts.style import FAMILIES, SolverStyle, styles_for
 
@@ -55,6 +56,46 @@ def test_a_new_solver_leaves_the_others_as_they_are() -> None:
     after = styles_for([*NAMES, "icd_lazy", "new"], legend_of({"schema": "inextensible-bench/1", "points": [], "legend": more}))
     assert {name: after[name] for name in NAMES} == before
     assert after["icd_lazy"].color == after["icd"].color and len(set(looks(after))) == len(NAMES) + 2
+
+
+def with_untuned() -> Json:
+    """The legend of a file in which fast projection stands three times and ICD twice."""
+    more = legend()
+    variants = [("fast_projection_untuned", "fast_projection", True), ("fast_projection_again", "fast_projection", True),
+                ("icd_loose", "icd", False)]
+    for name, solver, hollow in variants:
+        place = next(number for number, row in enumerate(more["solvers"]) if row["name"] == solver)
+        parent = more["solvers"][place]
+        more["solvers"].insert(place + 1, {**parent, "name": name, "label": name.replace("_", " "), "solver": solver,
+                                           "hollow": hollow})
+    return more
+
+
+def test_other_names_of_a_solver_leave_the_looks_of_all_others() -> None:
+    before = styles_for(NAMES, today())
+    after = styles_for([*NAMES, "fast_projection_untuned", "icd_loose"],
+                       legend_of({"schema": "inextensible-bench/1", "points": [], "legend": with_untuned()}))
+    assert {name: after[name] for name in NAMES} == before
+    hollow, solver = after["fast_projection_untuned"], after["fast_projection"]
+    assert hollow.hollow and not solver.hollow
+    assert (hollow.color, hollow.marker, hollow.dashes) == (solver.color, solver.marker, solver.dashes)
+    assert after["icd_loose"].color == after["icd"].color and after["icd_loose"].marker != after["icd"].marker
+    assert list(after).index("fast_projection_untuned") == list(after).index("fast_projection") + 1
+
+
+def test_contestants_are_curves_of_their_own_and_hollow_ones_have_hollow_marks() -> None:
+    result = strain_sweep(solvers=("fast_projection",))
+    result["legend"] = with_untuned()
+    result["points"] += [point("fast_projection", limit=limit, seconds=1.0, best=True, contestant="fast_projection_untuned")
+                         for limit in (0.1, 0.01, 0.001)]
+    figure = drawn(result)["figure4a"]
+    assert legend_labels(figure) == ["fast projection", "fast projection untuned"]
+    full, hollow = curves(axes_with(figure, ylabel="wall seconds"))
+    assert list(hollow.get_ydata()) == [1.0, 1.0, 1.0] and list(full.get_ydata()) != [1.0, 1.0, 1.0]
+    assert hollow.get_markerfacecolor() == "none" and full.get_markerfacecolor() == full.get_color()
+    steps = [line for line in axes_with(figure, ylabel="best time step").lines + axes_with(figure, ylabel="best time step").artists
+             if getattr(line, "get_markerfacecolor", lambda: "")() == "none"]
+    assert steps == [], "the panel of best steps is of those that rank"
 
 
 def test_which_solvers_a_figure_shows_does_not_change_their_looks() -> None:

@@ -19,7 +19,7 @@ inline std::string read_as_suite(const std::string& text) {
     (void)to_json(suite).dump();
     std::size_t points = 0;  // planning is cheap, unless the suite asks for billions of points
     for (const SweepSpec& s : suite.sweeps)
-      points += s.limits.size() * s.resolutions.size() * s.solvers.size();
+      points += s.limits.size() * s.resolutions.size() * s.contestants.size();
     if (points < 10000) (void)plan(suite, {});
     return "";
   } catch (const UsageError& error) {

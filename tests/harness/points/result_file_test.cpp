@@ -20,6 +20,7 @@
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
 #include "harness/points/schema.h"
+#include "harness/points/tuned.h"
 #include "harness/run/sweep.h"
 #include "harness/stability/stability.h"
 
@@ -186,6 +187,48 @@ TEST(Suites, ThatAreCommittedFitTheirSchemaAndAreAccepted) {
     EXPECT_EQ(misfits(read(source(file)), "configs/suite.schema.json"), "") << name;
     EXPECT_NO_THROW(static_cast<void>(read_suite(source(file)))) << name;
   }
+}
+
+TEST(Tuned, SettingsThatAreCommittedFitTheirSchemaAndAreAccepted) {
+  EXPECT_EQ(misfits(read(source("configs/tuned.json")), "configs/tuned.schema.json"), "");
+  EXPECT_NO_THROW(static_cast<void>(read_tuned("tuned.json")));
+  TunedEntry entry{"chain", "icd", {{"max_iterations", 3.0}}, 1.5, 2, 3, {}, {}};
+  entry.places.push_back({0.01, 2, 0.01, 1, 0.02});
+  entry.context = {{"date", "d"},
+                   {"cpu_model", "c"},
+                   {"commit", "c"},
+                   {"scene", "chain"},
+                   {"scene_parameters", {{"n", 50}}}};
+  EXPECT_EQ(misfits(json::parse(tuned_document({entry}).dump()), "configs/tuned.schema.json"), "");
+  entry.context.erase("date");
+  EXPECT_NE(misfits(json::parse(tuned_document({entry}).dump()), "configs/tuned.schema.json"), "");
+}
+
+TEST(ResultFile, SaysWhereItsSettingsAreFromWhoIsWhoAndHowNoisyItIs) {
+  Suite suite = tiny_suite();
+  suite.tuned_file = "tuned.json";
+  suite.tuned_hash = "0";
+  suite.same = "icd";
+  std::vector<PointResult> points;
+  for (SweepSpec& sweep : suite.sweeps) add_double(sweep.contestants, "icd");
+  for (const Search& search : plan(suite, {})) {
+    if (search.base.solver != "icd") continue;
+    points.emplace_back().spec = search.base;
+    points.back().spec.step = 0.01;
+    points.back().status = PointStatus::ok;
+    points.back().samples = {1};
+    points.back().best = true;
+  }
+  const json document = result_document(machine_context(), suite, {"bench"}, true, points);
+  EXPECT_EQ(misfits(json::parse(document.dump()), "configs/result.schema.json"), "");
+  EXPECT_EQ(document["context"]["tuned"]["file"], "tuned.json");
+  EXPECT_EQ(document["context"]["noise"]["q95"], 0);
+  const auto known = document["legend"]["solvers"];
+  const auto again = std::find_if(known.begin(), known.end(),
+                                  [](const json& s) { return s["name"] == "icd_again"; });
+  ASSERT_NE(again, known.end());
+  EXPECT_EQ((*again)["hollow"], true);
+  EXPECT_EQ((*(again - 1))["name"], "icd");
 }
 
 TEST(Gates, ThatAreCommittedFitTheirSchemaAndAreAccepted) {

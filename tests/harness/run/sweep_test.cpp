@@ -19,7 +19,7 @@ Suite one_family() {
   SweepSpec sweep;
   sweep.sweep = "strain";
   sweep.scene = "chain";
-  sweep.solvers = {"fast_projection"};
+  sweep.contestants = {{"fast_projection", "fast_projection"}};
   sweep.limits = {0.1, 0.01};
   sweep.resolutions = {10};
   sweep.finest = 1.0 / 6400;

@@ -1,0 +1,145 @@
+#include "harness/points/contestant.h"
+
+#include <algorithm>
+
+#include "harness/base/errors.h"
+#include "harness/base/json_reader.h"
+#include "harness/points/point_json.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+
+void check_name(const Contestant& contestant, const std::string& where) {
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  const std::string& name = contestant.name;
+  if (name.empty() || !std::all_of(name.begin(), name.end(), fits))
+    throw UsageError(where + ": 'name' is " + json(name).dump() +
+                     ", must be made of a-z, 0-9 and _ (it becomes part of point ids)");
+  if (!contestant.own_name() && inextensible::find_backend(name))
+    throw UsageError(where + ": 'name' is \"" + name + "\", which is the name of another solver");
+}
+
+void append(Contestants& all, const json& list, const std::string& where, bool once) {
+  if (!list.is_array()) throw UsageError(where + " must be a list of solvers");
+  for (const json& entry : list) {
+    Contestant contestant = read_contestant(entry, where);
+    if (find_contestant(all, contestant.name) == all.end()) {
+      all.push_back(std::move(contestant));
+    } else if (once) {
+      throw UsageError(where + ": '" + contestant.name +
+                       "' stands there twice; give each a \"name\" of its own");
+    }
+  }
+}
+
+}  // namespace
+
+Contestants::iterator find_contestant(Contestants& all, const std::string& name) {
+  return std::find_if(all.begin(), all.end(),
+                      [&name](const Contestant& c) { return c.name == name; });
+}
+
+std::string label_of(const Contestant& contestant) {
+  if (!contestant.label.empty()) return contestant.label;
+  const auto* backend = inextensible::find_backend(contestant.solver);
+  if (contestant.own_name() && backend) return backend->label;
+  std::string words = contestant.name;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+const inextensible::Backend& checked_backend(const std::string& name, const std::string& where) {
+  const auto* backend = inextensible::find_backend(name);
+  if (!backend)
+    throw UsageError(where + ": " +
+                     unknown_name("solver", name, names_of(inextensible::backends())).what());
+  return *backend;
+}
+
+inextensible::Settings read_settings(const json& object, const std::string& where,
+                                     const inextensible::Backend& backend) {
+  if (!object.is_object()) throw UsageError(where + ": must be an object { ... }");
+  inextensible::Settings settings;
+  const std::vector<std::string> known = names_of(backend.settings);
+  for (const auto& [key, value] : object.items()) {
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      throw UsageError(
+          where + ": " +
+          unknown_name("setting of solver " + std::string(backend.name), key, known).what());
+    }
+    if (value.is_number()) {
+      settings[key] = value.get<double>();
+    } else if (value.is_string()) {
+      settings[key] = value.get<std::string>();
+    } else {
+      throw UsageError(where + ": '" + key + "' is " + value.dump() +
+                       ", must be a number or a text");
+    }
+  }
+  return settings;
+}
+
+Contestant read_contestant(const json& entry, const std::string& where) {
+  if (entry.is_string()) {
+    const std::string name = entry.get<std::string>();
+    checked_backend(name, where);
+    return {name, name};
+  }
+  if (!entry.is_object())
+    throw UsageError(where + " is " + entry.dump() +
+                     ", must be solvers' names, or objects such as {\"name\": \"icd_loose\", "
+                     "\"solver\": \"icd\", \"settings\": {}}");
+  JsonReader reader(entry, where);
+  Contestant contestant;
+  contestant.name = reader.text("name", "");
+  contestant.solver = reader.text("solver", contestant.name);
+  const auto& backend = checked_backend(contestant.solver, where);
+  if (contestant.name.empty()) contestant.name = contestant.solver;
+  if (const json* settings = reader.find("settings"))
+    contestant.settings = read_settings(*settings, where + ": 'settings'", backend);
+  contestant.label = reader.text("label", "");
+  contestant.hollow = reader.flag("hollow", false);
+  reader.finish();
+  check_name(contestant, where);
+  return contestant;
+}
+
+Contestants read_contestants(const json* solvers, const json* also, const std::string& where) {
+  Contestants all;
+  if (solvers) append(all, *solvers, where + ": 'solvers'", true);
+  if (all.empty()) {
+    for (const auto& backend : inextensible::backends()) {
+      if (backend.contestant) all.push_back({backend.name, backend.name});
+    }
+  }
+  if (also) append(all, *also, where + ": 'also'", false);
+  return all;
+}
+
+json to_json(const Contestant& contestant) {
+  if (contestant == Contestant{contestant.solver, contestant.solver}) return contestant.solver;
+  json object = {{"name", contestant.name},
+                 {"solver", contestant.solver},
+                 {"settings", to_json(contestant.settings)}};
+  if (!contestant.label.empty()) object["label"] = contestant.label;
+  if (contestant.hollow) object["hollow"] = true;
+  return object;
+}
+
+std::string double_of(const std::string& name) { return name + "_again"; }
+
+void add_double(Contestants& all, const std::string& name) {
+  const auto place = find_contestant(all, name);
+  if (place == all.end() || find_contestant(all, double_of(name)) != all.end()) return;
+  Contestant again = *place;
+  again.name = double_of(name);
+  again.label = label_of(*place) + " again";
+  again.hollow = true;
+  all.insert(place + 1, std::move(again));
+}
+
+}  // namespace harness

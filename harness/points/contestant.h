@@ -1,0 +1,48 @@
+// Who stands in a sweep: a solver under a name, with settings of its own. One solver may stand
+// there several times.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "inextensible/registry.h"
+
+namespace harness {
+
+struct Contestant {
+  std::string name;    // a-z, 0-9 and _; the solver's own unless it stands there more than once
+  std::string solver;  // see `bench list solvers`
+  inextensible::Settings settings = {};  // given ones only
+  std::string label = "";                // in figures; empty: the solver's, or the name in words
+  bool hollow = false;                   // beside the ranking, drawn with hollow marks
+
+  bool own_name() const { return name == solver; }
+  bool operator==(const Contestant&) const = default;
+};
+using Contestants = std::vector<Contestant>;
+
+// The place of one, or the end.
+Contestants::iterator find_contestant(Contestants& all, const std::string& name);
+std::string label_of(const Contestant& contestant);
+
+// "icd", or {"name": "icd_loose", "solver": "icd", "settings": {...}, "label": "...", "hollow":
+// true}. All throw UsageError, naming `where`, key and value.
+Contestant read_contestant(const nlohmann::json& entry, const std::string& where);
+// Lists of them under the keys "solvers" (all that compete where it is missing) and "also".
+Contestants read_contestants(const nlohmann::json* solvers, const nlohmann::json* also,
+                             const std::string& where);
+inextensible::Settings read_settings(const nlohmann::json& object, const std::string& where,
+                                     const inextensible::Backend& backend);
+const inextensible::Backend& checked_backend(const std::string& name, const std::string& where);
+
+// The way back.
+nlohmann::json to_json(const Contestant& contestant);
+
+// The same solver with the same settings once more, right after it, as <name>_again: how far two
+// equal ones are apart is the noise of a result. Nothing if `name` does not stand there, or its
+// double does.
+void add_double(Contestants& all, const std::string& name);
+std::string double_of(const std::string& name);
+
+}  // namespace harness

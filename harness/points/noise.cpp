@@ -1,0 +1,65 @@
+#include "harness/points/noise.h"
+
+#include <cmath>
+#include <map>
+
+#include "harness/points/contestant.h"
+#include "harness/points/point_json.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+
+// Where a point stands in a comparison: everything but who it is, and the step, which the best
+// ones choose.
+std::string place_of(const PointSpec& spec) {
+  PointSpec place = spec;
+  place.contestant = place.solver = "";
+  place.settings.clear();
+  if (spec.sweep != "step") place.step = 0;
+  return key_of(place);
+}
+
+bool counts(const PointResult& point) {
+  return point.ok() && (point.best || point.spec.sweep == "step");
+}
+
+}  // namespace
+
+std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
+                                    const std::string& one) {
+  PairNoise noise{one, double_of(one)};
+  std::map<std::string, double> first;
+  for (const PointResult& point : points) {
+    if (counts(point) && point.spec.name() == noise.one)
+      first[place_of(point.spec)] = point.median_seconds();
+  }
+  std::vector<double> distances;
+  for (const PointResult& point : points) {
+    if (!counts(point) || point.spec.name() != noise.other) continue;
+    if (const auto twin = first.find(place_of(point.spec)); twin != first.end())
+      distances.push_back(std::abs(std::log(point.median_seconds() / twin->second)));
+  }
+  if (distances.empty()) return {};
+  noise.places = static_cast<int>(distances.size());
+  noise.median = quantile(distances, 0.5);
+  noise.q95 = quantile(distances, 0.95);
+  return noise;
+}
+
+json to_json(const PairNoise& noise) {
+  return {{"pair", {noise.one, noise.other}},
+          {"places", noise.places},
+          {"median", noise.median},
+          {"q95", noise.q95}};
+}
+
+std::optional<PairNoise> noise_of(const json& context) {
+  if (!context.contains("noise")) return {};
+  const json& noise = context.at("noise");
+  return PairNoise{noise.at("pair").at(0), noise.at("pair").at(1), noise.at("places"),
+                   noise.at("median"), noise.at("q95")};
+}
+
+}  // namespace harness

@@ -1,0 +1,154 @@
+#include "harness/points/tuned.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/json_reader.h"
+#include "harness/base/paths.h"
+#include "harness/points/context.h"
+#include "harness/points/point_json.h"
+#include "harness/scenes/scene.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr const char* schema = "inextensible-tuned/1";
+
+const json& list_in(JsonReader& reader, const char* key) {
+  const json* list = reader.find(key);
+  if (!list || !list->is_array()) throw UsageError(reader.where(key) + " must be a list");
+  return *list;
+}
+
+TunedPlace read_place(const json& object, const std::string& where) {
+  JsonReader reader(object, where);
+  TunedPlace place;
+  for (const auto& [key, member] :
+       {std::pair("limit", &TunedPlace::limit),
+        std::pair("default_seconds", &TunedPlace::default_seconds),
+        std::pair("default_step", &TunedPlace::default_step),
+        std::pair("seconds", &TunedPlace::seconds), std::pair("step", &TunedPlace::step)})
+    place.*member = reader.number(key, 0, Bounds::positive());
+  reader.finish();
+  return place;
+}
+
+TunedEntry read_entry(const json& object, const std::string& where) {
+  JsonReader reader(object, where);
+  TunedEntry entry;
+  entry.kind = reader.one_of("kind", "", scene_kinds(), "kind of scene");
+  entry.solver = reader.text("solver", "");
+  const auto& backend = checked_backend(entry.solver, where);
+  if (const json* settings = reader.find("settings"))
+    entry.settings = read_settings(*settings, where + ": 'settings'", backend);
+  try {
+    complete_settings(backend, entry.settings);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(where + ": 'settings': " + error.what());
+  }
+  entry.gain = reader.number("gain", 1, Bounds::positive());
+  entry.evaluations =
+      static_cast<int>(reader.number("evaluations", 0, {.least = 0, .most = 1e9, .whole = true}));
+  entry.budget =
+      static_cast<int>(reader.number("budget", 0, {.least = 0, .most = 1e9, .whole = true}));
+  for (const json& place : list_in(reader, "places"))
+    entry.places.push_back(read_place(place, where + ": 'places'"));
+  if (const json* context = reader.find("context")) entry.context = *context;
+  reader.finish();
+  return entry;
+}
+
+// Two files with the same settings are the same to a sweep, whenever they were found.
+std::string hash_of(const std::vector<TunedEntry>& entries) {
+  std::map<std::string, json> settings;
+  for (const TunedEntry& entry : entries)
+    settings[entry.kind + "/" + entry.solver] = to_json(entry.settings);
+  return fnv1a(json(settings).dump());
+}
+
+}  // namespace
+
+const TunedEntry* Tuned::find(const std::string& kind, const std::string& solver) const {
+  const auto place = std::find_if(entries.begin(), entries.end(), [&](const TunedEntry& e) {
+    return e.kind == kind && e.solver == solver;
+  });
+  return place == entries.end() ? nullptr : &*place;
+}
+
+Tuned read_tuned(const std::string& file) {
+  const bool path = file.find('/') != std::string::npos;
+  return parse_tuned(
+      read_file(path ? file : source_path("configs/" + file), "file of tuned settings"), file);
+}
+
+Tuned parse_tuned(const std::string& text, const std::string& file) {
+  const json document = parse_commented(text, file);
+  const std::string where = "tuned settings '" + file + "'";
+  JsonReader reader(document, where);
+  if (reader.text("schema", "") != schema)
+    throw UsageError(where + ": 'schema' must be \"" + schema + "\"");
+  Tuned tuned;
+  tuned.file = std::filesystem::path(file).filename().string();  // results name no folders
+  const json& list = list_in(reader, "tuned");
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string place = where + ": tuned[" + std::to_string(i) + "]";
+    TunedEntry entry = read_entry(list[i], place);
+    if (tuned.find(entry.kind, entry.solver))
+      throw UsageError(place + ": " + entry.kind + " and " + entry.solver + " stand there twice");
+    tuned.entries.push_back(std::move(entry));
+  }
+  reader.finish();
+  tuned.hash = hash_of(tuned.entries);
+  return tuned;
+}
+
+ordered_json tuned_document(const std::vector<TunedEntry>& entries) {
+  ordered_json list = ordered_json::array();
+  for (const TunedEntry& entry : entries) {
+    ordered_json places = ordered_json::array();
+    for (const TunedPlace& p : entry.places)
+      places.push_back({{"limit", p.limit},
+                        {"default_seconds", p.default_seconds},
+                        {"default_step", p.default_step},
+                        {"seconds", p.seconds},
+                        {"step", p.step}});
+    list.push_back({{"kind", entry.kind},
+                    {"solver", entry.solver},
+                    {"settings", to_json(entry.settings)},
+                    {"gain", entry.gain},
+                    {"evaluations", entry.evaluations},
+                    {"budget", entry.budget},
+                    {"places", places},
+                    {"context", entry.context}});
+  }
+  return {{"schema", schema}, {"tuned", list}};
+}
+
+void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
+          const std::map<std::string, inextensible::Settings>& given, bool untuned) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const TunedEntry* entry = all[i].own_name() ? tuned.find(kind, all[i].solver) : nullptr;
+    if (!entry) continue;
+    Contestant before = all[i];
+    const auto fixed = given.find(before.solver);
+    for (const auto& [name, value] : entry->settings) {
+      if (fixed == given.end() || !fixed->second.contains(name))
+        all[i].settings.emplace(name, value);
+    }
+    before.name += "_untuned";
+    if (!untuned || all[i].settings == before.settings ||
+        find_contestant(all, before.name) != all.end())
+      continue;
+    before.label = label_of(all[i]) + ", untuned";
+    before.hollow = true;
+    all.insert(all.begin() + static_cast<std::ptrdiff_t>(i) + 1, std::move(before));
+    ++i;
+  }
+}
+
+}  // namespace harness

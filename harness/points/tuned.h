@@ -1,0 +1,51 @@
+// Settings that `bench tune` found: for each solver at most one set a kind of scene. The file is
+// configs/tuned.json, its schema configs/tuned.schema.json.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "harness/points/contestant.h"
+
+namespace harness {
+
+// The time at one strain limit of a tuning scene, each at its best step of those tried.
+struct TunedPlace {
+  double limit = 0;
+  double default_seconds = 0, default_step = 0;  // s/s, s
+  double seconds = 0, step = 0;                  // with the settings that were found
+};
+
+struct TunedEntry {
+  std::string kind;  // of scene
+  std::string solver;
+  inextensible::Settings settings;  // those that are not the default
+  double gain = 1;                  // geometric mean over the places of default_seconds / seconds
+  int evaluations = 0, budget = 0;  // sets of settings that were tried, and that might have been
+  std::vector<TunedPlace> places;
+  nlohmann::json context;  // date, commit and machine
+};
+
+struct Tuned {
+  std::string file;  // its name
+  std::string hash;  // of the settings alone
+  std::vector<TunedEntry> entries;
+
+  const TunedEntry* find(const std::string& kind, const std::string& solver) const;
+};
+
+// "tuned.json" is looked for in configs/, a path with a slash from where the program runs. Throws
+// UsageError, naming file, key and value.
+Tuned read_tuned(const std::string& file);
+Tuned parse_tuned(const std::string& text, const std::string& file);
+
+nlohmann::ordered_json tuned_document(const std::vector<TunedEntry>& entries);
+
+// Under its own name a solver gets its tuned settings, as far as neither its entry nor `given`
+// says otherwise. untuned: one that thereby differs from its defaults stands there once more,
+// hollow, without them, as <name>_untuned.
+void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
+          const std::map<std::string, inextensible::Settings>& given, bool untuned);
+
+}  // namespace harness

@@ -1,0 +1,194 @@
+// One solver several times in a run, tuned settings, and the noise that two equal ones show.
+#include "harness/points/contestant.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "harness/base/errors.h"
+#include "harness/points/noise.h"
+#include "harness/points/suite.h"
+#include "harness/points/tuned.h"
+#include "harness/run/plan.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+
+std::string write_tuned(const std::string& entries) {
+  const std::string path = testing::TempDir() + "tuned_of_test.json";
+  FILE* file = std::fopen(path.c_str(), "w");
+  std::fputs((R"({"schema": "inextensible-tuned/1", "tuned": [)" + entries + "]}").c_str(), file);
+  std::fclose(file);
+  return path;
+}
+
+std::string entry(const std::string& kind, const std::string& solver, const std::string& settings) {
+  return R"({"kind": ")" + kind + R"(", "solver": ")" + solver + R"(", "settings": )" + settings +
+         R"(, "gain": 1.5, "evaluations": 3, "budget": 4, "places": [], "context": {}})";
+}
+
+Suite suite_with(const std::string& everywhere, const std::string& of_sweep,
+                 const std::string& scene = "chain") {
+  return parse_suite("{" + everywhere + R"("sweeps": [{"sweep": "strain", "scene": ")" + scene +
+                         R"(", "limits": [0.1], )" + of_sweep + "}]}",
+                     "suite");
+}
+
+std::vector<std::string> names(const Suite& suite) {
+  return names_of(suite.sweeps.at(0).contestants);
+}
+
+std::string complaint(const std::string& everywhere, const std::string& of_sweep) {
+  try {
+    static_cast<void>(suite_with(everywhere, of_sweep));
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+double setting(const Search& search, const char* name) {
+  return std::get<double>(search.base.settings.at(name));
+}
+
+TEST(Contestants, HaveTheirOwnNamesAndSettings) {
+  const Suite suite = suite_with("", R"("solvers": ["jacobi", {"name": "jacobi_slow",
+      "solver": "jacobi", "settings": {"relaxation": 1.2}, "hollow": true}],
+      "solver_options": {"jacobi": {"relaxation": 1.5, "target": 0.5}})");
+  const auto searches = plan(suite, {});
+  ASSERT_EQ(searches.size(), 2u);
+  EXPECT_EQ(setting(searches[0], "relaxation"), 1.5);
+  EXPECT_EQ(setting(searches[1], "relaxation"), 1.2) << "a contestant's own settings go first";
+  EXPECT_EQ(setting(searches[1], "target"), 0.5) << "the solver's are for all of it";
+  EXPECT_NE(searches[1].base.id().find("/jacobi_slow/"), std::string::npos);
+  EXPECT_NE(searches[0].family, searches[1].family);
+  SweepFilters filters;
+  filters.solver = std::regex("jacobi_.*");
+  EXPECT_EQ(plan(suite, filters).size(), 1u);
+  const Suite again = parse_suite(to_json(suite).dump(), "again");
+  EXPECT_EQ(to_json(again), to_json(suite));
+  EXPECT_EQ(again.sweeps[0].contestants, suite.sweeps[0].contestants);
+}
+
+TEST(Contestants, ThatAreWrongAreRefusedByName) {
+  const auto says = [](const std::string& message, const std::string& part) {
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  says(complaint("", R"("solvers": ["jacobi", "jacobi"])"), "'jacobi' stands there twice");
+  says(complaint("", R"("solvers": [{"name": "icd", "solver": "jacobi"}])"), "another solver");
+  says(complaint("", R"("solvers": [{"name": "my solver", "solver": "icd"}])"), "a-z, 0-9 and _");
+  says(complaint("", R"("solvers": [{"name": "x", "solver": "idc"}])"), "did you mean 'icd'");
+  says(complaint("", R"("solvers": [{"name": "x", "solver": "icd", "settings": {"relax": 1}}])"),
+       "no setting of solver icd 'relax'");
+  says(complaint("", R"("solvers": [{"name": "x", "solver": "icd", "hollow": 1}])"), "'hollow'");
+  says(complaint("", R"("solvers": [5])"), "solvers' names");
+  says(complaint(R"("same": "idc", )", R"("solvers": ["icd"])"), "did you mean 'icd'");
+  says(complaint(R"("untuned": true, )", R"("solvers": ["icd"])"), "goes with 'tuned'");
+  says(complaint(R"("tuned": "no_such.json", )", R"("solvers": ["icd"])"), "no_such.json");
+}
+
+TEST(Tuned, SettingsAreUsedForTheirKindOfSceneAndBelowWhatASuiteSays) {
+  const std::string file = write_tuned(entry("drape", "jacobi", R"({"relaxation": 1.6})") + "," +
+                                       entry("drape", "icd", "{}"));
+  const std::string tuned = R"("tuned": ")" + file + R"(", "untuned": true, )";
+  const std::string both = R"("solvers": ["jacobi", "icd"])";
+  const Suite drape = suite_with(tuned, both, "drape");
+  EXPECT_EQ(names(drape), (std::vector<std::string>{"jacobi", "jacobi_untuned", "icd"}));
+  const auto searches = plan(drape, {});
+  EXPECT_EQ(setting(searches[0], "relaxation"), 1.6);
+  EXPECT_TRUE(searches[1].base.settings.empty());
+  EXPECT_TRUE(drape.sweeps[0].contestants[1].hollow);
+  EXPECT_EQ(names(suite_with(tuned, both, "folded_drape")), names(drape)) << "it is like a drape";
+  EXPECT_EQ(names(suite_with(tuned, both)), (std::vector<std::string>{"jacobi", "icd"}));
+
+  const Suite given =
+      suite_with(tuned, both + R"(, "solver_options": {"jacobi": {"relaxation": 1.1}})", "drape");
+  EXPECT_EQ(setting(plan(given, {})[0], "relaxation"), 1.1);
+  EXPECT_EQ(names(given), (std::vector<std::string>{"jacobi", "icd"})) << "nothing of it is tuned";
+
+  // What was run is what the result's suite says, whatever becomes of the file.
+  write_tuned("");
+  EXPECT_EQ(to_json(parse_suite(to_json(drape).dump(), "again")), to_json(drape));
+}
+
+TEST(Tuned, AFileIsReadAsItIsWrittenAndItsHashIsThatOfItsSettings) {
+  TunedEntry e{"chain", "jacobi", {{"relaxation", 1.7}}, 1.25, 12, 40, {}, {{"date", "today"}}};
+  e.places.push_back({0.01, 2, 0.005, 1, 0.01});
+  const std::string text = tuned_document({e}).dump();
+  const Tuned once = parse_tuned(text, "t");
+  ASSERT_EQ(once.entries.size(), 1u);
+  EXPECT_EQ(tuned_document(once.entries).dump(), text);
+  e.gain = 7;
+  EXPECT_EQ(parse_tuned(tuned_document({e}).dump(), "t").hash, once.hash);
+  e.settings["relaxation"] = 1.71;
+  EXPECT_NE(parse_tuned(tuned_document({e}).dump(), "t").hash, once.hash);
+  for (const auto& [from, to] :
+       {std::pair("1.7", "7.5"), std::pair("relaxation", "relation"), std::pair("jacobi", "jakobi"),
+        std::pair("chain", "train"), std::pair("1.25", "-1"), std::pair("tuned/1", "tuned/9")}) {
+    std::string wrong = text;
+    wrong.replace(wrong.find(from), std::string(from).size(), to);
+    EXPECT_THROW(static_cast<void>(parse_tuned(wrong, "t")), UsageError) << to;
+  }
+}
+
+PointResult timed(const std::string& contestant, double limit, double step, double seconds) {
+  PointResult point;
+  point.spec.sweep = "strain";
+  point.spec.scene = "chain";
+  point.spec.contestant = contestant;
+  point.spec.solver = "icd";
+  point.spec.strain_limit = limit;
+  point.spec.step = step;
+  point.status = PointStatus::ok;
+  point.samples = {seconds};
+  point.best = true;
+  return point;
+}
+
+TEST(Noise, IsTheSpreadOfThePairsRatiosWhateverItsSteps) {
+  std::vector<PointResult> points;
+  for (int i = 1; i <= 21; ++i) {  // |log ratio|s of 0, 0.01, ..., 0.2
+    const double log_ratio = 0.01 * (i - 1) * (i % 2 == 0 ? 1 : -1);
+    points.push_back(timed("icd", 0.001 * i, 0.01, i));
+    points.push_back(timed("icd_again", 0.001 * i, 0.005, i * std::exp(log_ratio)));
+  }
+  points.push_back(timed("icd", 0.5, 0.01, 1));
+  points.push_back(timed("icd_again", 0.5, 0.01, 100));
+  points.back().best = false;
+  points.push_back(timed("jacobi", 0.001, 0.01, 100));
+  const auto noise = pair_noise(points, "icd");
+  ASSERT_TRUE(noise);
+  EXPECT_EQ(noise->places, 21);
+  EXPECT_NEAR(noise->median, 0.1, 1e-12);
+  EXPECT_NEAR(noise->q95, 0.19, 1e-12);
+  EXPECT_EQ(noise_of({{"noise", to_json(*noise)}})->q95, noise->q95);
+  EXPECT_FALSE(noise_of(json::object()));
+  EXPECT_FALSE(pair_noise(points, "jacobi"));
+}
+
+TEST(Noise, OfAStepSweepComparesEqualSteps) {
+  std::vector<PointResult> points{timed("icd", 0.1, 0.01, 1), timed("icd", 0.1, 0.005, 2),
+                                  timed("icd_again", 0.1, 0.005, 2.2)};
+  for (PointResult& point : points) {
+    point.spec.sweep = "step";
+    point.best = false;
+  }
+  const auto noise = pair_noise(points, "icd");
+  ASSERT_TRUE(noise);
+  EXPECT_EQ(noise->places, 1);
+  EXPECT_NEAR(noise->q95, std::log(1.1), 1e-12);
+}
+
+TEST(Same, StandsThereOnceMoreWithTheSameSettings) {
+  const Suite suite = suite_with(R"("same": "jacobi", )", R"("solvers": ["icd", {"name": "jacobi",
+      "settings": {"relaxation": 1.2}}])");
+  EXPECT_EQ(names(suite), (std::vector<std::string>{"icd", "jacobi", "jacobi_again"}));
+  const auto searches = plan(suite, {});
+  EXPECT_EQ(searches[1].base.settings, searches[2].base.settings);
+  EXPECT_EQ(names(parse_suite(to_json(suite).dump(), "again")), names(suite));
+}
+
+}  // namespace
+}  // namespace harness
