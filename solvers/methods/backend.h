@@ -53,9 +53,9 @@ enum class Knob { strain_limit, stiffness, none };
 // end of the step, or from springs.
 enum class Direction { none, local, start, current, springs };
 
-// What time the velocities of a state belong to. half_step: v^n = (x^n - x^{n-1}) / h is that of the
-// middle of the step before, as in symplectic and in backward Euler, hence in every velocity filter
-// behind FilterStepper; such a method starts from start_half_step_back
+// What time the velocities of a state belong to. half_step: v^n = (x^n - x^{n-1}) / h is that of
+// the middle of the step before, as in symplectic and in backward Euler, hence in every velocity
+// filter behind FilterStepper; such a method starts from start_half_step_back
 // (systems/constrained_acceleration.h). whole_step: x and v are those of one instant.
 enum class Velocities { half_step, whole_step };
 

@@ -9,11 +9,11 @@
 // Marquardt's (1963) with the damping rule of Nielsen (1999):
 //   (J W J^T + damping D) mu = C~,   D the diagonal,
 // which minimizes |C~ + J dx|^2 + damping |dx|^2 in the norms of D^-1 and M. C~ is what of C lies
-// outside the inner part of the permissible band: a straight row at full length has no neighbour
-// with C = 0, but many permissible ones.
+// outside the inner part of the permissible band; the undamped step takes it for C too, where a
+// target is set.
 //
 // Iterative linear solvers solve (7) to a residual of a fraction of |C(x_j)|, the forcing term of
-// an inexact Newton method: 1e-2 at first, then as |C| has fallen, squared (Eisenstat and Walker
+// an inexact Newton method: first_forcing, then as |C| has fallen, squared (Eisenstat and Walker
 // 1996, choice 2), which keeps the convergence of order two.
 #include "inextensible/methods/fast_projection.h"
 
@@ -30,9 +30,7 @@ namespace {
 // one of |C|^2, where J W J^T was singular in all but rounding, and digits are lost on the way.
 constexpr int patience = 8;
 constexpr double overshoot = 1e8;
-constexpr double inner_band = 0.6;  // of the permissible one
-constexpr double first_forcing = 1e-2, least_forcing = 1e-8, damped_forcing = 1e-4;
-constexpr double smoothing_target = 0.5, over_relaxation = 1.4;
+constexpr double least_forcing = 1e-8, damped_forcing = 1e-4;
 constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1e8;
 
 }  // namespace
@@ -40,29 +38,43 @@ constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1
 FastProjection::FastProjection(const Problem& problem, const Settings& settings)
     : system_(problem, settings.strain_limit, settings.linear_solver,
               ConstraintSystem::Digits::few),
-      max_iterations_(settings.max_iterations),
-      min_iterations_(settings.min_iterations),
-      smoothing_sweeps_(settings.smoothing_sweeps),
+      settings_(settings),
       best_(3, problem.vertices()),
       u_(3, problem.constraints()),
       mu_(problem.constraints()),
       excess_(problem.constraints()) {
-  if (smoothing_sweeps_ > 0 && system_.solver_name() != "tridiagonal") {
+  const bool sweeps = settings.smoothing_sweeps > 0 || settings.sweeps_before > 0;
+  if (sweeps && system_.solver_name() != "tridiagonal") {
     sweep_ = std::make_unique<StrainSweep>(
-        StrainSweep::by_mass(problem, {settings.strain_limit, smoothing_target}, over_relaxation));
+        StrainSweep::by_mass(problem, {settings.strain_limit, settings.smoothing_target},
+                             settings.smoothing_relaxation));
   }
+}
+
+// u_, and C~ for this target in mu_. Returns whether x is permissible.
+bool FastProjection::linearize(double target, const Positions& x) {
+  const bool permissible = system_.edges().linearize(x, u_, mu_);
+  if (target > 0) system_.edges().excess(target, mu_);
+  return permissible;
 }
 
 StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
                                  WorkCounters& work) {
   const EdgeConstraints& edges = system_.edges();
-  double error = std::numeric_limits<double>::infinity();  // |C|^2 at best_
-  double last_error = error, forcing = first_forcing;
+  double error = std::numeric_limits<double>::infinity();  // |C~|^2 at best_
+  double last_error = error, forcing = settings_.first_forcing;
   for (int j = 0, best_j = 0;; ++j) {
     if (observer_) show(j, x);
-    if (edges.linearize(x, u_, mu_) && j >= min_iterations_) return {Status::ok, j};
-    if (j == max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
+    bool permissible = linearize(settings_.target, x);
+    if (j == 0 && !permissible && sweep_ && settings_.sweeps_before > 0) {
+      smooth(settings_.sweeps_before, x, work);
+      permissible = linearize(settings_.target, x);
+    }
+    if (permissible && j >= settings_.min_iterations) return {Status::ok, j};
+    if (j == settings_.max_iterations)
+      return refuse(Status::not_converged, j, edges, x, "iteration limit");
     const double next_error = mu_.squaredNorm();
+    if (next_error == 0) return {Status::ok, j};  // nothing left to project
     if (next_error < error) {
       error = next_error;
       best_ = x;
@@ -71,13 +83,14 @@ StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Pos
     } else if (j == 0) {
       return refuse(Status::not_finite, j, edges, x, "overflow");
     }
-    if (j > 0) forcing = std::clamp(0.9 * next_error / last_error, least_forcing, first_forcing);
+    if (j > 0)
+      forcing = std::clamp(0.9 * next_error / last_error, least_forcing, settings_.first_forcing);
     last_error = next_error;
     if (j - best_j == patience || !(next_error < overshoot * error) || !system_.factor(u_, work) ||
         !system_.solve(mu_, work, forcing))  // (7)
       return damped(j, x, work);
     edges.apply(u_, mu_, x);  // (5)
-    if (sweep_) smooth(x, work);
+    if (sweep_) smooth(settings_.smoothing_sweeps, x, work);
   }
 }
 
@@ -92,9 +105,10 @@ void FastProjection::show(int j, const Positions& x) {
   observer_->iterate(system_.edges(), j, x, multipliers_);
 }
 
-void FastProjection::smooth(Positions& x, WorkCounters& work) {
+void FastProjection::smooth(int sweeps, Positions& x, WorkCounters& work) {
+  if (sweeps == 0) return;
   sweep_->load(x);
-  for (int i = 0; i < smoothing_sweeps_; ++i) {
+  for (int i = 0; i < sweeps; ++i) {
     const std::int64_t corrected = sweep_->in_turn();
     work.edge_projections += corrected;
     if (corrected == 0) break;
@@ -112,11 +126,11 @@ StepResult FastProjection::damped(int j, Positions& x, WorkCounters& work) {
       ++work.line_search_steps;
       x = best_;
       if (observer_) multipliers_ = best_multipliers_;
-      edges.linearize(x, u_, mu_);
-      edges.excess(inner_band, mu_);
+      linearize(settings_.inner_band, x);
       error = mu_.squaredNorm();
     }
-    if (j >= max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
+    if (j >= settings_.max_iterations)
+      return refuse(Status::not_converged, j, edges, x, "iteration limit");
     excess_ = mu_;
     while (damping < largest_damping &&
            !(system_.factor(u_, work, damping) && system_.solve(mu_, work, damped_forcing))) {
@@ -130,8 +144,7 @@ StepResult FastProjection::damped(int j, Positions& x, WorkCounters& work) {
     const double predicted_error = damped_prediction(damping);
     edges.apply(u_, mu_, x);
     if (observer_) show(j + 1, x);
-    if (edges.linearize(x, u_, mu_)) return {Status::ok, j + 1};
-    edges.excess(inner_band, mu_);
+    if (linearize(settings_.inner_band, x)) return {Status::ok, j + 1};
     const double next_error = mu_.squaredNorm();
     taken_back = !(next_error < error);
     if (taken_back) {
@@ -163,13 +176,30 @@ double FastProjection::damped_prediction(double damping) const {
 
 SettingFields<FastProjection::Settings> FastProjection::fields() {
   using S = Settings;
-  return {{"max_iterations", &S::max_iterations, "projections a step before it is refused",
-           at_least_one},
-          {"min_iterations", &S::min_iterations, least_iterations, count_from_zero, Range{0, 2}},
-          {"smoothing_sweeps", &S::smoothing_sweeps,
-           "colored Gauss-Seidel sweeps after each projection, at most; none on chains",
-           count_from_zero, Range{0, 120}},
-          schur_solver_field<S>()};
+  return {
+      {"max_iterations", &S::max_iterations, "projections a step before it is refused",
+       at_least_one},
+      {"min_iterations", &S::min_iterations, least_iterations, count_from_zero,
+       tunable_least_iterations},
+      {"target", &S::target, projection_target, below_limit, tunable_below_limit},
+      {"inner_band", &S::inner_band, "target of damped projections, where J W J^T is singular",
+       below_limit, tunable_below_limit},
+      {"sweeps_before", &S::sweeps_before,
+       "colored Gauss-Seidel sweeps before the first projection, at most; none on chains, where "
+       "a projection costs no more than some sweeps",
+       count_from_zero, Range{0, 120}},
+      {"smoothing_sweeps", &S::smoothing_sweeps,
+       "the same after each projection, at most; none on chains", count_from_zero, Range{0, 120}},
+      {"smoothing_target", &S::smoothing_target,
+       "an edge that a sweep corrects is brought to this fraction of the strain limit", fraction,
+       fraction},
+      {"smoothing_relaxation", &S::smoothing_relaxation, "times a sweep's correction",
+       relaxation_range, tunable_relaxation},
+      {"first_forcing", &S::first_forcing,
+       "residual of a step's first linear solve by conjugate gradients or in mixed precision, of "
+       "the right-hand side; those of later ones are smaller",
+       Range{1e-8, 1}, tunable_forcing},
+      schur_solver_field<S>()};
 }
 
 Backend fast_projection_row() {

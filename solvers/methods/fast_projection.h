@@ -22,6 +22,17 @@ class FastProjection final : public VelocityFilter {
     // cloth, but only to first order; most of what it leaves is local, and cheaper to mend by
     // sweeps. Not on chains, where a projection costs no more than some sweeps.
     int smoothing_sweeps = 0;
+    double smoothing_target = 0.5;      // of the strain limit
+    double smoothing_relaxation = 1.4;  // of a correction
+    // The same sweeps before the first projection, at most: what they mend is nothing to project.
+    int sweeps_before = 0;
+    // A projection takes back all of an edge's strain at 0, which gives energy to edges that have
+    // drifted within the limit for some steps; else what lies beyond this fraction of the limit.
+    double target = 0;
+    // The same where J W J^T is singular: a straight row at full length has no neighbour with C =
+    // 0, but many permissible ones.
+    double inner_band = 0.6;
+    double first_forcing = 1e-2;
     std::string_view linear_solver = "auto";
   };
   static SettingFields<Settings> fields();
@@ -31,17 +42,18 @@ class FastProjection final : public VelocityFilter {
   double reciprocal_condition() const override { return system_.reciprocal_condition(); }
 
  private:
-  void smooth(Positions& x, WorkCounters& work);
+  bool linearize(double target, const Positions& x);
+  void smooth(int sweeps, Positions& x, WorkCounters& work);
   void show(int j, const Positions& x);
   StepResult damped(int j, Positions& x, WorkCounters& work);
   double damped_prediction(double damping) const;
 
   ConstraintSystem system_;
-  int max_iterations_, min_iterations_, smoothing_sweeps_;
-  std::unique_ptr<StrainSweep> sweep_;  // with smoothing only
+  Settings settings_;
+  std::unique_ptr<StrainSweep> sweep_;  // with sweeps only
   Positions best_;                      // x_j of least constraint error
   Eigen::Matrix3Xd u_;                  // gradient of C at x_j
-  Eigen::VectorXd mu_;                  // C(x_j), then h^2 dlambda
+  Eigen::VectorXd mu_;                  // C~(x_j), then h^2 dlambda
   Eigen::VectorXd excess_;              // C~ of a damped iteration
   // With an observer only: h^2 lambda at x_j and at best_.
   Eigen::VectorXd multipliers_, best_multipliers_;

@@ -25,7 +25,7 @@ SettingFields<GaussSeidelColored::Settings> GaussSeidelColored::fields() {
       {"max_iterations", &S::max_iterations, "sweeps a step before it is refused", at_least_one},
       {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit",
        fraction, fraction},
-      {"relaxation", &S::relaxation, "times the correction", Range{0, 2, true}, Range{0.5, 1.95}}};
+      {"relaxation", &S::relaxation, "times the correction", relaxation_range, tunable_relaxation}};
 }
 
 Backend gauss_seidel_colored_row() {

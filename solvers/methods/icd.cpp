@@ -41,6 +41,8 @@ Icd::Icd(const Problem& problem, const Settings& settings)
       edges_(problem, settings.strain_limit,
              linear_solver_ == "projected_cg" ? elimination_order(problem) : std::vector<int>{}),
       max_iterations_(settings.max_iterations),
+      min_iterations_(settings.min_iterations),
+      target_(settings.target),
       direction_tolerance_(settings.direction_tolerance * settings.strain_limit *
                            problem.shortest_rest_length()),
       mass_(Eigen::Map<const Eigen::VectorXd>(problem.mass().data(), problem.vertices()) /
@@ -61,7 +63,8 @@ Icd::Icd(const Problem& problem, const Settings& settings)
 // u_, c_, f_, largest_f_ and merit_ at x0 + dx (in trial_) with multipliers trial_mu_.
 void Icd::evaluate(const Positions& dx) {
   permissible_ = edges_.linearize(trial_, u_, c_);  // (4) and (2)
-  f_ = dx * mass_.asDiagonal();                     // M times the F of section 4.1
+  if (target_ > 0) edges_.excess(target_, c_);
+  f_ = dx * mass_.asDiagonal();  // M times the F of section 4.1
   for (std::size_t k = 0; k < edges_.a.size(); ++k) {
     const auto e = static_cast<Eigen::Index>(k);
     f_.col(edges_.a[k]) -= trial_mu_[e] * u_.col(e);
@@ -79,7 +82,8 @@ void Icd::evaluate(const Positions& dx) {
 }
 
 StepResult Icd::apply(const Positions& /*x_start*/, double h, Positions& x, WorkCounters& work) {
-  if (edges_.permissible(x)) return {Status::ok, 0};  // dx = 0, lambda = 0 solves both equations
+  // dx = 0 and lambda = 0 solve both equations as far as is asked.
+  if (min_iterations_ == 0 && edges_.permissible(x)) return {Status::ok, 0};
   x0_ = x;
   mu_ = previous_lambda_ * (h * h);
   StepResult result = newton(h, x, work);
@@ -127,14 +131,18 @@ StepResult Icd::newton(double h, Positions& x, WorkCounters& work) {
   trial_mu_ = mu_;
   evaluate(dx_);
   for (int j = 0;; ++j) {
-    if (permissible_ && largest_f_ <= direction_tolerance_) {
+    const bool solved = permissible_ && largest_f_ <= direction_tolerance_;
+    const auto accept = [&] {
       previous_lambda_ = mu_ / (h * h);
-      return {Status::ok, j};
-    }
+      return StepResult{Status::ok, j};
+    };
+    if (solved && (j >= min_iterations_ || merit_ == 0)) return accept();
     if (j == max_iterations_)
       return refuse(Status::not_converged, j, edges_, trial_, "iteration limit");
-    if (!direction(false, work))
+    if (!direction(false, work)) {
+      if (solved) return accept();
       return refuse(Status::singular, j, edges_, trial_, "the Newton matrix is singular");
+    }
     if (!line_search(work)) {
       // Once more with the convex matrix, from the same place; evaluate() restores what the search
       // overwrote.
@@ -142,6 +150,7 @@ StepResult Icd::newton(double h, Positions& x, WorkCounters& work) {
       trial_ = x0_ + dx_;
       trial_mu_ = mu_;
       evaluate(dx_);
+      if (solved) return accept();  // to rounding: iterations that were only asked for
       if (was_convex || !direction(true, work) || !line_search(work)) {
         return refuse(Status::not_converged, j, edges_, trial_,
                       "no step along Newton's direction makes progress");
@@ -157,6 +166,9 @@ SettingFields<Icd::Settings> Icd::fields() {
   using S = Settings;
   return {{"max_iterations", &S::max_iterations, "iterations a step before it is refused",
            at_least_one},
+          {"min_iterations", &S::min_iterations, least_iterations, count_from_zero,
+           tunable_least_iterations},
+          {"target", &S::target, projection_target, below_limit, tunable_below_limit},
           {"direction_tolerance", &S::direction_tolerance,
            "largest |F| of a vertex, in strain limit times shortest rest length", positive,
            Range{0.01, 1}},

@@ -13,6 +13,8 @@ class Icd final : public VelocityFilter {
   struct Settings {
     double strain_limit = 0.01;
     int max_iterations = 50;
+    int min_iterations = 0;  // even where the candidate is permissible already
+    double target = 0;       // of the strain limit; as FastProjection's
     // |F| of every vertex must fall below this times strain_limit times the shortest rest length
     // (m).
     double direction_tolerance = 0.1;
@@ -37,13 +39,14 @@ class Icd final : public VelocityFilter {
   std::string linear_solver_;
   EdgeConstraints edges_;
   std::unique_ptr<KktSolver> kkt_;
-  int max_iterations_;
+  int max_iterations_, min_iterations_;
+  double target_;
   double direction_tolerance_;  // m
   Eigen::VectorXd mass_;        // scaled by the mean mass, as mu is
 
   Positions x0_, trial_, dx_, trial_dx_, f_, dp_;  // f_ = M F = M dx + J^T mu
   Eigen::Matrix3Xd u_;
-  Eigen::VectorXd c_, mu_, trial_mu_, dq_;
+  Eigen::VectorXd c_, mu_, trial_mu_, dq_;  // c_: what of C lies beyond the target
   bool permissible_ = false;
   double largest_f_ = 0;             // m, over vertices
   double merit_ = 0;                 // sum of |F|^2 and C^2, m^2

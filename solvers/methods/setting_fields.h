@@ -98,5 +98,18 @@ SettingField<Struct> schur_solver_field() {
 
 constexpr const char* least_iterations =
     "projections a step even where the candidate is permissible; 1 keeps slack from building up";
+constexpr Range tunable_least_iterations{0, 2};
+
+// Of methods that solve for all edges at once. Below 1, or they would only come closer and closer
+// to the limit.
+constexpr const char* projection_target =
+    "strained edges are brought to this fraction of the strain limit, those below it are kept";
+constexpr Range below_limit{0, 0.99};
+constexpr Range tunable_below_limit{0, 0.9};
+// Of linear solvers that iterate.
+constexpr Range forcing_range{0, 1, true};
+constexpr Range tunable_forcing{1e-4, 0.3};
+constexpr Range relaxation_range{0, 2, true};
+constexpr Range tunable_relaxation{0.5, 1.95};
 
 }  // namespace inextensible

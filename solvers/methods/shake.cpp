@@ -18,8 +18,6 @@ namespace inextensible {
 namespace {
 
 constexpr double shortest_step = 1e-3;  // of Newton's
-// Of iterative linear solvers: a frozen matrix converges linearly anyway.
-constexpr double inner_tolerance = 1e-2;
 constexpr const char* no_solution = "the iterative linear solver did not converge";
 
 }  // namespace
@@ -31,11 +29,20 @@ Shake::Shake(const Problem& problem, const Settings& settings)
              std::sqrt(problem.total_mass())),
       max_iterations_(settings.max_iterations),
       min_iterations_(settings.min_iterations),
+      target_(settings.target),
+      forcing_(settings.forcing),
       u_start_(3, problem.constraints()),
       u_(3, problem.constraints()),
       c_(problem.constraints()),
       mu_(problem.constraints()),
       best_(3, problem.vertices()) {}
+
+// u_, and in c_ what of C lies beyond the target. Returns whether x is permissible.
+bool Shake::linearize(const Positions& x) {
+  const bool permissible = system_.edges().linearize(x, u_, c_);
+  if (target_ > 0) system_.edges().excess(target_, c_);
+  return permissible;
+}
 
 StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, WorkCounters& work) {
   const EdgeConstraints& edges = system_.edges();
@@ -47,7 +54,9 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, Wo
   double error = 0;          // |C| at best_
   double reach = 0;          // |x^{n+1} - x^n| of an honest solution
   for (int j = 0;; ++j) {
-    if (edges.linearize(x, u_, c_) && j >= min_iterations_) {
+    const bool permissible = linearize(x);
+    // Within the target nothing is left to project.
+    if (permissible && (j >= min_iterations_ || (target_ > 0 && c_.squaredNorm() == 0))) {
       if (j > 0 && distance(x_start, x) > reach)
         return refuse(Status::not_converged, j, edges, x, "a spurious solution, far from x^n");
       return {Status::ok, j};
@@ -77,7 +86,7 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, Wo
     } else {
       if (!(next_error < error)) {
         x = best_;
-        edges.linearize(x, u_, c_);
+        linearize(x);
       }
       if (!rebuild(work))
         return refuse(Status::singular, j, edges, x, "J(x_j) W J(x^n)^T is singular");
@@ -87,7 +96,7 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, Wo
     best_ = x;
     mu_ = c_;
     if (matrix == Matrix::start) {
-      if (!system_.solve(mu_, work, inner_tolerance))  // (7) with J(x^n) on both sides
+      if (!system_.solve(mu_, work, forcing_))  // (7) with J(x^n) on both sides
         return refuse(Status::singular, j, edges, x, no_solution);
     } else {
       current_solver_->solve(mu_.data());  // (7) with J(x_j) W J(x^n)^T
@@ -141,7 +150,12 @@ SettingFields<Shake::Settings> Shake::fields() {
   using S = Settings;
   return {{"max_iterations", &S::max_iterations, "iterations a step before it is refused",
            at_least_one},
-          {"min_iterations", &S::min_iterations, least_iterations, count_from_zero, Range{0, 2}},
+          {"min_iterations", &S::min_iterations, least_iterations, count_from_zero,
+           tunable_least_iterations},
+          {"target", &S::target, projection_target, below_limit, tunable_below_limit},
+          {"forcing", &S::forcing,
+           "residual of linear solves by conjugate gradients, of the right-hand side",
+           forcing_range, tunable_forcing},
           schur_solver_field<S>()};
 }
 

@@ -15,6 +15,9 @@ class Shake final : public VelocityFilter {
     double strain_limit = 0.01;
     int max_iterations = 50;
     int min_iterations = 0;  // even where the candidate is permissible already
+    double target = 0;       // of the strain limit; as FastProjection's
+    // Of linear solvers that iterate; a frozen matrix converges linearly anyway.
+    double forcing = 1e-2;
     std::string_view linear_solver = "auto";
   };
   static SettingFields<Settings> fields();
@@ -31,6 +34,7 @@ class Shake final : public VelocityFilter {
  private:
   // J(x_start) W J(x_start)^T, unless it is there already. False if it is not positive definite.
   bool factor_start(const Positions& x_start, WorkCounters& work);
+  bool linearize(const Positions& x);
   bool rebuild(WorkCounters& work);
   // |x - x_start| in the norm of M.
   double distance(const Positions& x_start, const Positions& x) const;
@@ -39,10 +43,11 @@ class Shake final : public VelocityFilter {
   const Problem& problem_;
   double slack_;  // M-norm of what the strain limit lets vertices drift
   int max_iterations_, min_iterations_;
+  double target_, forcing_;
   Eigen::Matrix3Xd u_start_, u_;
   Positions x_factored_;  // where the factor in system_ was built; used by RATTLE only
   bool factored_ = false;
-  Eigen::VectorXd c_, mu_;  // C(x_j), and the step's h^2 dlambda
+  Eigen::VectorXd c_, mu_;  // C~(x_j), and the step's h^2 dlambda
   Positions best_;          // iterate of least |C|
   double full_step_ = 0;    // |mu_| before halving
   // J(x_j) W J(x^n)^T, made at the first failure to converge: most runs never need it.

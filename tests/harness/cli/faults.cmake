@@ -38,7 +38,7 @@ struct Delay {
 with_fault(gauss_seidel.cpp "  for (int sweeps = 0;; ++sweeps) {" "  const Delay delay;\n  for (int sweeps = 0;; ++sweeps) {")
 # Fast projection: one iteration more than is needed.
 with_fault(fast_projection.cpp "  for (int j = 0, best_j = 0;; ++j) {" "  int extra = 0;\n  for (int j = 0, best_j = 0;; ++j) {")
-with_fault(fast_projection.cpp "j >= min_iterations_)" "j >= min_iterations_ && extra++ > 0)")
+with_fault(fast_projection.cpp "j >= settings_.min_iterations)" "j >= settings_.min_iterations && extra++ > 0)")
 # Jacobi: gives up after three sweeps.
 with_fault(jacobi.cpp "max_iterations_(settings.max_iterations)" "max_iterations_(3)")
 

@@ -285,6 +285,74 @@ TEST(GaussSeidel, TakesItsRelaxationTimesTheCorrection) {
   }
 }
 
+// An edge far beyond the limit, iterated to the end: what is left of C is `target` of what is
+// permissible. One within the target stays where it is.
+TEST(ProjectionMethods, BringEdgesToTheirTarget) {
+  ProblemParts parts;
+  parts.gravity.setZero();
+  parts.mass = {1, 3};
+  parts.edges = {{0, 1}};
+  parts.rest_length = {1};
+  const auto problem = std::make_shared<const Problem>(parts);
+  const double limit = 0.1, target = 0.5;
+  for (const char* solver : {"fast_projection", "shake", "icd"}) {
+    SCOPED_TRACE(solver);
+    const auto stepper =
+        make_stepper(solver, problem, {limit, 1, {{"target", target}, {"min_iterations", 40.0}}});
+    const auto length_from = [&](double length) {
+      State state{Positions::Zero(3, 2), Positions::Zero(3, 2), 0};
+      state.x(0, 1) = length;
+      EXPECT_TRUE(stepper->advance(state, h));
+      return (state.x.col(1) - state.x.col(0)).norm();
+    };
+    EXPECT_NEAR(length_from(1.3), std::sqrt(1 + target * (1.1 * 1.1 - 1)), 1e-12);
+    // C is convex: from below Newton's first step leads beyond the target, and is the last one.
+    const double wanted = 1 + target * (0.9 * 0.9 - 1);  // length squared
+    EXPECT_NEAR(length_from(0.8), (0.8 * 0.8 + wanted) / (2 * 0.8), 1e-8);
+  }
+  for (const char* solver : {"fast_projection", "shake"}) {
+    const auto stepper =
+        make_stepper(solver, problem, {limit, 1, {{"target", target}, {"min_iterations", 1.0}}});
+    State state{Positions::Zero(3, 2), Positions::Zero(3, 2), 0};
+    state.x(0, 1) = 1.05;
+    ASSERT_TRUE(stepper->advance(state, h));
+    EXPECT_EQ(state.x(0, 1), 1.05);
+    EXPECT_EQ(stepper->work().factorizations, 0);
+  }
+}
+
+TEST(FastProjection, SweepsBeforeReplaceProjections) {
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const auto mesh = random_mesh(random, 8, 8, 2);
+    Positions x = testing::perturbed(random, mesh, 0.05);
+    FastProjection::Settings settings{0.01};
+    settings.sweeps_before = 100'000;  // they end when nothing is left to correct
+    WorkCounters work;
+    const StepResult result = FastProjection(*mesh.problem, settings).apply(mesh.x, h, x, work);
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result.iterations, 0);
+    EXPECT_EQ(work.factorizations, 0);
+    EXPECT_GT(work.edge_projections, 0);
+    EXPECT_TRUE(EdgeConstraints(*mesh.problem, settings.strain_limit).permissible(x));
+  }
+}
+
+TEST(FastProjection, SweepsNeverOnChains) {
+  Random random(4);
+  const auto chain = random_mesh(random, 1, 20, 1);
+  const Positions candidate = testing::perturbed(random, chain, 0.05);
+  FastProjection::Settings settings{0.001};
+  WorkCounters plain, swept;
+  Positions x = candidate, y = candidate;
+  ASSERT_TRUE(FastProjection(*chain.problem, settings).apply(chain.x, h, x, plain));
+  settings.sweeps_before = settings.smoothing_sweeps = 30;
+  ASSERT_TRUE(FastProjection(*chain.problem, settings).apply(chain.x, h, y, swept));
+  EXPECT_TRUE(same_bits(x, y));
+  EXPECT_EQ(plain, swept);
+}
+
 TEST(Jacobi, ConvergesAtValenceThirtyWithUnequalMasses) {
   ProblemParts parts;
   parts.gravity.setZero();
