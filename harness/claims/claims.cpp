@@ -4,8 +4,9 @@
 
 #include "harness/base/errors.h"
 #include "harness/claims/accuracy.h"
-#include "harness/claims/cost.h"
+#include "harness/claims/contests.h"
 #include "harness/claims/robustness.h"
+#include "harness/claims/steps.h"
 
 namespace harness {
 namespace {

@@ -10,9 +10,9 @@ namespace harness {
 
 struct ClaimVerdict {
   std::string id, where, statement;
-  std::string verdict;   // "reproduced", "not reproduced", "changed" or "not yet measured"
-  std::string measured;  // one or two sentences with figures
-  std::string rule;      // how the verdict follows from them
+  std::string verdict;              // see verdicts.h
+  std::string measured;             // one or two sentences with figures
+  std::string rule;                 // how the verdict follows from them
   std::vector<std::string> points;  // ids behind it
 };
 

@@ -4,45 +4,115 @@
 #include <iterator>
 #include <set>
 
-#include "harness/base/text.h"
-
 namespace harness::claims {
 
 using nlohmann::json;
 
-std::string text(double value, int digits) { return number_text(value, digits); }
-
-std::string percent(double fraction) { return text(100 * fraction) + " %"; }
-
-std::string text(const Slope& slope) {
-  return text(slope.value, 2) +
-         (std::isfinite(slope.half_width) ? " ± " + text(slope.half_width, 1) : "");
+double Point::filter_seconds() const {
+  if (const double given = number("filter_seconds"); std::isfinite(given)) return given;
+  const auto phases = p_->find("phases");  // older files: of the first run
+  if (!timed() || phases == p_->end()) return std::nan("");
+  return figure(*phases, "filter") / number("duration");
 }
 
-bool below(const Slope& a, const Slope& b) { return a.high() < b.low(); }
+std::vector<double> Point::samples() const {
+  if (!timed()) return {};
+  const json& seconds = p_->at("seconds_per_simulated_second");
+  if (const auto samples = seconds.find("samples"); samples != seconds.end())
+    return samples->get<std::vector<double>>();
+  return {seconds.at("median").get<double>()};
+}
+
+double Point::delivered_strain() const {
+  for (const char* key : {"delivered_max_strain", "max_strain_after_collision", "max_strain"}) {
+    if (const double strain = number(key); std::isfinite(strain)) return strain;
+  }
+  return std::nan("");
+}
+
+bool Point::within_error(double level) const {
+  const double gap = error("gap");
+  return error("trajectory") <= level && !(3 * gap > level);
+}
+
+namespace {
+
+Ratio times(Ratio ratio, double factor) {
+  return {ratio.value * factor, ratio.low * factor, ratio.high * factor};
+}
+
+}  // namespace
+
+Ratio ratio(const Point& a, const Point& b) {
+  return ratio_of_medians(a.samples(), b.samples(), std::fmax(a.noise(), b.noise()));
+}
+
+Ratio ratio_of_steps(const Point& a, const Point& b) {
+  return times(ratio(a, b), a.number("step") / b.number("step"));
+}
+
+Cast::Cast(const json& document) {
+  const json legend = document.value("legend", json::object());
+  for (const char* list : {"contestants", "solvers"}) {
+    for (const json& entry : legend.value(list, json::array())) {
+      const std::string name = entry.at("name");
+      known_.try_emplace(name,
+                         Role{name, entry.value("family", name), entry.value("contestant", true),
+                              entry.value("hollow", false), false});
+    }
+  }
+  const json noise = document.value("context", json::object()).value("noise", json());
+  if (noise.is_object() && noise.contains("pair")) {
+    const json& pair = noise.at("pair");
+    const std::string second = pair.is_array() ? pair.at(1) : pair;
+    known_.try_emplace(second, Role{.name = second, .family = second});
+    known_.at(second).again = true;
+  }
+}
+
+Role Cast::of(const std::string& contestant) const {
+  const auto place = known_.find(contestant);
+  return place != known_.end() ? place->second : Role{.name = contestant, .family = contestant};
+}
+
+void Cast::add(const Cast& other) { known_.insert(other.known_.begin(), other.known_.end()); }
+
+double pair_noise_of(const json& document) {
+  const json noise = document.value("context", json::object()).value("noise", json());
+  return noise.is_object() && noise.contains("q95") && noise.at("q95").is_number()
+             ? noise.at("q95").get<double>()
+             : std::nan("");
+}
+
+bool times_count(const json& document) {
+  return document.value("timed", true) &&
+         document.value("context", json::object()).value("timed", true);
+}
 
 Points::Points(const std::vector<json>& results) {
-  std::set<std::pair<std::string, std::string>> seen;  // id and sweep
+  std::set<std::tuple<std::string, std::string, std::string>> seen;  // id, contestant, sweep
   for (const json& result : results) {
+    cast_.add(Cast(result));
     if (result.value("schema", "") == "inextensible-stability/1") {
       for (const json& cell : result.at("matrix")) matrix_.push_back(&cell);
       for (const json& mesh : result.at("degrees_of_freedom")) freedom_.push_back(&mesh);
+      if (const auto frames = result.find("same_frame"); frames != result.end()) {
+        for (const json& frame : *frames) same_frame_.push_back(&frame);
+      }
       continue;
     }
-    std::set<std::pair<std::string, std::string>> here;
+    std::set<std::tuple<std::string, std::string, std::string>> here;
     for (const json& p : result.at("points")) {
-      const std::pair key(p.at("id").get<std::string>(), p.at("sweep").get<std::string>());
-      if (seen.contains(key) || p.value("adaptive", false)) continue;
-      // Claims are about solvers, each as it competes: under its own name.
-      if (p.value("contestant", p.at("solver")) != p.at("solver")) continue;
+      const Point point(p, pair_noise_of(result), times_count(result));
+      const std::tuple key(point.id(), point.contestant(), point.text("sweep"));
+      if (seen.contains(key) || point.flag("adaptive")) continue;
       here.insert(key);
-      all_.emplace_back(p);
+      all_.push_back(point);
     }
     seen.merge(here);
   }
   for (const Point& p : all_) {
-    if (!p.is("sweep", "strain")) continue;
-    double& largest = largest_[p.text("scene")];
+    double& largest = largest_[{p.text("scene"), p.text("sweep")}];
     largest = std::max(largest, p.number("vertices"));
   }
 }
@@ -61,20 +131,63 @@ const json* Points::cell(const std::string& hard_case, const std::string& solver
 }
 
 Curve Points::best(const std::string& scene, const std::string& sweep,
-                   const std::string& solver) const {
+                   const std::string& contestant) const {
   const char* axis = sweep == "strain" ? "strain_limit" : "vertices";
   Curve curve;
   for (const Point& p : where([&](const Point& q) {
-         return of(q, scene, sweep) && q.is("solver", solver) && q.flag("best") && q.ok();
+         return of(q, scene, sweep) && q.contestant() == contestant && q.flag("best") && q.ok() &&
+                q.timed();
        }))
     curve.try_emplace(p.number(axis), p);
   return curve;
 }
 
-// Strain sweeps of several sizes may come together: the largest counts.
+namespace {
+
+void keep_faster(Curve& curve, double x, const Point& point) {
+  const auto [place, added] = curve.try_emplace(x, point);
+  if (!added && point.seconds() < place->second.seconds()) place->second = point;
+}
+
+}  // namespace
+
+Curve Points::best_at_errors(const std::string& scene, const std::string& contestant) const {
+  Curve curve;
+  for (const Point& p : where([&](const Point& q) {
+         return of(q, scene, "step") && q.contestant() == contestant && q.ok() && q.timed();
+       })) {
+    for (const double level : error_levels) {
+      if (p.within_error(level)) keep_faster(curve, level, p);
+    }
+  }
+  return curve;
+}
+
+Curve Points::best_at_error(const std::string& scene, const std::string& contestant,
+                            double level) const {
+  Curve curve;
+  for (const Point& p : where([&](const Point& q) {
+         return of(q, scene, "resolution") && q.contestant() == contestant && q.ok() && q.timed() &&
+                q.within_error(level);
+       }))
+    keep_faster(curve, p.number("vertices"), p);
+  return curve;
+}
+
+std::vector<Role> Points::ranked(const std::string& scene, const std::string& sweep) const {
+  std::vector<Role> all;
+  std::set<std::string> seen;
+  for (const Point& p : where([&](const Point& q) { return of(q, scene, sweep); })) {
+    if (!seen.insert(p.contestant()).second) continue;
+    if (const Role one = about(p.contestant()); one.ranked()) all.push_back(one);
+  }
+  return all;
+}
+
+// Strain and step sweeps of several sizes may come together: the largest counts.
 bool Points::of(const Point& point, const std::string& scene, const std::string& sweep) const {
   if (!point.is("scene", scene) || !point.is("sweep", sweep)) return false;
-  return sweep != "strain" || point.number("vertices") == largest_.at(scene);
+  return sweep == "resolution" || point.number("vertices") == largest_.at({scene, sweep});
 }
 
 Slope slope_of(const Curve& curve) {
@@ -84,6 +197,28 @@ Slope slope_of(const Curve& curve) {
     y.push_back(point.seconds());
   }
   return log_log_slope(x, y);
+}
+
+Slope slope_of_ratio(const Curve& a, const Curve& b) {
+  std::vector<double> x, y, half_widths;
+  for (const auto& [place, point] : a) {
+    const auto other = at(b, place);
+    if (!other) continue;
+    const Ratio over = ratio(point, *other);
+    x.push_back(place);
+    y.push_back(over.value);
+    half_widths.push_back(over.known() ? 0.5 * std::log(over.high / over.low) : 0);
+  }
+  Slope slope = log_log_slope(x, y);
+  double mean = 0, squares = 0, spread = 0;
+  for (const double at : x) mean += std::log(at) / static_cast<double>(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double distance = std::log(x[i]) - mean;
+    squares += distance * distance;
+    spread += distance * distance * half_widths[i] * half_widths[i];
+  }
+  if (squares > 0) slope.half_width = std::max(slope.half_width, std::sqrt(spread) / squares);
+  return slope;
 }
 
 void cite(ClaimVerdict& claim, const Curve& curve) {

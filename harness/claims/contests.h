@@ -1,4 +1,4 @@
-// Claims on time: what is fast, what is dear, and how both grow.
+// Claims on who is fast, and how time grows.
 #pragma once
 
 #include "harness/claims/curves.h"
@@ -12,7 +12,5 @@ void chain_time_over_resolution(const Points& points, ClaimVerdict& claim);  // 
 void chain_speed(const Points& points, ClaimVerdict& claim);                 // C3
 void drape_time_over_strain(const Points& points, ClaimVerdict& claim);      // C5
 void drape_time_over_resolution(const Points& points, ClaimVerdict& claim);  // C6
-void matrix_sizes(const Points& points, ClaimVerdict& claim);                // C11
-void shake_small_steps(const Points& points, ClaimVerdict& claim);           // C15
 
 }  // namespace harness::claims

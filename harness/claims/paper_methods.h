@@ -1,0 +1,17 @@
+// The paper's methods, by the names that they have here: the one place of the claims that knows
+// solvers by name.
+#pragma once
+
+namespace harness::claims {
+
+struct PaperMethod {
+  const char* name;  // of the contestant in result files, and of the solver
+  const char* words;
+};
+
+inline constexpr PaperMethod implicit_springs{"implicit_springs", "implicit springs"},
+    jacobi{"jacobi", "Jacobi"}, gauss_seidel{"gauss_seidel", "Gauss-Seidel"},
+    shake{"shake", "SHAKE"}, icd{"icd", "ICD"},
+    fast_projection{"fast_projection", "fast projection"};
+
+}  // namespace harness::claims

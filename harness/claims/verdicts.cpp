@@ -1,0 +1,78 @@
+#include "harness/claims/verdicts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "harness/base/text.h"
+
+namespace harness::claims {
+
+Answer above(const Ratio& ratio, double threshold) {
+  if (ratio.above(threshold)) return Answer::yes;
+  return ratio.below(threshold) ? Answer::no : Answer::open;
+}
+
+Answer above(const Slope& slope, double threshold) {
+  if (slope.low() > threshold) return Answer::yes;
+  return slope.high() < threshold ? Answer::no : Answer::open;
+}
+
+Answer below(const Slope& slope, double threshold) {
+  const Answer answer = above(slope, threshold);
+  return answer == Answer::open ? answer : answer == Answer::yes ? Answer::no : Answer::yes;
+}
+
+Answer all_of(const std::vector<Answer>& answers) {
+  const auto has = [&](Answer one) {
+    return std::find(answers.begin(), answers.end(), one) != answers.end();
+  };
+  return has(Answer::no) ? Answer::no : has(Answer::open) ? Answer::open : Answer::yes;
+}
+
+std::string verdict_of(Answer answer) {
+  return answer == Answer::yes ? reproduced : answer == Answer::no ? not_reproduced : undecided;
+}
+
+std::string verdict_of(Answer one, Answer other) {
+  return verdict_of_all({verdict_of(one), verdict_of(other)});
+}
+
+std::string verdict_of_all(const std::vector<std::string>& verdicts) {
+  std::string common = not_measured;
+  bool open = false;
+  for (const std::string& verdict : verdicts) {
+    if (verdict == not_measured) continue;
+    open = open || verdict == undecided;
+    if (common == not_measured) common = verdict;
+    if (common != verdict) common = changed;
+  }
+  return open ? undecided : common;
+}
+
+std::string text(double value, int digits) { return number_text(value, digits); }
+
+std::string percent(double fraction) { return text(100 * fraction) + " %"; }
+
+std::string text(const Slope& slope) {
+  return text(slope.value, 2) +
+         (std::isfinite(slope.half_width) ? " ± " + text(slope.half_width, 1) : "");
+}
+
+std::string text(const Ratio& ratio) {
+  if (std::isnan(ratio.value)) return "?";
+  if (!ratio.known()) return text(ratio.value, ratio.value >= 100 ? 3 : 2) + " (?)";
+  // As many decimals as show the interval's width, but no more than four digits in all.
+  const auto order = [](double x) { return static_cast<int>(std::floor(std::log10(x))); };
+  const int most = std::max(0, 3 - order(ratio.value));
+  const int wanted = ratio.high > ratio.low ? -order(ratio.high - ratio.low) : most;
+  const auto fixed = [decimals = std::clamp(wanted, 0, most)](double x) {
+    std::ostringstream out;
+    out << std::fixed << std::setprecision(decimals) << x;
+    return out.str();
+  };
+  return fixed(ratio.value) + " (" + fixed(ratio.low) + "-" + fixed(ratio.high) + ")";
+}
+
+}  // namespace harness::claims

@@ -1,0 +1,39 @@
+// How verdicts follow from numbers with intervals.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/base/fit.h"
+#include "harness/base/statistics.h"
+
+namespace harness::claims {
+
+// Verdicts.
+constexpr const char* reproduced = "reproduced";
+constexpr const char* not_reproduced = "not reproduced";
+constexpr const char* changed = "changed";      // in part, or by another amount
+constexpr const char* undecided = "undecided";  // an interval has values on both sides
+constexpr const char* not_measured = "not yet measured";
+
+// What an interval says of a statement; open: it has values on both sides.
+enum class Answer { yes, no, open };
+
+Answer above(const Ratio& ratio, double threshold);
+Answer above(const Slope& slope, double threshold);
+Answer below(const Slope& slope, double threshold);
+Answer all_of(const std::vector<Answer>& answers);  // no if one is no
+
+std::string verdict_of(Answer answer);
+// Of a claim in two parts: one of them yes and the other no is `changed`.
+std::string verdict_of(Answer one, Answer other);
+// Of the same claim looked at in several ways; a way that was not measured does not count.
+std::string verdict_of_all(const std::vector<std::string>& verdicts);
+
+std::string text(double value, int digits = 3);
+std::string percent(double fraction);  // "1.2 %"
+std::string text(const Slope& slope);  // "-0.5 ± 0.1", with its 95 % interval
+// "3.5 (3.3-3.8)" with its 95 % interval; "3.5 (?)": it is not known.
+std::string text(const Ratio& ratio);
+
+}  // namespace harness::claims

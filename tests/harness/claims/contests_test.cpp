@@ -1,0 +1,233 @@
+// Claims on who is fast: verdicts only where intervals lie on one side.
+#include "harness/claims/contests.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "invented_points.h"
+
+namespace harness {
+namespace {
+
+TEST(Claims, C1ComparesSlopesAtEqualStrain) {
+  const auto with = [](double springs, double fast, double noise = 0) {
+    std::vector<json> points;
+    strain_curve(points, "chain", "implicit_springs", 1, springs);
+    strain_curve(points, "chain", "fast_projection", 0.1, fast);
+    return verdict("C1", points, noise);
+  };
+  const ClaimVerdict steeper = with(-0.5, -0.1);
+  EXPECT_EQ(steeper.verdict, "reproduced");
+  EXPECT_TRUE(says(steeper, "fast projection's -0.4"));
+  EXPECT_TRUE(says(steeper, "ratio 63.1 (62.9-63.3) at 0.1 %, ratio 10.00 (9.97-10.03) at 10 %"));
+  EXPECT_TRUE(says(steeper, "at equal error: not yet measured"));
+  EXPECT_EQ(steeper.points.size(), 10u);
+  EXPECT_EQ(with(-0.1, -0.5).verdict, "not reproduced");
+  // A slope of -0.1 over two decades is a factor of 1.6: not beyond a noise of 1.6.
+  EXPECT_EQ(with(-0.2, -0.1, 0.01).verdict, "reproduced");
+  EXPECT_EQ(with(-0.2, -0.1, 0.5).verdict, "undecided");
+  EXPECT_EQ(with(-0.1, -0.2, 0.5).verdict, "undecided");
+}
+
+TEST(Claims, C1IsUndecidedWherePointsScatter) {
+  std::vector<json> points;
+  strain_curve(points, "chain", "implicit_springs", 1, -0.3);
+  strain_curve(points, "chain", "fast_projection", 0.1, -0.2);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i]["seconds_per_simulated_second"] = timing(
+        points[i]["seconds_per_simulated_second"]["median"].get<double>() * (i % 2 ? 1.6 : 0.6));
+  EXPECT_EQ(verdict("C1", points).verdict, "undecided");
+}
+
+TEST(Claims, C1LooksAtEqualErrorToo) {
+  const auto with = [](double springs_error, double gap = 1e-9) {
+    std::vector<json> points;
+    strain_curve(points, "chain", "implicit_springs", 1, -0.5);
+    strain_curve(points, "chain", "fast_projection", 0.1, -0.1);
+    error_curve(points, "implicit_springs", 1, springs_error, gap);
+    error_curve(points, "fast_projection", 1, -0.5, gap);
+    return verdict("C1", points);
+  };
+  EXPECT_EQ(with(-1).verdict, "reproduced");
+  EXPECT_EQ(with(-0.1).verdict, "changed");
+  EXPECT_TRUE(says(with(-0.1), "at equal error: not reproduced, slope"));
+  EXPECT_EQ(with(-0.5).verdict, "undecided");
+  // A reference that is sure to 10 % tells nothing of smaller errors.
+  EXPECT_TRUE(says(with(-1, 0.033), "at equal error: not yet measured"));
+}
+
+TEST(Claims, C2NeedsASmallerExponentOverVertices) {
+  const auto with = [](double springs, double fast, double noise = 0, double error = 0) {
+    std::vector<json> points;
+    for (const int n : {20, 40, 80, 160}) {
+      points.push_back(point("chain", "resolution", "implicit_springs", 0.01, n, 0.01,
+                             std::pow(n / 20.0, springs)));
+      points.push_back(
+          point("chain", "resolution", "fast_projection", 0.01, n, 0.01, std::pow(n / 20.0, fast)));
+      if (error == 0) continue;
+      // Ten times slower, but within the error that the best steps miss.
+      for (const std::size_t k : {points.size() - 2, points.size() - 1}) {
+        points[k]["error"] = {{"trajectory", 0.5}, {"gap", 1e-9}};
+        json fine = points[k];
+        fine["best"] = false;
+        fine["id"] = fine["id"].get<std::string>() + "/fine";
+        fine["error"]["trajectory"] = 0.005;
+        fine["seconds_per_simulated_second"] =
+            timing(10 * std::pow(n / 20.0, fine["solver"] == "fast_projection" ? 0 : error));
+        points.push_back(fine);
+      }
+    }
+    return verdict("C2", points, noise);
+  };
+  EXPECT_EQ(with(2, 1).verdict, "reproduced");
+  EXPECT_TRUE(says(with(2, 1), "ratio 1.000 (0.997-1.003) at 20 vertices, ratio 8.00 ("));
+  EXPECT_EQ(with(1, 2).verdict, "not reproduced");
+  EXPECT_EQ(with(1.2, 1, 0.5).verdict, "undecided");
+  EXPECT_EQ(with(2, 1, 0, 1).verdict, "reproduced");
+  EXPECT_EQ(with(2, 1, 0, -1).verdict, "changed");
+  EXPECT_TRUE(says(with(2, 1, 0, -1), "at 1 % error: not reproduced"));
+}
+
+TEST(Claims, C3NeedsItsIntervalOnOneSideOfEachBound) {
+  const auto with = [](double ratio, double noise = 0, double at_equal_error = 0) {
+    std::vector<json> points{
+        point("chain", "strain", "implicit_springs", 0.01, 80, 0.01, ratio * 1e-3),
+        point("chain", "strain", "fast_projection", 0.01, 80, 0.01, 1e-3)};
+    if (at_equal_error > 0) {
+      error_curve(points, "implicit_springs", at_equal_error, 0);
+      error_curve(points, "fast_projection", 1, 0);
+    }
+    return verdict("C3", points, noise);
+  };
+  EXPECT_EQ(with(25).verdict, "reproduced");
+  EXPECT_EQ(with(5).verdict, "changed");
+  EXPECT_EQ(with(100).verdict, "changed");
+  EXPECT_EQ(with(0.9).verdict, "not reproduced");
+  EXPECT_EQ(with(0.9, 0.2).verdict, "undecided");
+  EXPECT_EQ(with(14, 0.2).verdict, "undecided");
+  EXPECT_EQ(with(45, 0.2).verdict, "undecided");
+  EXPECT_EQ(with(25, 0.2).verdict, "reproduced");
+  EXPECT_TRUE(says(with(25), "100 steps of 2 iterations"));
+  EXPECT_TRUE(says(with(25, 0.2), "ratio 25 (20-31)"));
+  EXPECT_EQ(with(25, 0, 25).verdict, "reproduced");
+  EXPECT_EQ(with(25, 0, 0.5).verdict, "changed");
+  EXPECT_EQ(with(25, 0.2, 1.1).verdict, "undecided");
+}
+
+TEST(Claims, C3IsUndecidedOfThreeRunsWithoutAPair) {
+  json springs = point("chain", "strain", "implicit_springs", 0.01, 80, 0.01, 25);
+  json fast = point("chain", "strain", "fast_projection", 0.01, 80, 0.01, 1);
+  for (json* p : {&springs, &fast})
+    (*p)["seconds_per_simulated_second"] =
+        timing((*p)["seconds_per_simulated_second"]["median"], 3);
+  EXPECT_EQ(verdict("C3", {springs, fast}).verdict, "undecided");
+  EXPECT_TRUE(says(verdict("C3", {springs, fast}), "ratio 25 (?)"));
+  EXPECT_EQ(verdict("C3", {springs, fast}, 0.1).verdict, "reproduced");
+}
+
+TEST(Claims, C4NeedsCalibrationsThatMetTheirLimitsAtOneStep) {
+  const auto calibration = [](double limit, double factor, double step = 0.01) {
+    json p = point("drape", "strain", "implicit_springs", limit, 441, step, 1);
+    p["options"]["stiffness"] = factor * 9.81 / limit;
+    return p;
+  };
+  const auto with = [&](double factor) {
+    return verdict("C4", {calibration(0.1, 1), calibration(0.03, 1), calibration(0.01, factor)});
+  };
+  EXPECT_EQ(with(5).verdict, "reproduced");
+  EXPECT_EQ(with(1.1).verdict, "not reproduced");
+  EXPECT_EQ(with(2.1).verdict, "undecided");  // the calibration's tolerance
+  EXPECT_EQ(with(1.9).verdict, "undecided");
+  // Another step's stiffness says nothing, nor do a time-out and a limit that was not met.
+  EXPECT_EQ(verdict("C4", {calibration(0.1, 1), calibration(0.03, 1), calibration(0.01, 1),
+                           calibration(0.003, 9, 0.02)})
+                .verdict,
+            "not reproduced");
+  json late = calibration(0.01, 9), loose = calibration(0.01, 9);
+  late["status"] = "timeout";
+  loose["max_strain"] = 0.005;
+  EXPECT_EQ(verdict("C4", {calibration(0.1, 1), calibration(0.03, 1), late, loose}).verdict,
+            "not yet measured");
+}
+
+TEST(Claims, C5AsksForFlatSlopesAndTheFirstPlaceForFastProjection) {
+  const auto with = [](double shake_time, double limiting = -0.8, double noise = 0) {
+    std::vector<json> points;
+    strain_curve(points, "drape", "jacobi", 1, limiting);
+    strain_curve(points, "drape", "gauss_seidel", 0.8, limiting);
+    strain_curve(points, "drape", "shake", shake_time, -0.1);
+    strain_curve(points, "drape", "icd", 3, -0.1);
+    strain_curve(points, "drape", "fast_projection", 1.5, -0.1);
+    return verdict("C5", points, noise);
+  };
+  EXPECT_EQ(with(2).verdict, "reproduced");
+  EXPECT_TRUE(says(with(2), "flatter in 6 of 6 pairs"));
+  EXPECT_TRUE(says(with(2), "fastest in 10 of 10 comparisons"));
+  EXPECT_TRUE(says(with(2), "ahead of all strain limiting from 3 % down"));
+  EXPECT_EQ(with(1).verdict, "changed");
+  EXPECT_EQ(with(1, 0.2).verdict, "not reproduced");
+  EXPECT_EQ(with(2, 0.2).verdict, "changed");
+  EXPECT_EQ(with(1.6, -0.8, 0.1).verdict, "undecided");
+  EXPECT_EQ(with(2, -0.2, 0.6).verdict, "undecided");
+}
+
+TEST(Claims, C5AndC6HoldFastProjectionAgainstTunedRivalsOfTheFile) {
+  json result;
+  const auto with = [&](bool hollow, const std::string& family) {
+    std::vector<json> points;
+    for (const int n : {100, 400}) {
+      points.push_back(point("drape", "resolution", "fast_projection", 0.01, n, 0.01, 1));
+      points.push_back(point("drape", "resolution", "gauss_seidel", 0.01, n, 0.01, 2));
+      points.push_back(point("drape", "resolution", "gauss_seidel", 0.01, n, 0.01, 0.5));
+      points.back()["contestant"] = "rival";
+    }
+    result = document(points);
+    result["legend"]["solvers"] = {
+        {{"name", "rival"}, {"solver", "gauss_seidel"}, {"family", family}, {"hollow", hollow}}};
+    return verdict_in("C6", result).verdict;
+  };
+  EXPECT_EQ(with(false, "gauss_seidel"), "not reproduced");
+  EXPECT_EQ(with(true, "gauss_seidel"), "reproduced");      // untuned: shown, not ranked
+  EXPECT_EQ(with(false, "fast_projection"), "reproduced");  // the method itself, improved
+}
+
+TEST(Claims, C6LooksAtEverySize) {
+  const auto with = [](double small, double large, double noise = 0) {
+    std::vector<json> points;
+    for (const auto& [n, seconds] : {std::pair(100, small), std::pair(400, large)}) {
+      points.push_back(point("drape", "resolution", "fast_projection", 0.01, n, 0.01, seconds));
+      points.push_back(point("drape", "resolution", "gauss_seidel", 0.01, n, 0.01, 1.0));
+    }
+    return verdict("C6", points, noise);
+  };
+  EXPECT_EQ(with(0.5, 0.5).verdict, "reproduced");
+  EXPECT_EQ(with(1.5, 0.5).verdict, "changed");
+  EXPECT_EQ(with(0.5, 1.5).verdict, "not reproduced");
+  EXPECT_EQ(with(0.5, 0.95, 0.1).verdict, "undecided");
+  EXPECT_EQ(with(0.95, 0.5, 0.1).verdict, "undecided");
+  EXPECT_EQ(with(0.95, 2, 0.1).verdict, "not reproduced");
+  EXPECT_TRUE(says(with(0.5, 0.95, 0.1), "400: undecided, gauss_seidel takes 1.1 (1.0-1.2)"));
+}
+
+TEST(Claims, TheDoubleOfAPairIsNoContestant) {
+  std::vector<json> points;
+  for (const int n : {100, 400}) {
+    points.push_back(point("drape", "resolution", "fast_projection", 0.01, n, 0.01, 1));
+    points.push_back(point("drape", "resolution", "gauss_seidel", 0.01, n, 0.01, 2));
+    points.push_back(point("drape", "resolution", "fast_projection", 0.01, n, 0.01, 0.5));
+    points.back()["contestant"] = "fast_projection_again";
+  }
+  EXPECT_EQ(verdict("C6", points, 0.1).verdict, "reproduced");
+}
+
+TEST(Claims, TimesOfFilesThatWereNotTimedDecideNothing) {
+  json result = document({point("chain", "strain", "implicit_springs", 0.01, 80, 0.01, 25),
+                          point("chain", "strain", "fast_projection", 0.01, 80, 0.01, 1)});
+  EXPECT_EQ(verdict_in("C3", result).verdict, "reproduced");
+  result["timed"] = false;
+  EXPECT_EQ(verdict_in("C3", result).verdict, "not yet measured");
+}
+
+}  // namespace
+}  // namespace harness

@@ -1,0 +1,96 @@
+// Invented points for tests of claims and of the tables of results.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "harness/claims/claims.h"
+
+namespace harness {
+
+using nlohmann::json;
+
+// Nine runs a point, 0.1 % apart: what is measured is sure unless a test says otherwise.
+inline json timing(double seconds, int samples = 9) {
+  json list = json::array();
+  for (int i = 0; i < samples; ++i) list.push_back(seconds * (1 + 0.001 * (i - (samples - 1) / 2)));
+  return {{"median", list.at(static_cast<std::size_t>(samples) / 2)}, {"samples", list}};
+}
+
+inline json point(const std::string& scene, const std::string& sweep, const std::string& solver,
+                  double limit, int vertices, double step, double seconds) {
+  std::ostringstream id;
+  id << scene << "/" << solver << "/n:" << vertices << "/strain:" << limit << "/h:" << step;
+  return {{"id", id.str()},
+          {"scene", scene},
+          {"sweep", sweep},
+          {"solver", solver},
+          {"status", "ok"},
+          {"best", true},
+          {"strain_limit", limit},
+          {"vertices", vertices},
+          {"step", step},
+          {"duration", 1.0},
+          {"options", json::object()},
+          {"scene_parameters", {{"mass", 1.0}, {"gravity", 9.81}}},
+          {"error", json::object()},
+          {"work", {{"steps", std::lround(1 / step)}, {"iterations", 2 * std::lround(1 / step)}}},
+          {"seconds_per_simulated_second", timing(seconds)},
+          {"max_strain", limit},
+          {"max_strain_after_collision", nullptr}};
+}
+
+// noise: q95 of the A/A pair; 0: there is none.
+inline json document(const std::vector<json>& points, double noise = 0) {
+  json result{{"points", points}};
+  if (noise > 0)
+    result["context"]["noise"] = {
+        {"pair", {"fast_projection", "fast_projection_again"}}, {"places", 20}, {"q95", noise}};
+  return result;
+}
+
+inline ClaimVerdict verdict_in(const std::string& id, const json& result) {
+  const auto claims = judge_claims({result});
+  const auto found =
+      std::find_if(claims.begin(), claims.end(), [&](const auto& c) { return c.id == id; });
+  EXPECT_NE(found, claims.end());
+  EXPECT_FALSE(found->verdict == "not yet measured" && !found->points.empty());
+  return *found;
+}
+
+inline ClaimVerdict verdict(const std::string& id, const std::vector<json>& points,
+                            double noise = 0) {
+  return verdict_in(id, document(points, noise));
+}
+
+inline bool says(const ClaimVerdict& claim, const std::string& words) {
+  EXPECT_NE(claim.measured.find(words), std::string::npos) << claim.measured;
+  return claim.measured.find(words) != std::string::npos;
+}
+
+inline constexpr double limits[] = {0.1, 0.03, 0.01, 0.003, 0.001};
+
+// Time falls off as limit^exponent.
+inline void strain_curve(std::vector<json>& points, const std::string& scene,
+                         const std::string& solver, double at_ten_percent, double exponent,
+                         double step = 0.01) {
+  for (const double limit : limits)
+    points.push_back(point(scene, "strain", solver, limit, 80, step,
+                           at_ten_percent * std::pow(limit / 0.1, exponent)));
+}
+
+// Of a step sweep: the error is the step's, the time that of error^exponent.
+inline void error_curve(std::vector<json>& points, const std::string& solver, double at_ten_percent,
+                        double exponent, double gap = 1e-9) {
+  for (const double error : limits) {
+    json p = point("chain", "step", solver, 0.001, 80, error,
+                   at_ten_percent * std::pow(error / 0.1, exponent));
+    p["error"] = {{"trajectory", error}, {"gap", gap}};
+    points.push_back(p);
+  }
+}
+
+}  // namespace harness
