@@ -198,40 +198,30 @@ int run_ab(const AbCommand& options) {
 
 }  // namespace
 
-void add_ab_command(CLI::App& app, Chosen& chosen) {
+void add_ab_command(const Command& program) {
   const auto given = std::make_shared<AbCommand>();
   AbCommand& options = *given;
-  CLI::App* command = app.add_subcommand(
+  const Command command = program.subcommand(
       "ab",
       "two builds of this program against each other, in interleaved pairs of runs; exit 3 if "
       "a point has become slower, 4 if one fails");
-  command->add_option("old", options.old_binary, "the program before")
-      ->required()
-      ->type_name("OLD");
-  command->add_option("new", options.new_binary, "the program after")->required()->type_name("NEW");
-  command->add_option("--suite", options.suite, "profile or suite file; default quick")
-      ->type_name("NAME");
-  command->add_option("--pairs", options.pairs, "processes of each a point; default 15")
-      ->check(CLI::Range(4, 1000))  // fewer are never significant
-      ->type_name("N");
-  command->add_option("--confirm", options.confirming, "pairs of the second look; default 25")
-      ->check(CLI::Range(4, 1000))
-      ->type_name("N");
+  command.option("old", options.old_binary, "the program before", "OLD").required();
+  command.option("new", options.new_binary, "the program after", "NEW").required();
+  command.option("--suite", options.suite, "profile or suite file; default quick", "NAME");
+  command.option("--pairs", options.pairs, "processes of each a point; default 15", "N")
+      .within(4, 1000);  // fewer are never significant
+  command.option("--confirm", options.confirming, "pairs of the second look; default 25", "N")
+      .within(4, 1000);
   command
-      ->add_option("--seconds", options.least_measured,
-                   "what a process measures at least, in as many runs as it takes; default 0.05")
-      ->check(CLI::Range(1e-3, 60.0))
-      ->type_name("S");
-  command->add_option("--solver", options.solver, "only solvers whose name matches")
-      ->type_name("REGEX");
-  command->add_option("--scene", options.scene, "chain or drape; both if left out")
-      ->type_name("NAME");
-  command->add_option("--filter", options.filter, "only points in whose id this is found")
-      ->type_name("REGEX");
-  command->add_option("--exclude", options.exclude, "without points in whose id this is found")
-      ->type_name("REGEX");
-  add_compare_options(*command, options);
-  command->callback([given, &chosen] { chosen = [given] { return run_ab(*given); }; });
+      .option("--seconds", options.least_measured,
+              "what a process measures at least, in as many runs as it takes; default 0.05", "S")
+      .within(1e-3, 60.0);
+  command.option("--solver", options.solver, "only solvers whose name matches", "REGEX");
+  command.option("--scene", options.scene, "chain or drape; both if left out", "NAME");
+  command.option("--filter", options.filter, "only points in whose id this is found", "REGEX");
+  command.option("--exclude", options.exclude, "without points in whose id this is found", "REGEX");
+  add_compare_options(command, options);
+  command.does([given] { return run_ab(*given); });
 }
 
 }  // namespace harness

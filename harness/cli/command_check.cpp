@@ -43,23 +43,19 @@ int check(const std::string& solver, bool hard_cases, std::int64_t seed) {
 
 }  // namespace
 
-void add_check_command(CLI::App& app, Chosen& chosen) {
+void add_check_command(const Command& program) {
   struct Given {
     std::string solver;
     bool quick = false;
     std::int64_t seed = 1;
   };
   const auto given = std::make_shared<Given>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = program.subcommand(
       "check", "whether a solver keeps what every solver must, and where to look if not");
-  command->add_option("--solver", given->solver, "its name")->required()->type_name("NAME");
-  command->add_flag("--quick", given->quick, "without the hard cases, which may take minutes");
-  command->add_option("--seed", given->seed, "of methods that draw random numbers")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("N");
-  command->callback([given, &chosen] {
-    chosen = [given] { return check(given->solver, !given->quick, given->seed); };
-  });
+  command.option("--solver", given->solver, "its name", "NAME").required();
+  command.flag("--quick", given->quick, "without the hard cases, which may take minutes");
+  command.option("--seed", given->seed, "of methods that draw random numbers", "N").not_negative();
+  command.does([given] { return check(given->solver, !given->quick, given->seed); });
 }
 
 }  // namespace harness

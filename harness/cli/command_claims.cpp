@@ -7,26 +7,22 @@
 
 namespace harness {
 
-void add_claims_command(CLI::App& app, Chosen& chosen) {
+void add_claims_command(const Command& program) {
   struct Given {
     std::vector<std::string> files;
     bool markdown = false;
   };
   const auto given = std::make_shared<Given>();
-  CLI::App* command =
-      app.add_subcommand("claims", "the paper's claims C1 to C16, decided from result files");
-  command->add_option("results", given->files, "result files")
-      ->required()
-      ->type_name("RESULT.json");
-  command->add_flag("--markdown", given->markdown, "a table for the README");
-  command->callback([given, &chosen] {
-    chosen = [given] {
-      std::vector<nlohmann::json> results;
-      results.reserve(given->files.size());
-      for (const std::string& file : given->files) results.push_back(read_result(file));
-      (given->markdown ? print_claims_markdown : print_claims)(std::cout, judge_claims(results));
-      return success;
-    };
+  const Command command =
+      program.subcommand("claims", "the paper's claims C1 to C16, decided from result files");
+  command.option("results", given->files, "result files", "RESULT.json").required();
+  command.flag("--markdown", given->markdown, "a table for the README");
+  command.does([given] {
+    std::vector<nlohmann::json> results;
+    results.reserve(given->files.size());
+    for (const std::string& file : given->files) results.push_back(read_result(file));
+    (given->markdown ? print_claims_markdown : print_claims)(std::cout, judge_claims(results));
+    return success;
   });
 }
 

@@ -57,36 +57,29 @@ int make_baseline(const std::vector<std::string>& files, const std::string& out)
 
 }  // namespace
 
-void add_compare_command(CLI::App& app, Chosen& chosen) {
+void add_compare_command(const Command& program) {
   const auto given = std::make_shared<CompareCommand>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = program.subcommand(
       "compare",
       "two results point by point; exit 3 for a regression, 4 for new failures, 5 if "
       "they cannot be compared");
-  command->add_option("base", given->base, "result file or baseline")
-      ->required()
-      ->type_name("BASE.json");
-  command->add_option("new", given->next, "result files; several count as one")
-      ->required()
-      ->type_name("NEW.json");
-  add_compare_options(*command, *given);
-  command->callback([given, &chosen] { chosen = [given] { return run_compare(*given); }; });
+  command.option("base", given->base, "result file or baseline", "BASE.json").required();
+  command.option("new", given->next, "result files; several count as one", "NEW.json").required();
+  add_compare_options(command, *given);
+  command.does([given] { return run_compare(*given); });
 }
 
-void add_baseline_command(CLI::App& app, Chosen& chosen) {
+void add_baseline_command(const Command& program) {
   struct Given {
     std::vector<std::string> files;
     std::string out;
   };
   const auto given = std::make_shared<Given>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = program.subcommand(
       "baseline", "results without times, one point a line, to be compared with later");
-  command->add_option("results", given->files, "result files")
-      ->required()
-      ->type_name("RESULT.json");
-  command->add_option("--out", given->out, "the baseline")->required()->type_name("FILE");
-  command->callback(
-      [given, &chosen] { chosen = [given] { return make_baseline(given->files, given->out); }; });
+  command.option("results", given->files, "result files", "RESULT.json").required();
+  command.option("--out", given->out, "the baseline", "FILE").required();
+  command.does([given] { return make_baseline(given->files, given->out); });
 }
 
 }  // namespace harness

@@ -68,42 +68,35 @@ int emit(EmitCommand& given) {
 
 }  // namespace
 
-void add_emit_command(CLI::App& app, Chosen& chosen) {
+void add_emit_command(const Command& program) {
   const auto given = std::make_shared<EmitCommand>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = program.subcommand(
       "emit", "print the script that runs a sweep in shards under Slurm or GNU parallel");
-  add_selection(*command, *given);
-  add_measurement(*command, *given);
-  const std::vector<const CLI::Option*> passed_on = std::as_const(*command).get_options();
+  add_selection(command, *given);
+  add_measurement(command, *given);
+  const auto passed_on = command.as_typed();  // no number is rounded on its way through the script
 
-  command->add_option("scheduler", given->scheduler, "slurm or parallel")->required();
+  command.option("scheduler", given->scheduler, "slurm or parallel").required();
   JobScript& job = given->job;
   job.jobs = 0;  // not given
-  command->add_option("--shards", job.shards, "parts of the sweep, each a job of its own")
-      ->required()
-      ->check(CLI::Range(1, 1000))
-      ->type_name("N");
-  command
-      ->add_option("--out", job.result,
-                   "the merged result; default results/local/<profile>-<axis>.json. Shards and "
-                   "logs go to a folder of this name with -shards")
-      ->type_name("FILE");
-  command->add_option("--memory", job.memory, "that a point may have and a shard reserves, e.g. 4G")
-      ->type_name("SIZE");
-  command->add_option("--time", job.time, "slurm: time limit of a shard")->type_name("HH:MM:SS");
-  command->add_option("--partition", job.partition, "slurm: where to run")->type_name("NAME");
-  command->add_option("--account", job.account, "slurm: whose hours")->type_name("NAME");
-  command->add_option("--jobs", job.jobs, "parallel: shards at once (1; more disturb each other)")
-      ->check(CLI::Range(1, 1000))
-      ->type_name("K");
-  command->callback([given, passed_on, &chosen] {
-    // As they were typed: no number is rounded on its way through the script.
-    for (const CLI::Option* option : passed_on) {
-      if (option->count() == 0 || option->results().back().empty()) continue;
-      given->job.sweep.push_back(option->get_name() + "=" + option->results().back());
-    }
+  command.option("--shards", job.shards, "parts of the sweep, each a job of its own", "N")
+      .required()
+      .within(1, 1000);
+  command.option("--out", job.result,
+                 "the merged result; default results/local/<profile>-<axis>.json. Shards and "
+                 "logs go to a folder of this name with -shards",
+                 "FILE");
+  command.option("--memory", job.memory, "that a point may have and a shard reserves, e.g. 4G",
+                 "SIZE");
+  command.option("--time", job.time, "slurm: time limit of a shard", "HH:MM:SS");
+  command.option("--partition", job.partition, "slurm: where to run", "NAME");
+  command.option("--account", job.account, "slurm: whose hours", "NAME");
+  command.option("--jobs", job.jobs, "parallel: shards at once (1; more disturb each other)", "K")
+      .within(1, 1000);
+  command.does([given, passed_on] {
+    given->job.sweep = passed_on();
     if (!given->job.memory.empty()) given->job.sweep.push_back("--memory=" + given->job.memory);
-    chosen = [given] { return emit(*given); };
+    return emit(*given);
   });
 }
 

@@ -3,26 +3,20 @@
 
 namespace harness {
 
-void add_history_command(CLI::App& app, Chosen& chosen) {
+void add_history_command(const Command& program) {
   struct Given {
     std::string folder, out;
   };
   const auto given = std::make_shared<Given>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = program.subcommand(
       "history", "draw the times of best points over the result files of a folder, by their dates");
-  command->add_option("folder", given->folder, "where the result files are")
-      ->required()
-      ->type_name("DIR");
-  command
-      ->add_option("--out", given->out,
-                   "the figure, .svg or .png; default: history.svg in the folder")
-      ->type_name("FIGURE");
-  command->callback([given, &chosen] {
-    chosen = [given] {
-      std::vector<std::string> arguments{given->folder};
-      if (!given->out.empty()) arguments.insert(arguments.end(), {"--out", given->out});
-      return draw(arguments, "history.py");
-    };
+  command.option("folder", given->folder, "where the result files are", "DIR").required();
+  command.option("--out", given->out,
+                 "the figure, .svg or .png; default: history.svg in the folder", "FIGURE");
+  command.does([given] {
+    std::vector<std::string> arguments{given->folder};
+    if (!given->out.empty()) arguments.insert(arguments.end(), {"--out", given->out});
+    return draw(arguments, "history.py");
   });
 }
 

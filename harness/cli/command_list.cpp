@@ -80,44 +80,40 @@ void list_points(const SweepOptions& options) {
 
 }  // namespace
 
-void add_list_command(CLI::App& app, Chosen& chosen) {
+void add_list_command(const Command& program) {
   struct Given {
     SweepOptions options;
     std::string what;
   };
   const auto given = std::make_shared<Given>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = program.subcommand(
       "list",
       "show what there is: solvers, scenes, suites, cases, counters, metrics, statuses or points "
       "(points: with --sweep)");
-  command
-      ->add_option(
-          "what", given->what,
-          "solvers, scenes, suites, cases, counters, metrics, statuses or points; the first three "
-          "if left out; result.schema and its like print that file of configs/ with what "
-          "follows from tables made anew")
-      ->type_name("WHAT");
-  add_selection(*command, given->options);
-  command->callback([given, &chosen] {
-    chosen = [given] {
-      const std::vector<std::string> schemas = generated_schemas();
-      const std::vector<std::string> known{"solvers", "scenes",   "suites",  "cases",
-                                           "points",  "counters", "metrics", "statuses"};
-      if (given->what == "points") {
-        list_points(given->options);
-      } else if (const auto dot = given->what.find(".schema");
-                 dot != std::string::npos &&
-                 std::find(schemas.begin(), schemas.end(), given->what.substr(0, dot)) !=
-                     schemas.end()) {
-        std::cout << schema_text(given->what.substr(0, dot));
-      } else if (given->what.empty() ||
-                 std::find(known.begin(), known.end(), given->what) != known.end()) {
-        list(given->what);
-      } else {
-        throw unknown_name("list", given->what, known);
-      }
-      return success;
-    };
+  command.option(
+      "what", given->what,
+      "solvers, scenes, suites, cases, counters, metrics, statuses or points; the first three "
+      "if left out; result.schema and its like print that file of configs/ with what "
+      "follows from tables made anew",
+      "WHAT");
+  add_selection(command, given->options);
+  command.does([given] {
+    const std::vector<std::string> schemas = generated_schemas();
+    const std::vector<std::string> known{"solvers", "scenes",   "suites",  "cases",
+                                         "points",  "counters", "metrics", "statuses"};
+    if (given->what == "points") {
+      list_points(given->options);
+    } else if (const auto dot = given->what.find(".schema");
+               dot != std::string::npos && std::find(schemas.begin(), schemas.end(),
+                                                     given->what.substr(0, dot)) != schemas.end()) {
+      std::cout << schema_text(given->what.substr(0, dot));
+    } else if (given->what.empty() ||
+               std::find(known.begin(), known.end(), given->what) != known.end()) {
+      list(given->what);
+    } else {
+      throw unknown_name("list", given->what, known);
+    }
+    return success;
   });
 }
 

@@ -12,39 +12,35 @@
 
 namespace harness {
 
-void add_merge_command(CLI::App& app, Chosen& chosen) {
+void add_merge_command(const Command& program) {
   struct Given {
     std::vector<std::string> files;
     std::string out;
     bool allow_mixed = false;
   };
   const auto given = std::make_shared<Given>();
-  CLI::App* command = app.add_subcommand("merge", "join result files of one suite, such as shards");
-  command->add_option("results", given->files, "result files")
-      ->required()
-      ->type_name("RESULT.json");
-  command->add_option("--out", given->out, "the joined result file")->required()->type_name("FILE");
-  command->add_flag("--allow-mixed", given->allow_mixed, "though machines or builds differ");
-  command->callback([given, &chosen] {
-    chosen = [given] {
-      std::vector<NamedResult> results;
-      for (const std::string& file : given->files) {
-        results.push_back({std::filesystem::path(file).filename().string(), read_result(file)});
-        if (given->files.size() > 1 &&
-            results.back().document.at("schema") != "inextensible-bench/1")
-          throw UsageError("'" + file + "' is of a stability sweep, which has no shards");
-      }
-      check_writable(given->out);
-      // One file is whole as it is; written again, it is laid out as files are written now.
-      nlohmann::json whole =
-          results.size() == 1 ? results.front().document : merge(results, given->allow_mixed);
-      if (!whole.contains("legend")) whole["legend"] = legend();
-      write_atomically(given->out, result_text(whole));
-      if (whole.contains("points"))
-        std::cout << whole.at("points").size() << " points of " << results.size() << " files\n";
-      std::cout << given->out << '\n';
-      return success;
-    };
+  const Command command =
+      program.subcommand("merge", "join result files of one suite, such as shards");
+  command.option("results", given->files, "result files", "RESULT.json").required();
+  command.option("--out", given->out, "the joined result file", "FILE").required();
+  command.flag("--allow-mixed", given->allow_mixed, "though machines or builds differ");
+  command.does([given] {
+    std::vector<NamedResult> results;
+    for (const std::string& file : given->files) {
+      results.push_back({std::filesystem::path(file).filename().string(), read_result(file)});
+      if (given->files.size() > 1 && results.back().document.at("schema") != "inextensible-bench/1")
+        throw UsageError("'" + file + "' is of a stability sweep, which has no shards");
+    }
+    check_writable(given->out);
+    // One file is whole as it is; written again, it is laid out as files are written now.
+    nlohmann::json whole =
+        results.size() == 1 ? results.front().document : merge(results, given->allow_mixed);
+    if (!whole.contains("legend")) whole["legend"] = legend();
+    write_atomically(given->out, result_text(whole));
+    if (whole.contains("points"))
+      std::cout << whole.at("points").size() << " points of " << results.size() << " files\n";
+    std::cout << given->out << '\n';
+    return success;
   });
 }
 

@@ -107,19 +107,16 @@ int run_points(const PointCommand& options) {
 
 }  // namespace
 
-void add_point_command(CLI::App& app, Chosen& chosen) {
+void add_point_command(const Command& program) {
   const auto given = std::make_shared<PointCommand>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = program.subcommand(
       "point",
       "run points of a result file, given as JSON on standard input, one a line; print each as one "
       "line of JSON");
-  command->add_option("--samples", given->samples, "runs of each, the first one judged; default 1")
-      ->check(CLI::Range(1, 1000000))
-      ->type_name("N");
-  command->add_option("--timeout", given->timeout, "seconds a run may take; default 60")
-      ->check(CLI::PositiveNumber)
-      ->type_name("S");
-  command->callback([given, &chosen] { chosen = [given] { return run_points(*given); }; });
+  command.option("--samples", given->samples, "runs of each, the first one judged; default 1", "N")
+      .within(1, 1000000);
+  command.option("--timeout", given->timeout, "seconds a run may take; default 60", "S").positive();
+  command.does([given] { return run_points(*given); });
 }
 
 }  // namespace harness

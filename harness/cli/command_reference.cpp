@@ -40,24 +40,20 @@ int make_references(const SweepOptions& options, bool again, double finest) {
 
 }  // namespace
 
-void add_reference_command(CLI::App& app, Chosen& chosen) {
+void add_reference_command(const Command& program) {
   struct Given {
     SweepOptions options;
     bool again = false;
     double finest = 0;
   };
   const auto given = std::make_shared<Given>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = program.subcommand(
       "reference",
       "compute the reference trajectories that a profile's sweeps are measured against");
-  add_selection(*command, given->options);
-  command->add_flag("--again", given->again, "those that are there already, too");
-  command->add_option("--finest", given->finest, "smallest step of step halving, s")
-      ->check(CLI::PositiveNumber)
-      ->type_name("S");
-  command->callback([given, &chosen] {
-    chosen = [given] { return make_references(given->options, given->again, given->finest); };
-  });
+  add_selection(command, given->options);
+  command.flag("--again", given->again, "those that are there already, too");
+  command.option("--finest", given->finest, "smallest step of step halving, s", "S").positive();
+  command.does([given] { return make_references(given->options, given->again, given->finest); });
 }
 
 }  // namespace harness

@@ -40,28 +40,26 @@ std::string page(const Given& given) {
 
 }  // namespace
 
-void add_results_command(CLI::App& app, Chosen& chosen) {
+void add_results_command(const Command& program) {
   const auto given = std::make_shared<Given>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = program.subcommand(
       "results", "tables of what result files say, in Markdown (docs/results.md)");
   command
-      ->add_option("results", given->results,
-                   "result files; of points that several have, the first one's count for claims")
-      ->required()
-      ->type_name("RESULT.json ...");
-  command->add_option("--growth", given->growth, "result files for the tables of growth alone")
-      ->type_name("RESULT.json ...");
-  command->add_option("--out", given->out, "the page; default: standard output")->type_name("FILE");
-  command->callback([given, &chosen] {
-    chosen = [given] {
-      if (given->out.empty()) {
-        std::cout << page(*given);
-      } else {
-        check_writable(given->out);
-        write_atomically(given->out, page(*given));
-      }
-      return success;
-    };
+      .option("results", given->results,
+              "result files; of points that several have, the first one's count for claims",
+              "RESULT.json ...")
+      .required();
+  command.option("--growth", given->growth, "result files for the tables of growth alone",
+                 "RESULT.json ...");
+  command.option("--out", given->out, "the page; default: standard output", "FILE");
+  command.does([given] {
+    if (given->out.empty()) {
+      std::cout << page(*given);
+    } else {
+      check_writable(given->out);
+      write_atomically(given->out, page(*given));
+    }
+    return success;
   });
 }
 

@@ -255,48 +255,42 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   return success;
 }
 
-void add_sweep_command(CLI::App& app, Chosen& chosen, const std::vector<std::string>& command) {
+void add_sweep_command(const Command& program, const std::vector<std::string>& command) {
   const auto given = std::make_shared<SweepCommand>();
   SweepCommand& options = *given;
-  add_selection(app, options);
-  app.add_option("--out", options.out, "result file; default results/local/<profile>-<axis>.json")
-      ->type_name("FILE");
-  add_measurement(app, options);
-  app.add_option("--memory", options.memory, "address space a point may have, e.g. 4G")
-      ->transform(CLI::AsSizeValue(false))
-      ->type_name("BYTES");
-  app.add_flag("--resume", options.resume, "go on with an interrupted run of the same --out");
-  app.add_flag("--rerun-failed", options.rerun_failed,
+  add_selection(program, options);
+  program.option("--out", options.out, "result file; default results/local/<profile>-<axis>.json",
+                 "FILE");
+  add_measurement(program, options);
+  program.byte_count("--memory", options.memory, "address space a point may have, e.g. 4G");
+  program.flag("--resume", options.resume, "go on with an interrupted run of the same --out");
+  program.flag("--rerun-failed", options.rerun_failed,
                "as --resume, also after a finished run, and run again what failed");
-  app.add_flag(
+  program.flag(
       "--force", options.force,
       "drop an interrupted run; with --resume: go on though it is of another build or suite");
-  app.add_flag("--in-process", options.in_process,
+  program.flag("--in-process", options.in_process,
                "no child process a point, for debuggers and profilers");
-  app.add_option("--shard", options.shard,
-                 "i/N: the i-th of N parts; all solvers of a scene and size are in one of them")
-      ->type_name("I/N");
-  app.add_option("--case", options.hard_case,
-                 "stability: only cases in whose name this is found, e.g. 'Q[12]'")
-      ->type_name("REGEX");
-  app.add_option("--values", options.values,
+  program.option("--shard", options.shard,
+                 "i/N: the i-th of N parts; all solvers of a scene and size are in one of them",
+                 "I/N");
+  program.option("--case", options.hard_case,
+                 "stability: only cases in whose name this is found, e.g. 'Q[12]'", "REGEX");
+  program.option("--values", options.values,
                  "stability: what a family of cases runs over, e.g. ratios=1e3,1e5 (distances, "
-                 "limits, ratios, links, sides, scales)")
-      ->type_name("NAME=LIST");
-  app.add_flag("--dry-run", options.dry_run, "say what would run and how long, and stop");
-  app.add_flag("--no-plots", options.no_plots, "no figures at the end");
+                 "limits, ratios, links, sides, scales)",
+                 "NAME=LIST");
+  program.flag("--dry-run", options.dry_run, "say what would run and how long, and stop");
+  program.flag("--no-plots", options.no_plots, "no figures at the end");
 
-  app.callback([given, &app, &chosen, &command] {
-    if (!app.get_subcommands().empty()) return;
-    chosen = [given, &command] {
-      if (given->sweep.empty())
-        throw UsageError(
-            "nothing to do: give --sweep strain, resolution, step or stability (see bench --help)");
-      if (given->sweep == "stability") return stability_command(*given, command);
-      if (!given->hard_case.empty() || !given->values.empty())
-        throw UsageError("--case and --values go with --sweep stability");
-      return sweep_command(*given, command);
-    };
+  program.does([given, &command] {
+    if (given->sweep.empty())
+      throw UsageError(
+          "nothing to do: give --sweep strain, resolution, step or stability (see bench --help)");
+    if (given->sweep == "stability") return stability_command(*given, command);
+    if (!given->hard_case.empty() || !given->values.empty())
+      throw UsageError("--case and --values go with --sweep stability");
+    return sweep_command(*given, command);
   });
 }
 

@@ -1,11 +1,11 @@
-// The program's commands, one file each (command_*.cpp). A command adds its options to the command
-// line and, when it is chosen there, puts what it does into `chosen`; main() runs that.
+// The program's commands, one file each (command_*.cpp). Each adds itself, its options and what it
+// does to the command line.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
 #include <string>
 #include <vector>
+
+#include "harness/cli/command_line.h"
 
 namespace harness {
 
@@ -20,22 +20,20 @@ enum ExitCode {
   interrupted_exit = 130
 };
 
-using Chosen = std::function<int()>;  // returns an ExitCode; throws UsageError
-
-void add_sweep_command(CLI::App& app, Chosen& chosen, const std::vector<std::string>& command);
-void add_reference_command(CLI::App& app, Chosen& chosen);
-void add_list_command(CLI::App& app, Chosen& chosen);
-void add_claims_command(CLI::App& app, Chosen& chosen);
-void add_results_command(CLI::App& app, Chosen& chosen);
-void add_merge_command(CLI::App& app, Chosen& chosen);
-void add_plot_command(CLI::App& app, Chosen& chosen);
-void add_emit_command(CLI::App& app, Chosen& chosen);
-void add_check_command(CLI::App& app, Chosen& chosen);
-void add_compare_command(CLI::App& app, Chosen& chosen);
-void add_baseline_command(CLI::App& app, Chosen& chosen);
-void add_point_command(CLI::App& app, Chosen& chosen);
-void add_ab_command(CLI::App& app, Chosen& chosen);
-void add_history_command(CLI::App& app, Chosen& chosen);
+void add_sweep_command(const Command& program, const std::vector<std::string>& command);
+void add_reference_command(const Command& program);
+void add_list_command(const Command& program);
+void add_claims_command(const Command& program);
+void add_results_command(const Command& program);
+void add_merge_command(const Command& program);
+void add_plot_command(const Command& program);
+void add_emit_command(const Command& program);
+void add_check_command(const Command& program);
+void add_compare_command(const Command& program);
+void add_baseline_command(const Command& program);
+void add_point_command(const Command& program);
+void add_ab_command(const Command& program);
+void add_history_command(const Command& program);
 
 // Runs a script of plots/ on result files; its paths go to stdout as they are. Its exit code.
 int draw(const std::vector<std::string>& arguments, const std::string& script = "figures.py");

@@ -8,12 +8,10 @@
 
 namespace harness {
 
-void add_compare_options(CLI::App& to, CompareOptions& options) {
-  to.add_option("--gate", options.gate, "what passes; see configs/gate.json")->type_name("FILE");
-  to.add_option("--junit", options.junit, "also write JUnit XML, one test case a point")
-      ->type_name("FILE");
-  to.add_option("--markdown", options.markdown, "also write the table in Markdown")
-      ->type_name("FILE");
+void add_compare_options(const Command& to, CompareOptions& options) {
+  to.option("--gate", options.gate, "what passes; see configs/gate.json", "FILE");
+  to.option("--junit", options.junit, "also write JUnit XML, one test case a point", "FILE");
+  to.option("--markdown", options.markdown, "also write the table in Markdown", "FILE");
 }
 
 void check_reports(const CompareOptions& options) {

@@ -1,9 +1,9 @@
 // What the commands that compare have in common: a gate, and reports beside the table on stdout.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "harness/cli/command_line.h"
 #include "harness/compare/comparison.h"
 
 namespace harness {
@@ -12,7 +12,7 @@ struct CompareOptions {
   std::string gate, junit, markdown;
 };
 
-void add_compare_options(CLI::App& to, CompareOptions& options);
+void add_compare_options(const Command& to, CompareOptions& options);
 
 // Throws UsageError for a report that cannot be written, before anything is done.
 void check_reports(const CompareOptions& options);

@@ -21,23 +21,8 @@ std::vector<std::string> command_words(int argc, char** argv) {
   return words;
 }
 
-// Before and after a command's name, any number of times.
-void add_plugin_option(CLI::App& app, std::vector<std::string>& files) {
-  std::vector<CLI::App*> places = app.get_subcommands([](const CLI::App*) { return true; });
-  places.push_back(&app);
-  for (CLI::App* place : places) {
-    place
-        ->add_option_function<std::vector<std::string>>(
-            "--plugin",
-            [&files](const auto& given) { files.insert(files.end(), given.begin(), given.end()); },
-            "load solvers of your own from a shared library (solvers/plugin.h); repeatable")
-        ->allow_extra_args(false)
-        ->type_name("FILE");
-  }
-}
-
 int run(int argc, char** argv) {
-  CLI::App app{
+  CommandLine line(
       "bench: which solver keeps cloth and chains from stretching fastest, at which strain, at "
       "which size.\n"
       "\n"
@@ -59,40 +44,36 @@ int run(int argc, char** argv) {
       "  bench ab OLD_BINARY NEW_BINARY           two builds against each other, in interleaved "
       "runs\n"
       "  bench list                               solvers, scenes and suites with their "
-      "settings\n"};
-  app.set_version_flag("--version", std::string("bench ") + version());
+      "settings\n",
+      std::string("bench ") + version());
+  const Command program = line.program();
   const std::vector<std::string> command = command_words(argc, argv);
-  Chosen chosen;
-  add_sweep_command(app, chosen, command);
-  add_plot_command(app, chosen);
-  add_reference_command(app, chosen);
-  add_claims_command(app, chosen);
-  add_results_command(app, chosen);
-  add_emit_command(app, chosen);
-  add_compare_command(app, chosen);
-  add_baseline_command(app, chosen);
-  add_point_command(app, chosen);
-  add_ab_command(app, chosen);
-  add_history_command(app, chosen);
-  add_list_command(app, chosen);
-  add_merge_command(app, chosen);
-  add_check_command(app, chosen);
+  add_sweep_command(program, command);
+  add_plot_command(program);
+  add_reference_command(program);
+  add_claims_command(program);
+  add_results_command(program);
+  add_emit_command(program);
+  add_compare_command(program);
+  add_baseline_command(program);
+  add_point_command(program);
+  add_ab_command(program);
+  add_history_command(program);
+  add_list_command(program);
+  add_merge_command(program);
+  add_check_command(program);
   std::vector<std::string> plugins;
-  add_plugin_option(app, plugins);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    std::cerr << "bench: " << error.what() << " (see bench --help)\n";
-    return usage_error;
-  }
+  line.add_everywhere(
+      "--plugin", plugins,
+      "load solvers of your own from a shared library (solvers/plugin.h); repeatable", "FILE");
+  if (const std::optional<int> done = line.read(argc, argv)) return *done;
   for (const std::string& file : plugins) load_plugin(file);
   for (const Plugin& plugin : loaded_plugins()) {
     if (!plugin.optimized)
       std::cerr << "bench: plug-in '" << plugin.file
                 << "' was compiled without optimization: its times say nothing\n";
   }
-  return chosen();
+  return line.run();
 }
 
 }  // namespace

@@ -37,48 +37,37 @@ void cut_ladders(Suite& suite, double finest) {
 
 }  // namespace
 
-void add_selection(CLI::App& to, SweepOptions& options) {
-  to.add_option("--sweep", options.sweep, "axis: strain (limit), resolution, step or stability")
-      ->type_name("AXIS");
-  to.add_option("--scene", options.scene, "chain or drape; both if left out")->type_name("NAME");
-  to.add_option("--solver", options.solver, "only contestants whose name matches, e.g. 'shake|icd'")
-      ->type_name("REGEX");
-  to.add_option("--filter", options.filter, "only points in whose id this is found")
-      ->type_name("REGEX");
-  to.add_option("--exclude", options.exclude, "without points in whose id this is found")
-      ->type_name("REGEX");
-  to.add_option("--profile", options.profile,
-                "quick (< 1 min), default (about 5 min) or paper (an hour and a half)")
-      ->type_name("NAME");
-  to.add_option("--config", options.config, "a suite of your own instead of a profile")
-      ->type_name("FILE");
+void add_selection(const Command& to, SweepOptions& options) {
+  to.option("--sweep", options.sweep, "axis: strain (limit), resolution, step or stability",
+            "AXIS");
+  to.option("--scene", options.scene, "chain or drape; both if left out", "NAME");
+  to.option("--solver", options.solver, "only contestants whose name matches, e.g. 'shake|icd'",
+            "REGEX");
+  to.option("--filter", options.filter, "only points in whose id this is found", "REGEX");
+  to.option("--exclude", options.exclude, "without points in whose id this is found", "REGEX");
+  to.option("--profile", options.profile,
+            "quick (< 1 min), default (about 5 min) or paper (an hour and a half)", "NAME");
+  to.option("--config", options.config, "a suite of your own instead of a profile", "FILE");
 }
 
-void add_measurement(CLI::App& to, SweepOptions& options) {
-  to.add_option("--reps", options.reps,
-                "runs of each best point; 5..40: more until the median is known to --rel-ci")
-      ->type_name("N");
-  to.add_option("--rel-ci", options.rel_ci,
-                "half width of the median's 95 % confidence interval over the median, default 0.02")
-      ->check(CLI::PositiveNumber)
-      ->type_name("R");
-  to.add_option("--timeout", options.timeout, "seconds a point may take")
-      ->check(CLI::PositiveNumber)
-      ->type_name("S");
-  to.add_option("--step", options.step,
-                "search (each solver's best step, default), all (the whole ladder) or adaptive "
-                "(one run from the coarsest step, halved where the solver refuses it)")
-      ->type_name("HOW");
-  to.add_option("--finest", options.finest, "smallest step of the ladder instead of the suite's")
-      ->check(CLI::PositiveNumber)
-      ->type_name("S");
-  to.add_option("--max-error", options.max_error,
-                "also find the fastest step within this trajectory error, over the scene's size")
-      ->check(CLI::PositiveNumber)
-      ->type_name("E");
-  to.add_option("--seed", options.seed, "of random orders")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("N");
+void add_measurement(const Command& to, SweepOptions& options) {
+  to.option("--reps", options.reps,
+            "runs of each best point; 5..40: more until the median is known to --rel-ci", "N");
+  to.option("--rel-ci", options.rel_ci,
+            "half width of the median's 95 % confidence interval over the median, default 0.02",
+            "R")
+      .positive();
+  to.option("--timeout", options.timeout, "seconds a point may take", "S").positive();
+  to.option("--step", options.step,
+            "search (each solver's best step, default), all (the whole ladder) or adaptive "
+            "(one run from the coarsest step, halved where the solver refuses it)",
+            "HOW");
+  to.option("--finest", options.finest, "smallest step of the ladder instead of the suite's", "S")
+      .positive();
+  to.option("--max-error", options.max_error,
+            "also find the fastest step within this trajectory error, over the scene's size", "E")
+      .positive();
+  to.option("--seed", options.seed, "of random orders", "N").not_negative();
 }
 
 std::vector<std::string> profiles() { return {"quick", "default", "paper", "large"}; }

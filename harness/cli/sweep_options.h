@@ -1,10 +1,10 @@
 // The options that select what a sweep runs, shared by several commands.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "harness/cli/command_line.h"
 #include "harness/run/sweep.h"
 
 namespace harness {
@@ -17,10 +17,10 @@ struct SweepOptions {
 };
 
 // --sweep, --scene, --solver, --filter, --exclude, --profile and --config.
-void add_selection(CLI::App& to, SweepOptions& options);
+void add_selection(const Command& to, SweepOptions& options);
 
 // --reps, --rel-ci, --timeout, --step, --max-error and --seed.
-void add_measurement(CLI::App& to, SweepOptions& options);
+void add_measurement(const Command& to, SweepOptions& options);
 
 std::vector<std::string> profiles();
 // All of these throw UsageError for what does not exist.

@@ -1,0 +1,119 @@
+#include "harness/cli/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "harness/cli/commands.h"
+
+namespace harness {
+
+Option Option::required() const { return Option(option_->required()); }
+Option Option::positive() const { return Option(option_->check(CLI::PositiveNumber)); }
+Option Option::not_negative() const { return Option(option_->check(CLI::NonNegativeNumber)); }
+Option Option::within(int least, int most) const {
+  return Option(option_->check(CLI::Range(least, most)));
+}
+Option Option::within(double least, double most) const {
+  return Option(option_->check(CLI::Range(least, most)));
+}
+
+namespace {
+
+template <class Value>
+Option add(CLI::App* app, const std::string& name, Value& value, const std::string& help,
+           const std::string& type) {
+  CLI::Option* option = app->add_option(name, value, help);
+  if (!type.empty()) option->type_name(type);
+  return Option(option);
+}
+
+}  // namespace
+
+Command Command::subcommand(const std::string& name, const std::string& summary) const {
+  return {app_->add_subcommand(name, summary), chosen_};
+}
+
+Option Command::option(const std::string& name, std::string& value, const std::string& help,
+                       const std::string& type) const {
+  return add(app_, name, value, help, type);
+}
+Option Command::option(const std::string& name, std::vector<std::string>& values,
+                       const std::string& help, const std::string& type) const {
+  return add(app_, name, values, help, type);
+}
+Option Command::option(const std::string& name, double& value, const std::string& help,
+                       const std::string& type) const {
+  return add(app_, name, value, help, type);
+}
+Option Command::option(const std::string& name, int& value, const std::string& help,
+                       const std::string& type) const {
+  return add(app_, name, value, help, type);
+}
+Option Command::option(const std::string& name, std::int64_t& value, const std::string& help,
+                       const std::string& type) const {
+  return add(app_, name, value, help, type);
+}
+Option Command::byte_count(const std::string& name, double& value, const std::string& help) const {
+  return Option(
+      app_->add_option(name, value, help)->transform(CLI::AsSizeValue(false))->type_name("BYTES"));
+}
+void Command::flag(const std::string& name, bool& value, const std::string& help) const {
+  app_->add_flag(name, value, help);
+}
+
+void Command::does(Action action) const {
+  app_->callback([app = app_, chosen = chosen_, action = std::move(action)] {
+    if (app->get_subcommands().empty()) *chosen = action;  // else it is a subcommand that is meant
+  });
+}
+
+std::function<std::vector<std::string>()> Command::as_typed() const {
+  const std::vector<const CLI::Option*> options = std::as_const(*app_).get_options();
+  return [options] {
+    std::vector<std::string> words;
+    for (const CLI::Option* option : options) {
+      if (option->count() == 0 || option->results().back().empty()) continue;
+      words.push_back(option->get_name() + "=" + option->results().back());
+    }
+    return words;
+  };
+}
+
+CommandLine::CommandLine(const std::string& description, const std::string& version)
+    : app_(std::make_unique<CLI::App>(description)) {
+  app_->set_version_flag("--version", version);
+}
+
+CommandLine::~CommandLine() = default;
+
+Command CommandLine::program() { return {app_.get(), &chosen_}; }
+
+void CommandLine::add_everywhere(const std::string& name, std::vector<std::string>& values,
+                                 const std::string& help, const std::string& type) {
+  std::vector<CLI::App*> places = app_->get_subcommands([](const CLI::App*) { return true; });
+  places.push_back(app_.get());
+  for (CLI::App* place : places) {
+    place
+        ->add_option_function<std::vector<std::string>>(
+            name,
+            [&values](const auto& given) {
+              values.insert(values.end(), given.begin(), given.end());
+            },
+            help)
+        ->allow_extra_args(false)
+        ->type_name(type);
+  }
+}
+
+std::optional<int> CommandLine::read(int argc, char** argv) {
+  try {
+    app_->parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app_->exit(error);  // --help, --version
+    std::cerr << "bench: " << error.what() << " (see bench --help)\n";
+    return usage_error;
+  }
+  return std::nullopt;
+}
+
+}  // namespace harness

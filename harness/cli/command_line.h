@@ -1,0 +1,93 @@
+// The words on the command line. CLI11 reads them; only command_line.cpp includes it, because every
+// file that does takes ten seconds to compile.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace harness {
+
+using Action = std::function<int()>;  // returns an ExitCode; throws UsageError
+
+// An option that was just added, to say more of it.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+  Option required() const;
+  Option positive() const;
+  Option not_negative() const;
+  Option within(int least, int most) const;
+  Option within(double least, double most) const;
+
+ private:
+  CLI::Option* option_;
+};
+
+// A command, or the program itself. What an option is written to must live until the action has
+// run, which is why actions share their options' owner.
+class Command {
+ public:
+  Command(CLI::App* app, Action* chosen) : app_(app), chosen_(chosen) {}
+
+  Command subcommand(const std::string& name, const std::string& summary) const;
+
+  // An option if the name begins with dashes, a word in its place if not. `type`: what the help
+  // calls the value.
+  Option option(const std::string& name, std::string& value, const std::string& help,
+                const std::string& type = {}) const;
+  Option option(const std::string& name, std::vector<std::string>& values, const std::string& help,
+                const std::string& type) const;
+  Option option(const std::string& name, double& value, const std::string& help,
+                const std::string& type) const;
+  Option option(const std::string& name, int& value, const std::string& help,
+                const std::string& type) const;
+  Option option(const std::string& name, std::int64_t& value, const std::string& help,
+                const std::string& type) const;
+  // "4G" is 4 GiB.
+  Option byte_count(const std::string& name, double& value, const std::string& help) const;
+  void flag(const std::string& name, bool& value, const std::string& help) const;
+
+  // What is done if the command is chosen.
+  void does(Action action) const;
+
+  // Of the options added so far, those that will have been given, as they were typed: ask when the
+  // action runs.
+  std::function<std::vector<std::string>()> as_typed() const;
+
+ private:
+  CLI::App* app_;
+  Action* chosen_;
+};
+
+class CommandLine {
+ public:
+  CommandLine(const std::string& description, const std::string& version);
+  ~CommandLine();
+  CommandLine(const CommandLine&) = delete;
+  CommandLine& operator=(const CommandLine&) = delete;
+
+  Command program();
+  // Before and after the name of every command added so far, any number of times.
+  void add_everywhere(const std::string& name, std::vector<std::string>& values,
+                      const std::string& help, const std::string& type);
+
+  // An exit code if nothing is left to do: help was printed, or a word is wrong, which is said on
+  // stderr.
+  std::optional<int> read(int argc, char** argv);
+  int run() const { return chosen_(); }
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+  Action chosen_;
+};
+
+}  // namespace harness
