@@ -9,10 +9,9 @@ namespace harness::claims {
 using nlohmann::json;
 
 double Point::filter_seconds() const {
-  if (const double given = number("filter_seconds"); std::isfinite(given)) return given;
-  const auto phases = p_->find("phases");  // older files: of the first run
-  if (!timed() || phases == p_->end()) return std::nan("");
-  return figure(*phases, "filter") / number("duration");
+  const auto given = p_->find("filter_seconds_per_simulated_second");
+  return timed() && given != p_->end() && given->is_object() ? figure(*given, "median")
+                                                             : std::nan("");
 }
 
 std::vector<double> Point::samples() const {
@@ -31,8 +30,20 @@ double Point::delivered_strain() const {
 }
 
 bool Point::within_error(double level) const {
-  const double gap = error("gap");
-  return error("trajectory") <= level && !(3 * gap > level);
+  constexpr double sure = 3;  // gaps
+  const auto series = p_->at("error").find("error_series");
+  if (series == p_->at("error").end() || series->empty())  // older files: one figure for all levels
+    return error("trajectory") <= level && !(sure * error("gap") > level);
+  double squares = 0;
+  int count = 0;
+  for (const auto& sample : *series) {  // time, error, largest, gap, its largest
+    if (!sample.at(1).is_number() || !sample.at(3).is_number() ||
+        !(sure * sample.at(3).get<double>() <= level))
+      continue;
+    squares += std::pow(sample.at(1).get<double>(), 2);
+    ++count;
+  }
+  return count > 0 && std::sqrt(squares / count) <= level;
 }
 
 namespace {
@@ -56,23 +67,27 @@ Cast::Cast(const json& document) {
   for (const char* list : {"contestants", "solvers"}) {
     for (const json& entry : legend.value(list, json::array())) {
       const std::string name = entry.at("name");
-      known_.try_emplace(name,
-                         Role{name, entry.value("family", name), entry.value("contestant", true),
-                              entry.value("hollow", false), false});
+      known_.try_emplace(name, Role{.name = name,
+                                    .family = entry.value("family", name),
+                                    .solver = entry.value("solver", name),
+                                    .competes = entry.value("contestant", true),
+                                    .hollow = entry.value("hollow", false)});
     }
   }
   const json noise = document.value("context", json::object()).value("noise", json());
   if (noise.is_object() && noise.contains("pair")) {
     const json& pair = noise.at("pair");
     const std::string second = pair.is_array() ? pair.at(1) : pair;
-    known_.try_emplace(second, Role{.name = second, .family = second});
+    known_.try_emplace(second, Role{.name = second, .family = second, .solver = second});
     known_.at(second).again = true;
   }
 }
 
 Role Cast::of(const std::string& contestant) const {
   const auto place = known_.find(contestant);
-  return place != known_.end() ? place->second : Role{.name = contestant, .family = contestant};
+  return place != known_.end()
+             ? place->second
+             : Role{.name = contestant, .family = contestant, .solver = contestant};
 }
 
 void Cast::add(const Cast& other) { known_.insert(other.known_.begin(), other.known_.end()); }

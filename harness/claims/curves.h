@@ -46,15 +46,15 @@ class Point {
     return timed() ? p_->at("seconds_per_simulated_second").at("median").get<double>()
                    : std::nan("");
   }
-  // Of the inextensibility filter alone, over simulated time.
+  // Of the inextensibility filter alone; not-a-number in older files.
   double filter_seconds() const;
   std::vector<double> samples() const;
   double noise() const { return noise_; }
   double steps() const { return number("duration") / number("step"); }
   // The largest strain after the collision filter, which is what a user gets.
   double delivered_strain() const;
-  // Whether its distance to the reference is known to be within a level: the reference is sure
-  // enough there.
+  // Whether its distance to the reference is known to be within a level: of the samples at which
+  // the reference is sure enough for that level.
   bool within_error(double level) const;
 
  private:
@@ -75,6 +75,7 @@ Ratio ratio_of_steps(const Point& a, const Point& b);
 // What a file says of who competes in it.
 struct Role {
   std::string name, family;
+  std::string solver;  // that it is, with settings of its own
   bool competes = true;
   bool hollow = false;  // shown beside its tuned self, not ranked
   bool again = false;   // the second of an A/A pair

@@ -31,9 +31,12 @@ std::string page(const Given& given) {
   if (!given.growth.empty()) out << " \\\n  --growth";
   for (const std::string& file : given.growth) out << ' ' << file;
   if (!given.out.empty()) out << " \\\n  --out " << given.out;
-  out << "\n```\n\nNumbers are medians. [measuring.md](measuring.md) says what they mean, and "
-         "which "
-         "rankings are provisional; a dash: no step of that solver met the limit.\n\n";
+  out << "\n```\n\nNumbers are medians. [measuring.md](measuring.md) says what they mean, and how "
+         "far they can be trusted. A dash: no step of that solver met the limit. Ratios have their "
+         "95 % interval, `3.5 (3.3-3.8)`; `3.5 (?)`: it is not known, for too few runs and no A/A "
+         "pair. Bold: the fastest, if its interval against each other lies on one side. "
+         "`(coarsest)`, `(finest)`: a step at the end of what was tried, beyond which a better one "
+         "may lie.\n\n";
   print_results_page(out, read(given.results), read(given.growth));
   return out.str();
 }

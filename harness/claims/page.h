@@ -1,0 +1,77 @@
+// The tables of docs/results.md, one file a family: what they share, and what each prints.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "harness/claims/curves.h"
+#include "harness/claims/results_page.h"
+
+namespace harness::claims {
+
+// ---- shared (page.cpp) ----
+void print_row(std::ostream& out, const std::vector<std::string>& cells);
+void print_head(std::ostream& out, const std::vector<std::string>& cells);
+std::string quoted(const std::string& name);
+std::string bold(const std::string& text);
+// As number_text(), but never with a power of ten where the number has more digits.
+std::string plain(double value, int digits);
+bool is_stability(const nlohmann::json& document);
+
+// Points of one scene and kind of sweep of one file, in the file's order; of strain and step sweeps
+// of one size too.
+struct ScenePoints {
+  std::string title;  // "drape, 441 vertices"
+  std::vector<Point> points;
+  Cast cast;
+
+  bool has_collider() const;
+  // In the files' order, without the second of an A/A pair; hollow ones after all others.
+  std::vector<Role> contestants() const;
+};
+std::vector<ScenePoints> scenes_of(const nlohmann::json& document, const std::string& sweep,
+                                   bool sizes_apart);
+
+// A table with a row for each contestant and a column for each place of an axis.
+class PlaceTable {
+ public:
+  explicit PlaceTable(std::vector<Role> contestants) : contestants_(std::move(contestants)) {}
+
+  // Of several points the fastest one stays.
+  void add(double place, const Point& point);
+  bool empty() const { return places_.empty(); }
+  const std::vector<double>& places() const { return places_; }
+  const std::vector<Role>& contestants() const { return contestants_; }
+  void loose_to_tight();  // places from large to small; else from small to large
+
+  const Point* find(const std::string& contestant, double place) const;
+  // The ranked contestant that is faster than each other there beyond the noise; null: none is.
+  const Point* clear_best(double place) const;
+
+  using Cell = std::function<std::string(const Point&, double place)>;
+  void print(std::ostream& out, const std::function<std::string(double)>& head,
+             const Cell& cell) const;
+
+ private:
+  std::vector<Role> contestants_;
+  std::vector<double> places_;  // sorted
+  std::map<std::pair<std::string, double>, Point> cells_;
+};
+
+// ---- families of tables ----
+// sweep: "strain" or "resolution".
+void print_best_points(std::ostream& out, const NamedResult& result, const std::string& sweep);
+// Beside a ranking of best points: strains, time of the filter, energy, failures, untuned rivals.
+void print_beside(std::ostream& out, const ScenePoints& scene, const PlaceTable& best,
+                  const std::function<std::string(double)>& place);
+void print_delivered(std::ostream& out, const NamedResult& result);
+void print_time_to_error(std::ostream& out, const NamedResult& result);
+void print_growth(std::ostream& out, const NamedResult& result);
+void print_hard_cases(std::ostream& out, const NamedResult& result);
+void print_tuned(std::ostream& out, const std::vector<NamedResult>& results);
+void print_sources(std::ostream& out, const std::vector<NamedResult>& results);
+
+}  // namespace harness::claims
