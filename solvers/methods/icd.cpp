@@ -15,6 +15,7 @@
 
 #include <cmath>
 
+#include "inextensible/systems/chain_kkt.h"
 #include "inextensible/systems/kkt_system.h"
 #include "inextensible/systems/projected_cg.h"
 
@@ -24,11 +25,13 @@ namespace {
 constexpr int line_search_limit = 12;
 constexpr double sufficient_decrease = 1e-4;
 
-// Without fill, as on a chain, factoring the saddle-point matrix is cheaper than any iteration; and
+// Without fill, as on trees, factoring the saddle-point matrix is cheaper than any iteration; and
 // where it is small it costs little, and a full Newton step leaves less of F than is asked for.
+// Chains have a factorization of their own.
 constexpr int many_edges = 600;
 std::string choose(std::string_view wanted, const Problem& problem) {
   if (wanted != "auto") return std::string(wanted);
+  if (ChainKkt::fits(problem)) return "block_tridiagonal";
   const bool fill = problem.constraints() >= problem.vertices();
   return fill && problem.constraints() >= many_edges ? "projected_cg" : "quasi_definite";
 }
@@ -50,6 +53,8 @@ Icd::Icd(const Problem& problem, const Settings& settings)
   if (linear_solver_ == "projected_cg") {
     kkt_ = std::make_unique<ProjectedCg>(problem, edges_,
                                          ProjectedCg::Settings{settings.cg_tolerance});
+  } else if (linear_solver_ == "block_tridiagonal") {
+    kkt_ = std::make_unique<ChainKkt>(problem, edges_);
   } else {
     kkt_ = std::make_unique<KktSystem>(problem, edges_, linear_solver_);
   }
@@ -179,7 +184,7 @@ SettingFields<Icd::Settings> Icd::fields() {
            "of the KKT system",
            {},
            {},
-           {"auto", "projected_cg", "quasi_definite", "umfpack"}}};
+           {"auto", "projected_cg", "quasi_definite", "block_tridiagonal", "umfpack"}}};
 }
 
 Backend icd_row() {

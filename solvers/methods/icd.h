@@ -18,8 +18,8 @@ class Icd final : public VelocityFilter {
     // |F| of every vertex must fall below this times strain_limit times the shortest rest length
     // (m).
     double direction_tolerance = 0.1;
-    // projected_cg, quasi_definite, umfpack, or "auto": the first, but on chains and small cloth
-    // (below 600 edges) the second.
+    // projected_cg, quasi_definite, umfpack, block_tridiagonal, or "auto": the last on chains, the
+    // second on small cloth (below 600 edges), else the first.
     std::string_view linear_solver = "auto";
     double cg_tolerance = 0.03;  // of projected_cg
   };

@@ -12,6 +12,7 @@
 #include "inextensible/linear/multifrontal_cholesky.h"
 #include "inextensible/linear/spd_solvers.h"
 #include "inextensible/problem/edge_constraints.h"
+#include "inextensible/systems/chain_kkt.h"
 #include "inextensible/systems/kkt_system.h"
 #include "inextensible/systems/projected_cg.h"
 #include "inextensible/systems/schur_complement.h"
@@ -517,6 +518,97 @@ TEST(KktSystem, SolvesTheDenseSaddlePointSystemAndNoticesTheWrongInertia) {
   }
   EXPECT_GT(right, 0) << "the multipliers are too large to test the usual case";
   EXPECT_GT(wrong, 0) << "the multipliers are too small to test the other one";
+}
+
+// Some hairs in one problem, their edges in random directions: pinned at one end, somewhere
+// between, or nowhere. At rest in random shape, masses log-uniform over three decades.
+testing::RandomMesh random_chains(Random& random, int chains) {
+  testing::RandomMesh mesh;
+  ProblemParts parts;
+  for (int chain = 0; chain < chains; ++chain) {
+    const int first = static_cast<int>(parts.mass.size());
+    const int length = 1 + static_cast<int>(random() % 12);
+    const int pin = first + static_cast<int>(random() % 13);
+    for (int v = first; v < first + length; ++v) {
+      parts.mass.push_back(std::pow(10, testing::uniform(random, -3, 0)));
+      if (v == pin) parts.pinned.push_back(v);
+      if (v > first) parts.edges.push_back(random() % 2 ? Edge{v - 1, v} : Edge{v, v - 1});
+    }
+  }
+  std::shuffle(parts.edges.begin(), parts.edges.end(), random);
+  mesh.x = Positions::NullaryExpr(3, static_cast<Eigen::Index>(parts.mass.size()),
+                                  [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
+  for (const Edge e : parts.edges)
+    parts.rest_length.push_back((mesh.x.col(e.b) - mesh.x.col(e.a)).norm());
+  mesh.problem = std::make_shared<const Problem>(std::move(parts));
+  return mesh;
+}
+
+TEST(ChainKkt, SolvesTheDenseSaddlePointSystemAndNoticesTheWrongInertia) {
+  int right = 0, wrong = 0;
+  for (const double size : {0.0, 0.02, 1.0}) {  // of the multipliers, of either sign
+    for (std::uint64_t seed = 0; seed < 30; ++seed) {
+      SCOPED_TRACE("multipliers " + std::to_string(size) + ", seed " + std::to_string(seed));
+      Random random(seed);
+      const auto mesh = random_chains(random, 1 + static_cast<int>(seed % 5));
+      const Problem& problem = *mesh.problem;
+      const int n = problem.vertices(), m = problem.constraints();
+      const EdgeConstraints edges(problem, 0.01);
+      Eigen::Matrix3Xd u(3, m);
+      edges.gradient(mesh.x, u);
+      const Eigen::VectorXd mu = Eigen::VectorXd::NullaryExpr(
+          m, [&](Eigen::Index) { return size * testing::uniform(random, -1, 1); });
+      ChainKkt kkt(problem, edges);
+      WorkCounters work;
+      ASSERT_TRUE(kkt.factor(u, mu, false, work));
+      const Eigen::MatrixXd full = dense_kkt(problem, mesh.x, mu, kkt.mean_mass());
+      const Eigen::VectorXd eigenvalues =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full, Eigen::EigenvaluesOnly)
+              .eigenvalues();
+      const bool proper = (eigenvalues.array() < 0).count() == m;
+      ++(proper ? right : wrong);
+      if (eigenvalues.cwiseAbs().minCoeff() > 1e-6) {
+        EXPECT_EQ(kkt.convexified(), !proper);
+      }
+      EXPECT_EQ(work.factorizations, kkt.convexified() ? 2 : 1);  // none was left to UMFPACK
+      Positions r(3, n), p(3, n);
+      for (Eigen::Index i = 0; i < r.size(); ++i) r.data()[i] = testing::uniform(random, -1, 1);
+      const Eigen::VectorXd c = Eigen::VectorXd::NullaryExpr(
+          m, [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
+      Eigen::VectorXd q(m);
+      ASSERT_TRUE(kkt.solve(r, c, p, q, work));
+      const Eigen::MatrixXd used =
+          kkt.convexified() ? dense_kkt(problem, mesh.x, mu.cwiseMax(0), kkt.mean_mass()) : full;
+      Eigen::VectorXd solution(3 * n + m), rhs(3 * n + m);
+      for (const int v : problem.pinned()) {
+        EXPECT_EQ(p.col(v).norm(), 0);
+        r.col(v).setZero();
+      }
+      solution << p.reshaped(), q;
+      rhs << r.reshaped(), c;
+      EXPECT_LT((used * solution - rhs).norm(), 1e-9 * rhs.norm());
+    }
+  }
+  EXPECT_GT(right, 10) << "the multipliers are too large to test the usual case";
+  EXPECT_GT(wrong, 10) << "the multipliers are too small to test the other one";
+}
+
+TEST(ChainKkt, TakesNoOtherGraphs) {
+  ProblemParts parts;
+  parts.mass = {1, 1, 1, 1};
+  parts.edges = {{0, 1}, {1, 2}, {3, 2}};
+  parts.rest_length = {1, 1, 1};
+  EXPECT_TRUE(ChainKkt::fits(Problem(parts)));
+  parts.pinned = {0, 3};  // a chain between two pins
+  EXPECT_FALSE(ChainKkt::fits(Problem(parts)));
+  EXPECT_THROW(ChainKkt(Problem(parts), EdgeConstraints(Problem(parts), 0.01)),
+               std::invalid_argument);
+  parts.pinned = {2};
+  EXPECT_TRUE(ChainKkt::fits(Problem(parts)));
+  parts.edges[2] = {1, 3};  // not the next one
+  EXPECT_FALSE(ChainKkt::fits(Problem(parts)));
+  parts.edges[2] = {2, 1};  // twice
+  EXPECT_FALSE(ChainKkt::fits(Problem(parts)));
 }
 
 // On every step J p = c holds; where M + H is positive definite on the null space of J, the system
