@@ -12,10 +12,10 @@ from matplotlib.figure import Figure
 
 from parts.best_points import Best, Curve, FigureData, sweeps_in
 from parts.caption import caption_of, warnings_of
-from parts.curves import Styles, draw_curves, draw_slopes
+from parts.curves import Styles, draw_curves, draw_noise, draw_slopes
 from parts.failures import add_strip, failed_rows
 from parts.legend import Legend
-from parts.result_file import Json
+from parts.result_file import Json, noise_factor
 from parts.scales import log_x, log_y
 from parts.sheet import LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, add_legend, grid, legend_height, make_sheet
 from parts.style import styles_for
@@ -33,13 +33,14 @@ def draw(data: FigureData, document: Json, legend: Legend) -> Figure:
     styles = styles_for(curves, legend)
     rows = failed_rows(steps, styles)
     sheet = make_sheet(f"{clean(data.scene)}: growth of a step's time with vertices", warnings_of(document),
-                       caption_of(data, document, legend), LEFT + MAIN_WIDTH + LEGEND_WIDTH,
+                       caption_of(steps, document, legend), LEFT + MAIN_WIDTH + LEGEND_WIDTH,
                        MAIN_HEIGHT + ROW_HEIGHT * len(rows), legend_height(styles) - MAIN_HEIGHT)
     main = sheet.axes(LEFT, sheet.bottom, MAIN_WIDTH, MAIN_HEIGHT)
     log_x(main, steps.xs(), MAIN_WIDTH)
     log_y(main, steps)
     draw_slopes(main)
     draw_curves(main, steps, styles)
+    draw_noise(main, noise_factor(document))
     main.set_ylabel("wall seconds of a step")
     main.set_xlabel("vertices (log axes; dotted: slopes 1 and 2)")
     grid(main)
@@ -49,7 +50,8 @@ def draw(data: FigureData, document: Json, legend: Legend) -> Figure:
 
 
 def _of_step(best: Best) -> Best:
-    return replace(best, seconds=best.seconds * best.step, q1=best.q1 * best.step, q3=best.q3 * best.step)
+    return replace(best, seconds=best.seconds * best.step, low=best.low * best.step, high=best.high * best.step,
+                   ladder_end=0)  # no panel shows it
 
 
 def _with_slopes(styles: Styles, data: FigureData) -> Styles:

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from parts.caption import ERROR_LABEL, origin_sentence, scene_sentence, timing, validity, warnings_of
-from parts.curves import Styles, line_of
+from parts.curves import Styles, draw_noise, line_of
 from parts.failures import Mark, Rows, add_strip, letters_in
 from parts.legend import MEANINGS, Legend
-from parts.result_file import Json
+from parts.result_file import Json, noise_factor
 from parts.scales import log_log
 from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, TIME_LABEL, add_legend, grid, legend_height,
                          make_sheet)
@@ -52,6 +52,7 @@ def draw(data: RunsData, document: Json, legend: Legend) -> Figure:
               solid_capstyle="round", solid_joinstyle="round", zorder=2)
     for order, (solver, style) in enumerate(styles.items()):
         _draw_solver(axes, data.runs.get(solver, []), style, 10 + len(styles) - order)
+    draw_noise(axes, noise_factor(document))
     grid(axes)
     add_strip(sheet, axes, rows, styles, "error not reached")
     add_legend(axes, styles, anchor=(1.03, 1.0))

@@ -4,24 +4,33 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Callable
 
-from parts.legend import TOO_WRONG, Legend
-from parts.result_file import OK, Json, contestant_of, is_number, median_of, object_in, points_of, positive, suite_of
+from parts.legend import TOO_STRAINED, TOO_WRONG, Legend
+from parts.result_file import (OK, Json, contestant_of, is_number, median_in, median_interval, median_of, object_in, points_of,
+                               positive, suite_of)
 from parts.words import file_part
 
 NUMBERS_OF_THE_PAPER = {"chain": "4", "drape": "5"}
 AXES = {"strain": "strain_limit", "resolution": "vertices"}
 
 
+# Strains after collisions that figures hold contestants at (docs/results.md has the same).
+DELIVERED_LEVELS = (1.0, 0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0001)
+TIME, FILTER_TIME = "seconds_per_simulated_second", "filter_seconds_per_simulated_second"
+
+
 @dataclass(frozen=True)
 class Best:
-    """The best run of one solver at one x."""
+    """The best run of one solver at one x. `low` to `high` is the median's 95 % interval, the median itself where it is not
+    known. `ladder_end`: 1 if the step is the coarsest of those tried, -1 if the finest, else 0."""
 
     x: float
     seconds: float
-    q1: float
-    q3: float
+    low: float
+    high: float
     step: float | None
+    ladder_end: int = 0
 
 
 @dataclass(frozen=True)
@@ -34,14 +43,17 @@ class Failure:
 
 @dataclass
 class Curve:
+    """`filter` holds the inextensibility filter's part of the best points, as far as it was timed."""
+
     best: list[Best] = field(default_factory=list)
     failures: list[Failure] = field(default_factory=list)
+    filter: list[Best] = field(default_factory=list)
 
 
 @dataclass
 class FigureData:
     """What one figure of cost shows. `fixed` is the axis that is not swept: vertices or strain limit. `max_error`: only
-    runs within this trajectory error count."""
+    runs within this trajectory error count. `delivered`: instead of the strain limit, the strain after collisions counts."""
 
     scene: str
     sweep: str
@@ -50,6 +62,12 @@ class FigureData:
     curves: dict[str, Curve]
     name: str = ""
     max_error: float | None = None
+    delivered: bool = False
+
+    @property
+    def has_filter(self) -> bool:
+        """Whether the filter's own time is worth a panel: a collider takes part, and it was timed."""
+        return any(curve.filter for curve in self.curves.values()) and any(with_collider(p) for p in self.points)
 
     @property
     def adaptive(self) -> bool:
@@ -82,6 +100,89 @@ def sweeps_in(document: Json, legend: Legend, sweep: str) -> list[FigureData]:
     return figures
 
 
+def delivered_in(document: Json, legend: Legend, sweep: str) -> list[FigureData]:
+    """The same by the strain that collisions leave: the least time, at any strain limit and step, over such strains, or over
+    vertices at one of them. Scenes without a collider have no such figure."""
+    figures = []
+    for data in sweeps_in(document, legend, sweep):
+        if data.max_error is not None or data.adaptive or not any(with_collider(point) for point in data.points):
+            continue
+        if sweep == "strain":
+            levels = _levels_reached(data.points)
+            curves = _delivered_curves({level: data.points for level in levels}, lambda level: level, legend)
+            fixed = data.fixed
+        else:
+            by_size: dict[float, list[Json]] = {}
+            for point in data.points:
+                by_size.setdefault(float(point["vertices"]), []).append(point)
+            fixed = _common_level(by_size, legend)
+            if fixed is None:
+                continue
+            curves = _delivered_curves(by_size, lambda _: fixed, legend)
+        if curves:
+            figures.append(FigureData(data.scene, sweep, fixed, data.points, curves, f"{data.name}-delivered", None, True))
+    return figures
+
+
+def with_collider(point: Json) -> bool:
+    return is_number(point.get("max_strain_after_collision"))
+
+
+def delivered_strain(point: Json) -> float | None:
+    """The largest strain after the collision filter."""
+    for key in ("delivered_max_strain", "max_strain_after_collision"):
+        if is_number(point.get(key)):
+            return float(point[key])
+    return None
+
+
+def _within(points: list[Json], level: float) -> list[Json]:
+    return [point for point in points if point["status"] == OK and median_of(point) is not None
+            and (strain := delivered_strain(point)) is not None and strain <= level]
+
+
+def _levels_reached(points: list[Json]) -> list[float]:
+    """Those that somebody reaches, from the tightest to the first that changes nothing any more."""
+    levels: list[float] = []
+    for level in sorted(DELIVERED_LEVELS):
+        if within := _within(points, level):
+            if levels and len(within) == len(_within(points, levels[-1])):
+                continue
+            levels.append(level)
+    return levels
+
+
+def _common_level(by_size: dict[float, list[Json]], legend: Legend) -> float | None:
+    """The tightest one that half of the ranked contestants, or more, reach at every size."""
+    names = {contestant_of(point) for points in by_size.values() for point in points}
+    ranked = {name for name in names if legend.ranked(name)}
+    for level in sorted(DELIVERED_LEVELS):
+        reached = [{contestant_of(point) for point in _within(points, level)} & ranked for points in by_size.values()]
+        if ranked and all(2 * len(names) >= len(ranked) for names in reached):
+            return level
+    return None
+
+
+def _delivered_curves(points_at: dict[float, list[Json]], level_at: Callable[[float], float], legend: Legend) -> dict[str, Curve]:
+    curves: dict[str, Curve] = {}
+    for x, points in sorted(points_at.items()):
+        runs: dict[str, list[Json]] = {}
+        for point in points:
+            if legend.competes(contestant_of(point)):
+                runs.setdefault(contestant_of(point), []).append(point)
+        for solver, tried in sorted(runs.items()):
+            curve = curves.setdefault(solver, Curve())
+            best = min(_within(tried, level_at(x)), key=lambda run: median_of(run) or math.inf, default=None)
+            if best:
+                _add_best(curve, x, best)
+            else:
+                failed = [{**run, "status": TOO_STRAINED} if run["status"] == OK else run for run in tried]
+                letters = dict.fromkeys(run["status"] if run["status"] == TOO_STRAINED else legend.letter(run["status"])
+                                        for run in sorted(failed, key=_step_or_zero, reverse=True))
+                curve.failures.append(Failure(x, "".join(letters)))
+    return curves
+
+
 def error_limit_of(document: Json) -> float | None:
     limit = suite_of(document).get("max_error")
     return float(limit) if positive(limit) else None
@@ -111,10 +212,16 @@ def _curves(points: list[Json], axis: str, max_error: float | None, legend: Lege
         curve = curves.setdefault(solver, Curve())
         best = best_of(runs, legend.competes(solver)) if max_error is None else best_at_error(runs)
         if best:
-            curve.best.append(_as_best(x, best))
+            _add_best(curve, x, best)
         else:
             curve.failures.append(Failure(x, failure_letters(runs, legend, max_error)))
     return curves
+
+
+def _add_best(curve: Curve, x: float, point: Json) -> None:
+    curve.best.append(_as_best(x, point, TIME))
+    if median_in(point, FILTER_TIME) is not None:
+        curve.filter.append(_as_best(x, point, FILTER_TIME))
 
 
 def best_of(runs: list[Json], competes: bool) -> Json | None:
@@ -130,11 +237,11 @@ def best_at_error(runs: list[Json]) -> Json | None:
     return min(marked, key=lambda run: median_of(run) or math.inf, default=None)
 
 
-def _as_best(x: float, point: Json) -> Best:
-    timing = point["seconds_per_simulated_second"]
-    median = float(timing["median"])
-    q1, q3 = (float(timing[key]) if positive(timing.get(key)) else median for key in ("q1", "q3"))
-    return Best(x, median, min(q1, median), max(q3, median), _step_of(point))
+def _as_best(x: float, point: Json, key: str) -> Best:
+    median = float(object_in(point, key)["median"])
+    low, high = median_interval(point, key) or (median, median)
+    end = {"coarsest": 1, "finest": -1}.get(point.get("at_ladder_end"), 0)
+    return Best(x, median, min(low, median), max(high, median), _step_of(point), end)
 
 
 def _step_of(point: Json) -> float | None:
@@ -147,13 +254,14 @@ def _step_of(point: Json) -> float | None:
 
 def failure_letters(runs: list[Json], legend: Legend, max_error: float | None = None) -> str:
     """"D" if every step diverged, "DT" if the coarse ones diverged and the fine ones took too long."""
-    def step_of(run: Json) -> float:
-        return run["step"] if is_number(run.get("step")) else 0.0
-
     def letter_of(run: Json) -> str:
         error = object_in(run, "error").get("trajectory")
         if max_error is not None and run["status"] == OK and is_number(error) and error > max_error:
             return TOO_WRONG
         return legend.letter(run["status"])
 
-    return "".join(dict.fromkeys(letter_of(run) for run in sorted(runs, key=step_of, reverse=True)))
+    return "".join(dict.fromkeys(letter_of(run) for run in sorted(runs, key=_step_or_zero, reverse=True)))
+
+
+def _step_or_zero(run: Json) -> float:
+    return run["step"] if is_number(run.get("step")) else 0.0

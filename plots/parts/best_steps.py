@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 
 from matplotlib.axes import Axes
-from matplotlib.transforms import ScaledTranslation
+from matplotlib.text import Annotation
+from matplotlib.transforms import ScaledTranslation, Transform
 
-from parts.best_points import Curve, FigureData
+from parts.best_points import Best, Curve, FigureData
 from parts.curves import Styles, line_of
 from parts.scales import gap, log_step_axis
 from parts.style import SolverStyle
@@ -37,6 +38,16 @@ def draw_steps(axes: Axes, figure: FigureData, styles: Styles, x_factor: float =
             marker = line_of(style, [best.x * x_factor], [best.step], zorder=10)
             marker.set(linestyle="none", transform=moved, markersize=0.85 * style.size)
             axes.add_artist(marker)
+            if best.ladder_end:
+                axes.add_artist(_arrow(best, x_factor, style, moved))
+
+
+def _arrow(best: Best, x_factor: float, style: SolverStyle, place: Transform) -> Annotation:
+    """Points on, from the marker of a step at the ladder's end."""
+    there = (0.9 * style.size + 1.5) * best.ladder_end
+    return Annotation("\u2191" if best.ladder_end > 0 else "\u2193", (best.x * x_factor, best.step), (0, there), xycoords=place,
+                      textcoords="offset points", fontsize=8, color=style.color, ha="center",
+                      va="bottom" if best.ladder_end > 0 else "top", zorder=12, annotation_clip=False, clip_on=False)
 
 
 def _rung(step: float) -> int:

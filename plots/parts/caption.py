@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from parts.best_points import FigureData, number_in_paper
-from parts.legend import Legend
-from parts.result_file import OK, Json, is_number, object_in, positive, suite_of
+from parts.legend import Legend, legend_of
+from parts.result_file import OK, Json, is_number, noise_factor, object_in, positive, suite_of
 from parts.step_runs import RunsData
 from parts.words import clean
 
@@ -20,6 +20,9 @@ def title_of(figure: FigureData) -> str:
     number = number_in_paper(figure.scene, figure.sweep)
     title = f"{SUBJECTS.get(figure.scene, clean(figure.scene))}: cost over {axis}"
     title = f"Figure {number} - {title}" if number else title
+    if figure.delivered:
+        return (title.replace(axis, "strain after collisions") if figure.sweep == "strain" else
+                f"{title}, strain after collisions at most {percent(figure.fixed)}")
     return title if figure.max_error is None else f"{title}, at a trajectory error of at most {percent(figure.max_error)}"
 
 
@@ -49,7 +52,9 @@ def _scene_sentence(figure: FigureData) -> str:
     else:
         sizes = sorted({point["vertices"] for point in figure.points})
         several = f"{sizes[0]:,.0f} to " if len(sizes) > 1 else ""
-        size = f"{several}{sizes[-1]:,.0f} vertices, permissible strain {percent(figure.fixed)}"
+        size = f"{several}{sizes[-1]:,.0f} vertices"
+        if not figure.delivered:
+            size += f", permissible strain {percent(figure.fixed)}"
     return scene_sentence(figure.scene, size, figure.points)
 
 
@@ -80,17 +85,40 @@ def _method_sentence(figure: FigureData, document: Json) -> str:
     if figure.max_error is not None:
         text = (f"Each solver at its fastest time step whose trajectory error is at most {percent(figure.max_error)} of the "
                 "scene's size; ")
+    if figure.delivered:
+        text = ("Each solver's least time, at any permitted strain and step that was tried, whose largest strain after the "
+                "collision filter is within the axis' value; " if figure.sweep == "strain" else
+                "Each solver's least time, at any step that was tried, whose largest strain after the collision filter is at "
+                f"most {percent(figure.fixed)}; ")
     reps = suite.get("reps")
     if reps == 1:
         text += "one run a point"
     else:
         text += f"median of {plain(reps)} repetitions" if is_number(reps) else "median"
-    if any(best.q3 > best.q1 for curve in figure.curves.values() for best in curve.best):
-        text += ", bars from the first to the third quartile"
+    best = [best for curve in figure.curves.values() for best in curve.best]
+    if any(b.high > b.low for b in best):
+        text += ", bars: its 95 % interval"
     settings = [f"timeout {suite['timeout']:g} s" if is_number(suite.get("timeout")) else "",
                 f"profile {plain(suite['profile'])}" if suite.get("profile") else "",
                 f"seed {plain(_seed(document))}" if _seed(document) is not None else ""]
-    return "; ".join([text] + [setting for setting in settings if setting]) + "."
+    return " ".join(["; ".join([text] + [setting for setting in settings if setting]) + "."] + _marks(figure, document))
+
+
+def _marks(figure: FigureData, document: Json) -> list[str]:
+    """Sentences on marks that the figure has."""
+    legend, sentences = legend_of(document), []
+    best = [best for curve in figure.curves.values() for best in curve.best]
+    if noise_factor(document) is not None:
+        sentences.append("Bar in the corner: how far apart one solver is from itself under another name (A/A pair, 95 %); "
+                         "points closer than that do not differ.")
+    elif not any(b.high > b.low for b in best):
+        sentences.append("Neither an interval (six runs or more) nor an A/A pair: small differences mean nothing.")
+    if any(legend.competes(name) and not legend.ranked(name) for name in figure.curves):
+        sentences.append("Hollow marks: untuned settings, not ranked.")
+    if any(b.ladder_end for b in best):
+        sentences.append("Arrow at a step: it is the coarsest (up) or the finest (down) that was tried, a better one may lie "
+                         "beyond.")
+    return sentences
 
 
 def _failure_key(figure: FigureData, legend: Legend) -> str:

@@ -12,7 +12,7 @@ Styles = dict[str, SolverStyle]
 
 
 def draw_curves(axes: Axes, figure: FigureData, styles: Styles, x_factor: float = 1.0) -> None:
-    """Median over x with thin bars from the first to the third quartile."""
+    """Median over x with thin bars of its 95 % interval."""
     for order, (solver, style) in enumerate(styles.items()):
         best = figure.curves[solver].best
         if not best:
@@ -21,7 +21,7 @@ def draw_curves(axes: Axes, figure: FigureData, styles: Styles, x_factor: float 
         y = [b.seconds for b in best]
         z = 10 + len(styles) - order if style.contestant else 2
         if style.contestant:  # for the others a bar would be heavier than the line
-            bars = [[b.seconds - b.q1 for b in best], [b.q3 - b.seconds for b in best]]
+            bars = [[b.seconds - b.low for b in best], [b.high - b.seconds for b in best]]
             axes.errorbar(x, y, yerr=bars, fmt="none", ecolor=style.color, elinewidth=0.7, capsize=1.8, capthick=0.7,
                           zorder=z)
         axes.add_line(line_of(style, x, y, zorder=z))
@@ -45,3 +45,15 @@ def draw_slopes(axes: Axes) -> None:
         end = min(right, left * (high / low) ** (1 / power))
         axes.plot([left, end], [low, low * (end / left) ** power], color=GREY, linewidth=0.6, linestyle=(0, (1, 3)),
                   zorder=1)
+
+
+def draw_noise(axes: Axes, factor: float | None) -> None:
+    """A bar in the lower right corner, on a log axis: two points that are less than its height apart do not differ."""
+    if factor is None or axes.get_yscale() != "log":
+        return
+    low, high = axes.get_ylim()
+    bottom = low * (high / low) ** 0.04
+    across = axes.get_yaxis_transform()  # x over the axes' width, y as it is
+    axes.plot([0.975, 0.975], [bottom, bottom * factor], transform=across, color="black", linewidth=1.2, marker="_", markersize=5,
+              zorder=30, gid="noise")
+    axes.text(0.96, bottom * factor**0.5, "A/A noise", transform=across, ha="right", va="center", fontsize=6.5, zorder=30)

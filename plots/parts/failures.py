@@ -17,6 +17,7 @@ from parts.words import clean, shorten
 CLIP_RATIO = 20.0  # a solver this many times slower than the fastest one leaves the linear panel at its top
 ARROW = "\u2191"   # "this point lies above the axes"
 NAME_SIZE = 6.5
+FAILED, NOT_REACHED = "failed at every step", "not reached at any step"
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ def letters_in(rows: Rows) -> set[str]:
 def linear_top(figure: FigureData, styles: Styles) -> float:
     """Upper limit of the linear panel: fits all solvers within CLIP_RATIO of the fastest, and two in any case."""
     def slowest(solver: str) -> float:
-        return max(b.q3 for b in figure.curves[solver].best)
+        return max(b.high for b in figure.curves[solver].best)
 
     peaks = sorted(slowest(s) for s, style in styles.items() if style.contestant and figure.curves[s].best)
     if not peaks:

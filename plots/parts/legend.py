@@ -11,8 +11,9 @@ from parts.result_file import OK, Json, ResultError, points_of
 from parts.words import clean
 
 NOT_CHOSEN = "?"  # ran well, yet no step was marked best: an interrupted search, or an error that is not known
-TOO_WRONG = "E"   # ran well, but its trajectory error is above the limit
-MEANINGS = {TOO_WRONG: "trajectory error above the limit", NOT_CHOSEN: "ran, but no step was chosen as best"}
+TOO_WRONG = "X"   # ran well, but its trajectory error is above the limit
+TOO_STRAINED = "A"  # ran well, but the collision filter left more strain than asked for
+MEANINGS = {TOO_WRONG: "trajectory error above the limit", TOO_STRAINED: "more strain after collisions", NOT_CHOSEN: "ran, but no step was chosen as best"}
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,10 @@ class Legend:
 
     def competes(self, solver: str) -> bool:
         return solver not in self.solvers or self.solvers[solver].contestant
+
+    def ranked(self, solver: str) -> bool:
+        """Hollow ones compete, but beside the ranking."""
+        return self.competes(solver) and not (solver in self.solvers and self.solvers[solver].hollow)
 
     def label(self, solver: str) -> str:
         return self.solvers[solver].label if solver in self.solvers else clean(solver.replace("_", " "))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -76,10 +77,25 @@ def object_in(parent: Any, key: str) -> Json:
 
 
 def points_of(document: Json) -> list[Json]:
-    """The points that load has checked; a stability result has none."""
+    """The points that load has checked; a stability result has none. The second of an A/A pair is no curve of its own:
+    it shows in the file's noise."""
     if document["schema"] != SCHEMA:
         return []
-    return [point for point in document.get("points", []) if point.get("sweep") in SWEEPS]
+    pair = noise_of(document).get("pair")
+    double = pair[1] if isinstance(pair, list) and len(pair) == 2 else None
+    return [point for point in document.get("points", [])
+            if point.get("sweep") in SWEEPS and (double is None or contestant_of(point) != double)]
+
+
+def noise_of(document: Json) -> Json:
+    """How far apart the times of an A/A pair are; {} in a file without one."""
+    return object_in(object_in(document, "context"), "noise")
+
+
+def noise_factor(document: Json) -> float | None:
+    """95 % of the pair's times are within this factor of each other."""
+    q95 = noise_of(document).get("q95")
+    return math.exp(q95) if is_number(q95) and 0 <= q95 < 50 else None
 
 
 def contestant_of(point: Json) -> str:
@@ -105,5 +121,22 @@ def _check(point: Json, where: str) -> None:
 
 
 def median_of(point: Json) -> float | None:
-    median = object_in(point, "seconds_per_simulated_second").get("median")
+    return median_in(point, "seconds_per_simulated_second")
+
+
+def median_in(point: Json, key: str) -> float | None:
+    median = object_in(point, key).get("median")
     return float(median) if positive(median) else None
+
+
+def median_interval(point: Json, key: str) -> tuple[float, float] | None:
+    """95 % confidence interval of the median, from order statistics; fewer than six runs have none. The true median lies
+    below the k-th smallest of n with the chance of fewer than k heads in n throws of a coin."""
+    samples = object_in(point, key).get("samples")
+    if not isinstance(samples, list) or not all(positive(sample) for sample in samples):
+        return None
+    n, k, tail = len(samples), 0, 0.0
+    while 2 * (k + 1) <= n and (tail := tail + math.comb(n, k) / 2**n) <= 0.025:
+        k += 1
+    ordered = sorted(samples)
+    return (float(ordered[k - 1]), float(ordered[n - k])) if k > 0 else None

@@ -37,7 +37,7 @@ def _with_room(ticks: list[float], inches_per_decade: float) -> list[float]:
 
 def log_y(axes: Axes, figure: FigureData) -> None:
     axes.set_yscale("log")
-    values = [v for curve in figure.curves.values() for b in curve.best for v in (b.q1, b.seconds, b.q3) if v > 0]
+    values = [v for curve in figure.curves.values() for b in curve.best for v in (b.low, b.seconds, b.high) if v > 0]
     low, high = (min(values), max(values)) if values else (0.1, 10.0)
     axes.set_ylim(low / 1.6, high * 1.6)
     decades = math.log10(high / low)
@@ -81,7 +81,8 @@ def step_axis(axes: Axes, steps: list[float]) -> None:
 def log_step_axis(axes: Axes, steps: list[float]) -> None:
     axes.set_yscale("log")
     low, high = (min(steps), max(steps)) if steps else (COARSEST_STEP, COARSEST_STEP)
-    axes.set_ylim(low / 1.7, high * 1.7)
+    room = 0.13 * math.log(high / low)  # for arrows, which are as long however many steps there are
+    axes.set_ylim(low / math.exp(max(0.6, room)), high * math.exp(max(0.6, room)))
     rungs = range(math.floor(math.log2(COARSEST_STEP / high)), math.ceil(math.log2(COARSEST_STEP / low)) + 1)
     stride = max(1, math.ceil(len(rungs) / 8))
     axes.yaxis.set_major_locator(FixedLocator([COARSEST_STEP / 2.0**k for k in rungs[::stride]]))

@@ -47,10 +47,11 @@ class RunsData:
 
 
 def step_sweeps_in(document: Json, legend: Legend) -> list[RunsData]:
-    """One entry per scene and size that has a step sweep, of the solvers that compete; the others have no error to show."""
+    """One entry per scene and size that has a step sweep, of the solvers that are ranked: the others have no error to show,
+    and hollow marks mean something else here."""
     groups: dict[tuple[str, int], list[Json]] = {}
     for point in points_of(document):
-        if point["sweep"] == "step" and legend.competes(contestant_of(point)):
+        if point["sweep"] == "step" and legend.ranked(contestant_of(point)):
             groups.setdefault((point["scene"], point["vertices"]), []).append(point)
     entries = []
     for scene, vertices in sorted(groups):
