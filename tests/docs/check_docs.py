@@ -2,7 +2,7 @@
 """Checks that the documents say what is in the tree.
 
     tests/docs/check_docs.py          names everything that is wrong, exit code 1
-    tests/docs/check_docs.py --fix    first brings line numbers, and paths of files that have moved, up to date
+    tests/docs/check_docs.py --fix    first brings line numbers, paths of files that have moved, and measured numbers up to date
 
 A document may quote code as
 
@@ -12,27 +12,35 @@ and the text must then stand in that line of that file. A paragraph may say wher
 
     <!-- results/paper-strain.json strain drape 0.01: jacobi / fast_projection = 3.5 -->
 
-and the number must then be in the paragraph and follow from the file, to its last digit. `strain` (with a limit) and `resolution`
-(with a number of vertices) mean the time of a best point, `error` (with a largest error) the least time within it, `after
-collision` (with a limit) the strain of a best point; the unit is s, ms or %, none for a ratio or s. Links between documents and
+and the number must then be in the paragraph and follow from the file, to its last digit; --fix brings both up to date where only
+digits change. `jacobi` and `fast_projection` are contestants. `strain` (with a limit) and `resolution` (with a number of vertices)
+mean the time of a best point, `error` (with a largest error) the least time within it, `delivered` (with a largest strain after
+collisions) the same, `after collision` (with a limit) the strain of a best point; the unit is s, ms or %, none for a ratio or s.
+A ratio may say more:
+
+    = 3.5 (3.3-3.8)           its 95 % interval, which the paragraph must give as well
+    = 3.5 within interval     the number need only lie in the interval; --fix leaves it alone while it does
+    = 3.5 above 1             the whole interval must lie there (or below), as it must where words say faster or slower
+
+Links between documents and
 paths in backticks must exist, Markdown files that comments name too, and docs/measuring.md must name every field of a point, every
 counter and every status.
 """
 
 from __future__ import annotations
 
-import functools
 import json
-import math
 import re
 import sys
 from pathlib import Path
 
+sys.dont_write_bytecode = True  # nothing of this test stays in the source tree
+
+import measured_numbers
+from measured_numbers import points_of
+
 ROOT = Path(__file__).resolve().parents[2]
 QUOTE = re.compile(r"`([\w./-]+\.\w+):(\d+)`: `([^`]+)`")
-NUMBER = re.compile(r"<!-- (\S+\.json) ([a-z ]+) (\w+) ([\d.]+): (\w+)(?: / (\w+))? = ([\d.]+) ?(s|ms|%|) -->")
-COMMENTED = re.compile(r"<!--.*?-->", re.DOTALL)
-UNITS = {"": 1, "s": 1, "ms": 1e-3, "%": 0.01}
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
@@ -83,7 +91,7 @@ def fix() -> None:
             place = found_again(match[1], int(match[2]), match[3])
             return f"`{place[0]}:{place[1]}`: `{match[3]}`" if place else match[0]
 
-        new = QUOTE.sub(renewed, text)
+        new = "".join(map(measured_numbers.renewed_paragraph, measured_numbers.paragraphs(QUOTE.sub(renewed, text))))
         if new != text:
             document.write_text(new, encoding="utf-8")
             print(f"{document.relative_to(ROOT)}: brought up to date")
@@ -102,57 +110,8 @@ def quotes(document: Path) -> list[str]:
     return errors
 
 
-@functools.cache
-def points_of(file: str) -> list[dict]:
-    return json.loads((ROOT / file).read_text(encoding="utf-8"))["points"]
-
-
-def measured_value(file: str, quantity: str, scene: str, place: float, solver: str) -> float:
-    """What the file says; raises LookupError where it says nothing."""
-    points = [p for p in points_of(file) if p["scene"] == scene and p.get("contestant", p["solver"]) == solver and p["status"] == "ok"]
-    if quantity == "error":
-        times = [p["seconds_per_simulated_second"]["median"] for p in points
-                 if p["sweep"] == "step" and (p["error"]["trajectory"] or math.inf) <= place]
-        if not times:
-            raise LookupError("no such point")
-        return min(times)
-    axis = "vertices" if quantity == "resolution" else "strain_limit"
-    sweep = "resolution" if quantity == "resolution" else "strain"
-    points = [p for p in points if p["sweep"] == sweep and p["best"] and math.isclose(p[axis], place)]
-    if sweep == "strain":  # the largest size, as in figures
-        points = [p for p in points if p["vertices"] == max(q["vertices"] for q in points)]
-    if len(points) != 1:
-        raise LookupError(f"{len(points)} such points")
-    return (points[0]["max_strain_after_collision"] if quantity == "after collision"
-            else points[0]["seconds_per_simulated_second"]["median"])
-
-
 def numbers(document: Path) -> list[str]:
-    errors = []
-    text = without_blocks(document.read_text(encoding="utf-8"))
-    for paragraph in re.split(r"\n(?=\* |\n)", text):
-        words = COMMENTED.sub("", paragraph)
-        for comment in COMMENTED.findall(paragraph):
-            match = NUMBER.fullmatch(comment)
-            if not match:
-                if ".json" in comment:
-                    errors.append(f"cannot read {comment}")
-                continue
-            file, quantity, scene, place, solver, rival, number, unit = match.groups()
-            try:
-                value = measured_value(file, quantity, scene, float(place), solver) / UNITS[unit]
-                if rival:
-                    value /= measured_value(file, quantity, scene, float(place), rival)
-            except (OSError, LookupError, ValueError) as error:
-                errors.append(f"{comment}: {error}")
-                continue
-            decimals = len(number.partition(".")[2])
-            if f"{value:.{decimals}f}" != number:
-                errors.append(f"{comment}: it is {value:.4g}")
-            wanted = number + (f" {unit}" if unit else "")
-            if not re.search(rf"(?<![\d.]){re.escape(wanted)}(?![\d]|\.\d)", words):
-                errors.append(f"{comment}: the paragraph does not say {wanted}")
-    return errors
+    return measured_numbers.errors_in(without_blocks(document.read_text(encoding="utf-8")))
 
 
 def heading_anchors(document: Path) -> set[str]:
