@@ -7,6 +7,7 @@
 #include "harness/claims/contests.h"
 #include "harness/claims/robustness.h"
 #include "harness/claims/steps.h"
+#include "harness/points/result_file.h"
 
 namespace harness {
 namespace {
@@ -61,7 +62,13 @@ constexpr Row rows[] = {
 
 }  // namespace
 
+void check_timed(const json& result) {
+  if (!is_timed(result))
+    throw UsageError("a result was made with --untimed, so its times say nothing; leave it out");
+}
+
 std::vector<ClaimVerdict> judge_claims(const std::vector<json>& results) try {
+  for (const json& result : results) check_timed(result);
   const claims::Points points(results);
   std::vector<ClaimVerdict> all;
   for (const Row& row : rows) {

@@ -16,6 +16,9 @@ struct ClaimVerdict {
   std::vector<std::string> points;  // ids behind it
 };
 
+// Throws UsageError for a result of --untimed, whose times say nothing.
+void check_timed(const nlohmann::json& result);
+
 // results: documents of schema inextensible-bench/1 and inextensible-stability/1; their points are
 // taken together. Points of one id must come from one document (the first that has it counts).
 // Throws UsageError for documents that lack what a claim looks at.

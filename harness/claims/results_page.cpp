@@ -10,6 +10,7 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
                         const std::vector<NamedResult>& growth) try {
   std::vector<nlohmann::json> documents;
   for (const NamedResult& result : results) documents.push_back(result.document);
+  for (const NamedResult& result : growth) check_timed(result.document);
   out << "## The paper's claims\n\n`bench claims` on the same files gives each rule.\n\n";
   print_claims_markdown(out, judge_claims(documents));
   out << "\n## Time over permitted strain\n\n";

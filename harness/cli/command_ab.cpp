@@ -8,6 +8,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
+#include "harness/base/timing_lock.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/compare_options.h"
 #include "harness/compare/pairs.h"
@@ -26,6 +27,7 @@ constexpr double sweep_timeout = 3600;
 struct AbCommand : CompareOptions {
   std::string old_binary, new_binary, suite = "quick", solver, scene, filter, exclude;
   int pairs = 15, confirming = 25;
+  bool no_wait = false;
   // s that a process measures at least, so that runs of a millisecond are seen often enough for one
   // of them to be undisturbed, and starting the process does not dominate.
   double least_measured = 0.05;
@@ -175,6 +177,7 @@ int run_ab(const AbCommand& options) {
   try {
     check_binary(options.old_binary);
     check_binary(options.new_binary);
+    const TimingLock lock(!options.no_wait);
     std::cerr << "looking for the best steps of " << options.old_binary << " ..." << std::endl;
     std::vector<PairedPoint> points = best_points(old_result(options), options.least_measured);
     if (points.empty())
@@ -220,6 +223,7 @@ void add_ab_command(const Command& program) {
   command.option("--scene", options.scene, "chain or drape; both if left out", "NAME");
   command.option("--filter", options.filter, "only points in whose id this is found", "REGEX");
   command.option("--exclude", options.exclude, "without points in whose id this is found", "REGEX");
+  add_no_wait(command, options.no_wait);
   add_compare_options(command, options);
   command.does([given] { return run_ab(*given); });
 }

@@ -10,6 +10,7 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
+#include "harness/base/timing_lock.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/sweep_command.h"
 #include "harness/points/context.h"
@@ -63,10 +64,12 @@ void tell_missing_references(const Suite& suite, const std::vector<Search>& sear
 
 // What chooses points beside the suite.
 nlohmann::json selection(const SweepCommand& options) {
-  return {{"solver", options.solver},
-          {"filter", options.filter},
-          {"exclude", options.exclude},
-          {"shard", options.shard}};
+  nlohmann::json chosen = {{"solver", options.solver},
+                           {"filter", options.filter},
+                           {"exclude", options.exclude},
+                           {"shard", options.shard}};
+  if (options.untimed) chosen["untimed"] = true;  // no part of it may be taken up as timed
+  return chosen;
 }
 
 // What is known already: from the journal of a run that did not finish, or from the result of one
@@ -210,7 +213,15 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   const auto shelf = std::make_shared<ReferenceShelf>(source_path("results/references"));
   runners.references = shelf;
   tell_missing_references(suite, searches, *shelf);
-  warn_if_busy(context);
+  catch_interrupts();
+  std::optional<TimingLock> lock;
+  if (!options.untimed) lock.emplace(!options.no_wait);
+  if (lock && lock->waited()) {
+    context = machine_context();
+    context["selection"] = selection(options);
+  }
+  context["timed"] = !options.untimed;
+  if (!options.untimed) warn_if_busy(context);
   if (!past.identity.is_null())
     context["resumed"] = {{"from", past.context.at("date")},
                           {"points", memory.points.size()},
@@ -218,7 +229,6 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   begin_journal(journal, past, memory,
                 {{"pid", getpid()}, {"identity", mine}, {"context", context}});
 
-  catch_interrupts();
   Progress progress(std::cerr, isatty(STDERR_FILENO) == 1);
   SweepEvents events;
   events.point = [&](const PointResult& p, std::size_t s, std::size_t all) {
@@ -251,7 +261,8 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
     return interrupted_exit;
   }
   journal.remove();
-  if (!options.no_plots && draw({out}) != 0) std::cerr << "bench: the figures could not be drawn\n";
+  if (!options.no_plots && !options.untimed && draw({out}) != 0)
+    std::cerr << "bench: the figures could not be drawn\n";
   return success;
 }
 
@@ -281,6 +292,7 @@ void add_sweep_command(const Command& program, const std::vector<std::string>& c
                  "limits, ratios, links, sides, scales)",
                  "NAME=LIST");
   program.flag("--dry-run", options.dry_run, "say what would run and how long, and stop");
+  add_no_wait(program, options.no_wait);
   program.flag("--no-plots", options.no_plots, "no figures at the end");
 
   program.does([given, &command] {

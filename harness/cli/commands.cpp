@@ -9,6 +9,11 @@
 
 namespace harness {
 
+void add_no_wait(const Command& to, bool& no_wait) {
+  to.flag("--no-wait", no_wait,
+          "another program is taking times on this machine: stop instead of waiting for it");
+}
+
 int draw(const std::vector<std::string>& arguments, const std::string& script) {
   std::cout.flush();
   const pid_t child = fork();

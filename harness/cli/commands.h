@@ -21,6 +21,7 @@ enum ExitCode {
 };
 
 void add_sweep_command(const Command& program, const std::vector<std::string>& command);
+void add_tune_command(const Command& program);
 void add_reference_command(const Command& program);
 void add_list_command(const Command& program);
 void add_claims_command(const Command& program);
@@ -34,6 +35,9 @@ void add_baseline_command(const Command& program);
 void add_point_command(const Command& program);
 void add_ab_command(const Command& program);
 void add_history_command(const Command& program);
+
+// Of commands that take times: do not wait for another that does so on this machine.
+void add_no_wait(const Command& to, bool& no_wait);
 
 // Runs a script of plots/ on result files; its paths go to stdout as they are. Its exit code.
 int draw(const std::vector<std::string>& arguments, const std::string& script = "figures.py");

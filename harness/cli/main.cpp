@@ -4,6 +4,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
+#include "harness/base/interrupt.h"
 #include "harness/cli/commands.h"
 #include "harness/points/context.h"
 #include "harness/points/plugins.h"
@@ -41,6 +42,8 @@ int run(int argc, char** argv) {
       "parallel\n"
       "  bench check --solver NAME                whether a solver keeps what every solver must\n"
       "  bench compare BASE.json NEW.json         what has become slower or fails now, for CI\n"
+      "  bench tune                               searches each solver's settings, on scenes of "
+      "their own\n"
       "  bench ab OLD_BINARY NEW_BINARY           two builds against each other, in interleaved "
       "runs\n"
       "  bench list                               solvers, scenes and suites with their "
@@ -49,6 +52,7 @@ int run(int argc, char** argv) {
   const Command program = line.program();
   const std::vector<std::string> command = command_words(argc, argv);
   add_sweep_command(program, command);
+  add_tune_command(program);
   add_plot_command(program);
   add_reference_command(program);
   add_claims_command(program);
@@ -86,6 +90,8 @@ int main(int argc, char** argv) {
   } catch (const harness::UsageError& error) {
     std::cerr << "bench: " << error.what() << '\n';
     return harness::usage_error;
+  } catch (const harness::Interrupted&) {
+    return harness::interrupted_exit;
   } catch (const harness::FileError& error) {
     std::cerr << "bench: " << error.what() << '\n';
     return harness::internal_error;

@@ -9,7 +9,7 @@ struct SweepCommand : SweepOptions {
   std::string out, shard;
   double memory = 0;  // bytes; 0: no limit
   bool resume = false, rerun_failed = false, force = false, in_process = false;
-  bool dry_run = false, no_plots = false;
+  bool dry_run = false, no_plots = false, no_wait = false;
   // of --sweep stability
   std::string hard_case;
   std::vector<std::string> values;

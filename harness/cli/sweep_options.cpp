@@ -68,6 +68,9 @@ void add_measurement(const Command& to, SweepOptions& options) {
             "also find the fastest step within this trajectory error, over the scene's size", "E")
       .positive();
   to.option("--seed", options.seed, "of random orders", "N").not_negative();
+  to.flag("--untimed", options.untimed,
+          "for the sake of counters and errors: run at once, whatever is being timed beside it; "
+          "nothing that reads times takes the result");
 }
 
 std::vector<std::string> profiles() { return {"quick", "default", "paper", "large"}; }

@@ -14,12 +14,13 @@ struct SweepOptions {
   std::string reps;  // "5", or "5..40" with rel_ci
   double timeout = 0, max_error = 0, rel_ci = 0, finest = 0;
   std::int64_t seed = -1;
+  bool untimed = false;  // nobody will read the times: no turn to be waited for
 };
 
 // --sweep, --scene, --solver, --filter, --exclude, --profile and --config.
 void add_selection(const Command& to, SweepOptions& options);
 
-// --reps, --rel-ci, --timeout, --step, --max-error and --seed.
+// --reps, --rel-ci, --timeout, --step, --max-error, --seed and --untimed.
 void add_measurement(const Command& to, SweepOptions& options);
 
 std::vector<std::string> profiles();

@@ -188,6 +188,8 @@ Comparability comparability(const ComparedResult& base, const ComparedResult& ne
     can.no_times = "the gate does not count them";
   } else if (base.baseline || next.baseline) {
     can.no_times = "a baseline has none";
+  } else if (!base.context.value("timed", true) || !next.context.value("timed", true)) {
+    can.no_times = "one of them was made with --untimed";
   } else if (field(base.context, "cpu_model") != field(next.context, "cpu_model") ||
              base.context.value("num_cpus", 0) != next.context.value("num_cpus", 0)) {
     can.no_times = "the machines differ";

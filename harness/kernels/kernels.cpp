@@ -18,6 +18,8 @@
 #include <map>
 #include <string>
 
+#include "harness/base/errors.h"
+#include "harness/base/timing_lock.h"
 #include "harness/kernels/hardware_peak.h"
 #include "harness/points/context.h"
 #include "harness/scenes/scene.h"
@@ -363,8 +365,13 @@ void register_scene(const std::string& scene, int n, const std::vector<std::stri
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   harness::use_one_thread();
+  // Of the other programs that take times; Google Benchmark does not know it.
+  char** const end = std::remove_if(
+      argv + 1, argv + argc, [](const char* word) { return std::string(word) == "--no-wait"; });
+  const bool wait = end == argv + argc;
+  argc = static_cast<int>(end - argv);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   add("floor/sqrt_div", [](benchmark::State& s) {
@@ -385,7 +392,11 @@ int main(int argc, char** argv) {
   for (const int n : {15, 31, 71, 101, 201, 501})
     register_systems(n, {"eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern",
                          "fixed_pattern_mixed", "line_cg"});
+  const harness::TimingLock lock(wait);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;
+} catch (const harness::UsageError& error) {
+  std::fprintf(stderr, "kernels: %s\n", error.what());
+  return 2;
 }

@@ -49,6 +49,8 @@ struct PointResult {
   double peak_rss_bytes = 0;
   bool best = false;           // the fastest of its search
   bool best_at_error = false;  // the fastest of those within the suite's error limit
+  // Of a best point: "coarsest" or "finest" where a step beyond the ladder might be better still.
+  std::string at_ladder_end;
 
   bool ok() const { return status == PointStatus::ok; }
   double median_seconds() const;  // of the samples

@@ -68,7 +68,10 @@ inline constexpr std::tuple result_fields{
     field("best", &PointResult::best, "",
           "the fastest step of its contestant at its place on the axis"),
     field("best_at_error", &PointResult::best_at_error, "",
-          "the fastest step within the suite's error limit", {.later = true})};
+          "the fastest step within the suite's error limit", {.later = true}),
+    field("at_ladder_end", &PointResult::at_ladder_end, "",
+          "of a best point: 'coarsest' or 'finest' where its step is that end of the ladder",
+          {.later = true})};
 
 inline constexpr FieldTraits in_phases{.inside = "phases"};
 inline constexpr std::tuple phase_fields{

@@ -64,6 +64,10 @@ std::string result_text(const json& document) {
   return document_text(ordered);
 }
 
+bool is_timed(const json& document) {
+  return document.value(json::json_pointer("/context/timed"), true);
+}
+
 json read_result(const std::string& path) {
   return parse_result(read_file(path, "result file"), path);
 }

@@ -118,6 +118,7 @@ ordered_json legend_schema() {
 }  // namespace
 
 ordered_json with_tables(ordered_json schema) {
+  if (!schema.contains("definitions")) return schema;
   ordered_json& definitions = schema["definitions"];
   const auto renew = [&definitions](const char* name, auto made) {
     if (definitions.contains(name)) definitions[name] = made();
@@ -130,7 +131,9 @@ ordered_json with_tables(ordered_json schema) {
   return schema;
 }
 
-std::vector<std::string> generated_schemas() { return {"result", "baseline", "gate", "stability"}; }
+std::vector<std::string> generated_schemas() {
+  return {"result", "baseline", "gate", "stability", "tuned"};
+}
 
 std::string schema_text(const std::string& name) {
   const std::string path = source_path("configs/" + name + ".schema.json");

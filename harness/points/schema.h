@@ -14,7 +14,8 @@ namespace harness {
 // "work", "point", "legend".
 nlohmann::ordered_json with_tables(nlohmann::ordered_json schema);
 
-// As it is to stand in configs/<name>.schema.json; "result", "baseline", "gate", "stability".
+// As it is to stand in configs/<name>.schema.json; "result", "baseline", "gate", "stability",
+// "tuned".
 std::string schema_text(const std::string& name);
 std::vector<std::string> generated_schemas();
 

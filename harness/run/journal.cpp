@@ -56,6 +56,7 @@ void Memory::learn(const json& result) {
     PointResult point = point_of(entry);
     if (point.status == PointStatus::skipped) continue;
     point.best = point.best_at_error = false;  // to be decided again
+    point.at_ladder_end.clear();
     Known known;
     for (std::size_t i = 1; i < point.samples.size(); ++i)
       known.repetitions.push_back({point.samples[i]});

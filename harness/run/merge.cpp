@@ -44,17 +44,19 @@ json joined_context(const std::vector<NamedResult>& results) {
   json context = results.front().document.at("context");
   if (context.contains("selection")) context["selection"]["shard"] = "";
   json parts = json::array();
-  bool noisy = false;
+  bool noisy = false, timed = true;
   for (const auto& [name, document] : results) {
     const json& c = document.at("context");
     json part = {{"file", name}, {"points", document.at("points").size()}};
     for (const char* key : {"date", "host_name", "fingerprint", "command", "load_avg", "sentinel",
                             "stolen", "harness_overhead"})
       if (c.contains(key)) part[key] = c.at(key);
+    timed = timed && is_timed(document);
     noisy = noisy || (c.contains("sentinel") && c.at("sentinel").at("noisy").get<bool>());
     parts.push_back(std::move(part));
   }
   context["merged"] = parts;
+  context["timed"] = timed;
   context["sentinel"] = {{"noisy", noisy}};  // each part has its own figures
   context.erase("stolen");
   context.erase("harness_overhead");

@@ -112,7 +112,8 @@ void print_best(std::ostream& out, const std::vector<const PointResult*>& points
 
 std::string time_and_step(const PointResult& point) {
   const std::string step = (point.spec.adaptive ? "~" : "") + step_text(step_length(point));
-  return number_text(point.median_seconds(), 3) + " (" + step + ")";
+  const std::string end = point.at_ladder_end.empty() ? "" : ", " + point.at_ladder_end;
+  return number_text(point.median_seconds(), 3) + " (" + step + end + ")";
 }
 
 // The fastest point of each solver within each of some errors: step and strain limit are free.

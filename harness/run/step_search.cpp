@@ -22,12 +22,22 @@ std::optional<std::size_t> StepSearch::find_among_all() {
   return best_;
 }
 
+std::vector<std::size_t> StepSearch::near_best(double factor) const {
+  std::vector<std::size_t> rungs;
+  for (const auto& [rung, seconds] : seconds_) {
+    if (seconds <= factor * best_seconds_) rungs.push_back(rung);
+  }
+  return rungs;
+}
+
 bool StepSearch::permissible(const PointResult& point) const {
   return point.ok() && (std::isinf(max_error_) || point.measures.trajectory <= max_error_);
 }
 
 bool StepSearch::consider(std::size_t rung, const PointResult& point) {
-  if (!permissible(point) || (best_ && point.median_seconds() >= best_seconds_)) return false;
+  if (!permissible(point)) return false;
+  seconds_[rung] = point.median_seconds();
+  if (best_ && point.median_seconds() >= best_seconds_) return false;
   best_ = rung;
   best_seconds_ = point.median_seconds();
   return true;

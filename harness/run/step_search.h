@@ -3,7 +3,9 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
+#include <vector>
 
 #include "harness/points/point.h"
 
@@ -27,6 +29,10 @@ class StepSearch {
   // Every rung from coarse to fine, until two in a row have timed out; the fastest.
   std::optional<std::size_t> find_among_all();
 
+  // Permissible rungs whose one time is within this factor of the best one's: which of them is the
+  // best, more runs must say.
+  std::vector<std::size_t> near_best(double factor) const;
+
   bool timed_out() const { return timed_out_; }
 
  private:
@@ -39,6 +45,7 @@ class StepSearch {
   double max_error_;
   std::optional<std::size_t> best_;
   double best_seconds_ = 0;
+  std::map<std::size_t, double> seconds_;  // of permissible rungs
   bool timed_out_ = false;
 };
 

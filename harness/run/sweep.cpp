@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "harness/run/step_search.h"
 
@@ -20,14 +21,46 @@ constexpr double hopeless_least = 0.2;  // s; shorter runs are always finished
 // Points that take longer than this are not repeated: their spread is small against what they cost.
 constexpr double repeat_up_to = 20;  // s
 
-void repeat_best(const Suite& suite, std::vector<PointResult>& points, const SweepEvents& events,
-                 const SweepRunners& runners) {
+// Steps whose one time is within this factor of the best are repeated before one is called best.
+constexpr double candidate_factor = 1.2;
+
+// What may be the best point of one search, by rung; the points' place in the outcome.
+struct Choice {
+  std::map<std::size_t, std::size_t> candidates;
+  std::size_t rungs = 0;  // of the whole ladder
+  bool PointResult::*mark = &PointResult::best;
+};
+
+const char* ladder_end(std::size_t rung, std::size_t rungs) {
+  if (rungs < 2) return "";
+  return rung == 0 ? "coarsest" : rung + 1 == rungs ? "finest" : "";
+}
+
+// By the medians of all runs so far.
+void choose(const std::vector<Choice>& choices, std::vector<PointResult>& points) {
+  for (const Choice& choice : choices) {
+    const auto best = std::min_element(
+        choice.candidates.begin(), choice.candidates.end(), [&](const auto& a, const auto& b) {
+          return points[a.second].median_seconds() < points[b.second].median_seconds();
+        });
+    if (best == choice.candidates.end()) continue;
+    points[best->second].*choice.mark = true;
+    points[best->second].at_ladder_end = ladder_end(best->first, choice.rungs);
+  }
+}
+
+void repeat_candidates(const Suite& suite, const std::vector<Choice>& choices,
+                       std::vector<PointResult>& points, const SweepEvents& events,
+                       const SweepRunners& runners) {
+  std::set<std::size_t> candidates;
+  for (const Choice& choice : choices) {
+    for (const auto& candidate : choice.candidates) candidates.insert(candidate.second);
+  }
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double seconds =
         points[i].median_seconds() * points[i].spec.step * points[i].steps_planned;
-    const bool wanted =
-        points[i].spec.sweep == "step" ? points[i].ok() : points[i].best || points[i].best_at_error;
+    const bool wanted = points[i].spec.sweep == "step" ? points[i].ok() : candidates.contains(i);
     if (wanted && seconds <= repeat_up_to) order.push_back(i);
   }
   if (order.empty()) return;  // GSL's shuffle does not take nothing
@@ -65,6 +98,7 @@ SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
     bool hopeless = false;      // only time-outs
   };
   std::map<std::size_t, Neighbour> neighbours;
+  std::vector<Choice> choices;
   try {
     for (std::size_t s = 0; s < searches.size(); ++s) {
       const Search& search = searches[s];
@@ -115,24 +149,31 @@ SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
         });
         start = static_cast<std::size_t>(near - search.ladder.begin());
       }
+      const auto add_choice = [&](const StepSearch& among, bool PointResult::*mark) {
+        Choice& choice = choices.emplace_back();
+        for (const std::size_t rung : among.near_best(candidate_factor))
+          choice.candidates[rung] = point_of_rung.at(rung);
+        choice.rungs = search.ladder.size();
+        choice.mark = mark;
+      };
       StepSearch steps(search.ladder.size(), run);
       const auto best = every_step ? steps.find_among_all() : steps.find(start);
       if (suite.max_error > 0 && !every_step) {
         StepSearch within(search.ladder.size(), run, suite.max_error);
-        if (const auto found = within.find(best))
-          outcome.points[point_of_rung.at(*found)].best_at_error = true;
+        if (within.find(best)) add_choice(within, &PointResult::best_at_error);
       }
       if (best) {
-        outcome.points[point_of_rung.at(*best)].best = true;
+        add_choice(steps, &PointResult::best);
         neighbour.best_step = search.ladder[*best];
       } else {
         neighbour.hopeless = steps.timed_out();
       }
     }
-    repeat_best(suite, outcome.points, events, runners);
+    repeat_candidates(suite, choices, outcome.points, events, runners);
   } catch (const Interrupted&) {
     outcome.complete = false;
   }
+  choose(choices, outcome.points);
   return outcome;
 }
 

@@ -1,6 +1,7 @@
 // Runs a suite's sweeps: for each (scene, size, limit, solver) the best step is searched on the
-// ladder coarsest, coarsest / 2, ... (a step sweep runs the whole ladder), then the best points (of
-// a step sweep: all that ran to the end) are repeated, interleaved in a shuffled order.
+// ladder coarsest, coarsest / 2, ... (a step sweep runs the whole ladder), then the points that may
+// be best (of a step sweep: all that ran to the end) are repeated, interleaved in a shuffled order,
+// and the best ones chosen by the medians of all their runs.
 #pragma once
 
 #include <functional>

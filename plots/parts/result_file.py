@@ -36,6 +36,8 @@ def load(path: Path) -> Json:
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
         found = document.get("schema") if isinstance(document, dict) else None
         raise ResultError(f"{path} is not a result file: schema is {json.dumps(found)[:60]}, expected \"{SCHEMA}\"")
+    if object_in(document, "context").get("timed") is False:
+        raise ResultError(f"{path} was made with --untimed: its times say nothing, so there is nothing to draw")
     points = document.get("points")
     if not isinstance(points, list):
         raise ResultError(f"{path} has no list of points")

@@ -105,6 +105,7 @@ BAD: dict[str, tuple[Any, str]] = {
     "endless": (good(strain_limit=1e300), "positive number as strain_limit"),
     "best without time": (good(seconds_per_simulated_second=None), "no positive median"),
     "legend": ({**good(), "legend": 3}, "legend is not an object"),
+    "untimed": ({**good(), "context": {"timed": False}}, "made with --untimed"),
     "legend of words": ({**good(), "legend": {"solvers": ["shake"]}}, "legend.solvers is not a list of objects"),
     "matrix": ({"schema": "inextensible-stability/1"}, "no list of matrix"),
     "cell": ({"schema": "inextensible-stability/1", "matrix": [{}], "largest_steps": []}, "matrix[0] needs the texts"),

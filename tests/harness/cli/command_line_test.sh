@@ -124,10 +124,34 @@ PYTHON
   >/dev/null 2>&1 &
 pid=$!
 sleep 2
+# Meanwhile nobody else takes times; who takes none need not wait, and nothing reads its times.
+one=(--scene chain --solver '^fast_projection$' --filter 'strain:0.01/h:0.01$')
+refused "process $pid is taking times" "${sweep[@]}" "${one[@]}" --no-wait
+refused "process $pid is taking times" tune --scene chain --out out.json --no-wait
+"$BENCH_BINARY" "${sweep[@]:0:4}" "${one[@]}" --untimed --no-plots --out untimed.json >/dev/null 2>&1 || fail "an untimed run"
+refused "was made with --untimed" plot untimed.json
+refused "was made with --untimed" claims untimed.json
+"$BENCH_BINARY" "${sweep[@]:0:4}" "${one[@]}" --no-plots --out waited.json >/dev/null 2>waited.txt &
+waiting=$!
 kill -TERM $pid  # background jobs of a script ignore SIGINT; SIGTERM takes the same way
 wait $pid
 [[ $? == 130 ]] || fail "an interrupted run must exit 130"
+wait $waiting && [[ -s waited.json ]] || fail "a run that had to wait"
 /usr/bin/python3 -c 'import json; assert json.load(open("interrupted.json"))["complete"] is False' || fail "interrupted.json"
+
+# Settings are searched, written after each solver, and kept where others are searched.
+tune=(tune --scene chain --budget 5 --timeout 2 --out tuned.json --quiet)
+"$BENCH_BINARY" "${tune[@]}" --solver gauss_seidel_colored >/dev/null && "$BENCH_BINARY" "${tune[@]}" --solver icd >/dev/null ||
+  fail "tune"
+/usr/bin/python3 - <<'PYTHON' || fail "tuned.json"
+import json
+document = json.load(open("tuned.json"))
+found = {entry["solver"]: entry for entry in document["tuned"]}
+assert set(found) == {"gauss_seidel_colored", "icd"}, set(found)
+assert all(0 < entry["evaluations"] <= 5 and len(entry["places"]) == 3 for entry in found.values()), found
+PYTHON
+refused "did you mean 'chain'" tune --scene chian --out out.json
+refused "did you mean 'icd'" tune --solver idc --out out.json
 
 ((failures == 0)) && echo "all well"
 exit $((failures > 0))

@@ -15,7 +15,9 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json_text.h"
+#include "harness/claims/claims.h"
 #include "harness/compare/baseline.h"
+#include "harness/compare/comparison.h"
 #include "harness/compare/gate.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
@@ -126,6 +128,24 @@ TEST(ResultFile, NamesItsPlugins) {
   plugin.erase("version");
   document["context"]["plugins"] = {plugin};
   EXPECT_NE(misfits(document, "configs/result.schema.json"), "");
+}
+
+TEST(ResultFile, OfAnUntimedRunIsNotReadForItsTimes) {
+  json document = result_document(machine_context(), tiny_suite(), {"bench"}, true, {});
+  EXPECT_TRUE(is_timed(document)) << "older files do not say";
+  document["context"]["timed"] = true;
+  EXPECT_NO_THROW(static_cast<void>(judge_claims({document})));
+  document["context"]["timed"] = false;
+  EXPECT_FALSE(is_timed(document));
+  EXPECT_THROW(static_cast<void>(judge_claims({document})), UsageError);
+  EXPECT_EQ(misfits(document, "configs/result.schema.json"), "");
+  ComparedResult timed;
+  timed.context = {{"fingerprint", "x"}, {"cpu_model", "m"}};
+  ComparedResult untimed = timed;
+  untimed.context["timed"] = false;
+  EXPECT_TRUE(comparability(timed, timed, {}).times());
+  EXPECT_FALSE(comparability(timed, untimed, {}).times());
+  EXPECT_FALSE(comparability(untimed, timed, {}).times());
 }
 
 TEST(ResultFile, CommittedResultsFitTheSchema) {

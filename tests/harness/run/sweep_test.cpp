@@ -138,6 +138,45 @@ TEST(StepSearch, EveryTriedStepStaysInTheOutcomeAndOnlyBestOnesAreRepeated) {
   }
 }
 
+// First runs say 1/200 s is best; the next ones show that it was luck, and 1/400 s that was not.
+TEST(StepSearch, TheBestStepIsChosenByTheMediansOfAllRunsOfThoseThatAreClose) {
+  Suite suite = one_family();
+  suite.sweeps[0].limits = {0.01};
+  suite.reps = 5;
+  SweepRunners runners = fake(1.0 / 200, 1, nullptr);
+  const auto at = [](const PointSpec& spec, int n) { return std::abs(spec.step * n - 1) < 1e-9; };
+  runners.run = [&, run = runners.run](const PointSpec& spec, const RunLimits& limits,
+                                       std::optional<double> guess) {
+    PointResult point = run(spec, limits, guess);
+    if (at(spec, 400)) point.samples = {1.15};
+    if (at(spec, 100)) point.samples = {1.3};  // too far to be looked at again
+    return point;
+  };
+  runners.repeat = [&](PointResult& point, const RunLimits&) {
+    point.samples.push_back(at(point.spec, 400) ? 0.9 : at(point.spec, 200) ? 1.1 : 0.1);
+  };
+  const auto outcome = run_sweep(suite, plan(suite, {}), {}, runners);
+  for (const PointResult& point : outcome.points) {
+    EXPECT_EQ(point.best, at(point.spec, 400)) << point.spec.id();
+    const bool close = at(point.spec, 400) || at(point.spec, 200);
+    EXPECT_EQ(point.samples.size(), close ? 5u : 1u) << point.spec.id();
+  }
+}
+
+TEST(StepSearch, SaysWhereTheBestStepIsAnEndOfTheLadder) {
+  Suite suite = one_family();
+  for (const auto& [best, end] : {std::pair(1.0 / 3, "coarsest"), std::pair(1.0 / 200, ""),
+                                  std::pair(1.0 / 50000, "finest")}) {
+    suite.sweeps[0].every_step = true;
+    for (const PointResult& point :
+         run_sweep(suite, plan(suite, {}), {}, fake(best, 1, nullptr)).points)
+      EXPECT_EQ(point.at_ladder_end, point.best ? end : "") << point.spec.id();
+  }
+  suite.sweeps[0].coarsest = suite.sweeps[0].finest = 0.01;  // no ladder has no end
+  for (const PointResult& point : run_sweep(suite, plan(suite, {}), {}, fake(1, 1, nullptr)).points)
+    EXPECT_EQ(point.at_ladder_end, "");
+}
+
 TEST(StepSearch, ASolverThatNeverWorksHasNoBestPoint) {
   const Suite suite = one_family();
   const auto outcome = run_sweep(suite, plan(suite, {}), {}, fake(1.0 / 200, 1e-9, nullptr));

@@ -1,0 +1,30 @@
+// One program at a time takes times on a machine: two side by side slow each other down, and
+// neither's times mean anything.
+#pragma once
+
+#include <string>
+
+namespace harness {
+
+// Held from construction to destruction, and no longer than the process lives, however it ends.
+// Forked children do not hold it; programs that the process starts may go on under it.
+class TimingLock {
+ public:
+  // Another one holds it: waits, with one line on stderr, or, unless `wait`, throws UsageError.
+  // Throws Interrupted.
+  explicit TimingLock(bool wait = true);
+  ~TimingLock();
+  TimingLock(const TimingLock&) = delete;
+  TimingLock& operator=(const TimingLock&) = delete;
+
+  bool waited() const { return waited_; }
+
+ private:
+  int file_ = -1;  // -1: the program that started this one holds it
+  bool waited_ = false;
+};
+
+// One a user and machine, in the folder of temporary files (TMPDIR, or /tmp).
+std::string timing_lock_path();
+
+}  // namespace harness

@@ -1,0 +1,153 @@
+// bench tune: searches the settings of each solver, and writes what it found for suites to use.
+#include <algorithm>
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/json_text.h"
+#include "harness/base/paths.h"
+#include "harness/base/text.h"
+#include "harness/base/timing_lock.h"
+#include "harness/cli/commands.h"
+#include "harness/cli/sweep_options.h"
+#include "harness/points/context.h"
+#include "harness/points/point_json.h"
+#include "harness/run/isolation.h"
+#include "harness/run/tune.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+
+struct TuneCommand {
+  std::string solver, scene, out;
+  int budget = TuneRules{}.budget;
+  double timeout = TuneOptions{}.timeout;
+  bool no_wait = false, quiet = false;
+
+  bool part() const { return !solver.empty() || !scene.empty(); }
+};
+
+std::vector<SweepSpec> chosen_scenes(const std::string& name) {
+  std::vector<SweepSpec> scenes = tuning_scenes();
+  if (name.empty()) return scenes;
+  std::vector<std::string> names;
+  for (const SweepSpec& scene : scenes) names.push_back(scene.scene);
+  std::erase_if(scenes, [&name](const SweepSpec& s) { return s.scene != name; });
+  if (scenes.empty()) throw unknown_name("scene to tune on", name, names);
+  return scenes;
+}
+
+// All that have something to be tuned; who does not compete, only by name.
+std::vector<std::string> chosen_solvers(const std::string& text) {
+  std::vector<std::string> solvers;
+  if (!text.empty()) check_solver_pattern(text);
+  const std::regex expression = pattern("--solver", text.empty() ? ".*" : text);
+  for (const auto& backend : inextensible::backends()) {
+    if ((backend.contestant || backend.name == text) &&
+        std::regex_match(backend.name, expression) && !tunable_numbers(backend).empty())
+      solvers.emplace_back(backend.name);
+  }
+  if (solvers.empty()) throw UsageError("--solver " + text + ": no setting of it is to be tuned");
+  return solvers;
+}
+
+// In the order of scenes and solvers, whatever was tuned first.
+void put_in(std::vector<TunedEntry>& entries, TunedEntry entry) {
+  std::erase_if(entries, [&entry](const TunedEntry& e) {
+    return e.kind == entry.kind && e.solver == entry.solver;
+  });
+  entries.push_back(std::move(entry));
+  const auto rank = [](const TunedEntry& e) {
+    const std::vector<std::string> kinds = scene_kinds();
+    return std::pair(std::find(kinds.begin(), kinds.end(), e.kind) - kinds.begin(),
+                     inextensible::find_backend(e.solver) - inextensible::backends().data());
+  };
+  std::stable_sort(entries.begin(), entries.end(),
+                   [&rank](const auto& a, const auto& b) { return rank(a) < rank(b); });
+}
+
+json context_of(const SweepSpec& scene, const TuneCommand& options) {
+  const json machine = machine_context();
+  const SceneType& type = *find_scene(scene.scene);
+  SceneParameters given = scene.scene_parameters;
+  given[type.resolution] = scene.resolutions.front();
+  return {{"date", machine.at("date")},
+          {"cpu_model", machine.at("cpu_model")},
+          {"commit", machine.at("build").at("git")},
+          {"dirty", machine.at("build").at("dirty")},
+          {"scene", scene.scene},
+          {"scene_parameters", complete_parameters(type, given)},
+          {"timeout", options.timeout}};
+}
+
+void print(const std::vector<TunedEntry>& entries) {
+  for (const TunedEntry& e : entries) {
+    std::cout << std::left << std::setw(10) << e.kind << std::setw(28) << e.solver << std::setw(8)
+              << (e.places.empty() ? "-" : number_text(e.gain, 3)) << std::setw(10)
+              << std::to_string(e.evaluations) + "/" + std::to_string(e.budget)
+              << to_json(e.settings).dump() << '\n';
+  }
+}
+
+int run_tune(const TuneCommand& options) {
+  const auto scenes = chosen_scenes(options.scene);
+  const auto solvers = chosen_solvers(options.solver);
+  const std::string out = options.out.empty() ? source_path("configs/tuned.json") : options.out;
+  std::vector<TunedEntry> entries;
+  if (options.part() && std::filesystem::exists(out))
+    entries = parse_tuned(read_file(out, "file of tuned settings"), out).entries;
+  check_writable(out);
+  catch_interrupts();
+  const TimingLock lock(!options.no_wait);
+  TuneOptions tuning;
+  tuning.rules.budget = options.budget;
+  tuning.timeout = options.timeout;
+  tuning.interrupted = interrupted;
+  if (!options.quiet) tuning.tell = [](const std::string& line) { std::cerr << line << '\n'; };
+  const SweepRunners runners = isolated({}, 0);
+  std::vector<TunedEntry> found;
+  for (const SweepSpec& scene : scenes) {
+    for (const std::string& solver : solvers) {
+      TunedEntry entry = tune_solver(solver, scene, tuning, runners);
+      entry.context = context_of(scene, options);
+      found.push_back(entry);
+      put_in(entries, std::move(entry));
+      write_atomically(out, document_text(tuned_document(entries)));
+    }
+  }
+  std::cout << "kind      solver                      gain    tried     settings\n";
+  print(found);
+  std::cout << "\nwritten:\n" << out << std::endl;
+  return success;
+}
+
+}  // namespace
+
+void add_tune_command(const Command& program) {
+  const auto given = std::make_shared<TuneCommand>();
+  TuneCommand& options = *given;
+  const Command command = program.subcommand(
+      "tune",
+      "search the settings of each solver, with one budget and one rule, on scenes that no result "
+      "reports; half an hour for all");
+  command.option("--solver", options.solver, "only solvers whose name matches; others stay",
+                 "REGEX");
+  command.option("--scene", options.scene, "chain, drape or patch only; others stay", "NAME");
+  command
+      .option("--budget", options.budget,
+              "sets of settings to try, for each solver and scene; default 24", "N")
+      .within(4, 10000);
+  command.option("--timeout", options.timeout, "seconds a run may take; default 10", "S")
+      .positive();
+  command.option("--out", options.out, "default configs/tuned.json", "FILE");
+  command.flag("--quiet", options.quiet, "no line for each set of settings");
+  add_no_wait(command, options.no_wait);
+  command.does([given] { return run_tune(*given); });
+}
+
+}  // namespace harness

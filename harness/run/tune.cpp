@@ -1,0 +1,205 @@
+#include "harness/run/tune.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "harness/base/text.h"
+#include "harness/points/point_json.h"
+#include "harness/run/step_search.h"
+
+namespace harness {
+namespace {
+
+constexpr double give_up_at = 2.5;  // times the best time known at a limit
+constexpr int samples = 3;          // of the best step, whose median counts
+
+// One strain limit of the scene, and what is known there.
+struct Place {
+  Search search;
+  std::optional<double> stiffness = {};  // to begin calibrations from
+  std::size_t best_rung = 0;             // of the best time so far; where the next search begins
+  double best_seconds = 1e300;           // s/s
+};
+
+struct Found {
+  std::size_t rung = 0;
+  double seconds = 0;  // s/s
+};
+
+class Tuner {
+ public:
+  Tuner(const std::string& solver, const SweepSpec& scene, const TuneOptions& options,
+        const SweepRunners& runners)
+      : options_(options), runners_(runners) {
+    Suite suite;
+    suite.sweeps = {scene};
+    suite.sweeps[0].contestants = {{solver, solver}};
+    for (Search& search : plan(suite, {})) places_.push_back({.search = std::move(search)});
+    numbers_ = tunable_numbers(*inextensible::find_backend(solver));
+    entry_.kind = find_scene(scene.scene)->kind();
+    entry_.solver = solver;
+    entry_.budget = options.rules.budget;
+  }
+
+  TunedEntry run() {
+    if (numbers_.empty()) return entry_;
+    begin();
+    if (places_.empty()) return entry_;
+    const auto seconds = [this](const Values& values, double hopeless) {
+      return evaluate(values, hopeless);
+    };
+    const TuneOutcome outcome = tune_values(numbers_, seconds, options_.rules);
+    entry_.gain = outcome.gain;
+    entry_.evaluations = outcome.evaluations;
+    Values initial;
+    for (std::size_t i = 0; i < numbers_.size(); ++i) {
+      initial.push_back(numbers_[i].initial);
+      if (outcome.values[i] != initial[i]) entry_.settings[numbers_[i].name] = outcome.values[i];
+    }
+    const auto was = last_.find(initial), is = last_.find(outcome.values);
+    if (was == last_.end() || is == last_.end()) return entry_;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const auto step = [&](const Found& found) { return places_[i].search.ladder[found.rung]; };
+      const Found &before = was->second[i], &now = is->second[i];
+      entry_.places.push_back({places_[i].search.base.strain_limit, before.seconds, step(before),
+                               now.seconds, step(now)});
+    }
+    return entry_;
+  }
+
+ private:
+  PointSpec spec(const Place& place, std::size_t rung, const inextensible::Settings& settings) {
+    PointSpec spec = place.search.base;
+    spec.step = place.search.ladder[rung];
+    spec.settings = settings;
+    return spec;
+  }
+
+  PointResult run_once(Place& place, std::size_t rung, const inextensible::Settings& settings,
+                       double most_seconds) {
+    const PointSpec what = spec(place, rung, settings);
+    const double hopeless = std::max(0.05, most_seconds * what.scene_parameters.at("duration"));
+    PointResult point = runners_.run(
+        what, {options_.timeout, hopeless, options_.interrupted, nullptr}, place.stiffness);
+    if (point.stiffness) place.stiffness = point.stiffness;
+    return point;
+  }
+
+  // The whole ladder's best step with the settings that the solver has by itself; limits at which
+  // it has none say nothing about others.
+  void begin() {
+    for (Place& place : places_) {
+      std::map<std::size_t, PointResult> known;
+      double best = 1e300;
+      StepSearch steps(place.search.ladder.size(), [&](std::size_t rung) -> const PointResult& {
+        const auto [at, fresh] = known.try_emplace(rung);
+        if (fresh) at->second = run_once(place, rung, {}, give_up_at * best);
+        if (at->second.ok()) best = std::min(best, at->second.median_seconds());
+        return at->second;
+      });
+      const auto rung = steps.find(std::nullopt);
+      if (!rung) continue;
+      place.best_rung = *rung;
+      place.best_seconds = known.at(*rung).median_seconds();
+    }
+    std::erase_if(places_, [](const Place& place) { return place.best_seconds >= 1e300; });
+  }
+
+  // Geometric mean over the places; none if one fails, or the mean is bound to be above `hopeless`.
+  std::optional<double> evaluate(const Values& values, double hopeless) {
+    inextensible::Settings settings;
+    for (std::size_t i = 0; i < numbers_.size(); ++i)
+      if (values[i] != numbers_[i].initial) settings[numbers_[i].name] = values[i];
+    std::vector<Found> found;
+    double log_sum = 0, log_rest = 0;
+    for (const Place& place : places_) log_rest += std::log(0.5 * place.best_seconds);
+    const auto count = static_cast<double>(places_.size());
+    std::optional<double> mean;
+    for (Place& place : places_) {
+      const auto best = best_step(place, settings, hopeless < 1e300);
+      if (!best) break;
+      found.push_back(*best);
+      log_sum += std::log(best->seconds);
+      log_rest -= std::log(0.5 * place.best_seconds);
+      if (found.size() == places_.size()) {
+        mean = std::exp(log_sum / count);
+      } else if ((log_sum + log_rest) / count > std::log(hopeless)) {
+        break;
+      }
+    }
+    tell(settings, mean);
+    if (!mean) return {};
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      if (found[i].seconds >= places_[i].best_seconds) continue;
+      places_[i].best_seconds = found[i].seconds;
+      places_[i].best_rung = found[i].rung;
+    }
+    last_[values] = std::move(found);
+    return mean;
+  }
+
+  // From the best step so far to both sides, as long as it gets faster; then twice more. in_race:
+  // what is much slower than what is known is not run to its end.
+  std::optional<Found> best_step(Place& place, const inextensible::Settings& settings,
+                                 bool in_race) {
+    std::optional<std::size_t> best;
+    PointResult fastest;
+    const auto faster = [&](std::size_t rung) {
+      const double most = give_up_at * std::min(in_race ? place.best_seconds : 1e300,
+                                                best ? fastest.median_seconds() : 1e300);
+      PointResult point = run_once(place, rung, settings, most);
+      if (!point.ok() || (best && point.median_seconds() >= fastest.median_seconds())) return false;
+      best = rung;
+      fastest = std::move(point);
+      return true;
+    };
+    const std::size_t start = place.best_rung, rungs = place.search.ladder.size();
+    faster(start);
+    std::size_t finer = start + 1;
+    while (finer < rungs && faster(finer)) ++finer;
+    const bool moved = best && *best > start;
+    for (std::size_t coarser = start; !moved && coarser > 0 && faster(coarser - 1);) --coarser;
+    if (!best) return {};
+    for (int i = 1; i < samples; ++i)
+      runners_.repeat(fastest, {options_.timeout, 1e300, options_.interrupted, nullptr});
+    return Found{*best, fastest.median_seconds()};
+  }
+
+  void tell(const inextensible::Settings& settings, const std::optional<double>& mean) {
+    options_.tell(entry_.kind + "/" + entry_.solver + " " + to_json(settings).dump() + ": " +
+                  (mean ? duration_text(*mean) + "/s" : std::string("fails, or too slow")));
+  }
+
+  TuneOptions options_;
+  SweepRunners runners_;
+  std::vector<Place> places_;
+  std::vector<TunedNumber> numbers_;
+  std::map<Values, std::vector<Found>> last_;  // of the last time that they were measured
+  TunedEntry entry_;
+};
+
+SweepSpec tuning_scene(const char* scene, int n, double coarsest) {
+  SweepSpec spec;
+  spec.sweep = "strain";
+  spec.scene = scene;
+  spec.limits = {0.1, 0.01, 0.001};
+  spec.resolutions = {n};
+  spec.coarsest = coarsest;
+  spec.finest = 1.0 / 6400;
+  return spec;
+}
+
+}  // namespace
+
+std::vector<SweepSpec> tuning_scenes() {
+  return {tuning_scene("chain", 50, 0.2), tuning_scene("drape", 41, 0.02),
+          tuning_scene("patch", 21, 0.02)};
+}
+
+TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene,
+                       const TuneOptions& options, const SweepRunners& runners) {
+  return Tuner(solver, scene, options, runners).run();
+}
+
+}  // namespace harness

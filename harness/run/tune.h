@@ -1,0 +1,27 @@
+// What bench tune searches for: settings of a solver on scenes of one kind, judged by the time of
+// its best steps at several strain limits (tune_search.h has the search).
+#pragma once
+
+#include "harness/points/suite.h"
+#include "harness/points/tuned.h"
+#include "harness/run/sweep.h"
+#include "harness/run/tune_search.h"
+
+namespace harness {
+
+// The scenes that settings are searched on, one a kind: none of them is in a reported result.
+std::vector<SweepSpec> tuning_scenes();
+
+struct TuneOptions {
+  TuneRules rules;
+  double timeout = 10;  // s, of a run
+  std::function<bool()> interrupted = nullptr;
+  std::function<void(const std::string&)> tell = [](const std::string&) {};  // lines of progress
+};
+
+// Without `context`. No settings where nothing is gained, or the solver fails at every limit as it
+// is. Throws Interrupted.
+TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene,
+                       const TuneOptions& options, const SweepRunners& runners = {});
+
+}  // namespace harness

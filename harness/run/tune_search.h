@@ -1,0 +1,52 @@
+// The search for a method's best settings: coordinate descent by rule, the same for everybody.
+// Knows no solver: what a set of settings costs, a function says.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "inextensible/methods/backend.h"
+
+namespace harness {
+
+// A setting to be searched.
+struct TunedNumber {
+  std::string name;
+  double initial = 0;
+  inextensible::Range range;
+  bool whole = false;
+};
+
+// Those that a method's row marks as tunable, in its order; given ones are not touched.
+std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend,
+                                         const inextensible::Settings& given = {});
+
+using Values = std::vector<double>;  // one of each setting
+// Seconds with these values, none if they fail. A value that lies above `hopeless` may be given up
+// early, and is then none.
+using TuneObjective = std::function<std::optional<double>(const Values&, double hopeless)>;
+
+struct TuneRules {
+  int budget = 24;           // evaluations at most, of all settings together
+  int rounds = 2;            // over all settings
+  double least_gain = 0.05;  // a change must make it faster by more than this, twice
+};
+
+struct TuneOutcome {
+  Values values;        // the initial ones if nothing is better by enough
+  double gain = 1;      // seconds of the initial values over these, measured anew
+  int evaluations = 0;  // the first one included; at most the budget
+};
+
+// Throws what `seconds` throws.
+TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
+                        const TuneRules& rules = {});
+
+// Where a value lies in its range, from 0 to 1, and back: logarithmic where the range spans a
+// factor of ten, for counts too (of 1 + count).
+double position_of(const TunedNumber& number, double value);
+double value_at(const TunedNumber& number, double position);
+
+}  // namespace harness

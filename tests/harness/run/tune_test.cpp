@@ -1,0 +1,177 @@
+// The search for settings, with objectives whose optimum is known, and with a fake clock.
+#include "harness/run/tune.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace harness {
+namespace {
+
+std::vector<TunedNumber> numbers() {
+  return {{"relaxation", 1, {0.5, 1.95}, false},
+          {"tolerance", 0.1, {1e-4, 1}, false},
+          {"sweeps", 0, {0, 120}, true}};
+}
+
+// A bowl in relaxation, log tolerance and log count; lowest, 1 s, at 1.7, 0.01 and 30.
+double bowl(const Values& v) {
+  return 1 + 2 * std::pow(v[0] - 1.7, 2) + 0.3 * std::pow(std::log10(v[1]) + 2, 2) +
+         0.2 * std::pow(std::log((1 + v[2]) / 31), 2);
+}
+
+TEST(TuneSearch, FindsTheLowestPointOfASmoothFunction) {
+  const auto seconds = [](const Values& v, double) { return std::optional(bowl(v)); };
+  const TuneOutcome found = tune_values(numbers(), seconds, {.budget = 60});
+  EXPECT_LT(bowl(found.values), 1.06);  // what is within 5 % is not worth a change
+  EXPECT_NEAR(found.gain, bowl({1, 0.1, 0}) / bowl(found.values), 1e-12);
+  EXPECT_LE(found.evaluations, 60);
+  EXPECT_EQ(found.values[2], std::round(found.values[2]));
+  EXPECT_EQ(tune_values(numbers(), seconds, {.budget = 60}).values, found.values);
+}
+
+TEST(TuneSearch, FindsItBesideARegionThatFails) {
+  const auto seconds = [](const Values& v, double) -> std::optional<double> {
+    if (v[0] > 1.75 || v[2] > 40) return {};
+    return bowl(v);
+  };
+  const TuneOutcome found = tune_values(numbers(), seconds, {.budget = 60});
+  EXPECT_LT(bowl(found.values), 1.1);
+  EXPECT_TRUE(seconds(found.values, 1e300));
+}
+
+TEST(TuneSearch, OneNumberIsFoundWithinAFewPercentOfItsRange) {
+  for (const double best : {0.6, 1.1, 1.5, 1.9}) {
+    const auto seconds = [best](const Values& v, double) {
+      return std::optional(0.05 + std::pow(v[0] - best, 2));
+    };
+    const TuneOutcome found = tune_values({numbers()[0]}, seconds, {.budget = 24});
+    EXPECT_NEAR(found.values[0], best, 0.06) << best;
+  }
+}
+
+TEST(TuneSearch, KeepsWhatIsAsGoodAsAnything) {
+  const auto flat = [](const Values& v, double) {
+    return std::optional(1 + 0.02 * std::sin(50 * v[0] + 9 * v[1]));  // 4 %: below what counts
+  };
+  const TuneOutcome found = tune_values(numbers(), flat);
+  EXPECT_EQ(found.values, (Values{1, 0.1, 0}));
+  EXPECT_EQ(found.gain, 1);
+  int calls = 0;
+  const auto fails = [&calls](const Values&, double) {
+    ++calls;
+    return std::optional<double>();
+  };
+  EXPECT_EQ(tune_values(numbers(), fails).values, (Values{1, 0.1, 0}));
+  EXPECT_EQ(calls, 1) << "what fails as it is has nothing to be compared with";
+}
+
+TEST(TuneSearch, NeverReturnsAnythingWorseThanTheDefaultWhateverTheNoise) {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> noise(0, 0.02);
+    const double slope = std::uniform_real_distribution<double>(-1, 1)(random);
+    const auto truth = [slope](const Values& v) { return 2 + slope * (v[0] - 1); };
+    int calls = 0;
+    const auto seconds = [&](const Values& v, double) {
+      ++calls;
+      return std::optional(truth(v) * std::exp(noise(random)));
+    };
+    const TuneOutcome found = tune_values(numbers(), seconds, {.budget = 20});
+    EXPECT_LE(calls, 20);
+    EXPECT_EQ(calls, found.evaluations);
+    EXPECT_LE(truth(found.values), truth({1, 0.1, 0}));
+  }
+}
+
+TEST(TuneSearch, ValuesStayInTheirRangeAndComeBackFromTheirPosition) {
+  for (const TunedNumber& n : numbers()) {
+    for (double at = 0; at <= 1; at += 0.01) {
+      const double value = value_at(n, at);
+      EXPECT_GE(value, n.range.least);
+      EXPECT_LE(value, n.range.largest);
+      EXPECT_NEAR(value_at(n, position_of(n, value)), value, 2e-3 * value) << n.name;
+    }
+    EXPECT_EQ(position_of(n, n.range.least), 0);
+    EXPECT_EQ(position_of(n, n.range.largest), 1);
+  }
+  EXPECT_NEAR(value_at(numbers()[1], 0.5), 0.01, 1e-12) << "logarithmic";
+}
+
+// Colored Gauss-Seidel under a fake clock: its time is lowest at a relaxation of 1.7 and a step of
+// 1/200 s; above `fails_above` it misses the tightest limit.
+SweepRunners fake(double fails_above, std::vector<PointSpec>* specs = nullptr) {
+  SweepRunners runners;
+  runners.run = [=](const PointSpec& spec, const RunLimits& limits, std::optional<double>) {
+    if (specs) specs->push_back(spec);
+    PointResult point;
+    point.spec = spec;
+    const auto given = spec.settings.find("relaxation");
+    const double relaxation = given == spec.settings.end() ? 1.0 : std::get<double>(given->second);
+    const double off = std::log2(spec.step * 200);
+    const double seconds = (0.1 + std::pow(relaxation - 1.7, 2)) * (1 + off * off);
+    const bool fails = relaxation > fails_above && spec.strain_limit < 0.005;
+    point.status = fails                       ? PointStatus::strain_missed
+                   : seconds > limits.hopeless ? PointStatus::timeout
+                                               : PointStatus::ok;
+    if (point.ok()) point.samples = {seconds};
+    return point;
+  };
+  runners.repeat = [](PointResult& point, const RunLimits&) {
+    point.samples.push_back(point.samples.front());
+  };
+  return runners;
+}
+
+SweepSpec chain() { return tuning_scenes().front(); }
+
+TEST(Tune, FindsASettingAndSaysWhatItGains) {
+  std::vector<PointSpec> specs;
+  const TunedEntry entry =
+      tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 60}}, fake(10, &specs));
+  EXPECT_EQ(entry.kind, "chain");
+  ASSERT_TRUE(entry.settings.contains("relaxation"));
+  const double relaxation = std::get<double>(entry.settings.at("relaxation"));
+  EXPECT_NEAR(relaxation, 1.7, 0.1);
+  EXPECT_NEAR(entry.gain, (0.1 + 0.49) / (0.1 + std::pow(relaxation - 1.7, 2)), 1e-6);
+  ASSERT_EQ(entry.places.size(), 3u);
+  for (const TunedPlace& place : entry.places) {
+    EXPECT_NEAR(place.default_seconds / place.seconds, entry.gain, 1e-6);
+    EXPECT_NEAR(place.step, 0.005, 0.002);
+  }
+  for (const PointSpec& spec : specs) EXPECT_EQ(spec.resolution, 50);
+}
+
+TEST(Tune, WhatFailsWhereTheDefaultSucceedsIsOut) {
+  const TunedEntry entry =
+      tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 60}}, fake(1.4));
+  ASSERT_TRUE(entry.settings.contains("relaxation"));
+  EXPECT_LE(std::get<double>(entry.settings.at("relaxation")), 1.4);
+  EXPECT_GT(entry.gain, 1.05);
+}
+
+TEST(Tune, ALimitThatTheDefaultMissesCountsForNothing) {
+  const TunedEntry entry =
+      tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 60}}, fake(0.9));
+  EXPECT_EQ(entry.places.size(), 2u);
+  EXPECT_NEAR(std::get<double>(entry.settings.at("relaxation")), 1.7, 0.1);
+}
+
+TEST(Tune, ASolverWithNothingToTuneIsNotRun) {
+  std::vector<PointSpec> specs;
+  const TunedEntry entry = tune_solver("null", chain(), {}, fake(10, &specs));
+  EXPECT_TRUE(entry.settings.empty());
+  EXPECT_TRUE(specs.empty());
+}
+
+TEST(Tune, AnInterruptionIsPassedOn) {
+  SweepRunners runners = fake(10);
+  runners.run = [](const auto&, const auto&, auto) -> PointResult { throw Interrupted(); };
+  EXPECT_THROW(static_cast<void>(tune_solver("gauss_seidel_colored", chain(), {}, runners)),
+               Interrupted);
+}
+
+}  // namespace
+}  // namespace harness
