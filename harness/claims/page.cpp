@@ -85,6 +85,20 @@ void PlaceTable::add(double place, const Point& point) {
 
 void PlaceTable::loose_to_tight() { std::reverse(places_.begin(), places_.end()); }
 
+void PlaceTable::drop_repeated_places() {
+  const auto same = [&](double a, double b) {
+    return std::all_of(contestants_.begin(), contestants_.end(), [&](const Role& role) {
+      const Point *one = find(role.name, a), *other = find(role.name, b);
+      return (one ? &one->document() : nullptr) == (other ? &other->document() : nullptr);
+    });
+  };
+  std::vector<double> kept;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (i + 1 == places_.size() || !same(places_[i], places_[i + 1])) kept.push_back(places_[i]);
+  }
+  places_ = std::move(kept);
+}
+
 const Point* PlaceTable::find(const std::string& contestant, double place) const {
   const auto cell = cells_.find({contestant, place});
   return cell == cells_.end() ? nullptr : &cell->second;

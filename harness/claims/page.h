@@ -46,6 +46,8 @@ class PlaceTable {
   const std::vector<double>& places() const { return places_; }
   const std::vector<Role>& contestants() const { return contestants_; }
   void loose_to_tight();  // places from large to small; else from small to large
+  // Leaves out places whose points are all those of the next one.
+  void drop_repeated_places();
 
   const Point* find(const std::string& contestant, double place) const;
   // The ranked contestant that is faster than each other there beyond the noise; null: none is.

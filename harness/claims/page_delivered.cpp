@@ -29,6 +29,7 @@ void print_delivered(std::ostream& out, const NamedResult& result) {
     }
     if (fastest.empty()) continue;
     fastest.loose_to_tight();
+    fastest.drop_repeated_places();
     out << "### " << scene.title << " (`" << result.name << "`)\n\n"
         << "Least time for one simulated second whose largest strain after the collision filter "
            "is at most that of the column, at any permitted strain and step that was tried, and "

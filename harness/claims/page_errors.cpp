@@ -27,6 +27,20 @@ std::string errors_are(const std::vector<Point>& points) {
          percent(3 * gap) + ".";
 }
 
+// The last sample time at which the reference is sure enough for a level; not-a-number for older
+// files, where that time is one for all levels.
+double sure_until(const std::vector<Point>& points, double level) {
+  double until = std::nan("");
+  for (const Point& p : points) {
+    const auto& error = p.document().at("error");
+    for (const auto& sample : error.value("error_series", nlohmann::json::array())) {
+      if (sample.at(3).is_number() && 3 * sample.at(3).get<double>() <= level)
+        until = std::fmax(until, sample.at(0).get<double>());
+    }
+  }
+  return until;
+}
+
 }  // namespace
 
 void print_time_to_error(std::ostream& out, const NamedResult& result) {
@@ -45,7 +59,13 @@ void print_time_to_error(std::ostream& out, const NamedResult& result) {
            "it, at any strain limit. "
         << errors_are(scene.points) << "\n\n";
     fastest.print(
-        out, [](double level) { return percent(level) + ": time in ms, step in s"; },
+        out,
+        [&](double level) {
+          const double until = sure_until(scene.points, level);
+          const std::string when =
+              std::isfinite(until) ? ", up to " + number_text(until, 3) + " s" : "";
+          return percent(level) + when + ": time in ms, step in s";
+        },
         [&](const Point& p, double level) {
           const std::string time = plain(1e3 * p.seconds(), 3);
           const Point* first = fastest.clear_best(level);

@@ -146,7 +146,12 @@ def origin_sentence(document: Json) -> str:
 
 
 def validity(data: RunsData) -> str:
-    until = [object_in(point, "error").get("valid_until") for point in data.points if point["status"] == OK]
+    errors = [object_in(point, "error") for point in data.points if point["status"] == OK]
+    sure = [error.get("error_until") for error in errors if positive(error.get("error_until"))]
+    if sure:
+        return (" Errors over the sample times at which they are more than three times the reference's own uncertainty, up to "
+                f"t = {max(sure):g} s.")
+    until = [error.get("valid_until") for error in errors]
     known = sorted(time for time in until if positive(time))
     return f" Errors up to t = {known[0]:g} s, as far as the reference can be trusted." if known else ""
 

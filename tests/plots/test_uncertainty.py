@@ -174,3 +174,11 @@ def test_the_filters_own_time_has_a_panel_where_a_collider_takes_part(sweep: str
     assert not any("filter alone" in axes.get_ylabel() for axes in without.axes)
     chain = drawn(document([{**made, "scene": "chain", "max_strain_after_collision": None} for made in points]))
     assert not any("filter alone" in axes.get_ylabel() for figure in chain.values() for axes in figure.axes)
+
+
+def test_errors_say_until_when_they_count() -> None:
+    result = step_sweep()
+    for made, until in zip(result["points"], (0.1, 0.7, 0.3)):
+        made["error"] |= {"error_until": until} if made["status"] == "ok" else {}
+    words = words_of(drawn(result)["work-precision-chain"])
+    assert "more than three times the reference's own uncertainty, up to t = 0.7 s." in words and "0.5 s" not in words

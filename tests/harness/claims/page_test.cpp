@@ -1,12 +1,12 @@
 // The page of results says no more than its files do: bold and intervals only beyond the noise,
 // strains and failures beside every ranking.
-#include "harness/claims/results_page.h"
+#include "harness/claims/page.h"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
-#include "harness/claims/page.h"
+#include "harness/claims/results_page.h"
 #include "invented_points.h"
 
 namespace harness {
@@ -133,6 +133,21 @@ TEST(ResultsPage, ErrorsCountWhereTheReferenceIsSure) {
   EXPECT_FALSE(claims::Point(p).within_error(0.009));
   p["error"]["error_series"] = {{0.1, 0.01, 0.02, 0.05, 0.05}};
   EXPECT_FALSE(claims::Point(p).within_error(0.1));  // 3 gaps are more
+}
+
+TEST(ResultsPage, ErrorsSayUntilWhenTheyCount) {
+  json result = sweep(0.01);
+  std::vector<json> points;
+  for (const char* solver : {"fast_projection", "icd"}) {
+    points.push_back(point("chain", "step", solver, 0.01, 80, 0.01, 1));
+    points.back()["error"] = {{"trajectory", 0.05},
+                              {"gap", 0.002},
+                              {"error_series", {{0.1, 0.02, 0, 1e-6, 0}, {0.7, 0.07, 0, 0.03, 0}}}};
+  }
+  result["points"] = points;
+  const std::string text = page(result);
+  has(text, "| solver | 10 %, up to 0.7 s: time in ms, step in s | 3 %, up to 0.1 s: time in ms");
+  has(text, "| `icd` | 1000, 1/100 | 1000, 1/100 |");
 }
 
 }  // namespace
