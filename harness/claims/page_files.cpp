@@ -1,4 +1,5 @@
 // What the result files say of themselves: tuned settings, noise, date and machine.
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -39,6 +40,9 @@ void print_tuned(std::ostream& out, const std::vector<NamedResult>& results) {
     if (tuned.is_object()) files.emplace(tuned.at("file"), tuned.value("hash", ""));
   }
   if (files.empty()) return;
+  std::vector<Tuned> all;
+  for (const auto& [file, hash] : files) all.push_back(read_tuned(file));
+  if (std::all_of(all.begin(), all.end(), [](const Tuned& t) { return t.entries.empty(); })) return;
   out << "## Tuned settings\n\nFound by `bench tune`, by one rule and with one budget for all, on "
          "scenes that no table shows. Gain: time at default settings over that with these, "
          "geometric mean over the tuning scenes.\n\n";
@@ -57,8 +61,7 @@ void print_tuned(std::ostream& out, const std::vector<NamedResult>& results) {
 void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
   out << "A/A: how far apart the times of one solver under two names are, in half of all places at "
          "most and in 95 % of them.\n\n";
-  print_head(out, {"file", "date", "processor", "commit", "A/A pair", "places", "half, %",
-                   "95 % of them, %"});
+  print_head(out, {"file", "date", "processor", "commit", "A/A pair", "places", "half", "95 %"});
   for (const NamedResult& result : results) {
     const json& context = result.document.at("context");
     const json noise = context.value("noise", json());

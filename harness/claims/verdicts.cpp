@@ -63,10 +63,12 @@ std::string text(const Slope& slope) {
 std::string text(const Ratio& ratio) {
   if (std::isnan(ratio.value)) return "?";
   if (!ratio.known()) return text(ratio.value, ratio.value >= 100 ? 3 : 2) + " (?)";
-  // As many decimals as show the interval's width, but no more than four digits in all.
+  // As many decimals as show the interval's width and two digits of each number, but no more than
+  // four digits of the value.
   const auto order = [](double x) { return static_cast<int>(std::floor(std::log10(x))); };
   const int most = std::max(0, 3 - order(ratio.value));
-  const int wanted = ratio.high > ratio.low ? -order(ratio.high - ratio.low) : most;
+  const int width = ratio.high > ratio.low ? -order(ratio.high - ratio.low) : most;
+  const int wanted = std::max(width, 1 - order(ratio.low));
   const auto fixed = [decimals = std::clamp(wanted, 0, most)](double x) {
     std::ostringstream out;
     out << std::fixed << std::setprecision(decimals) << x;

@@ -60,7 +60,7 @@ TEST(ResultsPage, RatiosHaveIntervalsAndOnlyTheClearlyFastestIsBold) {
   has(quiet, "| `fast_projection` | **1** |");
   has(quiet, "| `icd` | 2.00 (1.98-2.02) |");
   has(noisy, "| `fast_projection` | 1 |");
-  has(noisy, "| `icd` | 2 (1-4) |");
+  has(noisy, "| `icd` | 2.00 (0.90-4.45) |");
 }
 
 TEST(ResultsPage, WithoutIntervalsNothingIsBold) {
