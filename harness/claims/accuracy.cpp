@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/base/errors.h"
 #include "harness/claims/paper_methods.h"
 
 namespace harness::claims {
@@ -120,13 +121,18 @@ std::optional<Frames> frames_of(const nlohmann::json& entry) {
   const auto rms = numbers(entry.at("icd").at("rms")),
              largest = numbers(entry.at("icd").at("largest")),
              moved = numbers(entry.at("moved_start").at("rms"));
+  for (const auto* list : {&rms, &largest, &moved}) {
+    if (list->size() != times.size())
+      throw UsageError("same_frame: " + std::to_string(times.size()) + " times, but " +
+                       std::to_string(list->size()) + " distances");
+  }
   Frames frames;
   double spread = 0;  // paths that have parted do not find together again: the largest so far
   for (std::size_t i = 0; i < times.size(); ++i) {
-    spread = std::max(spread, moved.at(i));
+    spread = std::max(spread, moved[i]);
     if (times[i] < contact) {
-      frames.before = std::max(frames.before, largest.at(i));
-    } else if (rms.at(i) > alike && rms[i] / spread > frames.worst) {
+      frames.before = std::max(frames.before, largest[i]);
+    } else if (rms[i] > alike && rms[i] / spread > frames.worst) {
       frames = {frames.before, rms[i] / spread, rms[i], spread};
     }
   }

@@ -99,11 +99,6 @@ double pair_noise_of(const json& document) {
              : std::nan("");
 }
 
-bool times_count(const json& document) {
-  return document.value("timed", true) &&
-         document.value("context", json::object()).value("timed", true);
-}
-
 Points::Points(const std::vector<json>& results) {
   std::set<std::tuple<std::string, std::string, std::string>> seen;  // id, contestant, sweep
   for (const json& result : results) {
@@ -118,7 +113,7 @@ Points::Points(const std::vector<json>& results) {
     }
     std::set<std::tuple<std::string, std::string, std::string>> here;
     for (const json& p : result.at("points")) {
-      const Point point(p, pair_noise_of(result), times_count(result));
+      const Point point(p, pair_noise_of(result));
       const std::tuple key(point.id(), point.contestant(), point.text("sweep"));
       if (seen.contains(key) || point.flag("adaptive")) continue;
       here.insert(key);

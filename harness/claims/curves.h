@@ -20,9 +20,9 @@ namespace harness::claims {
 // document must outlive it.
 class Point {
  public:
-  // noise: of the file's A/A pair, see ratio_of_medians. timed: its times mean something.
-  explicit Point(const nlohmann::json& document, double noise = std::nan(""), bool timed = true)
-      : p_(&document), noise_(noise), timed_(timed) {}
+  // noise: of the file's A/A pair, see ratio_of_medians.
+  explicit Point(const nlohmann::json& document, double noise = std::nan(""))
+      : p_(&document), noise_(noise) {}
 
   std::string id() const { return p_->at("id"); }
   std::string text(const char* key) const { return p_->at(key); }
@@ -31,7 +31,7 @@ class Point {
   bool is(const char* key, const std::string& value) const { return p_->at(key) == value; }
   bool flag(const char* key) const { return p_->value(key, false); }
   bool ok() const { return is("status", "ok"); }
-  bool timed() const { return timed_ && !p_->at("seconds_per_simulated_second").is_null(); }
+  bool timed() const { return !p_->at("seconds_per_simulated_second").is_null(); }
   double number(const char* key) const { return figure(*p_, key); }
   double work(const char* key) const { return figure(p_->at("work"), key); }
   double error(const char* key) const { return figure(p_->at("error"), key); }
@@ -64,7 +64,6 @@ class Point {
   }
   const nlohmann::json* p_;
   double noise_;
-  bool timed_;
 };
 
 // Of a's time over b's.
@@ -95,7 +94,6 @@ class Cast {
 };
 
 double pair_noise_of(const nlohmann::json& document);  // not-a-number: it has no A/A pair
-bool times_count(const nlohmann::json& document);      // false: it was written without timing
 
 using Filter = std::function<bool(const Point&)>;
 using Curve = std::map<double, Point>;  // by the value on the axis: a strain limit or vertices

@@ -27,7 +27,8 @@ std::string quoted(const std::string& name) { return '`' + name + '`'; }
 std::string bold(const std::string& words) { return "**" + words + "**"; }
 
 std::string plain(double value, int digits) {
-  const int whole = value >= 1 ? static_cast<int>(std::log10(value)) + 1 : 1;
+  const bool large = value >= 1 && std::isfinite(value);
+  const int whole = large ? static_cast<int>(std::log10(value)) + 1 : 1;
   return number_text(value, std::max(digits, whole));
 }
 
@@ -57,7 +58,6 @@ std::vector<ScenePoints> scenes_of(const json& document, const std::string& swee
   if (is_stability(document)) return {};
   const Cast cast(document);
   const double noise = pair_noise_of(document);
-  const bool timed = times_count(document);
   for (const json& p : document.at("points")) {
     if (p.at("sweep") != sweep || p.value("adaptive", false)) continue;
     std::string title = p.at("scene").get<std::string>();
@@ -65,7 +65,7 @@ std::vector<ScenePoints> scenes_of(const json& document, const std::string& swee
     ScenePoints& scene = scenes[title];
     scene.title = title;
     scene.cast = cast;
-    scene.points.emplace_back(p, noise, timed);
+    scene.points.emplace_back(p, noise);
   }
   std::vector<ScenePoints> list;
   for (auto& [title, scene] : scenes) list.push_back(std::move(scene));

@@ -36,7 +36,7 @@ std::string noise_cell(const json& noise, const char* key) {
 void print_tuned(std::ostream& out, const std::vector<NamedResult>& results) {
   std::set<std::pair<std::string, std::string>> files;  // and the hash of what they said
   for (const NamedResult& result : results) {
-    const json tuned = result.document.at("context").value("tuned", json());
+    const json tuned = result.document.value("context", json::object()).value("tuned", json());
     if (tuned.is_object()) files.emplace(tuned.at("file"), tuned.value("hash", ""));
   }
   if (files.empty()) return;
@@ -63,11 +63,12 @@ void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
          "most and in 95 % of them.\n\n";
   print_head(out, {"file", "date", "processor", "commit", "A/A pair", "places", "half", "95 %"});
   for (const NamedResult& result : results) {
-    const json& context = result.document.at("context");
+    const json context = result.document.value("context", json::object());
     const json noise = context.value("noise", json());
     const bool pair = noise.is_object() && noise.contains("pair");
-    print_row(out, {quoted(result.name), context.at("date"), context.at("cpu_model"),
-                    context.at("build").at("git"),
+    const auto word = [](const json& object, const char* key) { return object.value(key, "-"); };
+    print_row(out, {quoted(result.name), word(context, "date"), word(context, "cpu_model"),
+                    word(context.value("build", json::object()), "git"),
                     pair ? quoted(noise.at("pair").at(0)) : std::string("-"),
                     pair ? std::to_string(noise.value("places", 0)) : std::string("-"),
                     noise_cell(noise, "median"), noise_cell(noise, "q95")});

@@ -62,7 +62,8 @@ std::string text(const Slope& slope) {
 
 std::string text(const Ratio& ratio) {
   if (std::isnan(ratio.value)) return "?";
-  if (!ratio.known()) return text(ratio.value, ratio.value >= 100 ? 3 : 2) + " (?)";
+  if (!ratio.known() || !(ratio.value > 0))
+    return text(ratio.value, ratio.value >= 100 ? 3 : 2) + " (?)";
   // As many decimals as show the interval's width and two digits of each number, but no more than
   // four digits of the value.
   const auto order = [](double x) { return static_cast<int>(std::floor(std::log10(x))); };

@@ -232,13 +232,5 @@ TEST(Claims, TheDoubleOfAPairIsNoContestant) {
   EXPECT_EQ(verdict("C6", points, 0.1).verdict, "reproduced");
 }
 
-TEST(Claims, TimesOfFilesThatWereNotTimedDecideNothing) {
-  json result = document({point("chain", "strain", "implicit_springs", 0.01, 80, 0.01, 25),
-                          point("chain", "strain", "fast_projection", 0.01, 80, 0.01, 1)});
-  EXPECT_EQ(verdict_in("C3", result).verdict, "reproduced");
-  result["timed"] = false;
-  EXPECT_EQ(verdict_in("C3", result).verdict, "not yet measured");
-}
-
 }  // namespace
 }  // namespace harness

@@ -2,10 +2,12 @@
 // out.
 #pragma once
 
+#include <sstream>
 #include <string>
 
 #include "harness/base/errors.h"
 #include "harness/claims/claims.h"
+#include "harness/claims/results_page.h"
 #include "harness/points/result_file.h"
 #include "harness/points/suite.h"
 #include "harness/run/sweep.h"
@@ -29,7 +31,10 @@ inline std::string read_as_suite(const std::string& text) {
 
 inline std::string read_as_result(const std::string& text) {
   try {
-    (void)judge_claims({parse_result(text, "fuzz")});
+    const nlohmann::json result = parse_result(text, "fuzz");
+    (void)judge_claims({result});
+    std::ostringstream page;
+    print_results_page(page, {{"fuzz", result}}, {});
     return "";
   } catch (const UsageError& error) {
     return error.what();
