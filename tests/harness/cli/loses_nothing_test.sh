@@ -30,7 +30,7 @@ def points(path):
     document = json.load(open(path))
     assert document["complete"], path
     for point in document["points"]:
-        for key in ("seconds_per_simulated_second", "setup_seconds", "calibration_seconds", "phases", "peak_rss_bytes", "best"):
+        for key in ("seconds_per_simulated_second", "setup_seconds", "calibration_seconds", "phases", "peak_rss_bytes", "best", "at_ladder_end"):
             del point[key]
     return document["points"]
 
@@ -77,8 +77,9 @@ let_go() {
 
 "${bench[@]}" --out whole.json >/dev/null 2>&1 || fail "undisturbed run: exit $?"
 [[ ! -e whole.json.journal ]] || fail "a journal is left of a run that was finished"
-# Of its journal: a header, the points, the repetitions of the best.
-whole=$(python3 -c 'import json; p = json.load(open("whole.json"))["points"]; print(1 + len(p) + sum(q["best"] for q in p))')
+# Of its journal: a header, the points, the repetitions of those that may be best.
+whole=$(python3 -c 'import json; p = json.load(open("whole.json"))["points"]
+print(1 + len(p) + sum(len((q["seconds_per_simulated_second"] or {"samples": [0]})["samples"]) - 1 for q in p))')
 
 # ---- kill -9, again and again ----
 for after in 3 20 45; do
