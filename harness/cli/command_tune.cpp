@@ -140,7 +140,7 @@ void add_tune_command(const Command& program) {
   command.option("--scene", options.scene, "chain, drape or patch only; others stay", "NAME");
   command
       .option("--budget", options.budget,
-              "sets of settings to try, for each solver and scene; default 24", "N")
+              "sets of settings to try, for each solver and scene; default 32", "N")
       .within(4, 10000);
   command.option("--timeout", options.timeout, "seconds a run may take; default 10", "S")
       .positive();

@@ -29,7 +29,7 @@ using Values = std::vector<double>;  // one of each setting
 using TuneObjective = std::function<std::optional<double>(const Values&, double hopeless)>;
 
 struct TuneRules {
-  int budget = 24;           // evaluations at most, of all settings together
+  int budget = 32;           // evaluations at most, of all settings together
   int rounds = 2;            // over all settings
   double least_gain = 0.05;  // a change must make it faster by more than this, twice
 };
