@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/base/text.h"
 #include "harness/judge/measures.h"
 #include "inextensible/problem/forces.h"
 
@@ -15,13 +16,26 @@ namespace {
 
 constexpr double time_tolerance = 1e-9;  // s; states add up their steps
 
+// To six digits: a series is for pictures and sums, and files shall stay small.
+double shortened(double value) {
+  return std::isfinite(value) ? std::stod(number_text(value)) : value;
+}
+
+double root_mean_square(const std::vector<double>& numbers) {
+  double squares = 0;
+  for (const double number : numbers) squares += number * number;
+  return std::sqrt(squares / static_cast<double>(numbers.size()));
+}
+
 }  // namespace
 
-Judge::Judge(const Scene& scene, const Options& options) : scene_(scene), options_(options) {
+Judge::Judge(const Scene& scene, const Options& options)
+    : scene_(scene),
+      options_(options),
+      energy_(*scene.problem, energy_scale(scene), options.velocities) {
   options_.sample_every = std::max(1, options_.sample_every);
   if (options_.residual) probe_.emplace();
-  start_energy_ = total_energy(*scene.problem, scene.start);
-  energy_scale_ = energy_scale(scene);
+  energy_.begin(scene.start);
 }
 
 void Judge::before(const State& state, double h) {
@@ -43,10 +57,7 @@ void Judge::compare(const State& state) {
     const double part = inside ? (time - start_.time) / (state.time - start_.time) : 1;
     const Positions x = inside ? Positions((1 - part) * start_.x + part * state.x) : state.x;
     if (next_ < reference.positions.size()) {
-      squares_ += std::pow(rms_distance(scene_, x, reference.positions[next_]), 2);
-      most_ = std::max(most_, max_distance(scene_, x, reference.positions[next_]));
-      gap_squares_ += std::pow(reference.gap[next_], 2);
-      ++compared_;
+      compare_positions(x);
     } else {
       const ShapeStatistics shape = shape_statistics(scene_, x);
       const ShapeStatistics& wanted = reference.shape[next_];
@@ -59,15 +70,46 @@ void Judge::compare(const State& state) {
   }
 }
 
-double Judge::after(const Positions& filtered, const State& state, bool counts) {
+void Judge::compare_positions(const Positions& x) {
+  const Reference& reference = *options_.reference;
+  const Positions& there = reference.positions[next_];
+  if (reference.converged())
+    running_.error_series.push_back({reference.times[next_], rms_distance(scene_, x, there),
+                                     max_distance(scene_, x, there), reference.gap[next_],
+                                     reference.gap_max[next_]});
+  moved_squares_ += std::pow(rms_distance(scene_, x, scene_.start.x), 2);
+  reference_moved_squares_ += std::pow(rms_distance(scene_, there, scene_.start.x), 2);
+}
+
+// Over the samples whose distance is the run's and not the reference's.
+void Judge::add_errors(Measures& measures) const {
+  double squares = 0, gap_squares = 0, all_squares = 0, all_gap_squares = 0;
+  for (const ErrorSample& at : measures.error_series) {
+    all_squares += at.error * at.error;
+    all_gap_squares += at.gap * at.gap;
+    if (at.worst > sure_gaps * at.worst_gap) raise(measures.trajectory_max, at.worst);
+    if (!(at.error > sure_gaps * at.gap)) continue;
+    squares += at.error * at.error;
+    gap_squares += at.gap * at.gap;
+    ++measures.error_samples;
+    measures.error_until = at.time;
+  }
+  const bool usable = measures.error_samples > 0;
+  const auto count = static_cast<double>(usable ? static_cast<std::size_t>(measures.error_samples)
+                                                : measures.error_series.size());
+  if (count == 0) return;
+  measures.trajectory = std::sqrt((usable ? squares : all_squares) / count);
+  measures.gap = std::sqrt((usable ? gap_squares : all_gap_squares) / count);
+}
+
+double Judge::after(const Positions& filtered, const State& state, double h, bool counts) {
   const StrainRange range = strain_range(*scene_.problem, filtered);
   running_.max_strain = std::max(running_.max_strain, range.most);
   running_.max_stretch = std::max(running_.max_stretch, range.stretch);
   if (scene_.problem->collider()) {
-    const double after = strain_range(*scene_.problem, state.x).most;
-    const double before = running_.max_strain_after_collision;
-    running_.max_strain_after_collision = std::isnan(before) ? after : std::max(before, after);
+    raise(running_.max_strain_after_collision, strain_range(*scene_.problem, state.x).most);
   }
+  energy_.after(state, h);
   if (counts && ++steps_ % options_.sample_every == 0) {
     sample(filtered, state);
     if (const auto residuals = probe_ ? probe_->residuals() : std::nullopt)
@@ -80,13 +122,9 @@ double Judge::after(const Positions& filtered, const State& state, bool counts) 
 void Judge::sample(const Positions& filtered, const State& state) {
   const auto& problem = *scene_.problem;
   append_strains(problem, filtered, strains_);
-  const double kinetic = inextensible::kinetic_energy(problem, state.v);
-  kinetic_sum_ += kinetic;
+  if (problem.collider()) append_strains(problem, state.x, delivered_);
+  kinetic_sum_ += inextensible::kinetic_energy(problem, state.v);
   ++samples_;
-  if (scene_.conserves_energy) {
-    const double energy = kinetic + inextensible::potential_energy(problem, state.x);
-    raise(running_.energy_drift, std::abs(energy - start_energy_) / energy_scale_);
-  }
   for (const auto& mirror : scene_.mirrors) {
     const Eigen::Matrix3d reflect =
         Eigen::Matrix3d::Identity() - 2 * mirror.normal * mirror.normal.transpose();
@@ -99,14 +137,23 @@ void Judge::sample(const Positions& filtered, const State& state) {
   }
 }
 
+Measures Judge::finish() {
+  energy_.finish();
+  return measures();
+}
+
 Measures Judge::measures() const {
   Measures measures = running_;
+  measures.energy_gain = energy_.gain();
+  measures.energy_gain_time = energy_.gain_time();
+  if (scene_.conserves_energy) measures.energy_drift = energy_.drift();
   if (samples_ > 0) {
     measures.kinetic_energy_mean = kinetic_sum_ / samples_;
-    double squares = 0;
-    for (const double strain : strains_) squares += strain * strain;
-    measures.rms_strain = std::sqrt(squares / static_cast<double>(strains_.size()));
+    measures.rms_strain = root_mean_square(strains_);
     measures.p99_strain = quantile(strains_, 0.99);
+    const bool moved = scene_.problem->collider();  // else what was measured is what is delivered
+    measures.delivered_strain_rms = moved ? root_mean_square(delivered_) : measures.rms_strain;
+    measures.delivered_strain_p99 = moved ? quantile(delivered_, 0.99) : measures.p99_strain;
   }
   if (!measures.residuals.empty()) {
     const auto count = static_cast<double>(measures.residuals.size());
@@ -118,13 +165,14 @@ Measures Judge::measures() const {
     if (!options_.residual_series) measures.residuals.clear();
   }
   if (!options_.reference) return measures;
-  measures.reference = reference_name(options_.reference->scene, options_.reference->parameters);
+  measures.reference = options_.reference->name();
   measures.valid_until = options_.reference->valid_until;
-  if (compared_ > 0) {
-    measures.trajectory = std::sqrt(squares_ / compared_);
-    measures.trajectory_max = most_;
-    measures.gap = std::sqrt(gap_squares_ / compared_);
-  }
+  add_errors(measures);
+  for (ErrorSample& at : measures.error_series)
+    at = {shortened(at.time), shortened(at.error), shortened(at.worst), shortened(at.gap),
+          shortened(at.worst_gap)};
+  if (reference_moved_squares_ > 0)
+    measures.moved = std::sqrt(moved_squares_ / reference_moved_squares_);
   if (shapes_ > 0) {
     measures.shape_potential_energy = std::sqrt(shape_squares_.potential_energy / shapes_);
     measures.shape_corner_height = std::sqrt(shape_squares_.corner_height / shapes_);

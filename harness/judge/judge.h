@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "harness/judge/energy.h"
 #include "harness/judge/reference.h"
 #include "harness/judge/residual.h"
 #include "harness/points/point.h"
@@ -17,6 +18,7 @@ class Judge {
   struct Options {
     int sample_every = 1;  // full statistics are taken at every so manieth step
     std::shared_ptr<const Reference> reference = nullptr;
+    inextensible::Velocities velocities = inextensible::Velocities::half_step;  // the method's
     bool residual = false;         // is measured where the solver shows its iterates (observer())
     bool residual_series = false;  // the residual over time too, not its means alone
   };
@@ -29,28 +31,34 @@ class Judge {
   // filter. `after` returns the step's largest |strain|, infinite if a position is not finite.
   void before(const inextensible::State& state, double h);
   // counts: whether the step counts towards sample_every (a step controller's parts do not).
-  double after(const inextensible::Positions& filtered, const inextensible::State& state,
+  double after(const inextensible::Positions& filtered, const inextensible::State& state, double h,
                bool counts = true);
-  Measures measures() const;
+  // After the last step.
+  Measures finish();
+  const EnergyRecord& energy() const { return energy_; }
 
  private:
   void sample(const inextensible::Positions& filtered, const inextensible::State& state);
   void compare(const inextensible::State& state);
+  void compare_positions(const inextensible::Positions& x);
+  void add_errors(Measures& measures) const;
+  Measures measures() const;
 
   const Scene& scene_;
   Options options_;
   int steps_ = 0;
   Measures running_;
-  std::vector<double> strains_;  // |strain| of every edge at every sampled instant
-  double start_energy_, energy_scale_;
+  std::vector<double> strains_;    // |strain| of every edge at every sampled instant
+  std::vector<double> delivered_;  // the same after the collision filter; with a collider only
+  EnergyRecord energy_;
   double kinetic_sum_ = 0;
   int samples_ = 0;
 
   std::optional<ResidualProbe> probe_;
   inextensible::State start_;  // of the step, where a sample lies inside it
   std::size_t next_ = 0;       // of the reference's samples
-  double squares_ = 0, most_ = 0, gap_squares_ = 0;
-  int compared_ = 0, shapes_ = 0;
+  double moved_squares_ = 0, reference_moved_squares_ = 0;  // distances from the start
+  int shapes_ = 0;
   ShapeStatistics shape_squares_;
 };
 

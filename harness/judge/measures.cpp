@@ -88,7 +88,9 @@ double total_energy(const Problem& problem, const State& state) {
 }
 
 double energy_scale(const Scene& scene) {
-  return scene.problem->total_mass() * scene.problem->gravity().norm() * scene.size;
+  const inextensible::Problem& problem = *scene.problem;
+  return problem.total_mass() * problem.gravity().norm() * scene.size +
+         inextensible::kinetic_energy(problem, scene.start.v);
 }
 
 void raise(double& figure, double value) {

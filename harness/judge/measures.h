@@ -39,7 +39,7 @@ Eigen::Vector3d angular_momentum(const inextensible::Problem& problem,
 
 // J, kinetic and potential.
 double total_energy(const inextensible::Problem& problem, const inextensible::State& state);
-// J, weight times size: what energies are compared with.
+// J, weight times size, and the kinetic energy at the start: what energies are compared with.
 double energy_scale(const Scene& scene);
 
 // The larger of both; a figure that is not yet known (NaN) becomes the value.

@@ -10,12 +10,15 @@
 #include <sstream>
 
 #include "harness/base/errors.h"
+#include "harness/base/fields_json.h"
 #include "harness/base/text.h"
 #include "harness/judge/measures.h"
 #include "harness/points/context.h"
+#include "harness/points/measures.h"
 #include "harness/scenes/pendulum.h"
 #include "inextensible/problem/forces.h"
 #include "inextensible/registry.h"
+#include "inextensible/systems/constrained_acceleration.h"
 
 namespace harness {
 namespace {
@@ -26,7 +29,8 @@ using nlohmann::json;
 constexpr const char* schema = "inextensible-reference/1";
 constexpr double sample_interval = 0.04;  // s; every step of the usual ladders meets it
 constexpr double perturbation = 1e-10;    // of a start, over the scene's size
-constexpr double parted = 1e-3;           // over the scene's size: here two paths have parted
+constexpr double parted = 1e-2;           // gap at which a reference ends, over the scene's size
+constexpr double surely_known = 1e-3;     // gap up to which an order is looked for
 constexpr double pendulum_tolerance = 1e-13;
 constexpr double tight_limit = 1e-12;    // strain limit of the second route, smooth scenes
 constexpr double contact_limit = 1e-9;   // of both routes where a collider makes kinks anyway
@@ -46,7 +50,10 @@ std::vector<double> sample_times(double duration) {
 Path follow(const Scene& scene, const inextensible::State& start, const std::string& solver,
             double limit, double h, const std::vector<double>& times, const Tell& tell) {
   const auto stepper = inextensible::make_stepper(solver, scene.problem, {limit, 1, {}});
-  inextensible::State state = start;
+  const bool half =
+      inextensible::find_backend(solver)->velocities == inextensible::Velocities::half_step;
+  inextensible::State state =
+      half ? inextensible::start_half_step_back(*scene.problem, start, h) : start;
   const auto per_sample = std::lround(sample_interval / h);
   Path path;
   tell(solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ...");
@@ -90,15 +97,24 @@ double mean_distance(const Scene& scene, const Path& a, const Path& b, std::size
   return std::sqrt(squares / static_cast<double>(count));
 }
 
-// The last sample before `a` and `b` part; 0 if they have parted at the first.
-double time_together(const Scene& scene, const Path& a, const Path& b,
-                     const std::vector<double>& times) {
-  double together = 0;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    if (!(max_distance(scene, a[i], b[i]) < parted)) break;
-    together = times[i];
+// How far `path` may be off at each sample that both others reach: it is not known better than a
+// second route agrees with it, nor than it agrees with itself from a disturbed start.
+void add_gaps(Reference& r, const Scene& scene, const Path& path, const Path& second,
+              const Path& disturbed) {
+  for (std::size_t i = 0; i < std::min({path.size(), second.size(), disturbed.size()}); ++i) {
+    r.gap.push_back(std::max(rms_distance(scene, path[i], second[i]),
+                             rms_distance(scene, path[i], disturbed[i])));
+    r.gap_max.push_back(std::max(max_distance(scene, path[i], second[i]),
+                                 max_distance(scene, path[i], disturbed[i])));
   }
-  return together;
+  r.valid_until = 0;
+  for (std::size_t i = 0; i < r.gap.size() && r.gap[i] < parted; ++i) r.valid_until = r.times[i];
+}
+
+std::size_t valid_samples(const Reference& r) {
+  std::size_t valid = 0;
+  while (valid < r.gap.size() && r.times[valid] <= r.valid_until) ++valid;
+  return valid;
 }
 
 Pendulum pendulum_of(const Scene& scene, double disturbance) {
@@ -133,7 +149,6 @@ void compute_chain(Reference& r, const Scene& scene, double finest, const Tell& 
   tell("pendulum in angles, tolerance " + number_text(pendulum_tolerance) + " ...");
   const Path path = swing(scene, 0, r.times, &r.energy_drift);
   const Path disturbed = swing(scene, perturbation, r.times, nullptr);
-  r.valid_until = time_together(scene, path, disturbed, r.times);
   const Path coarse = follow_to_the_end(scene, "rattle", tight_limit, 4 * finest, r.times, tell);
   const Path middle = follow_to_the_end(scene, "rattle", tight_limit, 2 * finest, r.times, tell);
   const Path fine = follow_to_the_end(scene, "rattle", tight_limit, finest, r.times, tell);
@@ -144,8 +159,8 @@ void compute_chain(Reference& r, const Scene& scene, double finest, const Tell& 
   r.method = "N-link pendulum in angles, GSL rk8pd, tolerance " + number_text(pendulum_tolerance);
   r.second_method = "rattle, strain limit " + number_text(tight_limit) + ", steps down to " +
                     number_text(finest) + " s, Richardson extrapolated with order 2";
+  add_gaps(r, scene, path, second, disturbed);
   for (std::size_t i = 0; i < all; ++i) {
-    r.gap.push_back(rms_distance(scene, path[i], second[i]));
     r.shape.push_back(shape_statistics(scene, path[i]));
     r.shape_gap.push_back({});
   }
@@ -168,6 +183,34 @@ FirstRoute first_route(const Scene& scene, double h) {
   return {"fast_projection_bdf2", singular_limit};
 }
 
+// The order with which the second route comes to the first one as its step is halved, by coarser
+// steps than those that the reference is made of: these are as near as kinks let any two runs come,
+// and differ by chance. Unknown if fewer than two of them are farther away than the gap.
+double order_towards(const Reference& r, const Scene& scene, const Path& fine, double limit,
+                     double finest, const Tell& tell) {
+  std::size_t sure = 0;
+  double gap_squares = 0;
+  for (; sure < fine.size() && r.gap[sure] < surely_known; ++sure)
+    gap_squares += r.gap[sure] * r.gap[sure];
+  if (sure == 0) return unknown;
+  const double gap = std::sqrt(gap_squares / static_cast<double>(sure));
+  const std::vector<double> times(r.times.begin(),
+                                  r.times.begin() + static_cast<std::ptrdiff_t>(sure));
+  std::vector<double> halvings, logarithms;
+  for (const int factor : {32, 16, 8, 4}) {
+    const double steps = sample_interval / (factor * finest);
+    if (std::abs(steps - std::round(steps)) > 1e-6) continue;  // it would miss the samples
+    const Path path = follow(scene, scene.start, "icd", limit, factor * finest, times, tell);
+    if (path.size() < sure) continue;
+    const double distance = mean_distance(scene, path, fine, sure);
+    if (!(distance > sure_gaps * gap)) break;
+    halvings.push_back(-std::log2(factor));
+    logarithms.push_back(-std::log2(distance));
+  }
+  if (halvings.size() < 2) return unknown;
+  return (logarithms.back() - logarithms.front()) / (halvings.back() - halvings.front());
+}
+
 // Where a collider makes kinks neither route is better than first order; the two differ in the
 // direction of constraint forces, the velocity's place in the step and the linear solver.
 void compute_contact(Reference& r, const Scene& scene, double finest, const Tell& tell) {
@@ -179,20 +222,13 @@ void compute_contact(Reference& r, const Scene& scene, double finest, const Tell
   for (const int vertex : scene.problem->pinned()) moved.x.col(vertex) = scene.start.x.col(vertex);
 
   const auto [solver, limit] = first_route(scene, finest);
-  const Path coarse = follow(scene, scene.start, solver, limit, 4 * finest, r.times, tell);
-  const Path middle = follow(scene, scene.start, solver, limit, 2 * finest, r.times, tell);
   const Path fine = follow(scene, scene.start, solver, limit, finest, r.times, tell);
   const Path disturbed = follow(scene, moved, solver, limit, finest, r.times, tell);
   const Path icd_coarse = follow_to_the_end(scene, "icd", limit, 4 * finest, r.times, tell);
   const Path icd_fine = follow_to_the_end(scene, "icd", limit, 2 * finest, r.times, tell);
   const Path second = extrapolated(icd_coarse, icd_fine, 1);
-  r.valid_until = std::min(time_together(scene, fine, disturbed, r.times),
-                           time_together(scene, fine, second, r.times));
-  std::size_t valid = 0;
-  while (valid < fine.size() && r.times[valid] <= r.valid_until) ++valid;
-  if (valid > 0 && valid <= std::min(coarse.size(), middle.size()))
-    r.observed_order = std::log2(mean_distance(scene, coarse, middle, valid) /
-                                 mean_distance(scene, middle, fine, valid));
+  add_gaps(r, scene, fine, second, disturbed);
+  r.observed_order = order_towards(r, scene, fine, limit, finest, tell);
   r.method =
       solver + ", strain limit " + number_text(limit) + ", step " + number_text(finest) + " s";
   r.second_method = "icd, strain limit " + number_text(limit) + ", steps " +
@@ -206,7 +242,10 @@ void compute_contact(Reference& r, const Scene& scene, double finest, const Tell
     const bool both = i < fine.size();
     const Positions& one = both ? fine[i] : icd_fine[i];
     const Positions& other = both ? second[i] : icd_coarse[i];
-    r.gap.push_back(rms_distance(scene, one, other));
+    if (i >= r.gap.size()) {  // where a run has ended
+      r.gap.push_back(rms_distance(scene, one, other));
+      r.gap_max.push_back(max_distance(scene, one, other));
+    }
     const ShapeStatistics a = shape_statistics(scene, one);
     const ShapeStatistics b = shape_statistics(scene, other);
     r.shape.push_back(a);
@@ -247,7 +286,10 @@ double shadow_area(const Scene& scene, const Positions& x) {
   return static_cast<double>(count) * pixel * pixel / (scene.size * scene.size);
 }
 
-double rounded(double value) { return std::round(value * 1e12) / 1e12; }
+double rounded(double value, double scale = 1e12) { return std::round(value * scale) / scale; }
+
+// Smooth motion lets RATTLE have its order; kinks of contact leave no method more than the first.
+double expected_order(const std::string& scene) { return scene == "chain" ? 2 : 1; }
 
 json shape_json(const std::vector<ShapeStatistics>& list) {
   json rows = json::array();
@@ -300,9 +342,12 @@ std::string reference_name(const std::string& scene, const SceneParameters& comp
 
 json to_json(const Reference& r) {
   json positions = json::array();
+  // A file holds the digits that its gaps leave standing.
+  const double least = r.gap.empty() ? 0 : *std::min_element(r.gap.begin(), r.gap.end());
+  const double scale = least > 1e-7 ? 1e9 : 1e12;
   for (const Positions& x : r.positions) {
     json row = json::array();
-    for (Eigen::Index i = 0; i < x.size(); ++i) row.push_back(rounded(x.data()[i]));
+    for (Eigen::Index i = 0; i < x.size(); ++i) row.push_back(rounded(x.data()[i], scale));
     positions.push_back(std::move(row));
   }
   return {{"schema", schema},
@@ -312,9 +357,11 @@ json to_json(const Reference& r) {
           {"second_method", r.second_method},
           {"valid_until", r.valid_until},
           {"energy_drift", r.energy_drift},
-          {"observed_order", r.observed_order},
+          {"observed_order", number(r.observed_order)},
+          {"expected_order", r.expected_order},
           {"times", r.times},
           {"gap", r.gap},
+          {"gap_max", r.gap_max},
           {"shape", shape_json(r.shape)},
           {"shape_gap", shape_json(r.shape_gap)},
           {"positions", std::move(positions)}};
@@ -324,12 +371,13 @@ json summary_of(const Reference& r) {
   double squares = 0;
   for (std::size_t i = 0; i < r.positions.size(); ++i) squares += r.gap[i] * r.gap[i];
   const auto valid = static_cast<double>(std::max<std::size_t>(r.positions.size(), 1));
-  return {{"name", reference_name(r.scene, r.parameters)},
+  return {{"name", r.name()},
           {"method", r.method},
           {"second_method", r.second_method},
           {"valid_until", r.valid_until},
           {"gap", std::sqrt(squares / valid)},
-          {"observed_order", r.observed_order},
+          {"observed_order", number(r.observed_order)},
+          {"converged", r.converged()},
           {"energy_drift", r.energy_drift}};
 }
 
@@ -348,9 +396,12 @@ Reference read_reference(const std::string& path) {
     r.second_method = document.at("second_method").get<std::string>();
     r.valid_until = document.at("valid_until").get<double>();
     r.energy_drift = document.at("energy_drift").get<double>();
-    r.observed_order = document.at("observed_order").get<double>();
+    r.observed_order = number_of(document.at("observed_order"));
+    r.expected_order = document.value("expected_order", expected_order(r.scene));
     r.times = document.at("times").get<std::vector<double>>();
     r.gap = document.at("gap").get<std::vector<double>>();
+    // Older files know one norm: nothing in the other one is sure then.
+    r.gap_max = document.value("gap_max", std::vector<double>(r.gap.size(), unknown));
     r.shape = shape_of(document.at("shape"));
     r.shape_gap = shape_of(document.at("shape_gap"));
     for (const json& row : document.at("positions")) {
@@ -358,8 +409,9 @@ Reference read_reference(const std::string& path) {
       r.positions.emplace_back(Eigen::Map<const Positions>(
           numbers.data(), 3, static_cast<Eigen::Index>(numbers.size() / 3)));
     }
-    if (r.gap.size() != r.times.size() || r.shape.size() != r.times.size() ||
-        r.shape_gap.size() != r.times.size() || r.positions.size() > r.times.size())
+    if (r.gap.size() != r.times.size() || r.gap_max.size() != r.times.size() ||
+        r.shape.size() != r.times.size() || r.shape_gap.size() != r.times.size() ||
+        r.positions.size() > r.times.size())
       throw UsageError("'" + path + "': lists of different lengths");
     return r;
   } catch (const json::exception& error) {
@@ -375,6 +427,7 @@ Reference compute_reference(const std::string& scene_name, const SceneParameters
   r.scene = scene_name;
   r.parameters = complete;
   r.times = sample_times(scene.duration);
+  r.expected_order = expected_order(scene_name);
   if (r.times.empty())
     throw UsageError("a reference needs a duration of at least " + number_text(sample_interval) +
                      " s");
@@ -383,17 +436,37 @@ Reference compute_reference(const std::string& scene_name, const SceneParameters
   } else {
     compute_contact(r, scene, finest > 0 ? finest : sample_interval / 640, tell);
   }
-  std::size_t valid = 0;
-  while (valid < r.times.size() && r.times[valid] <= r.valid_until) ++valid;
-  r.positions.resize(valid);
+  r.positions.resize(valid_samples(r));
+  return r;
+}
+
+std::string Reference::name() const { return exact ? "exact" : reference_name(scene, parameters); }
+
+std::shared_ptr<const Reference> exact_reference(const std::string& scene_name,
+                                                 const SceneParameters& complete) {
+  const SceneType& type = *find_scene(scene_name);
+  if (!type.exact) return nullptr;
+  const auto r = std::make_shared<Reference>();
+  r->scene = scene_name;
+  r->parameters = complete;
+  r->method = r->second_method = "exact";
+  r->exact = true;
+  r->times = sample_times(complete.at("duration"));
+  for (const double time : r->times) r->positions.push_back(type.exact(complete, time));
+  r->gap.assign(r->times.size(), 0);
+  r->gap_max = r->gap;
+  r->valid_until = r->duration();
+  r->observed_order = unknown;
   return r;
 }
 
 std::shared_ptr<const Reference> ReferenceShelf::find(const std::string& scene,
                                                       const SceneParameters& complete) {
   const std::string name = reference_name(scene, complete);
-  auto [place, fresh] = known_.try_emplace(name, nullptr);
-  if (fresh) {
+  const std::string key = name + " " + number_text(complete.at("duration"));
+  auto [place, fresh] = known_.try_emplace(key, nullptr);
+  if (fresh) place->second = exact_reference(scene, complete);
+  if (fresh && !place->second) {
     const std::filesystem::path path = std::filesystem::path(folder_) / name;
     if (std::filesystem::exists(path))
       place->second = std::make_shared<const Reference>(read_reference(path.string()));

@@ -28,13 +28,20 @@ struct Reference {
   std::string method, second_method;
   std::vector<double> times;                       // s, ascending
   std::vector<inextensible::Positions> positions;  // at times up to valid_until, m
-  std::vector<double> gap;                         // of both routes, as trajectory errors are
-  std::vector<ShapeStatistics> shape, shape_gap;   // at all times; gap: |difference| of both routes
-  double valid_until = 0;     // s: two runs, or both routes, part by 1e-3 of the scene's size
+  std::vector<double> gap;      // of both routes, or of two runs of one: the larger
+  std::vector<double> gap_max;  // the same in the maximum norm
+  std::vector<ShapeStatistics> shape, shape_gap;  // at all times; gap: |difference| of both routes
+  double valid_until = 0;     // s: the last sample before the gap exceeds 1 % of the scene's size
   double energy_drift = 0;    // of the first route, where the scene conserves energy
-  double observed_order = 0;  // of the second route under step halving
+  double observed_order = 0;  // of the route that steps, under step halving
+  double expected_order = 1;
+  bool exact = false;  // no route: the scene's motion is known
 
   double duration() const { return times.empty() ? 0 : times.back(); }
+  // Below half the order that theory expects, what is finer is not known to be nearer, and nothing
+  // is an error against it.
+  bool converged() const { return exact || observed_order >= 0.5 * expected_order; }
+  std::string name() const;  // that of its file; "exact"
 };
 
 // Mass-weighted RMS distance of two sets of positions over the scene's size.
@@ -54,13 +61,17 @@ nlohmann::json summary_of(const Reference& reference);
 // Throws UsageError, naming the file, for anything that is not a reference.
 Reference read_reference(const std::string& path);
 
+// The motion of a scene that is known exactly, at the sample times. Null for other scenes.
+std::shared_ptr<const Reference> exact_reference(const std::string& scene,
+                                                 const SceneParameters& complete);
+
 // Computes the reference of a scene by both routes. finest: the smallest step of step halving, s; 0
 // chooses by the scene. tell is called with a line now and then. Throws UsageError if a
 // route fails too early.
 Reference compute_reference(const std::string& scene, const SceneParameters& complete,
                             double finest, const std::function<void(const std::string&)>& tell);
 
-// The references of a folder, read when they are asked for.
+// The references of a folder, read when they are asked for, and exact ones.
 class ReferenceShelf {
  public:
   explicit ReferenceShelf(std::string folder) : folder_(std::move(folder)) {}

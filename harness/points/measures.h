@@ -11,9 +11,20 @@ namespace harness {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // written as null
 
+// A distance to the reference is an error, and not the reference's own, above so many gaps.
+constexpr double sure_gaps = 3;
+
 struct ResidualSample {
   double time, first, last;  // s, m, m
   bool operator==(const ResidualSample&) const = default;
+};
+
+// At a sample time of the reference: distances to it, root mean square over vertices (by mass) and
+// largest, and the reference's own uncertainty in both norms.
+struct ErrorSample {
+  double time, error, worst;  // s, scene's size
+  double gap, worst_gap;      // scene's size
+  bool operator==(const ErrorSample&) const = default;
 };
 
 // What each means: measure_fields.
@@ -21,12 +32,18 @@ struct Measures {
   double max_strain = 0, max_stretch = 0;
   double p99_strain = unknown, rms_strain = unknown;
   double max_strain_after_collision = unknown;
+  double delivered_strain_p99 = unknown, delivered_strain_rms = unknown;
   double kinetic_energy_mean = unknown;
   double energy_drift = unknown;
+  double energy_gain = unknown, energy_gain_time = unknown;
   double symmetry_defect = unknown;
   std::string reference;
   double trajectory = unknown, trajectory_max = unknown;
   double gap = unknown;
+  int error_samples = 0;
+  double error_until = unknown;
+  std::vector<ErrorSample> error_series;
+  double moved = unknown;
   double valid_until = unknown;
   double shape_potential_energy = unknown, shape_corner_height = unknown, shape_shadow = unknown;
   double residual_first = unknown, residual_last = unknown;
@@ -35,6 +52,8 @@ struct Measures {
 
 inline constexpr FieldTraits number_or_null{.nullable = true};
 inline constexpr FieldTraits error_or_null{.inside = "error", .nullable = true};
+inline constexpr FieldTraits later_error_or_null{
+    .inside = "error", .later = true, .nullable = true};
 
 // "scene's size": over it, so that scenes compare.
 inline constexpr std::tuple measure_fields{
@@ -49,24 +68,49 @@ inline constexpr std::tuple measure_fields{
     field("max_strain_after_collision", &Measures::max_strain_after_collision, "",
           "largest |strain| after the collision filter, over all steps; with a collider only",
           number_or_null),
+    field("delivered_strain_p99", &Measures::delivered_strain_p99, "",
+          "as p99_strain, after the collision filter; without a collider the same",
+          {.later = true, .nullable = true}),
+    field("delivered_strain_rms", &Measures::delivered_strain_rms, "",
+          "as rms_strain, after the collision filter; without a collider the same",
+          {.later = true, .nullable = true}),
     field("kinetic_energy_mean", &Measures::kinetic_energy_mean, "J",
           "kinetic energy, mean over sampled instants", number_or_null),
     field("energy_drift", &Measures::energy_drift, "weight times size",
-          "largest |E - E_0|, where nothing dissipates", error_or_null),
+          "largest |E - E_0|, over all steps, where nothing dissipates", error_or_null),
+    field("energy_gain", &Measures::energy_gain, "weight times size",
+          "largest E - E_0, over all steps; negative: energy was lost throughout",
+          later_error_or_null),
+    field("energy_gain_time", &Measures::energy_gain_time, "s", "when that was",
+          later_error_or_null),
     field("symmetry_defect", &Measures::symmetry_defect, "scene's size",
           "largest distance to the mirror image", error_or_null),
     field("reference", &Measures::reference, "",
           "name of the reference in results/references; null: there is none", error_or_null),
     field("trajectory", &Measures::trajectory, "scene's size",
-          "distance to the reference, root mean square over vertices (by mass) and samples up to "
-          "valid_until",
+          "distance to the reference, root mean square over vertices (by mass) and usable samples: "
+          "those at which it is above 3 gap; without any, over all samples, and below 3 gap",
           error_or_null),
     field("trajectory_max", &Measures::trajectory_max, "scene's size",
-          "largest distance of a vertex to the reference, up to valid_until", error_or_null),
-    field("gap", &Measures::gap, "scene's size", "the reference's own uncertainty, as trajectory",
+          "largest distance of a vertex to the reference, over samples at which it is above 3 gap "
+          "in this norm",
           error_or_null),
+    field("gap", &Measures::gap, "scene's size",
+          "the reference's own uncertainty, over the same samples as trajectory", error_or_null),
+    field("error_samples", &Measures::error_samples, "samples", "usable ones",
+          {.inside = "error", .later = true}),
+    field("error_until", &Measures::error_until, "s", "time of the last usable sample",
+          later_error_or_null),
+    field("error_series", &Measures::error_series, "s, then scene's size",
+          "at each sample: time, distance to the reference as root mean square and as maximum, gap "
+          "in both norms",
+          {.inside = "error", .later = true}),
+    field("moved", &Measures::moved, "",
+          "distance from the start over the reference's, root mean square over vertices and "
+          "samples; 0: it did not move",
+          later_error_or_null),
     field("valid_until", &Measures::valid_until, "s",
-          "up to here the reference is one trajectory, not one of many", error_or_null),
+          "up to here the reference is known to 1 % of the scene's size", error_or_null),
     field("shape_potential_energy", &Measures::shape_potential_energy, "weight times size",
           "potential energy against the reference's, root mean square after valid_until",
           error_or_null),
@@ -85,5 +129,12 @@ inline constexpr std::tuple measure_fields{
           "time, mean |F| after the first and after the last iteration; of step sweeps alone, so "
           "that files stay small",
           {.inside = "error"})};
+
+// Root mean square distance to the reference over the samples at which 3 gap is below `target`; for
+// all runs the same, so that "within an error of 1 %" means one thing. Unknown if there is none. A
+// file without a series has one figure for all targets.
+double trajectory_within(const Measures& measures, double target);
+// The last of these samples, s; 0: none.
+double error_known_until(const Measures& measures, double target);
 
 }  // namespace harness

@@ -4,6 +4,7 @@
 #include <gsl/gsl_statistics.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -37,6 +38,29 @@ double median_uncertainty(std::vector<double> samples) {
   return 0.5 * (samples[n - k] - samples[k - 1]) / quantile(samples, 0.5);
 }
 
+double trajectory_within(const Measures& measures, double target) {
+  if (measures.error_series.empty()) return measures.trajectory;
+  double squares = 0;
+  int count = 0;
+  for (const ErrorSample& at : measures.error_series) {
+    if (!(sure_gaps * at.gap <= target)) continue;
+    squares += at.error * at.error;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(squares / count) : unknown;
+}
+
+double error_known_until(const Measures& measures, double target) {
+  if (measures.error_series.empty())
+    return measures.trajectory >= 0 && sure_gaps * measures.gap <= target ? measures.valid_until
+                                                                          : 0;
+  double until = 0;
+  for (const ErrorSample& at : measures.error_series)
+    if (sure_gaps * at.gap <= target) until = std::max(until, at.time);
+  return until;
+}
+
 double PointResult::median_seconds() const { return quantile(samples, 0.5); }
+double PointResult::median_filter_seconds() const { return quantile(filter_samples, 0.5); }
 
 }  // namespace harness

@@ -36,11 +36,12 @@ struct PointResult {
   PointSpec spec;
   PointStatus status = PointStatus::skipped;
   std::string detail;
-  std::vector<double> samples;  // wall seconds per simulated second, one a run
+  std::vector<double> samples;         // wall seconds per simulated second, one a run
+  std::vector<double> filter_samples;  // the same, spent in the inextensibility filter
   double setup_seconds = 0, calibration_seconds = 0;
   int calibration_runs = 0;
-  std::optional<double> stiffness;  // EA, N, found by calibration
-  inextensible::PhaseSeconds phases;
+  std::optional<double> stiffness;    // EA, N, found by calibration
+  inextensible::PhaseSeconds phases;  // of the run of the first filter sample
   inextensible::WorkCounters work;
   Measures measures;
   double smallest_step = unknown;  // s, of the accepted ones of a step controller
@@ -53,7 +54,8 @@ struct PointResult {
   std::string at_ladder_end;
 
   bool ok() const { return status == PointStatus::ok; }
-  double median_seconds() const;  // of the samples
+  double median_seconds() const;         // of the samples
+  double median_filter_seconds() const;  // of the filter's
 };
 
 double quantile(std::vector<double> samples, double fraction);

@@ -27,6 +27,13 @@ struct FieldCodec<std::vector<ResidualSample>> {
   static nlohmann::ordered_json schema(const FieldTraits& traits);
 };
 
+template <>
+struct FieldCodec<std::vector<ErrorSample>> {
+  static nlohmann::json write(const std::vector<ErrorSample>& series, bool nullable);
+  static void read(const nlohmann::json& from, std::vector<ErrorSample>& series, bool nullable);
+  static nlohmann::ordered_json schema(const FieldTraits& traits);
+};
+
 // What is run: two runs that agree in these may stand for each other.
 inline constexpr std::tuple spec_fields{
     field("sweep", &PointSpec::sweep, "", "kind of the sweep that it is a point of"),
@@ -76,10 +83,10 @@ inline constexpr std::tuple result_fields{
 inline constexpr FieldTraits in_phases{.inside = "phases"};
 inline constexpr std::tuple phase_fields{
     field("unconstrained", &inextensible::PhaseSeconds::unconstrained, "s",
-          "wall time of the first run in steps without constraints", in_phases),
+          "wall time of one run in steps without constraints", in_phases),
     field("filter", &inextensible::PhaseSeconds::filter, "s",
-          "wall time of the first run in the velocity filter", in_phases),
+          "wall time of the same run in the velocity filter", in_phases),
     field("collision", &inextensible::PhaseSeconds::collision, "s",
-          "wall time of the first run in the collision filter", in_phases)};
+          "wall time of the same run in the collision filter", in_phases)};
 
 }  // namespace harness

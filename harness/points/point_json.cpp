@@ -11,6 +11,15 @@ using nlohmann::ordered_json;
 
 namespace {
 
+ordered_json rows_schema(int columns) {
+  return {{"type", "array"},
+          {"items",
+           {{"type", "array"},
+            {"minItems", columns},
+            {"maxItems", columns},
+            {"items", {{"$ref", "#/definitions/figure"}}}}}};
+}
+
 json seconds_json(const std::vector<double>& samples) {
   if (samples.empty()) return nullptr;
   return {{"median", quantile(samples, 0.5)},
@@ -84,12 +93,27 @@ void FieldCodec<std::vector<ResidualSample>>::read(const json& from,
 }
 
 ordered_json FieldCodec<std::vector<ResidualSample>>::schema(const FieldTraits&) {
-  return {{"type", "array"},
-          {"items",
-           {{"type", "array"},
-            {"minItems", 3},
-            {"maxItems", 3},
-            {"items", {{"$ref", "#/definitions/figure"}}}}}};
+  return rows_schema(3);
+}
+
+json FieldCodec<std::vector<ErrorSample>>::write(const std::vector<ErrorSample>& series, bool) {
+  json list = json::array();
+  for (const ErrorSample& e : series)
+    list.push_back(
+        {number(e.time), number(e.error), number(e.worst), number(e.gap), number(e.worst_gap)});
+  return list;
+}
+
+void FieldCodec<std::vector<ErrorSample>>::read(const json& from, std::vector<ErrorSample>& series,
+                                                bool) {
+  series.clear();
+  for (const json& e : from)
+    series.push_back({number_of(e.at(0)), number_of(e.at(1)), number_of(e.at(2)),
+                      number_of(e.at(3)), number_of(e.at(4))});
+}
+
+ordered_json FieldCodec<std::vector<ErrorSample>>::schema(const FieldTraits&) {
+  return rows_schema(5);
 }
 
 json to_json(const inextensible::Settings& settings) {
@@ -129,6 +153,7 @@ json to_json(const PointResult& point) {
   object["id"] = spec.id();
   object["duration"] = spec.scene_parameters.at("duration");
   object["seconds_per_simulated_second"] = seconds_json(point.samples);
+  object["filter_seconds_per_simulated_second"] = seconds_json(point.filter_samples);
   return object;
 }
 
@@ -150,6 +175,9 @@ PointResult point_of(const json& object) {
   read_fields(object, measure_fields, point.measures);
   if (const json& seconds = object.at("seconds_per_simulated_second"); !seconds.is_null())
     seconds.at("samples").get_to(point.samples);
+  if (const json seconds = object.value("filter_seconds_per_simulated_second", json());
+      !seconds.is_null())
+    seconds.at("samples").get_to(point.filter_samples);
   const json& options = object.at("options");
   if (options.contains("stiffness") && !point.spec.settings.contains("stiffness"))
     point.stiffness = options.at("stiffness").get<double>();

@@ -83,6 +83,7 @@ ordered_json point_schema() {
       false);
   add_fields(point, result_fields);
   add(point, "seconds_per_simulated_second", reference_to("seconds"), false);
+  add(point, "filter_seconds_per_simulated_second", reference_to("seconds"), true);
   add_fields(point, phase_fields);
   add_fields(point, measure_fields);
   add(point, "work", reference_to("work"), false);

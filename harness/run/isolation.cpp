@@ -41,6 +41,10 @@ void explain(const ChildOutcome& outcome, const RunLimits& limits, PointResult& 
   point.peak_rss_bytes = outcome.peak_rss_bytes;
 }
 
+std::vector<double> later_ones(const std::vector<double>& samples, std::size_t from) {
+  return {samples.begin() + static_cast<std::ptrdiff_t>(from), samples.end()};
+}
+
 }  // namespace
 
 SweepRunners isolated(const SweepRunners& inner, double memory) {
@@ -63,20 +67,20 @@ SweepRunners isolated(const SweepRunners& inner, double memory) {
     return point;
   };
   runners.repeat = [repeat = inner.repeat, memory](PointResult& point, const RunLimits& limits) {
-    const std::size_t before = point.samples.size();
+    const std::size_t before = point.samples.size(), filtered = point.filter_samples.size();
     const ChildOutcome outcome = run_in_child(
         [&](Heartbeat& heartbeat) {
           PointResult again = point;
           repeat(again, inside(limits, heartbeat));
-          again.samples.erase(again.samples.begin(),
-                              again.samples.begin() + static_cast<std::ptrdiff_t>(before));
-          return json(again.samples).dump();
+          return json{later_ones(again.samples, before), later_ones(again.filter_samples, filtered)}
+              .dump();
         },
         child_limits(limits, memory));
     if (outcome.end == End::interrupted) throw Interrupted();
     if (outcome.end != End::returned) return;  // no sample more
-    for (const double sample : json::parse(outcome.text).get<std::vector<double>>())
-      point.samples.push_back(sample);
+    const json added = json::parse(outcome.text);
+    for (const json& sample : added.at(0)) point.samples.push_back(sample.get<double>());
+    for (const json& sample : added.at(1)) point.filter_samples.push_back(sample.get<double>());
   };
   return runners;
 }

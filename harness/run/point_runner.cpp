@@ -9,12 +9,18 @@
 #include "harness/judge/judge.h"
 #include "harness/judge/measures.h"
 #include "inextensible/stepping/step_controller.h"
+#include "inextensible/systems/constrained_acceleration.h"
 
 namespace harness {
 
 using inextensible::Status;
 
 namespace {
+
+// A run that hardly moves keeps its strain and its energy, as single precision does at tiny steps.
+// Half the reference's motion is far from both ends: phase errors and damping leave more, what does
+// not move leaves none.
+constexpr double least_motion = 0.5;
 
 constexpr int sampled_instants = 100;  // a run, for statistics that need sorting
 
@@ -41,17 +47,24 @@ PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
       scene_(find_scene(spec.scene)->build(spec.scene_parameters)),
       backend_(*inextensible::find_backend(spec.solver)),
       steps_(static_cast<int>(std::lround(scene_.duration / spec.step))) {
+  if (scene_.staggered && backend_.velocities == inextensible::Velocities::half_step) {
+    start_acceleration_ = inextensible::constrained_acceleration(*scene_.problem, scene_.start);
+  } else {
+    start_acceleration_ = inextensible::Positions::Zero(3, scene_.problem->vertices());
+  }
   if (limits.references) reference_ = limits.references->find(spec.scene, spec.scene_parameters);
 }
 
-Run PointRunner::run(const inextensible::Settings& settings, bool judged, double stop_at) const {
+Run PointRunner::run(const inextensible::Settings& settings, bool judged, double stop_at,
+                     bool phases) const {
   Run run;
   const auto setup = Clock::now();
   run.stepper = inextensible::make_stepper(spec_.solver, scene_.problem,
                                            {spec_.strain_limit, spec_.seed, settings});
   run.setup_seconds = since(setup);
-  run.stepper->measure_phases(judged);
+  run.stepper->measure_phases(phases);
   Judge::Options judging{steps_ / sampled_instants};
+  judging.velocities = backend_.velocities;
   if (judged && stop_at == diverged_strain) {
     judging.reference = reference_;
     // Where growth is the question, memory for iterates would be part of the answer.
@@ -63,6 +76,7 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
   run.stepper->observe(judge.observer());
   run.observed = judge.observer() != nullptr;
   inextensible::State state = scene_.start;
+  state.v -= 0.5 * spec_.step * start_acceleration_;
   std::optional<inextensible::StepController> controller;
   if (spec_.adaptive) {
     controller.emplace(*run.stepper, inextensible::StepController::Settings{.largest = spec_.step});
@@ -94,7 +108,8 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
     }
     if (controller) run.smallest_step = controller->smallest();
     if (judged) {
-      const double strain = judge.after(run.stepper->filtered_positions(), state, whole);
+      const double strain = judge.after(run.stepper->filtered_positions(), state,
+                                        controller ? controller->last() : spec_.step, whole);
       if (backend_.knob != inextensible::Knob::none && !(strain <= stop_at)) {
         run.status =
             !(strain <= diverged_strain) ? PointStatus::diverged : PointStatus::strain_missed;
@@ -116,25 +131,44 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
     }
   }
   run.stepper->observe(nullptr);
-  run.measures = judge.measures();
-  const bool missed = !(run.measures.max_strain <= spec_.strain_limit * (1 + 1e-9));
-  if (judged && run.status == PointStatus::ok && missed &&
-      backend_.knob != inextensible::Knob::none) {
-    run.status = PointStatus::strain_missed;
-    run.detail = "maximum strain " + told_apart(run.measures.max_strain, spec_.strain_limit) +
-                 " above " + number_text(spec_.strain_limit);
-  }
+  run.measures = judge.finish();
+  if (judged && run.status == PointStatus::ok) decide(judge, run);
   return run;
+}
+
+void PointRunner::decide(const Judge& judge, Run& run) const {
+  const Measures& found = run.measures;
+  const EnergyRecord& energy = judge.energy();
+  if (backend_.knob != inextensible::Knob::none &&
+      !(found.max_strain <= spec_.strain_limit * (1 + 1e-9))) {
+    run.status = PointStatus::strain_missed;
+    run.detail = "maximum strain " + told_apart(found.max_strain, spec_.strain_limit) + " above " +
+                 number_text(spec_.strain_limit);
+  } else if (energy.gain() > scene_.energy_bound) {
+    run.status = PointStatus::energy_gained;
+    run.detail = "energy " + number_text(energy.gain(), 3) +
+                 " of weight times size above the start's at step " +
+                 std::to_string(energy.gain_step()) +
+                 " (t = " + number_text(energy.gain_time(), 4) + " s), permitted are " +
+                 number_text(scene_.energy_bound);
+  } else if (found.moved < least_motion) {
+    run.status = PointStatus::motion_lost;
+    run.detail = "its vertices moved " + number_text(found.moved, 3) +
+                 " times as far as the reference's, " + number_text(least_motion) + " are needed";
+  }
 }
 
 double PointRunner::bare_seconds_per_step() const {
   const auto stepper = inextensible::make_stepper(spec_.solver, scene_.problem,
                                                   {spec_.strain_limit, spec_.seed, {}});
   inextensible::State state = scene_.start;
+  state.v -= 0.5 * spec_.step * start_acceleration_;
   const auto before = Clock::now();
   for (int i = 0; i < steps_; ++i) stepper->advance(state, spec_.step);
   return since(before) / steps_;
 }
+
+double PointRunner::force_scale() const { return energy_scale(scene_) / scene_.size; }
 
 void PointRunner::restart_clock() {
   start_ = Clock::now();

@@ -10,6 +10,8 @@
 
 namespace harness {
 
+class Judge;
+
 struct Run {
   PointStatus status = PointStatus::ok;
   std::string detail;
@@ -30,7 +32,9 @@ class PointRunner {
   // judged: with the judge, whose looks are not timed. The run is cut short once its strain exceeds
   // stop_at; the errors against a reference are measured only where that is diverged_strain.
   // Throws Interrupted.
-  Run run(const inextensible::Settings& settings, bool judged, double stop_at) const;
+  // phases: whether they are timed, which takes tens of nanoseconds each.
+  Run run(const inextensible::Settings& settings, bool judged, double stop_at,
+          bool phases = true) const;
 
   // The same steps with nothing around them.
   double bare_seconds_per_step() const;
@@ -41,9 +45,12 @@ class PointRunner {
   const PointSpec& spec() const { return spec_; }
   int steps() const { return steps_; }
   double seconds_per_step(const Run& run) const { return run.seconds / steps_; }
-  double weight() const { return scene_.problem->total_mass() * scene_.problem->gravity().norm(); }
+  // N, of the forces in this scene: the weight, and for what flies without one m v^2 / (2 size).
+  double force_scale() const;
 
  private:
+  // The verdict on a run that reached its end: what kept it from being one of this motion.
+  void decide(const Judge& judge, Run& run) const;
   void beat(int step, double time) const;
 
   const PointSpec& spec_;
@@ -52,6 +59,7 @@ class PointRunner {
   Scene scene_;
   const inextensible::Backend& backend_;
   int steps_;
+  inextensible::Positions start_acceleration_;  // m/s^2; 0 where velocities are those of the start
   std::shared_ptr<const Reference> reference_;
 };
 

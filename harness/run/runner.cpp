@@ -36,6 +36,17 @@ void fill(PointResult& point, Run& run) {
   point.linear_solver = run.stepper->linear_solver();
 }
 
+void add_sample(PointResult& point, const PointRunner& runner, const Run& run) {
+  if (run.status == PointStatus::ok)
+    point.samples.push_back(runner.seconds_per_step(run) / point.spec.step);
+}
+
+void add_filter_sample(PointResult& point, const PointRunner& runner, const Run& run) {
+  if (run.status != PointStatus::ok) return;
+  if (point.filter_samples.empty()) point.phases = run.stepper->phases();
+  point.filter_samples.push_back(run.stepper->phases().filter / (runner.steps() * point.spec.step));
+}
+
 }  // namespace
 
 PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optional<double> guess) {
@@ -50,7 +61,7 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
       const auto begin = Clock::now();
       Calibration calibration(runner);
       // Strain = tension / EA, and a falling chain's tension is a few times its weight.
-      point.stiffness = calibration.find(guess.value_or(5 * runner.weight() / spec.strain_limit));
+      point.stiffness = calibration.find(guess.value_or(5 * runner.force_scale() / spec.strain_limit));
       point.calibration_seconds = since(begin);
       point.calibration_runs = calibration.runs();
       if (!point.stiffness) {
@@ -65,11 +76,13 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
     fill(point, run);
     // Iterates are kept while the solver's clock runs, so that an observed run's time is not its
     // own.
-    if (point.ok() && (run.observed || runner.seconds_per_step(run) < shortest_judged_step)) {
-      const Run unjudged = runner.run(settings, false, diverged_strain);
-      if (unjudged.status == PointStatus::ok) run.seconds = unjudged.seconds;
+    if (point.ok()) {
+      const bool short_steps = runner.seconds_per_step(run) < shortest_judged_step;
+      if (run.observed || short_steps) run = runner.run(settings, false, diverged_strain);
+      add_filter_sample(point, runner, run);
+      if (short_steps) run = runner.run(settings, false, diverged_strain, false);
+      add_sample(point, runner, run);
     }
-    if (point.ok()) point.samples.push_back(runner.seconds_per_step(run) / spec.step);
   } catch (const std::bad_alloc&) {
     point.status = PointStatus::out_of_memory;
     point.detail = "an allocation failed";
@@ -85,9 +98,12 @@ void repeat_point(PointResult& point, const RunLimits& limits) {
   inextensible::Settings settings = point.spec.settings;
   if (point.stiffness) settings["stiffness"] = *point.stiffness;
   const PointRunner runner(point.spec, limits);
-  const Run run = runner.run(settings, false, diverged_strain);
-  if (run.status == PointStatus::ok)
-    point.samples.push_back(runner.seconds_per_step(run) / point.spec.step);
+  // Reads of the clock between phases are part of the time of a short step: that is timed without.
+  const bool short_steps = point.median_seconds() * point.spec.step < shortest_judged_step;
+  Run run = runner.run(settings, false, diverged_strain);
+  add_filter_sample(point, runner, run);
+  if (short_steps) run = runner.run(settings, false, diverged_strain, false);
+  add_sample(point, runner, run);
 }
 
 }  // namespace harness

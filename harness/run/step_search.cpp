@@ -30,8 +30,12 @@ std::vector<std::size_t> StepSearch::near_best(double factor) const {
   return rungs;
 }
 
+double StepSearch::error(const PointResult& point) const {
+  return trajectory_within(point.measures, max_error_);
+}
+
 bool StepSearch::permissible(const PointResult& point) const {
-  return point.ok() && (std::isinf(max_error_) || point.measures.trajectory <= max_error_);
+  return point.ok() && (std::isinf(max_error_) || error(point) <= max_error_);
 }
 
 bool StepSearch::consider(std::size_t rung, const PointResult& point) {
@@ -59,8 +63,8 @@ void StepSearch::walk(std::size_t from, int direction) {
       ++timeouts;
     }
     if (point.ok() && !permissible(point)) {
-      error_rises = point.measures.trajectory > last_error ? error_rises + 1 : 0;
-      last_error = point.measures.trajectory;
+      error_rises = error(point) > last_error ? error_rises + 1 : 0;
+      last_error = error(point);
     }
     if (rises == 2 || timeouts == 2 || error_rises == 2) return;
   }

@@ -36,6 +36,7 @@ class StepSearch {
   bool timed_out() const { return timed_out_; }
 
  private:
+  double error(const PointResult& point) const;
   bool permissible(const PointResult& point) const;
   bool consider(std::size_t rung, const PointResult& point);
   void walk(std::size_t from, int direction);

@@ -1,5 +1,6 @@
 #include "harness/scenes/cloth_scenes.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
@@ -54,6 +55,14 @@ Scene build_drape(const SceneParameters& p) {
   return finished(std::move(cloth));
 }
 
+// For speed at sizes at which the start's acceleration would take longer to find than a step, and a
+// few steps only, whose path is compared with nothing.
+Scene build_folded_drape(const SceneParameters& p) {
+  Scene scene = build_drape(p);
+  scene.staggered = false;
+  return scene;
+}
+
 // Pinned at two corners of one edge, which is straight at full length between them.
 Scene build_patch(const SceneParameters& p) {
   Draft cloth = vertex_square(p, 0);
@@ -61,6 +70,30 @@ Scene build_patch(const SceneParameters& p) {
   cloth.scene.mirrors.pop_back();  // the pins break front to back
   cloth.scene.conserves_energy = true;
   return finished(std::move(cloth));
+}
+
+// In its plane, without weight: the square of rest lengths stays one, held by its threads against
+// the centrifugal force, and its shear springs do nothing.
+Scene build_spinning_net(const SceneParameters& given) {
+  SceneParameters p = given;
+  p["gravity"] = 0;
+  Draft cloth = vertex_square(p, 0);
+  Scene& scene = cloth.scene;
+  const double rate = 2 * std::numbers::pi * p.at("turns");
+  scene.start.v.row(0) = rate * scene.start.x.row(2);
+  scene.start.v.row(2) = -rate * scene.start.x.row(0);
+  Scene::Mirror plane{{0, 1, 0}, {}};
+  for (int i = 0; i < scene.start.x.cols(); ++i) plane.image.push_back(i);
+  scene.mirrors = {std::move(plane)};
+  scene.conserves_energy = true;
+  return finished(std::move(cloth));
+}
+
+inextensible::Positions turned_net(const SceneParameters& p, double time) {
+  const double angle = 2 * std::numbers::pi * p.at("turns") * time;
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  return turn * build_spinning_net(p).start.x;
 }
 
 using ParameterInfos = std::vector<SceneParameterInfo>;
@@ -108,9 +141,26 @@ SceneType folded_drape_scene() {
                    {"speed", 0, "downwards, at the start, m/s", -1e4, 1e4}},
                   sphere_parameters(),
                   {{"duration", 0.02, "s", 0, 1e4}}}),
-          build_drape,
+          build_folded_drape,
           count_square,
+          nullptr,
           "drape"};
+}
+
+SceneType spinning_net_scene() {
+  return {"spinning_net",
+          "a square of cloth that spins in its plane, free and without weight: its motion is known",
+          "n",
+          {{"n", 21, "vertices along each side", 2, 4000, true},
+           {"side", 1, "m", 0, 1e6},
+           {"mass", 0.2, "total, kg", 0, 1e6},
+           {"shear", 0.1, "spring stiffness on both diagonals of each quad, N/m", -1e-300, 1e9},
+           {"turns", 1, "1/s, at the start", 0, 1e4},
+           {"duration", 1, "s", 0, 1e4}},
+          build_spinning_net,
+          count_square,
+          turned_net,
+          "patch"};
 }
 
 SceneType patch_scene() {

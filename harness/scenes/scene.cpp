@@ -13,7 +13,8 @@ namespace {
 // A scene is a function that returns its SceneType, and a line here.
 const std::vector<SceneType>& table() {
   static const std::vector<SceneType> rows = {
-      chain_scene(), drape_scene(), folded_drape_scene(), patch_scene(), taut_row_scene(),
+      chain_scene(), drape_scene(),        folded_drape_scene(),
+      patch_scene(), spinning_net_scene(), taut_row_scene(),
   };
   return rows;
 }

@@ -38,6 +38,13 @@ struct Scene {
   };
   std::vector<Mirror> mirrors;
   bool conserves_energy = false;  // nothing dissipates: energy drift is an error
+  // How far total energy may rise above the start's, over weight times size and the kinetic energy
+  // at the start: enough to lift the whole by 5 % of its size. Runs that blow up gain ten times as
+  // much or go on to; what honest methods gain by truncation, at the coarsest steps of the ladders,
+  // stays below.
+  double energy_bound = 0.05;
+  // Whether methods whose velocities are of the middle of a step start half a step back.
+  bool staggered = true;
   // Of a cloth, for shape statistics: its corners, and triangles that cover it.
   std::vector<int> corners;
   std::vector<std::array<int, 3>> triangles;
@@ -51,6 +58,8 @@ struct SceneType {
   Scene (*build)(const SceneParameters& complete);
   // Vertices and constraints, without building anything.
   std::pair<int, int> (*counts)(const SceneParameters& complete);
+  // Positions at a time (s) where the motion is known exactly: errors need no reference then.
+  inextensible::Positions (*exact)(const SceneParameters& complete, double time) = nullptr;
   const char* like = "";  // the scene whose tuned settings it takes; empty: its own
 
   const char* kind() const { return *like ? like : name; }

@@ -26,7 +26,7 @@ Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::u
   inextensible::StepController controller(
       *stepper, {.largest = trial.step, .most_halvings = controlled ? 10 : 0});
   State state = trial.scene.start;
-  Witness witness(trial, backend.knob == inextensible::Knob::strain_limit);
+  Witness witness(trial, backend);
   std::optional<Outcome> outcome;
   for (int i = 0; i < trial.steps && !outcome;) {
     if (trial.disturb && controller.aligned()) trial.disturb(state, i);
@@ -53,6 +53,7 @@ Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::u
       outcome = Outcome::timeout;
     }
   }
+  if (!outcome) outcome = witness.finish(result);
   result.work = stepper->work();
   if (controlled) result.smallest_step = controller.smallest();
   return outcome.value_or(Outcome::survived);

@@ -1,6 +1,8 @@
 #include "harness/stability/trial_judge.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "harness/base/text.h"
 #include "harness/judge/measures.h"
@@ -21,17 +23,17 @@ Outcome fail(TrialResult& result, Outcome outcome, const std::string& why) {
 
 }  // namespace
 
-Witness::Witness(const Trial& trial, bool limit_promised)
+Witness::Witness(const Trial& trial, const inextensible::Backend& backend)
     : trial_(trial),
       problem_(*trial.scene.problem),
-      limit_promised_(limit_promised),
+      limit_promised_(backend.knob == inextensible::Knob::strain_limit),
       mass_(problem_.total_mass()),
-      free_(problem_.pinned().empty() && !problem_.collider()) {
-  scale_ = energy_scale(trial.scene) + inextensible::kinetic_energy(problem_, trial.scene.start.v);
-  judged_ = trial.energy_tolerance >= 0 && !trial.disturb && scale_ > 0;
+      free_(problem_.pinned().empty() && !problem_.collider()),
+      energy_(problem_, energy_scale(trial.scene), backend.velocities) {
+  judged_ = trial.energy_tolerance >= 0 && !trial.disturb && energy_.scale() > 0;
   // What a start that violates the limit releases is known after the first step.
-  if (worst_edge(problem_, trial.scene.start.x).strain <= trial.strain_limit)
-    energy_ = total_energy(problem_, trial.scene.start);
+  energy_known_ = worst_edge(problem_, trial.scene.start.x).strain <= trial.strain_limit;
+  energy_.begin(trial.scene.start);
 }
 
 void Witness::before(const State& state) {
@@ -64,18 +66,28 @@ std::optional<Outcome> Witness::after(const Positions& filtered, const State& st
       return fail(result, Outcome::wrong, "momentum is not conserved, by " + number_text(defect));
   }
   if (!judged_) return {};
-  if (!energy_) {
-    energy_ = total_energy(problem_, state);
-    scale_ = std::max(scale_, *energy_);
+  if (!energy_known_) {
+    energy_known_ = true;
+    energy_.begin(state, std::max(energy_.scale(), total_energy(problem_, state)));
     return {};
   }
-  const double gain = (total_energy(problem_, state) - *energy_) / scale_;
-  raise(result.energy_gain, gain);
-  const double release = 0.5 * mass_ * std::pow(1.5 * trial_.slack / h, 2) / scale_;
-  if (!(gain <= trial_.energy_tolerance + release))
-    return fail(result, Outcome::wrong,
-                "energy out of nothing, " + number_text(gain) + " of its scale");
-  return {};
+  const double of_this_step = 0.5 * mass_ * std::pow(1.5 * trial_.slack / h, 2) / energy_.scale();
+  const double before = std::exchange(release_, of_this_step);
+  return judge_energy(energy_.after(state, h), std::max(before, of_this_step), result);
+}
+
+std::optional<Outcome> Witness::finish(TrialResult& result) {
+  if (!judged_ || !energy_known_) return {};
+  return judge_energy(energy_.finish(), release_, result);
+}
+
+std::optional<Outcome> Witness::judge_energy(std::optional<double> gain, double release,
+                                             TrialResult& result) const {
+  if (!gain) return {};
+  raise(result.energy_gain, *gain);
+  if (*gain <= trial_.energy_tolerance + release) return {};
+  return fail(result, Outcome::wrong,
+              "energy out of nothing, " + number_text(*gain) + " of its scale");
 }
 
 // |change of momentum - weight h| over what flows in the step; positions are known to rounding

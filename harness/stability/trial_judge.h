@@ -4,15 +4,15 @@
 
 #include <optional>
 
+#include "harness/judge/energy.h"
 #include "harness/stability/trial.h"
 
 namespace harness {
 
 class Witness {
  public:
-  // limit_promised: the solver claims to keep the trial's strain limit. The trial must outlive
-  // this.
-  Witness(const Trial& trial, bool limit_promised);
+  // The trial must outlive this.
+  Witness(const Trial& trial, const inextensible::Backend& backend);
 
   // Before and after each accepted step of h seconds. filtered: positions before the collision
   // filter. `after` raises the figures in `result` and gives the outcome if the step tells one
@@ -20,19 +20,24 @@ class Witness {
   void before(const inextensible::State& state);
   std::optional<Outcome> after(const inextensible::Positions& filtered,
                                const inextensible::State& state, double h, TrialResult& result);
+  // After the last one, if no step told an outcome.
+  std::optional<Outcome> finish(TrialResult& result);
 
  private:
+  std::optional<Outcome> judge_energy(std::optional<double> gain, double release,
+                                      TrialResult& result) const;
   double momentum_defect(const inextensible::State& state, double h) const;
 
   const Trial& trial_;
   const inextensible::Problem& problem_;
-  bool limit_promised_;
+  bool limit_promised_;  // the solver claims to keep the trial's strain limit
   double mass_;
-  bool free_;                     // nothing outside but gravity acts
-  bool judged_ = false;           // whether energy is
-  double scale_;                  // of energy, J
-  std::optional<double> energy_;  // J, what it is judged against; none before the first step of a
-                                  // start that violates the limit
+  bool free_;            // nothing outside but gravity acts
+  bool judged_ = false;  // whether energy is
+  bool energy_known_;    // what it is judged against; not before the first step of a start that
+                         // violates the limit
+  EnergyRecord energy_;
+  double release_ = 0;  // of energy by slack in the last step
   inextensible::State start_;
   Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero();
 };

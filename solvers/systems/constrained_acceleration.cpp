@@ -17,6 +17,7 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr double regularization = 1e-9;  // of the diagonal
+constexpr double free_fall = 1e-12;      // of accelerations over rest lengths: rounding
 constexpr int most_iterations = 50;      // one or two where A is regular
 
 // J W J^T at gradients u, and a little on its diagonal.
@@ -59,8 +60,13 @@ Positions constrained_acceleration(const Problem& problem, const State& state) {
     curvature[k] = 2 * edges.inverse_rest_length[k] *
                    (state.v.col(edges.b[k]) - state.v.col(edges.a[k])).squaredNorm();
   }
-  const Eigen::SimplicialLDLT<Sparse> ldlt(regular_schur_complement(edges, u, problem.vertices()));
   Eigen::VectorXd violation(problem.constraints());
+  edges.rate(u, a, violation);
+  violation += curvature;
+  // What falls freely, as a cloth flat in the air does, needs no forces from its edges.
+  const double largest = a.colwise().norm().maxCoeff() / problem.shortest_rest_length();
+  if (violation.cwiseAbs().maxCoeff() <= free_fall * largest) return a;
+  const Eigen::SimplicialLDLT<Sparse> ldlt(regular_schur_complement(edges, u, problem.vertices()));
   double last = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most_iterations; ++i) {
     edges.rate(u, a, violation);

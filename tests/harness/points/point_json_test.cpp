@@ -43,6 +43,12 @@ class Random {
     fill(number, false);
     value["a number"] = number;
   }
+  void fill(std::vector<ErrorSample>& series, bool) {
+    series.resize(generator_() % 4);
+    for (ErrorSample& at : series)
+      for (double* value : {&at.time, &at.error, &at.worst, &at.gap, &at.worst_gap})
+        fill(*value, false);
+  }
   void fill(std::vector<ResidualSample>& value, bool) {
     value.resize(generator_() % 4);
     for (auto& r : value) {
@@ -66,8 +72,10 @@ class Random {
     fill_all(measure_fields, p.measures);
     for (const auto& counter : inextensible::work_counters)
       std::visit([&](const auto member) { fill(p.work.*member, false); }, counter.member);
-    p.samples.resize(generator_() % 4);
-    for (double& sample : p.samples) fill(sample, false);
+    for (auto* samples : {&p.samples, &p.filter_samples}) {
+      samples->resize(generator_() % 4);
+      for (double& sample : *samples) fill(sample, false);
+    }
     if (generator_() % 2 == 0) fill(p.stiffness.emplace(), false);
     fill(p.linear_solver, true);
     return p;

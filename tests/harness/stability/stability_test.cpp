@@ -40,9 +40,10 @@ Trial dumbbell(bool pinned) {
 class WitnessTest : public testing::Test {
  protected:
   std::optional<Outcome> judge(const Trial& trial, const State& after, bool limit_promised = true) {
-    Witness witness(trial, limit_promised);
+    Witness witness(trial, *inextensible::find_backend(limit_promised ? "shake" : "null"));
     witness.before(trial.scene.start);
-    return witness.after(after.x, after, trial.step, result_);
+    const auto outcome = witness.after(after.x, after, trial.step, result_);
+    return outcome ? outcome : witness.finish(result_);
   }
   TrialResult result_;
 };

@@ -1,0 +1,50 @@
+#include "harness/judge/energy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/judge/measures.h"
+#include "inextensible/problem/forces.h"
+
+namespace harness {
+
+EnergyRecord::EnergyRecord(const inextensible::Problem& problem, double scale,
+                           inextensible::Velocities velocities)
+    : problem_(problem), scale_(scale), velocities_(velocities) {}
+
+void EnergyRecord::begin(const inextensible::State& state, double scale) {
+  scale_ = scale;
+  start_ = total_energy(problem_, state);
+  before_ = last_ = {};
+}
+
+std::optional<double> EnergyRecord::after(const inextensible::State& state, double h) {
+  before_ = last_;
+  last_ = {before_.step + 1, state.time, h, inextensible::potential_energy(problem_, state.x),
+           inextensible::kinetic_energy(problem_, state.v)};
+  if (velocities_ == inextensible::Velocities::whole_step) return settle(last_, last_.kinetic);
+  if (before_.step == 0) return {};
+  return settle(before_, (h * before_.kinetic + before_.h * last_.kinetic) / (h + before_.h));
+}
+
+// No velocity follows the last step: its own, or what the last two foretell if that is less.
+std::optional<double> EnergyRecord::finish() {
+  if (velocities_ == inextensible::Velocities::whole_step || last_.step == 0) return {};
+  double kinetic = last_.kinetic;
+  if (before_.step > 0)
+    kinetic += std::min(0.0, (last_.kinetic - before_.kinetic) * last_.h / (last_.h + before_.h));
+  return settle(last_, kinetic);
+}
+
+double EnergyRecord::settle(const Instant& at, double kinetic) {
+  const double gain = (at.potential + kinetic - start_) / scale_;
+  if (!(gain <= gain_)) {  // unknown at first
+    gain_ = gain;
+    gain_time_ = at.time;
+    gain_step_ = at.step;
+  }
+  raise(drift_, std::abs(gain));
+  return gain;
+}
+
+}  // namespace harness

@@ -1,0 +1,56 @@
+// The energy of a run, followed at every step: the one place that says whether energy was made out
+// of nothing, for sweeps and for hard cases.
+//
+// Positions belong to the ends of steps. So do the velocities of some methods; those of the others,
+// (x_n - x_{n-1}) / h, belong to the middle of the step, and the kinetic energy at its end is then
+// interpolated between the middles before and after it. Taken as it stands, it would lag behind by
+// h / 2 and show gains, of first order in h, wherever a motion slows down. It is the energies that
+// are interpolated and not the velocities: the mean velocity of a vibration that turns round in
+// every step is zero.
+#pragma once
+
+#include <optional>
+
+#include "harness/points/measures.h"
+#include "inextensible/methods/backend.h"
+
+namespace harness {
+
+class EnergyRecord {
+ public:
+  // scale: J, what gains are divided by. The problem must outlive this.
+  EnergyRecord(const inextensible::Problem& problem, double scale,
+               inextensible::Velocities velocities);
+
+  // What energy is compared with from here on.
+  void begin(const inextensible::State& state) { begin(state, scale_); }
+  void begin(const inextensible::State& state, double scale);
+  // After each accepted step of h seconds, and after the last one. Gives (E - E_0) / scale at the
+  // end of the step, or of the one before it, if it has just become known.
+  std::optional<double> after(const inextensible::State& state, double h);
+  std::optional<double> finish();
+
+  double gain() const { return gain_; }  // the largest so far; unknown at first
+  double gain_time() const { return gain_time_; }
+  int gain_step() const { return gain_step_; }
+  double drift() const { return drift_; }  // the largest |E - E_0| / scale
+  double start_energy() const { return start_; }
+  double scale() const { return scale_; }
+
+ private:
+  struct Instant {
+    int step = 0;
+    double time = 0, h = 0, potential = 0, kinetic = 0;  // kinetic: in the middle of the step
+  };
+  double settle(const Instant& at, double kinetic);
+
+  const inextensible::Problem& problem_;
+  double scale_;
+  inextensible::Velocities velocities_;
+  double start_ = 0;
+  Instant before_, last_;
+  double gain_ = unknown, gain_time_ = unknown, drift_ = unknown;
+  int gain_step_ = 0;
+};
+
+}  // namespace harness

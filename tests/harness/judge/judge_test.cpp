@@ -1,0 +1,115 @@
+// The judge on motions that are made up: which samples of a reference count, what is delivered
+// after a collision, and what hardly moves.
+#include "harness/judge/judge.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace harness {
+namespace {
+
+using inextensible::State;
+
+Scene small_chain() {
+  const SceneType& type = *find_scene("chain");
+  return type.build(complete_parameters(type, {{"n", 4}}));
+}
+
+// Falls by t metres; gaps of 0.001, and of 0.1 from sample 3 on.
+std::shared_ptr<Reference> falling(const Scene& scene) {
+  auto r = std::make_shared<Reference>();
+  r->scene = "chain";
+  r->parameters = complete_parameters(*find_scene("chain"), {{"n", 4}});
+  for (int k = 1; k <= 5; ++k) {
+    r->times.push_back(0.04 * k);
+    r->positions.push_back(scene.start.x);
+    r->positions.back().row(1).array() -= 0.04 * k;
+    r->gap.push_back(k < 3 ? 0.001 : 0.1);
+    r->gap_max.push_back(r->gap.back());
+    r->shape.push_back({});
+    r->shape_gap.push_back({});
+  }
+  r->valid_until = 0.2;
+  r->observed_order = r->expected_order = 2;
+  return r;
+}
+
+// A run that falls `times_as_far` and is `off` metres beside.
+Measures judged(const Scene& scene, std::shared_ptr<const Reference> reference, double times_as_far,
+                double off) {
+  Judge::Options options;
+  options.reference = std::move(reference);
+  Judge judge(scene, options);
+  State state = scene.start;
+  for (int k = 1; k <= 5; ++k) {
+    judge.before(state, 0.04);
+    state.time = 0.04 * k;
+    state.x = scene.start.x;
+    state.x.row(1).array() -= times_as_far * state.time;
+    state.x.row(2).setConstant(off);
+    judge.after(state.x, state, 0.04);
+  }
+  return judge.finish();
+}
+
+TEST(Judge, CountsSamplesAtWhichTheReferenceIsSureEnough) {
+  const Scene scene = small_chain();
+  const auto reference = falling(scene);
+  // 0.01 m is above three gaps at the first two samples only.
+  const Measures found = judged(scene, reference, 1, 0.01);
+  EXPECT_EQ(found.error_samples, 2);
+  EXPECT_DOUBLE_EQ(found.error_until, 0.08);
+  EXPECT_NEAR(found.trajectory, 0.01, 1e-12);
+  EXPECT_NEAR(found.trajectory_max, 0.01, 1e-12);
+  EXPECT_NEAR(found.gap, 0.001, 1e-12);
+  ASSERT_EQ(found.error_series.size(), 5u);
+  EXPECT_NEAR(trajectory_within(found, 0.02), 0.01, 1e-12);
+  EXPECT_TRUE(std::isnan(trajectory_within(found, 0.002))) << "no sample is that sure";
+  // 0.4 m is above three gaps at all.
+  EXPECT_EQ(judged(scene, reference, 1, 0.4).error_samples, 5);
+  // 0.002 m at none: all that is known is that it is below.
+  const Measures accurate = judged(scene, reference, 1, 0.002);
+  EXPECT_EQ(accurate.error_samples, 0);
+  EXPECT_LT(accurate.trajectory, 3 * accurate.gap);
+}
+
+TEST(Judge, ReportsNoErrorAgainstAReferenceThatHasNotConverged) {
+  const Scene scene = small_chain();
+  const auto reference = falling(scene);
+  reference->observed_order = 0.9;  // of 2
+  const Measures found = judged(scene, reference, 1, 0.4);
+  EXPECT_TRUE(std::isnan(found.trajectory));
+  EXPECT_EQ(found.error_samples, 0);
+  EXPECT_NEAR(found.moved, std::sqrt(0.04 * 0.04 * 11 + 0.4 * 0.4) / std::sqrt(0.04 * 0.04 * 11),
+              1e-12);  // mean of k^2 over 1 ... 5 is 11
+}
+
+TEST(Judge, MeasuresHowFarARunHasMoved) {
+  const Scene scene = small_chain();
+  EXPECT_NEAR(judged(scene, falling(scene), 0.3, 0).moved, 0.3, 1e-12);
+  EXPECT_EQ(judged(scene, falling(scene), 0, 0).moved, 0);
+}
+
+TEST(Judge, MeasuresStrainBeforeAndAfterTheObstacle) {
+  const SceneType& type = *find_scene("drape");
+  const Scene scene = type.build(complete_parameters(type, {{"n", 3}}));
+  Judge judge(scene, {});
+  State state = scene.start;
+  judge.before(state, 0.01);
+  state.time = 0.01;
+  state.x(0, 4) += 0.1;  // the middle vertex by a fifth of an edge's length
+  judge.after(scene.start.x, state, 0.01);
+  const Measures found = judge.finish();
+  EXPECT_NEAR(found.max_strain, 0, 1e-12);
+  EXPECT_NEAR(found.max_strain_after_collision, 0.2, 1e-12);
+  // Of twelve edges one is longer and one shorter by 0.2, two turn: sqrt(1.04) - 1.
+  const double turned = std::sqrt(1.04) - 1;
+  EXPECT_NEAR(found.delivered_strain_rms, std::sqrt((2 * 0.2 * 0.2 + 2 * turned * turned) / 12),
+              1e-12);
+  EXPECT_GT(found.delivered_strain_p99, 0.19);
+  EXPECT_NEAR(found.rms_strain, 0, 1e-12);
+}
+
+}  // namespace
+}  // namespace harness

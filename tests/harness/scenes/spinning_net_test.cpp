@@ -1,0 +1,142 @@
+// The spinning net, whose motion is known: what each kind of method makes of it follows from
+// theory, to the last digits.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "harness/judge/reference.h"
+#include "harness/scenes/scene.h"
+#include "inextensible/registry.h"
+#include "inextensible/systems/constrained_acceleration.h"
+
+namespace harness {
+namespace {
+
+using inextensible::Positions;
+using inextensible::State;
+
+constexpr double turn = 2 * std::numbers::pi;  // rad/s at the start
+
+SceneParameters parameters(double duration = 1) {
+  return complete_parameters(*find_scene("spinning_net"), {{"n", 6}, {"duration", duration}});
+}
+
+Scene net() { return find_scene("spinning_net")->build(parameters()); }
+
+// The angle by which a net in its plane has turned from x to y, rad.
+double angle_between(const Positions& x, const Positions& y) {
+  double cosine = 0, sine = 0;
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    cosine += x(0, i) * y(0, i) + x(2, i) * y(2, i);
+    sine += x(2, i) * y(0, i) - x(0, i) * y(2, i);
+  }
+  return std::atan2(sine, cosine);
+}
+
+// The angle of each step up to one second, from velocities of the start itself.
+std::vector<double> step_angles(const char* solver, double h,
+                                const inextensible::Settings& settings = {}) {
+  const Scene scene = net();
+  const auto stepper = inextensible::make_stepper(solver, scene.problem, {1e-11, 1, settings});
+  State state = scene.start;
+  std::vector<double> angles;
+  for (int i = 0; (i + 0.5) * h < 1; ++i) {
+    const Positions before = state.x;
+    const auto result = stepper->advance(state, h);
+    if (!result) {
+      ADD_FAILURE() << solver << ", step " << i << ": " << result.detail;
+      break;
+    }
+    angles.push_back(angle_between(before, state.x));
+  }
+  return angles;
+}
+
+// Mass-weighted RMS distance to the exact motion after one second, with the start that the method's
+// velocities want.
+double error_after_a_second(const char* solver, double h) {
+  const Scene scene = net();
+  const auto stepper = inextensible::make_stepper(solver, scene.problem, {1e-11, 1, {}});
+  const bool half =
+      inextensible::find_backend(solver)->velocities == inextensible::Velocities::half_step;
+  State state =
+      half ? inextensible::start_half_step_back(*scene.problem, scene.start, h) : scene.start;
+  for (int i = 0; (i + 0.5) * h < 1; ++i) {
+    if (!stepper->advance(state, h)) return std::nan("");
+  }
+  return rms_distance(scene, state.x, find_scene("spinning_net")->exact(parameters(), 1));
+}
+
+TEST(SpinningNet, TurnsAsItsExactMotionSays) {
+  const auto reference = exact_reference("spinning_net", parameters(0.2));
+  ASSERT_TRUE(reference);
+  ASSERT_EQ(reference->times.size(), 5u);
+  const Scene scene = net();
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_NEAR(angle_between(scene.start.x, reference->positions[i]), turn * reference->times[i],
+                1e-12);
+    EXPECT_EQ(reference->gap[i], 0);
+  }
+  // Its velocity is that of the start, and no edge is strained.
+  const double dt = 1e-6;
+  const Positions soon = find_scene("spinning_net")->exact(parameters(), dt);
+  EXPECT_LT(((soon - scene.start.x) / dt - scene.start.v).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_FALSE(exact_reference("chain", complete_parameters(*find_scene("chain"), {})));
+}
+
+// Free flight x + (x - x_before), brought back along directions at the end of the step:
+// tan(next angle) = sin(angle) / (2 - cos(angle)).
+TEST(SpinningNet, LosesSpeedByAnExactLawWhereDirectionsAreOfTheEndOfTheStep) {
+  for (const char* solver : {"fast_projection", "icd"}) {
+    for (const double h : {0.01, 0.0025}) {
+      SCOPED_TRACE(std::string(solver) + ", h = " + std::to_string(h));
+      const std::vector<double> angles = step_angles(solver, h);
+      ASSERT_EQ(angles.size(), static_cast<std::size_t>(std::lround(1 / h)));
+      EXPECT_NEAR(angles[0], std::atan(turn * h), 1e-9);
+      for (std::size_t i = 1; i < angles.size(); ++i)
+        ASSERT_NEAR(angles[i], std::atan(std::sin(angles[i - 1]) / (2 - std::cos(angles[i - 1]))),
+                    1e-9)
+            << "step " << i;
+      // Its differential equation, Omega' = -h Omega^3, to first order in h.
+      EXPECT_NEAR(angles.back() / h, turn / std::sqrt(1 + 2 * turn * turn * h), turn * turn * h);
+    }
+  }
+  EXPECT_NEAR(step_angles("fast_projection", 0.01).back() / 0.01 / turn, 0.747, 0.003);
+}
+
+// The same by methods that go edge by edge, as far as they converge.
+TEST(SpinningNet, IsDampedAlikeByStrainLimiting) {
+  for (const char* solver : {"gauss_seidel", "gauss_seidel_colored", "jacobi"}) {
+    const std::vector<double> angles = step_angles(solver, 0.01);
+    ASSERT_EQ(angles.size(), 100u) << solver;
+    EXPECT_NEAR(angles.back() / 0.01 / turn, 0.747, 0.01) << solver;
+  }
+}
+
+TEST(SpinningNet, LosesNothingWhereDirectionsAreOfTheStart) {
+  for (const double h : {0.04, 0.01}) {
+    const std::vector<double> angles = step_angles("shake", h);
+    ASSERT_EQ(angles.size(), static_cast<std::size_t>(std::lround(1 / h)));
+    for (const double angle : angles) ASSERT_NEAR(angle, std::asin(turn * h), 1e-9);
+  }
+  const std::vector<double> angles = step_angles("rattle", 0.01);
+  ASSERT_EQ(angles.size(), 100u);
+  for (const double angle : angles) ASSERT_NEAR(angle, angles[0], 1e-9);
+}
+
+TEST(SpinningNet, ErrorsFallWithTheOrdersOfTheMethods) {
+  struct {
+    const char* solver;
+    double order;
+  } const expected[] = {
+      {"fast_projection", 1}, {"icd", 1}, {"shake", 2}, {"rattle", 2}, {"fast_projection_bdf2", 2}};
+  for (const auto& [solver, order] : expected) {
+    const double coarse = error_after_a_second(solver, 1.0 / 400);
+    const double fine = error_after_a_second(solver, 1.0 / 800);
+    EXPECT_NEAR(std::log2(coarse / fine), order, 0.1) << solver << ": " << coarse << ", " << fine;
+  }
+}
+
+}  // namespace
+}  // namespace harness
