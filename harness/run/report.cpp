@@ -96,7 +96,9 @@ void print_best(std::ostream& out, const std::vector<const PointResult*>& points
     cells[{point->spec.name(), column}].push_back(point);
   }
   out << '\n' << title << '\n';
-  constexpr int cell_width = 17;
+  std::size_t longest = 15;
+  for (const auto& cell : cells) longest = std::max(longest, cell_text(cell.second).size());
+  const int cell_width = static_cast<int>(longest) + 2;
   out << std::left << std::setw(name_width) << "";
   for (const auto& column : columns) out << std::setw(cell_width) << column;
   out << '\n';
