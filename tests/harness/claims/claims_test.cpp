@@ -82,6 +82,7 @@ TEST(Claims, C8ComparesFramesBeforeContactAndAgainstEqualRunsAfterIt) {
   EXPECT_EQ(with(0.001, 0.2, 0.15).verdict, "reproduced");
   EXPECT_EQ(with(0.001, 0.2, 0.07).verdict, "undecided");
   EXPECT_EQ(with(0.001, 0.2, 1e-6).verdict, "changed");
+  EXPECT_EQ(with(0.001, 0.015, 1e-6).verdict, "undecided");
   EXPECT_EQ(with(0.02, 0.005, 1e-6).verdict, "changed");
   EXPECT_EQ(with(0.02, 0.2, 1e-6).verdict, "not reproduced");
   EXPECT_EQ(with(0.001, 0.005, 1e-6, "icd at step 7").verdict, "not yet measured");
