@@ -1,17 +1,12 @@
 // What result files say, as a page of Markdown tables (docs/results.md).
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <ostream>
-#include <string>
 #include <vector>
 
-namespace harness {
+#include "harness/points/named_result.h"
 
-struct NamedResult {
-  std::string name;  // of its file, as the page gives it
-  nlohmann::json document;
-};
+namespace harness {
 
 // results: of sweeps and stability sweeps; the claims are decided by these. growth: only for tables
 // of growth, so that a sweep at a fixed step does not take part in contests of best steps.

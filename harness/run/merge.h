@@ -5,12 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace harness {
+#include "harness/points/named_result.h"
 
-struct NamedResult {
-  std::string name;  // for messages
-  nlohmann::json document;
-};
+namespace harness {
 
 // One result file of all points, in the order in which the suite's sweep would have run them.
 // Throws UsageError, naming the files, unless all are complete, of one suite and (but for

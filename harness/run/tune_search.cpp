@@ -9,8 +9,8 @@ namespace harness {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();  // seconds of what fails
-constexpr double golden = 0.381966;  // of the wider side of a bracket, from the best point
-constexpr double give_up_at = 1.5;   // times the best seconds
+constexpr double golden = 0.381966;       // of the wider side of a bracket, from the best point
+constexpr double give_up_trial_at = 1.5;  // times the best seconds
 
 double shift(const TunedNumber& number) {
   return number.whole && number.range.least < 1 ? 1 - number.range.least : 0;
@@ -21,10 +21,10 @@ bool logarithmic(const TunedNumber& number) {
   return least > 0 && (number.range.largest + shift(number)) / least >= 10;
 }
 
-class Search {
+class CoordinateSearch {
  public:
-  Search(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
-         const TuneRules& rules)
+  CoordinateSearch(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
+                   const TuneRules& rules)
       : numbers_(numbers), seconds_(seconds), rules_(rules) {}
 
   TuneOutcome run() {
@@ -75,7 +75,7 @@ class Search {
       const double rounded = position_of(number, values[i]);
       const auto near = known.lower_bound(rounded - 1e-6);
       if ((near != known.end() && near->first < rounded + 1e-6) || left() <= 0) return false;
-      known[rounded] = evaluate(values, give_up_at * best_);
+      known[rounded] = evaluate(values, give_up_trial_at * best_);
       --evaluations;
       return true;
     };
@@ -129,7 +129,7 @@ class Search {
 
 TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
                         const TuneRules& rules) {
-  return Search(numbers, seconds, rules).run();
+  return CoordinateSearch(numbers, seconds, rules).run();
 }
 
 std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend,
