@@ -34,7 +34,7 @@ std::vector<Backend> built_in() {
       rattle_row(),
       fast_projection_bdf2opt_row(),
       null_row(),
-      reference_row(),
+      oracle_row(),
   };
 }
 

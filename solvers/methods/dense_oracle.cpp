@@ -22,18 +22,18 @@ Eigen::MatrixXd dense_jacobian(const EdgeConstraints& edges, const Positions& x)
 
 }  // namespace
 
-DenseReference::DenseReference(const Problem& problem)
+DenseOracle::DenseOracle(const Problem& problem)
     : problem_(problem),
       edges_(problem, tolerance),
       mu_(Eigen::VectorXd::Zero(problem.constraints())) {
   if (problem.vertices() > largest_problem) {
-    throw std::invalid_argument("solver 'reference' is dense, for at most " +
+    throw std::invalid_argument("solver 'oracle' is dense, for at most " +
                                 std::to_string(largest_problem) + " vertices; this problem has " +
                                 std::to_string(problem.vertices()));
   }
 }
 
-StepResult DenseReference::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
+StepResult DenseOracle::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
                                  WorkCounters& work) {
   const Eigen::Index n3 = 3 * x.cols(), m = edges_.count();
   const Positions x0 = x;
@@ -84,19 +84,19 @@ StepResult DenseReference::apply(const Positions& /*x_start*/, double /*h*/, Pos
   return refuse(Status::not_converged, iteration_limit, edges_, x, "iteration limit");
 }
 
-Backend reference_row() {
-  return {.name = "reference",
-          .summary = "dense Newton to 1e-12, small problems: the oracle of the tests",
+Backend oracle_row() {
+  return {.name = "oracle",
+          .summary = "dense Newton to 1e-12, small problems: what tests compare with",
           .knob = Knob::none,
           .contestant = false,
           .settings = {},
           .make = [](std::shared_ptr<const Problem> problem,
                      const BackendOptions&) -> std::unique_ptr<Stepper> {
-            auto filter = std::make_unique<DenseReference>(*problem);
+            auto filter = std::make_unique<DenseOracle>(*problem);
             return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
           },
           .citation = "Goldenthal et al. 2007",
-          .label = "reference (no contestant)"};
+          .label = "oracle (no contestant)"};
 }
 
 }  // namespace inextensible

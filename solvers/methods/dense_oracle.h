@@ -1,6 +1,6 @@
-// Registered as `reference`, no contestant: the M-closest point of {C = 0} (ICD = SAP, Goldenthal
-// et al. 2007, Theorem 1) to 1e-12, by dense Newton with full pivoting. Slow and obvious: the
-// oracle of the tests, for small n.
+// Registered as `oracle`, no contestant: the M-closest point of {C = 0} (ICD = SAP, Goldenthal
+// et al. 2007, Theorem 1) to 1e-12, by dense Newton with full pivoting. Slow and obvious:
+// what tests compare with, for small n.
 #pragma once
 
 #include <Eigen/Dense>
@@ -11,11 +11,11 @@
 
 namespace inextensible {
 
-class DenseReference final : public VelocityFilter {
+class DenseOracle final : public VelocityFilter {
  public:
   static constexpr int largest_problem = 600;  // vertices
   // Throws std::invalid_argument for more vertices than largest_problem.
-  explicit DenseReference(const Problem& problem);
+  explicit DenseOracle(const Problem& problem);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
   // Multipliers h^2 lambda of the last accepted step, one an edge, kg m.
   const Eigen::VectorXd& multipliers() const { return mu_; }
@@ -26,6 +26,6 @@ class DenseReference final : public VelocityFilter {
   Eigen::VectorXd mu_;
 };
 
-Backend reference_row();
+Backend oracle_row();
 
 }  // namespace inextensible

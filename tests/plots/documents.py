@@ -33,7 +33,7 @@ SOLVERS = (
     ("rattle", "RATTLE (SHAKE with velocities)", "shake", True),
     ("fast_projection_bdf2opt", "fast projection in BDF2 with BDF3", "fast_projection", True),
     ("null", "scene without inextensibility", "null", False),
-    ("reference", "reference (no contestant)", "reference", False),
+    ("oracle", "oracle (no contestant)", "oracle", False),
 )
 STATUSES = (("ok", "", "ran"), ("strain_missed", "S", "strain limit missed"), ("not_converged", "N", "not converged"),
             ("diverged", "D", "diverged"), ("timeout", "T", "timeout"), ("skipped", "K", "skipped"))

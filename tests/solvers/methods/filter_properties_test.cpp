@@ -22,7 +22,7 @@ using testing::random_mesh;
 constexpr std::uint64_t seeds = 8;
 constexpr double h = 0.01;
 
-// Every backend that holds edges: those with a strain limit, implicit springs and the reference.
+// Every backend that holds edges: those with a strain limit, implicit springs and the oracle.
 std::vector<std::string> steppers() {
   std::vector<std::string> names;
   for (const Backend& backend : backends()) {

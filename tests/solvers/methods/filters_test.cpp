@@ -26,7 +26,7 @@ std::vector<std::string> filters() {
   for (const Backend& backend : backends()) {
     if (backend.knob == Knob::strain_limit) names.emplace_back(backend.name);
   }
-  names.emplace_back("reference");
+  names.emplace_back("oracle");
   return names;
 }
 
@@ -101,7 +101,7 @@ TEST_P(Filters, ConserveLinearMomentumAndTheirAngularMomentum) {
       EXPECT_LT(
           (angular_momentum(p, before.x, state.v) - angular_momentum(p, before.x, before.v)).norm(),
           1e-9 * scale);
-    } else if (GetParam() == "icd" || GetParam() == "reference") {
+    } else if (GetParam() == "icd" || GetParam() == "oracle") {
       const double direction =
           GetParam() == "icd" ? 0.1 * 0.005 / h : 1e-10;  // as far as F = 0 is solved
       EXPECT_LT(
@@ -121,9 +121,9 @@ TEST_P(Filters, LeaveTheStateUntouchedWhenTheyRefuse) {
   Random random(11);
   const auto mesh = random_mesh(random, 4, 4, 1);
   BackendOptions options{1e-13, 1, {}};
-  if (GetParam() != "reference") options.settings["max_iterations"] = 1.0;
+  if (GetParam() != "oracle") options.settings["max_iterations"] = 1.0;
   const auto stepper = make_stepper(GetParam(), mesh.problem, options);
-  State state = moving_state(random, mesh, GetParam() == "reference" ? 1e300 : 10);
+  State state = moving_state(random, mesh, GetParam() == "oracle" ? 1e300 : 10);
   state.time = 3;
   const State before = state;
   const StepResult result = stepper->advance(state, h);
@@ -232,11 +232,11 @@ TEST(Icd, SolutionIsTheClosestPointOfTheManifold) {
     const Problem& p = *mesh.problem;
     const Positions candidate = testing::perturbed(random, mesh, 0.05);
     WorkCounters work;
-    Positions icd = candidate, reference = candidate;
+    Positions icd = candidate, oracle = candidate;
     Icd::Settings settings{1e-10};
     ASSERT_TRUE(Icd(p, settings).apply(mesh.x, h, icd, work));
-    ASSERT_TRUE(DenseReference(p).apply(mesh.x, h, reference, work));
-    EXPECT_LT((icd - reference).norm(), 1e-7);
+    ASSERT_TRUE(DenseOracle(p).apply(mesh.x, h, oracle, work));
+    EXPECT_LT((icd - oracle).norm(), 1e-7);
 
     const auto distance = [&](const Positions& x) {
       return (x - candidate)
