@@ -11,6 +11,7 @@ namespace harness::claims {
 namespace {
 
 constexpr double one_percent = 0.01;
+constexpr double paper_chain = 80;  // vertices
 
 struct Way {
   std::string words;
@@ -125,7 +126,8 @@ void chain_speed(const Points& points, ClaimVerdict& c) {
   const auto judge = [&](const char* words, Curve springs_curve, Curve fast_curve) {
     const Way way{words, std::move(springs_curve), std::move(fast_curve)};
     const auto springs = at(way.springs, one_percent), fast = at(way.fast, one_percent);
-    if (!springs || !fast) return ways.add(way, not_measured, "");
+    if (!springs || !fast || springs->number("vertices") != paper_chain)
+      return ways.add(way, not_measured, "");
     const Ratio slower = ratio(*springs, *fast);
     const auto inside = [&](double low, double high) {
       return slower.above(low) && slower.below(high);

@@ -121,6 +121,10 @@ TEST(Claims, C3NeedsItsIntervalOnOneSideOfEachBound) {
   EXPECT_EQ(with(25, 0.2).verdict, "reproduced");
   EXPECT_TRUE(says(with(25), "100 steps of 2 iterations"));
   EXPECT_TRUE(says(with(25, 0.2), "ratio 25 (20-31)"));
+  EXPECT_EQ(verdict("C3", {point("chain", "strain", "implicit_springs", 0.01, 20, 0.01, 25),
+                           point("chain", "strain", "fast_projection", 0.01, 20, 0.01, 1)})
+                .verdict,
+            "not yet measured");  // the paper's chain has 80
   EXPECT_EQ(with(25, 0, 25).verdict, "reproduced");
   EXPECT_EQ(with(25, 0, 0.5).verdict, "changed");
   EXPECT_EQ(with(25, 0.2, 1.1).verdict, "undecided");
