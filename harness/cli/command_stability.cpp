@@ -76,6 +76,9 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
   events.largest_step = [](const LargestStep& found) {
     std::cerr << "largest step, " << found.scene << '/' << found.solver << '\n';
   };
+  events.same_frame = [](const SameFrame& found) {
+    std::cerr << "the same frame, " << found.scene.name() << '\n';
+  };
   const std::uint64_t seed = options.seed < 0 ? 1 : static_cast<std::uint64_t>(options.seed);
   const StabilityOutcome outcome = run_stability(cases, filters, seed, events);
   write_atomically(out, result_text(stability_document(context, outcome, seed, command)));
@@ -83,7 +86,7 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
   std::cout << "\nwritten:\n" << out << std::endl;
   if (!outcome.complete) return interrupted_exit;
   if (!options.no_plots && draw({out}) != 0) std::cerr << "bench: the figure could not be drawn\n";
-  return outcome.as_expected() ? success : unexpected_outcome;
+  return outcome.nothing_new() ? success : unexpected_outcome;
 }
 
 }  // namespace harness

@@ -1,7 +1,5 @@
-// Whom an expectation of a hard case means, and what it allows.
+// Whom an expectation of a hard case means, and which outcome it expects.
 #pragma once
-
-#include <set>
 
 #include "harness/stability/hard_case.h"
 
@@ -9,13 +7,13 @@ namespace harness::case_parts {
 
 // Solvers, by where they take the constraint direction.
 constexpr auto current_direction = inextensible::Direction::current;
+constexpr auto end_direction = inextensible::Direction::end;
 constexpr auto start_direction = inextensible::Direction::start;
 constexpr auto strain_limiting = inextensible::Direction::local;
 constexpr auto springs = inextensible::Direction::springs;
-extern const Solvers everyone;
+inline const Solvers everyone;
 
-extern const std::set<Outcome> survives, refuses;
-extern const std::set<Outcome> either;  // survives or refuses
-extern const std::set<Outcome> slow;    // either, or takes too long
+constexpr Outcome survives = Outcome::survived;
+constexpr Outcome refuses = Outcome::refused;
 
 }  // namespace harness::case_parts

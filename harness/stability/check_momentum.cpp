@@ -16,7 +16,11 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr double momentum_duration = 0.04;  // s
-constexpr double momentum_tolerance = 1e-9, spin_tolerance = 1e-6;
+// Rounding, and the 1e-10 to which the KKT system's residual is refined.
+constexpr double momentum_tolerance = 1e-9, spin_tolerance = 1e-9;
+// Of a quarter of the step: 1/4 for an error of first order in h, 1 for one that steps do not
+// lessen; between the two, on a logarithmic scale.
+constexpr double vanishing = 0.5;
 
 // Raises `linear` to the largest relative change of linear momentum in a step; infinite if refused.
 double loss_of_spin(const Examinee& solver, const Case& c, double step, double& linear) {
@@ -52,7 +56,7 @@ Findings check_momentum(const Examinee& solver) {
                  "strain limit 0.0001, speeds of 0.5 m/s, edges of 1 m: a small correction"));
     return refused;
   }
-  const double allowed = std::max(0.6 * coarse, spin_tolerance);
+  const double allowed = std::max(vanishing * coarse, spin_tolerance);
   return {judged(linear <= momentum_tolerance, "linear momentum",
                  text("changes by ", linear, " of its scale in a step (allowed ",
                       momentum_tolerance, ")"),

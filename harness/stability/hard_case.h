@@ -32,13 +32,18 @@ class Solvers {
   std::set<std::string> names_;
 };
 
-// What solvers do in a case at its own, fixed step. The first expectation that names a solver
-// counts. With smaller steps (after a refusal) solvers may survive, refuse or take too long;
-// `diverged` and `wrong` only where an expectation allows them.
+// What solvers do in a case at its own, fixed step: the one outcome that theory expects, and why.
+// The first expectation that names a solver counts. With smaller steps (after a refusal) solvers
+// may survive, refuse or take too long, but nothing else.
 struct Expectation {
+  struct Other {
+    Outcome outcome;
+    std::string why;  // theory cannot decide: rounding, an iteration limit within the estimate, ...
+  };
   Solvers solvers;
-  std::set<Outcome> allowed;
+  Outcome outcome;
   std::string why;
+  std::optional<Other> other = std::nullopt;
 };
 
 struct HardCase {

@@ -1,5 +1,5 @@
-// `bench --sweep stability`: the matrix of hard cases and solvers, the largest stable steps, and
-// the degrees of freedom that constraints leave.
+// `bench --sweep stability`: the matrix of hard cases and solvers, the largest stable steps, the
+// degrees of freedom that constraints leave, and the same frames from fast projection and ICD.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,6 +9,8 @@
 
 #include "harness/stability/freedom.h"
 #include "harness/stability/hard_case.h"
+#include "harness/stability/known_differences.h"
+#include "harness/stability/same_frame.h"
 #include "harness/stability/stability_scenes.h"
 
 namespace harness {
@@ -18,13 +20,20 @@ struct StabilityCell {
   std::string solver;
   TrialResult result;
   const Expectation* expectation;
-  std::set<Outcome> allowed = {};  // those of the expectation; of strangers, see allowed_outcomes
-  bool expected = true;            // the outcome is one of them
+  bool expected = true;                    // the outcome is the expected one, or admitted beside it
+  const KnownDifference* known = nullptr;  // of one that is not expected
+
+  bool strict() const { return !expectation->other; }
 };
 
-// What a solver may do in a case at its own step. Theory knows nothing of a solver from outside:
-// where others survive it may also refuse or be slow, but a wrong result is one.
-std::set<Outcome> allowed_outcomes(const Expectation& expectation, const std::string& solver);
+// Whether a solver may end so. Theory knows nothing of a solver from outside: where others survive
+// it may also refuse or be slow, but a wrong result is one.
+bool acceptable(const Expectation& expectation, const std::string& solver,
+                const TrialResult& result);
+
+struct ExpectationCounts {
+  int cells = 0, strict = 0, two_admitted = 0, not_as_expected = 0, new_differences = 0;
+};
 
 struct LargestStep {
   std::string scene, solver;
@@ -42,14 +51,19 @@ struct StabilityOutcome {
   std::vector<StabilityCell> cells;
   std::vector<LargestStep> largest_steps;
   std::vector<Freedom> freedom;
+  std::vector<SameFrame> same_frames;
   bool complete = true;  // false: interrupted
-  bool as_expected() const;
+
+  ExpectationCounts counts() const;
+  // Nothing differs from what theory expects but what known_differences() lists.
+  bool nothing_new() const { return counts().new_differences == 0; }
 };
 
 struct StabilityEvents {
   std::function<void(const StabilityCell&, std::size_t done, std::size_t all)> cell =
       [](auto&&...) {};
   std::function<void(const LargestStep&)> largest_step = [](auto&&...) {};
+  std::function<void(const SameFrame&)> same_frame = [](auto&&...) {};
   std::function<bool()> interrupted = [] { return false; };
 };
 

@@ -28,6 +28,7 @@ Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::u
   State state = trial.scene.start;
   Witness witness(trial, backend);
   std::optional<Outcome> outcome;
+  const double timeout = controlled ? trial.timeout_smaller : trial.timeout;
   for (int i = 0; i < trial.steps && !outcome;) {
     if (trial.disturb && controller.aligned()) trial.disturb(state, i);
     witness.before(state);
@@ -48,7 +49,7 @@ Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::u
     }
     outcome = witness.after(stepper->filtered_positions(), state, controller.last(), result);
     if (controller.aligned()) ++i;
-    if (!outcome && i < trial.steps && since(begin) > trial.timeout) {
+    if (!outcome && i < trial.steps && since(begin) > timeout) {
       result.detail = "stopped after " + std::to_string(stepper->work().steps) + " steps";
       outcome = Outcome::timeout;
     }

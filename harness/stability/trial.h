@@ -40,7 +40,9 @@ struct Trial {
   // above (1.5: the velocity of BDF2; 1 for one-step methods).
   double slack = 0;
   double momentum_tolerance = 1e-8;  // relative to what flows in a step
-  double timeout = 10;               // s of wall time, looked at between steps
+  // s of wall time, looked at between steps. At its own step a trial ends by itself; this is for a
+  // machine that is busy. With smaller steps it may take as long as it likes.
+  double timeout = 60, timeout_smaller = 10;
 };
 
 struct TrialResult {
@@ -50,6 +52,8 @@ struct TrialResult {
   std::string detail;              // of `fixed` if that failed: which step, why, which edge
   double smallest_step = unknown;  // s, with the step controller
   double max_strain = unknown;     // before the collision filter
+  double strain_first_second = unknown;  // the same within the first and the last simulated second,
+  double strain_last_second = unknown;   // where a trial lasts for two or more
   double energy_gain = unknown;  // largest (E - E_0) / scale; negative: energy was lost throughout
   double momentum_defect = unknown;       // largest, relative; where nothing outside acts
   double reciprocal_condition = unknown;  // worst of the linear systems

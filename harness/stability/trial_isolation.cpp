@@ -16,6 +16,8 @@ json pack(const TrialResult& r) {
           {"detail", r.detail},
           {"smallest_step", number(r.smallest_step)},
           {"max_strain", number(r.max_strain)},
+          {"strain_first_second", number(r.strain_first_second)},
+          {"strain_last_second", number(r.strain_last_second)},
           {"energy_gain", number(r.energy_gain)},
           {"momentum_defect", number(r.momentum_defect)},
           {"reciprocal_condition", number(r.reciprocal_condition)},
@@ -30,6 +32,8 @@ TrialResult unpack(const json& j) {
   j.at("detail").get_to(r.detail);
   r.smallest_step = number_of(j.at("smallest_step"));
   r.max_strain = number_of(j.at("max_strain"));
+  r.strain_first_second = number_of(j.at("strain_first_second"));
+  r.strain_last_second = number_of(j.at("strain_last_second"));
   r.energy_gain = number_of(j.at("energy_gain"));
   r.momentum_defect = number_of(j.at("momentum_defect"));
   r.reciprocal_condition = number_of(j.at("reciprocal_condition"));

@@ -14,6 +14,7 @@ namespace {
 using inextensible::Positions;
 using inextensible::State;
 
+constexpr double time_rounding = 1e-6;     // s
 constexpr double diverged_distance = 1e6;  // in scene sizes
 
 Outcome fail(TrialResult& result, Outcome outcome, const std::string& why) {
@@ -47,6 +48,11 @@ std::optional<Outcome> Witness::after(const Positions& filtered, const State& st
     return fail(result, Outcome::wrong, "a state that is not finite was accepted");
   const WorstEdge worst = worst_edge(problem_, filtered);
   raise(result.max_strain, worst.strain);
+  const double time = state.time - trial_.scene.start.time, duration = trial_.steps * trial_.step;
+  if (duration > 2 - time_rounding) {
+    if (time < 1 + time_rounding) raise(result.strain_first_second, worst.strain);
+    if (time > duration - 1 + time_rounding) raise(result.strain_last_second, worst.strain);
+  }
   if (worst.strain > diverged_strain ||
       state.x.cwiseAbs().maxCoeff() > diverged_distance * trial_.scene.size)
     return fail(result, Outcome::diverged, "strain " + number_text(worst.strain));

@@ -148,9 +148,13 @@ def _step_name(step: object) -> str:
 def _caption(document: Json, cells: list[Json], outcomes: Outcomes) -> list[str]:
     letters = ", ".join(f"{outcome.letter} = {outcome.meaning}" for outcome in outcomes.values())
     unexpected = sum(cell.get("as_expected") is False for cell in cells)
+    known = sum(cell.get("known_difference") is True for cell in cells)
     count = len({cell["case"] for cell in cells})
-    verdict = "every outcome is one that its case expects" if unexpected == 0 else \
-        f"{unexpected} outcomes are not as their cases expect (marked !, thick frame)"
+    verdict = "every outcome is the one that its case expects, or admitted beside it" if unexpected == 0 else \
+        f"{unexpected} outcomes are not as their cases expect (marked !, thick frame)" + \
+        (f", {known} of them known and explained in the result file" if known else "")
+    two = sum(cell.get("admitted_beside") is not None for cell in cells)
+    verdict += f"; {len(cells) - two} of {len(cells)} admit one outcome only, {two} two"
     return [f"{count} cases, each at one fixed step; a refused one once more with a step controller that halves the step. "
             f"A cell has the worst outcome of its row's cases, with counts where they differ: {letters}; "
             "E = largest energy gain over weight times size plus kinetic energy at the start, if above 0.05 and within what "

@@ -49,9 +49,9 @@ struct BackendOptions {
 enum class Knob { strain_limit, stiffness, none };
 
 // Where a method's constraint forces take their direction from: each edge from its own ends in turn
-// (local), the gradient at the start of the step, at the current iterate and so at last at the
-// end of the step, or from springs.
-enum class Direction { none, local, start, current, springs };
+// (local), the gradient at the start of the step, at the current iterate, from springs, or the
+// gradient at the end of the step, which is solved for together with the multipliers.
+enum class Direction { none, local, start, current, springs, end };
 
 // What time the velocities of a state belong to. half_step: v^n = (x^n - x^{n-1}) / h is that of
 // the middle of the step before, as in symplectic and in backward Euler, hence in every velocity

@@ -194,7 +194,7 @@ Backend icd_row() {
           .contestant = true,
           .settings = setting_infos(Icd::fields()),
           .make = make_filter_stepper<Icd>,
-          .direction = Direction::current,
+          .direction = Direction::end,
           .citation = "Goldenthal et al. 2007",
           .label = "ICD (implicit constraint direction)",
           .slow_steps = true};

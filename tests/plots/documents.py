@@ -104,7 +104,8 @@ def step_sweep(scene: str = "chain", residuals_of: tuple[str, ...] = ("fast_proj
 
 
 def stability() -> Json:
-    cells = [{"row": row, "case": case, "solver": solver, "outcome": outcome, "as_expected": expected, "energy_gain": gain}
+    cells = [{"row": row, "case": case, "solver": solver, "outcome": outcome, "as_expected": expected, "energy_gain": gain,
+              "admitted_beside": "refused" if case == "whip 1" else None}
              for row, case, solver, outcome, expected, gain in (
                  ("Q1", "Q1", "fast_projection", "survived", True, 0.0), ("Q1", "Q1", "shake", "refused", True, 0.6),
                  ("whip", "whip 1", "shake", "survived", True, None), ("whip", "whip 2", "shake", "diverged", False, None))]

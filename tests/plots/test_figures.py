@@ -224,6 +224,7 @@ def test_matrix_of_hard_cases() -> None:
     assert frames["S1 D1 !"].get_edgecolor() == to_rgba("black") and frames["S1 D1 !"].get_linewidth() == 2
     assert frames["R  E0.6"].get_linewidth() < 1
     assert "1 outcomes are not as their cases expect" in words_of(figure) and "D = diverged" in words_of(figure)
+    assert "3 of 4 admit one outcome only, 1 two" in words_of(figure)
 
 
 def test_outcomes_are_those_of_the_legend() -> None:

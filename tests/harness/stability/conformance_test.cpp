@@ -189,12 +189,21 @@ TEST_F(BrokenSolvers, AreToldWhereToLook) {
 // is impossible must be refused.
 TEST_F(BrokenSolvers, StrangersMayRefuseInHardCases) {
   using harness::Outcome;
-  const harness::Expectation survives{{}, {Outcome::survived}, ""},
-      refuses{{}, {Outcome::refused}, ""};
-  EXPECT_EQ(harness::allowed_outcomes(survives, "fast_projection"), survives.allowed);
-  EXPECT_EQ(harness::allowed_outcomes(survives, "sound"),
-            (std::set<Outcome>{Outcome::survived, Outcome::refused, Outcome::timeout}));
-  EXPECT_EQ(harness::allowed_outcomes(refuses, "sound"), refuses.allowed);
+  const harness::Expectation survives{{}, Outcome::survived, ""}, refuses{{}, Outcome::refused, ""};
+  const auto ends = [](const harness::Expectation& e, const char* solver, Outcome outcome) {
+    harness::TrialResult result;
+    result.fixed = result.outcome = outcome;
+    return harness::acceptable(e, solver, result);
+  };
+  for (const char* solver : {"fast_projection", "sound"}) {
+    const bool stranger = solver == std::string("sound");
+    EXPECT_TRUE(ends(survives, solver, Outcome::survived)) << solver;
+    EXPECT_EQ(ends(survives, solver, Outcome::refused), stranger) << solver;
+    EXPECT_EQ(ends(survives, solver, Outcome::timeout), stranger) << solver;
+    EXPECT_FALSE(ends(survives, solver, Outcome::wrong)) << solver;
+    EXPECT_TRUE(ends(refuses, solver, Outcome::refused)) << solver;
+    EXPECT_FALSE(ends(refuses, solver, Outcome::survived)) << solver;
+  }
 }
 
 TEST_F(BrokenSolvers, CannotTakeANameOrBringHalfARow) {

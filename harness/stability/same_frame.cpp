@@ -1,0 +1,86 @@
+#include "harness/stability/same_frame.h"
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "harness/base/text.h"
+#include "harness/stability/case_parts.h"
+#include "inextensible/registry.h"
+
+namespace harness {
+namespace {
+
+using inextensible::State;
+using inextensible::Stepper;
+
+// Every step until shortly after first contact, which is early, then every tenth.
+constexpr double densely_until = 0.05;  // s
+constexpr int sample_every = 10;
+
+ShapeStatistics apart(const ShapeStatistics& a, const ShapeStatistics& b) {
+  return {std::abs(a.potential_energy - b.potential_energy),
+          std::abs(a.corner_height - b.corner_height), std::abs(a.shadow - b.shadow)};
+}
+
+FrameDistance distance(const Scene& scene, const State& a, const State& b) {
+  return {rms_distance(scene, a.x, b.x), max_distance(scene, a.x, b.x),
+          apart(shape_statistics(scene, a.x), shape_statistics(scene, b.x))};
+}
+
+}  // namespace
+
+std::string SameFrameScene::name() const {
+  return "drape " + std::to_string(side) + " x " + std::to_string(side) + ", strain limit " +
+         number_text(strain_limit);
+}
+
+std::vector<SameFrameScene> same_frame_scenes() {
+  std::vector<SameFrameScene> scenes;
+  for (const int side : {21, 31}) {
+    for (const double limit : {0.01, 0.001}) scenes.push_back({side, limit, 1.0 / 200, 1e-10});
+  }
+  return scenes;
+}
+
+SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
+  const Scene scene = case_parts::scene_of("drape", {{"n", wanted.side}});
+  SameFrame found;
+  found.scene = wanted;
+  struct Run {
+    const char* solver;
+    std::unique_ptr<Stepper> stepper;
+    State state;
+  };
+  std::array<Run, 3> runs;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    Run& run = runs[i];
+    run.solver = i == 1 ? "icd" : "fast_projection";
+    run.stepper =
+        inextensible::make_stepper(run.solver, scene.problem, {wanted.strain_limit, seed, {}});
+    run.state = scene.start;
+  }
+  std::mt19937_64 random(seed);
+  case_parts::add_noise(runs[2].state.x, scene.problem->pinned(), wanted.moved * scene.size,
+                        random);
+  const long steps = std::lround(scene.duration / wanted.step);
+  for (long i = 1; i <= steps; ++i) {
+    for (Run& run : runs) {
+      const auto result = run.stepper->advance(run.state, wanted.step);
+      if (result) continue;
+      found.stopped = std::string(run.solver) + " at step " + std::to_string(i) + ": " +
+                      to_string(result.status) + ", " + result.detail;
+      return found;
+    }
+    const double time = static_cast<double>(i) * wanted.step;
+    if (std::isnan(found.first_contact) && runs[0].stepper->filtered_positions() != runs[0].state.x)
+      found.first_contact = time;
+    if (time > densely_until && i % sample_every != 0) continue;
+    found.times.push_back(time);
+    found.icd.push_back(distance(scene, runs[0].state, runs[1].state));
+    found.moved.push_back(distance(scene, runs[0].state, runs[2].state));
+  }
+  return found;
+}
+
+}  // namespace harness

@@ -1,0 +1,44 @@
+// Figure 6 of the paper by direct comparison (claim C8): one drape at one step by fast projection,
+// by ICD, and by fast projection from a start that was moved by next to nothing, which tells how
+// far apart runs come that should be the same.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/judge/reference.h"
+#include "harness/points/point.h"
+
+namespace harness {
+
+struct SameFrameScene {
+  int side;             // vertices along the cloth
+  double strain_limit;  // of both solvers
+  double step;          // s
+  double moved;  // of the start's vertices in each coordinate, over the scene's size, at most
+
+  std::string name() const;
+};
+std::vector<SameFrameScene> same_frame_scenes();
+
+// How far two frames are apart. RMS and largest distance over the scene's size; of the shapes,
+// |difference|.
+struct FrameDistance {
+  double rms = 0, largest = 0;
+  ShapeStatistics shape;
+};
+
+struct SameFrame {
+  SameFrameScene scene;
+  double first_contact = unknown;  // s, the first step's end at which the sphere moved a vertex, in
+                                   // the run of fast projection
+  std::vector<double> times;       // s
+  std::vector<FrameDistance> icd;  // from fast projection to ICD
+  std::vector<FrameDistance> moved;  // to fast projection from the moved start
+  std::string stopped;               // empty: all three ran to the end
+};
+
+SameFrame same_frame(const SameFrameScene& scene, std::uint64_t seed);
+
+}  // namespace harness

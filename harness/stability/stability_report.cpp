@@ -1,0 +1,280 @@
+// What a stability sweep prints, and the document it leaves.
+#include <algorithm>
+#include <iomanip>
+#include <map>
+#include <sstream>
+
+#include "harness/base/text.h"
+#include "harness/points/point_json.h"
+#include "harness/points/result_file.h"
+#include "harness/points/schema.h"
+#include "harness/stability/stability.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+
+constexpr double told_energy_gain = 0.05;
+
+char letter(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::survived:
+      return 'S';
+    case Outcome::survived_smaller:
+      return 's';
+    case Outcome::refused:
+      return 'R';
+    case Outcome::diverged:
+      return 'D';
+    case Outcome::wrong:
+      return 'W';
+    case Outcome::timeout:
+      return 'T';
+    case Outcome::crashed:
+      return 'C';
+  }
+  return '?';
+}
+
+// "S", or "S6 R2" where a row's cases differ; ! where one was not expected.
+std::string cell_text(const std::vector<const StabilityCell*>& cells) {
+  std::map<char, int> counts;
+  bool expected = true;
+  double gain = 0;
+  for (const StabilityCell* cell : cells) {
+    if (cell->result.energy_gain > gain) gain = cell->result.energy_gain;  // false on NaN
+    ++counts[letter(cell->result.outcome)];
+    expected = expected && cell->expected;
+  }
+  std::string text;
+  for (const char c : std::string("SsRTDWC")) {
+    const auto place = counts.find(c);
+    if (place == counts.end()) continue;
+    if (!text.empty()) text += ' ';
+    text += c;
+    if (counts.size() > 1) text += std::to_string(place->second);
+  }
+  if (gain > told_energy_gain) {
+    std::ostringstream energy;
+    energy << " E" << std::setprecision(2) << gain;
+    text += energy.str();
+  }
+  return text + (expected ? "" : " !");
+}
+
+// Keys in order of first appearance.
+template <class Items, class Key>
+std::vector<std::string> in_order(const Items& items, Key key) {
+  std::vector<std::string> keys;
+  for (const auto& item : items) {
+    if (std::find(keys.begin(), keys.end(), key(item)) == keys.end()) keys.push_back(key(item));
+  }
+  return keys;
+}
+
+void print_same_frames(std::ostream& out, const std::vector<SameFrame>& frames) {
+  if (frames.empty()) return;
+  out << "\nthe same frame, RMS distance over the scene's size from fast projection: to ICD, to "
+         "itself from a start moved by 1e-10\n";
+  for (const SameFrame& f : frames) {
+    out << "  " << f.scene.name() << ", first contact at " << number_text(f.first_contact, 3)
+        << " s";
+    for (std::size_t i = 0; i < f.times.size(); ++i) {
+      if (i + 1 == f.times.size() || f.times[i] == f.first_contact)
+        out << "; " << number_text(f.times[i], 3) << " s: " << number_text(f.icd[i].rms, 2) << ", "
+            << number_text(f.moved[i].rms, 2);
+    }
+    out << (f.stopped.empty() ? "" : "; stopped: " + f.stopped) << '\n';
+  }
+}
+
+void print_expectations(std::ostream& out, const StabilityOutcome& outcome) {
+  const ExpectationCounts c = outcome.counts();
+  out << "\n"
+      << c.cells << " cells: " << c.strict << " with one expected outcome, " << c.two_admitted
+      << " that admit two; not as expected: " << c.not_as_expected << ", of them "
+      << c.new_differences << " not known\n";
+  for (const auto& cell : outcome.cells) {
+    if (cell.expected) continue;
+    out << (cell.known ? "  known: " : "  NEW: ") << cell.hard_case->name << ", " << cell.solver
+        << ": " << to_string(cell.result.outcome);
+    if (cell.result.fixed != cell.result.outcome)
+      out << " (" << to_string(cell.result.fixed) << ")";
+    out << ", expected " << to_string(cell.expectation->outcome) << "; " << cell.result.detail;
+    if (cell.known) out << "\n    " << cell.known->reason << "; " << cell.known->mends;
+    out << '\n';
+  }
+}
+
+json known_json(const StabilityOutcome& outcome) {
+  json list = json::array();
+  for (const KnownDifference& known : known_differences()) {
+    json seen = nullptr;  // not run
+    for (const auto& cell : outcome.cells) {
+      if (cell.hard_case->name == known.hard_case && cell.solver == known.solver)
+        seen = cell.known == &known;
+    }
+    list.push_back({{"case", known.hard_case},
+                    {"solver", known.solver},
+                    {"at_fixed_step", to_string(known.fixed)},
+                    {"outcome", to_string(known.outcome)},
+                    {"reason", known.reason},
+                    {"mends", known.mends},
+                    {"seen", seen}});
+  }
+  return list;
+}
+
+json distances_json(const std::vector<FrameDistance>& list) {
+  json rms = json::array(), largest = json::array(), energy = json::array(), height = json::array(),
+       shadow = json::array();
+  for (const FrameDistance& d : list) {
+    rms.push_back(d.rms);
+    largest.push_back(d.largest);
+    energy.push_back(d.shape.potential_energy);
+    height.push_back(d.shape.corner_height);
+    shadow.push_back(d.shape.shadow);
+  }
+  return {{"rms", rms},
+          {"largest", largest},
+          {"potential_energy", energy},
+          {"corner_height", height},
+          {"shadow", shadow}};
+}
+
+json same_frames_json(const std::vector<SameFrame>& frames) {
+  json list = json::array();
+  for (const SameFrame& f : frames) {
+    list.push_back({{"scene", f.scene.name()},
+                    {"side", f.scene.side},
+                    {"strain_limit", f.scene.strain_limit},
+                    {"step", f.scene.step},
+                    {"start_moved_by", f.scene.moved},
+                    {"first_contact", number(f.first_contact)},
+                    {"times", f.times},
+                    {"icd", distances_json(f.icd)},
+                    {"moved_start", distances_json(f.moved)},
+                    {"stopped", f.stopped}});
+  }
+  return list;
+}
+
+json counts_json(const ExpectationCounts& c) {
+  return {{"cells", c.cells},
+          {"strict", c.strict},
+          {"two_admitted", c.two_admitted},
+          {"not_as_expected", c.not_as_expected},
+          {"new_differences", c.new_differences}};
+}
+
+}  // namespace
+
+void print_stability(std::ostream& out, const StabilityOutcome& outcome) {
+  constexpr int row_width = 26, cell_width = 17;
+  const auto table = [&](const std::string& title, const std::vector<std::string>& rows,
+                         const std::vector<std::string>& columns, auto text) {
+    if (rows.empty()) return;
+    out << '\n' << title << '\n' << std::left << std::setw(row_width) << "";
+    for (const auto& column : columns)
+      out << std::setw(std::max(cell_width, int(column.size()) + 2)) << column;
+    out << '\n';
+    for (const auto& row : rows) {
+      out << std::setw(row_width) << row;
+      for (const auto& column : columns)
+        out << std::setw(std::max(cell_width, int(column.size()) + 2)) << text(row, column);
+      out << '\n';
+    }
+  };
+  table(
+      "S survived, s survived with smaller steps, R refused cleanly, T timed out, D diverged, W "
+      "wrong, E energy gained (over its scale), ! not as expected",
+      in_order(outcome.cells, [](const auto& c) { return c.hard_case->row; }),
+      in_order(outcome.cells, [](const auto& c) { return c.solver; }),
+      [&](const std::string& row, const std::string& solver) {
+        std::vector<const StabilityCell*> cells;
+        for (const auto& cell : outcome.cells) {
+          if (cell.hard_case->row == row && cell.solver == solver) cells.push_back(&cell);
+        }
+        return cell_text(cells);
+      });
+  table("largest step (s) at which one second is survived, strain limit 1 % (springs: without one)",
+        in_order(outcome.largest_steps, [](const auto& s) { return s.scene; }),
+        in_order(outcome.largest_steps, [](const auto& s) { return s.solver; }),
+        [&](const std::string& scene, const std::string& solver) -> std::string {
+          for (const auto& s : outcome.largest_steps) {
+            if (s.scene == scene && s.solver == solver) return step_text(s.step);
+          }
+          return "";
+        });
+  if (!outcome.freedom.empty()) {
+    out << "\ndegrees of freedom left (3 per vertex less the rank of J)\n";
+    for (const auto& f : outcome.freedom) {
+      out << "  " << std::setw(10) << f.mesh << f.vertices << " vertices, " << f.constraints
+          << " constraints, rank " << f.rank << ": " << f.degrees_of_freedom << " left, "
+          << std::setprecision(3) << static_cast<double>(f.degrees_of_freedom) / f.vertices
+          << " a vertex\n";
+    }
+  }
+  print_same_frames(out, outcome.same_frames);
+  print_expectations(out, outcome);
+}
+
+json stability_document(json context, const StabilityOutcome& outcome, std::uint64_t seed,
+                        const std::vector<std::string>& command) {
+  context["command"] = command;
+  context["seed"] = seed;
+  json matrix = json::array(), steps = json::array(), freedom = json::array();
+  for (const auto& cell : outcome.cells) {
+    const TrialResult& r = cell.result;
+    const auto& other = cell.expectation->other;
+    matrix.push_back({{"row", cell.hard_case->row},
+                      {"case", cell.hard_case->name},
+                      {"what", cell.hard_case->what},
+                      {"solver", cell.solver},
+                      {"outcome", to_string(r.outcome)},
+                      {"at_fixed_step", to_string(r.fixed)},
+                      {"expected_at_fixed_step", to_string(cell.expectation->outcome)},
+                      {"why", cell.expectation->why},
+                      {"admitted_beside", other ? json(to_string(other->outcome)) : json()},
+                      {"why_admitted", other ? json(other->why) : json()},
+                      {"as_expected", cell.expected},
+                      {"known_difference", cell.known != nullptr},
+                      {"detail", r.detail},
+                      {"smallest_step", number(r.smallest_step)},
+                      {"max_strain", number(r.max_strain)},
+                      {"strain_first_second", number(r.strain_first_second)},
+                      {"strain_last_second", number(r.strain_last_second)},
+                      {"energy_gain", number(r.energy_gain)},
+                      {"momentum_defect", number(r.momentum_defect)},
+                      {"reciprocal_condition", number(r.reciprocal_condition)},
+                      {"seconds", r.seconds},
+                      {"work", to_json(r.work)}});
+  }
+  for (const auto& s : outcome.largest_steps) {
+    steps.push_back({{"scene", s.scene},
+                     {"solver", s.solver},
+                     {"step", number(s.step)},
+                     {"failing_step", number(s.failing)},
+                     {"detail", s.detail}});
+  }
+  for (const auto& f : outcome.freedom) {
+    freedom.push_back({{"mesh", f.mesh},
+                       {"vertices", f.vertices},
+                       {"constraints", f.constraints},
+                       {"rank", f.rank},
+                       {"degrees_of_freedom", f.degrees_of_freedom}});
+  }
+  return {{"schema", "inextensible-stability/1"},
+          {"complete", outcome.complete},
+          {"context", context},
+          {"legend", legend()},
+          {"counts", counts_json(outcome.counts())},
+          {"matrix", matrix},
+          {"known_differences", known_json(outcome)},
+          {"largest_steps", steps},
+          {"degrees_of_freedom", freedom},
+          {"same_frame", same_frames_json(outcome.same_frames)}};
+}
+
+}  // namespace harness
