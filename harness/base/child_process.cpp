@@ -127,7 +127,10 @@ bool interrupted_soon(const ChildLimits& limits) {
 
 }  // namespace
 
-void Heartbeat::restart() { begin = now(); }
+void Heartbeat::restart(int new_part) {
+  begin = now();
+  part = new_part;
+}
 
 std::string signal_text(int signal) {
   const char* name = sigabbrev_np(signal);
@@ -172,6 +175,7 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
   outcome.peak_rss_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
   outcome.step = heartbeat->step;
   outcome.time = heartbeat->time;
+  outcome.part = heartbeat->part;
   outcome.out_of_memory = out_of_memory_kills() > kills;
   outcome.code = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
   if (outcome.end != ChildOutcome::End::returned) return outcome;

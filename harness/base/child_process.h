@@ -14,8 +14,9 @@ struct Heartbeat {
   std::atomic<double> begin{0};  // s, steady clock: when the part began that the time-out is for
   std::atomic<std::int64_t> step{-1};
   std::atomic<double> time{0};  // s, simulated
+  std::atomic<int> part{0};     // of the work, in its own numbers
 
-  void restart();  // begin = now
+  void restart(int new_part = 0);  // begin = now
 };
 
 struct ChildLimits {
@@ -33,6 +34,7 @@ struct ChildOutcome {
   bool out_of_memory = false;  // the kernel's out-of-memory killer was at work meanwhile
   std::int64_t step = -1;      // the heartbeat's last
   double time = 0;
+  int part = 0;
 };
 
 // Runs work in a forked child. One that outlives its time-out (with a little grace: work that can,

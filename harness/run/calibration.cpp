@@ -7,39 +7,35 @@
 #include <cmath>
 #include <memory>
 
+#include "harness/base/text.h"
+
 namespace harness {
 namespace {
 
 constexpr double close_enough = 0.85;  // of the limit
-constexpr int run_limit = 16;
-
-bool done(double f) { return f <= 0 && f >= std::log(close_enough); }
+// Between it and the limit, from the permitted side.
+const double aim = 0.5 * std::log(close_enough);
+// In decades; where a run was cut short, its strain would have been more.
+constexpr double least_stride_from_cut_short = 0.4;
 
 }  // namespace
 
 std::optional<double> Calibration::find(double guess) {
-  double soft = std::log10(guess), f_soft = excess(soft);
-  double stiff = soft, f_stiff = f_soft;
-  const double stride = 0.4;
-  for (int i = 0; f_soft <= 0 && i < 12 && !done(f_soft) && alive(); ++i) {
-    stiff = soft;
-    f_stiff = f_soft;
-    soft -= stride * (i + 1);
-    f_soft = excess(soft);
+  std::optional<double> soft, stiff;  // logarithms: too soft, stiff enough
+  double at = std::log10(guess);
+  for (int i = 1; alive() && !best_close(); ++i) {
+    const double f = excess(at);
+    (f > 0 ? soft : stiff) = at;
+    if (soft && stiff) break;
+    double stride = i * std::abs(f - aim) / std::log(10);
+    if (f >= std::log(cut_short)) stride = std::max(stride, i * least_stride_from_cut_short);
+    at += f > 0 ? stride : -stride;
   }
-  for (int i = 0; f_stiff > 0 && i < 12 && alive(); ++i) {
-    soft = stiff;
-    f_soft = f_stiff;
-    stiff += stride * (i + 1);
-    f_stiff = excess(stiff);
-  }
-  if (alive() && !best_close() && f_soft > 0 && f_stiff <= 0) brent(soft, stiff);
-  return best_;
+  if (alive() && !best_close() && soft && stiff) brent(*soft, *stiff);
+  return timed_out_ ? std::nullopt : best_;
 }
 
 bool Calibration::best_close() const { return best_ && best_excess_ >= std::log(close_enough); }
-
-bool Calibration::alive() const { return runs_ < run_limit && !runner_.out_of_time(); }
 
 // log(max strain / limit); a run that fails counts as far above.
 double Calibration::excess(double log_stiffness) {
@@ -49,20 +45,25 @@ double Calibration::excess(double log_stiffness) {
 }
 
 double Calibration::evaluate(double log_stiffness) {
-  const double limit = runner_.spec().strain_limit;
-  inextensible::Settings settings = runner_.spec().settings;
-  settings["stiffness"] = std::pow(10, log_stiffness);
+  const double stiffness = std::pow(10, log_stiffness);
   ++runs_;
-  const Run run = runner_.run(settings, true, 2 * limit);
-  const bool finished = run.status == PointStatus::ok || run.status == PointStatus::strain_missed;
-  if (!finished) {
-    status_ = run.status;
-    detail_ = "calibration, " + run.detail;
-    return std::log(2.0);
+  const Trial trial = run_(stiffness);
+  if (trial.status == PointStatus::timeout) {
+    timed_out_ = true;
+    status_ = PointStatus::skipped;
+    detail_ = "timed out while calibrating: run " + std::to_string(runs_) + ", stiffness " +
+              number_text(stiffness) + " N, strain so far " + number_text(trial.strain) + ", " +
+              number_text(trial.seconds) + " s of stepping; " + trial.detail;
+    return std::log(cut_short);
   }
-  const double f = std::log(std::max(run.measures.max_strain, 1e-300) / limit);
-  if (f <= 0 && (!best_ || log_stiffness < std::log10(*best_))) {
-    best_ = std::pow(10, log_stiffness);
+  if (trial.status != PointStatus::ok && trial.status != PointStatus::strain_missed) {
+    status_ = trial.status;
+    detail_ = "calibration, " + trial.detail;
+    return std::log(cut_short);
+  }
+  const double f = std::log(std::max(trial.strain, 1e-300) / limit_);
+  if (f <= 0 && (!best_ || stiffness < *best_)) {
+    best_ = stiffness;
     best_excess_ = f;
   }
   return f;
@@ -72,12 +73,8 @@ void Calibration::brent(double soft, double stiff) {
   gsl_set_error_handler_off();
   const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
       gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
-  // Aims at the middle of the band that is close enough, from the permitted side.
-  gsl_function function{[](double x, void* self) {
-                          return static_cast<Calibration*>(self)->excess(x) -
-                                 0.5 * std::log(close_enough);
-                        },
-                        this};
+  gsl_function function{
+      [](double x, void* self) { return static_cast<Calibration*>(self)->excess(x) - aim; }, this};
   if (gsl_root_fsolver_set(solver.get(), &function, soft, stiff) != GSL_SUCCESS) return;
   while (alive() && !best_close()) {
     if (gsl_root_fsolver_iterate(solver.get()) != GSL_SUCCESS) return;

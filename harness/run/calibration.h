@@ -1,23 +1,36 @@
 // The search for the stiffness of springs that keeps a strain limit.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 
-#include "harness/run/point_runner.h"
+#include "harness/points/status.h"
 
 namespace harness {
 
-// Finds the stiffness EA at which the run's own maximum strain just meets the limit: Brent's method
-// (GSL) on log strain / limit over log EA, bracketed from a guess. Runs far above the limit are cut
-// short at twice the limit.
+// Finds the stiffness EA at which the run's own maximum strain just meets the limit. Strain is
+// tension over stiffness, and tension hardly depends on stiffness: that law leads from a guess to a
+// bracket, and Brent's method (GSL) on log strain / limit over log EA does the rest.
 class Calibration {
  public:
-  explicit Calibration(const PointRunner& runner) : runner_(runner) {}
+  struct Trial {
+    PointStatus status = PointStatus::ok;  // strain_missed: beyond the limit
+    double strain = 0;                     // the largest, up to where the run ended
+    double seconds = 0;
+    std::string detail;
+  };
+  // A run with this stiffness, N. It may be cut short at cut_short times the limit.
+  using Run = std::function<Trial(double stiffness)>;
+  static constexpr double cut_short = 2;
+  static constexpr int run_limit = 16;
+
+  Calibration(double strain_limit, Run run) : limit_(strain_limit), run_(std::move(run)) {}
 
   // The softest stiffness tried that met the limit; none if there is none (status() then says why).
-  // guess: EA, N. Throws Interrupted.
+  // A run that times out says nothing of its strain: it ends the search, without a stiffness and
+  // with the status `skipped`. guess: EA, N.
   std::optional<double> find(double guess);
 
   int runs() const { return runs_; }
@@ -26,13 +39,15 @@ class Calibration {
 
  private:
   bool best_close() const;
-  bool alive() const;
+  bool alive() const { return runs_ < run_limit && !timed_out_; }
   double excess(double log_stiffness);
   double evaluate(double log_stiffness);
   void brent(double soft, double stiff);
 
-  const PointRunner& runner_;
+  double limit_;
+  Run run_;
   int runs_ = 0;
+  bool timed_out_ = false;
   std::map<double, double> known_;  // Brent's method asks for the bracket's ends again
   std::optional<double> best_;
   double best_excess_ = 0;

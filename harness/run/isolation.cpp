@@ -29,8 +29,10 @@ std::string place(const ChildOutcome& outcome) {
 // Status and detail of a point whose child did not come back.
 void explain(const ChildOutcome& outcome, const RunLimits& limits, PointResult& point) {
   if (outcome.end == End::timed_out) {
-    point.status = PointStatus::timeout;
-    point.detail = "longer than " + number_text(limits.timeout) + " s, stuck " + place(outcome) +
+    const bool calibrating = outcome.part == static_cast<int>(RunPart::calibration);
+    point.status = calibrating ? PointStatus::skipped : PointStatus::timeout;
+    point.detail = std::string(calibrating ? "timed out while calibrating: " : "") +
+                   "longer than " + number_text(limits.timeout) + " s, stuck " + place(outcome) +
                    "; ended with " + signal_text(outcome.code);
   } else {
     const bool starved = outcome.end == End::killed && outcome.out_of_memory;

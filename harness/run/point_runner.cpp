@@ -168,12 +168,18 @@ double PointRunner::bare_seconds_per_step() const {
   return since(before) / steps_;
 }
 
-double PointRunner::force_scale() const { return energy_scale(scene_) / scene_.size; }
-
-void PointRunner::restart_clock() {
-  start_ = Clock::now();
-  if (limits_.heartbeat) limits_.heartbeat->restart();
+double PointRunner::force_of_a_strand() const {
+  double length = 0;
+  for (const double l : scene_.problem->rest_length()) length += l;
+  const double strands = std::max(1.0, std::round(length / scene_.size));
+  return energy_scale(scene_) / scene_.size / strands;
 }
+
+void PointRunner::restart_clock(RunPart part) {
+  start_ = Clock::now();
+  if (limits_.heartbeat) limits_.heartbeat->restart(static_cast<int>(part));
+}
+
 // Where this run is, for the process that watches over it. In whatever order it sees that.
 void PointRunner::beat(int step, double time) const {
   if (!limits_.heartbeat) return;

@@ -39,14 +39,16 @@ class PointRunner {
   // The same steps with nothing around them.
   double bare_seconds_per_step() const;
 
-  void restart_clock();
-  bool out_of_time() const { return since(start_) > limits_.timeout; }
+  // For the next run.
+  void restart_clock(RunPart part);
   const inextensible::Backend& backend() const { return backend_; }
   const PointSpec& spec() const { return spec_; }
   int steps() const { return steps_; }
   double seconds_per_step(const Run& run) const { return run.seconds / steps_; }
-  // N, of the forces in this scene: the weight, and for what flies without one m v^2 / (2 size).
-  double force_scale() const;
+  // N, of the forces in this scene: the weight, and for what flies without one m v^2 / (2 size);
+  // shared by as many strands as there are lengths of the scene in its edges, one in a chain, two
+  // for each row of a cloth.
+  double force_of_a_strand() const;
 
  private:
   // The verdict on a run that reached its end: what kept it from being one of this motion.

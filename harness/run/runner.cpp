@@ -15,6 +15,10 @@ namespace {
 // A shorter judged step is timed again without the judge.
 constexpr double shortest_judged_step = 5e-5;  // s: four phases and the step itself are timed
 
+// What a strand of springs bears, in what falls to it of the forces of the scene: strain = tension
+// / EA. On a falling chain the tension is a few times its weight.
+constexpr double tension_over_force = 5;
+
 // Peak resident size of this process since the last reset; 0 where the system does not tell.
 void reset_peak_rss() { std::ofstream("/proc/self/clear_refs") << 5; }
 double peak_rss_bytes() {
@@ -59,9 +63,14 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
     inextensible::Settings settings = spec.settings;
     if (runner.backend().knob == inextensible::Knob::stiffness && !settings.contains("stiffness")) {
       const auto begin = Clock::now();
-      Calibration calibration(runner);
-      // Strain = tension / EA, and a falling chain's tension is a few times its weight.
-      point.stiffness = calibration.find(guess.value_or(5 * runner.force_scale() / spec.strain_limit));
+      Calibration calibration(spec.strain_limit, [&](double stiffness) -> Calibration::Trial {
+        settings["stiffness"] = stiffness;
+        runner.restart_clock(RunPart::calibration);  // every run has the whole time-out to itself
+        const Run run = runner.run(settings, true, Calibration::cut_short * spec.strain_limit);
+        return {run.status, run.measures.max_strain, run.seconds, run.detail};
+      });
+      point.stiffness = calibration.find(
+          guess.value_or(tension_over_force * runner.force_of_a_strand() / spec.strain_limit));
       point.calibration_seconds = since(begin);
       point.calibration_runs = calibration.runs();
       if (!point.stiffness) {
@@ -71,7 +80,7 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
       }
       settings["stiffness"] = *point.stiffness;
     }
-    runner.restart_clock();  // the measured run has the whole time-out to itself
+    runner.restart_clock(RunPart::measured);
     Run run = runner.run(settings, true, diverged_strain);
     fill(point, run);
     // Iterates are kept while the solver's clock runs, so that an observed run's time is not its

@@ -12,8 +12,11 @@ namespace harness {
 
 struct Heartbeat;
 
+// What a point is at; a heartbeat's part.
+enum class RunPart { measured, calibration };
+
 struct RunLimits {
-  double timeout = 60;      // s of wall time, for calibration and for the measured run each
+  double timeout = 60;      // s of wall time, for each run of a calibration and the measured one
   double hopeless = 1e300;  // s of stepping after which a run cannot be the best any more
   std::function<bool()> interrupted = nullptr;           // asked after every step
   std::shared_ptr<ReferenceShelf> references = nullptr;  // null: no errors against references

@@ -17,7 +17,7 @@ std::optional<std::size_t> StepSearch::find_among_all() {
   for (std::size_t rung = 0; rung < rungs_ && timeouts < 2; ++rung) {
     const PointResult& point = run_(rung);
     consider(rung, point);
-    timeouts = point.status == PointStatus::timeout ? timeouts + 1 : 0;
+    timeouts = gave_up(point) ? timeouts + 1 : 0;
   }
   return best_;
 }
@@ -36,6 +36,11 @@ double StepSearch::error(const PointResult& point) const {
 
 bool StepSearch::permissible(const PointResult& point) const {
   return point.ok() && (std::isinf(max_error_) || error(point) <= max_error_);
+}
+
+// A point is skipped where its calibration timed out.
+bool StepSearch::gave_up(const PointResult& point) {
+  return point.status == PointStatus::timeout || point.status == PointStatus::skipped;
 }
 
 bool StepSearch::consider(std::size_t rung, const PointResult& point) {
@@ -58,7 +63,7 @@ void StepSearch::walk(std::size_t from, int direction) {
     } else if (best_ || direction < 0) {
       ++rises;
     }
-    if (point.status == PointStatus::timeout) {
+    if (gave_up(point)) {
       timed_out_ = true;
       ++timeouts;
     }

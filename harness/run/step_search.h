@@ -38,6 +38,7 @@ class StepSearch {
  private:
   double error(const PointResult& point) const;
   bool permissible(const PointResult& point) const;
+  static bool gave_up(const PointResult& point);  // for want of time
   bool consider(std::size_t rung, const PointResult& point);
   void walk(std::size_t from, int direction);
 

@@ -8,6 +8,10 @@
 
 namespace inextensible {
 
+namespace chain {
+struct ChainBlock;
+}
+
 class ChainKkt final : public KktSolver {
  public:
   // Throws std::invalid_argument unless fits(problem).
@@ -34,7 +38,6 @@ class ChainKkt final : public KktSolver {
     bool next_free;  // the next vertex is the next link's
     double mass;     // over the mean mass
   };
-  struct Block;
 
   void add_run(const Problem& problem, const std::vector<int>& edge_after, int begin, int end);
   bool eliminate(const Eigen::Matrix3Xd& u);
@@ -45,7 +48,7 @@ class ChainKkt final : public KktSolver {
   const Problem& problem_;
   const EdgeConstraints& edges_;
   std::vector<Link> links_;
-  std::vector<Block> blocks_;  // the factor, one a link
+  std::vector<chain::ChainBlock> blocks_;  // the factor, one a link
   int negative_pivots_ = 0;
   double smallest_pivot_ = 1, largest_pivot_ = 1;
   const Eigen::Matrix3Xd* u_ = nullptr;  // of the last factor(), as is mu_

@@ -1,0 +1,111 @@
+// The search for a stiffness, with runs that are formulas.
+#include "harness/run/calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace harness {
+namespace {
+
+using Trial = Calibration::Trial;
+
+constexpr double limit = 0.01;
+
+struct Outcome {
+  std::optional<double> stiffness;
+  std::vector<double> tried;
+  PointStatus status;
+  std::string detail;
+};
+
+// strain(stiffness), in runs that are cut short as real ones are.
+template <class Strain>
+Outcome search(double guess, Strain strain) {
+  std::vector<double> tried;
+  Calibration calibration(limit, [&](double stiffness) -> Trial {
+    tried.push_back(stiffness);
+    const double reached = std::min(strain(stiffness), 1.05 * Calibration::cut_short * limit);
+    return {reached <= limit ? PointStatus::ok : PointStatus::strain_missed, reached, 1, "formula"};
+  });
+  const auto found = calibration.find(guess);
+  EXPECT_EQ(calibration.runs(), static_cast<int>(tried.size()));
+  EXPECT_LE(calibration.runs(), Calibration::run_limit);
+  return {found, tried, calibration.status(), calibration.detail()};
+}
+
+// What a limit of 1 % asks for is 300 N.
+double tension_law(double stiffness) { return 3 / stiffness; }
+
+TEST(Calibration, TakesTwoRunsFromAboveWhereTensionIsConstant) {
+  for (const double guess : {400.0, 3000.0, 3e6}) {
+    const Outcome outcome = search(guess, tension_law);
+    ASSERT_TRUE(outcome.stiffness);
+    EXPECT_LE(tension_law(*outcome.stiffness), limit);
+    EXPECT_GE(tension_law(*outcome.stiffness), 0.85 * limit);
+    EXPECT_EQ(outcome.tried.size(), 2u) << guess;
+  }
+  EXPECT_EQ(search(320, tension_law).tried.size(), 1u);  // close enough already
+}
+
+// From below runs are cut short, and say little.
+TEST(Calibration, FindsItsWayFromBelow) {
+  for (const double guess : {290.0, 100.0, 10.0, 0.1}) {
+    const Outcome outcome = search(guess, tension_law);
+    ASSERT_TRUE(outcome.stiffness) << guess;
+    EXPECT_LE(tension_law(*outcome.stiffness), limit);
+    EXPECT_GE(tension_law(*outcome.stiffness), 0.85 * limit);
+    EXPECT_LE(outcome.tried.size(), 8u) << guess;
+  }
+}
+
+TEST(Calibration, FindsItsWayWhereTensionGrowsWithStiffness) {
+  const auto strain = [](double stiffness) {
+    return 0.3 * std::pow(stiffness, -0.5) * (1 + 0.05 * std::sin(7 * std::log(stiffness)));
+  };
+  for (const double guess : {1.0, 100.0, 1e4, 1e6}) {
+    const Outcome outcome = search(guess, strain);
+    ASSERT_TRUE(outcome.stiffness) << guess;
+    EXPECT_LE(strain(*outcome.stiffness), limit);
+    EXPECT_GE(strain(*outcome.stiffness), 0.85 * limit);
+  }
+}
+
+TEST(Calibration, GivesUpWhereNoStiffnessHelps) {
+  const Outcome outcome = search(100, [](double) { return 0.02; });
+  EXPECT_FALSE(outcome.stiffness);
+  EXPECT_EQ(outcome.status, PointStatus::strain_missed);
+}
+
+// A time-out is no strain: not "too soft", which would send the search to stiffer, slower springs.
+TEST(Calibration, EndsWithTheFirstRunThatTimesOut) {
+  for (const bool after_a_success : {false, true}) {
+    std::vector<double> tried;
+    Calibration calibration(limit, [&](double stiffness) -> Trial {
+      tried.push_back(stiffness);
+      if (after_a_success && tried.size() == 1) return {PointStatus::ok, 0.1 * limit, 1, ""};
+      return {PointStatus::timeout, 0.0035, 61.5, "longer than 60 s; stopped at t = 0.25 s"};
+    });
+    EXPECT_FALSE(calibration.find(1000));
+    EXPECT_EQ(tried.size(), after_a_success ? 2u : 1u);
+    EXPECT_EQ(calibration.status(), PointStatus::skipped);
+    for (const char* said :
+         {"timed out while calibrating", "0.0035", "61.5 s", "stopped at t = 0.25 s",
+          after_a_success ? "run 2" : "stiffness 1000 N"})
+      EXPECT_NE(calibration.detail().find(said), std::string::npos) << calibration.detail();
+  }
+}
+
+TEST(Calibration, SaysHowTheLastRunFailed) {
+  Calibration calibration(limit, [](double) -> Trial {
+    return {PointStatus::not_converged, 0.002, 1, "step 3: the Newton matrix is singular"};
+  });
+  EXPECT_FALSE(calibration.find(100));
+  EXPECT_EQ(calibration.status(), PointStatus::not_converged);
+  EXPECT_EQ(calibration.detail(), "calibration, step 3: the Newton matrix is singular");
+}
+
+}  // namespace
+}  // namespace harness
