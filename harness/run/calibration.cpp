@@ -18,6 +18,12 @@ const double aim = 0.5 * std::log(close_enough);
 // In decades; where a run was cut short, its strain would have been more.
 constexpr double least_stride_from_cut_short = 0.4;
 
+// Runs that came to their end. What else they did wrong is said of the measured run.
+bool strain_counts(PointStatus status) {
+  return status == PointStatus::ok || status == PointStatus::strain_missed ||
+         status == PointStatus::energy_gained || status == PointStatus::motion_lost;
+}
+
 }  // namespace
 
 std::optional<double> Calibration::find(double guess) {
@@ -56,7 +62,7 @@ double Calibration::evaluate(double log_stiffness) {
               number_text(trial.seconds) + " s of stepping; " + trial.detail;
     return std::log(cut_short);
   }
-  if (trial.status != PointStatus::ok && trial.status != PointStatus::strain_missed) {
+  if (!strain_counts(trial.status)) {
     status_ = trial.status;
     detail_ = "calibration, " + trial.detail;
     return std::log(cut_short);
