@@ -68,7 +68,7 @@ TEST_P(RandomCases, GiveAnHonestStepOrACleanRefusal) {
     const Trial trial = random_trial(random);
     const auto stepper =
         make_stepper(backend, trial.scene.problem, {trial.strain_limit, 1, impatient(backend)});
-    Witness witness(trial, limited);
+    Witness witness(trial, *find_backend(backend));
     TrialResult result;
     State state = trial.scene.start;
     for (int i = 0; i < 4; ++i) {
