@@ -108,7 +108,7 @@ assert cells["fast_projection"]["outcome"] == "survived"
 PYTHON
 
 # A step controller: one point a search, its rejections counted.
-"$BENCH_BINARY" --sweep strain --profile quick --scene chain --solver '^fast_projection$' --step adaptive --reps 1 \
+"$BENCH_BINARY" --sweep strain --profile quick --scene chain --solver '^fast_projection$' --step adaptive --filter "strain:0.0" --reps 1 \
   --no-plots --out "$PWD/adaptive.json" >/dev/null 2>&1 || fail "adaptive steps"
 /usr/bin/python3 - <<'PYTHON' || fail "the file of adaptive steps"
 import json

@@ -32,7 +32,7 @@ refused() {
 cat >suite.txt <<'JSON'
 {"name": "small", "reps": 1, "timeout": 60, "sweeps": [
   {"sweep": "strain", "scene": "chain", "solvers": ["jacobi", "gauss_seidel", "shake", "fast_projection"],
-   "limits": [0.1, 0.01, 0.001], "scene_parameters": {"n": 20},
+   "limits": [0.02, 0.01, 0.001], "scene_parameters": {"n": 20},
    "steps": {"coarsest": 0.005, "finest": 0.00125, "all": true}}]}
 JSON
 
