@@ -45,7 +45,8 @@ inline constexpr std::array point_statuses{
     PointStatusInfo{PointStatus::crashed, "crashed", "C", "ended its process"},
     PointStatusInfo{PointStatus::unsupported, "unsupported", "U",
                     "the solver does not take this problem"},
-    PointStatusInfo{PointStatus::skipped, "skipped", "K", "was not run, or timed out while calibrating"}};
+    PointStatusInfo{PointStatus::skipped, "skipped", "K",
+                    "was not run, or timed out while calibrating"}};
 static_assert([] {
   for (std::size_t i = 0; i < point_statuses.size(); ++i)
     if (static_cast<std::size_t>(point_statuses[i].status) != i) return false;

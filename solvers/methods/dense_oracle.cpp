@@ -34,7 +34,7 @@ DenseOracle::DenseOracle(const Problem& problem)
 }
 
 StepResult DenseOracle::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
-                                 WorkCounters& work) {
+                              WorkCounters& work) {
   const Eigen::Index n3 = 3 * x.cols(), m = edges_.count();
   const Positions x0 = x;
   Eigen::VectorXd mass(n3), mu = Eigen::VectorXd::Zero(m), c(m);
