@@ -34,7 +34,7 @@ int check(const std::string& solver, bool hard_cases, std::int64_t seed) {
     return std::count_if(findings.begin(), findings.end(),
                          [grade](const Finding& f) { return f.grade == grade; });
   };
-  std::cout << "verdict: " << solver << (conforms(findings) ? " conforms: " : " DOES NOT CONFORM: ")
+  std::cout << solver << (conforms(findings) ? " conforms: " : " does not conform: ")
             << count(Finding::Grade::pass) << " passed, " << count(Finding::Grade::fail)
             << " failed, " << count(Finding::Grade::not_applicable) << " not applicable"
             << std::endl;

@@ -6,6 +6,8 @@
 #include "harness/base/paths.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/sweep_options.h"
+#include "harness/judge/reference_file.h"
+#include "harness/judge/reference_routes.h"
 #include "harness/run/report.h"
 
 namespace harness {

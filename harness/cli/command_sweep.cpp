@@ -13,6 +13,7 @@
 #include "harness/base/timing_lock.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/sweep_command.h"
+#include "harness/judge/reference_file.h"
 #include "harness/points/context.h"
 #include "harness/points/noise.h"
 #include "harness/points/result_file.h"

@@ -6,6 +6,7 @@
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/cli/commands.h"
+#include "harness/judge/reference_file.h"
 
 namespace harness {
 

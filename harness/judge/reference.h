@@ -3,7 +3,6 @@
 // stored as JSON (schema inextensible-reference/1) and is never a contestant.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -51,25 +50,17 @@ double rms_distance(const Scene& scene, const inextensible::Positions& x,
 double max_distance(const Scene& scene, const inextensible::Positions& x,
                     const inextensible::Positions& y);
 
-// The file a reference of this scene is kept in: chain-n80.json, or with a hash of the parameters
-// that are not the defaults. Duration does not count.
-std::string reference_name(const std::string& scene, const SceneParameters& complete);
+constexpr double sample_interval = 0.04;  // s; every step of the usual ladders meets it
+std::vector<double> sample_times(double duration);
 
-nlohmann::json to_json(const Reference& reference);
-// What a result file says of a reference that its errors were measured against.
-nlohmann::json summary_of(const Reference& reference);
-// Throws UsageError, naming the file, for anything that is not a reference.
-Reference read_reference(const std::string& path);
+// The order of accuracy that a stepped route has by theory. Smooth motion lets a second-order
+// method have its own; kinks of contact leave none more than the first. Null: a scene of another
+// version.
+double expected_order(const SceneType* scene);
 
 // The motion of a scene that is known exactly, at the sample times. Null for other scenes.
 std::shared_ptr<const Reference> exact_reference(const std::string& scene,
                                                  const SceneParameters& complete);
-
-// Computes the reference of a scene by both routes. finest: the smallest step of step halving, s; 0
-// chooses by the scene. tell is called with a line now and then. Throws UsageError if a
-// route fails too early.
-Reference compute_reference(const std::string& scene, const SceneParameters& complete,
-                            double finest, const std::function<void(const std::string&)>& tell);
 
 // The references of a folder, read when they are asked for, and exact ones.
 class ReferenceShelf {

@@ -51,7 +51,7 @@ class PointRunner {
   double force_of_a_strand() const;
 
  private:
-  // The verdict on a run that reached its end: what kept it from being one of this motion.
+  // The status of a run that reached its end: what kept it from being one of this motion.
   void decide(const Judge& judge, Run& run) const;
   void beat(int step, double time) const;
 

@@ -35,16 +35,18 @@ Scene build_taut_row(const SceneParameters& p) {
 }  // namespace
 
 SceneType chain_scene() {
-  return {"chain",
-          "a straight horizontal chain, pinned at one end, released",
-          "n",
-          {{"n", 80, "vertices", 2, 10'000'000, true},
-           {"length", 1, "m", 0, 1e6},
-           {"mass", 1, "total, kg", 0, 1e6},
-           {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
-           {"duration", 1, "s", 0, 1e4}},
-          build_chain,
-          count_row};
+  SceneType row{"chain",
+                "a straight horizontal chain, pinned at one end, released",
+                "n",
+                {{"n", 80, "vertices", 2, 10'000'000, true},
+                 {"length", 1, "m", 0, 1e6},
+                 {"mass", 1, "total, kg", 0, 1e6},
+                 {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
+                 {"duration", 1, "s", 0, 1e4}},
+                build_chain,
+                count_row};
+  row.pendulum = true;
+  return row;
 }
 
 SceneType taut_row_scene() {

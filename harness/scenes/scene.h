@@ -61,6 +61,9 @@ struct SceneType {
   // Positions at a time (s) where the motion is known exactly: errors need no reference then.
   inextensible::Positions (*exact)(const SceneParameters& complete, double time) = nullptr;
   const char* like = "";  // the scene whose tuned settings it takes; empty: its own
+  // Straight from a pinned end, with nothing in its way: the links of a pendulum in a plane, whose
+  // smooth motion scenes/pendulum.h integrates in angles.
+  bool pendulum = false;
 
   const char* kind() const { return *like ? like : name; }
 };

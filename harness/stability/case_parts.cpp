@@ -57,8 +57,7 @@ Trial trial_of(Scene scene, double step, int steps, double strain_limit) {
   trial.step = step;
   trial.steps = steps;
   trial.strain_limit = strain_limit;
-  trial.settings["implicit_springs"] = {
-      {"stiffness", 20 * g * problem.total_mass() / strain_limit}};
+  trial.stiffness = 20 * g * problem.total_mass() / strain_limit;
   trial.scene = std::move(scene);
   return trial;
 }

@@ -22,7 +22,7 @@ Trial one_step(Mesh mesh, const Positions& candidate) {
   mesh.parts.gravity.setZero();
   mesh.start.v = (candidate - mesh.start.x) / q_step;
   Trial trial = trial_of(std::move(mesh), q_step, 1, q_limit);
-  trial.settings["implicit_springs"] = {{"stiffness", 1e6}};
+  trial.stiffness = 1e6;
   trial.energy_tolerance = closest_point_energy;
   trial.slack = std::sqrt(2 * q_limit);  // sideways, of an edge pulled taut
   return trial;

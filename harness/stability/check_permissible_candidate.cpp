@@ -13,6 +13,7 @@ using inextensible::WorkCounters;
 
 Findings check_permissible_candidate(const Examinee& solver) {
   const char* check = "permissible candidate";
+  // A setting of this name means the same in every row (setting_fields.h), plug-ins' too.
   for (const auto& setting : solver.backend.settings) {
     if (setting.name == std::string("min_iterations") && std::get<double>(setting.initial) > 0)
       return {not_applicable(check, "corrected too, by its setting min_iterations")};

@@ -1,5 +1,6 @@
 #include "harness/stability/trial.h"
 
+#include <cmath>
 #include <optional>
 #include <sstream>
 
@@ -13,16 +14,22 @@ namespace {
 
 using inextensible::State;
 
+inextensible::Settings settings_of(const Trial& trial, const inextensible::Backend& backend) {
+  inextensible::Settings settings;
+  if (const auto own = trial.settings.find(backend.name); own != trial.settings.end())
+    settings = own->second;
+  if (backend.knob == inextensible::Knob::stiffness && std::isfinite(trial.stiffness))
+    settings.try_emplace("stiffness", trial.stiffness);
+  return settings;
+}
+
 // One attempt, with or without the step controller.
 Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::uint64_t seed,
                 bool controlled, TrialResult& result) {
   const auto begin = Clock::now();
   inextensible::check_state(*trial.scene.problem, trial.scene.start);
-  const auto settings = trial.settings.find(backend.name);
   const auto stepper = inextensible::make_stepper(
-      backend.name, trial.scene.problem,
-      {trial.strain_limit, seed,
-       settings == trial.settings.end() ? inextensible::Settings{} : settings->second});
+      backend.name, trial.scene.problem, {trial.strain_limit, seed, settings_of(trial, backend)});
   inextensible::StepController controller(
       *stepper, {.largest = trial.step, .most_halvings = controlled ? 10 : 0});
   State state = trial.scene.start;

@@ -61,18 +61,18 @@ gate=(--gate counters.json)
 # Two runs of one program; of a program that does more, and fails, where a fault was put.
 exits 0 '36 points: 36 SAME' compare base.json again.json "${gate[@]}"
 exits 4 'NEWLY_FAILING' compare base.json faulty.json "${gate[@]}" --junit faults.xml --markdown faults.md
-/usr/bin/python3 - <<'PYTHON' || fail "the verdicts on faults"
+/usr/bin/python3 - <<'PYTHON' || fail "the changes by faults"
 import xml.etree.ElementTree as tree
 suite = tree.parse("faults.xml").getroot().find("testsuite")
-verdicts = {}
+changes = {}
 for case in suite.findall("testcase"):
     failure = case.find("failure")
-    verdicts.setdefault(case.get("name").split("/")[1], set()).add("SAME" if failure is None else failure.get("type"))
+    changes.setdefault(case.get("name").split("/")[1], set()).add("SAME" if failure is None else failure.get("type"))
     if case.get("name").startswith("chain/fast_projection/") and failure is not None:
         assert "iterations" in failure.get("message"), failure.get("message")
-assert verdicts["shake"] == {"SAME"} and verdicts["gauss_seidel"] == {"SAME"}, verdicts
-assert verdicts["jacobi"] <= {"NEWLY_FAILING", "SAME"} and "NEWLY_FAILING" in verdicts["jacobi"], verdicts
-assert "SLOWER" in verdicts["fast_projection"] and "NEWLY_FAILING" not in verdicts["fast_projection"], verdicts
+assert changes["shake"] == {"SAME"} and changes["gauss_seidel"] == {"SAME"}, changes
+assert changes["jacobi"] <= {"NEWLY_FAILING", "SAME"} and "NEWLY_FAILING" in changes["jacobi"], changes
+assert "SLOWER" in changes["fast_projection"] and "NEWLY_FAILING" not in changes["fast_projection"], changes
 assert int(suite.get("tests")) == 36 and int(suite.get("failures")) > 2
 PYTHON
 grep -q '^| \*\*NEWLY\\_FAILING\*\* | strain | chain/jacobi' faults.md || fail "faults.md: $(cat faults.md)"

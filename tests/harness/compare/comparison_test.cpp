@@ -1,5 +1,5 @@
-// The statistics of a comparison against scipy's numbers and against themselves; its verdicts, its
-// gate, its baseline and its reports.
+// The statistics of a comparison against scipy's numbers and against themselves; its words for
+// changes, its gate, its baseline and its reports.
 #include "harness/compare/comparison.h"
 
 #include <gtest/gtest.h>
@@ -203,7 +203,7 @@ Change only_change(const ComparedPoint& base, const ComparedPoint& next, const G
 
 const char* const some_id = "chain/shake/n:80/strain:0.01/h:0.01";
 
-TEST(Compare, TellsEveryVerdict) {
+TEST(Compare, TellsEveryChange) {
   const ComparedPoint good = point_with(some_id);
   ComparedPoint bad = good;
   bad.status = "not_converged";

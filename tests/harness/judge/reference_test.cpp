@@ -12,6 +12,8 @@
 #include <random>
 
 #include "harness/base/errors.h"
+#include "harness/judge/reference_file.h"
+#include "harness/judge/reference_routes.h"
 #include "harness/scenes/pendulum.h"
 
 namespace harness {

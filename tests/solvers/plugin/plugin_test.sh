@@ -66,12 +66,12 @@ ls figures/*.svg >/dev/null || fail "no figures"
 
 misfits=$BUILD_FOLDER/tests
 "$bench" check --solver symmetric_sweeps --plugin "$plugin" >check.txt 2>&1 || fail "a sound solver: $(cat check.txt)"
-grep -q '^verdict: symmetric_sweeps conforms: ' check.txt || fail "no verdict: $(cat check.txt)"
+grep -q '^symmetric_sweeps conforms: ' check.txt || fail "it must conform: $(cat check.txt)"
 grep -q '^PASS  hard cases' check.txt || fail "no hard cases: $(cat check.txt)"
 "$bench" --plugin "$misfits/libplugin_broken.so" check --solver misfit --quick >check.txt 2>&1
 [[ $? == 4 ]] || fail "a broken solver must exit 4: $(cat check.txt)"
 grep -q '^FAIL  limit .*(allowed 1)$' check.txt && grep -q '^      -> edge ' check.txt &&
-  grep -q '^verdict: misfit DOES NOT CONFORM: ' check.txt || fail "a broken solver's verdict: $(cat check.txt)"
+  grep -q '^misfit does not conform: ' check.txt || fail "a broken solver must not conform: $(cat check.txt)"
 refused "did you mean 'symmetric_sweeps'" --plugin "$plugin" check --solver symetric_sweeps
 refused "--solver is required" check
 refused "--seed" check --solver icd --seed -1

@@ -1,0 +1,132 @@
+#include "harness/judge/reference_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "harness/base/errors.h"
+#include "harness/base/fields_json.h"
+#include "harness/base/text.h"
+#include "harness/points/context.h"
+#include "harness/points/measures.h"
+
+namespace harness {
+
+using inextensible::Positions;
+using nlohmann::json;
+
+namespace {
+
+constexpr const char* reference_schema = "inextensible-reference/1";
+
+double rounded(double value, double scale = 1e12) { return std::round(value * scale) / scale; }
+
+json shape_json(const std::vector<ShapeStatistics>& list) {
+  json rows = json::array();
+  for (const auto& s : list)
+    rows.push_back({rounded(s.potential_energy), rounded(s.corner_height), rounded(s.shadow)});
+  return rows;
+}
+
+std::vector<ShapeStatistics> shape_of(const json& rows) {
+  std::vector<ShapeStatistics> list;
+  for (const json& row : rows)
+    list.push_back({row.at(0).get<double>(), row.at(1).get<double>(), row.at(2).get<double>()});
+  return list;
+}
+
+}  // namespace
+
+std::string reference_name(const std::string& scene, const SceneParameters& complete) {
+  const SceneType& type = *find_scene(scene);
+  std::string changed;
+  for (const auto& info : type.parameters) {
+    const std::string name = info.name;
+    if (name == type.resolution || name == "duration") continue;
+    if (complete.at(name) != info.initial)
+      changed += name + "=" + number_text(complete.at(name)) + ";";
+  }
+  return scene + "-n" + number_text(complete.at(type.resolution)) +
+         (changed.empty() ? "" : "-" + fnv1a(changed)) + ".json";
+}
+
+json to_json(const Reference& r) {
+  json positions = json::array();
+  // A file holds the digits that its gaps leave standing.
+  const double least = r.gap.empty() ? 0 : *std::min_element(r.gap.begin(), r.gap.end());
+  const double scale = least > 1e-7 ? 1e9 : 1e12;
+  for (const Positions& x : r.positions) {
+    json row = json::array();
+    for (Eigen::Index i = 0; i < x.size(); ++i) row.push_back(rounded(x.data()[i], scale));
+    positions.push_back(std::move(row));
+  }
+  return {{"schema", reference_schema},
+          {"scene", r.scene},
+          {"scene_parameters", r.parameters},
+          {"method", r.method},
+          {"second_method", r.second_method},
+          {"valid_until", r.valid_until},
+          {"energy_drift", r.energy_drift},
+          {"observed_order", number(r.observed_order)},
+          {"expected_order", r.expected_order},
+          {"times", r.times},
+          {"gap", r.gap},
+          {"gap_max", r.gap_max},
+          {"shape", shape_json(r.shape)},
+          {"shape_gap", shape_json(r.shape_gap)},
+          {"positions", std::move(positions)}};
+}
+
+json summary_of(const Reference& r) {
+  double squares = 0;
+  for (std::size_t i = 0; i < r.positions.size(); ++i) squares += r.gap[i] * r.gap[i];
+  const auto valid = static_cast<double>(std::max<std::size_t>(r.positions.size(), 1));
+  return {{"name", r.name()},
+          {"method", r.method},
+          {"second_method", r.second_method},
+          {"valid_until", r.valid_until},
+          {"gap", std::sqrt(squares / valid)},
+          {"observed_order", number(r.observed_order)},
+          {"converged", r.converged()},
+          {"energy_drift", r.energy_drift}};
+}
+
+Reference read_reference(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw UsageError("cannot read the reference '" + path + "'");
+  try {
+    const json document = json::parse(file);
+    if (document.at("schema") != reference_schema)
+      throw UsageError("'" + path + "': schema is " + document.at("schema").dump() +
+                       ", must be \"" + reference_schema + "\"");
+    Reference r;
+    r.scene = document.at("scene").get<std::string>();
+    r.parameters = document.at("scene_parameters").get<SceneParameters>();
+    r.method = document.at("method").get<std::string>();
+    r.second_method = document.at("second_method").get<std::string>();
+    r.valid_until = document.at("valid_until").get<double>();
+    r.energy_drift = document.at("energy_drift").get<double>();
+    r.observed_order = number_of(document.at("observed_order"));
+    r.expected_order = document.value("expected_order", expected_order(find_scene(r.scene)));
+    r.times = document.at("times").get<std::vector<double>>();
+    r.gap = document.at("gap").get<std::vector<double>>();
+    // Older files know one norm: nothing in the other one is sure then.
+    r.gap_max = document.value("gap_max", std::vector<double>(r.gap.size(), unknown));
+    r.shape = shape_of(document.at("shape"));
+    r.shape_gap = shape_of(document.at("shape_gap"));
+    for (const json& row : document.at("positions")) {
+      const auto numbers = row.get<std::vector<double>>();
+      r.positions.emplace_back(Eigen::Map<const Positions>(
+          numbers.data(), 3, static_cast<Eigen::Index>(numbers.size() / 3)));
+    }
+    if (r.gap.size() != r.times.size() || r.gap_max.size() != r.times.size() ||
+        r.shape.size() != r.times.size() || r.shape_gap.size() != r.times.size() ||
+        r.positions.size() > r.times.size())
+      throw UsageError("'" + path + "': lists of different lengths");
+    return r;
+  } catch (const json::exception& error) {
+    throw UsageError("'" + path + "' is not a reference: " + error.what());
+  }
+}
+
+}  // namespace harness

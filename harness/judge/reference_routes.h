@@ -1,0 +1,17 @@
+// References by computation: two unlike routes for each scene.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "harness/judge/reference.h"
+
+namespace harness {
+
+// Computes the reference of a scene by both routes. finest: the smallest step of step halving, s; 0
+// chooses by the scene. tell is called with a line now and then. Throws UsageError if a
+// route fails too early.
+Reference compute_reference(const std::string& scene, const SceneParameters& complete,
+                            double finest, const std::function<void(const std::string&)>& tell);
+
+}  // namespace harness
