@@ -86,94 +86,140 @@ void repeat_candidates(const Suite& suite, const std::vector<Choice>& choices,
   }
 }
 
+// What a family's last search found.
+struct Neighbour {
+  std::optional<double> best_step;
+  std::map<double, double>
+      stiffness_times_limit;  // by step: a spring's strain is tension over stiffness
+  bool hopeless = false;      // only time-outs
+
+  std::optional<double> guess_of_stiffness(const PointSpec& spec) const {
+    if (stiffness_times_limit.empty()) return std::nullopt;
+    const auto known = stiffness_times_limit.find(spec.step);
+    const auto near = known != stiffness_times_limit.end() ? known : stiffness_times_limit.begin();
+    return near->second / spec.strain_limit;
+  }
+
+  // The rung of another ladder that comes next to the best step.
+  std::optional<std::size_t> rung_in(const std::vector<double>& ladder) const {
+    if (!best_step) return std::nullopt;
+    const auto near = std::find_if(ladder.begin(), ladder.end(),
+                                   [&](double h) { return h <= *best_step * (1 + 1e-9); });
+    return static_cast<std::size_t>(near - ladder.begin());
+  }
+};
+
+// What all searches of a sweep share.
+struct Sweep {
+  const Suite& suite;
+  const std::vector<Search>& searches;
+  const SweepEvents& events;
+  const SweepRunners& runners;
+  std::vector<PointResult>& points;
+  std::vector<Choice> choices = {};
+
+  const PointResult& add(PointResult point, std::size_t search) {
+    points.push_back(std::move(point));
+    events.point(points.back(), search, searches.size());
+    return points.back();
+  }
+};
+
+// One search: each rung of its ladder is run when it is first asked for.
+class LadderRun {
+ public:
+  LadderRun(Sweep& sweep, std::size_t number, Neighbour& neighbour)
+      : sweep_(sweep),
+        number_(number),
+        search_(sweep.searches[number]),
+        neighbour_(neighbour),
+        finish_slow_(search_.every_step || sweep.suite.max_error > 0) {}
+
+  void find_best() {
+    const auto run = [this](std::size_t rung) -> const PointResult& { return point(rung); };
+    const std::size_t rungs = search_.ladder.size();
+    StepSearch steps(rungs, run);
+    const auto best = search_.every_step ? steps.find_among_all()
+                                         : steps.find(neighbour_.rung_in(search_.ladder));
+    if (sweep_.suite.max_error > 0 && !search_.every_step) {
+      StepSearch within(rungs, run, sweep_.suite.max_error);
+      if (within.find(best)) add_choice(within, &PointResult::best_at_error);
+    }
+    if (best) {
+      add_choice(steps, &PointResult::best);
+      neighbour_.best_step = search_.ladder[*best];
+    } else {
+      neighbour_.hopeless = steps.timed_out();
+    }
+  }
+
+ private:
+  const PointResult& point(std::size_t rung) {
+    if (const auto known = point_of_rung_.find(rung); known != point_of_rung_.end())
+      return sweep_.points[known->second];
+    PointSpec spec = search_.base;
+    spec.step = search_.ladder[rung];
+    // A slower run may still be the best one of those within an error limit.
+    const double hopeless =
+        finish_slow_ ? 1e300 : std::max(hopeless_least, hopeless_factor * best_run_);
+    PointResult point = sweep_.runners.run(
+        spec,
+        {sweep_.suite.timeout, hopeless, sweep_.events.interrupted, sweep_.runners.references},
+        neighbour_.guess_of_stiffness(spec));
+    if (point.stiffness)
+      neighbour_.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
+    if (point.ok())
+      best_run_ = std::min(best_run_, point.median_seconds() * spec.step * point.steps_planned);
+    point_of_rung_[rung] = sweep_.points.size();
+    return sweep_.add(std::move(point), number_);
+  }
+
+  void add_choice(const StepSearch& among, bool PointResult::*mark) {
+    Choice& choice = sweep_.choices.emplace_back();
+    for (const std::size_t rung : among.near_best(candidate_factor))
+      choice.candidates[rung] = point_of_rung_.at(rung);
+    choice.rungs = search_.ladder.size();
+    choice.mark = mark;
+  }
+
+  Sweep& sweep_;
+  std::size_t number_;
+  const Search& search_;
+  Neighbour& neighbour_;
+  bool finish_slow_;
+  double best_run_ = 1e300;  // s
+  std::map<std::size_t, std::size_t> point_of_rung_;
+};
+
+PointResult skipped_point(const Search& search) {
+  PointResult skipped;
+  skipped.spec = search.base;
+  skipped.spec.step = search.ladder.front();
+  skipped.detail = "every step timed out at the neighbouring point of the axis already";
+  return skipped;
+}
+
 }  // namespace
 
 SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
                        const SweepEvents& events, const SweepRunners& runners) {
   SweepOutcome outcome;
-  struct Neighbour {  // what a family's last search found
-    std::optional<double> best_step;
-    std::map<double, double>
-        stiffness_times_limit;  // by step: a spring's strain is tension over stiffness
-    bool hopeless = false;      // only time-outs
-  };
+  Sweep sweep{suite, searches, events, runners, outcome.points};
   std::map<std::size_t, Neighbour> neighbours;
-  std::vector<Choice> choices;
   try {
     for (std::size_t s = 0; s < searches.size(); ++s) {
-      const Search& search = searches[s];
-      Neighbour& neighbour = neighbours[search.family];
+      Neighbour& neighbour = neighbours[searches[s].family];
       if (neighbour.hopeless) {
-        PointResult skipped;
-        skipped.spec = search.base;
-        skipped.spec.step = search.ladder.front();
-        skipped.detail = "every step timed out at the neighbouring point of the axis already";
-        outcome.points.push_back(std::move(skipped));
-        events.point(outcome.points.back(), s, searches.size());
-        continue;
-      }
-      const bool every_step = search.every_step;
-      double best_run = 1e300;  // s
-      std::map<std::size_t, std::size_t> point_of_rung;
-      const auto run = [&](std::size_t rung) -> const PointResult& {
-        if (const auto known = point_of_rung.find(rung); known != point_of_rung.end())
-          return outcome.points[known->second];
-        PointSpec spec = search.base;
-        spec.step = search.ladder[rung];
-        std::optional<double> guess;
-        if (const auto known = neighbour.stiffness_times_limit.find(spec.step);
-            known != neighbour.stiffness_times_limit.end()) {
-          guess = known->second / spec.strain_limit;
-        } else if (!neighbour.stiffness_times_limit.empty()) {
-          guess = neighbour.stiffness_times_limit.begin()->second / spec.strain_limit;
-        }
-        // A slower run may still be the best one of those within an error limit.
-        const double hopeless = every_step || suite.max_error > 0
-                                    ? 1e300
-                                    : std::max(hopeless_least, hopeless_factor * best_run);
-        PointResult point = runners.run(
-            spec, {suite.timeout, hopeless, events.interrupted, runners.references}, guess);
-        if (point.stiffness)
-          neighbour.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
-        if (point.ok())
-          best_run = std::min(best_run, point.median_seconds() * spec.step * point.steps_planned);
-        point_of_rung[rung] = outcome.points.size();
-        outcome.points.push_back(std::move(point));
-        events.point(outcome.points.back(), s, searches.size());
-        return outcome.points.back();
-      };
-      std::optional<std::size_t> start;
-      if (neighbour.best_step) {
-        const auto near = std::find_if(search.ladder.begin(), search.ladder.end(), [&](double h) {
-          return h <= *neighbour.best_step * (1 + 1e-9);
-        });
-        start = static_cast<std::size_t>(near - search.ladder.begin());
-      }
-      const auto add_choice = [&](const StepSearch& among, bool PointResult::*mark) {
-        Choice& choice = choices.emplace_back();
-        for (const std::size_t rung : among.near_best(candidate_factor))
-          choice.candidates[rung] = point_of_rung.at(rung);
-        choice.rungs = search.ladder.size();
-        choice.mark = mark;
-      };
-      StepSearch steps(search.ladder.size(), run);
-      const auto best = every_step ? steps.find_among_all() : steps.find(start);
-      if (suite.max_error > 0 && !every_step) {
-        StepSearch within(search.ladder.size(), run, suite.max_error);
-        if (within.find(best)) add_choice(within, &PointResult::best_at_error);
-      }
-      if (best) {
-        add_choice(steps, &PointResult::best);
-        neighbour.best_step = search.ladder[*best];
+        sweep.add(skipped_point(searches[s]), s);
       } else {
-        neighbour.hopeless = steps.timed_out();
+        LadderRun(sweep, s, neighbour).find_best();
       }
     }
-    repeat_candidates(suite, choices, outcome.points, events, runners);
+    repeat_candidates(suite, sweep.choices, outcome.points, events, runners);
   } catch (const Interrupted&) {
     outcome.complete = false;
   }
-  choose(choices, outcome.points);
+  choose(sweep.choices, outcome.points);
   return outcome;
 }
 
