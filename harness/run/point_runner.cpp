@@ -55,6 +55,37 @@ PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
   if (limits.references) reference_ = limits.references->find(spec.scene, spec.scene_parameters);
 }
 
+inextensible::State PointRunner::start_state() const {
+  inextensible::State state = scene_.start;
+  state.v -= 0.5 * spec_.step * start_acceleration_;
+  return state;
+}
+
+Judge::Options PointRunner::judging(bool errors) const {
+  Judge::Options options{steps_ / sampled_instants};
+  options.velocities = backend_.velocities;
+  if (errors) {
+    options.reference = reference_;
+    // Where growth is the question, memory for iterates would be part of the answer.
+    options.residual = backend_.shows_iterates && !spec_.adaptive && spec_.sweep != "resolution";
+    // A figure draws the series of step sweeps; for the others it would fill files unread.
+    options.residual_series = spec_.sweep == "step";
+  }
+  return options;
+}
+
+bool PointRunner::timed_out(double time, Run& run) const {
+  const bool slow = run.seconds > limits_.hopeless;
+  if (!slow && !(since(start_) > limits_.timeout)) return false;
+  std::ostringstream text;
+  text << "longer than " << (slow ? limits_.hopeless : limits_.timeout) << " s"
+       << (slow ? ", several times the best step's time" : "") << "; stopped at t = " << time
+       << " s";
+  run.status = PointStatus::timeout;
+  run.detail = text.str();
+  return true;
+}
+
 Run PointRunner::run(const inextensible::Settings& settings, bool judged, double stop_at,
                      bool phases) const {
   Run run;
@@ -63,24 +94,13 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
                                            {spec_.strain_limit, spec_.seed, settings});
   run.setup_seconds = since(setup);
   run.stepper->measure_phases(phases);
-  Judge::Options judging{steps_ / sampled_instants};
-  judging.velocities = backend_.velocities;
-  if (judged && stop_at == diverged_strain) {
-    judging.reference = reference_;
-    // Where growth is the question, memory for iterates would be part of the answer.
-    judging.residual = backend_.shows_iterates && !spec_.adaptive && spec_.sweep != "resolution";
-    // A figure draws the series of step sweeps; for the others it would fill files unread.
-    judging.residual_series = spec_.sweep == "step";
-  }
-  Judge judge(scene_, judging);
+  Judge judge(scene_, judging(judged && stop_at == diverged_strain));
   run.stepper->observe(judge.observer());
   run.observed = judge.observer() != nullptr;
-  inextensible::State state = scene_.start;
-  state.v -= 0.5 * spec_.step * start_acceleration_;
+  inextensible::State state = start_state();
   std::optional<inextensible::StepController> controller;
-  if (spec_.adaptive) {
+  if (spec_.adaptive)
     controller.emplace(*run.stepper, inextensible::StepController::Settings{.largest = spec_.step});
-  }
   beat(0, 0);
   int block = 1;  // steps that are timed as one
   for (int i = 0; i < steps_;) {
@@ -119,16 +139,7 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
       }
     }
     if (limits_.interrupted && limits_.interrupted()) throw Interrupted();
-    const bool slow = run.seconds > limits_.hopeless;
-    if ((slow || since(start_) > limits_.timeout) && i < steps_) {
-      std::ostringstream text;
-      text << "longer than " << (slow ? limits_.hopeless : limits_.timeout) << " s"
-           << (slow ? ", several times the best step's time" : "")
-           << "; stopped at t = " << state.time << " s";
-      run.status = PointStatus::timeout;
-      run.detail = text.str();
-      break;
-    }
+    if (i < steps_ && timed_out(state.time, run)) break;
   }
   run.stepper->observe(nullptr);
   run.measures = judge.finish();
@@ -161,8 +172,7 @@ void PointRunner::decide(const Judge& judge, Run& run) const {
 double PointRunner::bare_seconds_per_step() const {
   const auto stepper = inextensible::make_stepper(spec_.solver, scene_.problem,
                                                   {spec_.strain_limit, spec_.seed, {}});
-  inextensible::State state = scene_.start;
-  state.v -= 0.5 * spec_.step * start_acceleration_;
+  inextensible::State state = start_state();
   const auto before = Clock::now();
   for (int i = 0; i < steps_; ++i) stepper->advance(state, spec_.step);
   return since(before) / steps_;

@@ -5,12 +5,11 @@
 #include <string>
 
 #include "harness/base/clock.h"
+#include "harness/judge/judge.h"
 #include "harness/run/runner.h"
 #include "inextensible/registry.h"
 
 namespace harness {
-
-class Judge;
 
 struct Run {
   PointStatus status = PointStatus::ok;
@@ -53,6 +52,10 @@ class PointRunner {
  private:
   // The status of a run that reached its end: what kept it from being one of this motion.
   void decide(const Judge& judge, Run& run) const;
+  inextensible::State start_state() const;
+  Judge::Options judging(bool errors) const;  // errors: and what is measured beside them
+  // Whether the run has taken too long by now; if so, says it in its status.
+  bool timed_out(double time, Run& run) const;
   void beat(int step, double time) const;
 
   const PointSpec& spec_;
