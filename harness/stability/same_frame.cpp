@@ -31,20 +31,21 @@ FrameDistance distance(const Scene& scene, const State& a, const State& b) {
 }  // namespace
 
 std::string SameFrameScene::name() const {
-  return "drape " + std::to_string(side) + " x " + std::to_string(side) + ", strain limit " +
+  return scene + " " + std::to_string(side) + " x " + std::to_string(side) + ", strain limit " +
          number_text(strain_limit);
 }
 
 std::vector<SameFrameScene> same_frame_scenes() {
   std::vector<SameFrameScene> scenes;
-  for (const int side : {21, 31}) {
-    for (const double limit : {0.01, 0.001}) scenes.push_back({side, limit, 1.0 / 200, 1e-10});
+  for (const double limit : {0.01, 0.001}) {
+    for (const int side : {21, 31}) scenes.push_back({"drape", side, limit, 1.0 / 200, 1e-10});
+    scenes.push_back({"patch", 21, limit, 1.0 / 200, 1e-10});
   }
   return scenes;
 }
 
 SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
-  const Scene scene = case_parts::scene_of("drape", {{"n", wanted.side}});
+  const Scene scene = case_parts::scene_of(wanted.scene.c_str(), {{"n", wanted.side}});
   SameFrame found;
   found.scene = wanted;
   struct Run {

@@ -1,6 +1,8 @@
-// Figure 6 of the paper by direct comparison (claim C8): one drape at one step by fast projection,
+// Figure 6 of the paper by direct comparison (claim C8): one cloth at one step by fast projection,
 // by ICD, and by fast projection from a start that was moved by next to nothing, which tells how
-// far apart runs come that should be the same.
+// far apart runs come that should be the same. A drape falls freely until it touches the sphere;
+// the patch hangs from two pins, so that constraints act on it from the first step on, and nothing
+// else does.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +15,7 @@
 namespace harness {
 
 struct SameFrameScene {
+  std::string scene;    // "drape" or "patch"
   int side;             // vertices along the cloth
   double strain_limit;  // of both solvers
   double step;          // s
@@ -32,7 +35,7 @@ struct FrameDistance {
 struct SameFrame {
   SameFrameScene scene;
   double first_contact = unknown;  // s, the first step's end at which the sphere moved a vertex, in
-                                   // the run of fast projection
+                                   // the run of fast projection; unknown where there is no sphere
   std::vector<double> times;       // s
   std::vector<FrameDistance> icd;  // from fast projection to ICD
   std::vector<FrameDistance> moved;  // to fast projection from the moved start

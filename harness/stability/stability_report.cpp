@@ -1,5 +1,6 @@
 // What a stability sweep prints, and the document it leaves.
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <map>
 #include <sstream>
@@ -78,8 +79,9 @@ void print_same_frames(std::ostream& out, const std::vector<SameFrame>& frames) 
   out << "\nthe same frame, RMS distance over the scene's size from fast projection: to ICD, to "
          "itself from a start moved by 1e-10\n";
   for (const SameFrame& f : frames) {
-    out << "  " << f.scene.name() << ", first contact at " << number_text(f.first_contact, 3)
-        << " s";
+    out << "  " << f.scene.name();
+    if (std::isfinite(f.first_contact))
+      out << ", first contact at " << number_text(f.first_contact, 3) << " s";
     for (std::size_t i = 0; i < f.times.size(); ++i) {
       if (i + 1 == f.times.size() || f.times[i] == f.first_contact)
         out << "; " << number_text(f.times[i], 3) << " s: " << number_text(f.icd[i].rms, 2) << ", "

@@ -284,7 +284,7 @@ TEST(Stability, StrainIsKeptOfTheFirstAndTheLastSecond) {
 // Frames of the same solver from a start that was hardly moved are that close before contact, and
 // ICD is within the slack of the limit.
 TEST(SameFrame, RunsAgreeBeforeContactAndAreComparedAfterIt) {
-  const harness::SameFrameScene scene{9, 0.01, 1.0 / 200, 1e-10};
+  const harness::SameFrameScene scene{"drape", 9, 0.01, 1.0 / 200, 1e-10};
   const auto found = harness::same_frame(scene, 1);
   EXPECT_EQ(found.stopped, "");
   EXPECT_GT(found.first_contact, 0.01);  // 1 mm above the sphere
