@@ -151,8 +151,8 @@ void check_common(const JobScript& job) {
 }
 
 std::string script(const char* text, const JobScript& job, const std::string& demands) {
-  const bool json = job.result.ends_with(".json");
-  const std::string stem = json ? job.result.substr(0, job.result.size() - 5) : job.result;
+  const bool named = job.result.ends_with(".json");
+  const std::string stem = named ? job.result.substr(0, job.result.size() - 5) : job.result;
   const std::string whole = fill(text, {{"@COMMON@", common}, {"@DEMANDS@", demands}});
   return fill(whole, {{"@N@", std::to_string(job.shards)},
                       {"@AXIS@", job.axis},
