@@ -50,7 +50,9 @@ Answer faster(const Curve& a, double place, const Point& b) {
 // The loosest limit from which on `fast` is ahead of all these curves beyond the noise.
 std::string ahead_from(const Curve& fast, const std::vector<Curve>& others) {
   std::string from = "nowhere";
-  for (auto [limit, point] : fast) {
+  for (const auto& place : fast) {
+    const auto& limit = place.first;  // not a structured binding: Clang 14 captures none
+    const auto& point = place.second;
     const bool ahead = std::all_of(others.begin(), others.end(), [&](const Curve& other) {
       const auto there = at(other, limit);
       return !there || above(ratio(*there, point), 1) == Answer::yes;

@@ -68,6 +68,7 @@ std::vector<ScenePoints> scenes_of(const json& document, const std::string& swee
     scene.points.emplace_back(p, noise);
   }
   std::vector<ScenePoints> list;
+  list.reserve(scenes.size());
   for (auto& [title, scene] : scenes) list.push_back(std::move(scene));
   return list;
 }
@@ -113,6 +114,7 @@ const Point* PlaceTable::clear_best(double place) const {
     all.push_back(p);
     if (!best || p->seconds() < best->seconds()) best = p;
   }
+  if (!best) return nullptr;
   const bool clear = std::all_of(all.begin(), all.end(), [&](const Point* p) {
     return p == best || ratio(*p, *best).above(1);
   });

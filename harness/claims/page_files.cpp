@@ -41,6 +41,7 @@ void print_tuned(std::ostream& out, const std::vector<NamedResult>& results) {
   }
   if (files.empty()) return;
   std::vector<Tuned> all;
+  all.reserve(files.size());
   for (const auto& [file, hash] : files) all.push_back(read_tuned(file));
   if (std::all_of(all.begin(), all.end(), [](const Tuned& t) { return t.entries.empty(); })) return;
   out << "## Tuned settings\n\nFound by `bench tune`, by one rule and with one budget for all, on "

@@ -9,6 +9,7 @@ namespace harness {
 void print_results_page(std::ostream& out, const std::vector<NamedResult>& results,
                         const std::vector<NamedResult>& growth) try {
   std::vector<nlohmann::json> documents;
+  documents.reserve(results.size());
   for (const NamedResult& result : results) documents.push_back(result.document);
   for (const NamedResult& result : growth) check_timed(result.document);
   out << "## The paper's claims\n\n`bench claims` on the same files gives each rule.\n\n";

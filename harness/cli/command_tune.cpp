@@ -36,6 +36,7 @@ std::vector<SweepSpec> chosen_scenes(const std::string& name) {
   std::vector<SweepSpec> scenes = tuning_scenes();
   if (name.empty()) return scenes;
   std::vector<std::string> names;
+  names.reserve(scenes.size());
   for (const SweepSpec& scene : scenes) names.push_back(scene.scene);
   std::erase_if(scenes, [&name](const SweepSpec& s) { return s.scene != name; });
   if (scenes.empty()) throw unknown_name("scene to tune on", name, names);

@@ -115,6 +115,7 @@ void check_contestants(const Suite& suite, const JsonReader& reader) {
   }
   if (!suite.same.empty() && !solvers.contains(suite.same)) {
     std::vector<std::string> names;
+    names.reserve(solvers.size());
     for (const auto& entry : solvers) names.push_back(entry.first);
     throw UsageError(reader.where("same") + ": " +
                      unknown_name("contestant", suite.same, names).what());
