@@ -21,7 +21,7 @@ std::string enclosed(const ordered_json& value, const std::string& separator,
 
 std::string folded(const ordered_json& value, std::size_t room, std::size_t width,
                    std::size_t indent) {
-  const std::string line = line_of(value);
+  std::string line = line_of(value);
   if (!value.is_structured() || value.empty() || line.size() <= room) return line;
   const std::string inner = "\n" + std::string(indent + 2, ' ');
   return enclosed(value, inner, "\n" + std::string(indent, ' '),

@@ -105,16 +105,16 @@ double least_possible_p(std::size_t a, std::size_t b) {
   return 1 / choices;
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  return gsl_stats_median_from_sorted_data(values.data(), 1, values.size());
+double quantile(std::vector<double> samples, double fraction) {
+  if (samples.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(samples.begin(), samples.end());
+  return gsl_stats_quantile_from_sorted_data(samples.data(), 1, samples.size(), fraction);
 }
 
 Ratio ratio_of_medians(const std::vector<double>& a, const std::vector<double>& b, double noise) {
   if (a.empty() || b.empty()) return {};
   Ratio ratio;
-  ratio.value = median_of(a) / median_of(b);
+  ratio.value = quantile(a, 0.5) / quantile(b, 0.5);
   if (const std::size_t c = critical_count(a.size(), b.size()); c > 0) {
     std::vector<double> quotients;
     quotients.reserve(a.size() * b.size());

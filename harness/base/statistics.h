@@ -16,8 +16,8 @@ constexpr std::size_t exact_up_to = 60;
 // The least value that mann_whitney_greater can have for that many values: 1 / (a + b over a).
 double least_possible_p(std::size_t a, std::size_t b);
 
-// Not-a-number for none.
-double median_of(std::vector<double> values);
+// Between order statistics linearly; 0.5: the median. Not-a-number for none.
+double quantile(std::vector<double> samples, double fraction);
 
 // A positive number with its 95 % confidence interval; nothing known: from 0 to infinity.
 struct Ratio {

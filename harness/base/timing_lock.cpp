@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "harness/base/errors.h"
+#include "harness/base/file_lock.h"
 #include "harness/base/interrupt.h"
 
 namespace harness {
@@ -19,19 +20,6 @@ namespace {
 
 // Tells programs that this one starts who holds the lock for them.
 constexpr const char* holder_variable = "INEXTENSIBLE_TIMING_LOCK";
-
-flock whole_file() {
-  flock region{};
-  region.l_type = F_WRLCK;
-  region.l_whence = SEEK_SET;
-  return region;
-}
-
-// The process that holds it; 0 if none does, or it cannot be seen from here.
-pid_t holder(int file) {
-  flock region = whole_file();
-  return fcntl(file, F_GETLK, &region) == 0 && region.l_type != F_UNLCK ? region.l_pid : 0;
-}
 
 bool is_for_us(pid_t process) {
   const char* told = std::getenv(holder_variable);
@@ -46,17 +34,14 @@ std::string timing_lock_path() {
       .string();
 }
 
-// POSIX locks, as the journal's: they end with the process, and forked children do not inherit
-// them.
 TimingLock::TimingLock(bool wait) {
   const std::string path = timing_lock_path();
   file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (file_ < 0)
     throw UsageError("cannot open '" + path + "', which keeps two measurements apart: " +
                      std::strerror(errno) + "; --untimed goes without");
-  flock region = whole_file();
-  while (fcntl(file_, F_SETLK, &region) != 0) {
-    const pid_t other = holder(file_);
+  while (!try_lock(file_)) {
+    const pid_t other = lock_holder(file_);
     if (is_for_us(other)) {
       close(file_);
       file_ = -1;
@@ -73,7 +58,6 @@ TimingLock::TimingLock(bool wait) {
                 << std::endl;
     waited_ = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    region = whole_file();
   }
   setenv(holder_variable, std::to_string(getpid()).c_str(), 1);
 }

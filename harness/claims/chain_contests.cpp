@@ -2,6 +2,7 @@
 // equal error.
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/claims/contests.h"
@@ -17,6 +18,16 @@ struct Way {
   std::string words;
   Curve springs, fast;
 };
+
+Way at_equal_strain(const Points& points, const std::string& sweep, std::string words) {
+  return {std::move(words), points.best("chain", sweep, implicit_springs.name),
+          points.best("chain", sweep, fast_projection.name)};
+}
+
+Way at_equal_errors(const Points& points, std::string words) {
+  return {std::move(words), points.best_at_errors("chain", implicit_springs.name),
+          points.best_at_errors("chain", fast_projection.name)};
+}
 
 // Collects what each way says; the claim's verdict is that of all ways that were measured.
 class Ways {
@@ -82,14 +93,8 @@ void chain_time_over_strain(const Points& points, ClaimVerdict& c) {
       "above 0 in both, changed if they differ, undecided if an interval holds 0; a way that was "
       "not measured does not count";
   Ways ways(c);
-  const auto judge = [&](const char* words, Curve springs, Curve fast) {
-    const Way way{words, std::move(springs), std::move(fast)};
-    judge_slopes(ways, way, below, percent);
-  };
-  judge("at equal strain", points.best("chain", "strain", implicit_springs.name),
-        points.best("chain", "strain", fast_projection.name));
-  judge("at equal error", points.best_at_errors("chain", implicit_springs.name),
-        points.best_at_errors("chain", fast_projection.name));
+  judge_slopes(ways, at_equal_strain(points, "strain", "at equal strain"), below, percent);
+  judge_slopes(ways, at_equal_errors(points, "at equal error"), below, percent);
 }
 
 void chain_time_over_resolution(const Points& points, ClaimVerdict& c) {
@@ -100,12 +105,7 @@ void chain_time_over_resolution(const Points& points, ClaimVerdict& c) {
       "0 with its whole 95 % interval in both, not reproduced if below 0 in both, changed if they "
       "differ, undecided if an interval holds 0; a way that was not measured does not count";
   Ways ways(c);
-  const auto judge = [&](const char* words, Curve springs, Curve fast) {
-    const Way way{words, std::move(springs), std::move(fast)};
-    judge_slopes(ways, way, above, vertices);
-  };
-  judge("at equal strain", points.best("chain", "resolution", implicit_springs.name),
-        points.best("chain", "resolution", fast_projection.name));
+  judge_slopes(ways, at_equal_strain(points, "resolution", "at equal strain"), above, vertices);
   for (auto level = error_levels.rbegin(); level != error_levels.rend(); ++level) {
     Way way{"at equal error", points.best_at_error("chain", implicit_springs.name, *level),
             points.best_at_error("chain", fast_projection.name, *level)};
@@ -123,8 +123,7 @@ void chain_speed(const Points& points, ClaimVerdict& c) {
       "reproduced if below 1, undecided if it holds one of these bounds; changed too if strain and "
       "error differ; a way that was not measured does not count";
   Ways ways(c);
-  const auto judge = [&](const char* words, Curve springs_curve, Curve fast_curve) {
-    const Way way{words, std::move(springs_curve), std::move(fast_curve)};
+  const auto judge = [&](const Way& way) {
     const auto springs = at(way.springs, one_percent), fast = at(way.fast, one_percent);
     if (!springs || !fast || springs->number("vertices") != paper_chain)
       return ways.add(way, not_measured, "");
@@ -140,10 +139,8 @@ void chain_speed(const Points& points, ClaimVerdict& c) {
              "ratio " + text(slower) + ": implicit springs " + apart(*springs) +
                  ", fast projection " + apart(*fast));
   };
-  judge("at 1 % strain", points.best("chain", "strain", implicit_springs.name),
-        points.best("chain", "strain", fast_projection.name));
-  judge("at 1 % error", points.best_at_errors("chain", implicit_springs.name),
-        points.best_at_errors("chain", fast_projection.name));
+  judge(at_equal_strain(points, "strain", "at 1 % strain"));
+  judge(at_equal_errors(points, "at 1 % error"));
   c.measured += "; the search for a stiffness is not charged";
 }
 

@@ -4,6 +4,8 @@
 #include <iterator>
 #include <set>
 
+#include "harness/points/point.h"
+
 namespace harness::claims {
 
 using nlohmann::json;
@@ -30,20 +32,19 @@ double Point::delivered_strain() const {
 }
 
 bool Point::within_error(double level) const {
-  constexpr double sure = 3;  // gaps
+  Measures measures;
+  measures.trajectory = error("trajectory");
+  measures.gap = error("gap");
+  const auto or_unknown = [](const json& value) {
+    return value.is_number() ? value.get<double>() : unknown;
+  };
   const auto series = p_->at("error").find("error_series");
-  if (series == p_->at("error").end() || series->empty())  // older files: one figure for all levels
-    return error("trajectory") <= level && !(sure * error("gap") > level);
-  double squares = 0;
-  int count = 0;
-  for (const auto& sample : *series) {  // time, error, largest, gap, its largest
-    if (!sample.at(1).is_number() || !sample.at(3).is_number() ||
-        !(sure * sample.at(3).get<double>() <= level))
-      continue;
-    squares += std::pow(sample.at(1).get<double>(), 2);
-    ++count;
+  if (series != p_->at("error").end()) {
+    for (const auto& sample : *series)  // time, error, largest, gap, its largest
+      measures.error_series.push_back({or_unknown(sample.at(0)), or_unknown(sample.at(1)), unknown,
+                                       or_unknown(sample.at(3)), unknown});
   }
-  return count > 0 && std::sqrt(squares / count) <= level;
+  return trajectory_within(measures, level) <= level;
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/base/statistics.h"
 #include "harness/base/text.h"
 #include "harness/judge/measures.h"
 #include "inextensible/problem/forces.h"

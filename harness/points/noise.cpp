@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "harness/base/statistics.h"
 #include "harness/points/contestant.h"
 #include "harness/points/point_json.h"
 

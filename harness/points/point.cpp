@@ -1,12 +1,13 @@
 #include "harness/points/point.h"
 
 #include <gsl/gsl_cdf.h>
-#include <gsl/gsl_statistics.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
+
+#include "harness/base/statistics.h"
 
 namespace harness {
 
@@ -21,12 +22,6 @@ std::string PointSpec::id() const {
   return text.str();
 }
 
-double quantile(std::vector<double> samples, double fraction) {
-  if (samples.empty()) return unknown;
-  std::sort(samples.begin(), samples.end());
-  return gsl_stats_quantile_from_sorted_data(samples.data(), 1, samples.size(), fraction);
-}
-
 double median_uncertainty(std::vector<double> samples) {
   std::sort(samples.begin(), samples.end());
   const auto n = static_cast<unsigned>(samples.size());
@@ -39,7 +34,8 @@ double median_uncertainty(std::vector<double> samples) {
 }
 
 double trajectory_within(const Measures& measures, double target) {
-  if (measures.error_series.empty()) return measures.trajectory;
+  if (measures.error_series.empty())
+    return sure_gaps * measures.gap > target ? unknown : measures.trajectory;
   double squares = 0;
   int count = 0;
   for (const ErrorSample& at : measures.error_series) {

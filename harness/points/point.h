@@ -58,8 +58,6 @@ struct PointResult {
   double median_filter_seconds() const;  // of the filter's
 };
 
-double quantile(std::vector<double> samples, double fraction);
-
 // Half the width of the median's 95 % confidence interval over the median, from order statistics
 // (no assumption on the distribution); infinite below six samples, which cannot tell.
 double median_uncertainty(std::vector<double> samples);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "harness/base/statistics.h"
 #include "harness/points/point_fields.h"
 
 namespace harness {

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "harness/base/errors.h"
+#include "harness/base/file_lock.h"
 #include "harness/base/files.h"
 #include "harness/points/point_json.h"
 
@@ -18,13 +19,6 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* schema = "inextensible-journal/1";
-
-flock whole_file() {
-  flock region{};
-  region.l_type = F_WRLCK;
-  region.l_whence = SEEK_SET;
-  return region;
-}
 
 // Not by opening the file again: closing that would give up the lock.
 std::string content(int file) {
@@ -108,20 +102,15 @@ Journal::~Journal() {
   close(file_);
 }
 
-// POSIX locks: they end with the process, however it ends, and children do not inherit them.
 void Journal::lock() {
   for (;;) {
     file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (file_ < 0) throw UsageError("cannot write '" + path_ + "': " + std::strerror(errno));
-    flock region = whole_file();
-    if (fcntl(file_, F_SETLK, &region) != 0) {
-      region = whole_file();
-      fcntl(file_, F_GETLK, &region);
+    if (!try_lock(file_)) {
+      const pid_t other = lock_holder(file_);
       close(file_);
       throw UsageError("another bench" +
-                       (region.l_type == F_UNLCK
-                            ? std::string()
-                            : " (process " + std::to_string(region.l_pid) + ")") +
+                       (other > 0 ? " (process " + std::to_string(other) + ")" : std::string()) +
                        " is writing '" + out_ + "'; give another --out");
     }
     struct stat status {};

@@ -28,6 +28,7 @@ constexpr int sampled_instants = 100;  // a run, for statistics that need sortin
 // are timed in blocks of at least this length where the judge need not look in between, and a run
 // whose judged steps are shorter is made again without him, for its time.
 constexpr double shortest_block = 2e-5;  // s
+
 std::string refusal(const inextensible::StepResult& result, std::int64_t step, double time) {
   std::ostringstream text;
   text << "step " << step << " (t = " << time << " s): " << inextensible::to_string(result.status)
@@ -46,19 +47,11 @@ PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
       start_(Clock::now()),
       scene_(find_scene(spec.scene)->build(spec.scene_parameters)),
       backend_(*inextensible::find_backend(spec.solver)),
-      steps_(static_cast<int>(std::lround(scene_.duration / spec.step))) {
-  if (scene_.staggered && backend_.velocities == inextensible::Velocities::half_step) {
-    start_acceleration_ = inextensible::constrained_acceleration(*scene_.problem, scene_.start);
-  } else {
-    start_acceleration_ = inextensible::Positions::Zero(3, scene_.problem->vertices());
-  }
+      steps_(static_cast<int>(std::lround(scene_.duration / spec.step))),
+      first_state_(scene_.start) {
+  if (scene_.staggered && backend_.velocities == inextensible::Velocities::half_step)
+    first_state_ = inextensible::start_half_step_back(*scene_.problem, first_state_, spec.step);
   if (limits.references) reference_ = limits.references->find(spec.scene, spec.scene_parameters);
-}
-
-inextensible::State PointRunner::start_state() const {
-  inextensible::State state = scene_.start;
-  state.v -= 0.5 * spec_.step * start_acceleration_;
-  return state;
 }
 
 Judge::Options PointRunner::judging(bool errors) const {
@@ -97,7 +90,7 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
   Judge judge(scene_, judging(judged && stop_at == diverged_strain));
   run.stepper->observe(judge.observer());
   run.observed = judge.observer() != nullptr;
-  inextensible::State state = start_state();
+  inextensible::State state = first_state_;
   std::optional<inextensible::StepController> controller;
   if (spec_.adaptive)
     controller.emplace(*run.stepper, inextensible::StepController::Settings{.largest = spec_.step});
@@ -172,7 +165,7 @@ void PointRunner::decide(const Judge& judge, Run& run) const {
 double PointRunner::bare_seconds_per_step() const {
   const auto stepper = inextensible::make_stepper(spec_.solver, scene_.problem,
                                                   {spec_.strain_limit, spec_.seed, {}});
-  inextensible::State state = start_state();
+  inextensible::State state = first_state_;
   const auto before = Clock::now();
   for (int i = 0; i < steps_; ++i) stepper->advance(state, spec_.step);
   return since(before) / steps_;

@@ -52,7 +52,6 @@ class PointRunner {
  private:
   // The status of a run that reached its end: what kept it from being one of this motion.
   void decide(const Judge& judge, Run& run) const;
-  inextensible::State start_state() const;
   Judge::Options judging(bool errors) const;  // errors: and what is measured beside them
   // Whether the run has taken too long by now; if so, says it in its status.
   bool timed_out(double time, Run& run) const;
@@ -64,7 +63,7 @@ class PointRunner {
   Scene scene_;
   const inextensible::Backend& backend_;
   int steps_;
-  inextensible::Positions start_acceleration_;  // m/s^2; 0 where velocities are those of the start
+  inextensible::State first_state_;  // the scene's, or half a step back where velocities ask for it
   std::shared_ptr<const Reference> reference_;
 };
 

@@ -4,6 +4,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "harness/judge/measures.h"
 #include "harness/run/calibration.h"
@@ -40,15 +41,20 @@ void fill(PointResult& point, Run& run) {
   point.linear_solver = run.stepper->linear_solver();
 }
 
-void add_sample(PointResult& point, const PointRunner& runner, const Run& run) {
-  if (run.status == PointStatus::ok)
-    point.samples.push_back(runner.seconds_per_step(run) / point.spec.step);
-}
-
 void add_filter_sample(PointResult& point, const PointRunner& runner, const Run& run) {
   if (run.status != PointStatus::ok) return;
   if (point.filter_samples.empty()) point.phases = run.stepper->phases();
   point.filter_samples.push_back(run.stepper->phases().filter / (runner.steps() * point.spec.step));
+}
+
+// One sample of the point's time and one of its filter's. `run`: with its phases timed. Reads of
+// the clock between phases are part of the time of a short step: that is timed again without them.
+void add_samples(PointResult& point, const PointRunner& runner,
+                 const inextensible::Settings& settings, bool short_steps, Run run) {
+  add_filter_sample(point, runner, run);
+  if (short_steps) run = runner.run(settings, false, diverged_strain, false);
+  if (run.status == PointStatus::ok)
+    point.samples.push_back(runner.seconds_per_step(run) / point.spec.step);
 }
 
 }  // namespace
@@ -88,9 +94,7 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
     if (point.ok()) {
       const bool short_steps = runner.seconds_per_step(run) < shortest_judged_step;
       if (run.observed || short_steps) run = runner.run(settings, false, diverged_strain);
-      add_filter_sample(point, runner, run);
-      if (short_steps) run = runner.run(settings, false, diverged_strain, false);
-      add_sample(point, runner, run);
+      add_samples(point, runner, settings, short_steps, std::move(run));
     }
   } catch (const std::bad_alloc&) {
     point.status = PointStatus::out_of_memory;
@@ -107,12 +111,8 @@ void repeat_point(PointResult& point, const RunLimits& limits) {
   inextensible::Settings settings = point.spec.settings;
   if (point.stiffness) settings["stiffness"] = *point.stiffness;
   const PointRunner runner(point.spec, limits);
-  // Reads of the clock between phases are part of the time of a short step: that is timed without.
   const bool short_steps = point.median_seconds() * point.spec.step < shortest_judged_step;
-  Run run = runner.run(settings, false, diverged_strain);
-  add_filter_sample(point, runner, run);
-  if (short_steps) run = runner.run(settings, false, diverged_strain, false);
-  add_sample(point, runner, run);
+  add_samples(point, runner, settings, short_steps, runner.run(settings, false, diverged_strain));
 }
 
 }  // namespace harness

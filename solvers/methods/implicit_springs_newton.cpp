@@ -99,9 +99,9 @@ StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
         return {std::isfinite(current) ? Status::singular : Status::not_finite, j, -1, 0,
                 "the Newton matrix is singular"};
       }
+      work_.factor_nonzeros = solver_->factor_nonzeros();
+      work_.factor_flops = solver_->factor_flops();
     }
-    work_.factor_nonzeros = solver_->factor_nonzeros();
-    work_.factor_flops = solver_->factor_flops();
     step_ = -gradient_;
     solver_->solve(step_.data());  // Newton; Baraff and Witkin (1998) take its first step only
     ++work_.back_solves;
