@@ -23,6 +23,9 @@ namespace {
 
 constexpr int poll_interval = 50;  // ms
 constexpr double kill_after = 2;   // s after SIGTERM
+// s without a look at the child: this process did not run then (Ctrl-Z), which is not the child's
+// time.
+constexpr double stopped_for = 1;
 constexpr char returned_mark = 'r', threw_mark = 'x';
 
 double now() {
@@ -70,6 +73,7 @@ void write_all(int pipe, const std::string& text) {
 
 [[noreturn]] void be_child(const std::function<std::string(Heartbeat&)>& work, Heartbeat& heartbeat,
                            double memory, pid_t parent, int pipe) {
+  setpgid(0, 0);  // so that what it starts can be found
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_DFL);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -86,8 +90,15 @@ void write_all(int pipe, const std::string& text) {
   _exit(0);  // no destructors: the parent's objects are not ours
 }
 
-// Reads until the child closes its end, and sees to it that it does.
-void attend(pid_t child, int pipe, const Heartbeat& heartbeat, const ChildLimits& limits,
+bool has_ended(pid_t child) {
+  siginfo_t info{};
+  return waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         info.si_pid == child;
+}
+
+// Reads until the child closes its end or ends (it may have children of its own that keep the pipe
+// open), and sees to it that it does.
+void attend(pid_t child, int pipe, Heartbeat& heartbeat, const ChildLimits& limits,
             ChildOutcome& outcome) {
   const double grace = 0.5 + 0.1 * limits.timeout;
   double terminated = 0;
@@ -97,7 +108,9 @@ void attend(pid_t child, int pipe, const Heartbeat& heartbeat, const ChildLimits
     kill(child, SIGTERM);
   };
   std::array<char, 65536> buffer{};
-  for (;;) {
+  for (double last = now(), since_last = 0;; last += since_last) {
+    since_last = now() - last;
+    if (since_last > stopped_for) heartbeat.begin = heartbeat.begin + since_last;
     pollfd ready{pipe, POLLIN, 0};
     if (poll(&ready, 1, poll_interval) > 0) {
       const ssize_t count = read(pipe, buffer.data(), buffer.size());
@@ -105,6 +118,7 @@ void attend(pid_t child, int pipe, const Heartbeat& heartbeat, const ChildLimits
       if (count > 0) outcome.text.append(buffer.data(), count);
       continue;
     }
+    if (has_ended(child)) return;
     if (terminated > 0) {
       if (now() > terminated + kill_after) kill(child, SIGKILL);
     } else if (limits.interrupted && limits.interrupted()) {
@@ -165,6 +179,7 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
     close(pipe[0]);
     be_child(work, *heartbeat, limits.memory, parent, pipe[1]);
   }
+  setpgid(child, child);  // whoever comes first
   close(pipe[1]);
   attend(child, pipe[0], *heartbeat, limits, outcome);
   close(pipe[0]);
@@ -172,6 +187,7 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
   rusage usage{};
   while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
   }
+  kill(-child, SIGKILL);  // what it has started and left behind
   outcome.peak_rss_bytes = 1024.0 * static_cast<double>(usage.ru_maxrss);
   outcome.step = heartbeat->step;
   outcome.time = heartbeat->time;

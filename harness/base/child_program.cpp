@@ -1,5 +1,6 @@
 #include "harness/base/child_program.h"
 
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -39,7 +40,9 @@ std::string contents(FILE* file) {
 
 // Between fork and exec, so nothing but system calls.
 [[noreturn]] void become(char* const* argv, const std::array<FILE*, 3>& files,
-                         const sigset_t& signals) {
+                         const sigset_t& signals, pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(127);  // it died before that
   for (int i = 0; i < 3; ++i) dup2(fileno(files[i]), i);
   sigprocmask(SIG_SETMASK, &signals, nullptr);
   execv(argv[0], argv);
@@ -70,8 +73,8 @@ ProgramResult run_program(const std::vector<std::string>& words, const std::stri
   sigemptyset(&child_ended);
   sigaddset(&child_ended, SIGCHLD);
   sigprocmask(SIG_BLOCK, &child_ended, &before);
-  const pid_t child = fork();
-  if (child == 0) become(argv.data(), {in.get(), out.get(), err.get()}, before);
+  const pid_t parent = getpid(), child = fork();
+  if (child == 0) become(argv.data(), {in.get(), out.get(), err.get()}, before, parent);
   ProgramResult result;
   int status = 0;
   const auto start = std::chrono::steady_clock::now();

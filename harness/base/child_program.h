@@ -15,8 +15,9 @@ struct ProgramResult {
   std::string last_error_line() const;  // of err, or how it ended
 };
 
-// words: the program's path, then its arguments. After `timeout` s of wall time, or as soon as
-// `interrupted` says so, it is killed. Throws std::runtime_error if no process can be made.
+// words: the program's path, then its arguments. It ends with this process at the latest. After
+// `timeout` s of wall time, or as soon as `interrupted` says so, it is killed. Throws
+// std::runtime_error if no process can be made.
 ProgramResult run_program(const std::vector<std::string>& words, const std::string& input,
                           double timeout, const std::function<bool()>& interrupted);
 

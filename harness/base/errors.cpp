@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "harness/base/text.h"
+
 namespace harness {
 namespace {
+
+constexpr std::size_t longest_name = 200;  // that is compared with others
 
 // Levenshtein distance, for names of a few letters.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -26,7 +30,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 UsageError unknown_name(std::string_view kind, std::string_view name,
                         const std::vector<std::string>& known) {
-  std::string message = "no " + std::string(kind) + " '" + std::string(name) + "'";
+  std::string message = "no " + std::string(kind) + " '" + shortened(std::string(name)) + "'";
+  name = name.substr(0, longest_name);
   const std::string* best = nullptr;
   std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
   for (const std::string& candidate : known) {

@@ -1,17 +1,101 @@
 #include "harness/base/files.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <sstream>
 
 #include "harness/base/errors.h"
 
 namespace harness {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int most_links = 40;  // Linux's own bound
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+// "-", or a name of what it is connected to: /dev/stdout, also where that is a regular file, which
+// must not be replaced under the program that has it open.
+bool is_standard_output(const std::string& path) {
+  struct stat named {
+  }, open{};
+  return path == "-" || (stat(path.c_str(), &named) == 0 && fstat(STDOUT_FILENO, &open) == 0 &&
+                         named.st_dev == open.st_dev && named.st_ino == open.st_ino);
+}
+
+// Exists, and is no regular file.
+bool is_special(const std::string& path) {
+  struct stat status {};
+  return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+}
+
+// A file beside `path` that no one else has: a name of its own, made exclusively, no link followed.
+class Beside {
+ public:
+  explicit Beside(const std::string& path) : name_(path + ".XXXXXX") {
+    file_ = mkostemp(name_.data(), O_CLOEXEC);
+  }
+  ~Beside() {
+    if (file_ >= 0) close(file_);
+    if (file_ >= 0 && !kept_) unlink(name_.c_str());
+  }
+  Beside(const Beside&) = delete;
+  Beside& operator=(const Beside&) = delete;
+
+  int file() const { return file_; }  // negative: it could not be made, errno says why
+
+  // Whether it has taken the place of `path`, with its permissions or those of a new file.
+  bool replace(const std::string& path) {
+    struct stat status {};
+    const mode_t mode = stat(path.c_str(), &status) == 0 ? status.st_mode & 07777 : new_file_mode();
+    kept_ =
+        fchmod(file_, mode) == 0 && fsync(file_) == 0 && rename(name_.c_str(), path.c_str()) == 0;
+    return kept_;
+  }
+
+ private:
+  static mode_t new_file_mode() {
+    const mode_t mask = umask(0);
+    umask(mask);
+    return 0666 & ~mask;
+  }
+
+  std::string name_;
+  int file_ = -1;
+  bool kept_ = false;
+};
+
+bool write_whole(int file, const std::string& text) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t written = write(file, text.data() + done, text.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    done += static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+void write_through(const std::string& path, const std::string& text) {
+  const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+  if (file < 0) throw FileError(path, "write");
+  const bool whole = write_whole(file, text);
+  const int reason = errno;
+  close(file);
+  errno = reason;
+  if (!whole) throw FileError(path, "write");
+}
+
+}  // namespace
 
 FileError::FileError(const std::string& path, const std::string& verb)
     : FileError(path, verb, std::strerror(errno)) {}
@@ -27,42 +111,57 @@ std::string read_file(const std::string& path, const std::string& what) {
   return text.str();
 }
 
+std::string output_path(const std::string& path) {
+  if (is_standard_output(path)) return path;
+  if (path.empty()) throw UsageError("'' is no file; --out names one");
+  fs::path place(path);
+  std::error_code error;
+  for (int link = 0; fs::is_symlink(place, error) && !is_special(place); ++link) {
+    if (link == most_links) throw UsageError("'" + path + "' is a link in a circle");
+    const fs::path next = fs::read_symlink(place, error);
+    if (error) throw UsageError("cannot follow the link '" + path + "': " + error.message());
+    place = next.is_absolute() ? next : folder_of(place) / next;
+  }
+  if (fs::is_directory(place, error))
+    throw UsageError("'" + path + "' is a folder; --out names a file");
+  // Programs that are given the name take it for an option otherwise.
+  return (place.string().front() == '-' ? "./" : "") + place.string();
+}
+
+std::string regular_output_path(const std::string& path) {
+  std::string place = output_path(path);
+  if (is_standard_output(place) || is_special(place))
+    throw UsageError("'" + path + "' is no regular file; --out names one, which stays");
+  return place;
+}
+
 void check_writable(const std::string& path) {
-  namespace fs = std::filesystem;
-  const fs::path target(path);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const std::string place = output_path(path);
+  if (is_standard_output(place)) return;
+  if (is_special(place)) {
+    if (access(place.c_str(), W_OK) != 0)
+      throw UsageError("cannot write '" + path + "': " + std::strerror(errno));
+    return;
+  }
+  const fs::path folder = folder_of(place);
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
     throw UsageError("cannot make the folder '" + folder.string() + "': " + error.message());
-  if (fs::is_directory(target)) throw UsageError("'" + path + "' is a folder; --out names a file");
-  const std::string trial = path + ".partial";
-  const int file = open(trial.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
-  if (file < 0) throw UsageError("cannot write '" + path + "': " + std::strerror(errno));
-  close(file);
-  unlink(trial.c_str());
+  if (Beside(place).file() < 0)
+    throw UsageError("cannot write '" + path + "': " + std::strerror(errno));
 }
 
 void write_atomically(const std::string& path, const std::string& text) {
-  const std::string trial = path + ".partial";
-  const auto fail = [&] {
-    const FileError error(path, "write");
-    unlink(trial.c_str());
-    throw error;
-  };
-  const int file = open(trial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) fail();
-  bool whole = true;
-  for (std::size_t done = 0; whole && done < text.size();) {
-    const ssize_t written = write(file, text.data() + done, text.size() - done);
-    whole = written >= 0;
-    if (whole) done += written;
+  const std::string place = output_path(path);
+  if (is_standard_output(place)) {
+    std::cout << text << std::flush;  // whether that went well, main says
+    return;
   }
-  whole = whole && fsync(file) == 0;
-  const int reason = errno;
-  close(file);
-  errno = reason;
-  if (!whole || rename(trial.c_str(), path.c_str()) != 0) fail();
+  if (is_special(place)) return write_through(place, text);
+  Beside beside(place);
+  if (beside.file() < 0 || !write_whole(beside.file(), text) || !beside.replace(place))
+    throw FileError(path, "write");
 }
 
 }  // namespace harness

@@ -1,4 +1,5 @@
-// Files read and written whole.
+// Files read and written whole. Everything that this program leaves on a disk is opened here, but
+// for journals, which are written a line at a time.
 #pragma once
 
 #include <stdexcept>
@@ -16,12 +17,22 @@ class FileError : public std::runtime_error {
 // Throws UsageError, with what the file is to the user, if it cannot be read.
 std::string read_file(const std::string& path, const std::string& what);
 
-// Throws UsageError unless a file can be made at `path`; makes missing folders. Nothing is left
-// behind.
+// Where writing to `path` ends up: symbolic links followed, of a file that is yet to be made too.
+// Two names of one output are one, so locks hold. Throws UsageError for "", a folder, and links in
+// a circle.
+std::string output_path(const std::string& path);
+
+// As output_path, and a regular file: what is written with a journal beside it, and found again
+// later. Throws UsageError for devices, pipes and "-" too.
+std::string regular_output_path(const std::string& path);
+
+// Throws UsageError unless something can be written at `path`; makes missing folders. Nothing is
+// left behind and no other file is touched.
 void check_writable(const std::string& path);
 
-// Written beside, synced and renamed: the old file or the new one is there, never half of one.
-// Throws FileError.
+// A regular file is written beside, synced and renamed: the old one or the new one is there, never
+// half of one, and a link to it stays a link. Devices and pipes are written to; "-" is standard
+// output. Throws FileError.
 void write_atomically(const std::string& path, const std::string& text);
 
 }  // namespace harness

@@ -4,28 +4,17 @@
 #include <cmath>
 
 #include "harness/base/errors.h"
+#include "harness/base/json_text.h"
 #include "harness/base/text.h"
 
 namespace harness {
 
 using nlohmann::json;
 
-std::string Bounds::text() const {
-  std::string words = whole ? "a whole number" : "a number";
-  if (least > -1e300) words += (above ? " above " : " of at least ") + number_text(least);
-  if (most < 1e300) words += (least > -1e300 ? " and" : "") + (" at most " + number_text(most));
-  return words;
-}
-
-bool Bounds::hold(double number) const {
-  return std::isfinite(number) && (above ? number > least : number >= least) && number <= most &&
-         (!whole || number == std::floor(number));
-}
-
 JsonReader::JsonReader(const json& object, std::string where)
     : object_(object), where_(std::move(where)) {
   if (!object.is_object())
-    throw UsageError(where_ + " is " + object.dump() + ", must be an object { ... }");
+    throw UsageError(where_ + " is " + value_text(object) + ", must be an object { ... }");
 }
 
 const json* JsonReader::find(const std::string& key) {
@@ -72,7 +61,7 @@ std::string JsonReader::one_of(const std::string& key, const std::string& otherw
                                const std::vector<std::string>& known, const std::string& kind) {
   const json* value = find(key);
   if (!value) return otherwise;
-  std::string name = value->is_string() ? value->get<std::string>() : value->dump();
+  std::string name = value->is_string() ? value->get<std::string>() : value_text(*value);
   if (std::find(known.begin(), known.end(), name) == known.end())
     throw UsageError(where(key) + ": " + unknown_name(kind, name, known).what());
   return name;
@@ -88,7 +77,7 @@ void JsonReader::finish() const {
 
 void JsonReader::fail_at(const std::string& key, const json& value,
                          const std::string& wanted) const {
-  throw UsageError(where(key) + " is " + value.dump() + ", must be " + wanted);
+  throw UsageError(where(key) + " is " + value_text(value) + ", must be " + wanted);
 }
 
 double JsonReader::checked(const std::string& key, const json& value, const Bounds& bounds) const {
@@ -105,12 +94,83 @@ const json& JsonReader::list(const std::string& key) {
   return *value;
 }
 
-json parse_commented(const std::string& text, const std::string& path) {
-  try {
-    return json::parse(text, nullptr, true, /*ignore_comments=*/true);
-  } catch (const json::exception& error) {
-    throw UsageError("'" + path + "' is not JSON: " + error.what());
+namespace {
+
+constexpr std::size_t deepest = 64;  // ours are less than ten deep
+
+// Looks at a text before it becomes a tree: trees are taken apart by recursion, and keep the last
+// of two equal keys.
+class Inspector : public nlohmann::json_sax<json> {
+ public:
+  const std::string& defect() const { return defect_; }
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override {
+    keys_.emplace_back();
+    return enter();
   }
+  bool key(string_t& name) override {
+    return keys_.back().insert(name).second ||
+           refuse("the key '" + shortened(name, 40) + "' stands twice in an object");
+  }
+  bool end_object() override {
+    keys_.pop_back();
+    --depth_;
+    return true;
+  }
+  bool start_array(std::size_t) override { return enter(); }
+  bool end_array() override {
+    --depth_;
+    return true;
+  }
+  bool parse_error(std::size_t, const std::string&, const json::exception& error) override {
+    return refuse(shortened(error.what()));
+  }
+
+ private:
+  bool enter() {
+    return ++depth_ <= deepest ||
+           refuse("it is nested more than " + std::to_string(deepest) + " deep");
+  }
+  bool refuse(std::string why) {
+    defect_ = std::move(why);
+    return false;
+  }
+
+  std::vector<std::set<std::string>> keys_;  // of the objects that are open
+  std::size_t depth_ = 0;
+  std::string defect_;
+};
+
+json parse(const std::string& text, const std::string& path, bool comments) {
+  Inspector inspector;
+  if (!json::sax_parse(text, &inspector, json::input_format_t::json, true, comments))
+    throw UsageError("'" + path + "' is not JSON of ours: " + inspector.defect());
+  return json::parse(text, nullptr, true, comments);
+}
+
+}  // namespace
+
+json parse_document(const std::string& text, const std::string& path) {
+  return parse(text, path, false);
+}
+
+json parse_commented(const std::string& text, const std::string& path) {
+  return parse(text, path, true);
+}
+
+std::string value_text(const json& value) {
+  // Of what is large only the kind: writing it down may take as long as reading it did.
+  if (value.is_structured() && value.size() > 8)
+    return std::string(value.is_array() ? "a list" : "an object") + " of " +
+           std::to_string(value.size());
+  return shortened(compact(value), 60);
 }
 
 }  // namespace harness

@@ -7,21 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "harness/base/bounds.h"
+
 namespace harness {
-
-// What a number must be.
-struct Bounds {
-  double least = -1e300;
-  bool above = false;  // least itself is not allowed
-  double most = 1e300;
-  bool whole = false;
-
-  static Bounds positive() { return {.least = 0, .above = true}; }
-  static Bounds at_least(double least) { return {.least = least}; }
-  static Bounds whole_number(double least) { return {.least = least, .whole = true}; }
-  std::string text() const;  // "a whole number of at least 2"
-  bool hold(double number) const;
-};
 
 // A JSON object whose keys are read one by one; finish() refuses what nobody asked for. All throw
 // UsageError.
@@ -54,7 +42,13 @@ class JsonReader {
   std::set<std::string> known_;
 };
 
-// A text as JSON with comments; throws UsageError, naming the file, if it is none.
+// A text as JSON; with // comments where users write it themselves. Everything that comes from
+// outside comes in here. Throws UsageError, naming the file, if it is none, if a key stands twice
+// in an object, or if it is nested deeper than anything of ours.
+nlohmann::json parse_document(const std::string& text, const std::string& path);
 nlohmann::json parse_commented(const std::string& text, const std::string& path);
+
+// A value as it may stand in a message: short, whatever it is.
+std::string value_text(const nlohmann::json& value);
 
 }  // namespace harness

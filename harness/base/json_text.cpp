@@ -5,15 +5,20 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string name_of(const std::string& key) { return ordered_json(key).dump() + ": "; }
+template <class Json>
+std::string written(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string name_of(const std::string& key) { return written(ordered_json(key)) + ": "; }
 
 // {a, b} or [a, b], from what each item is written as.
 template <class Written>
 std::string enclosed(const ordered_json& value, const std::string& separator,
-                     const std::string& end, const Written& written) {
+                     const std::string& end, const Written& item_text) {
   std::string text, between = separator;
   for (const auto& [key, item] : value.items()) {
-    text += between + (value.is_object() ? name_of(key) : "") + written(key, item);
+    text += between + (value.is_object() ? name_of(key) : "") + item_text(key, item);
     between = "," + (separator.empty() ? " " : separator);
   }
   return (value.is_object() ? "{" : "[") + text + end + (value.is_object() ? "}" : "]");
@@ -34,8 +39,10 @@ std::string folded(const ordered_json& value, std::size_t room, std::size_t widt
 
 }  // namespace
 
+std::string compact(const nlohmann::json& value) { return written(value); }
+
 std::string line_of(const ordered_json& value) {
-  if (!value.is_structured()) return value.dump();
+  if (!value.is_structured()) return written(value);
   return enclosed(value, "", "",
                   [](const std::string&, const ordered_json& item) { return line_of(item); });
 }

@@ -6,6 +6,10 @@
 
 namespace harness {
 
+// As programs read it: without spaces. Text that is not UTF-8 (a path, a message from elsewhere)
+// keeps what can be kept.
+std::string compact(const nlohmann::json& value);
+
 // On one line: {"a": 1, "b": [1, 2]}.
 std::string line_of(const nlohmann::ordered_json& value);
 

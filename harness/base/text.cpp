@@ -1,6 +1,8 @@
 #include "harness/base/text.h"
 
+#include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <iomanip>
 #include <sstream>
 
@@ -12,6 +14,11 @@ std::string number_text(double value, int digits) {
   return text.str();
 }
 
+double rounded_to(double value, int digits) {
+  // Not std::stod, which throws on the smallest numbers.
+  return std::strtod(number_text(value, digits).c_str(), nullptr);
+}
+
 std::string told_apart(double value, double other) {
   constexpr int all_digits = 17;
   int digits = 6;
@@ -20,6 +27,14 @@ std::string told_apart(double value, double other) {
       ++digits;
   }
   return number_text(value, digits);
+}
+
+std::string shortened(const std::string& text, std::size_t most) {
+  std::string line = text.substr(0, most);
+  for (char& c : line) {
+    if (std::iscntrl(static_cast<unsigned char>(c)) != 0) c = ' ';
+  }
+  return text.size() > most ? line + "..." : line;
 }
 
 std::string step_text(double step) { return std::isnan(step) ? "-" : "1/" + number_text(1 / step); }

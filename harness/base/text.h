@@ -8,9 +8,15 @@ namespace harness {
 // With that many significant digits and no trailing zeros; six are what a stream writes by default.
 std::string number_text(double value, int digits = 6);
 
+// The number with so many significant digits.
+double rounded_to(double value, int digits = 6);
+
 // With as many digits, six or more, as set it apart from `other`: "0.00010000002", not "0.0001",
 // against a limit of 0.0001.
 std::string told_apart(double value, double other);
+
+// Of a text for a message: its beginning if it is long, and one line in any case.
+std::string shortened(const std::string& text, std::size_t most = 120);
 
 // "1/250" for a step of 0.004 s, "-" for none (NaN).
 std::string step_text(double step);

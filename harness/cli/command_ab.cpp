@@ -1,6 +1,9 @@
 // bench ab: two builds of this program timed against each other.
 #include <unistd.h>
 
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 
@@ -32,16 +35,31 @@ struct AbCommand : CompareOptions {
   // of them to be undisturbed, and starting the process does not dominate.
   double least_measured = 0.05;
 
-  const std::string& binary(Side side) const {
-    return side == Side::old_one ? old_binary : new_binary;
+  std::vector<std::string> old_plugins, new_plugins;
+
+  // The program of a side with its plug-ins, a command to be added.
+  std::vector<std::string> program(Side side) const {
+    std::vector<std::string> words{side == Side::old_one ? old_binary : new_binary};
+    for (const std::string& file : side == Side::old_one ? old_plugins : new_plugins)
+      words.insert(words.end(), {"--plugin", file});
+    return words;
   }
 };
 
-// A folder that goes away again.
+// A folder that goes away again, with the process or, if that was killed, before the next one.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "bench-ab-XXXXXX").string();
+    const std::string stem = "bench-ab-" + std::to_string(getuid()) + "-";
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(fs::temp_directory_path(), ignored)) {
+      const std::string name = entry.path().filename().string();
+      if (!name.starts_with(stem)) continue;
+      const pid_t owner = std::atoi(name.c_str() + stem.size());
+      if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH) fs::remove_all(entry, ignored);
+    }
+    std::string name =
+        (fs::temp_directory_path() / (stem + std::to_string(getpid()) + "-XXXXXX")).string();
     if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
     path_ = name;
   }
@@ -78,7 +96,8 @@ void check_binary(const std::string& path) {
 json old_result(const AbCommand& options) {
   const TemporaryFolder folder;
   const std::string out = folder.file("old.json");
-  std::vector<std::string> words{options.old_binary, "--sweep", "strain"};
+  std::vector<std::string> words = options.program(Side::old_one);
+  words.insert(words.end(), {"--sweep", "strain"});
   const bool file = options.suite.find_first_of("/.") != std::string::npos;
   for (const auto& [option, value] :
        {std::pair(file ? "--config" : "--profile", options.suite),
@@ -141,9 +160,9 @@ json failed_point(const PairedPoint& point, const ProgramResult& ran) {
 
 json run_one(const AbCommand& options, Side side, const PairedPoint& point) {
   const double timeout = point_timeout * (point.samples + 1);
-  const ProgramResult ran =
-      run_or_interrupt({options.binary(side), "point", "--samples", std::to_string(point.samples)},
-                       point.spec.dump() + "\n", timeout);
+  std::vector<std::string> words = options.program(side);
+  words.insert(words.end(), {"point", "--samples", std::to_string(point.samples)});
+  const ProgramResult ran = run_or_interrupt(words, point.spec.dump() + "\n", timeout);
   json printed = json::parse(ran.out, nullptr, false);
   return ran.exit_code == success && printed.is_object() ? printed : failed_point(point, ran);
 }
@@ -210,6 +229,14 @@ void add_ab_command(const Command& program) {
       "a point has become slower, 4 if one fails");
   command.option("old", options.old_binary, "the program before", "OLD").required();
   command.option("new", options.new_binary, "the program after", "NEW").required();
+  command
+      .option("--old-plugin", options.old_plugins, "a plug-in of the program before; repeatable",
+              "FILE")
+      .repeatable();
+  command
+      .option("--new-plugin", options.new_plugins, "a plug-in of the program after; repeatable",
+              "FILE")
+      .repeatable();
   command.option("--suite", options.suite, "profile or suite file; default quick", "NAME");
   command.option("--pairs", options.pairs, "processes of each a point; default 15", "N")
       .within(4, 1000);  // fewer are never significant
@@ -219,7 +246,7 @@ void add_ab_command(const Command& program) {
       .option("--seconds", options.least_measured,
               "what a process measures at least, in as many runs as it takes; default 0.05", "S")
       .within(1e-3, 60.0);
-  command.option("--solver", options.solver, "only solvers whose name matches", "REGEX");
+  command.alternatives("--solver", options.solver, "only solvers whose name matches; repeatable");
   command.option("--scene", options.scene, "chain or drape; both if left out", "NAME");
   command.option("--filter", options.filter, "only points in whose id this is found", "REGEX");
   command.option("--exclude", options.exclude, "without points in whose id this is found", "REGEX");

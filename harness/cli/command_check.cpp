@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "harness/base/errors.h"
+#include "harness/base/interrupt.h"
 #include "harness/cli/commands.h"
 #include "harness/stability/conformance.h"
 #include "inextensible/registry.h"
@@ -29,7 +30,9 @@ int check(const std::string& solver, bool hard_cases, std::int64_t seed) {
     for (const auto& backend : inextensible::backends()) names.emplace_back(backend.name);
     throw unknown_name("solver", solver, names);
   }
-  const auto findings = examine(solver, {static_cast<std::uint64_t>(seed), hard_cases, print});
+  catch_interrupts();
+  const auto findings =
+      examine(solver, {static_cast<std::uint64_t>(seed), hard_cases, print, interrupted});
   const auto count = [&](Finding::Grade grade) {
     return std::count_if(findings.begin(), findings.end(),
                          [grade](const Finding& f) { return f.grade == grade; });

@@ -59,10 +59,10 @@ int make_baseline(const std::vector<std::string>& files, const std::string& out)
 
 void add_compare_command(const Command& program) {
   const auto given = std::make_shared<CompareCommand>();
-  const Command command = program.subcommand(
-      "compare",
-      "two results point by point; exit 3 for a regression, 4 for new failures, 5 if "
-      "they cannot be compared");
+  const Command command = program.subcommand("compare",
+                                             "two results point by point; exit 3 for a regression, "
+                                             "4 for new failures, 5 if they cannot be "
+                                             "compared, 6 if there are too few runs to tell");
   command.option("base", given->base, "result file or baseline", "BASE.json").required();
   command.option("new", given->next, "result files; several count as one", "NEW.json").required();
   add_compare_options(command, *given);

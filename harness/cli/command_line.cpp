@@ -1,20 +1,43 @@
 #include "harness/cli/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <iostream>
 
+#include "harness/base/text.h"
 #include "harness/cli/commands.h"
 
 namespace harness {
 
 Option Option::required() const { return Option(option_->required()); }
-Option Option::positive() const { return Option(option_->check(CLI::PositiveNumber)); }
-Option Option::not_negative() const { return Option(option_->check(CLI::NonNegativeNumber)); }
+namespace {
+
+// A number that is one, and holds the bounds; said as everything else says it.
+CLI::Validator within_bounds(const Bounds& bounds) {
+  return CLI::Validator(
+      [bounds](const std::string& text) {
+        char* end = nullptr;
+        const double number = std::strtod(text.c_str(), &end);
+        if (!text.empty() && *end == '\0' && bounds.hold(number)) return std::string();
+        return "is '" + shortened(text, 40) + "', must be " + bounds.text();
+      },
+      "");
+}
+
+}  // namespace
+
+Option Option::positive() const { return holds(Bounds::positive()); }
+Option Option::not_negative() const { return holds(Bounds::at_least(0)); }
+Option Option::holds(const Bounds& bounds) const {
+  return Option(option_->check(within_bounds(bounds)));
+}
+Option Option::repeatable() const { return Option(option_->allow_extra_args(false)); }
 Option Option::within(int least, int most) const {
-  return Option(option_->check(CLI::Range(least, most)));
+  return holds(
+      {.least = static_cast<double>(least), .most = static_cast<double>(most), .whole = true});
 }
 Option Option::within(double least, double most) const {
-  return Option(option_->check(CLI::Range(least, most)));
+  return holds({.least = least, .most = most});
 }
 
 namespace {
@@ -43,7 +66,7 @@ Option Command::option(const std::string& name, std::vector<std::string>& values
 }
 Option Command::option(const std::string& name, double& value, const std::string& help,
                        const std::string& type) const {
-  return add(app_, name, value, help, type);
+  return add(app_, name, value, help, type).holds({});
 }
 Option Command::option(const std::string& name, int& value, const std::string& help,
                        const std::string& type) const {
@@ -53,9 +76,18 @@ Option Command::option(const std::string& name, std::int64_t& value, const std::
                        const std::string& type) const {
   return add(app_, name, value, help, type);
 }
+Option Command::alternatives(const std::string& name, std::string& value,
+                             const std::string& help) const {
+  return Option(app_->add_option(name, value, help)
+                    ->type_name("REGEX")
+                    ->delimiter('|')  // they are joined by it again
+                    ->multi_option_policy(CLI::MultiOptionPolicy::Join));
+}
 Option Command::byte_count(const std::string& name, double& value, const std::string& help) const {
-  return Option(
-      app_->add_option(name, value, help)->transform(CLI::AsSizeValue(false))->type_name("BYTES"));
+  return Option(app_->add_option(name, value, help)
+                    ->transform(CLI::AsSizeValue(false))
+                    ->type_name("BYTES"))
+      .holds({.least = 1 << 20});
 }
 void Command::flag(const std::string& name, bool& value, const std::string& help) const {
   app_->add_flag(name, value, help);
@@ -72,8 +104,9 @@ std::function<std::vector<std::string>()> Command::as_typed() const {
   return [options] {
     std::vector<std::string> words;
     for (const CLI::Option* option : options) {
-      if (option->count() == 0 || option->results().back().empty()) continue;
-      words.push_back(option->get_name() + "=" + option->results().back());
+      if (option->count() == 0) continue;
+      const std::string value = option->reduced_results().back();
+      if (!value.empty()) words.push_back(option->get_name() + "=" + value);
     }
     return words;
   };

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/base/bounds.h"
+
 namespace CLI {
 class App;
 class Option;
@@ -23,8 +25,10 @@ class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
   Option required() const;
+  Option holds(const Bounds& bounds) const;
   Option positive() const;
   Option not_negative() const;
+  Option repeatable() const;  // one value each time; else a list takes all words that follow
   Option within(int least, int most) const;
   Option within(double least, double most) const;
 
@@ -52,6 +56,8 @@ class Command {
                 const std::string& type) const;
   Option option(const std::string& name, std::int64_t& value, const std::string& help,
                 const std::string& type) const;
+  // A regular expression; given several times, what matches one of them.
+  Option alternatives(const std::string& name, std::string& value, const std::string& help) const;
   // "4G" is 4 GiB.
   Option byte_count(const std::string& name, double& value, const std::string& help) const;
   void flag(const std::string& name, bool& value, const std::string& help) const;

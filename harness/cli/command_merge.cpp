@@ -16,14 +16,16 @@ void add_merge_command(const Command& program) {
   struct Given {
     std::vector<std::string> files;
     std::string out;
-    bool allow_mixed = false;
+    MergeOptions options;
   };
   const auto given = std::make_shared<Given>();
   const Command command =
       program.subcommand("merge", "join result files of one suite, such as shards");
   command.option("results", given->files, "result files", "RESULT.json").required();
   command.option("--out", given->out, "the joined result file", "FILE").required();
-  command.flag("--allow-mixed", given->allow_mixed, "though machines or builds differ");
+  command.flag("--allow-mixed", given->options.mixed, "though machines or builds differ");
+  command.flag("--partial", given->options.partial,
+               "though shards are missing; the result says that it is not complete");
   command.does([given] {
     std::vector<NamedResult> results;
     for (const std::string& file : given->files) {
@@ -33,8 +35,9 @@ void add_merge_command(const Command& program) {
     }
     check_writable(given->out);
     // One file is whole as it is; written again, it is laid out as files are written now.
-    nlohmann::json whole =
-        results.size() == 1 ? results.front().document : merge(results, given->allow_mixed);
+    nlohmann::json whole = results.size() == 1 && !is_shard(results.front().document)
+                               ? results.front().document
+                               : merge(results, given->options);
     if (!whole.contains("legend")) whole["legend"] = legend();
     write_atomically(given->out, result_text(whole));
     if (whole.contains("points"))

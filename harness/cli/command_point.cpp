@@ -1,9 +1,10 @@
 // bench point: runs single points in this process; what bench ab and other programs build upon.
-#include <algorithm>
 #include <cmath>
 #include <iostream>
 
 #include "harness/base/errors.h"
+#include "harness/base/json_reader.h"
+#include "harness/base/json_text.h"
 #include "harness/cli/commands.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
@@ -42,26 +43,13 @@ void check_spec(const PointSpec& spec, const std::string& where) {
     }
   }();
   if (parameters != spec.scene_parameters)
-    throw UsageError(where + ": 'scene_parameters' is " + json(spec.scene_parameters).dump() +
+    throw UsageError(where + ": 'scene_parameters' is " + value_text(spec.scene_parameters) +
                      ", must hold every parameter of the scene: " + json(parameters).dump());
   const auto [vertices, constraints] = type->counts(parameters);
   check_count(where, "vertices", spec.vertices, vertices);
   check_count(where, "constraints", spec.constraints, constraints);
-  if (spec.name().find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") != std::string::npos)
-    throw UsageError(where + ": 'contestant' is " + json(spec.name()).dump() +
-                     ", must be made of a-z, 0-9 and _");
-  const auto* backend = inextensible::find_backend(spec.solver);
-  if (!backend)
-    throw UsageError(
-        where + ": " +
-        unknown_name("solver", spec.solver, names_of(inextensible::backends())).what());
-  for (const auto& setting : spec.settings) {
-    const auto known = names_of(backend->settings);
-    if (std::find(known.begin(), known.end(), setting.first) == known.end())
-      throw UsageError(
-          where + ": 'settings': " +
-          unknown_name("setting of solver " + spec.solver, setting.first, known).what());
-  }
+  check_plain_name(spec.name(), where + ": 'contestant'");
+  check_settings(spec.settings, where + ": 'settings'", checked_backend(spec.solver, where));
   if (!(spec.strain_limit > 0) || !std::isfinite(spec.strain_limit))
     throw UsageError(where + ": 'strain_limit' is " + json(spec.strain_limit).dump() +
                      ", must be above 0");
@@ -80,7 +68,7 @@ std::vector<PointSpec> read_specs(std::istream& in) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const std::string where = "point on line " + std::to_string(number);
     try {
-      specs.push_back(spec_of(json::parse(line)));
+      specs.push_back(spec_of(parse_document(line, where)));
     } catch (const json::exception& error) {
       throw UsageError(where + ": " + error.what());
     }
@@ -100,7 +88,7 @@ int run_points(const PointCommand& options) {
     for (int i = 1; i < options.samples && point.ok(); ++i) repeat_point(point, limits);
     json line = to_json(point);
     line["counters_fingerprint"] = fingerprint;
-    std::cout << line.dump() << std::endl;
+    std::cout << compact(line) << std::endl;
   }
   return success;
 }

@@ -51,15 +51,25 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
   StabilityFilters filters;
   if (!options.solver.empty()) {
     check_solver_pattern(options.solver);
-    filters.solver = pattern("--solver", options.solver);
+    filters.solver = Pattern("--solver", options.solver);
   }
-  if (!options.hard_case.empty()) filters.hard_case = pattern("--case", options.hard_case);
+  if (!options.hard_case.empty()) filters.hard_case = Pattern("--case", options.hard_case);
   HardCaseValues values = hard_case_values(options.profile);
   for (const std::string& given : options.values) set_values(values, given);
   const auto cases = hard_cases(values);
-  const std::string out =
-      options.out.empty() ? local_result(options.profile + "-stability.json") : options.out;
+  const StabilityPlan plan = plan_stability(cases, filters);
+  if (options.dry_run) {
+    std::cout << plan.cells() << " cells: " << plan.cases.size() << " hard cases by "
+              << plan.solvers.size() << " solvers; " << plan.scenes.size()
+              << " scenes for each solver's largest step, " << plan.frames.size()
+              << " for frames side by side\n";
+    return success;
+  }
+  const std::string out = chosen_output(options, options.profile + "-stability");
   check_writable(out);
+  if (!options.force && std::filesystem::exists(out))
+    throw UsageError("'" + out +
+                     "' is there already: --force replaces it, another --out keeps both");
   const nlohmann::json context = machine_context();
   catch_interrupts();
   StabilityEvents events;
@@ -80,7 +90,7 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
     std::cerr << "the same frame, " << found.scene.name() << '\n';
   };
   const std::uint64_t seed = options.seed < 0 ? 1 : static_cast<std::uint64_t>(options.seed);
-  const StabilityOutcome outcome = run_stability(cases, filters, seed, events);
+  const StabilityOutcome outcome = run_stability(plan, seed, events);
   write_atomically(out, result_text(stability_document(context, outcome, seed, command)));
   print_stability(std::cout, outcome);
   std::cout << "\nwritten:\n" << out << std::endl;

@@ -83,10 +83,15 @@ struct Past {
 
 Past look_back(const SweepCommand& options, const std::string& out, const Journal& journal) {
   const bool again = options.resume || options.rerun_failed;
+  if (!journal.damage().empty() && !options.force)
+    throw UsageError("'" + journal.path() + "' is damaged, " + journal.damage() +
+                     "; --resume --force goes on with the " + std::to_string(journal.points()) +
+                     " points that it still holds, --force starts anew");
   if (journal.points() > 0) {
+    if (again && !journal.header().is_object()) return {.memory = journal.memory()};
     if (again)
       return {journal.memory(), journal.header().at("identity"), journal.header().at("context"),
-              false, true};
+              false, journal.damage().empty()};
     if (!options.force)
       throw UsageError("'" + journal.path() + "' holds " + std::to_string(journal.points()) +
                        " points of a run that did not finish: --resume goes on with it, --force "
@@ -102,6 +107,10 @@ Past look_back(const SweepCommand& options, const std::string& out, const Journa
                              past.context.value("selection", nlohmann::json::object()));
     past.finished = result.at("complete");
     return past;
+  } else if (!options.force && std::filesystem::exists(out)) {
+    throw UsageError("'" + out +
+                     "' is there already: --force replaces it, --resume completes it, and another "
+                     "--out keeps both");
   }
   return {};
 }
@@ -195,8 +204,7 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
     dry_run(suite, searches);
     return success;
   }
-  const std::string out =
-      options.out.empty() ? local_result(suite.name + "-" + options.sweep + ".json") : options.out;
+  const std::string out = chosen_output(options, suite.name + "-" + options.sweep);
   check_writable(out);
   nlohmann::json context = machine_context();
   context["selection"] = selection(options);
@@ -300,9 +308,8 @@ void add_sweep_command(const Command& program, const std::vector<std::string>& c
     if (given->sweep.empty())
       throw UsageError(
           "nothing to do: give --sweep strain, resolution, step or stability (see bench --help)");
+    check_options(*given);
     if (given->sweep == "stability") return stability_command(*given, command);
-    if (!given->hard_case.empty() || !given->values.empty())
-      throw UsageError("--case and --values go with --sweep stability");
     return sweep_command(*given, command);
   });
 }

@@ -47,10 +47,10 @@ std::vector<SweepSpec> chosen_scenes(const std::string& name) {
 std::vector<std::string> chosen_solvers(const std::string& text) {
   std::vector<std::string> solvers;
   if (!text.empty()) check_solver_pattern(text);
-  const std::regex expression = pattern("--solver", text.empty() ? ".*" : text);
+  const Pattern expression("--solver", text.empty() ? ".*" : text);
   for (const auto& backend : inextensible::backends()) {
-    if ((backend.contestant || backend.name == text) &&
-        std::regex_match(backend.name, expression) && !tunable_numbers(backend).empty())
+    if ((backend.contestant || backend.name == text) && expression.matches(backend.name) &&
+        !tunable_numbers(backend).empty())
       solvers.emplace_back(backend.name);
   }
   if (solvers.empty()) throw UsageError("--solver " + text + ": no setting of it is to be tuned");
@@ -136,8 +136,7 @@ void add_tune_command(const Command& program) {
       "tune",
       "search the settings of each solver, with one budget and one rule, on scenes that no result "
       "reports; half an hour for all");
-  command.option("--solver", options.solver, "only solvers whose name matches; others stay",
-                 "REGEX");
+  command.alternatives("--solver", options.solver, "only solvers whose name matches; others stay");
   command.option("--scene", options.scene, "chain, drape or patch only; others stay", "NAME");
   command
       .option("--budget", options.budget,

@@ -29,7 +29,11 @@ int draw(const std::vector<std::string>& arguments, const std::string& script) {
   }
   int status = 0;
   if (child < 0 || waitpid(child, &status, 0) < 0) return internal_error;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : internal_error;
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : internal_error;
+  if (code == 127)
+    std::cerr << "bench: figures need /usr/bin/python3 with matplotlib (Debian: "
+                 "python3-matplotlib)\n";
+  return code;
 }
 
 }  // namespace harness

@@ -16,6 +16,7 @@ enum ExitCode {
   regression = 3,
   unexpected_outcome = 4,
   not_comparable = 5,
+  cannot_decide = 6,
   skipped = 77,
   interrupted_exit = 130
 };

@@ -27,7 +27,11 @@ int report_comparison(const Comparison& comparison, const CompareOptions& option
     write_atomically(options.markdown, markdown_table(comparison, name));
   print_comparison(std::cout, comparison);
   if (comparison.any(is_failure)) return unexpected_outcome;
-  return comparison.any(is_regression) ? regression : success;
+  if (comparison.any(is_regression)) return regression;
+  if (!comparison.undecided()) return success;
+  std::cerr << "bench: times differ, and there are too few runs of best points to say whether that "
+               "is noise: more --reps\n";
+  return cannot_decide;
 }
 
 }  // namespace harness

@@ -5,6 +5,8 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
+#include "harness/base/standard_streams.h"
+#include "harness/base/text.h"
 #include "harness/cli/commands.h"
 #include "harness/points/context.h"
 #include "harness/points/plugins.h"
@@ -83,12 +85,18 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace harness
 
+// Of a message: four lines of a terminal, as a rule.
+constexpr std::size_t longest_message = 400;
+
 int main(int argc, char** argv) {
+  harness::open_standard_streams();
   harness::use_one_thread();
   try {
-    return harness::run(argc, argv);
+    const int code = harness::run(argc, argv);
+    harness::check_standard_output();
+    return code;
   } catch (const harness::UsageError& error) {
-    std::cerr << "bench: " << error.what() << '\n';
+    std::cerr << "bench: " << harness::shortened(error.what(), longest_message) << '\n';
     return harness::usage_error;
   } catch (const harness::Interrupted&) {
     return harness::interrupted_exit;

@@ -15,6 +15,16 @@ struct SweepCommand : SweepOptions {
   std::vector<std::string> values;
 };
 
+// Where the result goes: to --out, a regular file, or to results/local/<stem>.json; or, where that
+// has a finished result, to <stem>-2.json and so on, unless it is that one which is meant
+// (--resume,
+// --rerun-failed, --force). Throws UsageError.
+std::string chosen_output(const SweepCommand& options, const std::string& stem);
+
+// Options of --sweep stability that the others do not have, and the other way round: an option that
+// would do nothing is an error. Throws UsageError.
+void check_options(const SweepCommand& options);
+
 // command: the words of the command line, for the record. Both return an ExitCode.
 int sweep_command(const SweepCommand& options, const std::vector<std::string>& command);
 // Its cases are in the program, not in a suite.

@@ -1,6 +1,7 @@
 #include "harness/cli/sweep_options.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "harness/base/errors.h"
 #include "harness/base/paths.h"
@@ -14,12 +15,14 @@ namespace {
 
 // "5" or "5..40".
 std::pair<int, int> parse_reps(const std::string& text) {
-  static const std::regex form(R"((\d{1,4})(?:\.\.(\d{1,4}))?)");
-  std::smatch match;
-  if (!std::regex_match(text, match, form) || std::stoi(match[1]) < 1)
-    throw UsageError("--reps is '" + text + "', must be a number from 1 on, or two: 5..40");
-  const int least = std::stoi(match[1]), most = match[2].matched ? std::stoi(match[2]) : 0;
-  if (match[2].matched && most < least)
+  int least = 0, most = 0;
+  char extra = 0;
+  const bool whole = has_form(text, R"(\d{1,4}(\.\.\d{1,4})?)");
+  const int numbers = whole ? std::sscanf(text.c_str(), "%d..%d%c", &least, &most, &extra) : 0;
+  if (least < 1)
+    throw UsageError("--reps is '" + shortened(text) +
+                     "', must be a number from 1 on, or two: 5..40");
+  if (numbers == 2 && most < least)
     throw UsageError("--reps is '" + text + "', whose second number is below the first");
   return {least, most};
 }
@@ -42,8 +45,8 @@ void add_selection(const Command& to, SweepOptions& options) {
   to.option("--sweep", options.sweep, "axis: strain (limit), resolution, step or stability",
             "AXIS");
   to.option("--scene", options.scene, "chain or drape; both if left out", "NAME");
-  to.option("--solver", options.solver, "only contestants whose name matches, e.g. 'shake|icd'",
-            "REGEX");
+  to.alternatives("--solver", options.solver,
+                  "only contestants whose name matches, e.g. 'shake|icd'; repeatable");
   to.option("--filter", options.filter, "only points in whose id this is found", "REGEX");
   to.option("--exclude", options.exclude, "without points in whose id this is found", "REGEX");
   to.option("--profile", options.profile,
@@ -82,24 +85,18 @@ void check_profile(const std::string& name) {
     throw unknown_name("profile", name, known);
 }
 
-std::regex pattern(const std::string& option, const std::string& text) {
-  try {
-    return std::regex(text, std::regex::ECMAScript | std::regex::icase);
-  } catch (const std::regex_error& error) {
-    throw UsageError(option + " '" + text + "' is not a regular expression: " + error.what());
-  }
-}
-
 void check_solver_pattern(const std::string& text, const Contestants& contestants) {
   std::vector<std::string> names = names_of(inextensible::backends());
   for (const Contestant& c : contestants) {
     if (!c.own_name()) names.push_back(c.name);
   }
-  const std::regex expression = pattern("--solver", text);
-  for (const std::string& name : names) {
-    if (std::regex_match(name, expression)) return;
+  const Pattern whole("--solver", text);
+  for (const std::string& part : alternatives(text)) {
+    const Pattern expression("--solver", part);
+    if (std::none_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return expression.matches(name); }))
+      throw unknown_name("solver", part, names);
   }
-  throw unknown_name("solver", text, names);
 }
 
 std::string suite_path(const SweepOptions& options) {
@@ -154,21 +151,10 @@ Suite load_suite(const SweepOptions& options) {
 
 SweepFilters make_filters(const SweepOptions& options) {
   SweepFilters filters;
-  if (!options.solver.empty()) filters.solver = pattern("--solver", options.solver);
-  if (!options.filter.empty()) filters.include = pattern("--filter", options.filter);
-  if (!options.exclude.empty()) filters.exclude = pattern("--exclude", options.exclude);
+  if (!options.solver.empty()) filters.solver = Pattern("--solver", options.solver);
+  if (!options.filter.empty()) filters.include = Pattern("--filter", options.filter);
+  if (!options.exclude.empty()) filters.exclude = Pattern("--exclude", options.exclude);
   return filters;
-}
-
-Shard parse_shard(const std::string& text) {
-  static const std::regex form(R"((\d{1,6})/(\d{1,6}))");
-  std::smatch match;
-  if (!std::regex_match(text, match, form))
-    throw UsageError("--shard is '" + text + "', must be i/N, such as 2/5");
-  const Shard shard{std::stoul(match[1]), std::stoul(match[2])};
-  if (shard.index < 1 || shard.index > shard.count)
-    throw UsageError("--shard is '" + text + "', but i must be from 1 to N");
-  return shard;
 }
 
 std::vector<std::pair<std::string, SceneParameters>> without_reference(

@@ -26,15 +26,12 @@ void add_measurement(const Command& to, SweepOptions& options);
 std::vector<std::string> profiles();
 // All of these throw UsageError for what does not exist.
 void check_profile(const std::string& name);
-// A regular expression that must match the name of some solver, or of some contestant.
+// A regular expression, each of whose alternatives must match the name of some solver, or of some
+// contestant.
 void check_solver_pattern(const std::string& text, const Contestants& contestants = {});
-std::regex pattern(const std::string& option, const std::string& text);
 std::string suite_path(const SweepOptions& options);
 Suite load_suite(const SweepOptions& options);
 SweepFilters make_filters(const SweepOptions& options);
-// "2/5"; throws UsageError unless 1 <= i <= N.
-Shard parse_shard(const std::string& text);
-
 // Scenes of the plan without a reference: their points carry no trajectory error.
 std::vector<std::pair<std::string, SceneParameters>> without_reference(
     const std::vector<Search>& searches, ReferenceShelf& shelf);

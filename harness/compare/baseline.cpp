@@ -2,10 +2,12 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
+#include "harness/base/json_reader.h"
 #include "harness/base/text.h"
 #include "harness/compare/gate.h"
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
+#include "harness/points/schema_check.h"
 
 namespace harness {
 namespace {
@@ -31,8 +33,11 @@ const json& error_of(const json& point, const std::string& name) {
 json read_any(const std::string& path) {
   json document;
   const std::string text = read_file(path, "result file");
-  document = json::parse(text, nullptr, false);
-  if (document.is_object() && document.value("schema", json()) == baseline_schema) return document;
+  document = parse_document(text, path);
+  if (document.is_object() && document.value("schema", json()) == baseline_schema) {
+    check_schema(document, "baseline", path);
+    return document;
+  }
   document = parse_result(text, path);
   if (document.at("schema") != "inextensible-bench/1")
     throw UsageError("'" + path +
@@ -89,7 +94,7 @@ std::string command_line(const json& words) {
 
 ordered_json rounded(const json& value) {
   if (!value.is_number()) return nullptr;
-  return std::stod(number_text(value.get<double>(), error_digits));
+  return rounded_to(value.get<double>(), error_digits);
 }
 
 ordered_json baseline_point(const json& point) {

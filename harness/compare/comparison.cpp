@@ -71,6 +71,7 @@ void note_times(const ComparedPoint& base, const ComparedPoint& next, const Gate
   result.reasons.push_back(times.reason);
   const bool settled = is_regression(result.change);
   result.too_few = times.too_few && result.reasons.size() == 1;
+  result.undecided = times.too_few && base.best;
   if (times.change == Change::slower || !settled) result.change = times.change;
 }
 
@@ -224,6 +225,11 @@ std::size_t Comparison::count(Change change) const {
 bool Comparison::any(bool (*is)(Change)) const {
   return std::any_of(points.begin(), points.end(),
                      [is](const PointChange& point) { return is(point.change); });
+}
+
+bool Comparison::undecided() const {
+  return std::any_of(points.begin(), points.end(),
+                     [](const PointChange& point) { return point.undecided; });
 }
 
 Comparison compare(const ComparedResult& base, const ComparedResult& next, const Gate& gate) {

@@ -31,6 +31,7 @@ struct PointChange {
   std::string sweep, id;
   std::vector<std::string> reasons;  // one line each, for people
   bool too_few = false;              // nothing to say but that times had too few runs
+  bool undecided = false;            // so, of a best point, which is there to be compared
 
   std::string text() const;  // the reasons in one line
 };
@@ -64,6 +65,7 @@ struct Comparison {
 
   std::size_t count(Change change) const;
   bool any(bool (*is)(Change)) const;
+  bool undecided() const;  // of a best point
 };
 
 // Build, machine or scenes differ so much that no comparison would mean anything.

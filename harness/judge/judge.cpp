@@ -18,9 +18,7 @@ namespace {
 constexpr double time_tolerance = 1e-9;  // s; states add up their steps
 
 // To six digits: a series is for pictures and sums, and files shall stay small.
-double shortened(double value) {
-  return std::isfinite(value) ? std::stod(number_text(value)) : value;
-}
+double shortened(double value) { return std::isfinite(value) ? rounded_to(value) : value; }
 
 double root_mean_square(const std::vector<double>& numbers) {
   double squares = 0;

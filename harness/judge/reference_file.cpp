@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "harness/base/errors.h"
 #include "harness/base/fields_json.h"
+#include "harness/base/files.h"
+#include "harness/base/json_reader.h"
 #include "harness/base/text.h"
 #include "harness/points/context.h"
 #include "harness/points/measures.h"
@@ -33,6 +34,20 @@ std::vector<ShapeStatistics> shape_of(const json& rows) {
   for (const json& row : rows)
     list.push_back({row.at(0).get<double>(), row.at(1).get<double>(), row.at(2).get<double>()});
   return list;
+}
+
+// That it is of a scene of ours, with as many vertices.
+void check_mesh(const Reference& r, const std::string& path) {
+  const SceneType* type = find_scene(r.scene);
+  if (!type) throw UsageError("'" + path + "': no scene '" + shortened(r.scene, 40) + "'");
+  if (complete_parameters(*type, r.parameters) != r.parameters)
+    throw UsageError("'" + path + "': 'scene_parameters' must hold every parameter of the scene");
+  const int vertices = type->counts(r.parameters).first;
+  for (const Positions& x : r.positions) {
+    if (x.cols() != vertices)
+      throw UsageError("'" + path + "': positions of " + std::to_string(x.cols()) +
+                       " vertices, the scene has " + std::to_string(vertices));
+  }
 }
 
 }  // namespace
@@ -92,12 +107,10 @@ json summary_of(const Reference& r) {
 }
 
 Reference read_reference(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw UsageError("cannot read the reference '" + path + "'");
+  const json document = parse_document(read_file(path, "reference"), path);
   try {
-    const json document = json::parse(file);
     if (document.at("schema") != reference_schema)
-      throw UsageError("'" + path + "': schema is " + document.at("schema").dump() +
+      throw UsageError("'" + path + "': schema is " + value_text(document.at("schema")) +
                        ", must be \"" + reference_schema + "\"");
     Reference r;
     r.scene = document.at("scene").get<std::string>();
@@ -119,6 +132,7 @@ Reference read_reference(const std::string& path) {
       r.positions.emplace_back(Eigen::Map<const Positions>(
           numbers.data(), 3, static_cast<Eigen::Index>(numbers.size() / 3)));
     }
+    check_mesh(r, path);
     if (r.gap.size() != r.times.size() || r.gap_max.size() != r.times.size() ||
         r.shape.size() != r.times.size() || r.shape_gap.size() != r.times.size() ||
         r.positions.size() > r.times.size())

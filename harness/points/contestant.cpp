@@ -1,6 +1,7 @@
 #include "harness/points/contestant.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "harness/base/errors.h"
 #include "harness/base/json_reader.h"
@@ -12,13 +13,8 @@ namespace {
 using nlohmann::json;
 
 void check_name(const Contestant& contestant, const std::string& where) {
-  const auto fits = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-  };
   const std::string& name = contestant.name;
-  if (name.empty() || !std::all_of(name.begin(), name.end(), fits))
-    throw UsageError(where + ": 'name' is " + json(name).dump() +
-                     ", must be made of a-z, 0-9 and _ (it becomes part of point ids)");
+  check_plain_name(name, where + ": 'name'");
   if (!contestant.own_name() && inextensible::find_backend(name))
     throw UsageError(where + ": 'name' is \"" + name + "\", which is the name of another solver");
 }
@@ -76,11 +72,30 @@ inextensible::Settings read_settings(const json& object, const std::string& wher
     } else if (value.is_string()) {
       settings[key] = value.get<std::string>();
     } else {
-      throw UsageError(where + ": '" + key + "' is " + value.dump() +
+      throw UsageError(where + ": '" + key + "' is " + value_text(value) +
                        ", must be a number or a text");
     }
   }
+  check_settings(settings, where, backend);
   return settings;
+}
+
+void check_settings(const inextensible::Settings& settings, const std::string& where,
+                    const inextensible::Backend& backend) {
+  try {
+    complete_settings(backend, settings);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(where + ": " + error.what());
+  }
+}
+
+void check_plain_name(const std::string& name, const std::string& where) {
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  if (name.empty() || !std::all_of(name.begin(), name.end(), fits))
+    throw UsageError(where + " is " + value_text(name) +
+                     ", must be made of a-z, 0-9 and _ (it becomes part of point ids)");
 }
 
 Contestant read_contestant(const json& entry, const std::string& where) {
@@ -90,7 +105,7 @@ Contestant read_contestant(const json& entry, const std::string& where) {
     return {name, name};
   }
   if (!entry.is_object())
-    throw UsageError(where + " is " + entry.dump() +
+    throw UsageError(where + " is " + value_text(entry) +
                      ", must be solvers' names, or objects such as {\"name\": \"icd_loose\", "
                      "\"solver\": \"icd\", \"settings\": {}}");
   JsonReader reader(entry, where);

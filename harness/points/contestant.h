@@ -34,6 +34,11 @@ Contestants read_contestants(const nlohmann::json* solvers, const nlohmann::json
                              const std::string& where);
 inextensible::Settings read_settings(const nlohmann::json& object, const std::string& where,
                                      const inextensible::Backend& backend);
+// That the solver would take them.
+void check_settings(const inextensible::Settings& settings, const std::string& where,
+                    const inextensible::Backend& backend);
+// That it is made of a-z, 0-9 and _.
+void check_plain_name(const std::string& name, const std::string& where);
 const inextensible::Backend& checked_backend(const std::string& name, const std::string& where);
 
 // The way back.

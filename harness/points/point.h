@@ -40,8 +40,9 @@ struct PointResult {
   std::vector<double> filter_samples;  // the same, spent in the inextensibility filter
   double setup_seconds = 0, calibration_seconds = 0;
   int calibration_runs = 0;
-  std::optional<double> stiffness;    // EA, N, found by calibration
-  inextensible::PhaseSeconds phases;  // of the run of the first filter sample
+  double calibration_guess = unknown;  // N, where the search began; unknown: at an estimate
+  std::optional<double> stiffness;     // EA, N, found by calibration
+  inextensible::PhaseSeconds phases;   // of the run of the first filter sample
   inextensible::WorkCounters work;
   Measures measures;
   double smallest_step = unknown;  // s, of the accepted ones of a step controller

@@ -2,10 +2,12 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
+#include "harness/base/json_reader.h"
 #include "harness/base/json_text.h"
 #include "harness/points/noise.h"
 #include "harness/points/point_json.h"
 #include "harness/points/schema.h"
+#include "harness/points/schema_check.h"
 
 namespace harness {
 namespace {
@@ -73,17 +75,18 @@ json read_result(const std::string& path) {
 }
 
 json parse_result(const std::string& text, const std::string& path) {
-  try {
-    json document = json::parse(text);
-    const std::string schema = document.is_object() ? document.value("schema", "") : "";
-    if (schema != "inextensible-bench/1" && schema != "inextensible-stability/1")
-      throw UsageError("'" + path +
-                       "' is not a result file: its schema is neither \"inextensible-bench/1\" nor "
-                       "\"inextensible-stability/1\"");
-    return document;
-  } catch (const json::exception& error) {
-    throw UsageError("'" + path + "' is not a result file: " + error.what());
+  json document = parse_document(text, path);
+  const json schema = document.is_object() ? document.value("schema", json()) : json();
+  if (schema == "inextensible-bench/1") {
+    check_schema(document, "result", path);
+  } else if (schema == "inextensible-stability/1") {
+    check_schema(document, "stability", path);
+  } else {
+    throw UsageError("'" + path +
+                     "' is not a result file: its schema is neither \"inextensible-bench/1\" nor "
+                     "\"inextensible-stability/1\"");
   }
+  return document;
 }
 
 }  // namespace harness

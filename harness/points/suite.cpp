@@ -60,8 +60,8 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
       reader.fail_at("scene_parameters", *parameters, "an object { ... }");
     for (const auto& [key, value] : parameters->items()) {
       if (!value.is_number())
-        throw UsageError(reader.where("scene_parameters") + ": '" + key + "' is " + value.dump() +
-                         ", must be a number");
+        throw UsageError(reader.where("scene_parameters") + ": '" + key + "' is " +
+                         value_text(value) + ", must be a number");
       spec.scene_parameters[key] = value.get<double>();
     }
   }
@@ -96,7 +96,15 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
   if (all.tuned) tune(spec.contestants, *all.tuned, type->kind(), spec.solver_options, all.untuned);
   add_double(spec.contestants, all.same);
   try {  // impossible values are found before anything runs
-    complete_parameters(*type, spec.scene_parameters);
+    const double duration = complete_parameters(*type, spec.scene_parameters).at("duration");
+    if (spec.coarsest > duration)
+      throw UsageError("'duration' is " + number_text(duration) +
+                       " s, must be at least the longest step, " + number_text(spec.coarsest) +
+                       " s ('steps': 'coarsest')");
+    if (duration / spec.finest > most_steps)
+      throw UsageError("'duration' is " + number_text(duration) + " s, more than " +
+                       number_text(most_steps) + " steps of " + number_text(spec.finest) +
+                       " s ('steps': 'finest')");
   } catch (const UsageError& error) {
     throw UsageError(where + ": 'scene_parameters': " + error.what());
   }
@@ -143,9 +151,12 @@ Suite parse_suite(const std::string& text, const std::string& path) {
   JsonReader reader(document, "suite '" + path + "'");
   Suite suite;
   suite.name = reader.text("name", "unnamed");
+  if (!has_form(suite.name, "[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}"))
+    throw UsageError(reader.where("name") + " is " + value_text(suite.name) +
+                     ", must be letters, digits, _ . and - (results are named after it)");
   suite.description = reader.text("description", "");
   suite.profile = reader.text("profile", "custom");
-  suite.seed = static_cast<std::uint64_t>(reader.number("seed", 1, Bounds::whole_number(0)));
+  suite.seed = static_cast<std::uint64_t>(reader.number("seed", 1, Bounds::exact_number()));
   suite.reps = static_cast<int>(reader.number("reps", 3, Bounds::whole_number(1)));
   suite.most_reps = static_cast<int>(reader.number("most_reps", 0, Bounds::whole_number(0)));
   suite.rel_ci = reader.number("rel_ci", suite.rel_ci, Bounds::positive());

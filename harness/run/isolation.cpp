@@ -1,6 +1,7 @@
 #include "harness/run/isolation.h"
 
-#include "harness/base/child_process.h"
+#include "harness/base/child_answer.h"
+#include "harness/base/json_text.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 
@@ -56,13 +57,13 @@ SweepRunners isolated(const SweepRunners& inner, double memory) {
                                           std::optional<double> guess) {
     if (limits.references)  // read once, here, not in every child
       limits.references->find(spec.scene, spec.scene_parameters);
-    const ChildOutcome outcome = run_in_child(
+    ChildOutcome outcome = run_in_child(
         [&](Heartbeat& heartbeat) {
-          return to_json(run(spec, inside(limits, heartbeat), guess)).dump();
+          return compact(to_json(run(spec, inside(limits, heartbeat), guess)));
         },
         child_limits(limits, memory));
     if (outcome.end == End::interrupted) throw Interrupted();
-    if (outcome.end == End::returned) return point_of(json::parse(outcome.text));
+    if (const auto result = answer(outcome, point_of)) return *result;
     PointResult point;
     point.spec = spec;
     explain(outcome, limits, point);
@@ -70,19 +71,23 @@ SweepRunners isolated(const SweepRunners& inner, double memory) {
   };
   runners.repeat = [repeat = inner.repeat, memory](PointResult& point, const RunLimits& limits) {
     const std::size_t before = point.samples.size(), filtered = point.filter_samples.size();
-    const ChildOutcome outcome = run_in_child(
+    ChildOutcome outcome = run_in_child(
         [&](Heartbeat& heartbeat) {
           PointResult again = point;
           repeat(again, inside(limits, heartbeat));
-          return json{later_ones(again.samples, before), later_ones(again.filter_samples, filtered)}
-              .dump();
+          return compact(
+              {later_ones(again.samples, before), later_ones(again.filter_samples, filtered)});
         },
         child_limits(limits, memory));
     if (outcome.end == End::interrupted) throw Interrupted();
-    if (outcome.end != End::returned) return;  // no sample more
-    const json added = json::parse(outcome.text);
-    for (const json& sample : added.at(0)) point.samples.push_back(sample.get<double>());
-    for (const json& sample : added.at(1)) point.filter_samples.push_back(sample.get<double>());
+    using Samples = std::vector<double>;
+    const auto added = answer(outcome, [](const json& lists) {
+      return std::pair(lists.at(0).get<Samples>(), lists.at(1).get<Samples>());
+    });
+    if (!added) return;  // no sample more
+    point.samples.insert(point.samples.end(), added->first.begin(), added->first.end());
+    point.filter_samples.insert(point.filter_samples.end(), added->second.begin(),
+                                added->second.end());
   };
   return runners;
 }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <regex>
 
 #include "harness/base/errors.h"
+#include "harness/base/pattern.h"
 
 namespace harness {
 namespace {
@@ -25,7 +25,7 @@ std::string fill(const std::string& text,
 
 void check(const std::string& option, const std::string& value, const char* form,
            const std::string& meaning) {
-  if (!value.empty() && !std::regex_match(value, std::regex(form)))
+  if (!value.empty() && !has_form(value, form))
     throw UsageError(option + " must be " + meaning);  // the value may have several lines
 }
 

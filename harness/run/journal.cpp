@@ -6,11 +6,15 @@
 
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 
 #include "harness/base/errors.h"
 #include "harness/base/file_lock.h"
 #include "harness/base/files.h"
+#include "harness/base/json_reader.h"
+#include "harness/base/json_text.h"
+#include "harness/base/text.h"
 #include "harness/points/point_json.h"
 
 namespace harness {
@@ -28,6 +32,13 @@ std::string content(int file) {
        (count = pread(file, buffer.data(), buffer.size(), static_cast<off_t>(text.size()))) > 0;)
     text.append(buffer.data(), static_cast<std::size_t>(count));
   return text;
+}
+
+void check_header(const json& line) {
+  if (line.value("schema", "") != schema) throw UsageError("it is not a journal of this program");
+  for (const char* key : {"identity", "context"})
+    if (!line.at(key).is_object()) throw UsageError(std::string("no ") + key);
+  if (!line.at("context").at("date").is_string()) throw UsageError("no date");
 }
 
 // One line of a journal into memory.
@@ -80,7 +91,7 @@ std::string difference(const json& was, const json& is) {
   if (patch.empty()) return "";
   const json::json_pointer place(patch.at(0).at("path").get<std::string>());
   const auto text = [&place](const json& document) {
-    return document.contains(place) ? document.at(place).dump() : std::string("not there");
+    return document.contains(place) ? value_text(document.at(place)) : std::string("not there");
   };
   std::string name = place.to_string().substr(1);
   return name + " is " + text(is) + ", was " + text(was);
@@ -104,7 +115,7 @@ Journal::~Journal() {
 
 void Journal::lock() {
   for (;;) {
-    file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (file_ < 0) throw UsageError("cannot write '" + path_ + "': " + std::strerror(errno));
     if (!try_lock(file_)) {
       const pid_t other = lock_holder(file_);
@@ -126,18 +137,16 @@ void Journal::read() {
   for (std::size_t end; (end = text.find('\n', length_)) != std::string::npos; length_ = end + 1) {
     ++number;
     try {
-      const json line = json::parse(text.substr(length_, end - length_));
-      if (number > 1) {
-        learn_line(line, memory_);
-      } else if (line.at("schema") != schema) {
-        throw UsageError("'" + path_ + "' is not a journal of this program");
-      } else {
+      const json line = parse_document(text.substr(length_, end - length_), path_);
+      if (number == 1) {
+        check_header(line);
         header_ = line;
+      } else {
+        learn_line(line, memory_);
       }
     } catch (const std::exception& error) {
-      if (dynamic_cast<const UsageError*>(&error)) throw;
-      throw UsageError("'" + path_ + "' is no journal, or a spoilt one, from line " +
-                       std::to_string(number) + " on (" + error.what() + "); --force starts anew");
+      if (damage_.empty())
+        damage_ = "line " + std::to_string(number) + ": " + shortened(error.what());
     }
   }
 }
@@ -146,6 +155,7 @@ void Journal::start(const json& header) {
   if (ftruncate(file_, 0) != 0) throw FileError(path_, "empty");
   length_ = 0;
   memory_ = {};
+  damage_.clear();
   header_ = header;
   header_["schema"] = schema;
   append(header_);
@@ -163,7 +173,7 @@ void Journal::append(const json& line) {
   struct stat status {};
   if (fstat(file_, &status) != 0 || status.st_nlink == 0)
     throw FileError(path_, "go on writing", "it has been removed meanwhile");
-  const std::string text = line.dump() + "\n";
+  const std::string text = compact(line) + "\n";
   std::size_t done = 0;
   while (done < text.size()) {
     const ssize_t written =
@@ -188,13 +198,25 @@ void Journal::remove() {
   file_ = -1;
 }
 
+namespace {
+
+// A search for a stiffness goes another way from another start, where a neighbouring point failed
+// then and does not now: its run is another one.
+bool same_start(const PointResult& point, std::optional<double> guess) {
+  if (!point.ok() || !point.stiffness) return true;
+  return guess ? *guess == point.calibration_guess : std::isnan(point.calibration_guess);
+}
+
+}  // namespace
+
 SweepRunners journaled(const SweepRunners& inner, Journal& journal, Memory memory) {
   const auto known = std::make_shared<Memory>(std::move(memory));
   SweepRunners runners;
   runners.references = inner.references;
   runners.run = [run = inner.run, known, &journal](const PointSpec& spec, const RunLimits& limits,
                                                    std::optional<double> guess) {
-    if (const auto place = known->points.find(key_of(spec)); place != known->points.end()) {
+    const auto place = known->points.find(key_of(spec));
+    if (place != known->points.end() && same_start(place->second.point, guess)) {
       if (limits.references)  // so that the result names it
         limits.references->find(spec.scene, spec.scene_parameters);
       return place->second.point;

@@ -40,8 +40,7 @@ std::string difference(const nlohmann::json& was, const nlohmann::json& is);
 class Journal {
  public:
   // Opens or makes the journal of the result file `out`, and holds it against other processes until
-  // the destructor. Throws UsageError if another process is writing this output, or the file is not
-  // a journal.
+  // the destructor. Throws UsageError if another process is writing this output.
   explicit Journal(const std::string& out);
   ~Journal();
   Journal(const Journal&) = delete;
@@ -49,7 +48,9 @@ class Journal {
 
   const std::string& path() const { return path_; }
   const nlohmann::json& header() const { return header_; }  // null: new
-  const Memory& memory() const { return memory_; }          // as it was found
+  const Memory& memory() const { return memory_; }          // as it was found, what is readable
+  // What is wrong with it, the first thing; "" if nothing is.
+  const std::string& damage() const { return damage_; }
   std::size_t points() const { return memory_.points.size(); }
 
   void start(const nlohmann::json& header);  // empties it first
@@ -66,7 +67,7 @@ class Journal {
   void read();
   void append(const nlohmann::json& line);
 
-  std::string out_, path_;
+  std::string out_, path_, damage_;
   int file_ = -1;
   std::size_t length_ = 0;  // bytes, whole lines
   nlohmann::json header_;

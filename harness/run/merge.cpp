@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "harness/base/errors.h"
 #include "harness/points/point_json.h"
@@ -14,6 +15,33 @@ namespace {
 using nlohmann::json;
 
 std::string in_quotes(const std::string& name) { return "'" + name + "'"; }
+
+// Which shards are not there, "2/3, 3/3", of those sweeps some of whose shards are.
+std::string missing_shards(const std::vector<NamedResult>& results) {
+  struct Cut {
+    std::size_t count = 1;
+    std::set<std::size_t> found;
+  };
+  std::map<std::string, Cut> cuts;  // by what else was selected, and into how many parts
+  for (const NamedResult& result : results) {
+    if (!is_shard(result.document)) continue;
+    json selection = result.document.at("context").at("selection");
+    const Shard part = parse_shard(selection.at("shard"));
+    selection["shard"] = part.count;
+    Cut& cut = cuts[selection.dump()];
+    cut.count = part.count;
+    cut.found.insert(part.index);
+  }
+  std::string missing;
+  for (const auto& [selection, cut] : cuts) {
+    for (std::size_t i = 1; i <= cut.count; ++i) {
+      if (cut.found.contains(i)) continue;
+      missing +=
+          (missing.empty() ? "" : ", ") + std::to_string(i) + "/" + std::to_string(cut.count);
+    }
+  }
+  return missing;
+}
 
 void check_alike(const NamedResult& first, const NamedResult& other, bool allow_mixed) {
   const auto same = [&](const json& was, const json& is, const std::string& what) {
@@ -75,7 +103,11 @@ json joined_references(const std::vector<NamedResult>& results) {
 
 }  // namespace
 
-json merge(const std::vector<NamedResult>& results, bool allow_mixed) {
+bool is_shard(const json& document) {
+  return !document.value(json::json_pointer("/context/selection/shard"), std::string()).empty();
+}
+
+json merge(const std::vector<NamedResult>& results, const MergeOptions& options) {
   const Suite suite =
       parse_suite(results.front().document.at("context").at("suite").dump(), results.front().name);
   const auto place_of_search = places(suite);
@@ -88,7 +120,7 @@ json merge(const std::vector<NamedResult>& results, bool allow_mixed) {
   for (const NamedResult& result : results) {
     if (!result.document.at("complete").get<bool>())
       throw UsageError(in_quotes(result.name) + " is not complete; finish it with --resume first");
-    check_alike(results.front(), result, allow_mixed);
+    check_alike(results.front(), result, options.mixed);
     for (const json& entry : result.document.at("points")) {
       PointResult point = point_of(entry);
       const auto [place, fresh] = seen.emplace(key_of(point.spec), result.name);
@@ -102,13 +134,16 @@ json merge(const std::vector<NamedResult>& results, bool allow_mixed) {
                         std::move(point)});
     }
   }
+  const std::string missing = missing_shards(results);
+  if (!missing.empty() && !options.partial)
+    throw UsageError("shard " + missing + " is missing; --partial joins the others all the same");
   std::stable_sort(points.begin(), points.end(),
                    [](const Placed& a, const Placed& b) { return a.search < b.search; });
   std::vector<PointResult> list;
   list.reserve(points.size());
   for (Placed& placed : points) list.push_back(std::move(placed.point));
   const json context = joined_context(results);
-  return result_document(context, suite, context.at("command"), true, list,
+  return result_document(context, suite, context.at("command"), missing.empty(), list,
                          joined_references(results));
 }
 

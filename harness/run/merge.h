@@ -9,9 +9,17 @@
 
 namespace harness {
 
+// Whether it is a part of a sweep (--shard).
+bool is_shard(const nlohmann::json& document);
+
+struct MergeOptions {
+  bool mixed = false, partial = false;
+};
+
 // One result file of all points, in the order in which the suite's sweep would have run them.
 // Throws UsageError, naming the files, unless all are complete, of one suite and (but for
-// allow_mixed) of one machine and build, and no point is in two of them.
-nlohmann::json merge(const std::vector<NamedResult>& results, bool allow_mixed);
+// mixed) of one machine and build, and no point is in two of them; and, but for partial, unless all
+// shards of a sweep are there. Without one of them the result says that it is not complete.
+nlohmann::json merge(const std::vector<NamedResult>& results, const MergeOptions& options);
 
 }  // namespace harness

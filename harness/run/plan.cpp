@@ -1,17 +1,19 @@
 #include "harness/run/plan.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 
 #include "harness/base/errors.h"
+#include "harness/base/text.h"
 
 namespace harness {
 namespace {
 
 bool selected(const SweepFilters& filters, const PointSpec& spec) {
   const std::string id = spec.id();
-  return (!filters.include || std::regex_search(id, *filters.include)) &&
-         (!filters.exclude || !std::regex_search(id, *filters.exclude));
+  return (!filters.include || filters.include->found_in(id)) &&
+         (!filters.exclude || !filters.exclude->found_in(id));
 }
 
 std::vector<double> step_ladder(const SweepSpec& sweep) {
@@ -33,7 +35,7 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
     std::vector<int> resolutions = sweep.resolutions;
     std::sort(resolutions.begin(), resolutions.end());
     for (const Contestant& contestant : sweep.contestants) {
-      if (filters.solver && !std::regex_match(contestant.name, *filters.solver)) continue;
+      if (filters.solver && !filters.solver->matches(contestant.name)) continue;
       for (const int resolution : resolutions) {
         SceneParameters given = sweep.scene_parameters;
         given[type.resolution] = resolution;
@@ -70,6 +72,16 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
   if (searches.empty())
     throw UsageError("no point is left: the filters exclude every point of the suite");
   return searches;
+}
+
+Shard parse_shard(const std::string& text) {
+  Shard shard;
+  if (!has_form(text, R"(\d{1,6}/\d{1,6})") ||
+      std::sscanf(text.c_str(), "%zu/%zu", &shard.index, &shard.count) != 2)
+    throw UsageError("--shard is '" + shortened(text) + "', must be i/N, such as 2/5");
+  if (shard.index < 1 || shard.index > shard.count)
+    throw UsageError("--shard is '" + text + "', but i must be from 1 to N");
+  return shard;
 }
 
 std::vector<Search> shard(std::vector<Search> searches, const Shard& part) {

@@ -2,17 +2,17 @@
 #pragma once
 
 #include <optional>
-#include <regex>
 #include <vector>
 
+#include "harness/base/pattern.h"
 #include "harness/points/suite.h"
 
 namespace harness {
 
 struct SweepFilters {
-  std::optional<std::regex> solver;   // must match the contestant's whole name
-  std::optional<std::regex> include;  // must be found in a point's id
-  std::optional<std::regex> exclude;  // must not
+  std::optional<Pattern> solver;   // must match the contestant's whole name
+  std::optional<Pattern> include;  // must be found in a point's id
+  std::optional<Pattern> exclude;  // must not
 };
 
 // One best step to be found.
@@ -32,6 +32,8 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters);
 struct Shard {
   std::size_t index = 1, count = 1;
 };
+// "2/5"; throws UsageError unless 1 <= i <= N.
+Shard parse_shard(const std::string& text);
 // All searches of one (sweep, scene, size) are in one part, large sizes spread first, so that no
 // comparison crosses machines; possibly none. The parts of a plan are the whole, and a search does
 // not depend on the part it is in.

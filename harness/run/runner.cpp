@@ -69,6 +69,7 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
     inextensible::Settings settings = spec.settings;
     if (runner.backend().knob == inextensible::Knob::stiffness && !settings.contains("stiffness")) {
       const auto begin = Clock::now();
+      point.calibration_guess = guess.value_or(unknown);
       Calibration calibration(spec.strain_limit, [&](double stiffness) -> Calibration::Trial {
         settings["stiffness"] = stiffness;
         runner.restart_clock(RunPart::calibration);  // every run has the whole time-out to itself

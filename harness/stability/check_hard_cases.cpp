@@ -1,4 +1,3 @@
-#include <regex>
 
 #include "harness/stability/checks.h"
 #include "harness/stability/stability.h"
@@ -11,9 +10,10 @@ Findings check_hard_cases(const Examinee& solver) {
   if (!solver.backend.contestant) return {not_applicable(check, "for contestants only")};
   const auto cases = harness::hard_cases(hard_case_values("quick"));
   StabilityFilters filters;
-  filters.solver = std::regex(solver.backend.name);
-  filters.hard_case = std::regex("^(?!largest step|same frame)");
-  const StabilityOutcome outcome = run_stability(cases, filters, solver.options.seed, {});
+  filters.solver = Pattern("solver", solver.backend.name);
+  filters.but_case = Pattern("case", "^(largest step|same frame)");
+  const StabilityOutcome outcome =
+      run_stability(plan_stability(cases, filters), solver.options.seed, {});
   int survived = 0, refused = 0, slow = 0, known = 0, unexpected = 0;
   std::string advice;
   for (const StabilityCell& cell : outcome.cells) {

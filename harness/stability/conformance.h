@@ -21,9 +21,11 @@ struct ConformanceOptions {
   std::uint64_t seed = 1;
   bool hard_cases = true;                                       // the longest part, up to minutes
   std::function<void(const Finding&)> finding = [](auto&&) {};  // as soon as it is there
+  std::function<bool()> interrupted = nullptr;                  // asked some times a second
 };
 
-// The checks in the order in which they ran. `solver` must be registered.
+// The checks in the order in which they ran, each in a process of its own. `solver` must be
+// registered. Throws Interrupted.
 std::vector<Finding> examine(const std::string& solver, const ConformanceOptions& options);
 
 bool conforms(const std::vector<Finding>& findings);  // no failure among them

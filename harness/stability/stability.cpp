@@ -79,37 +79,40 @@ ExpectationCounts StabilityOutcome::counts() const {
   return c;
 }
 
-StabilityOutcome run_stability(const std::vector<HardCase>& cases, const StabilityFilters& filters,
-                               std::uint64_t seed, const StabilityEvents& events) {
-  std::vector<std::string> solvers;
+StabilityPlan plan_stability(const std::vector<HardCase>& cases, const StabilityFilters& filters) {
+  StabilityPlan plan;
   for (const auto& backend : inextensible::backends()) {
-    if (backend.contestant && (!filters.solver || std::regex_match(backend.name, *filters.solver)))
-      solvers.emplace_back(backend.name);
+    if (backend.contestant && (!filters.solver || filters.solver->matches(backend.name)))
+      plan.solvers.emplace_back(backend.name);
   }
   const auto selected = [&](const std::string& name) {
-    return !filters.hard_case || std::regex_search(name, *filters.hard_case);
+    return (!filters.hard_case || filters.hard_case->found_in(name)) &&
+           !(filters.but_case && filters.but_case->found_in(name));
   };
-  std::vector<const HardCase*> chosen;
   for (const HardCase& c : cases) {
-    if (selected(c.name) || selected(c.row)) chosen.push_back(&c);
+    if (selected(c.name) || selected(c.row)) plan.cases.push_back(&c);
   }
-  std::vector<StabilityScene> scenes = stability_scenes();
-  std::erase_if(scenes, [&](const auto& scene) { return !selected("largest step " + scene.name); });
-  const bool freedom = selected("triangles");
+  plan.scenes = stability_scenes();
+  std::erase_if(plan.scenes,
+                [&](const auto& scene) { return !selected("largest step " + scene.name); });
+  plan.freedom = selected("triangles");
   const auto has = [&](const char* name) {
-    return std::find(solvers.begin(), solvers.end(), name) != solvers.end();
+    return std::find(plan.solvers.begin(), plan.solvers.end(), name) != plan.solvers.end();
   };
-  std::vector<SameFrameScene> frames;
-  if (has("fast_projection") && has("icd")) frames = same_frame_scenes();
-  std::erase_if(frames, [&](const auto& scene) { return !selected("same frame " + scene.name()); });
-  if (solvers.empty()) throw UsageError("no contestant matches --solver");
-  if (chosen.empty() && scenes.empty() && frames.empty())
+  if (has("fast_projection") && has("icd")) plan.frames = same_frame_scenes();
+  std::erase_if(plan.frames,
+                [&](const auto& scene) { return !selected("same frame " + scene.name()); });
+  if (plan.solvers.empty()) throw UsageError("no contestant matches --solver");
+  if (plan.cases.empty() && plan.scenes.empty() && plan.frames.empty())
     throw UsageError("no case matches --case (bench list cases names them)");
+  return plan;
+}
 
+StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
+                               const StabilityEvents& events) {
   StabilityOutcome outcome;
-  const std::size_t all = chosen.size() * solvers.size();
-  for (const HardCase* c : chosen) {
-    for (const std::string& solver : solvers) {
+  for (const HardCase* c : plan.cases) {
+    for (const std::string& solver : plan.solvers) {
       if (events.interrupted()) {
         outcome.complete = false;
         return outcome;
@@ -119,11 +122,11 @@ StabilityOutcome run_stability(const std::vector<HardCase>& cases, const Stabili
       cell.expected = acceptable(*cell.expectation, solver, cell.result);
       if (!cell.expected) cell.known = known_difference(c->name, solver, cell.result);
       outcome.cells.push_back(std::move(cell));
-      events.cell(outcome.cells.back(), outcome.cells.size(), all);
+      events.cell(outcome.cells.back(), outcome.cells.size(), plan.cells());
     }
   }
-  for (const StabilityScene& scene : scenes) {
-    for (const std::string& solver : solvers) {
+  for (const StabilityScene& scene : plan.scenes) {
+    for (const std::string& solver : plan.solvers) {
       if (events.interrupted()) {
         outcome.complete = false;
         return outcome;
@@ -132,12 +135,12 @@ StabilityOutcome run_stability(const std::vector<HardCase>& cases, const Stabili
       events.largest_step(outcome.largest_steps.back());
     }
   }
-  if (freedom) {
+  if (plan.freedom) {
     for (const int n : {11, 21, 41}) {
       for (const Freedom& f : degrees_of_freedom(n)) outcome.freedom.push_back(f);
     }
   }
-  for (const SameFrameScene& scene : frames) {
+  for (const SameFrameScene& scene : plan.frames) {
     if (events.interrupted()) {
       outcome.complete = false;
       return outcome;

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
-#include <regex>
 
+#include "harness/base/pattern.h"
 #include "harness/stability/freedom.h"
 #include "harness/stability/hard_case.h"
 #include "harness/stability/known_differences.h"
@@ -43,9 +43,23 @@ struct LargestStep {
 };
 
 struct StabilityFilters {
-  std::optional<std::regex> solver;     // must match the solver's whole name
-  std::optional<std::regex> hard_case;  // must be found in a row's or a case's name
+  std::optional<Pattern> solver;     // must match the solver's whole name
+  std::optional<Pattern> hard_case;  // must be found in a row's or a case's name
+  std::optional<Pattern> but_case;   // must not
 };
+
+// What will be run.
+struct StabilityPlan {
+  std::vector<std::string> solvers;
+  std::vector<const HardCase*> cases;
+  std::vector<StabilityScene> scenes;  // for the largest steps
+  std::vector<SameFrameScene> frames;
+  bool freedom = false;
+
+  std::size_t cells() const { return cases.size() * solvers.size(); }
+};
+// Throws UsageError if nothing matches. `cases` must outlive the plan.
+StabilityPlan plan_stability(const std::vector<HardCase>& cases, const StabilityFilters& filters);
 
 struct StabilityOutcome {
   std::vector<StabilityCell> cells;
@@ -67,9 +81,9 @@ struct StabilityEvents {
   std::function<bool()> interrupted = [] { return false; };
 };
 
-// Throws UsageError if nothing matches. `cases` must outlive the outcome.
-StabilityOutcome run_stability(const std::vector<HardCase>& cases, const StabilityFilters& filters,
-                               std::uint64_t seed, const StabilityEvents& events);
+// The plan's cases must outlive the outcome.
+StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
+                               const StabilityEvents& events);
 
 void print_stability(std::ostream& out, const StabilityOutcome& outcome);
 nlohmann::json stability_document(nlohmann::json context, const StabilityOutcome& outcome,

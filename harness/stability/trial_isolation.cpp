@@ -1,6 +1,7 @@
 #include "harness/stability/trial_isolation.h"
 
-#include "harness/base/child_process.h"
+#include "harness/base/child_answer.h"
+#include "harness/base/json_text.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 
@@ -49,10 +50,10 @@ constexpr double longest_trial = 150;  // s, both attempts
 
 TrialResult run_isolated_trial(const std::function<Trial()>& build, const std::string& solver,
                                std::uint64_t seed) {
-  const ChildOutcome child =
-      run_in_child([&](Heartbeat&) { return pack(run_trial(build, solver, seed)).dump(); },
+  ChildOutcome child =
+      run_in_child([&](Heartbeat&) { return compact(pack(run_trial(build, solver, seed))); },
                    {longest_trial, 0, nullptr});
-  if (child.end == End::returned) return unpack(json::parse(child.text));
+  if (const auto result = answer(child, unpack)) return *result;
   TrialResult result;
   const bool stuck = child.end == End::timed_out;
   result.fixed = result.outcome = stuck ? Outcome::timeout : Outcome::crashed;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,10 +17,12 @@ namespace {
 
 void check_positive(const std::vector<double>& values, const char* what, const char* quantity) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!(values[i] > 0) || !std::isfinite(values[i])) {
+    // What is so small or so large that its inverse is not a normal number is a mistake.
+    if (!(values[i] > 0) || !std::isnormal(values[i]) || !std::isnormal(1 / values[i])) {
+      std::ostringstream value;
+      value << values[i];
       refuse(what, i,
-             std::string(quantity) + " is " + std::to_string(values[i]) +
-                 ", must be positive and finite");
+             std::string(quantity) + " is " + value.str() + ", must be positive and finite");
     }
   }
 }

@@ -15,6 +15,10 @@ Stepper::Stepper(std::shared_ptr<const Problem> problem)
 }
 
 StepResult Stepper::advance(State& state, double h) {
+  if (!(h > 0) || !std::isnormal(h) || !std::isfinite(1 / h)) {
+    ++work_.rejected_steps;
+    return {Status::not_finite, 0, -1, 0, "the step must be a positive, finite time"};
+  }
   StepResult result = solve(state, h, next_);
   work_.iterations += result.iterations;
   if (!result) {
@@ -36,6 +40,10 @@ StepResult Stepper::advance(State& state, double h) {
   if (!end) {
     ++work_.rejected_steps;
     return end;
+  }
+  if (!std::isfinite(velocity_.sum())) {
+    ++work_.rejected_steps;
+    return {Status::not_finite, result.iterations, -1, 0, "a velocity overflowed"};
   }
   state.v.swap(velocity_);
   state.x = next_;

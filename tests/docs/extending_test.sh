@@ -55,7 +55,7 @@ cat >../tiny.json <<'JSON'
   "sweeps": [{"sweep": "strain", "scene": "swing", "limits": [0.01], "scene_parameters": {"n": 10, "duration": 0.2}}]
 }
 JSON
-"$bench" --sweep strain --config ../tiny.json --solver 'symmetric_sweeps|fast_projection' --no-plots --out ../tiny-result.json \
+"$bench" --sweep strain --config ../tiny.json --solver 'symmetric_sweeps|fast_projection' --no-plots --force --out ../tiny-result.json \
   >../sweep.log || { cat ../sweep.log; fail "the sweep failed"; }
 /usr/bin/python3 - ../tiny-result.json <<'PYTHON'
 import json

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # bench ab: a program against itself passes 20 times of 20 on a busy machine (the load comes and goes, so that it does not fall
 # on all runs alike); one that is 15 % slower in one solver is found, and so are a solver that fails and an extra iteration.
+rm -rf -- ./*  # of the last time
 set -u
 failures=0
 

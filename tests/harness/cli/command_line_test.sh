@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # The finished program: bad input is one clear line and exit 2 with nothing written; results repeat; Ctrl-C leaves valid JSON.
+rm -rf -- ./*  # of the last time
 set -u
 failures=0
 
@@ -154,4 +155,65 @@ refused "did you mean 'chain'" tune --scene chian --out out.json
 refused "did you mean 'icd'" tune --solver idc --out out.json
 
 ((failures == 0)) && echo "all well"
+
+# ---- Standard streams that are closed or full, outputs that are links, devices and pipes ----
+tiny=(--sweep strain --profile quick --scene chain --solver '^fast_projection$' --filter 'strain:0.1/' --reps 1 --no-plots)
+"$BENCH_BINARY" "${tiny[@]}" --out closed.json >/dev/null 2>&- || fail "stderr closed: exit $?"
+python3 -c 'import json; assert json.load(open("closed.json"))["complete"]' || fail "stderr closed: the result"
+"$BENCH_BINARY" list >/dev/full 2>err.txt
+[[ $? == 1 ]] && grep -q "cannot write to 'standard output'" err.txt || fail "a full standard output: $(cat err.txt)"
+"$BENCH_BINARY" list >&- 2>err.txt
+[[ $? == 1 ]] || fail "a closed standard output goes unnoticed"
+"$BENCH_BINARY" compare closed.json closed.json --markdown /dev/stdout --junit junit.xml >both.txt 2>/dev/null ||
+  fail "--markdown /dev/stdout: exit $?"
+grep -q '^|' both.txt || fail "--markdown /dev/stdout: nothing there"
+[[ $("$BENCH_BINARY" compare closed.json closed.json --markdown - | grep -c '^|') -gt 0 && ! -e - ]] || fail "--markdown -"
+"$BENCH_BINARY" compare closed.json closed.json --markdown /dev/null >/dev/null && [[ -c /dev/null ]] || fail "--markdown /dev/null"
+mkdir there && ln -s there/result.json link.json
+"$BENCH_BINARY" "${tiny[@]}" --out link.json >/dev/null 2>&1 || fail "--out is a link: exit $?"
+[[ -L link.json && -f there/result.json ]] || fail "--out lost its link"
+mkfifo pipe
+refused "no regular file" "${tiny[@]}" --out pipe
+refused "no regular file" "${tiny[@]}" --out -
+"$BENCH_BINARY" "${tiny[@]}" --out=-dash.json >/dev/null 2>&1 && [[ -f ./-dash.json ]] || fail "a name that begins with -"
+
+# ---- A finished result is not replaced without a word ----
+cp closed.json kept.json
+"$BENCH_BINARY" "${tiny[@]}" --out closed.json >/dev/null 2>err.txt
+[[ $? == 2 ]] && grep -q "is there already" err.txt && cmp -s closed.json kept.json || fail "a finished result: $(cat err.txt)"
+"$BENCH_BINARY" "${tiny[@]}" --out closed.json --force >/dev/null 2>&1 || fail "--force over a finished result: exit $?"
+cmp -s closed.json kept.json && fail "--force did not replace it"
+
+# ---- Options that would do nothing, alternatives that match nothing, numbers that are none ----
+for option in "--scene drape" "--filter x" "--config c.json" "--resume" "--shard 1/4" "--step adaptive" "--reps 3" "--timeout 3"; do
+  refused "goes with --sweep strain, resolution and step only" --sweep stability $option --out out.json
+done
+refused "no solver 'fast'" "${sweep[@]}" --solver 'fast|shake|icd'
+for number in nan inf -1 0 x 1e999; do
+  refused "must be a number above 0" "${sweep[@]}" --timeout $number
+  refused "must be a number above 0" "${sweep[@]}" --rel-ci $number
+  refused "must be a number above 0" "${sweep[@]}" --max-error $number
+done
+refused "--memory" "${sweep[@]}" --memory -1
+long=$(head -c 100000 /dev/zero | tr '\0' '(')
+refused "not a regular expression" "${sweep[@]}" --filter "$long"
+for suite in '"name": "../x"' '"reps": 1e300' '"seed": -1' '"timeout": 0' '"name": "a", "name": "b"'; do
+  echo "{$suite, \"sweeps\": [{\"sweep\": \"strain\", \"scene\": \"chain\", \"limits\": [0.1]}]}" >suite.json
+  refused "suite" --sweep strain --config suite.json --out out.json
+done
+for parameters in '"duration": 0.001' '"duration": 1e9'; do
+  echo "{\"sweeps\": [{\"sweep\": \"strain\", \"scene\": \"chain\", \"limits\": [0.1], \"scene_parameters\": {$parameters}}]}" >suite.json
+  refused "'duration' is" --sweep strain --config suite.json --out out.json
+done
+for settings in '"linear_solver": 3' '"max_iterations": 0.5' '"max_iterations": -1' '"no_such": 1'; do
+  echo "{\"sweeps\": [{\"sweep\": \"strain\", \"scene\": \"chain\", \"limits\": [0.1], \"solver_options\": {\"fast_projection\": {$settings}}}]}" >suite.json
+  refused "solver_options" --sweep strain --config suite.json --out out.json
+done
+for document in '{"schema": "inextensible-bench/1"}' "$(head -c 100000 /dev/zero | tr '\0' '[')" '{"schema": 1, "schema": 2}' '[]' '3'; do
+  echo "$document" >bad.json
+  for verb in "merge bad.json --out out.json" "compare bad.json bad.json" "baseline bad.json --out out.json" "claims bad.json" "results bad.json"; do
+    refused "bad.json" $verb
+  done
+done
+
 exit $((failures > 0))

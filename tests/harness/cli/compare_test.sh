@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Google Benchmark's compare.py reads our result files and can set two solvers of one file against each other.
+rm -rf -- ./*  # of the last time
 set -eu
 compare=/usr/share/benchmark/compare.py
 [[ -e $compare ]] || { echo "no compare.py here"; exit 77; }

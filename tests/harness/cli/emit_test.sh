@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # bench emit: scripts that Bash takes, options that arrive as they were typed, refusals before anything is written; and the
 # script for GNU parallel, run.
+rm -rf -- ./*  # of the last time
 set -u
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 failures=0

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # bench compare, baseline and point: exit codes, bad input, and faults put into a second build of the program that counters
 # must find. What times must find is in ab_test.sh.
+rm -rf -- ./*  # of the last time
 set -u
 failures=0
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What bench emit slurm writes, under a Slurm of our own on this machine: one node, which shards have to themselves one after
 # the other. Shards that run out of time, are killed or cancelled, or lose their node.
+rm -rf -- ./*  # of the last time
 set -u
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 PATH+=:/usr/sbin

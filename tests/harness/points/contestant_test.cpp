@@ -65,7 +65,7 @@ TEST(Contestants, HaveTheirOwnNamesAndSettings) {
   EXPECT_NE(searches[1].base.id().find("/jacobi_slow/"), std::string::npos);
   EXPECT_NE(searches[0].family, searches[1].family);
   SweepFilters filters;
-  filters.solver = std::regex("jacobi_.*");
+  filters.solver = Pattern("--solver", "jacobi_.*");
   EXPECT_EQ(plan(suite, filters).size(), 1u);
   const Suite again = parse_suite(to_json(suite).dump(), "again");
   EXPECT_EQ(to_json(again), to_json(suite));

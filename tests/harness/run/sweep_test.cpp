@@ -250,7 +250,7 @@ TEST(ErrorLimit, AnErrorThatIsNotKnownIsNoErrorBelowTheLimit) {
 
 TEST(Plan, RefusesFiltersThatLeaveNothing) {
   SweepFilters filters;
-  filters.include = std::regex("no such point");
+  filters.include = Pattern("--filter", "no such point");
   EXPECT_THROW(static_cast<void>(plan(one_family(), filters)), UsageError);
 }
 

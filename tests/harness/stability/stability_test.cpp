@@ -221,9 +221,9 @@ TEST(DegreesOfFreedom, AreThoseOfAFullRankJacobian) {
 TEST(Stability, AFilteredSweepRunsJudgesAndPrints) {
   const auto cases = harness::hard_cases(harness::hard_case_values("quick"));
   harness::StabilityFilters filters;
-  filters.solver = std::regex("shake|icd");
-  filters.hard_case = std::regex("^Q[14]$");
-  const auto outcome = harness::run_stability(cases, filters, 1, {});
+  filters.solver = harness::Pattern("--solver", "shake|icd");
+  filters.hard_case = harness::Pattern("--case", "^Q[14]$");
+  const auto outcome = harness::run_stability(plan_stability(cases, filters), 1, {});
   EXPECT_EQ(outcome.cells.size(), 4u);
   EXPECT_TRUE(outcome.complete);
   EXPECT_EQ(outcome.counts().not_as_expected, 0);
@@ -244,9 +244,9 @@ TEST(Stability, ANewDifferenceIsTold) {
   HardCase& q1 = const_cast<HardCase&>(named(cases, "Q1"));
   q1.expectations = {{{}, Outcome::refused, "nobody can, for once"}};
   harness::StabilityFilters filters;
-  filters.solver = std::regex("fast_projection");
-  filters.hard_case = std::regex("^Q1$");
-  const auto outcome = harness::run_stability(cases, filters, 1, {});
+  filters.solver = harness::Pattern("--solver", "fast_projection");
+  filters.hard_case = harness::Pattern("--case", "^Q1$");
+  const auto outcome = harness::run_stability(plan_stability(cases, filters), 1, {});
   EXPECT_EQ(outcome.counts().not_as_expected, 1);
   EXPECT_EQ(outcome.counts().new_differences, 1);
   EXPECT_FALSE(outcome.nothing_new());

@@ -1,0 +1,31 @@
+#include "harness/base/standard_streams.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+
+#include "harness/base/files.h"
+
+namespace harness {
+
+void open_standard_streams() {
+  for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
+    if (fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
+    // The lowest free number is this one. The other way round than it is used, so that use fails.
+    const int opened = open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    if (opened != descriptor) _exit(1);  // no way to say why
+  }
+}
+
+void check_standard_output() {
+  errno = 0;
+  std::cout.flush();
+  if (std::cout) return;
+  throw FileError("standard output", "write to",
+                  errno != 0 ? std::strerror(errno) : "it is closed or full");
+}
+
+}  // namespace harness

@@ -1,0 +1,111 @@
+// Children that misbehave end, and their parents do not.
+#include "harness/base/child_process.h"
+
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include "harness/base/child_answer.h"
+
+namespace harness {
+namespace {
+
+using End = ChildOutcome::End;
+using std::chrono::milliseconds;
+
+void sleep_for(int ms) { std::this_thread::sleep_for(milliseconds(ms)); }
+
+// A number that children can leave for their parents.
+class SharedPid {
+ public:
+  SharedPid()
+      : place_(static_cast<pid_t*>(mmap(nullptr, sizeof(pid_t), PROT_READ | PROT_WRITE,
+                                        MAP_SHARED | MAP_ANONYMOUS, -1, 0))) {}
+  ~SharedPid() { munmap(place_, sizeof(pid_t)); }
+  SharedPid(const SharedPid&) = delete;
+  SharedPid& operator=(const SharedPid&) = delete;
+  pid_t& operator*() const { return *place_; }
+
+ private:
+  pid_t* place_;
+};
+
+// It may take a moment until a process that was killed is gone.
+bool gone(pid_t process) {
+  for (int i = 0; i < 100; ++i) {
+    if (kill(process, 0) != 0 && errno == ESRCH) return true;
+    sleep_for(20);
+  }
+  return false;
+}
+
+TEST(ChildProcess, AnAnswerThatCannotBeReadIsHowItEnded) {
+  for (const char* text : {"{\"seconds\": null}", "no JSON", "{}", "[1"}) {
+    ChildOutcome outcome = run_in_child([text](Heartbeat&) { return std::string(text); }, {});
+    ASSERT_EQ(outcome.end, End::returned);
+    const auto seconds = answer(
+        outcome, [](const nlohmann::json& json) { return json.at("seconds").get<double>(); });
+    EXPECT_FALSE(seconds) << text;
+    EXPECT_EQ(outcome.end, End::threw) << text;
+    EXPECT_NE(ending(outcome).find("cannot be read"), std::string::npos) << ending(outcome);
+  }
+}
+
+TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParent) {
+  const SharedPid left;
+  const auto start = std::chrono::steady_clock::now();
+  const ChildOutcome outcome = run_in_child(
+      [&](Heartbeat&) -> std::string {
+        *left = fork();
+        if (*left == 0) sleep_for(60000);  // with the pipe open
+        _exit(3);
+      },
+      {});
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+  EXPECT_EQ(outcome.end, End::exited);
+  EXPECT_EQ(outcome.code, 3);
+  ASSERT_GT(*left, 0);
+  EXPECT_TRUE(gone(*left)) << "the process that it left behind still runs";
+}
+
+TEST(ChildProcess, TimeInWhichTheParentWasStoppedIsNotTheChilds) {
+  const pid_t parent = fork();
+  if (parent == 0) {
+    const ChildOutcome outcome = run_in_child(
+        [](Heartbeat&) {
+          sleep_for(2600);
+          return std::string("done");
+        },
+        {.timeout = 1});  // and 0.6 s of grace
+    _exit(outcome.end == End::returned ? 0 : 1);
+  }
+  sleep_for(300);
+  ASSERT_EQ(kill(parent, SIGSTOP), 0);
+  sleep_for(2000);
+  ASSERT_EQ(kill(parent, SIGCONT), 0);
+  int status = 0;
+  ASSERT_EQ(waitpid(parent, &status, 0), parent);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "it counted as timed out";
+}
+
+TEST(ChildProcess, OneThatHangsIsEndedWithWhatItStarted) {
+  const SharedPid started;
+  const ChildOutcome outcome = run_in_child(
+      [&](Heartbeat&) -> std::string {
+        *started = fork();
+        for (;;) sleep_for(1000);
+      },
+      {.timeout = 0.2});
+  EXPECT_EQ(outcome.end, End::timed_out);
+  ASSERT_GT(*started, 0);
+  EXPECT_TRUE(gone(*started));
+}
+
+}  // namespace
+}  // namespace harness

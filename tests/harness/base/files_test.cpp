@@ -1,0 +1,143 @@
+// Where output goes, and what stays as it was: links, devices, pipes, other people's files.
+#include "harness/base/files.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "harness/base/errors.h"
+
+namespace harness {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Files : public testing::Test {
+ protected:
+  Files() {
+    std::string name = (fs::temp_directory_path() / "files_test-XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error("no folder");
+    folder_ = name;
+  }
+  ~Files() override { fs::remove_all(folder_); }
+
+  std::string at(const std::string& name) const { return (folder_ / name).string(); }
+  static std::string content(const std::string& path) {
+    std::ifstream file(path);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+  std::size_t entries() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Files, AreWrittenWholeAndAloneInTheirFolder) {
+  write_atomically(at("a.json"), "one");
+  EXPECT_EQ(content(at("a.json")), "one");
+  write_atomically(at("a.json"), "two");
+  EXPECT_EQ(content(at("a.json")), "two");
+  EXPECT_EQ(entries(), 1u) << "something was left beside it";
+}
+
+TEST_F(Files, AFileOfTheUsersOwnBesideTheOutputStays) {
+  for (const char* name : {"a.json.partial", "a.json.XXXXXX", "a.json.tmp"})
+    std::ofstream(at(name)) << "mine";
+  check_writable(at("a.json"));
+  write_atomically(at("a.json"), "result");
+  for (const char* name : {"a.json.partial", "a.json.XXXXXX", "a.json.tmp"})
+    EXPECT_EQ(content(at(name)), "mine") << name;
+}
+
+TEST_F(Files, ALinkStaysALink) {
+  fs::create_directory(folder_ / "there");
+  std::ofstream(at("there/result.json")) << "old";
+  fs::create_symlink("there/result.json", at("link"));
+  fs::create_symlink("link", at("second"));
+  write_atomically(at("second"), "new");
+  EXPECT_TRUE(fs::is_symlink(at("link")));
+  EXPECT_TRUE(fs::is_symlink(at("second")));
+  EXPECT_EQ(content(at("there/result.json")), "new");
+  EXPECT_EQ(output_path(at("second")), at("there/result.json"))
+      << "so that both names are one lock";
+}
+
+TEST_F(Files, ALinkToAFileThatIsYetToBeMade) {
+  fs::create_symlink("later.json", at("link"));
+  check_writable(at("link"));
+  write_atomically(at("link"), "text");
+  EXPECT_TRUE(fs::is_symlink(at("link")));
+  EXPECT_EQ(content(at("later.json")), "text");
+}
+
+TEST_F(Files, LinksInACircleAndFoldersAreRefused) {
+  fs::create_symlink("b", at("a"));
+  fs::create_symlink("a", at("b"));
+  EXPECT_THROW(output_path(at("a")), UsageError);
+  EXPECT_THROW(output_path(folder_.string()), UsageError);
+  EXPECT_THROW(output_path(""), UsageError);
+}
+
+TEST_F(Files, APipeIsWrittenToAndStaysAPipe) {
+  ASSERT_EQ(mkfifo(at("pipe").c_str(), 0600), 0);
+  std::string got;
+  std::thread reader([&] { got = content(at("pipe")); });
+  write_atomically(at("pipe"), "through the pipe");
+  reader.join();
+  EXPECT_EQ(got, "through the pipe");
+  EXPECT_TRUE(fs::is_fifo(at("pipe")));
+  EXPECT_THROW(regular_output_path(at("pipe")), UsageError);
+}
+
+TEST_F(Files, ADeviceStaysADevice) {
+  check_writable("/dev/null");
+  write_atomically("/dev/null", "text");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  EXPECT_THROW(regular_output_path("/dev/null"), UsageError);
+  EXPECT_THROW(write_atomically("/dev/full", "text"), FileError);
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST_F(Files, PermissionsOfAFileThatIsReplacedAreKept) {
+  std::ofstream(at("a.json")) << "old";
+  ASSERT_EQ(chmod(at("a.json").c_str(), 0640), 0);
+  write_atomically(at("a.json"), "new");
+  EXPECT_EQ(fs::status(at("a.json")).permissions(), fs::perms(0640));
+  const mode_t mask = umask(022);
+  write_atomically(at("b.json"), "new");
+  umask(mask);
+  EXPECT_EQ(fs::status(at("b.json")).permissions(), fs::perms(0644));
+}
+
+TEST_F(Files, ADirectoryThatIsMissingIsMade) {
+  check_writable(at("x/y/a.json"));
+  EXPECT_TRUE(fs::is_directory(at("x/y")));
+  EXPECT_TRUE(fs::is_empty(at("x/y"))) << "nothing is left behind";
+}
+
+// Two writers of one file at a time: one of the two texts is there in the end, whole.
+TEST_F(Files, TwoWritersDoNotMix) {
+  const std::string a(1 << 16, 'a'), b(1 << 16, 'b');
+  for (int i = 0; i < 50; ++i) {
+    std::thread other([&] { write_atomically(at("f"), a); });
+    write_atomically(at("f"), b);
+    other.join();
+    const std::string text = content(at("f"));
+    EXPECT_TRUE(text == a || text == b);
+  }
+  EXPECT_EQ(entries(), 1u);
+}
+
+}  // namespace
+}  // namespace harness
