@@ -108,11 +108,13 @@ void attend(pid_t child, int pipe, Heartbeat& heartbeat, const ChildLimits& limi
     kill(child, SIGTERM);
   };
   std::array<char, 65536> buffer{};
-  for (double last = now(), since_last = 0;; last += since_last) {
-    since_last = now() - last;
-    if (since_last > stopped_for) heartbeat.begin = heartbeat.begin + since_last;
+  for (double last = now();;) {
     pollfd ready{pipe, POLLIN, 0};
-    if (poll(&ready, 1, poll_interval) > 0) {
+    const bool is_ready = poll(&ready, 1, poll_interval) > 0;
+    const double away = now() - last;
+    last += away;
+    if (away > stopped_for) heartbeat.begin = heartbeat.begin + away;
+    if (is_ready) {
       const ssize_t count = read(pipe, buffer.data(), buffer.size());
       if (count == 0) return;
       if (count > 0) outcome.text.append(buffer.data(), count);

@@ -148,21 +148,25 @@ class Inspector : public nlohmann::json_sax<json> {
   std::string defect_;
 };
 
-json parse(const std::string& text, const std::string& path, bool comments) {
+json parse(const std::string& text, const std::string& where, bool comments) {
   Inspector inspector;
   if (!json::sax_parse(text, &inspector, json::input_format_t::json, true, comments))
-    throw UsageError("'" + path + "' is not JSON of ours: " + inspector.defect());
+    throw UsageError(where + inspector.defect());
   return json::parse(text, nullptr, true, comments);
 }
 
 }  // namespace
 
 json parse_document(const std::string& text, const std::string& path) {
-  return parse(text, path, false);
+  return parse(text, "'" + path + "' is not JSON: ", false);
+}
+
+json parse_line(const std::string& text, const std::string& where) {
+  return parse(text, where + ": ", false);
 }
 
 json parse_commented(const std::string& text, const std::string& path) {
-  return parse(text, path, true);
+  return parse(text, "'" + path + "' is not JSON: ", true);
 }
 
 std::string value_text(const json& value) {

@@ -47,6 +47,8 @@ class JsonReader {
 // in an object, or if it is nested deeper than anything of ours.
 nlohmann::json parse_document(const std::string& text, const std::string& path);
 nlohmann::json parse_commented(const std::string& text, const std::string& path);
+// The same of a text that is no file: `where` begins the message.
+nlohmann::json parse_line(const std::string& text, const std::string& where);
 
 // A value as it may stand in a message: short, whatever it is.
 std::string value_text(const nlohmann::json& value);

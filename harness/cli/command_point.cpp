@@ -21,8 +21,6 @@ struct PointCommand {
   double timeout = 60;  // s
 };
 
-constexpr double most_steps = 1e8;  // more is a mistake in the step
-
 // What a point says of itself twice must agree: no run stands for another.
 void check_count(const std::string& where, const char* key, int given, int actual) {
   if (given != actual)
@@ -68,7 +66,7 @@ std::vector<PointSpec> read_specs(std::istream& in) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const std::string where = "point on line " + std::to_string(number);
     try {
-      specs.push_back(spec_of(parse_document(line, where)));
+      specs.push_back(spec_of(parse_line(line, where)));
     } catch (const json::exception& error) {
       throw UsageError(where + ": " + error.what());
     }

@@ -88,7 +88,7 @@ Past look_back(const SweepCommand& options, const std::string& out, const Journa
                      "; --resume --force goes on with the " + std::to_string(journal.points()) +
                      " points that it still holds, --force starts anew");
   if (journal.points() > 0) {
-    if (again && !journal.header().is_object()) return {.memory = journal.memory()};
+    if (again && !journal.header().is_object()) return {journal.memory(), {}, {}, false, false};
     if (again)
       return {journal.memory(), journal.header().at("identity"), journal.header().at("context"),
               false, journal.damage().empty()};

@@ -18,7 +18,7 @@ namespace {
 constexpr double time_tolerance = 1e-9;  // s; states add up their steps
 
 // To six digits: a series is for pictures and sums, and files shall stay small.
-double shortened(double value) { return std::isfinite(value) ? rounded_to(value) : value; }
+double six_digits(double value) { return std::isfinite(value) ? rounded_to(value) : value; }
 
 double root_mean_square(const std::vector<double>& numbers) {
   double squares = 0;
@@ -168,8 +168,8 @@ Measures Judge::measures() const {
   measures.valid_until = options_.reference->valid_until;
   add_errors(measures);
   for (ErrorSample& at : measures.error_series)
-    at = {shortened(at.time), shortened(at.error), shortened(at.worst), shortened(at.gap),
-          shortened(at.worst_gap)};
+    at = {six_digits(at.time), six_digits(at.error), six_digits(at.worst), six_digits(at.gap),
+          six_digits(at.worst_gap)};
   if (reference_moved_squares_ > 0)
     measures.moved = std::sqrt(moved_squares_ / reference_moved_squares_);
   if (shapes_ > 0) {

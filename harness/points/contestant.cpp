@@ -60,13 +60,7 @@ inextensible::Settings read_settings(const json& object, const std::string& wher
                                      const inextensible::Backend& backend) {
   if (!object.is_object()) throw UsageError(where + ": must be an object { ... }");
   inextensible::Settings settings;
-  const std::vector<std::string> known = names_of(backend.settings);
   for (const auto& [key, value] : object.items()) {
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
-      throw UsageError(
-          where + ": " +
-          unknown_name("setting of solver " + std::string(backend.name), key, known).what());
-    }
     if (value.is_number()) {
       settings[key] = value.get<double>();
     } else if (value.is_string()) {
@@ -82,6 +76,14 @@ inextensible::Settings read_settings(const json& object, const std::string& wher
 
 void check_settings(const inextensible::Settings& settings, const std::string& where,
                     const inextensible::Backend& backend) {
+  const std::vector<std::string> known = names_of(backend.settings);
+  for (const auto& setting : settings) {
+    if (std::find(known.begin(), known.end(), setting.first) == known.end())
+      throw UsageError(
+          where + ": " +
+          unknown_name("setting of solver " + std::string(backend.name), setting.first, known)
+              .what());
+  }
   try {
     complete_settings(backend, settings);
   } catch (const std::invalid_argument& error) {

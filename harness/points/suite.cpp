@@ -7,6 +7,8 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
+#include "harness/base/pattern.h"
+#include "harness/base/text.h"
 #include "harness/points/point_json.h"
 #include "harness/points/tuned.h"
 
@@ -97,6 +99,8 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
   add_double(spec.contestants, all.same);
   try {  // impossible values are found before anything runs
     const double duration = complete_parameters(*type, spec.scene_parameters).at("duration");
+    const json* steps = reader.find("steps");
+    if (!(steps && steps->contains("coarsest"))) spec.coarsest = std::min(spec.coarsest, duration);
     if (spec.coarsest > duration)
       throw UsageError("'duration' is " + number_text(duration) +
                        " s, must be at least the longest step, " + number_text(spec.coarsest) +

@@ -11,12 +11,16 @@
 
 namespace harness {
 
+// Of a run; more is a mistake in the step.
+constexpr double most_steps = 1e8;
+
 struct SweepSpec {
   std::string sweep;  // "strain", "resolution" or "step"
   std::string scene;
   Contestants contestants;
   std::vector<double> limits;    // strain and step sweep: the axis; resolution sweep: one
   std::vector<int> resolutions;  // resolution sweep: the axis; the others: one
+  // Unless they are given, the ladder begins at the run's whole duration at most.
   double coarsest = 1.0 / 25, finest = 1.0 / 25600;  // s, ends of the step ladder
   bool adaptive = false;    // a step controller from `coarsest` down, instead of the ladder
   bool every_step = false;  // the whole ladder instead of a search; step sweeps always do

@@ -137,7 +137,7 @@ void Journal::read() {
   for (std::size_t end; (end = text.find('\n', length_)) != std::string::npos; length_ = end + 1) {
     ++number;
     try {
-      const json line = parse_document(text.substr(length_, end - length_), path_);
+      const json line = parse_line(text.substr(length_, end - length_), "no JSON");
       if (number == 1) {
         check_header(line);
         header_ = line;

@@ -79,6 +79,7 @@ double CholmodSolver::factor_nonzeros() const { return library_->common.lnz; }
 double CholmodSolver::factor_flops() const { return library_->common.fl; }
 
 std::vector<int> fill_reducing_order(const SymmetricPattern& pattern) {
+  if (pattern.n == 0) return {};
   cholmod_common common{};
   cholmod_start(&common);
   common.print = 0;

@@ -25,6 +25,17 @@ constexpr auto lower = SymmetricPattern::Triangle::lower;
 constexpr auto upper = SymmetricPattern::Triangle::upper;
 constexpr bool direct = true, iterative = false, fills = true, as_is = false;
 
+// Of a problem without constraints, or without free vertices: libraries do not all take nothing.
+class NoEquations : public SpdSolver {
+ public:
+  double* values() override { return nullptr; }
+  bool factor() override { return true; }
+  void solve(double* /*rhs*/) override {}
+  double reciprocal_condition() const override { return 1; }
+  double factor_nonzeros() const override { return 0; }
+  double factor_flops() const override { return 0; }
+};
+
 // CHOLMOD's supernodal code transposes an upper triangle at every factorization; the up-looking
 // codes a lower one.
 constexpr SpdSolverRow rows[] = {
@@ -67,7 +78,9 @@ SymmetricPattern::Triangle triangle_of(std::string_view solver) {
 }
 
 std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern) {
-  return spd_solver(name).make(std::move(pattern));
+  const SpdSolverRow& row = spd_solver(name);
+  if (pattern.n == 0) return std::make_unique<NoEquations>();
+  return row.make(std::move(pattern));
 }
 
 }  // namespace inextensible

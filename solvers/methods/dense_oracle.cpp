@@ -36,6 +36,7 @@ DenseOracle::DenseOracle(const Problem& problem)
 StepResult DenseOracle::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
                               WorkCounters& work) {
   const Eigen::Index n3 = 3 * x.cols(), m = edges_.count();
+  if (m == 0) return {};  // no constraint: the candidate it is
   const Positions x0 = x;
   Eigen::VectorXd mass(n3), mu = Eigen::VectorXd::Zero(m), c(m);
   for (Eigen::Index i = 0; i < n3; ++i) mass[i] = problem_.mass()[i / 3];

@@ -84,6 +84,7 @@ StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
   // Every step would seem to lower it.
   if (!std::isfinite(current)) return {Status::not_finite, 0, -1, 0, "the energy overflows"};
   pull_ = pull_before_;
+  if (free_vertex_.empty()) return {};  // all are pinned: x is where they are
 
   bool reuse = false;
   double last_longest = 0;

@@ -62,8 +62,12 @@ TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParent) {
   const auto start = std::chrono::steady_clock::now();
   const ChildOutcome outcome = run_in_child(
       [&](Heartbeat&) -> std::string {
-        *left = fork();
-        if (*left == 0) sleep_for(60000);  // with the pipe open
+        const pid_t own = fork();
+        if (own == 0) {
+          sleep_for(60000);  // with the pipe open
+          _exit(0);
+        }
+        *left = own;
         _exit(3);
       },
       {});
@@ -98,7 +102,7 @@ TEST(ChildProcess, OneThatHangsIsEndedWithWhatItStarted) {
   const SharedPid started;
   const ChildOutcome outcome = run_in_child(
       [&](Heartbeat&) -> std::string {
-        *started = fork();
+        if (const pid_t own = fork(); own > 0) *started = own;
         for (;;) sleep_for(1000);
       },
       {.timeout = 0.2});

@@ -6,6 +6,7 @@
 #include <random>
 #include <sstream>
 
+#include "harness/points/context.h"
 #include "harness/points/fuzz_documents.h"
 
 namespace {
@@ -82,13 +83,16 @@ TEST(Documents, SpoiltResultsAreReadOrRefusedInALine) {
   point.spec.solver = "fast_projection";
   point.spec.sweep = "strain";
   point.spec.scene_parameters["duration"] = 1;
+  point.spec.resolution = point.spec.vertices = 80;
+  point.spec.constraints = 79;
   point.status = harness::PointStatus::ok;
   point.samples = {0.5};
   point.best = true;
   std::vector<harness::PointResult> points{point, point};
   points[1].spec.solver = "implicit_springs";
-  const std::string text =
-      harness::result_document({{"git", "x"}}, harness::Suite{}, {"bench"}, true, points).dump(1);
+  const std::string text = harness::result_document(harness::machine_context(), harness::Suite{},
+                                                    {"bench"}, true, points)
+                               .dump(1);
   ASSERT_EQ(read_as_result(text), "");
   spoil_and_read(text, read_as_result, 2000);
 }

@@ -2,8 +2,10 @@
 #include "harness/points/result_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
@@ -279,9 +281,14 @@ TEST(Baselines, FitTheirSchema) {
 TEST(WriteAtomically, KeepsTheOldFileWhenTheNewOneCannotBeWritten) {
   const std::string path = testing::TempDir() + "kept.json";
   write_atomically(path, "old");
-  std::filesystem::create_directory(path + ".partial");  // in the way of the temporary file
-  EXPECT_THROW(write_atomically(path, "new"), std::runtime_error);
-  std::filesystem::remove(path + ".partial");
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{10, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  EXPECT_THROW(write_atomically(path, "new, and longer than a file may be"), std::runtime_error);
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
   std::ifstream file(path);
   std::string text;
   file >> text;

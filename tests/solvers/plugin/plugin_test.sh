@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # From an installed bench: a solver and a program out of the tree are built with find_package; the solver is listed, swept,
 # recorded and checked; what is no fitting plug-in is one clear line and exit 2.
+rm -rf -- ./*  # of the last time
 set -u
 failures=0
 
