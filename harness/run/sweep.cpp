@@ -18,8 +18,9 @@ namespace {
 // risen.
 constexpr double hopeless_factor = 3;
 constexpr double hopeless_least = 0.2;  // s; shorter runs are always finished
-// Points that take longer than this are not repeated: their spread is small against what they cost.
-constexpr double repeat_up_to = 20;  // s
+// Runs that take longer than this are not repeated: what disturbs a machine averages out within
+// them, and the intervals of their ratios are as wide as the A/A pair's noise.
+constexpr double repeat_up_to = 6;  // s
 
 // Steps whose one time is within this factor of the best are repeated before one is called best.
 constexpr double candidate_factor = 1.2;
