@@ -19,8 +19,8 @@ void add_backends(std::span<const Backend> rows);
 bool is_built_in(std::string_view name);             // a row of registry.cpp
 const Backend* find_backend(std::string_view name);  // null if there is none
 
-// Throws std::invalid_argument for an unknown backend, setting or choice, or a strain limit that is
-// not positive.
+// Throws std::invalid_argument for an unknown backend, setting or choice, a strain limit that is
+// not positive, or a problem with a part that the backend does not take.
 std::unique_ptr<Stepper> make_stepper(std::string_view name, std::shared_ptr<const Problem> problem,
                                       const BackendOptions& options);
 

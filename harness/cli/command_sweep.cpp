@@ -17,10 +17,12 @@
 #include "harness/points/context.h"
 #include "harness/points/noise.h"
 #include "harness/points/result_file.h"
+#include "harness/run/estimate.h"
 #include "harness/run/isolation.h"
 #include "harness/run/journal.h"
 #include "harness/run/noise_probe.h"
 #include "harness/run/overhead.h"
+#include "harness/run/progress.h"
 #include "harness/run/report.h"
 #include "harness/run/runner.h"
 #include "inextensible/registry.h"
@@ -28,23 +30,13 @@
 namespace harness {
 namespace {
 
-// Upper bounds, told before anything runs.
 void dry_run(const Suite& suite, const std::vector<Search>& searches) {
   std::size_t most = 0;
-  double seconds = 0;
-  for (const Search& search : searches) {
-    most += search.ladder.size();
-    // Coarse figures of one common machine: seconds that a search takes, by constraints.
-    const double size = search.base.constraints;
-    const bool chain = search.base.scene == "chain";
-    const auto* backend = inextensible::find_backend(search.base.solver);
-    const double unit = backend && backend->slow_steps ? 6e-3 : 2e-3;
-    seconds += std::min(4 * suite.timeout, (chain ? 0.1 : 1.0) * unit * size);
-  }
+  for (const Search& search : searches) most += search.ladder.size();
+  const Estimate guess = estimate(suite, searches);
   std::cout << searches.size() << " searches for a best step, at most " << most
-            << " points (usually half of them), about " << duration_text(seconds)
-            << " (a rough guess), at most "
-            << duration_text(2 * suite.timeout * static_cast<double>(most)) << '\n';
+            << " points (usually half of them), about " << duration_text(guess.seconds)
+            << ", going by a few steps of " << guess.timed << " contestants and sizes\n";
 }
 
 void tell_missing_references(const Suite& suite, const std::vector<Search>& searches,
@@ -261,7 +253,7 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   const nlohmann::json document = result_document(context, suite, command, outcome.complete,
                                                   outcome.points, shelf->summaries());
   write_atomically(out, result_text(document));
-  print_table(std::cout, outcome.points);
+  print_table(std::cout, suite, outcome.points);
   tell_overhead(context["harness_overhead"]);
   tell_noise(document.at("context"));
   std::cout << "\nwritten:\n" << out << std::endl;

@@ -56,7 +56,12 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
         }
         base.seed = suite.seed;
         base.adaptive = sweep.adaptive;
-        for (const double limit : limits) {
+        // Without a limit of its own a solver does the same at all of them.
+        const auto* backend = inextensible::find_backend(contestant.solver);
+        const bool limited = !backend || backend->knob != inextensible::Knob::none;
+        const std::vector<double> own_limits =
+            limited ? limits : std::vector<double>(limits.begin(), limits.begin() + 1);
+        for (const double limit : own_limits) {
           Search search{base, {}, family, sweep.every_step || sweep.sweep == "step"};
           search.base.strain_limit = limit;
           for (const double step : step_ladder(sweep)) {

@@ -83,8 +83,8 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
                      bool phases) const {
   Run run;
   const auto setup = Clock::now();
-  run.stepper = inextensible::make_stepper(spec_.solver, scene_.problem,
-                                           {spec_.strain_limit, spec_.seed, settings});
+  run.stepper = inextensible::make_stepper(
+      spec_.solver, scene_.problem, {spec_.strain_limit, spec_.seed, settings, &first_state_});
   run.setup_seconds = since(setup);
   run.stepper->measure_phases(phases);
   Judge judge(scene_, judging(judged && stop_at == diverged_strain));
@@ -163,8 +163,8 @@ void PointRunner::decide(const Judge& judge, Run& run) const {
 }
 
 double PointRunner::bare_seconds_per_step() const {
-  const auto stepper = inextensible::make_stepper(spec_.solver, scene_.problem,
-                                                  {spec_.strain_limit, spec_.seed, {}});
+  const auto stepper = inextensible::make_stepper(
+      spec_.solver, scene_.problem, {spec_.strain_limit, spec_.seed, {}, &first_state_});
   inextensible::State state = first_state_;
   const auto before = Clock::now();
   for (int i = 0; i < steps_; ++i) stepper->advance(state, spec_.step);

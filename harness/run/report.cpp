@@ -6,7 +6,9 @@
 #include <map>
 #include <sstream>
 
+#include "harness/base/statistics.h"
 #include "harness/base/text.h"
+#include "harness/points/noise.h"
 
 namespace harness {
 namespace {
@@ -25,56 +27,7 @@ std::string failure_text(const std::vector<const PointResult*>& tried) {
   return to_string((*finest)->status);
 }
 
-}  // namespace
-
-Progress::Progress(std::ostream& out, bool terminal) : out_(out), terminal_(terminal) {}
-
-void Progress::point(const PointResult& point, std::size_t search, std::size_t searches) {
-  ++points_;
-  std::string text = point.spec.id() + " ";
-  text += point.ok() ? duration_text(point.median_seconds()) + "/s" : to_string(point.status);
-  if (!terminal_) {
-    out_ << "[" << search + 1 << "/" << searches << "] " << text;
-    if (!point.ok()) out_ << " (" << point.detail << ")";
-    out_ << std::endl;
-    return;
-  }
-  bar((static_cast<double>(search) + 0.5) / static_cast<double>(searches), text);
-}
-
-void Progress::repetition(std::size_t done, std::size_t all) {
-  if (terminal_) {
-    bar(1, "repeating best points " + std::to_string(done) + "/" + std::to_string(all));
-  } else if (done == all) {
-    out_ << "repeated the best points, " << all << " runs" << std::endl;
-  }
-}
-
-void Progress::bar(double fraction, const std::string& text) {
-  const double elapsed =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  constexpr std::size_t cells = 20;
-  const auto filled = static_cast<std::size_t>(fraction * cells);
-  std::string line = "[" + std::string(filled, '#') + std::string(cells - filled, '.') + "] " +
-                     std::to_string(points_) + " points, " + duration_text(elapsed);
-  if (fraction > 0.02 && fraction < 1)
-    line += ", about " + duration_text(elapsed * (1 - fraction) / fraction) + " left";
-  line += "  " + text;
-  constexpr std::size_t columns = 118;
-  if (line.size() > columns) line.resize(columns);
-  const std::size_t width = line.size();
-  if (width < width_) line.append(width_ - width, ' ');
-  width_ = width;
-  out_ << '\r' << line << std::flush;
-}
-
-void Progress::finish() {
-  if (terminal_ && points_ > 0) out_ << '\r' << std::string(width_, ' ') << '\r' << std::flush;
-}
-
-namespace {
-
-constexpr int name_width = 26;
+constexpr int name_width = 30;
 
 // s; adaptive: the mean one.
 double step_length(const PointResult& point) {
@@ -112,10 +65,70 @@ void print_best(std::ostream& out, const std::vector<const PointResult*>& points
   }
 }
 
-std::string time_and_step(const PointResult& point) {
+// Of all times of one table.
+struct Unit {
+  const char* name;
+  double per_second;
+};
+
+Unit unit_of(const std::vector<const PointResult*>& points) {
+  double most = 0;
+  for (const PointResult* p : points) {
+    if (p->best) most = std::max(most, p->median_seconds());
+  }
+  return most >= 20 ? Unit{"s", 1} : Unit{"ms", 1e3};
+}
+
+std::string time_and_step(const PointResult& point, const Unit& unit) {
   const std::string step = (point.spec.adaptive ? "~" : "") + step_text(step_length(point));
   const std::string end = point.at_ladder_end.empty() ? "" : ", " + point.at_ladder_end;
-  return number_text(point.median_seconds(), 3) + " (" + step + end + ")";
+  return number_text(unit.per_second * point.median_seconds(), 3) + " (" + step + end + ")";
+}
+
+// Who is fastest at each place of the axis, and whether that is more than noise.
+void print_fastest(std::ostream& out, const Suite& suite,
+                   const std::vector<const PointResult*>& points, double noise) {
+  const Contestants contestants = contestants_of(suite);
+  const auto ranked = [&](const PointResult& p) {
+    const auto who = std::find_if(contestants.begin(), contestants.end(),
+                                  [&p](const Contestant& c) { return c.name == p.spec.name(); });
+    return p.best && (who == contestants.end() || !who->hollow) &&
+           (suite.same.empty() || p.spec.name() != double_of(suite.same));
+  };
+  const auto family = [](const PointResult& p) {
+    const auto* backend = inextensible::find_backend(p.spec.solver);
+    return std::string(backend ? backend->family : p.spec.solver.c_str());
+  };
+  std::vector<std::string> places;
+  for (const PointResult* p : points) {
+    if (std::find(places.begin(), places.end(), axis_text(p->spec)) == places.end())
+      places.push_back(axis_text(p->spec));
+  }
+  out << "fastest:\n";
+  for (const std::string& place : places) {
+    std::vector<const PointResult*> here;
+    for (const PointResult* p : points) {
+      if (axis_text(p->spec) == place && ranked(*p)) here.push_back(p);
+    }
+    if (here.empty()) continue;
+    std::sort(here.begin(), here.end(), [](const PointResult* a, const PointResult* b) {
+      return a->median_seconds() < b->median_seconds();
+    });
+    const PointResult& first = *here.front();
+    const auto other = std::find_if(here.begin(), here.end(), [&](const PointResult* p) {
+      return family(*p) != family(first);
+    });
+    out << "  " << std::left << std::setw(8) << place << first.spec.name();
+    if (other != here.end()) {
+      const Ratio slower = ratio_of_medians((*other)->samples, first.samples, noise);
+      out << "; " << (*other)->spec.name() << " takes " << number_text(slower.value, 3)
+          << " times as long";
+      if (slower.known())
+        out << " (" << number_text(slower.low, 3) << " to " << number_text(slower.high, 3) << ")";
+      if (!slower.above(1)) out << ", too close to tell";
+    }
+    out << '\n';
+  }
 }
 
 // The fastest point of each solver within each of some errors: step and strain limit are free.
@@ -236,7 +249,9 @@ std::vector<Growth> growths(const std::vector<const PointResult*>& points) {
   return all;
 }
 
-void print_table(std::ostream& out, const std::vector<PointResult>& points) {
+void print_table(std::ostream& out, const Suite& suite, const std::vector<PointResult>& points) {
+  const auto pair = pair_noise(points, suite.same);
+  const double noise = pair ? pair->q95 : unknown;
   using Key = std::pair<std::string, std::string>;  // scene, sweep
   std::vector<Key> tables;
   bool within_error = false;
@@ -255,20 +270,23 @@ void print_table(std::ostream& out, const std::vector<PointResult>& points) {
       continue;
     }
     const std::string axis = sweep == "strain" ? "strain limit" : "resolution";
-    const std::string title = scene + ", " + axis + " sweep: best seconds per simulated second";
-    print_best(out, chosen, title + " (its step in s)", [](const auto& cell) {
+    const Unit unit = unit_of(chosen);
+    const std::string title = scene + ", " + axis + " sweep: least time, " + unit.name +
+                              " of computation for a simulated second";
+    print_best(out, chosen, title + " (its step in s)", [&unit](const auto& cell) {
       const auto best =
           std::find_if(cell.begin(), cell.end(), [](const PointResult* p) { return p->best; });
-      return best == cell.end() ? failure_text(cell) : time_and_step(**best);
+      return best == cell.end() ? failure_text(cell) : time_and_step(**best, unit);
     });
+    print_fastest(out, suite, chosen, noise);
     if (sweep == "resolution") print_growth(out, chosen);
     if (!within_error) continue;
     print_best(out, chosen, title + " within the error limit (its step in s)",
-               [](const auto& cell) -> std::string {
+               [&unit](const auto& cell) -> std::string {
                  const auto best = std::find_if(cell.begin(), cell.end(), [](const PointResult* p) {
                    return p->best_at_error;
                  });
-                 return best == cell.end() ? "error missed" : time_and_step(**best);
+                 return best == cell.end() ? "error missed" : time_and_step(**best, unit);
                });
   }
   std::map<std::string, int> failures;

@@ -1,8 +1,6 @@
-// What a person sees in the terminal: progress while a sweep runs (stderr), a table at its end
-// (stdout).
+// What a person sees at the end of a sweep: tables, and who is fastest.
 #pragma once
 
-#include <chrono>
 #include <ostream>
 #include <vector>
 
@@ -11,28 +9,12 @@
 
 namespace harness {
 
-class Progress {
- public:
-  // terminal: one line that is rewritten; otherwise one line a point.
-  Progress(std::ostream& out, bool terminal);
-  void point(const PointResult& point, std::size_t search, std::size_t searches);
-  void repetition(std::size_t done, std::size_t all);
-  void finish();
-
- private:
-  void bar(double fraction, const std::string& text);
-
-  std::ostream& out_;
-  bool terminal_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  std::size_t points_ = 0;
-  std::size_t width_ = 0;
-};
-
 // Per scene and sweep: solvers by limit or resolution, best seconds per simulated second and its
 // step, a second time within the suite's error limit if there was one; of a step sweep, the time to
 // reach each of some errors; failures by name.
-void print_table(std::ostream& out, const std::vector<PointResult>& points);
+// Below each table of best points stands who is fastest at each place, how many times as long the
+// next one of another family takes, and whether that is more than noise.
+void print_table(std::ostream& out, const Suite& suite, const std::vector<PointResult>& points);
 
 // How the time of a step grows with the vertices: of the best points of one solver in a resolution
 // sweep.

@@ -8,7 +8,7 @@ namespace harness {
 std::optional<std::size_t> StepSearch::find(std::optional<std::size_t> start) {
   const std::size_t first = std::min(start.value_or(0), rungs_ - 1);
   walk(first, +1);
-  if (first > 0) walk(first - 1, -1);
+  if (first > 0 && !unsupported_) walk(first - 1, -1);
   return best_;
 }
 
@@ -16,6 +16,7 @@ std::optional<std::size_t> StepSearch::find_among_all() {
   int timeouts = 0;
   for (std::size_t rung = 0; rung < rungs_ && timeouts < 2; ++rung) {
     const PointResult& point = run_(rung);
+    if (point.status == PointStatus::unsupported) break;
     consider(rung, point);
     timeouts = gave_up(point) ? timeouts + 1 : 0;
   }
@@ -58,6 +59,8 @@ void StepSearch::walk(std::size_t from, int direction) {
   for (std::size_t rung = from; rung < rungs_;
        rung += static_cast<std::size_t>(direction)) {  // wraps below 0
     const PointResult& point = run_(rung);
+    unsupported_ = point.status == PointStatus::unsupported;
+    if (unsupported_) return;
     if (consider(rung, point)) {
       rises = 0;
     } else if (best_ || direction < 0) {

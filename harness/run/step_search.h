@@ -49,6 +49,7 @@ class StepSearch {
   double best_seconds_ = 0;
   std::map<std::size_t, double> seconds_;  // of permissible rungs
   bool timed_out_ = false;
+  bool unsupported_ = false;  // the solver does not take the problem, whatever the step
 };
 
 }  // namespace harness

@@ -43,6 +43,9 @@ struct BackendOptions {
   double strain_limit = 0.01;  // permissible |strain|, > 0
   std::uint64_t seed = 1;      // of methods that draw random numbers
   Settings settings = {};      // the backend's own; missing ones take their default
+  // Where the steps will begin, for methods whose set-up needs positions; null where that is not
+  // known. For the time of `make` only.
+  const State* start = nullptr;
 };
 
 // What the harness may turn to make a run keep its strain limit.
@@ -71,7 +74,8 @@ struct Backend {
   const char* label = "";       // in figures; empty: the name
   const char* family = "";      // the method whose colour it shares in figures; empty: its own
   bool shows_iterates = false;  // Stepper::observe sees the iterates and multipliers of each step
-  bool slow_steps = false;      // a step takes a few times as long as most methods': rough guesses
+  // What the method can do with a problem; make_stepper refuses those that have more.
+  bool takes_shear = true, takes_collider = true;
   Velocities velocities = Velocities::half_step;
 };
 

@@ -8,52 +8,19 @@
 
 #include "harness/points/context.h"
 #include "harness/points/fuzz_documents.h"
+#include "support/spoil.h"
 
 namespace {
 
 using harness::testing::read_as_result;
 using harness::testing::read_as_suite;
+using harness::testing::spoil;
 
 std::string text_of(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();
-}
-
-// One to four spoilt places: bytes changed, cut out, doubled or put in from a list of nuisances.
-std::string spoil(std::string text, std::mt19937_64& random) {
-  const auto below = [&](std::size_t n) { return random() % n; };
-  static const std::vector<std::string> nuisances{
-      "null",   "-1",  "1e999",   "0",      "\"\"",
-      "[]",     "{}",  "true",    "1e-320", "18446744073709551616",
-      "[[[[",   "}}}", "\\u0000", ",",      ":",
-      "\"\xff", "//",  "/*",      "NaN",    "2147483648"};
-  for (std::size_t i = 1 + below(4); i > 0 && !text.empty(); --i) {
-    const std::size_t at = below(text.size());
-    switch (below(5)) {
-      case 0:
-        text[at] = static_cast<char>(random());
-        break;
-      case 1:
-        text.erase(at, 1 + below(20));
-        break;
-      case 2:
-        text.insert(at, text.substr(below(text.size()), 1 + below(40)));
-        break;
-      case 3:
-        text.insert(at, nuisances[below(nuisances.size())]);
-        break;
-      default: {  // a whole value
-        const std::size_t colon = text.find(':', at);
-        if (colon == std::string::npos) break;
-        const std::size_t end = text.find_first_of(",}\n", colon);
-        if (end == std::string::npos) break;
-        text.replace(colon + 1, end - colon - 1, nuisances[below(nuisances.size())]);
-      }
-    }
-  }
-  return text;
 }
 
 void spoil_and_read(const std::string& text, std::string (*read)(const std::string&), int cases) {

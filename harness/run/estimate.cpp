@@ -1,0 +1,64 @@
+#include "harness/run/estimate.h"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "harness/base/clock.h"
+#include "harness/scenes/scene.h"
+#include "inextensible/registry.h"
+
+namespace harness {
+namespace {
+
+constexpr double look = 0.1;            // s, at a contestant and size
+constexpr double runs_of_a_search = 4;  // full ones: steps that are too slow or fail end early
+constexpr double runs_of_a_calibration = 6;
+
+// Of simulating a second; the time-out where no step is taken.
+double seconds_per_second(const Search& search, double step, double timeout) {
+  const Scene scene = find_scene(search.base.scene)->build(search.base.scene_parameters);
+  try {
+    const auto stepper = inextensible::make_stepper(
+        search.base.solver, scene.problem,
+        {search.base.strain_limit, search.base.seed, search.base.settings});
+    inextensible::State state = scene.start;
+    const auto begin = Clock::now();
+    int steps = 0;
+    while (since(begin) < look && steps * step < scene.duration && stepper->advance(state, step))
+      ++steps;
+    if (steps > 0) return since(begin) / (steps * step);
+  } catch (const std::invalid_argument&) {  // refused at the door, which takes no time
+    return 0;
+  }
+  return timeout;
+}
+
+}  // namespace
+
+Estimate estimate(const Suite& suite, const std::vector<Search>& searches) {
+  std::map<std::size_t, std::vector<const Search*>> families;
+  for (const Search& search : searches) families[search.family].push_back(&search);
+  Estimate result;
+  for (const auto& [family, members] : families) {
+    const Search& middle = *members[members.size() / 2];
+    const double step = middle.ladder[middle.ladder.size() / 2];
+    const double duration = middle.base.scene_parameters.at("duration");
+    const double run =
+        std::min(duration * seconds_per_second(middle, step, suite.timeout), suite.timeout);
+    const auto* backend = inextensible::find_backend(middle.base.solver);
+    const bool calibrated = backend && backend->knob == inextensible::Knob::stiffness;
+    for (const Search* search : members) {
+      const double tried = search->every_step ? static_cast<double>(search->ladder.size())
+                                              : std::min(static_cast<double>(search->ladder.size()),
+                                                         runs_of_a_search);
+      const double repeated = search->base.sweep == "step" ? tried : 1;
+      result.seconds +=
+          run * (tried * (calibrated ? runs_of_a_calibration : 1) + repeated * (suite.reps - 1));
+    }
+    ++result.timed;
+  }
+  return result;
+}
+
+}  // namespace harness
