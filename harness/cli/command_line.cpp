@@ -1,6 +1,7 @@
 #include "harness/cli/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 
@@ -112,9 +113,9 @@ std::function<std::vector<std::string>()> Command::as_typed() const {
   };
 }
 
-CommandLine::CommandLine(const std::string& description, const std::string& version)
-    : app_(std::make_unique<CLI::App>(description)) {
-  app_->set_version_flag("--version", version);
+CommandLine::CommandLine(const std::string& description, std::function<std::string()> version)
+    : app_(std::make_unique<CLI::App>(description, "bench")) {
+  app_->set_version_flag("-V,--version", std::move(version));
 }
 
 CommandLine::~CommandLine() = default;
@@ -138,9 +139,114 @@ void CommandLine::add_everywhere(const std::string& name, std::vector<std::strin
   }
 }
 
+namespace {
+
+// The words in the order of typing, without the program's name.
+std::vector<std::string> usual_words(int argc, char** argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words.empty()) return words;
+  if (words.front() == "help") {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  } else if (words.front() == "sweep") {
+    words.front() = "--sweep";
+  }
+  return words;
+}
+
+// Characters that mean something to roff.
+std::string roff(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '\\') {
+      escaped += "\\e";
+    } else if (c == '-') {
+      escaped += "\\-";
+    } else if ((c == '.' || c == '\'') && (escaped.empty() || escaped.back() == '\n')) {
+      escaped += std::string("\\&") + c;
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
+void describe_options(const CLI::App& app, std::string& page) {
+  for (const CLI::Option* option : app.get_options()) {
+    std::string name = option->get_name(true, true);  // "-h,--help", or a word in its place
+    for (std::size_t at = 0; (at = name.find(',', at)) != std::string::npos; at += 2)
+      name.replace(at, 1, ", ");
+    const std::string type = option->get_type_name();
+    page += ".TP\n.B " +
+            roff(name + (type.empty() || option->get_items_expected_max() == 0 ? "" : " " + type)) +
+            "\n" + roff(option->get_description()) + "\n";
+  }
+}
+
+std::string option_names(const CLI::App& app) {
+  std::string names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames())
+      names += (names.empty() ? "--" : " --") + name;
+  }
+  return names;
+}
+
+}  // namespace
+
+std::string CommandLine::manual() const {
+  const std::string text = app_->get_description();
+  const std::size_t end = text.find('\n');
+  std::string first = text.substr(0, end);
+  if (first.starts_with("bench: ")) first = first.substr(7);
+  std::string page = ".TH BENCH 1\n.SH NAME\nbench \\- " + roff(first) +
+                     "\n.SH SYNOPSIS\n.B bench\n[\\fICOMMAND\\fR] [\\fIOPTION\\fR ...]\n"
+                     ".SH DESCRIPTION\n.nf\n" +
+                     roff(end == std::string::npos ? "" : text.substr(end + 1)) +
+                     ".fi\n.SH OPTIONS\n";
+  describe_options(*app_, page);
+  page += ".SH COMMANDS\n";
+  for (const CLI::App* command : app_->get_subcommands([](const CLI::App*) { return true; })) {
+    page += ".SS " + roff(command->get_name()) + "\n" + roff(command->get_description()) + "\n";
+    describe_options(*command, page);
+  }
+  return page;
+}
+
+std::string CommandLine::bash_completion() const {
+  std::string verbs, cases;
+  for (const CLI::App* command : app_->get_subcommands([](const CLI::App*) { return true; })) {
+    verbs += " " + command->get_name();
+    cases += "    " + command->get_name() + ") words='" + option_names(*command) + "' ;;\n";
+  }
+  return "# Completion for Bash: source <(bench completion)\n_bench() {\n"
+         "  local words verb=${COMP_WORDS[1]-} word=${COMP_WORDS[COMP_CWORD]}\n"
+         "  local bench=${COMP_WORDS[0]} previous=${COMP_WORDS[COMP_CWORD - 1]}\n"
+         "  case $previous in\n"
+         "    --solver) words=$(\"$bench\" list solvers 2>/dev/null | sed -n 's/^  "
+         "\\([a-z0-9_]*\\): .*/\\1/p') ;;\n"
+         "    --scene) words=$(\"$bench\" list scenes 2>/dev/null | sed -n 's/^  \\([a-z0-9_]*\\): "
+         ".*/\\1/p') ;;\n"
+         "    --profile) words=$(\"$bench\" list suites 2>/dev/null | sed -n 's/^  "
+         "\\([a-z0-9_]*\\): .*/\\1/p') ;;\n"
+         "    --sweep | sweep) words='strain resolution step stability' ;;\n"
+         "    --step) words='search all adaptive' ;;\n"
+         "    help) words='" +
+         verbs +
+         "' ;;\n"
+         "    *)\n  case $verb in\n" +
+         cases + "    *) words='" + option_names(*app_) + " help sweep" + verbs +
+         "' ;;\n  esac ;;\n  esac\n"
+         "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\")\n"
+         "  ((${#COMPREPLY[@]})) || mapfile -t COMPREPLY < <(compgen -f -- \"$word\")\n"
+         "}\ncomplete -o filenames -F _bench bench ./bench\n";
+}
+
 std::optional<int> CommandLine::read(int argc, char** argv) {
   try {
-    app_->parse(argc, argv);
+    std::vector<std::string> words = usual_words(argc, argv);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    app_->parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app_->exit(error);  // --help, --version
     std::cerr << "bench: " << error.what() << " (see bench --help)\n";

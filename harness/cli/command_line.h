@@ -76,7 +76,8 @@ class Command {
 
 class CommandLine {
  public:
-  CommandLine(const std::string& description, const std::string& version);
+  // version: asked for by -V and --version.
+  CommandLine(const std::string& description, std::function<std::string()> version);
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
@@ -86,8 +87,12 @@ class CommandLine {
   void add_everywhere(const std::string& name, std::vector<std::string>& values,
                       const std::string& help, const std::string& type);
 
-  // An exit code if nothing is left to do: help was printed, or a word is wrong, which is said on
-  // stderr.
+  // From the options: a manual page (roff), and completion for Bash.
+  std::string manual() const;
+  std::string bash_completion() const;
+
+  // `help VERB` is VERB --help, and `sweep AXIS` is --sweep AXIS. An exit code if nothing is left
+  // to do: help was printed, or a word is wrong, which is said on stderr.
   std::optional<int> read(int argc, char** argv);
   int run() const { return chosen_(); }
 

@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "harness/base/errors.h"
+#include "harness/base/json_text.h"
 #include "harness/base/paths.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/sweep_options.h"
@@ -11,6 +12,8 @@
 
 namespace harness {
 namespace {
+
+using nlohmann::json;
 
 void list(const std::string& what) {
   const auto heading = [&](const char* name) {
@@ -68,6 +71,64 @@ void list(const std::string& what) {
   }
 }
 
+// The same for programs.
+json solvers_json() {
+  json list = json::array();
+  for (const auto& backend : inextensible::backends()) {
+    json settings = json::array();
+    for (const auto& setting : backend.settings) {
+      json row = {{"name", setting.name}, {"meaning", setting.meaning}};
+      std::visit([&row](const auto& value) { row["default"] = value; }, setting.initial);
+      if (!setting.choices.empty()) row["choices"] = setting.choices;
+      if (setting.tunable) row["tunable"] = {setting.tunable->least, setting.tunable->largest};
+      settings.push_back(std::move(row));
+    }
+    list.push_back({{"name", backend.name},
+                    {"label", backend.label},
+                    {"summary", backend.summary},
+                    {"citation", backend.citation},
+                    {"contestant", backend.contestant},
+                    {"settings", settings}});
+  }
+  return list;
+}
+
+json scenes_json() {
+  json list = json::array();
+  for (const auto& type : scene_types()) {
+    json parameters = json::array();
+    for (const auto& parameter : type.parameters)
+      parameters.push_back({{"name", parameter.name},
+                            {"default", parameter.initial},
+                            {"meaning", parameter.meaning}});
+    list.push_back({{"name", type.name},
+                    {"summary", type.summary},
+                    {"resolution", type.resolution},
+                    {"parameters", parameters}});
+  }
+  return list;
+}
+
+json suites_json() {
+  json list = json::array();
+  for (const std::string& name : profiles()) {
+    const Suite suite = read_suite(source_path("configs/" + name + ".json"));
+    list.push_back({{"name", name}, {"description", suite.description}});
+  }
+  return list;
+}
+
+void list_json(const std::string& what) {
+  json all = {{"solvers", solvers_json()}, {"scenes", scenes_json()}, {"suites", suites_json()}};
+  if (what.empty()) {
+    std::cout << document_text(all);
+  } else if (all.contains(what)) {
+    std::cout << document_text(all.at(what));
+  } else {
+    throw UsageError("--json goes with list solvers, scenes and suites");
+  }
+}
+
 void list_points(const SweepOptions& options) {
   for (const Search& search : plan(load_suite(options), make_filters(options))) {
     PointSpec spec = search.base;
@@ -84,6 +145,7 @@ void add_list_command(const Command& program) {
   struct Given {
     SweepOptions options;
     std::string what;
+    bool as_json = false;
   };
   const auto given = std::make_shared<Given>();
   const Command command = program.subcommand(
@@ -97,11 +159,14 @@ void add_list_command(const Command& program) {
       "follows from tables made anew",
       "WHAT");
   add_selection(command, given->options);
+  command.flag("--json", given->as_json, "solvers, scenes and suites as JSON");
   command.does([given] {
     const std::vector<std::string> schemas = generated_schemas();
     const std::vector<std::string> known{"solvers", "scenes",   "suites",  "cases",
                                          "points",  "counters", "metrics", "statuses"};
-    if (given->what == "points") {
+    if (given->as_json) {
+      list_json(given->what);
+    } else if (given->what == "points") {
       list_points(given->options);
     } else if (const auto dot = given->what.find(".schema");
                dot != std::string::npos && std::find(schemas.begin(), schemas.end(),

@@ -28,6 +28,7 @@ void add_list_command(const Command& program);
 void add_claims_command(const Command& program);
 void add_results_command(const Command& program);
 void add_merge_command(const Command& program);
+void add_show_command(const Command& program);
 void add_plot_command(const Command& program);
 void add_emit_command(const Command& program);
 void add_check_command(const Command& program);

@@ -24,6 +24,16 @@ std::vector<std::string> command_words(int argc, char** argv) {
   return words;
 }
 
+std::string version_text() {
+  const nlohmann::json build = machine_context().at("build");
+  const std::string commit = build.at("git");
+  return std::string("bench ") + version() +
+         (commit.empty() ? "" : ", commit " + commit.substr(0, 12)) +
+         (build.at("dirty").get<bool>() ? " with changes" : "") + ", " +
+         build.at("type").get<std::string>() + " by " + build.at("compiler").get<std::string>() +
+         " with " + build.at("flags").get<std::string>();
+}
+
 int run(int argc, char** argv) {
   CommandLine line(
       "bench: which solver keeps cloth and chains from stretching fastest, at which strain, at "
@@ -33,6 +43,7 @@ int run(int argc, char** argv) {
       "under 5 minutes\n"
       "  bench --sweep resolution --scene chain   Figure 4b\n"
       "  bench --sweep strain --profile quick     a first look, in under a minute\n"
+      "  bench show RESULT.json                   the tables of a result file\n"
       "  bench plot RESULT.json                   draws the figures of a result file again\n"
       "  bench --sweep step --scene chain         time against error, and a table of time to reach "
       "an error\n"
@@ -50,11 +61,12 @@ int run(int argc, char** argv) {
       "runs\n"
       "  bench list                               solvers, scenes and suites with their "
       "settings\n",
-      std::string("bench ") + version());
+      version_text);
   const Command program = line.program();
   const std::vector<std::string> command = command_words(argc, argv);
   add_sweep_command(program, command);
   add_tune_command(program);
+  add_show_command(program);
   add_plot_command(program);
   add_reference_command(program);
   add_claims_command(program);
@@ -68,6 +80,17 @@ int run(int argc, char** argv) {
   add_list_command(program);
   add_merge_command(program);
   add_check_command(program);
+  const Command manual = program.subcommand("man", "print the manual page: bench man | man -l -");
+  manual.does([&line] {
+    std::cout << line.manual();
+    return success;
+  });
+  const Command completion =
+      program.subcommand("completion", "print completion for Bash: source <(bench completion)");
+  completion.does([&line] {
+    std::cout << line.bash_completion();
+    return success;
+  });
   std::vector<std::string> plugins;
   line.add_everywhere(
       "--plugin", plugins,

@@ -40,6 +40,8 @@ void check_options(const SweepCommand& options) {
   }
   const char* others = "strain, resolution and step";
   only(!options.scene.empty(), "--scene", others);
+  only(!options.n.empty(), "--n", others);
+  only(!options.limits.empty(), "--limit", others);
   only(!options.filter.empty(), "--filter", std::string(others) + " (--case chooses hard cases)");
   only(!options.exclude.empty(), "--exclude", others);
   only(!options.config.empty(), "--config", others);

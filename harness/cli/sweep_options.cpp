@@ -2,14 +2,20 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <sstream>
 
 #include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/json_reader.h"
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/cli/commands.h"
 #include "harness/judge/reference_file.h"
 
 namespace harness {
+
+using nlohmann::json;
 
 namespace {
 
@@ -44,7 +50,13 @@ void cut_ladders(Suite& suite, double finest) {
 void add_selection(const Command& to, SweepOptions& options) {
   to.option("--sweep", options.sweep, "axis: strain (limit), resolution, step or stability",
             "AXIS");
-  to.option("--scene", options.scene, "chain or drape; both if left out", "NAME");
+  to.option("--scene", options.scene,
+            "one of `bench list scenes`, also one that the suite has not; all of the suite's if "
+            "left out",
+            "NAME");
+  to.option("--n", options.n, "sizes instead of the suite's, e.g. 41 or 20,40,80", "N,...");
+  to.option("--limit", options.limits, "strain limits instead of the suite's, e.g. 0.01,0.001",
+            "STRAIN,...");
   to.alternatives("--solver", options.solver,
                   "only contestants whose name matches, e.g. 'shake|icd'; repeatable");
   to.option("--filter", options.filter, "only points in whose id this is found", "REGEX");
@@ -107,9 +119,83 @@ std::string suite_path(const SweepOptions& options) {
   return source_path("configs/" + options.profile + ".json");
 }
 
+namespace {
+
+// "20,40,80".
+json numbers_of(const std::string& option, const std::string& text, const Bounds& bounds) {
+  json numbers = json::array();
+  std::istringstream list(text);
+  for (std::string item; std::getline(list, item, ',');) {
+    char* end = nullptr;
+    const double number = std::strtod(item.c_str(), &end);
+    if (item.empty() || *end != '\0' || !bounds.hold(number))
+      throw UsageError(option + " is '" + shortened(text) + "': '" + shortened(item, 20) +
+                       "' must be " + bounds.text());
+    numbers.push_back(number);
+  }
+  if (numbers.empty()) throw UsageError(option + " is '', must be " + bounds.text());
+  return numbers;
+}
+
+bool is(const json& sweep, const char* key, const std::string& value) {
+  return sweep.is_object() && sweep.value(key, json()) == value;
+}
+
+// A scene that the suite has not takes the place of its first sweep of that kind, at the size that
+// the scene has by itself.
+void put_in_scene(json& sweeps, const SweepOptions& options) {
+  const auto of_kind = [&](const json& s) { return is(s, "sweep", options.sweep); };
+  if (options.scene.empty() || std::any_of(sweeps.begin(), sweeps.end(), [&](const json& s) {
+        return of_kind(s) && is(s, "scene", options.scene);
+      }))
+    return;
+  const auto first = std::find_if(sweeps.begin(), sweeps.end(), of_kind);
+  if (first == sweeps.end()) return;
+  json sweep = *first;
+  sweep["scene"] = options.scene;
+  for (const char* key : {"scene_parameters", "resolutions", "solver_options", "steps"})
+    sweep.erase(key);
+  if (options.sweep == "resolution" && options.n.empty())
+    throw UsageError("the suite has no resolutions of scene '" + options.scene + "': give --n");
+  sweeps.push_back(std::move(sweep));
+}
+
+// The suite with what the options say instead: it then is one like any other, checked as a whole.
+Suite edited_suite(const std::string& path, const SweepOptions& options) {
+  const std::string text = read_file(path, "suite");
+  if (options.n.empty() && options.limits.empty() && options.scene.empty())
+    return parse_suite(text, path);
+  json document = parse_commented(text, path);
+  if (!document.is_object() || !document.contains("sweeps") || !document["sweeps"].is_array())
+    return parse_suite(text, path);  // which says what is wrong
+  json& sweeps = document["sweeps"];
+  put_in_scene(sweeps, options);
+  for (json& sweep : sweeps) {
+    if (!is(sweep, "sweep", options.sweep)) continue;
+    if (!options.limits.empty()) {
+      const json limits = numbers_of("--limit", options.limits, Bounds::positive());
+      if (options.sweep == "resolution" && limits.size() > 1)
+        throw UsageError("--limit: a resolution sweep has one");
+      sweep.erase("limit");
+      sweep["limits"] = limits;
+    }
+    if (options.n.empty()) continue;
+    const json sizes = numbers_of("--n", options.n, Bounds::whole_number(2));
+    if (options.sweep != "resolution" && sizes.size() > 1)
+      throw UsageError("--n: a " + options.sweep + " sweep has one size");
+    const SceneType* type = find_scene(sweep.value("scene", ""));
+    if (type && sweep.contains("scene_parameters"))
+      sweep["scene_parameters"].erase(type->resolution);
+    sweep["resolutions"] = sizes;
+  }
+  return parse_suite(document.dump(), path);
+}
+
+}  // namespace
+
 Suite load_suite(const SweepOptions& options) {
   const std::string path = suite_path(options);
-  Suite suite = read_suite(path);
+  Suite suite = edited_suite(path, options);
   if (!options.solver.empty()) check_solver_pattern(options.solver, contestants_of(suite));
   std::vector<std::string> kinds = sweep_kinds();
   if (std::find(kinds.begin(), kinds.end(), options.sweep) == kinds.end()) {

@@ -11,13 +11,14 @@ namespace harness {
 
 struct SweepOptions {
   std::string sweep, scene, solver, filter, exclude, config, profile = "default", step = "search";
-  std::string reps;  // "5", or "5..40" with rel_ci
+  std::string reps;       // "5", or "5..40" with rel_ci
+  std::string n, limits;  // numbers between commas, in place of the suite's
   double timeout = 0, max_error = 0, rel_ci = 0, finest = 0;
   std::int64_t seed = -1;
   bool untimed = false;  // nobody will read the times: no turn to be waited for
 };
 
-// --sweep, --scene, --solver, --filter, --exclude, --profile and --config.
+// --sweep, --scene, --n, --limit, --solver, --filter, --exclude, --profile and --config.
 void add_selection(const Command& to, SweepOptions& options);
 
 // --reps, --rel-ci, --timeout, --step, --max-error, --seed and --untimed.

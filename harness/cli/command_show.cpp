@@ -1,0 +1,66 @@
+// bench show: what a result file says, as the sweep said it at its end.
+#include <cmath>
+#include <iostream>
+#include <map>
+
+#include "harness/base/text.h"
+#include "harness/cli/commands.h"
+#include "harness/points/noise.h"
+#include "harness/points/point_json.h"
+#include "harness/points/result_file.h"
+#include "harness/points/suite.h"
+#include "harness/run/report.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+
+void print_head(const json& document, const std::string& file) {
+  const json& context = document.at("context");
+  const json& build = context.at("build");
+  std::cout << file << ": " << context.at("date").get<std::string>() << " on "
+            << context.at("cpu_model").get<std::string>() << ", commit "
+            << build.at("git").get<std::string>().substr(0, 12)
+            << (build.value("dirty", false) ? " with changes" : "") << ", "
+            << build.at("compiler").get<std::string>() << '\n';
+  if (!document.value("complete", true)) std::cout << "not complete: the run was interrupted\n";
+  if (!is_timed(document)) std::cout << "made with --untimed: its times mean nothing\n";
+}
+
+// How many cells ended how.
+void print_outcomes(const json& document) {
+  std::map<std::string, int> counts;
+  for (const json& cell : document.at("matrix")) ++counts[cell.at("outcome").get<std::string>()];
+  std::cout << document.at("matrix").size() << " cells of hard cases and solvers:\n";
+  for (const auto& [outcome, count] : counts)
+    std::cout << "  " << outcome << " x " << count << '\n';
+}
+
+int show(const std::string& file) {
+  const json document = read_result(file);
+  print_head(document, file);
+  if (document.at("schema") == "inextensible-stability/1") {
+    print_outcomes(document);
+    return success;
+  }
+  const json& context = document.at("context");
+  std::vector<PointResult> points;
+  for (const json& point : document.at("points")) points.push_back(point_of(point));
+  print_table(std::cout, parse_suite(context.at("suite").dump(), file), points);
+  if (const auto pair = noise_of(context))
+    std::cout << "\ndifferences below " << number_text(100 * std::expm1(pair->q95), 2)
+              << " % are noise, by " << pair->one << " against itself\n";
+  return success;
+}
+
+}  // namespace
+
+void add_show_command(const Command& program) {
+  const auto file = std::make_shared<std::string>();
+  const Command command = program.subcommand("show", "the tables of a result file");
+  command.option("result", *file, "result file", "RESULT.json").required();
+  command.does([file] { return show(*file); });
+}
+
+}  // namespace harness
