@@ -1,20 +1,9 @@
 #include "harness/run/journal.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 
 #include "harness/base/errors.h"
-#include "harness/base/file_lock.h"
-#include "harness/base/files.h"
 #include "harness/base/json_reader.h"
-#include "harness/base/json_text.h"
-#include "harness/base/text.h"
 #include "harness/points/point_json.h"
 
 namespace harness {
@@ -23,16 +12,6 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* schema = "inextensible-journal/1";
-
-// Not by opening the file again: closing that would give up the lock.
-std::string content(int file) {
-  std::string text;
-  std::array<char, 65536> buffer{};
-  for (ssize_t count;
-       (count = pread(file, buffer.data(), buffer.size(), static_cast<off_t>(text.size()))) > 0;)
-    text.append(buffer.data(), static_cast<std::size_t>(count));
-  return text;
-}
 
 void check_header(const json& line) {
   if (line.value("schema", "") != schema) throw UsageError("it is not a journal of this program");
@@ -97,106 +76,31 @@ std::string difference(const json& was, const json& is) {
   return name + " is " + text(is) + ", was " + text(was);
 }
 
-Journal::Journal(const std::string& out) : out_(out), path_(out + ".journal") {
-  lock();
-  try {
-    read();
-  } catch (...) {
-    close(file_);
-    throw;
-  }
-}
-
-Journal::~Journal() {
-  if (file_ < 0) return;
-  if (length_ == 0) unlink(path_.c_str());  // nothing has come of it
-  close(file_);
-}
-
-void Journal::lock() {
-  for (;;) {
-    file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
-    if (file_ < 0) throw UsageError("cannot write '" + path_ + "': " + std::strerror(errno));
-    if (!try_lock(file_)) {
-      const pid_t other = lock_holder(file_);
-      close(file_);
-      throw UsageError("another bench" +
-                       (other > 0 ? " (process " + std::to_string(other) + ")" : std::string()) +
-                       " is writing '" + out_ + "'; give another --out");
+Journal::Journal(const std::string& out) : lines_(out) {
+  lines_.read([this](const json& line, std::size_t number) {
+    if (number == 1) {
+      check_header(line);
+      header_ = line;
+    } else {
+      learn_line(line, memory_);
     }
-    struct stat status {};
-    if (fstat(file_, &status) == 0 && status.st_nlink > 0) return;
-    close(file_);  // its owner has just finished and removed it
-  }
-}
-
-void Journal::read() {
-  const std::string text = content(file_);
-  std::size_t number = 0;
-  // A last line without its end was being written when the program ended.
-  for (std::size_t end; (end = text.find('\n', length_)) != std::string::npos; length_ = end + 1) {
-    ++number;
-    try {
-      const json line = parse_line(text.substr(length_, end - length_), "no JSON");
-      if (number == 1) {
-        check_header(line);
-        header_ = line;
-      } else {
-        learn_line(line, memory_);
-      }
-    } catch (const std::exception& error) {
-      if (damage_.empty())
-        damage_ = "line " + std::to_string(number) + ": " + shortened(error.what());
-    }
-  }
+  });
 }
 
 void Journal::start(const json& header) {
-  if (ftruncate(file_, 0) != 0) throw FileError(path_, "empty");
-  length_ = 0;
   memory_ = {};
-  damage_.clear();
   header_ = header;
   header_["schema"] = schema;
-  append(header_);
+  lines_.start(header_);
 }
 
-void Journal::add(const PointResult& point) { append({{"point", to_json(point)}}); }
+void Journal::add(const PointResult& point) { lines_.append({{"point", to_json(point)}}); }
 
 void Journal::add_repetition(const std::string& key, const std::vector<double>& seconds) {
-  append({{"repeat", key}, {"seconds", seconds}});
+  lines_.append({{"repeat", key}, {"seconds", seconds}});
 }
 
-void Journal::forget(const std::string& key) { append({{"forget", key}}); }
-
-void Journal::append(const json& line) {
-  struct stat status {};
-  if (fstat(file_, &status) != 0 || status.st_nlink == 0)
-    throw FileError(path_, "go on writing", "it has been removed meanwhile");
-  const std::string text = compact(line) + "\n";
-  std::size_t done = 0;
-  while (done < text.size()) {
-    const ssize_t written =
-        pwrite(file_, text.data() + done, text.size() - done, static_cast<off_t>(length_ + done));
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) break;
-    done += static_cast<std::size_t>(written);
-  }
-  if (done < text.size() || fdatasync(file_) != 0) {
-    const std::string reason = std::strerror(errno);
-    if (ftruncate(file_, static_cast<off_t>(length_)) != 0) {
-    }  // a torn last line is understood, too
-    throw FileError(path_, "write",
-                    reason + "; what it holds is safe, --resume goes on from there");
-  }
-  length_ += text.size();
-}
-
-void Journal::remove() {
-  unlink(path_.c_str());
-  close(file_);
-  file_ = -1;
-}
+void Journal::forget(const std::string& key) { lines_.append({{"forget", key}}); }
 
 namespace {
 

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "harness/base/line_journal.h"
 #include "harness/run/sweep.h"
 
 namespace harness {
@@ -39,18 +40,13 @@ std::string difference(const nlohmann::json& was, const nlohmann::json& is);
 
 class Journal {
  public:
-  // Opens or makes the journal of the result file `out`, and holds it against other processes until
-  // the destructor. Throws UsageError if another process is writing this output.
+  // As LineJournal.
   explicit Journal(const std::string& out);
-  ~Journal();
-  Journal(const Journal&) = delete;
-  Journal& operator=(const Journal&) = delete;
 
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return lines_.path(); }
   const nlohmann::json& header() const { return header_; }  // null: new
   const Memory& memory() const { return memory_; }          // as it was found, what is readable
-  // What is wrong with it, the first thing; "" if nothing is.
-  const std::string& damage() const { return damage_; }
+  const std::string& damage() const { return lines_.damage(); }
   std::size_t points() const { return memory_.points.size(); }
 
   void start(const nlohmann::json& header);  // empties it first
@@ -60,16 +56,10 @@ class Journal {
   void add_repetition(const std::string& key, const std::vector<double>& seconds);
   void forget(const std::string& key);
 
-  void remove();  // the result file is written: nothing to take up
+  void remove() { lines_.remove(); }  // the result file is written: nothing to take up
 
  private:
-  void lock();
-  void read();
-  void append(const nlohmann::json& line);
-
-  std::string out_, path_, damage_;
-  int file_ = -1;
-  std::size_t length_ = 0;  // bytes, whole lines
+  LineJournal lines_;
   nlohmann::json header_;
   Memory memory_;
 };

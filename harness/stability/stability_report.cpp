@@ -10,6 +10,7 @@
 #include "harness/points/result_file.h"
 #include "harness/points/schema.h"
 #include "harness/stability/stability.h"
+#include "harness/stability/trial_json.h"
 
 namespace harness {
 namespace {
@@ -230,28 +231,18 @@ json stability_document(json context, const StabilityOutcome& outcome, std::uint
   for (const auto& cell : outcome.cells) {
     const TrialResult& r = cell.result;
     const auto& other = cell.expectation->other;
-    matrix.push_back({{"row", cell.hard_case->row},
-                      {"case", cell.hard_case->name},
-                      {"what", cell.hard_case->what},
-                      {"solver", cell.solver},
-                      {"outcome", to_string(r.outcome)},
-                      {"at_fixed_step", to_string(r.fixed)},
-                      {"expected_at_fixed_step", to_string(cell.expectation->outcome)},
-                      {"why", cell.expectation->why},
-                      {"admitted_beside", other ? json(to_string(other->outcome)) : json()},
-                      {"why_admitted", other ? json(other->why) : json()},
-                      {"as_expected", cell.expected},
-                      {"known_difference", cell.known != nullptr},
-                      {"detail", r.detail},
-                      {"smallest_step", number(r.smallest_step)},
-                      {"max_strain", number(r.max_strain)},
-                      {"strain_first_second", number(r.strain_first_second)},
-                      {"strain_last_second", number(r.strain_last_second)},
-                      {"energy_gain", number(r.energy_gain)},
-                      {"momentum_defect", number(r.momentum_defect)},
-                      {"reciprocal_condition", number(r.reciprocal_condition)},
-                      {"seconds", r.seconds},
-                      {"work", to_json(r.work)}});
+    json row = to_json(r);
+    row.update({{"row", cell.hard_case->row},
+                {"case", cell.hard_case->name},
+                {"what", cell.hard_case->what},
+                {"solver", cell.solver},
+                {"expected_at_fixed_step", to_string(cell.expectation->outcome)},
+                {"why", cell.expectation->why},
+                {"admitted_beside", other ? json(to_string(other->outcome)) : json()},
+                {"why_admitted", other ? json(other->why) : json()},
+                {"as_expected", cell.expected},
+                {"known_difference", cell.known != nullptr}});
+    matrix.push_back(std::move(row));
   }
   for (const auto& s : outcome.largest_steps) {
     steps.push_back({{"scene", s.scene},

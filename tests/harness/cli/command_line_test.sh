@@ -185,7 +185,7 @@ cp closed.json kept.json
 cmp -s closed.json kept.json && fail "--force did not replace it"
 
 # ---- Options that would do nothing, alternatives that match nothing, numbers that are none ----
-for option in "--scene drape" "--filter x" "--config c.json" "--resume" "--shard 1/4" "--step adaptive" "--reps 3" "--timeout 3"; do
+for option in "--scene drape" "--filter x" "--config c.json" "--shard 1/4" "--step adaptive" "--reps 3" "--timeout 3"; do
   refused "goes with --sweep strain, resolution and step" --sweep stability $option --out out.json
 done
 refused "no solver 'fast'" "${sweep[@]}" --solver 'fast|shake|icd'
