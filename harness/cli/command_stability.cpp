@@ -3,17 +3,22 @@
 
 #include <filesystem>
 #include <iostream>
+#include <map>
+#include <optional>
 #include <sstream>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
+#include "harness/base/line_journal.h"
 #include "harness/base/paths.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/sweep_command.h"
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
+#include "harness/run/journal.h"
 #include "harness/stability/stability.h"
+#include "harness/stability/trial_json.h"
 
 namespace harness {
 namespace {
@@ -46,6 +51,59 @@ void set_values(HardCaseValues& values, const std::string& given) {
 
 }  // namespace
 
+namespace {
+
+constexpr const char* journal_schema = "inextensible-stability-journal/1";
+
+// The journal of a sweep: a line for each cell that has been run.
+class CellJournal {
+ public:
+  explicit CellJournal(const std::string& out) : lines_(out) {
+    lines_.read([this](const nlohmann::json& line, std::size_t number) {
+      if (number > 1) {
+        cells_[{line.at("case"), line.at("solver")}] = trial_result_of(line.at("result"));
+      } else if (line.at("schema") == journal_schema && line.at("identity").is_object()) {
+        identity_ = line.at("identity");
+      } else {
+        throw UsageError("it is not a journal of this program");
+      }
+    });
+  }
+
+  // Throws UsageError unless what it holds may be taken up, or dropped.
+  void begin(const SweepCommand& options, const nlohmann::json& mine) {
+    const std::string other = identity_.is_null() ? lines_.damage() : difference(identity_, mine);
+    const bool any = !cells_.empty() || !lines_.damage().empty();
+    if (any && !options.resume && !options.force)
+      throw UsageError("'" + lines_.path() + "' holds " + std::to_string(cells_.size()) +
+                       " cells of a run that did not finish: --resume goes on with it, --force "
+                       "starts anew");
+    if (any && options.resume && !options.force && (!other.empty() || !lines_.damage().empty()))
+      throw UsageError("'" + lines_.path() + "' is of another build or is damaged: " +
+                       (other.empty() ? lines_.damage() : other) +
+                       "; --resume --force goes on all the same, --force starts anew");
+    if (!options.resume) cells_.clear();
+    lines_.start({{"schema", journal_schema}, {"identity", mine}});
+    for (const auto& [key, result] : cells_) add(key.first, key.second, result);
+  }
+
+  std::optional<TrialResult> find(const std::string& hard_case, const std::string& solver) const {
+    const auto place = cells_.find({hard_case, solver});
+    return place == cells_.end() ? std::nullopt : std::optional(place->second);
+  }
+  void add(const std::string& hard_case, const std::string& solver, const TrialResult& result) {
+    lines_.append({{"case", hard_case}, {"solver", solver}, {"result", to_json(result)}});
+  }
+  void remove() { lines_.remove(); }
+
+ private:
+  LineJournal lines_;
+  nlohmann::json identity_;
+  std::map<std::pair<std::string, std::string>, TrialResult> cells_;
+};
+
+}  // namespace
+
 int stability_command(const SweepCommand& options, const std::vector<std::string>& command) {
   check_profile(options.profile);
   StabilityFilters filters;
@@ -67,15 +125,22 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
   }
   const std::string out = chosen_output(options, options.profile + "-stability");
   check_writable(out);
-  if (!options.force && std::filesystem::exists(out))
+  if (!options.force && !options.resume && std::filesystem::exists(out))
     throw UsageError("'" + out +
                      "' is there already: --force replaces it, another --out keeps both");
   const nlohmann::json context = machine_context();
+  CellJournal journal(out);
+  journal.begin(options, identity(context, nlohmann::json(values), {{"seed", options.seed}}));
   catch_interrupts();
   StabilityEvents events;
   events.interrupted = interrupted;
   const bool terminal = isatty(STDERR_FILENO) == 1;
-  events.cell = [terminal](const StabilityCell& cell, std::size_t done, std::size_t all) {
+  events.known = [&journal](const HardCase& c, const std::string& solver) {
+    return journal.find(c.name, solver);
+  };
+  events.cell = [&](const StabilityCell& cell, std::size_t done, std::size_t all) {
+    const std::string& name = cell.hard_case->name;
+    if (!journal.find(name, cell.solver)) journal.add(name, cell.solver, cell.result);
     if (terminal) {
       std::cerr << "\r\033[K[" << done << '/' << all << "] " << cell.hard_case->name << '/'
                 << cell.solver << (done == all ? "\n" : "");
@@ -94,7 +159,11 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
   write_atomically(out, result_text(stability_document(context, outcome, seed, command)));
   print_stability(std::cout, outcome);
   std::cout << "\nwritten:\n" << out << std::endl;
-  if (!outcome.complete) return interrupted_exit;
+  if (!outcome.complete) {
+    std::cerr << "bench: interrupted; the same command with --resume goes on from here\n";
+    return interrupted_exit;
+  }
+  journal.remove();
   if (!options.no_plots && draw({out}) != 0) std::cerr << "bench: the figure could not be drawn\n";
   return outcome.nothing_new() ? success : unexpected_outcome;
 }

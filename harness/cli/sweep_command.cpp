@@ -53,7 +53,6 @@ void check_options(const SweepCommand& options) {
   only(options.max_error > 0, "--max-error", others);
   only(options.untimed, "--untimed", others);
   only(options.memory > 0, "--memory", others);
-  only(options.resume, "--resume", others);
   only(options.rerun_failed, "--rerun-failed", others);
   only(options.in_process, "--in-process", others);
   only(!options.shard.empty(), "--shard", others);

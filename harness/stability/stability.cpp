@@ -117,7 +117,8 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
         outcome.complete = false;
         return outcome;
       }
-      StabilityCell cell{c, solver, run_isolated_trial(c->build, solver, seed),
+      const auto known = events.known(*c, solver);
+      StabilityCell cell{c, solver, known ? *known : run_isolated_trial(c->build, solver, seed),
                          &expectation_of(*c, solver)};
       cell.expected = acceptable(*cell.expectation, solver, cell.result);
       if (!cell.expected) cell.known = known_difference(c->name, solver, cell.result);

@@ -79,6 +79,9 @@ struct StabilityEvents {
   std::function<void(const LargestStep&)> largest_step = [](auto&&...) {};
   std::function<void(const SameFrame&)> same_frame = [](auto&&...) {};
   std::function<bool()> interrupted = [] { return false; };
+  // What an interrupted sweep has found already; none: the cell is run.
+  std::function<std::optional<TrialResult>(const HardCase&, const std::string& solver)> known =
+      [](auto&&...) { return std::nullopt; };
 };
 
 // The plan's cases must outlive the outcome.
