@@ -128,6 +128,11 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
   if (!options.force && !options.resume && std::filesystem::exists(out))
     throw UsageError("'" + out +
                      "' is there already: --force replaces it, another --out keeps both");
+  if (options.resume && std::filesystem::exists(out) &&
+      !std::filesystem::exists(out + ".journal")) {
+    std::cout << out << " is complete already\n";
+    return success;
+  }
   const nlohmann::json context = machine_context();
   CellJournal journal(out);
   journal.begin(options, identity(context, nlohmann::json(values), {{"seed", options.seed}}));
