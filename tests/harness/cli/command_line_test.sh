@@ -216,4 +216,56 @@ for document in '{"schema": "inextensible-bench/1"}' "$(head -c 100000 /dev/zero
   done
 done
 
+# ---- Words and options for people ----
+"$BENCH_BINARY" sweep strain "${tiny[@]:2}" --out worded.json >/dev/null 2>&1 || fail "bench sweep strain: exit $?"
+[[ $("$BENCH_BINARY" help merge) == $("$BENCH_BINARY" merge --help) ]] || fail "bench help merge"
+"$BENCH_BINARY" --help | grep -q "^Usage: bench" || fail "the usage does not begin with bench"
+"$BENCH_BINARY" -V | grep -qE '^bench [0-9.]+.*(Release|Debug) by ' || fail "-V: $("$BENCH_BINARY" -V)"
+"$BENCH_BINARY" show worded.json | grep -q 'fast_projection' || fail "bench show"
+"$BENCH_BINARY" list --json | python3 -c 'import json, sys
+d = json.load(sys.stdin)
+assert {"fast_projection", "icd"} <= {s["name"] for s in d["solvers"]} and {"chain", "drape"} <= {s["name"] for s in d["scenes"]}' ||
+  fail "bench list --json"
+"$BENCH_BINARY" completion >completion.bash && bash -n completion.bash || fail "bench completion"
+words=$(bash -c 'source ./completion.bash; COMP_WORDS=(bench mer); COMP_CWORD=1; _bench; echo "${COMPREPLY[@]}"')
+[[ $words == merge ]] || fail "completion of mer: $words"
+"$BENCH_BINARY" man >bench.1 && grep -q '^\.TH BENCH 1' bench.1 && grep -q 'SS merge' bench.1 || fail "bench man"
+if command -v man >/dev/null; then
+  [[ -z $(LC_ALL=C.UTF-8 man --warnings -l -Tutf8 bench.1 2>&1 >/dev/null) ]] || fail "the manual page has warnings"
+fi
+"$BENCH_BINARY" --sweep strain --profile quick --scene patch --n 5 --limit 0.1,0.05 --solver '^fast_projection$' --reps 1 --no-plots \
+  --out patch.json >/dev/null 2>&1 || fail "a scene that the suite has not: exit $?"
+python3 - <<'PYTHON' || fail "--scene, --n and --limit"
+import json
+points = json.load(open("patch.json"))["points"]
+assert {p["scene"] for p in points} == {"patch"} and {p["vertices"] for p in points} == {25}, points
+assert {p["strain_limit"] for p in points} == {0.1, 0.05}
+PYTHON
+refused "must be a whole number" "${sweep[@]}" --n 2.5
+refused "must be a number above 0" "${sweep[@]}" --limit 0.1,x
+refused "has one size" "${sweep[@]}" --n 10,20
+refused "give --n" --sweep resolution --profile quick --scene patch --out out.json
+"$BENCH_BINARY" --sweep strain --profile quick --scene chain --dry-run | grep -q 'searches for a best step' || fail "--dry-run"
+
+# ---- Hard cases go on where they were ----
+cases=(--sweep stability --case 'Q[1-4]' --solver 'icd|fast_projection' --no-plots)
+"$BENCH_BINARY" "${cases[@]}" --dry-run | grep -q 'cells' || fail "--dry-run of hard cases"
+"$BENCH_BINARY" "${cases[@]}" --out whole.json >/dev/null 2>&1 || fail "hard cases: exit $?"
+[[ ! -e whole.json.journal ]] || fail "a journal is left of hard cases"
+"$BENCH_BINARY" "${cases[@]}" --out cut.json >/dev/null 2>&1 &
+for _ in $(seq 500); do [[ -e cut.json.journal && $(wc -l <cut.json.journal) -ge 3 ]] && break; sleep 0.01; done
+kill -KILL $! 2>/dev/null
+wait $! 2>/dev/null
+if [[ -e cut.json.journal ]]; then
+  "$BENCH_BINARY" "${cases[@]}" --out cut.json >/dev/null 2>err.txt
+  [[ $? == 2 ]] && grep -q -- "--resume goes on" err.txt || fail "an unfinished stability sweep is not asked about: $(cat err.txt)"
+fi
+"$BENCH_BINARY" "${cases[@]}" --resume --out cut.json >/dev/null 2>&1 || fail "resumed hard cases: exit $?"
+python3 - <<'PYTHON' || fail "resumed hard cases are not undisturbed ones"
+import json
+def cells(name):
+    return [{k: v for k, v in c.items() if k != "seconds"} for c in json.load(open(name))["matrix"]]
+assert cells("whole.json") == cells("cut.json")
+PYTHON
+
 exit $((failures > 0))
