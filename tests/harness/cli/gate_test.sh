@@ -97,6 +97,16 @@ grep -q 'seconds' baseline.json && fail "times in a baseline"
 exits 0 '36 SAME' compare baseline.json again.json
 exits 4 'SLOWER' compare baseline.json faulty.json
 
+# A result whose every time is tripled does not pass: with enough runs it is slower, with one each nobody can say, which has an
+# exit code of its own.
+timed='[t.update(samples=[f(x, i) for i in range(n) for x in t["samples"][:1]]) for p in d["points"] for t in [p["seconds_per_simulated_second"]] if t]'
+edit base.json slow1.json "n = 1; f = lambda x, i: 3 * x; $timed"
+exits 6 'too few runs' compare base.json slow1.json
+edit base.json five.json "n = 5; f = lambda x, i: x * (1 + 0.001 * i); $timed"
+edit base.json slow5.json "n = 5; f = lambda x, i: 3 * x * (1 + 0.001 * i); $timed"
+exits 3 '12 SLOWER' compare five.json slow5.json
+exits 0 'FASTER' compare slow5.json five.json
+
 # Not comparable: another build, other parameters, nothing in common. The way out is printed.
 edit again.json other.json 'd["context"]["counters_fingerprint"] = "another"'
 exits 5 'bench baseline other.json --out baseline.json' compare baseline.json other.json
