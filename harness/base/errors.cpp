@@ -8,6 +8,7 @@
 namespace harness {
 namespace {
 
+constexpr std::size_t longest_message = 600;
 constexpr std::size_t longest_name = 200;  // that is compared with others
 
 // Levenshtein distance, for names of a few letters.
@@ -27,6 +28,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 }  // namespace
+
+UsageError::UsageError(const std::string& message)
+    : std::runtime_error(shortened(message, longest_message)) {}
 
 UsageError unknown_name(std::string_view kind, std::string_view name,
                         const std::vector<std::string>& known) {

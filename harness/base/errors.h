@@ -10,7 +10,8 @@ namespace harness {
 
 class UsageError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  // One line, whatever names and values it holds, and not a long one.
+  explicit UsageError(const std::string& message);
 };
 
 // "no solver 'fast'; did you mean 'fast_projection'? (known: a, b, c)"

@@ -29,8 +29,11 @@ int report_comparison(const Comparison& comparison, const CompareOptions& option
   if (comparison.any(is_failure)) return unexpected_outcome;
   if (comparison.any(is_regression)) return regression;
   if (!comparison.undecided()) return success;
-  std::cerr << "bench: times differ, and there are too few runs of best points to say whether that "
-               "is noise: more --reps\n";
+  std::cerr << (comparison.unquiet
+                    ? "bench: the machine was too unquiet to compare times; bench ab takes them in "
+                      "pairs\n"
+                    : "bench: times differ, and there are too few runs of best points to say "
+                      "whether that is noise: more --reps\n");
   return cannot_decide;
 }
 

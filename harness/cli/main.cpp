@@ -108,9 +108,6 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace harness
 
-// Of a message: four lines of a terminal, as a rule.
-constexpr std::size_t longest_message = 400;
-
 int main(int argc, char** argv) {
   harness::open_standard_streams();
   harness::use_one_thread();
@@ -119,7 +116,7 @@ int main(int argc, char** argv) {
     harness::check_standard_output();
     return code;
   } catch (const harness::UsageError& error) {
-    std::cerr << "bench: " << harness::shortened(error.what(), longest_message) << '\n';
+    std::cerr << "bench: " << error.what() << '\n';
     return harness::usage_error;
   } catch (const harness::Interrupted&) {
     return harness::interrupted_exit;

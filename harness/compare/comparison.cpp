@@ -65,8 +65,8 @@ void note_errors(const ComparedPoint& base, const ComparedPoint& next, const Gat
 }
 
 void note_times(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
-                PointChange& result) {
-  const TimeChange times = compare_times(base.samples, next.samples, gate);
+                double noise, PointChange& result) {
+  const TimeChange times = compare_times(base.samples, next.samples, gate, noise);
   if (times.change == Change::same) return;
   result.reasons.push_back(times.reason);
   const bool settled = is_regression(result.change);
@@ -147,14 +147,15 @@ std::string PointChange::text() const {
 }
 
 TimeChange compare_times(const std::vector<double>& base, const std::vector<double>& next,
-                         const Gate& gate) {
+                         const Gate& gate, double noise) {
   if (base.empty() || next.empty()) return {};
   const double base_median = quantile(base, 0.5), next_median = quantile(next, 0.5);
   const bool slower = next_median > base_median;
   const auto& [slow, fast] = slower ? std::tie(next, base) : std::tie(base, next);
   const double fast_median = quantile(fast, 0.5), fast_minimum = quantile(fast, 0);
   if (!(fast_minimum > 0)) return {};
-  const bool median = quantile(slow, 0.5) / fast_median > gate.median_ratio;
+  const bool median =
+      quantile(slow, 0.5) / fast_median > std::max(gate.median_ratio, std::exp(noise));
   const bool minimum = quantile(slow, 0) / fast_minimum > gate.minimum_ratio;
   if (!median && !minimum) return {};  // however sure: too small to matter
   const double p = mann_whitney_greater(slow, fast);
@@ -176,6 +177,36 @@ TimeChange compare_times(const std::vector<double>& base, const std::vector<doub
   return {};
 }
 
+namespace {
+
+constexpr double same_speed = 0.05;  // of two machines: |log(ratio)| of the fixed kernel's times
+
+// Of the kernel that sweeps time in between; not-a-number in files without it.
+double kernel_seconds(const nlohmann::json& context) {
+  const auto place = context.find("sentinel");
+  if (place == context.end() || !place->contains("seconds")) return std::nan("");
+  return quantile(place->at("seconds").get<std::vector<double>>(), 0.5);
+}
+
+// Two sweeps, one after the other, tell builds apart only where the machine was as fast in both.
+std::string unquiet_reason(const nlohmann::json& base, const nlohmann::json& next) {
+  for (const auto* context : {&base, &next}) {
+    const auto place = context->find("sentinel");
+    if (place != context->end() && place->value("noisy", false))
+      return "the machine was busy, a fixed kernel's time varied";
+  }
+  const double ratio = kernel_seconds(next) / kernel_seconds(base);
+  if (!(std::abs(std::log(ratio)) > same_speed)) return "";
+  return "the machine was not as fast in both, a fixed kernel takes " + per_cent(ratio);
+}
+
+double pair_noise(const nlohmann::json& context) {
+  const auto place = context.find("noise");
+  return place == context.end() ? 0 : place->value("q95", 0.0);
+}
+
+}  // namespace
+
 Comparability comparability(const ComparedResult& base, const ComparedResult& next,
                             const Gate& gate) {
   Comparability can;
@@ -194,7 +225,12 @@ Comparability comparability(const ComparedResult& base, const ComparedResult& ne
   } else if (field(base.context, "cpu_model") != field(next.context, "cpu_model") ||
              base.context.value("num_cpus", 0) != next.context.value("num_cpus", 0)) {
     can.no_times = "the machines differ";
+  } else if (const std::string unquiet = unquiet_reason(base.context, next.context);
+             !unquiet.empty()) {
+    can.no_times = unquiet;
+    can.unquiet = true;
   }
+  can.noise = std::max(pair_noise(base.context), pair_noise(next.context));
   return can;
 }
 
@@ -212,7 +248,7 @@ PointChange compare_point(const ComparedPoint& base, const ComparedPoint& next, 
   } else {
     if (can.counters()) note_counters(base, next, gate, result);
     note_errors(base, next, gate, result);
-    if (can.times()) note_times(base, next, gate, result);
+    if (can.times()) note_times(base, next, gate, can.noise, result);
   }
   return result;
 }
@@ -228,8 +264,8 @@ bool Comparison::any(bool (*is)(Change)) const {
 }
 
 bool Comparison::undecided() const {
-  return std::any_of(points.begin(), points.end(),
-                     [](const PointChange& point) { return point.undecided; });
+  return unquiet || std::any_of(points.begin(), points.end(),
+                                [](const PointChange& point) { return point.undecided; });
 }
 
 Comparison compare(const ComparedResult& base, const ComparedResult& next, const Gate& gate) {
@@ -240,6 +276,7 @@ Comparison compare(const ComparedResult& base, const ComparedResult& next, const
   Comparison comparison;
   if (!can.counters()) comparison.notes.push_back("counters not compared: " + can.no_counters);
   if (!can.times()) comparison.notes.push_back("times not compared: " + can.no_times);
+  comparison.unquiet = can.unquiet;
   if (!next.complete) comparison.notes.push_back("'" + next.path + "' is of an interrupted run");
   auto left = by_key(next);
   const Tried tried_before(base), tried(next);

@@ -43,12 +43,15 @@ struct TimeChange {
 };
 
 // Samples of the same unit. Faster and slower are judged alike, from the faster side.
+// noise: |log(ratio of medians)| up to which a difference is none.
 TimeChange compare_times(const std::vector<double>& base, const std::vector<double>& next,
-                         const Gate& gate);
+                         const Gate& gate, double noise = 0);
 
 // What of two results can be compared at all.
 struct Comparability {
   std::string no_counters, no_times;  // why not; "" if they can
+  bool unquiet = false;  // no_times because the machine was not quiet or not the same: undecided
+  double noise = 0;      // of A/A pairs: |log(ratio)|s of times below it are none
   bool counters() const { return no_counters.empty(); }
   bool times() const { return no_times.empty(); }
 };
@@ -62,10 +65,11 @@ PointChange compare_point(const ComparedPoint& base, const ComparedPoint& next, 
 struct Comparison {
   std::vector<PointChange> points;  // of the base in its order, then new ones
   std::vector<std::string> notes;   // what was not compared, and why
+  bool unquiet = false;             // times were there and could not be compared
 
   std::size_t count(Change change) const;
   bool any(bool (*is)(Change)) const;
-  bool undecided() const;  // of a best point
+  bool undecided() const;  // of a best point, or of all
 };
 
 // Build, machine or scenes differ so much that no comparison would mean anything.

@@ -162,12 +162,15 @@ PointSpec spec_of(const json& object) {
   PointSpec spec;
   read_fields(object, spec_fields, spec);
   read_fields(object, size_fields, spec);
+  if (!spec.scene_parameters.contains("duration"))
+    throw json::other_error::create(503, "a point without duration", nullptr);
   return named(spec);
 }
 
 PointResult point_of(const json& object) {
   PointResult point;
   point.spec = spec_of(object);
+  if (!(point.spec.step > 0)) throw json::other_error::create(504, "a point without step", nullptr);
   point.work = work_of(object.at("work"));
   point.steps_planned =
       static_cast<int>(std::lround(object.at("duration").get<double>() / point.spec.step));

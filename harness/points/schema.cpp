@@ -72,6 +72,12 @@ ordered_json point_schema() {
       false);
   add_fields(point, spec_fields);
   point["properties"]["sweep"] = {{"enum", sweep_kinds()}};
+  const auto values_of = [&point](const char* name, ordered_json type) {
+    point["properties"][name]["additionalProperties"] = {{"type", std::move(type)}};
+  };
+  values_of("scene_parameters", "number");
+  point["properties"]["scene_parameters"]["required"] = {"duration"};
+  values_of("settings", {"number", "string"});
   add_fields(point, size_fields);
   add(point, "duration", {{"type", "number"}, {"exclusiveMinimum", 0}, {"description", "s"}},
       false);
@@ -81,6 +87,7 @@ ordered_json point_schema() {
         "the solver's settings as given, the stiffness that was found (N), the linear solver in "
         "use"}},
       false);
+  values_of("options", {"number", "string"});
   add_fields(point, result_fields);
   add(point, "seconds_per_simulated_second", reference_to("seconds"), false);
   add(point, "filter_seconds_per_simulated_second", reference_to("seconds"), true);

@@ -73,11 +73,11 @@ void read_result(const Source& good, const std::string& text) {
   const json result = harness::parse_result(text, "spoilt");
   (void)harness::judge_claims({result});
   std::ostringstream page;
-  print_results_page(page, {{"spoilt", result}}, {});
+  harness::print_results_page(page, {{"spoilt", result}}, {});
   if (result.at("schema") != "inextensible-bench/1") return;
-  (void)merge({{"spoilt", result}}, {.partial = true});
+  (void)harness::merge({{"spoilt", result}}, {.partial = true});
   harness::Memory().learn(result);
-  (void)baseline_document({result});
+  (void)harness::baseline_document({result});
   const harness::ComparedResult base = harness::read_compared({written(good.text)}),
                                 next = harness::read_compared({written(text)});
   try {
@@ -114,7 +114,7 @@ void read_journal(const Source& /*good*/, const std::string& text) {
     harness::Journal journal(out);
     if (journal.header().is_object()) {
       (void)journal.header().at("identity").dump();
-      (void)difference(journal.header().at("identity"), journal.header().at("identity"));
+      (void)harness::difference(journal.header().at("identity"), journal.header().at("identity"));
     }
     for (const auto& [key, known] : journal.memory().points) (void)to_json(known.point).dump();
   }

@@ -218,7 +218,7 @@ done
 
 # ---- Words and options for people ----
 "$BENCH_BINARY" sweep strain "${tiny[@]:2}" --out worded.json >/dev/null 2>&1 || fail "bench sweep strain: exit $?"
-[[ $("$BENCH_BINARY" help merge) == $("$BENCH_BINARY" merge --help) ]] || fail "bench help merge"
+[[ $("$BENCH_BINARY" help merge) == "$("$BENCH_BINARY" merge --help)" ]] || fail "bench help merge"
 "$BENCH_BINARY" --help | grep -q "^Usage: bench" || fail "the usage does not begin with bench"
 "$BENCH_BINARY" -V | grep -qE '^bench [0-9.]+.*(Release|Debug) by ' || fail "-V: $("$BENCH_BINARY" -V)"
 "$BENCH_BINARY" show worded.json | grep -q 'fast_projection' || fail "bench show"

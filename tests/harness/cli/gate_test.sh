@@ -99,13 +99,20 @@ exits 4 'SLOWER' compare baseline.json faulty.json
 
 # A result whose every time is tripled does not pass: with enough runs it is slower, with one each nobody can say, which has an
 # exit code of its own.
-timed='[t.update(samples=[f(x, i) for i in range(n) for x in t["samples"][:1]]) for p in d["points"] for t in [p["seconds_per_simulated_second"]] if t]'
+timed='[t.update(samples=[f(x, i) for i in range(n) for x in t["samples"][:1]]) for p in d["points"] for t in [p["seconds_per_simulated_second"]] if t]; d["context"]["sentinel"] = {"noisy": False}'
 edit base.json slow1.json "n = 1; f = lambda x, i: 3 * x; $timed"
-exits 6 'too few runs' compare base.json slow1.json
+edit base.json one.json "n = 1; f = lambda x, i: x; $timed"
+exits 6 'too few runs' compare one.json slow1.json
 edit base.json five.json "n = 5; f = lambda x, i: x * (1 + 0.001 * i); $timed"
 edit base.json slow5.json "n = 5; f = lambda x, i: 3 * x * (1 + 0.001 * i); $timed"
 exits 3 'SLOWER' compare five.json slow5.json
 exits 0 'FASTER' compare slow5.json five.json
+# On a machine that was busy, or not as fast in both, nothing is said of times, and that is no pass.
+edit slow5.json busy.json 'd["context"]["sentinel"] = {"noisy": True}'
+exits 6 'too unquiet' compare five.json busy.json
+edit five.json fast_machine.json 'd["context"]["sentinel"] = {"noisy": False, "seconds": [1e-3, 1.01e-3]}'
+edit slow5.json slow_machine.json 'd["context"]["sentinel"] = {"noisy": False, "seconds": [2e-3, 2.01e-3]}'
+exits 6 'was not as fast in both' compare fast_machine.json slow_machine.json
 
 # Not comparable: another build, other parameters, nothing in common. The way out is printed.
 edit again.json other.json 'd["context"]["counters_fingerprint"] = "another"'

@@ -41,7 +41,7 @@ SweepRunners fake(double best, double largest, std::vector<double>* steps) {
       return point;
     }
     point.status = PointStatus::ok;
-    point.samples = {1 + std::pow(std::log2(spec.step / best), 2)};
+    point.samples = {0.1 + 0.1 * std::pow(std::log2(spec.step / best), 2)};
     return point;
   };
   runners.repeat = [](PointResult& point, const RunLimits&) {
@@ -148,12 +148,12 @@ TEST(StepSearch, TheBestStepIsChosenByTheMediansOfAllRunsOfThoseThatAreClose) {
   runners.run = [&, run = runners.run](const PointSpec& spec, const RunLimits& limits,
                                        std::optional<double> guess) {
     PointResult point = run(spec, limits, guess);
-    if (at(spec, 400)) point.samples = {1.15};
-    if (at(spec, 100)) point.samples = {1.3};  // too far to be looked at again
+    if (at(spec, 400)) point.samples = {0.115};
+    if (at(spec, 100)) point.samples = {0.13};  // too far to be looked at again
     return point;
   };
   runners.repeat = [&](PointResult& point, const RunLimits&) {
-    point.samples.push_back(at(point.spec, 400) ? 0.9 : at(point.spec, 200) ? 1.1 : 0.1);
+    point.samples.push_back(at(point.spec, 400) ? 0.09 : at(point.spec, 200) ? 0.11 : 0.01);
   };
   const auto outcome = run_sweep(suite, plan(suite, {}), {}, runners);
   for (const PointResult& point : outcome.points) {
