@@ -91,6 +91,11 @@ Role Cast::of(const std::string& contestant) const {
              : Role{.name = contestant, .family = contestant, .solver = contestant};
 }
 
+std::string Cast::at_any_settings(const std::string& contestant) const {
+  const Role role = of(contestant);
+  return role.hollow ? role.solver : contestant;
+}
+
 void Cast::add(const Cast& other) { known_.insert(other.known_.begin(), other.known_.end()); }
 
 double pair_noise_of(const json& document) {
@@ -165,7 +170,8 @@ void keep_faster(Curve& curve, double x, const Point& point) {
 Curve Points::best_at_errors(const std::string& scene, const std::string& contestant) const {
   Curve curve;
   for (const Point& p : where([&](const Point& q) {
-         return of(q, scene, "step") && q.contestant() == contestant && q.ok() && q.timed();
+         return of(q, scene, "step") && cast_.at_any_settings(q.contestant()) == contestant &&
+                q.ok() && q.timed();
        })) {
     for (const double level : error_levels) {
       if (p.within_error(level)) keep_faster(curve, level, p);
@@ -178,8 +184,8 @@ Curve Points::best_at_error(const std::string& scene, const std::string& contest
                             double level) const {
   Curve curve;
   for (const Point& p : where([&](const Point& q) {
-         return of(q, scene, "resolution") && q.contestant() == contestant && q.ok() && q.timed() &&
-                q.within_error(level);
+         return of(q, scene, "resolution") && cast_.at_any_settings(q.contestant()) == contestant &&
+                q.ok() && q.timed() && q.within_error(level);
        }))
     keep_faster(curve, p.number("vertices"), p);
   return curve;

@@ -87,6 +87,9 @@ class Cast {
   Cast() = default;
   explicit Cast(const nlohmann::json& document);
   Role of(const std::string& contestant) const;
+  // Whose row a contestant's points stand in where any settings may be chosen: a hollow one's in
+  // its solver's.
+  std::string at_any_settings(const std::string& contestant) const;
   void add(const Cast& other);  // what is known already stays
 
  private:
@@ -118,8 +121,8 @@ class Points {
   // Best points of one contestant over the axis of a sweep ("strain" or "resolution").
   Curve best(const std::string& scene, const std::string& sweep,
              const std::string& contestant) const;
-  // Over error levels: the fastest point within each, at any step and limit, of the largest size in
-  // step sweeps.
+  // Over error levels: the fastest point within each, at any step and limit, with tuned or untuned
+  // settings (they are tuned for strain, not for this), of the largest size in step sweeps.
   Curve best_at_errors(const std::string& scene, const std::string& contestant) const;
   // Over vertices: the fastest point of the resolution sweep's within one level.
   Curve best_at_error(const std::string& scene, const std::string& contestant, double level) const;

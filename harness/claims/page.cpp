@@ -73,8 +73,8 @@ std::vector<ScenePoints> scenes_of(const json& document, const std::string& swee
   return list;
 }
 
-void PlaceTable::add(double place, const Point& point) {
-  const std::string name = point.contestant();
+void PlaceTable::add(double place, const Point& point, const std::string& row) {
+  const std::string name = row.empty() ? point.contestant() : row;
   if (!point.timed() || std::none_of(contestants_.begin(), contestants_.end(),
                                      [&](const Role& role) { return role.name == name; }))
     return;

@@ -40,8 +40,8 @@ class PlaceTable {
  public:
   explicit PlaceTable(std::vector<Role> contestants) : contestants_(std::move(contestants)) {}
 
-  // Of several points the fastest one stays.
-  void add(double place, const Point& point);
+  // Of several points the fastest one stays. `row`: whose it is, if not the point's contestant's.
+  void add(double place, const Point& point, const std::string& row = {});
   bool empty() const { return places_.empty(); }
   const std::vector<double>& places() const { return places_; }
   const std::vector<Role>& contestants() const { return contestants_; }

@@ -35,7 +35,7 @@ def draw(data: RunsData, document: Json, legend: Legend) -> Figure:
     styles = styles_of(data, legend)
     rows = _missed_targets(data, styles)
     words = [scene_sentence(data.scene, f"{data.vertices:,.0f} vertices", data.points) + validity(data),
-             "Every run that kept its strain limit, at any step and limit, is a dot. A curve joins the runs of a solver that "
+             "Every run that kept its strain limit, at any step and limit, with tuned or untuned settings, is a dot. A curve joins the runs of a solver that "
              "none of its others beats in both time and error; the yellow band is the front of all solvers. Hollow: error "
              "below three times the reference's own uncertainty.",
              _key_of(rows, legend), timing(document), origin_sentence(document)]

@@ -49,6 +49,10 @@ class Legend:
         """Hollow ones compete, but beside the ranking."""
         return self.competes(solver) and not (solver in self.solvers and self.solvers[solver].hollow)
 
+    def at_any_settings(self, solver: str) -> str:
+        """Whose curve its runs belong to where settings are free: of a hollow one, its solver's."""
+        return self.solvers[solver].solver if solver in self.solvers and self.solvers[solver].hollow else solver
+
     def label(self, solver: str) -> str:
         return self.solvers[solver].label if solver in self.solvers else clean(solver.replace("_", " "))
 

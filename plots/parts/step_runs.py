@@ -47,11 +47,11 @@ class RunsData:
 
 
 def step_sweeps_in(document: Json, legend: Legend) -> list[RunsData]:
-    """One entry per scene and size that has a step sweep, of the solvers that are ranked: the others have no error to show,
-    and hollow marks mean something else here."""
+    """One entry per scene and size that has a step sweep, of the solvers that are ranked: the others have no error to show.
+    Runs with untuned settings count as the solver's own, because settings are tuned for strain, not for error."""
     groups: dict[tuple[str, int], list[Json]] = {}
     for point in points_of(document):
-        if point["sweep"] == "step" and legend.ranked(contestant_of(point)):
+        if point["sweep"] == "step" and legend.ranked(legend.at_any_settings(contestant_of(point))):
             groups.setdefault((point["scene"], point["vertices"]), []).append(point)
     entries = []
     for scene, vertices in sorted(groups):
@@ -66,7 +66,7 @@ def step_sweeps_in(document: Json, legend: Legend) -> list[RunsData]:
 
 
 def _add(data: RunsData, point: Json, legend: Legend) -> None:
-    solver, seconds = contestant_of(point), median_of(point)
+    solver, seconds = legend.at_any_settings(contestant_of(point)), median_of(point)
     step, limit = float(point["step"]), float(point["strain_limit"])
     runs = data.runs.setdefault(solver, [])
     error = object_in(point, "error")

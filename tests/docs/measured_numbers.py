@@ -62,7 +62,11 @@ def within_error(point: dict, level: float) -> bool:
 
 def point_of(file: str, quantity: str, scene: str, place: float, contestant: str) -> dict:
     """The point that is meant; raises LookupError where the file has none."""
-    points = [p for p in points_of(file) if p["scene"] == scene and p.get("contestant", p["solver"]) == contestant
+    names = {contestant}
+    if quantity == "error":  # with tuned or untuned settings
+        names |= {c["name"] for c in document(file).get("legend", {}).get("solvers", [])
+                  if c.get("hollow") and c.get("solver") == contestant}
+    points = [p for p in points_of(file) if p["scene"] == scene and p.get("contestant", p["solver"]) in names
               and p["status"] == "ok" and p["seconds_per_simulated_second"]]
     if quantity in ("error", "delivered"):
         fits = {"error": lambda p: p["sweep"] == "step" and within_error(p, place),
