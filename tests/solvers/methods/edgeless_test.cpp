@@ -39,6 +39,7 @@ TEST(WithoutEdges, EverySolverWithEveryLinearSolverLetsVerticesFall) {
   for (const Backend& backend : backends()) {
     for (const Settings& settings : variants(backend)) {
       for (const Mesh& mesh : meshes) {
+        SCOPED_TRACE(std::string(backend.name) + " " + text_of(settings) + ", " + mesh.name);
         ProblemParts parts;
         parts.mass.assign(static_cast<std::size_t>(mesh.vertices), 0.5);
         parts.pinned = mesh.pinned;
