@@ -31,9 +31,7 @@ const json& error_of(const json& point, const std::string& name) {
 }
 
 json read_any(const std::string& path) {
-  json document;
-  const std::string text = read_file(path, "result file");
-  document = parse_document(text, path);
+  json document = parse_document(read_file(path, "result file"), path);
   if (document.is_object() && document.value("schema", json()) == baseline_schema) {
     check_schema(document, "baseline", path);
     return document;
@@ -42,7 +40,8 @@ json read_any(const std::string& path) {
     throw UsageError("'" + path +
                      "' is the result of a stability sweep, which cannot be compared: it has its "
                      "expected outcomes in the program");
-  return parse_result(text, path);
+  check_result(document, path);
+  return document;
 }
 
 // Whether the steps of this point's search were chosen by their times.

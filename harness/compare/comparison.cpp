@@ -8,7 +8,7 @@
 
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
-#include "harness/points/point.h"
+#include "harness/points/noise.h"
 
 namespace harness {
 namespace {
@@ -200,9 +200,9 @@ std::string unquiet_reason(const nlohmann::json& base, const nlohmann::json& nex
   return "the machine was not as fast in both, a fixed kernel takes " + per_cent(ratio);
 }
 
-double pair_noise(const nlohmann::json& context) {
-  const auto place = context.find("noise");
-  return place == context.end() ? 0 : place->value("q95", 0.0);
+double q95_of(const nlohmann::json& context) {
+  const auto pair = noise_of(context);
+  return pair ? pair->q95 : 0;
 }
 
 }  // namespace
@@ -230,7 +230,7 @@ Comparability comparability(const ComparedResult& base, const ComparedResult& ne
     can.no_times = unquiet;
     can.unquiet = true;
   }
-  can.noise = std::max(pair_noise(base.context), pair_noise(next.context));
+  can.noise = std::max(q95_of(base.context), q95_of(next.context));
   return can;
 }
 

@@ -5,6 +5,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/json_reader.h"
+#include "harness/base/pattern.h"
 #include "harness/points/point_json.h"
 
 namespace harness {
@@ -92,10 +93,7 @@ void check_settings(const inextensible::Settings& settings, const std::string& w
 }
 
 void check_plain_name(const std::string& name, const std::string& where) {
-  const auto fits = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
-  };
-  if (name.empty() || !std::all_of(name.begin(), name.end(), fits))
+  if (!has_form(name, "[a-z0-9_]+"))
     throw UsageError(where + " is " + value_text(name) +
                      ", must be made of a-z, 0-9 and _ (it becomes part of point ids)");
 }

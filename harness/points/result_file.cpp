@@ -76,6 +76,11 @@ json read_result(const std::string& path) {
 
 json parse_result(const std::string& text, const std::string& path) {
   json document = parse_document(text, path);
+  check_result(document, path);
+  return document;
+}
+
+void check_result(const json& document, const std::string& path) {
   const json schema = document.is_object() ? document.value("schema", json()) : json();
   if (schema == "inextensible-bench/1") {
     check_schema(document, "result", path);
@@ -86,7 +91,6 @@ json parse_result(const std::string& text, const std::string& path) {
                      "' is not a result file: its schema is neither \"inextensible-bench/1\" nor "
                      "\"inextensible-stability/1\"");
   }
-  return document;
 }
 
 }  // namespace harness

@@ -27,5 +27,7 @@ bool is_timed(const nlohmann::json& document);
 // naming the file, for anything else.
 nlohmann::json read_result(const std::string& path);
 nlohmann::json parse_result(const std::string& text, const std::string& path);
+// The same of what is parsed already.
+void check_result(const nlohmann::json& document, const std::string& path);
 
 }  // namespace harness

@@ -143,10 +143,12 @@ std::vector<std::string> generated_schemas() {
   return {"result", "baseline", "gate", "stability", "tuned"};
 }
 
-std::string schema_text(const std::string& name) {
+ordered_json schema_document(const std::string& name) {
   const std::string path = source_path("configs/" + name + ".schema.json");
-  return folded_text(with_tables(ordered_json::parse(read_file(path, "schema"))));
+  return with_tables(ordered_json::parse(read_file(path, "schema")));
 }
+
+std::string schema_text(const std::string& name) { return folded_text(schema_document(name)); }
 
 ordered_json legend(const Contestants& contestants) {
   ordered_json solvers = ordered_json::array(), statuses = ordered_json::array();

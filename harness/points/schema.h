@@ -14,6 +14,8 @@ namespace harness {
 // "work", "point", "legend".
 nlohmann::ordered_json with_tables(nlohmann::ordered_json schema);
 
+// configs/<name>.schema.json, with_tables.
+nlohmann::ordered_json schema_document(const std::string& name);
 // As it is to stand in configs/<name>.schema.json; "result", "baseline", "gate", "stability",
 // "tuned".
 std::string schema_text(const std::string& name);

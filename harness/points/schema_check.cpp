@@ -15,7 +15,7 @@ namespace harness {
 using nlohmann::json;
 
 void check_schema(const json& document, const std::string& schema, const std::string& path) {
-  const json rules = json::parse(schema_text(schema));
+  const json rules = schema_document(schema);
   const valijson::adapters::NlohmannJsonAdapter rules_adapter(rules), adapter(document);
   valijson::Schema parsed;
   valijson::SchemaParser().populateSchema(rules_adapter, parsed);

@@ -188,17 +188,15 @@ SettingFields<Icd::Settings> Icd::fields() {
 }
 
 Backend icd_row() {
-  return {
-      .name = "icd",
-      .summary = "implicit constraint direction: positions and multipliers together",
-      .knob = Knob::strain_limit,
-      .contestant = true,
-      .settings = setting_infos(Icd::fields()),
-      .make = make_filter_stepper<Icd>,
-      .direction = Direction::end,
-      .citation = "Goldenthal et al. 2007",
-      .label = "ICD (implicit constraint direction)",
-  };
+  return {.name = "icd",
+          .summary = "implicit constraint direction: positions and multipliers together",
+          .knob = Knob::strain_limit,
+          .contestant = true,
+          .settings = setting_infos(Icd::fields()),
+          .make = make_filter_stepper<Icd>,
+          .direction = Direction::end,
+          .citation = "Goldenthal et al. 2007",
+          .label = "ICD (implicit constraint direction)"};
 }
 
 }  // namespace inextensible

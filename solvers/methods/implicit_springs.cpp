@@ -216,21 +216,19 @@ SettingFields<ImplicitSprings::Settings> ImplicitSprings::fields() {
 }
 
 Backend implicit_springs_row() {
-  return {
-      .name = "implicit_springs",
-      .summary = "backward Euler on stiff springs, Newton with line search",
-      .knob = Knob::stiffness,
-      .contestant = true,
-      .settings = setting_infos(ImplicitSprings::fields()),
-      .make = [](std::shared_ptr<const Problem> problem,
-                 const BackendOptions& options) -> std::unique_ptr<Stepper> {
-        return std::make_unique<ImplicitSprings>(std::move(problem),
-                                                 settings_of<ImplicitSprings>(options));
-      },
-      .direction = Direction::springs,
-      .citation = "Baraff and Witkin 1998",
-      .label = "implicit springs",
-  };
+  return {.name = "implicit_springs",
+          .summary = "backward Euler on stiff springs, Newton with line search",
+          .knob = Knob::stiffness,
+          .contestant = true,
+          .settings = setting_infos(ImplicitSprings::fields()),
+          .make = [](std::shared_ptr<const Problem> problem,
+                     const BackendOptions& options) -> std::unique_ptr<Stepper> {
+            return std::make_unique<ImplicitSprings>(std::move(problem),
+                                                     settings_of<ImplicitSprings>(options));
+          },
+          .direction = Direction::springs,
+          .citation = "Baraff and Witkin 1998",
+          .label = "implicit springs"};
 }
 
 }  // namespace inextensible
