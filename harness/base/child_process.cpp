@@ -18,6 +18,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "harness/base/files.h"
+
 namespace harness {
 namespace {
 
@@ -63,14 +65,6 @@ void set_limit(int resource, double bytes) {
   setrlimit(resource, &limit);
 }
 
-void write_all(int pipe, const std::string& text) {
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t written = write(pipe, text.data() + done, text.size() - done);
-    if (written < 0 && errno != EINTR) return;  // the parent is gone
-    if (written > 0) done += written;
-  }
-}
-
 [[noreturn]] void be_child(const std::function<std::string(Heartbeat&)>& work, Heartbeat& heartbeat,
                            double memory, pid_t parent, int pipe) {
   setpgid(0, 0);  // so that what it starts can be found
@@ -86,8 +80,8 @@ void write_all(int pipe, const std::string& text) {
   } catch (const std::exception& error) {
     text = threw_mark + std::string(error.what());
   }
-  write_all(pipe, text);
-  _exit(0);  // no destructors: the parent's objects are not ours
+  write_whole(pipe, text);  // or the parent is gone
+  _exit(0);                 // no destructors: the parent's objects are not ours
 }
 
 bool has_ended(pid_t child) {
@@ -109,18 +103,20 @@ void attend(pid_t child, int pipe, Heartbeat& heartbeat, const ChildLimits& limi
   };
   std::array<char, 65536> buffer{};
   for (double last = now();;) {
+    // Asked first: what it wrote before it ended is in the pipe then, and poll sees it.
+    const bool ended = has_ended(child);
     pollfd ready{pipe, POLLIN, 0};
-    const bool is_ready = poll(&ready, 1, poll_interval) > 0;
+    const int count_ready = poll(&ready, 1, ended ? 0 : poll_interval);  // -1: a signal
     const double away = now() - last;
     last += away;
     if (away > stopped_for) heartbeat.begin = heartbeat.begin + away;
-    if (is_ready) {
+    if (count_ready > 0) {
       const ssize_t count = read(pipe, buffer.data(), buffer.size());
       if (count == 0) return;
       if (count > 0) outcome.text.append(buffer.data(), count);
       continue;
     }
-    if (has_ended(child)) return;
+    if (ended && count_ready == 0) return;
     if (terminated > 0) {
       if (now() > terminated + kill_after) kill(child, SIGKILL);
     } else if (limits.interrupted && limits.interrupted()) {

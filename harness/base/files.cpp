@@ -75,16 +75,6 @@ class Beside {
   bool kept_ = false;
 };
 
-bool write_whole(int file, const std::string& text) {
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t written = write(file, text.data() + done, text.size() - done);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
-    done += static_cast<std::size_t>(written);
-  }
-  return true;
-}
-
 void write_through(const std::string& path, const std::string& text) {
   const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
   if (file < 0) throw FileError(path, "write");
@@ -102,6 +92,16 @@ FileError::FileError(const std::string& path, const std::string& verb)
 
 FileError::FileError(const std::string& path, const std::string& verb, const std::string& reason)
     : std::runtime_error("cannot " + verb + " '" + path + "': " + reason) {}
+
+bool write_whole(int file, const std::string& text) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t written = write(file, text.data() + done, text.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    done += static_cast<std::size_t>(written);
+  }
+  return true;
+}
 
 std::string read_file(const std::string& path, const std::string& what) {
   std::ifstream file(path);

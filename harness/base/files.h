@@ -14,6 +14,9 @@ class FileError : public std::runtime_error {
   FileError(const std::string& path, const std::string& verb, const std::string& reason);
 };
 
+// All of the text to an open file, from where it stands. False if it cannot; the reason is errno's.
+bool write_whole(int file, const std::string& text);
+
 // Throws UsageError, with what the file is to the user, if it cannot be read.
 std::string read_file(const std::string& path, const std::string& what);
 

@@ -84,15 +84,8 @@ void LineJournal::append(const json& line) {
   if (fstat(file_, &status) != 0 || status.st_nlink == 0)
     throw FileError(path_, "go on writing", "it has been removed meanwhile");
   const std::string text = compact(line) + "\n";
-  std::size_t done = 0;
-  while (done < text.size()) {
-    const ssize_t written =
-        pwrite(file_, text.data() + done, text.size() - done, static_cast<off_t>(length_ + done));
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) break;
-    done += static_cast<std::size_t>(written);
-  }
-  if (done < text.size() || fdatasync(file_) != 0) {
+  if (lseek(file_, static_cast<off_t>(length_), SEEK_SET) < 0 || !write_whole(file_, text) ||
+      fdatasync(file_) != 0) {
     const std::string reason = std::strerror(errno);
     if (ftruncate(file_, static_cast<off_t>(length_)) != 0) {
     }  // a torn last line is understood, too

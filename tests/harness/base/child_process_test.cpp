@@ -98,6 +98,31 @@ TEST(ChildProcess, TimeInWhichTheParentWasStoppedIsNotTheChilds) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "it counted as timed out";
 }
 
+// A signal ends the parent's wait for an answer that is there, of a child that has ended.
+TEST(ChildProcess, AnAnswerIsNotLostToASignal) {
+  const pid_t parent = fork();
+  if (parent == 0) {
+    struct sigaction action {};
+    action.sa_handler = [](int) {};
+    sigaction(SIGUSR1, &action, nullptr);
+    const ChildOutcome outcome = run_in_child(
+        [](Heartbeat&) {
+          sleep_for(200);
+          return std::string("done");
+        },
+        {.timeout = 10});
+    _exit(outcome.end == End::returned && outcome.text == "done" ? 0 : 1);
+  }
+  sleep_for(100);
+  ASSERT_EQ(kill(parent, SIGSTOP), 0);
+  sleep_for(300);
+  ASSERT_EQ(kill(parent, SIGUSR1), 0);
+  ASSERT_EQ(kill(parent, SIGCONT), 0);
+  int status = 0;
+  ASSERT_EQ(waitpid(parent, &status, 0), parent);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
 TEST(ChildProcess, OneThatHangsIsEndedWithWhatItStarted) {
   const SharedPid started;
   const ChildOutcome outcome = run_in_child(
