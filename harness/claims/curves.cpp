@@ -93,7 +93,7 @@ Role Cast::of(const std::string& contestant) const {
 
 std::string Cast::at_any_settings(const std::string& contestant) const {
   const Role role = of(contestant);
-  return role.hollow ? role.solver : contestant;
+  return role.hollow && !role.again ? role.solver : contestant;
 }
 
 void Cast::add(const Cast& other) { known_.insert(other.known_.begin(), other.known_.end()); }
@@ -146,18 +146,6 @@ const json* Points::cell(const std::string& hard_case, const std::string& solver
   return place == matrix_.end() ? nullptr : *place;
 }
 
-Curve Points::best(const std::string& scene, const std::string& sweep,
-                   const std::string& contestant) const {
-  const char* axis = sweep == "strain" ? "strain_limit" : "vertices";
-  Curve curve;
-  for (const Point& p : where([&](const Point& q) {
-         return of(q, scene, sweep) && q.contestant() == contestant && q.flag("best") && q.ok() &&
-                q.timed();
-       }))
-    curve.try_emplace(p.number(axis), p);
-  return curve;
-}
-
 namespace {
 
 void keep_faster(Curve& curve, double x, const Point& point) {
@@ -166,6 +154,18 @@ void keep_faster(Curve& curve, double x, const Point& point) {
 }
 
 }  // namespace
+
+Curve Points::best(const std::string& scene, const std::string& sweep,
+                   const std::string& contestant) const {
+  const char* axis = sweep == "strain" ? "strain_limit" : "vertices";
+  Curve curve;
+  for (const Point& p : where([&](const Point& q) {
+         return of(q, scene, sweep) && cast_.at_any_settings(q.contestant()) == contestant &&
+                q.flag("best") && q.ok() && q.timed();
+       }))
+    keep_faster(curve, p.number(axis), p);
+  return curve;
+}
 
 Curve Points::best_at_errors(const std::string& scene, const std::string& contestant) const {
   Curve curve;

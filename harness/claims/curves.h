@@ -88,7 +88,7 @@ class Cast {
   explicit Cast(const nlohmann::json& document);
   Role of(const std::string& contestant) const;
   // Whose row a contestant's points stand in where any settings may be chosen: a hollow one's in
-  // its solver's.
+  // its solver's, but for the second of an A/A pair, which would give the first a second chance.
   std::string at_any_settings(const std::string& contestant) const;
   void add(const Cast& other);  // what is known already stays
 
@@ -118,11 +118,13 @@ class Points {
   const std::vector<const nlohmann::json*>& freedom() const { return freedom_; }
   const std::vector<const nlohmann::json*>& same_frame() const { return same_frame_; }
 
-  // Best points of one contestant over the axis of a sweep ("strain" or "resolution").
+  // Over the axis of a sweep ("strain" or "resolution"): one contestant's best points, with tuned
+  // or untuned settings. One tuned setting serves all places of a scene; where the method's own
+  // default is faster, that counts, so that tuning harms nobody.
   Curve best(const std::string& scene, const std::string& sweep,
              const std::string& contestant) const;
   // Over error levels: the fastest point within each, at any step and limit, with tuned or untuned
-  // settings (they are tuned for strain, not for this), of the largest size in step sweeps.
+  // settings, of the largest size in step sweeps.
   Curve best_at_errors(const std::string& scene, const std::string& contestant) const;
   // Over vertices: the fastest point of the resolution sweep's within one level.
   Curve best_at_error(const std::string& scene, const std::string& contestant, double level) const;

@@ -52,6 +52,12 @@ std::vector<Role> ScenePoints::contestants() const {
   return tuned;
 }
 
+std::vector<Role> ScenePoints::ranked() const {
+  std::vector<Role> list = contestants();
+  std::erase_if(list, [](const Role& role) { return role.hollow; });
+  return list;
+}
+
 std::vector<ScenePoints> scenes_of(const json& document, const std::string& sweep,
                                    bool sizes_apart) {
   std::map<std::string, ScenePoints> scenes;

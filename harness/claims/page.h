@@ -31,6 +31,8 @@ struct ScenePoints {
   bool has_collider() const;
   // In the files' order, without the second of an A/A pair; hollow ones after all others.
   std::vector<Role> contestants() const;
+  std::vector<Role> ranked() const;  // those that are not hollow
+  bool untuned(const Point& p) const { return cast.of(p.contestant()).hollow; }
 };
 std::vector<ScenePoints> scenes_of(const nlohmann::json& document, const std::string& sweep,
                                    bool sizes_apart);
@@ -66,9 +68,10 @@ class PlaceTable {
 // ---- families of tables ----
 // sweep: "strain" or "resolution".
 void print_best_points(std::ostream& out, const NamedResult& result, const std::string& sweep);
-// Beside a ranking of best points: strains, time of the filter, energy, failures, untuned rivals.
+// Beside a ranking of best points: strains, time of the filter, energy, failures, what tuning did.
+// `own`: of each contestant its own best points, where `best` has those of any of its settings.
 void print_beside(std::ostream& out, const ScenePoints& scene, const PlaceTable& best,
-                  const std::function<std::string(double)>& place);
+                  const PlaceTable& own, const std::function<std::string(double)>& place);
 void print_delivered(std::ostream& out, const NamedResult& result);
 void print_time_to_error(std::ostream& out, const NamedResult& result);
 void print_growth(std::ostream& out, const NamedResult& result);

@@ -115,21 +115,22 @@ void print_failures(std::ostream& out, const ScenePoints& scene, const PlaceTabl
   out << '\n';
 }
 
-void print_untuned(std::ostream& out, const PlaceTable& best, const Head& place) {
+void print_untuned(std::ostream& out, const PlaceTable& own, const Head& place) {
   std::vector<std::vector<std::string>> rows;
-  for (const Role& role : best.contestants()) {
+  for (const Role& role : own.contestants()) {
     if (!role.hollow) continue;
     std::vector<std::string> row{quoted(role.name), quoted(role.solver)};
-    for (const double at : best.places()) {
-      const Point *untuned = best.find(role.name, at), *tuned = best.find(role.solver, at);
+    for (const double at : own.places()) {
+      const Point *untuned = own.find(role.name, at), *tuned = own.find(role.solver, at);
       row.push_back(untuned && tuned ? text(ratio(*untuned, *tuned)) : "-");
     }
     rows.push_back(row);
   }
   if (rows.empty()) return;
-  out << "Untuned contestants, which are not ranked, over the time of the tuned ones:\n\n";
+  out << "What tuning did: untuned contestants, over the time of the tuned ones (below 1: the "
+         "tuned settings, one for all limits, are the slower ones here):\n\n";
   std::vector<std::string> head{"untuned", "tuned"};
-  for (const double at : best.places()) head.push_back(place(at) + ", ratio");
+  for (const double at : own.places()) head.push_back(place(at) + ", ratio");
   print_head(out, head);
   for (const auto& row : rows) print_row(out, row);
   out << '\n';
@@ -138,12 +139,12 @@ void print_untuned(std::ostream& out, const PlaceTable& best, const Head& place)
 }  // namespace
 
 void print_beside(std::ostream& out, const ScenePoints& scene, const PlaceTable& best,
-                  const Head& place) {
+                  const PlaceTable& own, const Head& place) {
   print_strains(out, scene, best, place);
   print_filter_time(out, scene, best, place);
   print_energy(out, best, place);
-  print_failures(out, scene, best);
-  print_untuned(out, best, place);
+  print_failures(out, scene, own);
+  print_untuned(out, own, place);
 }
 
 }  // namespace harness::claims

@@ -17,24 +17,31 @@ std::string step_words(const Point& p) {
 void print_best_points(std::ostream& out, const NamedResult& result, const std::string& sweep) {
   const bool strain = sweep == "strain";
   for (const ScenePoints& scene : scenes_of(result.document, sweep, strain)) {
-    PlaceTable best(scene.contestants());
+    PlaceTable best(scene.ranked()), own(scene.contestants());
     for (const Point& p : scene.points) {
-      if (p.flag("best") && p.ok()) best.add(p.number(strain ? "strain_limit" : "vertices"), p);
+      if (!p.flag("best") || !p.ok()) continue;
+      const double at = p.number(strain ? "strain_limit" : "vertices");
+      own.add(at, p);
+      best.add(at, p, scene.cast.at_any_settings(p.contestant()));
     }
     if (best.empty()) continue;
+    if (strain) own.loose_to_tight();
     if (strain) best.loose_to_tight();
     const auto place = [&](double at) {
       return strain ? percent(at) : number_text(at, 7) + " vertices";
     };
     const std::string reference = fast_projection.name;
     out << "### " << scene.title << " (`" << result.name << "`)\n\n"
-        << "Seconds of computation for one simulated second, each solver at its best step:\n\n";
+        << "Seconds of computation for one simulated second, each solver at its best step, with "
+           "its "
+           "tuned settings or, where that is faster, `u`, its untuned ones:\n\n";
     best.print(
         out, [&](double at) { return place(at) + ", s"; },
         [&](const Point& p, double at) {
           const std::string seconds = plain(p.seconds(), 3);
           const Point* first = best.clear_best(at);
-          return first && first->contestant() == p.contestant() ? bold(seconds) : seconds;
+          const bool clear = first && first->contestant() == p.contestant();
+          return (clear ? bold(seconds) : seconds) + (scene.untuned(p) ? " `u`" : "");
         });
     out << "The same, over the time of " << fast_projection.words << " (above 1: slower):\n\n";
     best.print(
@@ -42,13 +49,13 @@ void print_best_points(std::ostream& out, const NamedResult& result, const std::
         [&](const Point& p, double at) {
           const Point* fast = best.find(reference, at);
           if (!fast) return std::string("-");
-          return p.contestant() == reference ? std::string("1") : text(ratio(p, *fast));
+          return p.contestant() == fast->contestant() ? std::string("1") : text(ratio(p, *fast));
         });
     out << "The steps these are:\n\n";
     best.print(
         out, [&](double at) { return place(at) + ", step in s"; },
         [](const Point& p, double) { return step_words(p); });
-    print_beside(out, scene, best, place);
+    print_beside(out, scene, best, own, place);
   }
 }
 

@@ -17,14 +17,14 @@ constexpr std::array delivered_levels{1.0,  0.5,  0.3,   0.2,   0.1,   0.05,
 void print_delivered(std::ostream& out, const NamedResult& result) {
   for (const ScenePoints& scene : scenes_of(result.document, "strain", true)) {
     if (!scene.has_collider()) continue;
-    PlaceTable fastest(scene.contestants());
+    PlaceTable fastest(scene.ranked());
     double least = 1;
     for (const Point& p : scene.points) {
       const double strain = p.delivered_strain();
       if (!p.ok() || !p.timed()) continue;
       least = std::min(least, strain);
       for (const double level : delivered_levels) {
-        if (strain <= level) fastest.add(level, p);
+        if (strain <= level) fastest.add(level, p, scene.cast.at_any_settings(p.contestant()));
       }
     }
     if (fastest.empty()) continue;
@@ -33,7 +33,7 @@ void print_delivered(std::ostream& out, const NamedResult& result) {
     out << "### " << scene.title << " (`" << result.name << "`)\n\n"
         << "Least time for one simulated second whose largest strain after the collision filter "
            "is at most that of the column, at any permitted strain and step that was tried, and "
-           "that step. The least such strain of any run: "
+           "that step, with tuned settings or `u`, untuned ones. The least such strain of any run: "
         << percent(least) << ".\n\n";
     fastest.print(
         out, [](double level) { return percent(level) + ": time in s, step in s"; },
@@ -41,7 +41,8 @@ void print_delivered(std::ostream& out, const NamedResult& result) {
           const std::string seconds = plain(p.seconds(), 3);
           const Point* first = fastest.clear_best(level);
           const bool clear = first && first->contestant() == p.contestant();
-          return (clear ? bold(seconds) : seconds) + ", " + step_text(p.number("step"));
+          return (clear ? bold(seconds) : seconds) + ", " + step_text(p.number("step")) +
+                 (scene.untuned(p) ? " `u`" : "");
         });
   }
 }

@@ -45,9 +45,7 @@ double sure_until(const std::vector<Point>& points, double level) {
 
 void print_time_to_error(std::ostream& out, const NamedResult& result) {
   for (const ScenePoints& scene : scenes_of(result.document, "step", true)) {
-    std::vector<Role> rows = scene.contestants();
-    std::erase_if(rows, [](const Role& role) { return role.hollow; });
-    PlaceTable fastest(rows);
+    PlaceTable fastest(scene.ranked());
     for (const Point& p : scene.points) {
       for (const double level : error_levels) {
         if (p.ok() && p.within_error(level))
@@ -59,8 +57,7 @@ void print_time_to_error(std::ostream& out, const NamedResult& result) {
     fastest.loose_to_tight();
     out << "### " << scene.title << " (`" << result.name << "`)\n\n"
         << "Least time for one simulated second to stay within an error, and the step that does "
-           "it, at any strain limit, with a solver's tuned settings or `u`, its untuned ones: "
-           "settings are tuned for strain. "
+           "it, at any strain limit, with a solver's tuned settings or `u`, its untuned ones. "
         << errors_are(scene.points) << "\n\n";
     fastest.print(
         out,
@@ -74,9 +71,8 @@ void print_time_to_error(std::ostream& out, const NamedResult& result) {
           const std::string time = plain(1e3 * p.seconds(), 3);
           const Point* first = fastest.clear_best(level);
           const bool clear = first && first->contestant() == p.contestant();
-          const bool untuned = scene.cast.of(p.contestant()).hollow;
           return (clear ? bold(time) : time) + ", " + step_text(p.number("step")) +
-                 (untuned ? " `u`" : "");
+                 (scene.untuned(p) ? " `u`" : "");
         });
   }
 }

@@ -53,6 +53,18 @@ def test_contestants_are_named_not_solvers(results) -> None:
     assert errors_in(said("9.0", what="jacobi_untuned / fast")) == []
 
 
+def test_the_faster_of_tuned_and_untuned_settings_counts_but_not_the_second_of_a_pair(results, tmp_path: Path) -> None:
+    results(point("jacobi", 3.5), point("jacobi", 2.0, contestant="jacobi_untuned"), point("fast", 1.0),
+            point("fast", 0.5, contestant="fast_again"), noise=0.01)
+    file = tmp_path / FILE
+    document = json.loads(file.read_text())
+    document["legend"] = {"solvers": [{"name": "jacobi_untuned", "solver": "jacobi", "hollow": True},
+                                      {"name": "fast_again", "solver": "fast", "hollow": True}]}
+    document["context"]["noise"]["pair"] = ["fast", "fast_again"]
+    file.write_text(json.dumps(document))
+    assert errors_in(said("2.0")) == []
+
+
 def test_units_and_quantities(results) -> None:
     results(point("jacobi", 0.0035), point("jacobi", 0.5, sweep="step", best=False),
             point("jacobi", 0.25, best=False, max_strain_after_collision=0.05))
