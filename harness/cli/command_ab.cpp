@@ -92,6 +92,19 @@ void check_binary(const std::string& path) {
                         "commit before that");
 }
 
+std::string without_program(const std::string& said) {
+  return said.starts_with("bench: ") ? said.substr(7) : said;
+}
+
+// Plug-ins that cannot be loaded are told before anything is timed.
+void check_plugins(const AbCommand& options, Side side) {
+  std::vector<std::string> words = options.program(side);
+  if (words.size() == 1) return;
+  words.insert(words.end(), {"list", "solvers"});
+  const ProgramResult list = run_or_interrupt(words, "", point_timeout);
+  if (list.exit_code != success) throw UsageError(without_program(list.last_error_line()));
+}
+
 // What the old program finds best; the new one runs the same.
 json old_result(const AbCommand& options) {
   const TemporaryFolder folder;
@@ -109,8 +122,7 @@ json old_result(const AbCommand& options) {
   words.insert(words.end(), {"--reps", "1", "--no-plots"});
   const ProgramResult ran = run_or_interrupt(words, "", sweep_timeout);
   const std::string said = ran.last_error_line();
-  if (ran.exit_code == usage_error)
-    throw UsageError(said.starts_with("bench: ") ? said.substr(7) : said);
+  if (ran.exit_code == usage_error) throw UsageError(without_program(said));
   if (ran.exit_code != success)
     throw std::runtime_error("the sweep of '" + options.old_binary + "' did not end: " + said);
   return read_result(out);
@@ -196,6 +208,8 @@ int run_ab(const AbCommand& options) {
   try {
     check_binary(options.old_binary);
     check_binary(options.new_binary);
+    check_plugins(options, Side::old_one);
+    check_plugins(options, Side::new_one);
     const TimingLock lock(!options.no_wait);
     std::cerr << "looking for the best steps of " << options.old_binary << " ..." << std::endl;
     std::vector<PairedPoint> points = best_points(old_result(options), options.least_measured);

@@ -52,7 +52,8 @@ int emit(EmitCommand& given) {
     throw UsageError("--time, --partition and --account go with emit slurm");
   if (slurm && job.jobs > 0) throw UsageError("--jobs goes with emit parallel");
   if (given.sweep == "stability")
-    throw UsageError("--sweep stability has no shards; it takes two minutes");
+    throw UsageError(
+        "--sweep stability takes two minutes and has no job script; --shard cuts it by hand");
   if (!given.config.empty() && std::filesystem::exists(given.config) &&
       !std::filesystem::is_regular_file(given.config))
     throw UsageError("--config '" + given.config + "' will not be there when the shards are run");

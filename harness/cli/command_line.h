@@ -1,5 +1,5 @@
-// The words on the command line. CLI11 reads them; only command_line.cpp includes it, because every
-// file that does takes ten seconds to compile.
+// The words on the command line. CLI11 reads them; only command_line.cpp and command_line_pages.cpp
+// include it, because every file that does takes ten seconds to compile.
 #pragma once
 
 #include <cstdint>

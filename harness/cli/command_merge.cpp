@@ -8,7 +8,7 @@
 #include "harness/points/result_file.h"
 #include "harness/points/schema.h"
 #include "harness/run/merge.h"
-#include "harness/run/report.h"
+#include "harness/stability/merge_stability.h"
 
 namespace harness {
 
@@ -30,14 +30,17 @@ void add_merge_command(const Command& program) {
     std::vector<NamedResult> results;
     for (const std::string& file : given->files) {
       results.push_back({std::filesystem::path(file).filename().string(), read_result(file)});
-      if (given->files.size() > 1 && results.back().document.at("schema") != "inextensible-bench/1")
-        throw UsageError("'" + file + "' is of a stability sweep, which has no shards");
+      if (results.back().document.at("schema") != results.front().document.at("schema"))
+        throw UsageError("'" + given->files.front() + "' and '" + file +
+                         "' are of different kinds of sweeps");
     }
     check_writable(given->out);
     // One file is whole as it is; written again, it is laid out as files are written now.
-    nlohmann::json whole = results.size() == 1 && !is_shard(results.front().document)
-                               ? results.front().document
-                               : merge(results, given->options);
+    const nlohmann::json& first = results.front().document;
+    nlohmann::json whole = first;
+    if (results.size() > 1 || is_shard(first))
+      whole = first.contains("matrix") ? merge_stability(results, given->options)
+                                       : merge(results, given->options);
     if (!whole.contains("legend")) whole["legend"] = legend();
     write_atomically(given->out, result_text(whole));
     if (whole.contains("points"))

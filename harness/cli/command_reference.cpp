@@ -1,17 +1,37 @@
 // bench reference: the trajectories that errors are measured against.
+#include <iomanip>
 #include <iostream>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/paths.h"
+#include "harness/base/text.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/sweep_options.h"
 #include "harness/judge/reference_file.h"
 #include "harness/judge/reference_routes.h"
-#include "harness/run/report.h"
 
 namespace harness {
 namespace {
+
+// How good it is, and where the scene's last vertex is.
+void print_reference(std::ostream& out, const Reference& reference) {
+  out << reference.scene << ": " << reference.method << "\n  against " << reference.second_method
+      << "\n  observed order " << number_text(reference.observed_order, 3) << ", valid until "
+      << reference.valid_until << " s";
+  if (reference.energy_drift > 0)
+    out << ", energy drift " << number_text(reference.energy_drift, 2) << " of weight times size";
+  out << "\n  gap (RMS distance of both routes over the scene's size), end vertex:\n";
+  for (std::size_t i = 0; i < reference.times.size(); ++i) {
+    out << "  t = " << reference.times[i] << " s  " << number_text(reference.gap[i], 2);
+    if (i < reference.positions.size()) {
+      const auto end = reference.positions[i].col(reference.positions[i].cols() - 1);
+      out << "  (" << std::setprecision(12) << end.x() << ", " << end.y() << ", " << end.z() << ')'
+          << std::setprecision(6);
+    }
+    out << '\n';
+  }
+}
 
 // Computes the references of a profile's sweeps that are missing, or all of them.
 int make_references(const SweepOptions& options, bool again, double finest) {

@@ -3,22 +3,20 @@
 
 #include <filesystem>
 #include <iostream>
-#include <map>
-#include <optional>
 #include <sstream>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
-#include "harness/base/line_journal.h"
 #include "harness/base/paths.h"
+#include "harness/base/shard.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/sweep_command.h"
 #include "harness/points/context.h"
+#include "harness/points/identity.h"
 #include "harness/points/result_file.h"
-#include "harness/run/journal.h"
+#include "harness/stability/cell_journal.h"
 #include "harness/stability/stability.h"
-#include "harness/stability/trial_json.h"
 
 namespace harness {
 namespace {
@@ -51,59 +49,6 @@ void set_values(HardCaseValues& values, const std::string& given) {
 
 }  // namespace
 
-namespace {
-
-constexpr const char* journal_schema = "inextensible-stability-journal/1";
-
-// The journal of a sweep: a line for each cell that has been run.
-class CellJournal {
- public:
-  explicit CellJournal(const std::string& out) : lines_(out) {
-    lines_.read([this](const nlohmann::json& line, std::size_t number) {
-      if (number > 1) {
-        cells_[{line.at("case"), line.at("solver")}] = trial_result_of(line.at("result"));
-      } else if (line.at("schema") == journal_schema && line.at("identity").is_object()) {
-        identity_ = line.at("identity");
-      } else {
-        throw UsageError("it is not a journal of this program");
-      }
-    });
-  }
-
-  // Throws UsageError unless what it holds may be taken up, or dropped.
-  void begin(const SweepCommand& options, const nlohmann::json& mine) {
-    const std::string other = identity_.is_null() ? lines_.damage() : difference(identity_, mine);
-    const bool any = !cells_.empty() || !lines_.damage().empty();
-    if (any && !options.resume && !options.force)
-      throw UsageError("'" + lines_.path() + "' holds " + std::to_string(cells_.size()) +
-                       " cells of a run that did not finish: --resume goes on with it, --force "
-                       "starts anew");
-    if (any && options.resume && !options.force && (!other.empty() || !lines_.damage().empty()))
-      throw UsageError("'" + lines_.path() + "' is of another build or is damaged: " +
-                       (other.empty() ? lines_.damage() : other) +
-                       "; --resume --force goes on all the same, --force starts anew");
-    if (!options.resume) cells_.clear();
-    lines_.start({{"schema", journal_schema}, {"identity", mine}});
-    for (const auto& [key, result] : cells_) add(key.first, key.second, result);
-  }
-
-  std::optional<TrialResult> find(const std::string& hard_case, const std::string& solver) const {
-    const auto place = cells_.find({hard_case, solver});
-    return place == cells_.end() ? std::nullopt : std::optional(place->second);
-  }
-  void add(const std::string& hard_case, const std::string& solver, const TrialResult& result) {
-    lines_.append({{"case", hard_case}, {"solver", solver}, {"result", to_json(result)}});
-  }
-  void remove() { lines_.remove(); }
-
- private:
-  LineJournal lines_;
-  nlohmann::json identity_;
-  std::map<std::pair<std::string, std::string>, TrialResult> cells_;
-};
-
-}  // namespace
-
 int stability_command(const SweepCommand& options, const std::vector<std::string>& command) {
   check_profile(options.profile);
   StabilityFilters filters;
@@ -115,7 +60,8 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
   HardCaseValues values = hard_case_values(options.profile);
   for (const std::string& given : options.values) set_values(values, given);
   const auto cases = hard_cases(values);
-  const StabilityPlan plan = plan_stability(cases, filters);
+  StabilityPlan plan = plan_stability(cases, filters);
+  if (!options.shard.empty()) plan.keep(parse_shard(options.shard));
   if (options.dry_run) {
     std::cout << plan.cells() << " cells: " << plan.cases.size() << " hard cases by "
               << plan.solvers.size() << " solvers; " << plan.scenes.size()
@@ -125,17 +71,35 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
   }
   const std::string out = chosen_output(options, options.profile + "-stability");
   check_writable(out);
-  if (!options.force && !options.resume && std::filesystem::exists(out))
-    throw UsageError("'" + out +
-                     "' is there already: --force replaces it, another --out keeps both");
-  if (options.resume && std::filesystem::exists(out) &&
-      !std::filesystem::exists(out + ".journal")) {
-    std::cout << out << " is complete already\n";
-    return success;
-  }
-  const nlohmann::json context = machine_context();
+  nlohmann::json context = machine_context();
+  context["selection"] = {{"solver", options.solver},
+                          {"case", options.hard_case},
+                          {"values", values},
+                          {"seed", options.seed},
+                          {"shard", options.shard}};
+  const nlohmann::json mine = identity(context, {}, context["selection"]);
   CellJournal journal(out);
-  journal.begin(options, identity(context, nlohmann::json(values), {{"seed", options.seed}}));
+  check_unfinished(options, {journal.path(), journal.damage(), journal.cells(), "cells"});
+  nlohmann::json was = journal.identity();
+  if (options.resume && journal.cells() == 0 && std::filesystem::exists(out)) {
+    const nlohmann::json result = read_result(out);
+    if (!result.contains("matrix"))
+      throw UsageError("'" + out + "' is no result of a stability sweep: nothing to resume");
+    if (result.at("complete").get<bool>()) {
+      std::cout << out << " is complete already\n";
+      return success;
+    }
+    journal.learn(result);
+    const nlohmann::json& c = result.at("context");
+    was = identity(c, {}, c.value("selection", nlohmann::json::object()));
+  }
+  if (options.resume) {
+    check_same(options, journal.path(), was, mine);
+  } else {
+    check_unwritten(options, out);
+    journal.forget();
+  }
+  journal.start(mine);
   catch_interrupts();
   StabilityEvents events;
   events.interrupted = interrupted;

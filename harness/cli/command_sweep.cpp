@@ -15,6 +15,7 @@
 #include "harness/cli/sweep_command.h"
 #include "harness/judge/reference_file.h"
 #include "harness/points/context.h"
+#include "harness/points/identity.h"
 #include "harness/points/noise.h"
 #include "harness/points/result_file.h"
 #include "harness/run/estimate.h"
@@ -75,19 +76,12 @@ struct Past {
 
 Past look_back(const SweepCommand& options, const std::string& out, const Journal& journal) {
   const bool again = options.resume || options.rerun_failed;
-  if (!journal.damage().empty() && !options.force)
-    throw UsageError("'" + journal.path() + "' is damaged, " + journal.damage() +
-                     "; --resume --force goes on with the " + std::to_string(journal.points()) +
-                     " points that it still holds, --force starts anew");
+  check_unfinished(options, {journal.path(), journal.damage(), journal.points(), "points"});
   if (journal.points() > 0) {
     if (again && !journal.header().is_object()) return {journal.memory(), {}, {}, false, false};
     if (again)
       return {journal.memory(), journal.header().at("identity"), journal.header().at("context"),
               false, journal.damage().empty()};
-    if (!options.force)
-      throw UsageError("'" + journal.path() + "' holds " + std::to_string(journal.points()) +
-                       " points of a run that did not finish: --resume goes on with it, --force "
-                       "starts anew");
   } else if (again && std::filesystem::exists(out)) {
     const nlohmann::json result = read_result(out);
     if (result.at("schema") != "inextensible-bench/1")
@@ -99,20 +93,10 @@ Past look_back(const SweepCommand& options, const std::string& out, const Journa
                              past.context.value("selection", nlohmann::json::object()));
     past.finished = result.at("complete");
     return past;
-  } else if (!options.force && std::filesystem::exists(out)) {
-    throw UsageError("'" + out +
-                     "' is there already: --force replaces it, --resume completes it, and another "
-                     "--out keeps both");
+  } else {
+    check_unwritten(options, out);
   }
   return {};
-}
-
-void check_same(const Past& past, const nlohmann::json& mine, const std::string& out, bool force) {
-  if (past.identity.is_null() || force) return;
-  const std::string what = difference(past.identity, mine);
-  if (!what.empty())
-    throw UsageError("'" + out + "' is of another build or suite: " + what +
-                     "; --resume --force goes on all the same");
 }
 
 // The journal then holds what `memory` does.
@@ -168,7 +152,8 @@ nlohmann::json harness_overhead(const std::vector<PointResult>& points) {
   const PointResult* shortest = nullptr;
   const auto step_seconds = [](const PointResult& p) { return p.median_seconds() * p.spec.step; };
   for (const PointResult& point : points) {
-    if (point.ok() && (!shortest || step_seconds(point) < step_seconds(*shortest)))
+    if (point.ok() && !point.samples.empty() &&
+        (!shortest || step_seconds(point) < step_seconds(*shortest)))
       shortest = &point;
   }
   if (!shortest) return overhead;
@@ -203,7 +188,7 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   const nlohmann::json mine = identity(context, to_json(suite), context["selection"]);
   Journal journal(out);
   const Past past = look_back(options, out, journal);
-  check_same(past, mine, past.in_journal ? journal.path() : out, options.force);
+  check_same(options, past.in_journal ? journal.path() : out, past.identity, mine);
   if (past.finished && !options.rerun_failed) {
     std::cout << out << " is complete already\n";
     return success;

@@ -5,6 +5,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/paths.h"
+#include "harness/points/identity.h"
 
 namespace harness {
 namespace {
@@ -26,6 +27,36 @@ std::string chosen_output(const SweepCommand& options, const std::string& stem) 
   const bool last = options.resume || options.rerun_failed || options.force;
   if (last && free > 1 && !exists(numbered(free) + ".journal")) --free;
   return numbered(free);
+}
+
+void check_unfinished(const SweepCommand& options, const Unfinished& found) {
+  const bool again = options.resume || options.rerun_failed;
+  const std::string entries = std::to_string(found.entries) + " " + found.what;
+  if (options.force) return;
+  if (!found.damage.empty())
+    throw UsageError("'" + found.path + "' is damaged, " + found.damage +
+                     "; --resume --force goes on with the " + entries +
+                     " that it still holds, --force starts anew");
+  if (found.entries > 0 && !again)
+    throw UsageError(
+        "'" + found.path + "' holds " + entries +
+        " of a run that did not finish: --resume goes on with it, --force starts anew");
+}
+
+void check_unwritten(const SweepCommand& options, const std::string& out) {
+  if (!options.force && !options.resume && !options.rerun_failed && exists(out))
+    throw UsageError("'" + out +
+                     "' is there already: --force replaces it, --resume completes it, and another "
+                     "--out keeps both");
+}
+
+void check_same(const SweepCommand& options, const std::string& path, const nlohmann::json& was,
+                const nlohmann::json& mine) {
+  if (was.is_null() || options.force) return;
+  const std::string what = difference(was, mine);
+  if (!what.empty())
+    throw UsageError("'" + path + "' is of another build or selection: " + what +
+                     "; --resume --force goes on all the same");
 }
 
 void check_options(const SweepCommand& options) {
@@ -55,7 +86,6 @@ void check_options(const SweepCommand& options) {
   only(options.memory > 0, "--memory", others);
   only(options.rerun_failed, "--rerun-failed", others);
   only(options.in_process, "--in-process", others);
-  only(!options.shard.empty(), "--shard", others);
 }
 
 }  // namespace harness

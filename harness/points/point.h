@@ -57,6 +57,7 @@ struct PointResult {
   bool ok() const { return status == PointStatus::ok; }
   double median_seconds() const;         // of the samples
   double median_filter_seconds() const;  // of the filter's
+  double mean_step() const;              // s; the spec's, but for adaptive steps
 };
 
 // Half the width of the median's 95 % confidence interval over the median, from order statistics

@@ -4,8 +4,7 @@
 // it fell before, and the rest follows.
 //
 // Lines are JSON: the header {"schema", "pid", "identity", "context"}, then {"point": {...}} for a
-// run,
-// {"repeat": key, "seconds": [...]} for a repetition (empty: it failed) and {"forget": key}.
+// run, {"repeat": key, "seconds": [...]} for a repetition (empty: it failed) and {"forget": key}.
 #pragma once
 
 #include <deque>
@@ -30,13 +29,6 @@ struct Memory {
   void learn(const nlohmann::json& result);
   void forget_failures();
 };
-
-// What must agree for one run to go on where another stopped. build_context: machine_context();
-// selection: options that choose points.
-nlohmann::json identity(const nlohmann::json& build_context, const nlohmann::json& suite,
-                        const nlohmann::json& selection);
-// The first difference, in words: "compiler is 'GNU 13', was 'GNU 12'"; "" if there is none.
-std::string difference(const nlohmann::json& was, const nlohmann::json& is);
 
 class Journal {
  public:

@@ -2,19 +2,11 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
-#include "harness/points/named_result.h"
+#include "harness/points/joining.h"
 
 namespace harness {
-
-// Whether it is a part of a sweep (--shard).
-bool is_shard(const nlohmann::json& document);
-
-struct MergeOptions {
-  bool mixed = false, partial = false;
-};
 
 // One result file of all points, in the order in which the suite's sweep would have run them.
 // Throws UsageError, naming the files, unless all are complete, of one suite and (but for

@@ -79,16 +79,6 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
   return searches;
 }
 
-Shard parse_shard(const std::string& text) {
-  Shard shard;
-  if (!has_form(text, R"(\d{1,6}/\d{1,6})") ||
-      std::sscanf(text.c_str(), "%zu/%zu", &shard.index, &shard.count) != 2)
-    throw UsageError("--shard is '" + shortened(text) + "', must be i/N, such as 2/5");
-  if (shard.index < 1 || shard.index > shard.count)
-    throw UsageError("--shard is '" + text + "', but i must be from 1 to N");
-  return shard;
-}
-
 std::vector<Search> shard(std::vector<Search> searches, const Shard& part) {
   // Work grows with constraints times limits.
   std::map<std::pair<std::string, SceneParameters>, double> load;

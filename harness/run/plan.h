@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "harness/base/pattern.h"
+#include "harness/base/shard.h"
 #include "harness/points/suite.h"
 
 namespace harness {
@@ -28,12 +29,6 @@ struct Search {
 // Throws UsageError if no point is left.
 std::vector<Search> plan(const Suite& suite, const SweepFilters& filters);
 
-// The index-th, from 1 on, of count parts.
-struct Shard {
-  std::size_t index = 1, count = 1;
-};
-// "2/5"; throws UsageError unless 1 <= i <= N.
-Shard parse_shard(const std::string& text);
 // All searches of one (sweep, scene, size) are in one part, large sizes spread first, so that no
 // comparison crosses machines; possibly none. The parts of a plan are the whole, and a search does
 // not depend on the part it is in.

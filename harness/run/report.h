@@ -4,7 +4,6 @@
 #include <ostream>
 #include <vector>
 
-#include "harness/base/fit.h"
 #include "harness/run/sweep.h"
 
 namespace harness {
@@ -15,19 +14,5 @@ namespace harness {
 // Below each table of best points stands who is fastest at each place, how many times as long the
 // next one of another family takes, and whether that is more than noise.
 void print_table(std::ostream& out, const Suite& suite, const std::vector<PointResult>& points);
-
-// How the time of a step grows with the vertices: of the best points of one solver in a resolution
-// sweep.
-struct Growth {
-  std::string solver;
-  Slope exponent;
-  const PointResult *smallest, *largest;  // of those that count
-};
-// One for each solver with best points at two sizes at least, in the order of `points`, which are
-// those of one sweep.
-std::vector<Growth> growths(const std::vector<const PointResult*>& points);
-
-// How good a reference is, and where the scene's last vertex is.
-void print_reference(std::ostream& out, const Reference& reference);
 
 }  // namespace harness

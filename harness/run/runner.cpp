@@ -49,12 +49,14 @@ void add_filter_sample(PointResult& point, const PointRunner& runner, const Run&
 
 // One sample of the point's time and one of its filter's. `run`: with its phases timed. Reads of
 // the clock between phases are part of the time of a short step: that is timed again without them.
-void add_samples(PointResult& point, const PointRunner& runner,
-                 const inextensible::Settings& settings, bool short_steps, Run run) {
+// Returns the run that gave no sample, if one did not.
+std::optional<Run> add_samples(PointResult& point, const PointRunner& runner,
+                               const inextensible::Settings& settings, bool short_steps, Run run) {
   add_filter_sample(point, runner, run);
   if (short_steps) run = runner.run(settings, false, diverged_strain, false);
-  if (run.status == PointStatus::ok)
-    point.samples.push_back(runner.seconds_per_step(run) / point.spec.step);
+  if (run.status != PointStatus::ok) return run;
+  point.samples.push_back(runner.seconds_per_step(run) / point.spec.step);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -94,8 +96,14 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
     // own.
     if (point.ok()) {
       const bool short_steps = runner.seconds_per_step(run) < shortest_judged_step;
-      if (run.observed || short_steps) run = runner.run(settings, false, diverged_strain);
-      add_samples(point, runner, settings, short_steps, std::move(run));
+      if (run.observed || short_steps) {
+        runner.restart_clock(RunPart::measured);  // this run has the whole time-out to itself, too
+        run = runner.run(settings, false, diverged_strain);
+      }
+      if (auto failed = add_samples(point, runner, settings, short_steps, std::move(run))) {
+        point.status = failed->status;  // without a time it is no result
+        point.detail = failed->detail;
+      }
     }
   } catch (const std::bad_alloc&) {
     point.status = PointStatus::out_of_memory;

@@ -11,7 +11,7 @@ Findings check_determinism(const Examinee& solver) {
   std::string difference;
   int steps = 0;
   for (const Case& c : {net(5, 5, 2, 2, 0.0025, 20, 0.005),
-                        scene_case("drape of 9 x 9", "drape", {{"n", 9}}, 1.0 / 800, 40)}) {
+                        scene_case("drape of 9 x 9", "drape", solver.drape(9), 1.0 / 800, 40)}) {
     const auto alone = solver.stepper(c);
     std::vector<State> path;
     State state = c.scene.start;

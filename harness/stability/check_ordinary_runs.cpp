@@ -89,7 +89,7 @@ void drive(const Examinee& solver, const Case& c, Ordinary& all) {
 
 Findings check_ordinary_runs(const Examinee& solver) {
   std::vector<Case> cases{scene_case("chain of 20", "chain", {{"n", 20}}, 1.0 / 400, 80),
-                          scene_case("drape of 9 x 9", "drape", {{"n", 9}}, 1.0 / 400, 60)};
+                          scene_case("drape of 9 x 9", "drape", solver.drape(9), 1.0 / 400, 60)};
   for (std::uint64_t seed = 1; seed <= 4; ++seed)
     cases.push_back(net(seed, 5, 2, 2, 0.005, 10, 0.005));
   Ordinary all;

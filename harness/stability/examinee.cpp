@@ -55,6 +55,13 @@ std::unique_ptr<inextensible::Stepper> Examinee::stepper(const Case& c) const {
   return inextensible::make_stepper(backend.name, c.scene.problem, {c.limit, options.seed, {}});
 }
 
+SceneParameters Examinee::drape(int n) const {
+  SceneParameters given{{"n", n}};
+  if (!backend.takes_shear) given["shear"] = 0;
+  if (!backend.takes_collider) given["radius"] = 0;
+  return given;
+}
+
 Finding judged(bool passed, const std::string& check, const std::string& measured,
                const std::string& advice) {
   if (passed) return {Finding::Grade::pass, check, measured, ""};

@@ -32,6 +32,8 @@ struct Examinee {
 
   bool keeps_a_limit() const { return backend.knob == inextensible::Knob::strain_limit; }
   std::unique_ptr<inextensible::Stepper> stepper(const Case& c) const;
+  // Of a drape of n x n, without the parts that the solver does not take.
+  SceneParameters drape(int n) const;
 };
 
 // What a check says; `advice` is kept for a failure only.

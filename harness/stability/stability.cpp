@@ -108,6 +108,13 @@ StabilityPlan plan_stability(const std::vector<HardCase>& cases, const Stability
   return plan;
 }
 
+void StabilityPlan::keep(const Shard& part) {
+  part.keep(cases);
+  part.keep(scenes);
+  part.keep(frames);
+  freedom = freedom && part.index == 1;
+}
+
 StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
                                const StabilityEvents& events) {
   StabilityOutcome outcome;

@@ -7,6 +7,7 @@
 #include <ostream>
 
 #include "harness/base/pattern.h"
+#include "harness/base/shard.h"
 #include "harness/stability/freedom.h"
 #include "harness/stability/hard_case.h"
 #include "harness/stability/known_differences.h"
@@ -57,6 +58,8 @@ struct StabilityPlan {
   bool freedom = false;
 
   std::size_t cells() const { return cases.size() * solvers.size(); }
+  // One part of it: a stretch of each list, and the first part has the degrees of freedom.
+  void keep(const Shard& part);
 };
 // Throws UsageError if nothing matches. `cases` must outlive the plan.
 StabilityPlan plan_stability(const std::vector<HardCase>& cases, const StabilityFilters& filters);

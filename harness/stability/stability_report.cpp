@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 
+#include "harness/base/in_order.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
@@ -63,16 +64,6 @@ std::string cell_text(const std::vector<const StabilityCell*>& cells) {
     text += energy.str();
   }
   return text + (expected ? "" : " !");
-}
-
-// Keys in order of first appearance.
-template <class Items, class Key>
-std::vector<std::string> in_order(const Items& items, Key key) {
-  std::vector<std::string> keys;
-  for (const auto& item : items) {
-    if (std::find(keys.begin(), keys.end(), key(item)) == keys.end()) keys.push_back(key(item));
-  }
-  return keys;
 }
 
 void print_same_frames(std::ostream& out, const std::vector<SameFrame>& frames) {

@@ -1,5 +1,6 @@
 #include "inextensible/systems/constraint_system.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "inextensible/linear/spd_solvers.h"
@@ -31,6 +32,7 @@ ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
   }
   solver_ = make_spd_solver(solver_name_, schur_->pattern());
   solver_->set_least_pivot(least_pivot);
+  checked_ = solver_name_ != "tridiagonal";
 }
 
 bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, WorkCounters& work, double damping) {
@@ -46,10 +48,21 @@ bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, WorkCounters& work, dou
 
 bool ConstraintSystem::solve(Eigen::VectorXd& mu, WorkCounters& work, double tolerance) {
   const std::int64_t before = solver_->iterations();
+  double largest = 0;
+  for (const double c : mu) largest = std::max(largest, std::abs(c));
   const bool solved = solver_->solve_within(tolerance, mu.data());
   ++work.back_solves;
   work.linear_iterations += solver_->iterations() - before;
-  return solved;
+  return solved && (!checked_ || moderate(mu, largest));
+}
+
+bool ConstraintSystem::moderate(const Eigen::VectorXd& mu, double largest) const {
+  const double* values = solver_->values();
+  const SymmetricPattern& pattern = schur_->pattern();
+  bool all = true;
+  for (int k = 0; k < pattern.n; ++k)
+    all &= std::abs(mu[k]) * values[pattern.diagonal(k)] <= largest_growth * largest;
+  return all;
 }
 
 StepResult refuse(Status status, int iterations, const EdgeConstraints& edges, const Positions& x,

@@ -32,6 +32,10 @@ class ConstraintSystem {
   // J W J^T counts as singular where a pivot keeps less than this of its diagonal entry:
   // multipliers would outgrow the corrections that they make, and cancel.
   static constexpr double least_pivot = 1e-10;
+  // Solvers that have no pivots to look at show it by multipliers this many times the largest
+  // right-hand side over the diagonal: corrections then cancel to so many digits, which momentum
+  // loses. The pivots of a chain are known, and its multipliers may grow with its length squared.
+  static constexpr double largest_growth = 1e8;
 
   double reciprocal_condition() const { return solver_->reciprocal_condition(); }
   const std::string& solver_name() const { return solver_name_; }
@@ -40,11 +44,14 @@ class ConstraintSystem {
   // positive definite.
   bool factor(const Eigen::Matrix3Xd& u, WorkCounters& work, double damping = 0);
   // mu = (J W J^T)^-1 mu; iterative solvers to a residual of `tolerance` times the right-hand side.
-  // false: one of them did not get there, mu is unspecified.
+  // false: one of them did not get there, or the multipliers grew too large; mu is unspecified.
   bool solve(Eigen::VectorXd& mu, WorkCounters& work, double tolerance = SpdSolver::tightest);
 
  private:
+  bool moderate(const Eigen::VectorXd& mu, double largest) const;
+
   std::string solver_name_;
+  bool checked_ = false;  // multipliers are: all but those of a chain
   std::unique_ptr<EdgeConstraints> edges_;
   std::unique_ptr<SchurComplement> schur_;
   std::unique_ptr<SpdSolver> solver_;

@@ -21,6 +21,7 @@
 #include "harness/claims/results_page.h"
 #include "harness/compare/comparison.h"
 #include "harness/judge/reference_file.h"
+#include "harness/points/identity.h"
 #include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
 #include "harness/points/suite.h"

@@ -186,7 +186,7 @@ cp closed.json kept.json
 cmp -s closed.json kept.json && fail "--force did not replace it"
 
 # ---- Options that would do nothing, alternatives that match nothing, numbers that are none ----
-for option in "--scene drape" "--filter x" "--config c.json" "--shard 1/4" "--step adaptive" "--reps 3" "--timeout 3"; do
+for option in "--scene drape" "--filter x" "--config c.json" "--step adaptive" "--reps 3" "--timeout 3"; do
   refused "goes with --sweep strain, resolution and step" --sweep stability $option --out out.json
 done
 refused "no solver 'fast'" "${sweep[@]}" --solver 'fast|shake|icd'
@@ -267,6 +267,31 @@ import json
 def cells(name):
     return [{k: v for k, v in c.items() if k != "seconds"} for c in json.load(open(name))["matrix"]]
 assert cells("whole.json") == cells("cut.json")
+PYTHON
+# ... and a result that an interrupt left goes on too, without its journal.
+python3 - <<'PYTHON'
+import json
+document = json.load(open("whole.json"))
+document["complete"] = False
+document["matrix"] = document["matrix"][:3]
+json.dump(document, open("part.json", "w"))
+PYTHON
+"$BENCH_BINARY" "${cases[@]}" --resume --out part.json >/dev/null 2>&1 || fail "hard cases resumed from a result: exit $?"
+# Shards are the whole, in its order, whichever comes first.
+for i in 1 2 3; do
+  "$BENCH_BINARY" "${cases[@]}" --shard "$i/3" --out "shard$i.json" >/dev/null 2>&1 || fail "shard $i of hard cases: exit $?"
+done
+refused "shard 2/3 is missing" merge shard1.json shard3.json --out out.json
+refused "are the same shard" merge shard1.json shard1.json --out out.json
+refused "is a whole stability sweep" merge whole.json shard1.json --out out.json
+"$BENCH_BINARY" merge shard3.json shard1.json shard2.json --out joined.json >/dev/null || fail "merge of hard cases: exit $?"
+python3 - <<'PYTHON' || fail "shards of hard cases are not the whole"
+import json
+def told(name):
+    d = json.load(open(name))
+    cells = [{k: v for k, v in c.items() if k != "seconds"} for c in d["matrix"]]
+    return cells, d["counts"], d["complete"], d["largest_steps"], d["degrees_of_freedom"], d["known_differences"]
+assert told("whole.json") == told("joined.json") == told("part.json")
 PYTHON
 
 exit $((failures > 0))

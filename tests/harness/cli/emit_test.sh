@@ -33,7 +33,7 @@ refused "--shards" slurm --shards 0 "${sweep[@]}"
 refused "3 scenes and sizes to share out" slurm --shards 4 "${sweep[@]}"
 refused "did you mean 'strain'" slurm --shards 2 --sweep strian
 refused "no sweep" slurm --shards 2
-refused "has no shards" slurm --shards 2 --sweep stability
+refused "has no job script" slurm --shards 2 --sweep stability
 refused "did you mean 'fast_projection'" slurm --shards 2 "${sweep[@]}" --solver fast_projectoin
 refused "did you mean 'quick'" parallel --shards 2 --sweep strain --profile quik
 refused "did you mean 'adaptive'" slurm --shards 2 "${sweep[@]}" --step adaptiv

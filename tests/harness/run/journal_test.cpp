@@ -11,6 +11,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
+#include "harness/points/identity.h"
 #include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
 #include "harness/run/merge.h"

@@ -7,6 +7,8 @@
 #include <random>
 #include <sstream>
 
+#include "harness/run/growth.h"
+
 namespace harness {
 namespace {
 

@@ -77,6 +77,41 @@ refused "did you mean 'symmetric_sweeps'" --plugin "$plugin" check --solver syme
 refused "--solver is required" check
 refused "--seed" check --solver icd --seed -1
 
+# ---- What a row may ask for, and what it may lack ----
+sound() { printf '%s' "$misfits/libsound_$1.so"; }
+"$bench" --plugin "$(sound start)" --sweep strain --profile quick --reps 1 --filter 'strain:0.01/' --solver sound \
+  --no-plots --out start.json >sweep.txt 2>&1 || fail "a set-up with positions: $(cat sweep.txt)"
+"$bench" --plugin "$(sound bare)" --sweep strain --profile quick --reps 1 --filter 'strain:0.0*1/' --solver sound \
+  --no-plots --out bare.json >sweep.txt 2>&1 || fail "a solver without collider: $(cat sweep.txt)"
+/usr/bin/python3 - <<'PYTHON' || fail "rows that ask for positions, or lack a part"
+import json
+def points(file, scene):
+    found = [p for p in json.load(open(file))["points"] if p["solver"] == "sound" and p["scene"] == scene]
+    assert found, (file, scene)
+    return found
+for scene in ("chain", "drape"):
+    assert any(p["best"] for p in points("start.json", scene)), scene
+    assert not any("start" in (p.get("status_detail") or "") for p in points("start.json", scene)), scene
+assert any(p["best"] for p in points("bare.json", "chain"))
+# Nothing is run, at any step: one point a limit says so.
+lacking = points("bare.json", "drape")
+assert {p["status"] for p in lacking} == {"unsupported"}, lacking
+assert len(lacking) == len({p["strain_limit"] for p in lacking}), len(lacking)
+PYTHON
+"$bench" --plugin "$(sound bare)" check --solver sound --quick >check.txt 2>&1
+code=$?
+grep -q '^sound conforms: ' check.txt && [[ $code == 0 ]] || fail "a sound solver without shear and collider: exit $code, $(cat check.txt)"
+
+# ---- Two versions of a plug-in, timed against each other ----
+ab() {
+  "$bench" ab "$bench" "$bench" --old-plugin "$(sound "$1")" --new-plugin "$(sound "$2")" --suite quick --scene drape \
+    --solver sound --filter 'strain:0.001/' --pairs 8 --confirm 8 --seconds 0.02 >ab.txt 2>&1
+}
+ab plain slow
+[[ $? == 3 ]] && grep -q 'SLOWER.*sound' ab.txt || fail "a plug-in that has become slower: $(cat ab.txt)"
+ab slow plain || fail "a plug-in that has become faster: $(cat ab.txt)"
+refused "there is no such file" ab "$bench" "$bench" --old-plugin "$(sound plain)" --new-plugin missing.so --suite quick
+
 seq 100 >text.so
 refused "there is no such file" --plugin missing.so list
 refused "invalid ELF header" --plugin text.so list
