@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Draws the figures of a result file: cost over permissible strain and over resolution, each solver at its best step, and
 for step sweeps time against error, error over step, and the residual that a solver leaves; for a stability sweep the matrix
-of hard cases.
+of hard cases; for known answers the deviations from them.
 
     plots/figures.py results/figure4.json [--out DIR] [--format svg,png]
 
@@ -40,6 +40,7 @@ FIGURES = [import_module(f"drawings.{name}") for name in (
     "slack",
     "residual",              # Figure 3
     "hard_cases",
+    "known_answers",
 )]
 FORMATS = ("svg", "png")
 

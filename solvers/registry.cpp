@@ -110,10 +110,8 @@ std::unique_ptr<Stepper> make_stepper(std::string_view name, Shared problem,
     throw std::invalid_argument("strain limit is " + std::to_string(options.strain_limit) +
                                 ", must be positive");
   }
-  if (problem->shear() && !backend->takes_shear)
-    throw std::invalid_argument("solver " + quoted(name) + " takes no shear springs");
-  if (problem->collider() && !backend->takes_collider)
-    throw std::invalid_argument("solver " + quoted(name) + " takes no collider");
+  if (const char* part = part_not_taken(*backend, *problem))
+    throw std::invalid_argument("solver " + quoted(name) + " takes no " + part);
   BackendOptions resolved = options;
   resolved.settings = complete_settings(*backend, options.settings);
   return backend->make(std::move(problem), resolved);

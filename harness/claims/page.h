@@ -75,6 +75,7 @@ void print_beside(std::ostream& out, const ScenePoints& scene, const PlaceTable&
 void print_delivered(std::ostream& out, const NamedResult& result);
 void print_time_to_error(std::ostream& out, const NamedResult& result);
 void print_growth(std::ostream& out, const NamedResult& result);
+void print_answers(std::ostream& out, const NamedResult& result);
 void print_hard_cases(std::ostream& out, const NamedResult& result);
 void print_tuned(std::ostream& out, const std::vector<NamedResult>& results);
 void print_sources(std::ostream& out, const std::vector<NamedResult>& results);

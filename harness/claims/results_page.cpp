@@ -7,7 +7,8 @@
 namespace harness {
 
 void print_results_page(std::ostream& out, const std::vector<NamedResult>& results,
-                        const std::vector<NamedResult>& growth) try {
+                        const std::vector<NamedResult>& growth,
+                        const std::vector<NamedResult>& answers) try {
   std::vector<nlohmann::json> documents;
   documents.reserve(results.size());
   for (const NamedResult& result : results) documents.push_back(result.document);
@@ -26,11 +27,13 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
   for (const auto* files : {&results, &growth}) {
     for (const NamedResult& result : *files) claims::print_growth(out, result);
   }
+  for (const NamedResult& result : answers) claims::print_answers(out, result);
   for (const NamedResult& result : results) claims::print_hard_cases(out, result);
   std::vector<NamedResult> all = results;
   all.insert(all.end(), growth.begin(), growth.end());
   claims::print_tuned(out, all);
   out << "## Where these numbers come from\n\n";
+  all.insert(all.end(), answers.begin(), answers.end());
   claims::print_sources(out, all);
 } catch (const nlohmann::json::exception& error) {
   throw UsageError(std::string("a result file lacks something: ") + error.what());

@@ -9,9 +9,11 @@
 namespace harness {
 
 // results: of sweeps and stability sweeps; the claims are decided by these. growth: only for tables
-// of growth, so that a sweep at a fixed step does not take part in contests of best steps.
+// of growth, so that a sweep at a fixed step does not take part in contests of best steps. answers:
+// of `bench answers`.
 // Throws UsageError for documents that lack something.
 void print_results_page(std::ostream& out, const std::vector<NamedResult>& results,
-                        const std::vector<NamedResult>& growth);
+                        const std::vector<NamedResult>& growth,
+                        const std::vector<NamedResult>& answers = {});
 
 }  // namespace harness

@@ -1,6 +1,7 @@
 // bench list: what there is.
 #include <iostream>
 
+#include "harness/answers/answer.h"
 #include "harness/base/errors.h"
 #include "harness/base/json_text.h"
 #include "harness/base/paths.h"
@@ -62,6 +63,11 @@ void list(const std::string& what) {
   if (what == "cases") {
     for (const HardCase& c : hard_cases(hard_case_values("paper")))
       std::cout << "  " << c.name << " (" << c.row << "): " << c.what << '\n';
+  }
+  if (what == "answers") {
+    for (const KnownAnswer& answer : known_answers())
+      std::cout << "  " << answer.name << " (" << answer.scene << "): " << answer.quantity << "; "
+                << answer.source << '\n';
   }
   if (heading("suites")) {
     for (const std::string& name : profiles()) {
@@ -150,11 +156,13 @@ void add_list_command(const Command& program) {
   const auto given = std::make_shared<Given>();
   const Command command = program.subcommand(
       "list",
-      "show what there is: solvers, scenes, suites, cases, counters, metrics, statuses or points "
+      "show what there is: solvers, scenes, suites, cases, answers, counters, metrics, statuses or "
+      "points "
       "(points: with --sweep)");
   command.option(
       "what", given->what,
-      "solvers, scenes, suites, cases, counters, metrics, statuses or points; the first three "
+      "solvers, scenes, suites, cases, answers, counters, metrics, statuses or points; the first "
+      "three "
       "if left out; result.schema and its like print that file of configs/ with what "
       "follows from tables made anew",
       "WHAT");
@@ -162,7 +170,7 @@ void add_list_command(const Command& program) {
   command.flag("--json", given->as_json, "solvers, scenes and suites as JSON");
   command.does([given] {
     const std::vector<std::string> schemas = generated_schemas();
-    const std::vector<std::string> known{"solvers", "scenes",   "suites",  "cases",
+    const std::vector<std::string> known{"solvers", "scenes",   "suites",  "cases",   "answers",
                                          "points",  "counters", "metrics", "statuses"};
     if (given->as_json) {
       list_json(given->what);

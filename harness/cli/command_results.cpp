@@ -11,7 +11,7 @@ namespace harness {
 namespace {
 
 struct Given {
-  std::vector<std::string> results, growth;
+  std::vector<std::string> results, growth, answers;
   std::string out;
 };
 
@@ -30,6 +30,8 @@ std::string page(const Given& given) {
   for (const std::string& file : given.results) out << " \\\n  " << file;
   if (!given.growth.empty()) out << " \\\n  --growth";
   for (const std::string& file : given.growth) out << ' ' << file;
+  if (!given.answers.empty()) out << " \\\n  --answers";
+  for (const std::string& file : given.answers) out << ' ' << file;
   if (!given.out.empty()) out << " \\\n  --out " << given.out;
   out << "\n```\n\nNumbers are medians. [measuring.md](measuring.md) says what they mean, and how "
          "far they can be trusted. A dash: no step of that solver met the limit. Ratios have their "
@@ -37,7 +39,9 @@ std::string page(const Given& given) {
          "pair. Bold: the fastest, if its interval against each other lies on one side. "
          "`(coarsest)`, `(finest)`: a step at the end of what was tried, beyond which a better one "
          "may lie.\n\n";
-  print_results_page(out, read(given.results), read(given.growth));
+  std::vector<NamedResult> answers;
+  for (const std::string& file : given.answers) answers.push_back({file, read_answers(file)});
+  print_results_page(out, read(given.results), read(given.growth), answers);
   return out.str();
 }
 
@@ -54,6 +58,7 @@ void add_results_command(const Command& program) {
       .required();
   command.option("--growth", given->growth, "result files for the tables of growth alone",
                  "RESULT.json ...");
+  command.option("--answers", given->answers, "results of bench answers", "ANSWERS.json ...");
   command.option("--out", given->out, "the page; default: standard output", "FILE");
   command.does([given] {
     if (given->out.empty()) {

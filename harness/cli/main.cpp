@@ -1,6 +1,7 @@
 // bench: the command line.
 #include <filesystem>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
@@ -48,6 +49,8 @@ int run(int argc, char** argv) {
       "  bench --sweep step --scene chain         time against error, and a table of time to reach "
       "an error\n"
       "  bench --sweep stability                  hard cases: which solver breaks where\n"
+      "  bench answers                            figures that theory knows, by each solver\n"
+      "  bench film --out drape.webp              what it looks like\n"
       "  bench reference                          the trajectories that errors are measured "
       "against\n"
       "  bench claims RESULT.json ...             the paper's claims, decided by measurements\n"
@@ -71,6 +74,8 @@ int run(int argc, char** argv) {
   add_reference_command(program);
   add_claims_command(program);
   add_results_command(program);
+  add_answers_command(program, command);
+  add_film_command(program);
   add_emit_command(program);
   add_compare_command(program);
   add_baseline_command(program);
@@ -117,6 +122,11 @@ int main(int argc, char** argv) {
     return code;
   } catch (const harness::UsageError& error) {
     std::cerr << "bench: " << error.what() << '\n';
+    return harness::usage_error;
+  } catch (const nlohmann::json::exception& error) {
+    // Schemas are checked where files are read; what one leaves open is the file's fault all the
+    // same.
+    std::cerr << "bench: a file holds something of the wrong kind: " << error.what() << '\n';
     return harness::usage_error;
   } catch (const harness::Interrupted&) {
     return harness::interrupted_exit;

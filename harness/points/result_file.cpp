@@ -80,6 +80,12 @@ json parse_result(const std::string& text, const std::string& path) {
   return document;
 }
 
+json read_answers(const std::string& path) {
+  json document = parse_document(read_file(path, "result of bench answers"), path);
+  check_schema(document, "answers", path);
+  return document;
+}
+
 void check_result(const json& document, const std::string& path) {
   const json schema = document.is_object() ? document.value("schema", json()) : json();
   if (schema == "inextensible-bench/1") {

@@ -29,5 +29,7 @@ nlohmann::json read_result(const std::string& path);
 nlohmann::json parse_result(const std::string& text, const std::string& path);
 // The same of what is parsed already.
 void check_result(const nlohmann::json& document, const std::string& path);
+// Of `bench answers`: schema inextensible-answers/1.
+nlohmann::json read_answers(const std::string& path);
 
 }  // namespace harness

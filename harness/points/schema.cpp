@@ -3,6 +3,7 @@
 #include "harness/base/files.h"
 #include "harness/base/json_text.h"
 #include "harness/base/paths.h"
+#include "harness/points/answer_row.h"
 #include "harness/points/point_fields.h"
 #include "harness/points/suite.h"
 
@@ -88,6 +89,8 @@ ordered_json point_schema() {
         "use"}},
       false);
   values_of("options", {"number", "string"});
+  point["properties"]["options"]["properties"] = {{"linear_solver", {{"type", "string"}}},
+                                                  {"stiffness", {{"type", "number"}}}};
   add_fields(point, result_fields);
   add(point, "seconds_per_simulated_second", reference_to("seconds"), false);
   add(point, "filter_seconds_per_simulated_second", reference_to("seconds"), true);
@@ -95,6 +98,12 @@ ordered_json point_schema() {
   add_fields(point, measure_fields);
   add(point, "work", reference_to("work"), false);
   return point;
+}
+
+ordered_json answer_row_schema() {
+  ordered_json row = closed_object();
+  add_fields(row, answer_row_fields);
+  return row;
 }
 
 // A list of objects with these entries.
@@ -136,11 +145,12 @@ ordered_json with_tables(ordered_json schema) {
   renew("work", work_schema);
   renew("point", point_schema);
   renew("legend", legend_schema);
+  renew("answer_row", answer_row_schema);
   return schema;
 }
 
 std::vector<std::string> generated_schemas() {
-  return {"result", "baseline", "gate", "stability", "tuned"};
+  return {"result", "baseline", "gate", "stability", "tuned", "answers"};
 }
 
 ordered_json schema_document(const std::string& name) {

@@ -11,13 +11,13 @@
 namespace harness {
 
 // The schema with those of its definitions made anew that follow from tables: "status", "counter",
-// "work", "point", "legend".
+// "work", "point", "legend", "answer_row".
 nlohmann::ordered_json with_tables(nlohmann::ordered_json schema);
 
 // configs/<name>.schema.json, with_tables.
 nlohmann::ordered_json schema_document(const std::string& name);
 // As it is to stand in configs/<name>.schema.json; "result", "baseline", "gate", "stability",
-// "tuned".
+// "tuned", "answers".
 std::string schema_text(const std::string& name);
 std::vector<std::string> generated_schemas();
 

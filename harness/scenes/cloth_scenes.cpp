@@ -1,6 +1,5 @@
 #include "harness/scenes/cloth_scenes.h"
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
@@ -40,18 +39,40 @@ void fold(Scene& scene, const SceneParameters& p, double y) {
   }
 }
 
-// Above a polygonal sphere that is centred at the origin.
+// A polygonal sphere, centred at the origin, if it has a radius.
+void add_ball(Draft& cloth, const SceneParameters& p) {
+  if (!(p.at("radius") > 0)) return;
+  cloth.parts.collider = std::make_shared<const inextensible::TriangleCollider>(
+      inextensible::icosphere(Eigen::Vector3d::Zero(), p.at("radius"),
+                              static_cast<int>(p.at("subdivisions"))),
+      p.at("friction"));
+}
+
+// Above the ball.
 Scene build_drape(const SceneParameters& p) {
   const double y = p.at("radius") + p.at("gap");
   Draft cloth = vertex_square(p, y);
   if (p.contains("folds") && p.at("folds") > 0) fold(cloth.scene, p, y);
   if (p.contains("speed")) cloth.scene.start.v.row(1).setConstant(-p.at("speed"));
-  if (p.at("radius") > 0) {
-    cloth.parts.collider = std::make_shared<const inextensible::TriangleCollider>(
-        inextensible::icosphere(Eigen::Vector3d::Zero(), p.at("radius"),
-                                static_cast<int>(p.at("subdivisions"))),
-        p.at("friction"));
+  add_ball(cloth, p);
+  return finished(std::move(cloth));
+}
+
+// With a fabric's own forces, in physical units, at the end of the step. Each diagonal of a quad,
+// as a spring of stiffness G, gives the cloth the shear stiffness G: turned by gamma they change by
+// l gamma / sqrt(2) each, and bear G (l gamma)^2 / 2 together.
+Scene build_fabric_drape(const SceneParameters& given) {
+  SceneParameters p = given;
+  p["mass"] = p.at("density") * p.at("side") * p.at("side");
+  const double y = p.at("radius") + p.at("gap");
+  Draft cloth = vertex_square(p, y);
+  if (p.at("bending") > 0) bend_threads(cloth, p, p.at("bending"));
+  if (p.at("drag") > 0) {
+    const double l = square_link(p);
+    cloth.parts.drag.assign(cloth.parts.mass.size(), p.at("drag") * l * l);
   }
+  cloth.parts.implicit_forces = true;
+  add_ball(cloth, p);
   return finished(std::move(cloth));
 }
 
@@ -70,30 +91,6 @@ Scene build_patch(const SceneParameters& p) {
   cloth.scene.mirrors.pop_back();  // the pins break front to back
   cloth.scene.conserves_energy = true;
   return finished(std::move(cloth));
-}
-
-// In its plane, without weight: the square of rest lengths stays one, held by its threads against
-// the centrifugal force, and its shear springs do nothing.
-Scene build_spinning_net(const SceneParameters& given) {
-  SceneParameters p = given;
-  p["gravity"] = 0;
-  Draft cloth = vertex_square(p, 0);
-  Scene& scene = cloth.scene;
-  const double rate = 2 * std::numbers::pi * p.at("turns");
-  scene.start.v.row(0) = rate * scene.start.x.row(2);
-  scene.start.v.row(2) = -rate * scene.start.x.row(0);
-  Scene::Mirror plane{{0, 1, 0}, {}};
-  for (int i = 0; i < scene.start.x.cols(); ++i) plane.image.push_back(i);
-  scene.mirrors = {std::move(plane)};
-  scene.conserves_energy = true;
-  return finished(std::move(cloth));
-}
-
-inextensible::Positions turned_net(const SceneParameters& p, double time) {
-  const double angle = 2 * std::numbers::pi * p.at("turns") * time;
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  return turn * build_spinning_net(p).start.x;
 }
 
 using ParameterInfos = std::vector<SceneParameterInfo>;
@@ -132,6 +129,27 @@ SceneType drape_scene() {
           count_square};
 }
 
+SceneType fabric_drape_scene() {
+  return {
+      "fabric_drape",
+      "the drape with a fabric's weight, shear and bending in physical units, implicit, and air",
+      "n",
+      joined({{{"n", 71, "vertices along each side", 3, 4000, true},
+               {"side", 1, "m", 0, 1e6},
+               {"density", 0.15, "kg/m^2", 0, 1e4},
+               {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
+               {"shear", 20, "shear stiffness, N/m; 0: none", -1e-300, 1e9},
+               {"bending", 1e-5, "bending rigidity of warp and weft, N m; 0: none", -1e-300, 1e6},
+               {"drag", 0.05, "of still air, N s/m^3: force per area and speed; 0: none", -1e-300,
+                1e6}},
+              sphere_parameters(),
+              {{"duration", 1, "s", 0, 1e4}}}),
+      build_fabric_drape,
+      count_square,
+      nullptr,
+      "drape"};
+}
+
 SceneType folded_drape_scene() {
   return {"folded_drape",
           "the drape, from a start in folds that shear it: as hard as mid-fall, at any size",
@@ -145,22 +163,6 @@ SceneType folded_drape_scene() {
           count_square,
           nullptr,
           "drape"};
-}
-
-SceneType spinning_net_scene() {
-  return {"spinning_net",
-          "a square of cloth that spins in its plane, free and without weight: its motion is known",
-          "n",
-          {{"n", 21, "vertices along each side", 2, 4000, true},
-           {"side", 1, "m", 0, 1e6},
-           {"mass", 0.2, "total, kg", 0, 1e6},
-           {"shear", 0.1, "spring stiffness on both diagonals of each quad, N/m", -1e-300, 1e9},
-           {"turns", 1, "1/s, at the start", 0, 1e4},
-           {"duration", 1, "s", 0, 1e4}},
-          build_spinning_net,
-          count_square,
-          turned_net,
-          "patch"};
 }
 
 SceneType patch_scene() {

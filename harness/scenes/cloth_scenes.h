@@ -7,7 +7,7 @@ namespace harness {
 
 SceneType drape_scene();
 SceneType folded_drape_scene();
+SceneType fabric_drape_scene();
 SceneType patch_scene();
-SceneType spinning_net_scene();
 
 }  // namespace harness

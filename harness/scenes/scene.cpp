@@ -5,7 +5,10 @@
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/scenes/cloth_scenes.h"
+#include "harness/scenes/folded_scenes.h"
+#include "harness/scenes/hanging_scenes.h"
 #include "harness/scenes/line_scenes.h"
+#include "harness/scenes/spinning_scenes.h"
 
 namespace harness {
 namespace {
@@ -13,8 +16,10 @@ namespace {
 // A scene is a function that returns its SceneType, and a line here.
 const std::vector<SceneType>& table() {
   static const std::vector<SceneType> rows = {
-      chain_scene(), drape_scene(),        folded_drape_scene(),
-      patch_scene(), spinning_net_scene(), taut_row_scene(),
+      chain_scene(),        drape_scene(),         folded_drape_scene(),   fabric_drape_scene(),
+      patch_scene(),        spinning_net_scene(),  taut_row_scene(),       baton_scene(),
+      hoop_scene(),         hanging_chain_scene(), whirling_chain_scene(), catenary_scene(),
+      folded_chain_scene(), whip_scene(),
   };
   return rows;
 }

@@ -1,4 +1,4 @@
-"""Reads a result file of schema inextensible-bench/1 or inextensible-stability/1 and checks what figures rely on."""
+"""Reads a result file of schema inextensible-bench/1, inextensible-stability/1 or inextensible-answers/1, and checks what figures rely on."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 
 SCHEMA = "inextensible-bench/1"
 STABILITY_SCHEMA = "inextensible-stability/1"
+ANSWERS_SCHEMA = "inextensible-answers/1"
 SWEEPS = ("strain", "resolution", "step")
 OK = "ok"  # the status of a run that has times to show; all others are failures, whatever their names
 
@@ -32,6 +33,9 @@ def load(path: Path) -> Json:
         raise ResultError(f"{path} is not valid JSON: {error}") from error
     if isinstance(document, dict) and document.get("schema") == STABILITY_SCHEMA:
         _check_stability(document, path)
+        return document
+    if isinstance(document, dict) and document.get("schema") == ANSWERS_SCHEMA:
+        _check_answers(document, path)
         return document
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
         found = document.get("schema") if isinstance(document, dict) else None
@@ -57,6 +61,19 @@ def _check_stability(document: Json, path: Path) -> None:
         for number, entry in enumerate(entries):
             if not isinstance(entry, dict) or not all(isinstance(entry.get(key), str) for key in keys):
                 raise ResultError(f"{path}: {name}[{number}] needs the texts {', '.join(keys)}")
+
+
+def _check_answers(document: Json, path: Path) -> None:
+    for name, keys in (("answers", ("name", "scene", "quantity")), ("rows", ("answer", "solver"))):
+        entries = document.get(name)
+        if not isinstance(entries, list):
+            raise ResultError(f"{path} has no list of {name}")
+        for number, entry in enumerate(entries):
+            if not isinstance(entry, dict) or not all(isinstance(entry.get(key), str) for key in keys):
+                raise ResultError(f"{path}: {name}[{number}] needs the texts {', '.join(keys)}")
+    for number, row in enumerate(document["rows"]):
+        if not positive(row.get("step")) or not (row.get("deviation") is None or is_number(row["deviation"])):
+            raise ResultError(f"{path}: rows[{number}] needs a step above 0, and a deviation or null")
 
 
 def _refuse_constant(name: str) -> None:

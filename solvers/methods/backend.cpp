@@ -38,6 +38,15 @@ std::string fault_of(const SettingInfo& info, const std::variant<double, std::st
 
 }  // namespace
 
+const char* part_not_taken(const Backend& backend, const Problem& problem) {
+  if (problem.shear() && !backend.takes_shear) return "shear springs";
+  if (problem.collider() && !backend.takes_collider) return "collider";
+  if (!problem.bending().empty() && !backend.takes_bending) return "bending";
+  if (problem.has_drag() && !backend.takes_drag) return "drag";
+  if (problem.implicit_forces() && !backend.takes_implicit_forces) return "implicit forces";
+  return nullptr;
+}
+
 bool Range::contains(double number) const {
   if (!std::isfinite(number)) return false;
   return open ? number > least && number < largest : number >= least && number <= largest;

@@ -76,8 +76,14 @@ struct Backend {
   bool shows_iterates = false;  // Stepper::observe sees the iterates and multipliers of each step
   // What the method can do with a problem; make_stepper refuses those that have more.
   bool takes_shear = true, takes_collider = true;
+  // Bending and drag are forces like gravity to a velocity filter, and part of the energy to
+  // others.
+  bool takes_bending = true, takes_drag = true, takes_implicit_forces = true;
   Velocities velocities = Velocities::half_step;
 };
+
+// The part of the problem that the method does not take, in words; null: it takes all.
+const char* part_not_taken(const Backend& backend, const Problem& problem);
 
 // The given settings, checked, and the defaults of the others. Throws std::invalid_argument, naming
 // solver and setting, for one that does not exist, is of the wrong kind or out of its range.

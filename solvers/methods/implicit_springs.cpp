@@ -17,7 +17,7 @@
 #include <cmath>
 
 #include "inextensible/linear/spd_solvers.h"
-#include "inextensible/methods/vertex_blocks.h"
+#include "inextensible/systems/vertex_blocks.h"
 
 namespace inextensible {
 namespace {
@@ -38,6 +38,7 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Se
       extrapolates_(settings.start == "extrapolated"),
       predicts_tension_(settings.tension == "linearized") {
   const Problem& p = problem();
+  if (step_tolerance_ == 0) step_tolerance_ = 1e-12;  // no edge says what is small: rounding
   std::vector<int> place(p.vertices(), -1);
   for (int v = 0; v < p.vertices(); ++v) {
     if (p.inverse_mass()[v] == 0) continue;
@@ -59,6 +60,14 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Se
     for (const Spring& s : springs_) {
       const Edge pair{place[s.a], place[s.b]};
       if (pair.a >= 0 && pair.b >= 0) pairs.push_back(pair);
+    }
+    for (const BendingStencil& s : p.bending()) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+          const Edge pair{place[s.vertex[i]], place[s.vertex[j]]};
+          if (pair.a >= 0 && pair.b >= 0 && pair.a != pair.b) pairs.push_back(pair);
+        }
+      }
     }
     return pairs;
   };
@@ -98,10 +107,22 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Se
     const auto begin = block_begin(pattern, s.fa, s.fb);
     std::copy(begin.begin(), begin.end(), s.coupling);
   }
+  for (const BendingStencil& s : p.bending()) {
+    Hinge hinge{};
+    for (std::size_t i = 0, pair = 0; i < 4; ++i) {
+      hinge.f[i] = place[s.vertex[i]];
+      for (std::size_t j = 0; j < i; ++j, ++pair) {
+        if (hinge.f[i] >= 0 && hinge.f[j] >= 0)
+          hinge.coupling[pair] = block_begin(pattern, hinge.f[i], hinge.f[j]);
+      }
+    }
+    hinges_.push_back(hinge);
+  }
   entries_ = pattern.entries();
   solver_ = make_spd_solver(linear_solver_, std::move(pattern));
   inertial_.resize(3, p.vertices());
   trial_.resize(3, p.vertices());
+  if (p.has_drag()) before_.resize(3, p.vertices());
   gradient_.resize(3 * n);
   step_.resize(3 * n);
   v_before_.resize(3, p.vertices());
@@ -115,6 +136,11 @@ double ImplicitSprings::energy(const Positions& x, double h) const {
     inertia +=
         free_mass_[f] * (x.col(free_vertex_[f]) - inertial_.col(free_vertex_[f])).squaredNorm();
   }
+  if (problem().has_drag()) {  // backward Euler's drag is the gradient of h / 2 |x - x^n|_D^2
+    for (const int v : free_vertex_)
+      inertia += h * problem().drag(v) * (x.col(v) - before_.col(v)).squaredNorm();
+  }
+  potential += 2 * bending_energy(problem().bending(), x);
   const double* p = x.data();
   for (const Spring& s : springs_) {
     const double* pa = p + 3 * s.a;
@@ -140,6 +166,16 @@ void ImplicitSprings::assemble(const Positions& x, double h, bool matrix) {
     const double* to = p + 3 * free_vertex_[f];
     for (std::size_t i = 0; i < 3; ++i) g[3 * f + i] = m * (to[i] - from[i]);
   }
+  if (problem().has_drag()) {
+    for (std::size_t f = 0; f < free_vertex_.size(); ++f) {
+      const int v = free_vertex_[f];
+      const double drag = h * problem().drag(v);
+      const Places& at = diagonal_[f];
+      if (matrix) value[at.xx] += drag, value[at.yy] += drag, value[at.zz] += drag;
+      for (int i = 0; i < 3; ++i) g[3 * f + i] += drag * (x(i, v) - before_(i, v));
+    }
+  }
+  assemble_bending(x, h, matrix);
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     const Spring& s = springs_[k];
     const double* pa = p + 3 * s.a;
@@ -178,6 +214,33 @@ void ImplicitSprings::assemble(const Positions& x, double h, bool matrix) {
     cx[0] -= xx, cx[1] -= xy, cx[2] -= xz;
     cy[0] -= xy, cy[1] -= yy, cy[2] -= yz;
     cz[0] -= xz, cz[1] -= yz, cz[2] -= zz;
+  }
+}
+
+// Bending's share of both: quadratic, so that the matrix is its Hessian.
+void ImplicitSprings::assemble_bending(const Positions& x, double h, bool matrix) {
+  double* value = solver_->values();
+  for (std::size_t k = 0; k < hinges_.size(); ++k) {
+    const BendingStencil& s = problem().bending()[k];
+    const Hinge& hinge = hinges_[k];
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < 4; ++i) sum += s.coefficient[i] * x.col(s.vertex[i]);
+    for (std::size_t i = 0, pair = 0; i < 4; ++i) {
+      const int f = hinge.f[i];
+      const double stiffness = h * h * s.stiffness * s.coefficient[i];
+      if (f >= 0) gradient_.segment<3>(3 * f) += stiffness * sum;
+      for (std::size_t j = 0; j < i; ++j, ++pair) {
+        if (!matrix || f < 0 || hinge.f[j] < 0 || s.coefficient[i] * s.coefficient[j] == 0)
+          continue;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          value[static_cast<std::size_t>(hinge.coupling[pair][axis]) + axis] +=
+              stiffness * s.coefficient[j];
+      }
+      if (!matrix || f < 0) continue;
+      const Places& at = diagonal_[f];
+      const double own = stiffness * s.coefficient[i];
+      value[at.xx] += own, value[at.yy] += own, value[at.zz] += own;
+    }
   }
 }
 

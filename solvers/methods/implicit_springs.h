@@ -40,6 +40,7 @@ class ImplicitSprings final : public Stepper {
   StepResult solve(const State& state, double h, Positions& x) override;
   double energy(const Positions& x, double h) const;
   void assemble(const Positions& x, double h, bool matrix);
+  void assemble_bending(const Positions& x, double h, bool matrix);
   double start(const State& state, double h, Positions& x);
   void predict_tension(const Positions& x, const Positions& to);
   enum class Search { full, shortened, at_minimum, failed };
@@ -59,6 +60,11 @@ class ImplicitSprings final : public Stepper {
   double reuse_below_;     // m
   bool extrapolates_, predicts_tension_;
   std::vector<Spring> springs_;
+  struct Hinge {                                 // a bending stencil's places
+    std::array<int, 4> f;                        // among the free vertices, -1 if pinned
+    std::array<std::array<int, 3>, 6> coupling;  // of the pairs 10, 20, 21, 30, 31, 32
+  };
+  std::vector<Hinge> hinges_;
   std::vector<int> free_vertex_;  // in elimination order
   std::vector<double> free_mass_;
   struct Places {  // of a diagonal block's numbers among the matrix's values
@@ -68,6 +74,7 @@ class ImplicitSprings final : public Stepper {
   std::size_t entries_ = 0;
   std::unique_ptr<SpdSolver> solver_;
   Positions inertial_, trial_;  // x + h v + h^2 g, and a line search's positions
+  Positions before_;            // x^n, with drag only
   Eigen::VectorXd gradient_, step_;
   std::vector<double> pull_, pull_before_;  // N/m, predicted tension over length; the last step's
   Positions v_before_;                      // v^{n-1}

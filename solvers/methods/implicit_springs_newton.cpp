@@ -76,6 +76,7 @@ ImplicitSprings::Search ImplicitSprings::search(const Positions& x, double h, do
 }
 
 StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
+  if (problem().has_drag()) before_ = state.x;
   const Eigen::Vector3d fall = h * h * problem().gravity();
   inertial_ = state.x + h * state.v;
   inertial_.colwise() += fall;

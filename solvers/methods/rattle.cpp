@@ -12,6 +12,7 @@ StepResult Rattle::solve(const State& state, double h, Positions& x) {
   Lap lap(phases_wanted_);
   x = state.x + h * state.v;  // position stage (Andersen 1983)
   add_acceleration(*problem_, state.x, 0.5 * h * h, x, work_);
+  if (problem_->has_drag()) add_drag(*problem_, state.v, 0.5 * h * h, x);
   for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
   phases_.unconstrained += lap();
   const StepResult result = shake_.apply(state.x, h, x, work_);
@@ -23,6 +24,10 @@ StepResult Rattle::end_velocities(const State& start, double h, const Positions&
                                   const Positions& x, Positions& v) {
   Lap lap(phases_wanted_);
   v = (x - start.x) * (1 / h);  // velocity stage
+  if (problem_->has_drag()) {   // of the velocity halfway
+    v_half_ = v;
+    add_drag(*problem_, v_half_, 0.5 * h, v);
+  }
   add_acceleration(*problem_, x, 0.5 * h, v, work_);
   for (const int vertex : problem_->pinned()) v.col(vertex).setZero();
   phases_.unconstrained += lap();
@@ -48,6 +53,7 @@ Backend rattle_row() {
           .citation = "Andersen 1983",
           .label = "RATTLE (SHAKE with velocities)",
           .family = "shake",
+          .takes_implicit_forces = false,
           .velocities = Velocities::whole_step};
 }
 

@@ -22,6 +22,7 @@ class Rattle final : public Stepper {
                             const Positions& x, Positions& v) override;
 
   Shake shake_;
+  Positions v_half_;  // with drag only
 };
 
 Backend rattle_row();

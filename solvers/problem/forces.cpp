@@ -5,6 +5,25 @@
 namespace inextensible {
 namespace {
 
+// y -= scale W grad V of each stencil.
+void add_bending_acceleration(const Bending& bending, const std::vector<double>& w,
+                              const Positions& x, double scale, Positions& y) {
+  const double* p = x.data();
+  double* q = y.data();
+  for (const BendingStencil& s : bending) {
+    double sum[3] = {0, 0, 0};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double* at = p + 3 * s.vertex[i];
+      for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += s.coefficient[i] * at[axis];
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double f = scale * s.stiffness * s.coefficient[i] * w[s.vertex[i]];
+      double* at = q + 3 * s.vertex[i];
+      for (std::size_t axis = 0; axis < 3; ++axis) at[axis] -= f * sum[axis];
+    }
+  }
+}
+
 // y += scale W f of each spring: f pulls b towards a with stiffness (|d| - r).
 void add_spring_acceleration(const Springs& springs, const std::vector<double>& w,
                              const Positions& x, double scale, Positions& y) {
@@ -37,16 +56,34 @@ void add_acceleration(const Problem& problem, const Positions& x, double scale, 
                       WorkCounters& work) {
   const Eigen::Vector3d fall = scale * problem.gravity();
   y.colwise() += fall;
-  const Springs* shear = problem.shear();
-  if (!shear) return;
-  add_spring_acceleration(*shear, problem.inverse_mass(), x, scale, y);
-  work.spring_evaluations += static_cast<std::int64_t>(shear->edges.size());
+  if (const Springs* shear = problem.shear()) {
+    add_spring_acceleration(*shear, problem.inverse_mass(), x, scale, y);
+    work.spring_evaluations += static_cast<std::int64_t>(shear->edges.size());
+  }
+  if (!problem.bending().empty()) {
+    add_bending_acceleration(problem.bending(), problem.inverse_mass(), x, scale, y);
+    work.spring_evaluations += static_cast<std::int64_t>(problem.bending().size());
+  }
+}
+
+void add_drag(const Problem& problem, const Positions& v, double scale, Positions& y) {
+  for (int i = 0; i < problem.vertices(); ++i)
+    y.col(i) -= scale * problem.inverse_mass()[i] * problem.drag(i) * v.col(i);
+}
+
+void add_forces(const Problem& problem, const Positions& x, const Positions& v, Positions& f,
+                WorkCounters& work) {
+  // As accelerations times masses: of stiff forces the rounding is that of two multiplications.
+  add_acceleration(problem, x, 1, f, work);
+  if (problem.has_drag()) add_drag(problem, v, 1, f);
+  for (int i = 0; i < problem.vertices(); ++i) f.col(i) *= problem.mass()[i];
 }
 
 void unconstrained_step(const Problem& problem, const State& state, double h, Positions& x0,
                         WorkCounters& work) {
   x0 = state.x + h * state.v;
   add_acceleration(problem, state.x, h * h, x0, work);
+  if (problem.has_drag()) add_drag(problem, state.v, h * h, x0);
   for (const int vertex : problem.pinned()) x0.col(vertex) = state.x.col(vertex);
 }
 
@@ -67,7 +104,7 @@ double potential_energy(const Problem& problem, const Positions& x) {
   for (Eigen::Index i = 0; i < x.cols(); ++i) moment += problem.mass()[i] * x.col(i);
   double energy = -problem.gravity().dot(moment);
   if (const Springs* shear = problem.shear()) energy += spring_energy(*shear, x);
-  return energy;
+  return energy + bending_energy(problem.bending(), x);
 }
 
 double kinetic_energy(const Problem& problem, const Positions& v) {

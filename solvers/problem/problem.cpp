@@ -80,6 +80,25 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
     check_positive(shear.rest_length, "shear spring", "rest length");
     check_positive(shear.stiffness, "shear spring", "stiffness");
   }
+  for (std::size_t s = 0; s < parts_.bending.size(); ++s) {
+    const BendingStencil& stencil = parts_.bending[s];
+    for (const int vertex : stencil.vertex) {
+      if (vertex < 0 || std::cmp_greater_equal(vertex, n))
+        refuse("bending stencil", s, "vertex " + std::to_string(vertex) + " does not exist");
+    }
+    for (const double c : stencil.coefficient) {
+      if (!std::isfinite(c)) refuse("bending stencil", s, "a coefficient is not finite");
+    }
+    if (!(stencil.stiffness >= 0) || !std::isfinite(stencil.stiffness))
+      refuse("bending stencil", s, "its stiffness is negative or not finite");
+  }
+  if (!parts_.drag.empty() && parts_.drag.size() != n)
+    throw std::invalid_argument("there are " + std::to_string(n) + " vertices but " +
+                                std::to_string(parts_.drag.size()) + " drag coefficients");
+  for (std::size_t i = 0; i < parts_.drag.size(); ++i) {
+    if (!(parts_.drag[i] >= 0) || !std::isfinite(parts_.drag[i]))
+      refuse("vertex", i, "its drag is negative or not finite");
+  }
   total_mass_ = std::accumulate(parts_.mass.begin(), parts_.mass.end(), 0.0);
   if (!parts_.rest_length.empty()) {
     const auto [shortest, longest] =

@@ -3,8 +3,8 @@
 //
 // Notation of Goldenthal et al. 2007 throughout: x, v are 3 x n (one column a vertex; m and m/s), W
 // = M^-1 is the diagonal inverse mass matrix (1/kg; 0 = pinned), l_k is the rest length of
-// warp/weft edge k = (a, b) in metres. Gravity is always there; shear and a collider are optional
-// parts, and a part that is absent costs nothing.
+// warp/weft edge k = (a, b) in metres. Gravity is always there; shear, bending, drag and a
+// collider are optional parts, and a part that is absent costs nothing.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "inextensible/problem/bending.h"
 #include "inextensible/problem/collider.h"
 
 namespace inextensible {
@@ -39,6 +40,11 @@ struct ProblemParts {
   std::vector<double> rest_length;       // m, one a constrained edge
   Eigen::Vector3d gravity{0, -9.81, 0};  // m/s^2
   std::optional<Springs> shear;
+  Bending bending;           // empty: none
+  std::vector<double> drag;  // N s/m, one a vertex, of air at rest: force -drag v; empty: none
+  // Shear, bending and drag act with their forces at the end of a step instead of its start
+  // (systems/implicit_forces.h).
+  bool implicit_forces = false;
   std::shared_ptr<const Collider> collider;  // null: nothing to collide with
 };
 
@@ -61,6 +67,13 @@ class Problem {
   double total_mass() const { return total_mass_; }
   const Eigen::Vector3d& gravity() const { return parts_.gravity; }
   const Springs* shear() const { return parts_.shear ? &*parts_.shear : nullptr; }
+  const Bending& bending() const { return parts_.bending; }
+  bool has_drag() const { return !parts_.drag.empty(); }
+  double drag(int vertex) const { return has_drag() ? parts_.drag[vertex] : 0; }
+  // Whether there are forces that are wanted implicit.
+  bool implicit_forces() const {
+    return parts_.implicit_forces && (parts_.shear || !parts_.bending.empty() || has_drag());
+  }
   const Collider* collider() const { return parts_.collider.get(); }
 
  private:

@@ -32,6 +32,7 @@ class TriangleCollider final : public Collider {
   void resolve(const Eigen::Matrix3Xd& x_start, const std::vector<double>& inverse_mass,
                Eigen::Matrix3Xd& x, WorkCounters& work) const override;
   int triangles() const override { return static_cast<int>(mesh_.triangles.size()); }
+  const TriangleMesh& mesh() const { return mesh_; }
 
   struct Nearest {
     Eigen::Vector3d point;   // on the mesh, m

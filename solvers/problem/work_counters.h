@@ -21,6 +21,7 @@ struct WorkCounters {
   std::int64_t spring_evaluations = 0;
   std::int64_t triangle_tests = 0;
   std::int64_t contacts = 0;
+  std::int64_t force_solves = 0;
   double factor_nonzeros = 0;
   double factor_flops = 0;
 
@@ -54,11 +55,13 @@ inline constexpr std::array work_counters{
     WorkCounterInfo{"line_search_steps", &WorkCounters::line_search_steps, "steps",
                     "shortened by a globalization"},
     WorkCounterInfo{"spring_evaluations", &WorkCounters::spring_evaluations, "springs",
-                    "shear springs evaluated, in forces or energies"},
+                    "shear springs and bending stencils evaluated, in forces or energies"},
     WorkCounterInfo{"triangle_tests", &WorkCounters::triangle_tests, "triangles",
                     "closest-point queries against single triangles"},
     WorkCounterInfo{"contacts", &WorkCounters::contacts, "vertices",
                     "moved by the collision filter"},
+    WorkCounterInfo{"force_solves", &WorkCounters::force_solves, "right-hand sides",
+                    "of the system of implicit shear, bending and drag, a coordinate each", true},
     WorkCounterInfo{"factor_nonzeros", &WorkCounters::factor_nonzeros, "entries",
                     "of L (LU: of L + U), last factorization"},
     WorkCounterInfo{"factor_flops", &WorkCounters::factor_flops, "operations",

@@ -28,7 +28,12 @@ Bdf2Stepper::Bdf2Stepper(std::shared_ptr<const Problem> problem,
   const Eigen::Index n = problem_->vertices();
   for (Positions* p : {&x_before_, &v_before_, &x_known_, &v_known_, &acceleration_})
     p->resize(3, n);
-  if (problem_->shear()) x_ahead_.resize(3, n);
+  if (problem_->shear() || !problem_->bending().empty() || problem_->implicit_forces())
+    x_ahead_.resize(3, n);
+  if (problem_->implicit_forces()) {
+    implicit_ = std::make_unique<ImplicitForces>(*problem_);
+    flight_velocity_.resize(3, n);
+  }
   if (blend_ > 0) {
     x_earlier_.resize(3, n);
     v_earlier_.resize(3, n);
@@ -47,23 +52,54 @@ void Bdf2Stepper::restart(const State& state, double h) {
 
 StepResult Bdf2Stepper::solve(const State& state, double h, Positions& x) {
   Lap lap(phases_wanted_);
-  acceleration_.setZero();
-  if (problem_->shear()) x_ahead_ = state.x + h * state.v;
-  add_acceleration(*problem_, x_ahead_, 1, acceleration_, work_);
-  for (const int vertex : problem_->pinned()) acceleration_.col(vertex).setZero();
   const bool known = h_before_ > 0 && h <= largest_growth * h_before_ && state.x == x_known_ &&
                      state.v == v_known_;
+  if (implicit_) {
+    if (!implicit_solve(state, h, known, x)) return no_forces();
+  } else {
+    explicit_solve(state, h, known, x);
+  }
+  for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
+  phases_.unconstrained += lap();
+  const StepResult result = filter_->apply(state.x, h, x, work_);
+  phases_.filter += lap();
+  return result;
+}
+
+void Bdf2Stepper::explicit_solve(const State& state, double h, bool known, Positions& x) {
+  acceleration_.setZero();
+  if (x_ahead_.cols() > 0) x_ahead_ = state.x + h * state.v;
+  add_acceleration(*problem_, x_ahead_, 1, acceleration_, work_);
+  if (problem_->has_drag()) add_drag(*problem_, state.v, 1, acceleration_);
+  for (const int vertex : problem_->pinned()) acceleration_.col(vertex).setZero();
   if (!known) restart(state, h);
   const Coefficients c = coefficients(h);
   // In one pass: the formula for x with the formula for v in it.
   x = c.now * (state.x + c.beta_h * state.v) + c.before * (x_before_ + c.beta_h * v_before_) +
       (c.beta_h * c.beta_h) * acceleration_;
   if (c.earlier != 0) x += c.earlier * (x_earlier_ + c.beta_h * v_earlier_);
-  for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
-  phases_.unconstrained += lap();
-  const StepResult result = filter_->apply(state.x, h, x, work_);
-  phases_.filter += lap();
-  return result;
+}
+
+// The formulas without acceleration are the flight; what forces at its end add is (beta h)^2 a.
+bool Bdf2Stepper::implicit_solve(const State& state, double h, bool known, Positions& x) {
+  if (!known) {  // the present acceleration, as backward Euler sees it
+    x = x_ahead_ = state.x + h * state.v;
+    if (!implicit_->advance(h, state.v, x, work_)) return false;
+    acceleration_ = (x - x_ahead_) / (h * h);
+    restart(state, h);
+  }
+  const Coefficients c = coefficients(h);
+  flight_velocity_ = c.now * state.v + c.before * v_before_;
+  x_ahead_ = c.now * state.x + c.before * x_before_;
+  if (c.earlier != 0) {
+    flight_velocity_ += c.earlier * v_earlier_;
+    x_ahead_ += c.earlier * x_earlier_;
+  }
+  x_ahead_ += c.beta_h * flight_velocity_;
+  x = x_ahead_;
+  if (!implicit_->advance(c.beta_h, flight_velocity_, x, work_)) return false;
+  acceleration_ = (x - x_ahead_) / (c.beta_h * c.beta_h);
+  return true;
 }
 
 StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Positions& filtered,

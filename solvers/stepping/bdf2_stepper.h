@@ -6,8 +6,9 @@
 // 4/3 and 2/3):
 //   x^{n+1} = alpha x^n + (1 - alpha) x^{n-1} + beta h v^{n+1},
 //   v^{n+1} = alpha v^n + (1 - alpha) v^{n-1} + beta h a,
-// the filter moves x^{n+1}, and the first line read backwards gives v^{n+1}. Shear is taken at
-// x^n + h v^n, which is second order and damps (x extrapolated from x^n and x^{n-1} excites).
+// the filter moves x^{n+1}, and the first line read backwards gives v^{n+1}. Shear and bending are
+// taken at x^n + h v^n, which is second order and damps (x extrapolated from x^n and x^{n-1}
+// excites), or at x^{n+1}, where the problem asks for it (ImplicitForces).
 //
 // With a blend b of BDF3 in it, at steps of one size,
 //   (3/2 + b/3) x^{n+1} = (2 + b) x^n - (1/2 + b) x^{n-1} + b/3 x^{n-2} + h v^{n+1},
@@ -46,16 +47,21 @@ class Bdf2Stepper final : public Stepper {
   StepResult end_velocities(const State& start, double h, const Positions& filtered,
                             const Positions& x, Positions& v) override;
   void restart(const State& state, double h);
+  // x^{n+1} before the filter, and acceleration_. known: the last step's history goes on.
+  void explicit_solve(const State& state, double h, bool known, Positions& x);
+  bool implicit_solve(const State& state, double h, bool known, Positions& x);
 
   std::unique_ptr<VelocityFilter> filter_;
   Positions x_before_, v_before_;  // x^{n-1}, v^{n-1}
   Positions x_known_, v_known_;    // x^n and v^n as the last step left them
   double h_before_ = 0;            // s; 0: no history
   double blend_;
-  Positions x_earlier_, v_earlier_;  // x^{n-2}, v^{n-2}, with a blend only
-  double h_earlier_ = 0;             // s, of the step from x^{n-2}; 0: it is not known
-  Positions acceleration_;           // m/s^2, at x_ahead_
-  Positions x_ahead_;                // x^n + h v^n, with shear only
+  Positions x_earlier_, v_earlier_;           // x^{n-2}, v^{n-2}, with a blend only
+  double h_earlier_ = 0;                      // s, of the step from x^{n-2}; 0: it is not known
+  Positions acceleration_;                    // m/s^2, at x_ahead_
+  Positions x_ahead_;                         // x^n + h v^n, with shear or bending only
+  std::unique_ptr<ImplicitForces> implicit_;  // null: forces at x_ahead_
+  Positions flight_velocity_;                 // with implicit forces only
   std::int64_t restarts_ = 0;
 };
 

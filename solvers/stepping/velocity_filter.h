@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "inextensible/stepping/stepper.h"
+#include "inextensible/systems/implicit_forces.h"
 
 namespace inextensible {
 
@@ -30,7 +31,7 @@ class VelocityFilter {
 };
 
 // v* = v - h W grad V(x), x0 = x + h v*, filter: the pipeline of the paper's section 4.4 with V
-// (gravity, shear) explicit.
+// explicit, or, where the problem asks for it, implicit (ImplicitForces).
 class FilterStepper final : public Stepper {
  public:
   FilterStepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter);
@@ -43,6 +44,10 @@ class FilterStepper final : public Stepper {
   StepResult solve(const State& state, double h, Positions& x) override;
 
   std::unique_ptr<VelocityFilter> filter_;
+  std::unique_ptr<ImplicitForces> implicit_;  // null: V explicit
 };
+
+// Of an unconstrained step whose forces could not be found.
+StepResult no_forces();
 
 }  // namespace inextensible

@@ -49,6 +49,7 @@ Positions constrained_acceleration(const Problem& problem, const State& state) {
   Positions a = Positions::Zero(3, problem.vertices());
   WorkCounters uncounted;
   add_acceleration(problem, state.x, 1, a, uncounted);
+  if (problem.has_drag()) add_drag(problem, state.v, 1, a);
   for (const int vertex : problem.pinned()) a.col(vertex).setZero();
   if (problem.constraints() == 0) return a;
 

@@ -87,6 +87,12 @@ void read_result(const Source& good, const std::string& text) {
   }
 }
 
+void read_answers(const Source& /*good*/, const std::string& text) {
+  const json answers = harness::read_answers(written(text));
+  std::ostringstream page;
+  harness::print_results_page(page, {}, {}, {{"spoilt", answers}});
+}
+
 void read_baseline(const Source& good, const std::string& text) {
   const harness::ComparedResult next = harness::read_compared({written(text)}),
                                 base = harness::read_compared({written(good.text)});
@@ -134,6 +140,7 @@ Source source_of(const std::string& path) {
   source.read = schema.starts_with("inextensible-baseline")    ? read_baseline
                 : schema.starts_with("inextensible-tuned")     ? read_tuned
                 : schema.starts_with("inextensible-reference") ? read_reference
+                : schema.starts_with("inextensible-answers")   ? read_answers
                 : !schema.empty()                              ? read_result
                 : document.contains("sweeps")                  ? read_suite
                                                                : read_gate;

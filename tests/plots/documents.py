@@ -115,6 +115,16 @@ def stability() -> Json:
             "legend": {"solvers": legend()["solvers"]}, "matrix": cells, "largest_steps": steps}
 
 
+def known_answers() -> Json:
+    """Two answers, SHAKE of second order, Jacobi without a value at the coarse step."""
+    answers = [{"name": name, "scene": "baton", "quantity": "distance", "exact": 0.0, "continuum": False} for name in ("place", "rate")]
+    rows = [{"answer": name, "solver": solver, "step": step, "value": step**order, "deviation": None if missing else step**order}
+            for name in ("place", "rate") for solver, order in (("shake", 2), ("jacobi", 1)) for step in (0.01, 0.005, 0.0025)
+            for missing in [solver == "jacobi" and step == 0.01]]
+    return {"schema": "inextensible-answers/1", "complete": True, "context": document([])["context"],
+            "legend": {"solvers": legend()["solvers"], "statuses": []}, "answers": answers, "rows": rows}
+
+
 # ---- drawn figures ------------------------------------------------------------------------------------------------
 
 def drawn(result: Json) -> dict[str, Figure]:

@@ -8,10 +8,11 @@ from matplotlib.colors import to_hex, to_rgba
 from matplotlib.patches import Rectangle
 
 import figures
-from documents import (STEPS, axes_with, curves, document, drawn, legend_labels, marks, point, resolution_sweep, stability,
+from documents import (STEPS, axes_with, curves, document, drawn, known_answers, legend_labels, marks, point, resolution_sweep, stability,
                        step_sweep, strain_sweep, strips, texts_outside, words_of)
 
-DOCUMENTS = {"strain": strain_sweep(), "resolution": resolution_sweep(), "step": step_sweep(), "stability": stability()}
+DOCUMENTS = {"strain": strain_sweep(), "resolution": resolution_sweep(), "step": step_sweep(), "stability": stability(),
+             "answers": known_answers()}
 
 
 def test_each_registered_figure_is_drawn_by_one_of_these_documents() -> None:
@@ -234,3 +235,17 @@ def test_outcomes_are_those_of_the_legend() -> None:
     figure = drawn(result)["matrix"]
     assert "v1 y1 !" in [text.get_text() for text in figure.axes[0].texts]
     assert "v = it survived, x = it refused, y = it diverged" in words_of(figure)
+
+
+# ---- known answers --------------------------------------------------------------------------------------------------
+
+def test_known_answers_have_a_panel_each_and_a_curve_for_each_solver() -> None:
+    pictures = drawn(known_answers())
+    assert list(pictures) == ["deviations"]
+    panels = [axes for axes in pictures["deviations"].axes if axes.get_xlabel() == "time step (s)"]
+    assert [axes.get_title(loc="left") for axes in panels] == ["baton: distance"] * 2
+    for axes in panels:
+        lengths = sorted(len(line.get_xdata()) for line in curves(axes))
+        assert lengths == [2, 3]
+        assert axes.get_xscale() == axes.get_yscale() == "log"
+    assert len(legend_labels(pictures["deviations"])) == 2

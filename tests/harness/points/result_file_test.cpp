@@ -121,6 +121,21 @@ TEST(ResultFile, TheSchemaRefusesAWrongStatusAndAnUnknownCounter) {
   EXPECT_NE(misfits(bad, "configs/result.schema.json"), "");
 }
 
+// Settings may be words or numbers; these two are one of them.
+TEST(ResultFile, WhoseLinearSolverIsANumberIsNone) {
+  const Suite suite = tiny_suite();
+  PointResult point;
+  point.linear_solver = "tridiagonal";
+  point.stiffness = 3;
+  json document = result_document(machine_context(), suite, {"bench"}, true, {point});
+  for (const auto& [key, wrong] :
+       {std::pair("linear_solver", json(0)), {"stiffness", json("much")}}) {
+    json spoilt = document;
+    spoilt["points"][0]["options"][key] = wrong;
+    EXPECT_NE(misfits(spoilt, "configs/result.schema.json").find(key), std::string::npos) << key;
+  }
+}
+
 TEST(ResultFile, NamesItsPlugins) {
   json document = result_document(machine_context(), tiny_suite(), {"bench"}, true, {});
   EXPECT_FALSE(document["context"].contains("plugins"));
@@ -154,11 +169,11 @@ TEST(ResultFile, CommittedResultsFitTheSchema) {
   for (const auto& entry : std::filesystem::directory_iterator(source("results"))) {
     if (entry.path().extension() != ".json") continue;
     const json document = read(entry.path());
-    const bool stability = document.at("schema") == "inextensible-stability/1";
-    EXPECT_EQ(misfits(document,
-                      stability ? "configs/stability.schema.json" : "configs/result.schema.json"),
-              "")
-        << entry.path();
+    const std::string kind = document.at("schema");
+    const std::string schema = kind == "inextensible-bench/1"       ? "result"
+                               : kind == "inextensible-stability/1" ? "stability"
+                                                                    : "answers";
+    EXPECT_EQ(misfits(document, "configs/" + schema + ".schema.json"), "") << entry.path();
   }
 }
 

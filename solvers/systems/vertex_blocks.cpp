@@ -1,4 +1,4 @@
-#include "inextensible/methods/vertex_blocks.h"
+#include "inextensible/systems/vertex_blocks.h"
 
 #include <algorithm>
 
@@ -18,6 +18,23 @@ SymmetricPattern vertex_graph(int n, const std::vector<Edge>& pairs) {
     graph.column_start.push_back(graph.entries());
   }
   return graph;
+}
+
+SymmetricPattern lower_triangle(const SymmetricPattern& graph) {
+  std::vector<std::vector<int>> columns(graph.n);
+  for (int j = 0; j < graph.n; ++j) {
+    for (int i = graph.column_start[j]; i < graph.column_start[j + 1]; ++i)
+      columns[graph.row_index[i]].push_back(j);
+  }
+  SymmetricPattern lower;
+  lower.n = graph.n;
+  lower.triangle = SymmetricPattern::Triangle::lower;
+  lower.column_start.push_back(0);
+  for (const auto& column : columns) {
+    lower.row_index.insert(lower.row_index.end(), column.begin(), column.end());
+    lower.column_start.push_back(lower.entries());
+  }
+  return lower;
 }
 
 SymmetricPattern expand(const SymmetricPattern& graph, SymmetricPattern::Triangle triangle) {

@@ -13,6 +13,9 @@ namespace inextensible {
 // neighbours of lower place.
 SymmetricPattern vertex_graph(int n, const std::vector<Edge>& pairs);
 
+// The same graph as the lower triangle.
+SymmetricPattern lower_triangle(const SymmetricPattern& graph);
+
 // The 3 x 3 block pattern of a vertex graph. The lower triangle is written as the transposed graph,
 // column by column.
 SymmetricPattern expand(const SymmetricPattern& graph, SymmetricPattern::Triangle triangle);

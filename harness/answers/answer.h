@@ -1,0 +1,53 @@
+// Figures that theory knows of a scene: what a run makes of them, and what they should be.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "harness/scenes/scene.h"
+#include "inextensible/stepping/stepper.h"
+
+namespace harness {
+
+// Looks at one run, and reads one figure off it.
+class Reading {
+ public:
+  virtual ~Reading() = default;
+  // After each accepted step of h seconds.
+  virtual void after(const inextensible::State& before, const inextensible::State& state,
+                     double h) = 0;
+  // Whether the value is known, so that the run may end.
+  virtual bool done() const { return false; }
+  // After the last step; NaN if the run does not tell.
+  virtual double value() const = 0;
+  // What the solver is to be observed by; null: nothing.
+  virtual inextensible::IterateObserver* observer() { return nullptr; }
+};
+
+// What a reading may use: the scene is built from these parameters.
+struct AnswerScene {
+  const SceneType& type;
+  SceneParameters parameters;  // complete
+  const Scene& scene;
+};
+
+struct KnownAnswer {
+  const char* name;  // a-z and _
+  const char* scene;
+  SceneParameters given;      // the others have the scene's own values
+  const char* quantity;       // what is read off, with its unit
+  const char* source;         // formula, author, year
+  double strain_limit;        // of the runs: permissible |strain|
+  std::vector<double> steps;  // s, each half of the one before
+  double (*exact)(const AnswerScene&);
+  std::unique_ptr<Reading> (*reading)(const AnswerScene&);
+  bool needs_multipliers = false;  // of methods that show their iterates alone (Stepper::observe)
+  bool continuum = false;  // exact for ever more vertices: runs tend to something else nearby
+};
+
+std::span<const KnownAnswer> known_answers();
+const KnownAnswer* find_answer(std::string_view name);
+
+}  // namespace harness

@@ -1,0 +1,264 @@
+#include "harness/answers/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <map>
+#include <utility>
+
+#include "harness/base/child_answer.h"
+#include "harness/base/clock.h"
+#include "harness/base/errors.h"
+#include "harness/base/fields_json.h"
+#include "harness/base/json_text.h"
+#include "harness/base/text.h"
+#include "harness/judge/measures.h"
+#include "harness/points/schema.h"
+#include "harness/run/calibration.h"
+#include "inextensible/registry.h"
+#include "inextensible/systems/constrained_acceleration.h"
+
+namespace harness {
+namespace {
+
+using inextensible::Backend;
+using inextensible::State;
+
+// An answer's scene, built.
+struct Built {
+  explicit Built(const KnownAnswer& answer)
+      : scene(make(answer)),
+        at{*find_scene(answer.scene), complete_parameters(*find_scene(answer.scene), answer.given),
+           scene} {}
+  Built(const Built&) = delete;
+  Built& operator=(const Built&) = delete;
+
+  static Scene make(const KnownAnswer& answer) {
+    const SceneType& type = *find_scene(answer.scene);
+    return type.build(complete_parameters(type, answer.given));
+  }
+
+  Scene scene;
+  AnswerScene at;
+};
+
+// One run, and how it ended.
+struct Ending {
+  PointStatus status = PointStatus::ok;
+  double strain = 0;  // the largest
+  double seconds = 0;
+  double value = unknown;
+  std::string detail;
+};
+
+Ending run_once(const KnownAnswer& answer, const Built& built, const Backend& backend,
+                const inextensible::Settings& settings, double step, double timeout) {
+  Ending ending;
+  const auto begin = Clock::now();
+  State state = built.scene.start;
+  if (built.scene.staggered && backend.velocities == inextensible::Velocities::half_step)
+    state = inextensible::start_half_step_back(*built.scene.problem, state, step);
+  const auto stepper = inextensible::make_stepper(backend.name, built.scene.problem,
+                                                  {answer.strain_limit, 1, settings, &state});
+  const auto reading = answer.reading(built.at);
+  stepper->observe(reading->observer());
+  const auto steps = std::lround(built.scene.duration / step);
+  for (long i = 0; i < steps && ending.status == PointStatus::ok && !reading->done(); ++i) {
+    const State before = state;
+    if (const auto result = stepper->advance(state, step); !result) {
+      ending.status = PointStatus::not_converged;
+      ending.detail = "refused at t = " + number_text(state.time, 3) + " s: " + result.detail;
+    } else {
+      reading->after(before, state, step);
+      ending.strain = std::max(
+          ending.strain, strain_range(*built.scene.problem, stepper->filtered_positions()).most);
+      if (!(ending.strain <= Calibration::cut_short * answer.strain_limit) &&
+          backend.knob == inextensible::Knob::stiffness) {
+        ending.status = PointStatus::strain_missed;
+        ending.detail = "strain " + number_text(ending.strain, 3);
+      } else if (i + 1 < steps && since(begin) > timeout) {
+        ending.status = PointStatus::timeout;
+        ending.detail = "longer than " + number_text(timeout) + " s";
+      }
+    }
+  }
+  stepper->observe(nullptr);
+  ending.seconds = since(begin);
+  if (ending.status == PointStatus::ok) {
+    ending.value = reading->value();
+    if (!std::isfinite(ending.value)) ending.detail = "the run does not tell";
+  }
+  return ending;
+}
+
+// N: the weight, or of what flies without one m v^2 / size, ten times over the limit.
+double first_stiffness(const KnownAnswer& answer, const Scene& scene) {
+  return 10 * energy_scale(scene) / scene.size / answer.strain_limit;
+}
+
+Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double step,
+                      double timeout) {
+  const Built built(answer);
+  if (backend.knob != inextensible::Knob::stiffness)
+    return run_once(answer, built, backend, {}, step, timeout);
+  Ending best;
+  best.status = PointStatus::skipped;
+  std::map<double, Ending> endings;
+  Calibration calibration(answer.strain_limit, [&](double stiffness) -> Calibration::Trial {
+    const Ending& e = endings[stiffness] =
+        run_once(answer, built, backend, {{"stiffness", stiffness}}, step, timeout);
+    return {e.status, e.strain, e.seconds, e.detail};
+  });
+  const auto found = calibration.find(first_stiffness(answer, built.scene));
+  if (found) return endings.at(*found);
+  best.detail = calibration.detail();
+  return best;
+}
+
+// The order of accuracy that deviations show, from step to step of half the size.
+class Order {
+ public:
+  // continuum: against what small steps lead to, from three steps, instead of the exact value.
+  // strain_limit: what it permits is no error of the method, below a few times of it there is no
+  // order to be seen.
+  Order(bool continuum, double strain_limit) : continuum_(continuum), least_(10 * strain_limit) {}
+
+  double next(double deviation) {
+    const double error = continuum_ ? deviation - std::exchange(last_, deviation) : deviation;
+    const double coarser = std::exchange(error_, error);
+    return std::abs(error) > least_ ? std::log2(std::abs(coarser / error)) : unknown;
+  }
+
+ private:
+  bool continuum_;
+  double least_;
+  double last_ = unknown, error_ = unknown;
+};
+
+nlohmann::json to_json(const Ending& ending) {
+  return {{"value", number(ending.value)}, {"detail", ending.detail}};
+}
+
+Ending ending_of(const nlohmann::json& object) {
+  Ending ending;
+  ending.value = number_of(object.at("value"));
+  ending.detail = object.at("detail");
+  return ending;
+}
+
+Ending run_apart(const KnownAnswer& answer, const Backend& backend, double step, double timeout) {
+  // Springs need several runs to find their stiffness.
+  const double all_runs = timeout * (Calibration::run_limit + 2);
+  ChildOutcome child = run_in_child(
+      [&](Heartbeat& heartbeat) {
+        heartbeat.restart();
+        return compact(to_json(run_calibrated(answer, backend, step, timeout)));
+      },
+      {all_runs, 0, nullptr});
+  if (const auto ending = harness::answer(child, ending_of)) return *ending;
+  Ending lost;
+  lost.detail = child.end == ChildOutcome::End::timed_out ? "a step did not end" : ending(child);
+  return lost;
+}
+
+}  // namespace
+
+std::vector<AnswerRun> plan_answers(const AnswerSelection& selection) {
+  std::vector<AnswerRun> plan;
+  for (const KnownAnswer& answer : known_answers()) {
+    if (selection.answer && !selection.answer->matches(answer.name)) continue;
+    const Scene scene = Built::make(answer);
+    for (const Backend& backend : inextensible::backends()) {
+      if (!backend.contestant || (selection.solver && !selection.solver->matches(backend.name)))
+        continue;
+      if (answer.needs_multipliers && !backend.shows_iterates) continue;
+      if (inextensible::part_not_taken(backend, *scene.problem)) continue;
+      plan.push_back({&answer, backend.name});
+    }
+  }
+  if (plan.empty())
+    throw UsageError("no known answer and contestant match (bench list answers, solvers)");
+  return plan;
+}
+
+double exact_value(const KnownAnswer& answer) { return answer.exact(Built(answer).at); }
+
+AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
+                          const AnswerEvents& events) {
+  AnswerOutcome outcome;
+  std::size_t all = 0;
+  for (const AnswerRun& run : plan) all += run.answer->steps.size();
+  for (const AnswerRun& run : plan) {
+    const double exact = exact_value(*run.answer);
+    Order order(run.answer->continuum, run.answer->strain_limit);
+    for (const double step : run.answer->steps) {
+      if (events.interrupted()) {
+        outcome.complete = false;
+        return outcome;
+      }
+      const Ending ending =
+          run_apart(*run.answer, *inextensible::find_backend(run.solver), step, timeout);
+      AnswerRow row;
+      row.answer = run.answer->name;
+      row.solver = run.solver;
+      row.step = step;
+      row.value = ending.value;
+      row.deviation = exact == 0 ? row.value : row.value / exact - 1;
+      row.order = order.next(row.deviation);
+      row.detail = ending.detail;
+      outcome.rows.push_back(row);
+      events.row(row, outcome.rows.size(), all);
+    }
+  }
+  return outcome;
+}
+
+nlohmann::json answers_document(nlohmann::json context, const std::vector<AnswerRun>& plan,
+                                const AnswerOutcome& outcome,
+                                const std::vector<std::string>& command) {
+  context["command"] = command;
+  nlohmann::json answers = nlohmann::json::array(), rows = nlohmann::json::array();
+  const KnownAnswer* last = nullptr;
+  for (const AnswerRun& run : plan) {
+    if (run.answer == std::exchange(last, run.answer)) continue;
+    const KnownAnswer& answer = *run.answer;
+    answers.push_back({{"name", answer.name},
+                       {"scene", answer.scene},
+                       {"scene_parameters", Built(answer).at.parameters},
+                       {"quantity", answer.quantity},
+                       {"source", answer.source},
+                       {"strain_limit", answer.strain_limit},
+                       {"exact", exact_value(answer)},
+                       {"continuum", answer.continuum}});
+  }
+  for (const AnswerRow& row : outcome.rows) {
+    nlohmann::json object;
+    write_fields(object, answer_row_fields, row);
+    rows.push_back(std::move(object));
+  }
+  return {{"schema", "inextensible-answers/1"}, {"complete", outcome.complete},
+          {"context", std::move(context)},      {"legend", legend()},
+          {"answers", std::move(answers)},      {"rows", std::move(rows)}};
+}
+
+void print_answers(std::ostream& out, const AnswerOutcome& outcome) {
+  std::string last;
+  for (const AnswerRow& row : outcome.rows) {
+    if (row.answer != std::exchange(last, row.answer)) {
+      const KnownAnswer& answer = *find_answer(row.answer);
+      out << '\n'
+          << answer.name << " (" << answer.scene << "): " << answer.quantity << "\n  exact "
+          << number_text(exact_value(answer), 6) << ", " << answer.source << '\n';
+    }
+    out << "  " << std::left << std::setw(26) << row.solver << "h = " << std::setw(12) << row.step;
+    if (std::isfinite(row.value)) {
+      out << std::setw(14) << number_text(row.value, 6);
+      if (std::isfinite(row.order)) out << "order " << number_text(row.order, 2);
+    } else {
+      out << row.detail;
+    }
+    out << '\n';
+  }
+}
+
+}  // namespace harness

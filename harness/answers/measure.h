@@ -1,0 +1,50 @@
+// Runs solvers against known answers.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "harness/answers/answer.h"
+#include "harness/base/pattern.h"
+#include "harness/points/answer_row.h"
+
+namespace harness {
+
+struct AnswerSelection {
+  std::optional<Pattern> answer, solver;  // must match the whole name
+  double timeout = 20;                    // s of wall time, of each run
+};
+
+struct AnswerEvents {
+  std::function<void(const AnswerRow&, std::size_t done, std::size_t all)> row = [](auto&&...) {};
+  std::function<bool()> interrupted = [] { return false; };
+};
+
+// A solver's runs at all steps of an answer, each in a child process, the coarsest step first.
+struct AnswerRun {
+  const KnownAnswer* answer;
+  std::string solver;
+};
+// All contestants that can do the answer's scene. Throws UsageError if nothing matches.
+std::vector<AnswerRun> plan_answers(const AnswerSelection& selection);
+
+struct AnswerOutcome {
+  std::vector<AnswerRow> rows;
+  bool complete = true;  // false: interrupted
+};
+AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
+                          const AnswerEvents& events);
+
+// What the answer's figure is in its scene.
+double exact_value(const KnownAnswer& answer);
+
+nlohmann::json answers_document(nlohmann::json context, const std::vector<AnswerRun>& plan,
+                                const AnswerOutcome& outcome,
+                                const std::vector<std::string>& command);
+void print_answers(std::ostream& out, const AnswerOutcome& outcome);
+
+}  // namespace harness

@@ -1,0 +1,181 @@
+// bench film: a scene as pictures, a film, or files for other programs.
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/json_text.h"
+#include "harness/base/text.h"
+#include "harness/cli/commands.h"
+#include "harness/cli/sweep_options.h"
+#include "harness/film/exports.h"
+#include "harness/points/suite.h"
+#include "harness/points/tuned.h"
+
+namespace harness {
+namespace {
+
+struct FilmOptions {
+  std::string scene = "drape", solver = "fast_projection", limits = "0.01", out;
+  std::vector<std::string> parameters;
+  std::string stills;
+  double step = 0.01, frames_per_second = 30;
+  int width = 480;
+};
+
+double number_in(const std::string& text, const std::string& option) {
+  std::size_t read = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &read);
+  } catch (const std::exception&) {
+    read = 0;
+  }
+  if (read == 0 || read != text.size())
+    throw UsageError(option + ": '" + text + "' is not a number");
+  return value;
+}
+
+std::vector<double> numbers_in(const std::string& text, const std::string& option) {
+  std::vector<double> all;
+  std::istringstream list(text);
+  for (std::string item; std::getline(list, item, ',');) all.push_back(number_in(item, option));
+  return all;
+}
+
+FilmSpec spec_of(const FilmOptions& given) {
+  FilmSpec spec;
+  const SceneType* type = find_scene(given.scene);
+  if (!type) throw unknown_name("scene", given.scene, names_of(scene_types()));
+  spec.scene = given.scene;
+  SceneParameters parameters;
+  for (const std::string& word : given.parameters) {
+    const auto equals = word.find('=');
+    if (equals == std::string::npos)
+      throw UsageError("--set " + word + ": must be NAME=NUMBER, a parameter of the scene");
+    parameters[word.substr(0, equals)] = number_in(word.substr(equals + 1), "--set " + word);
+  }
+  spec.parameters = complete_parameters(*type, parameters);
+  std::istringstream names(given.solver);
+  for (std::string name; std::getline(names, name, ',');) {
+    (void)checked_backend(name, "--solver");
+    spec.solvers.push_back({name, name});
+  }
+  if (spec.solvers.empty()) throw UsageError("--solver names none");
+  tune(spec.solvers, read_tuned("tuned.json"), type->kind(), {}, false);
+  spec.strain_limits = numbers_in(given.limits, "--strain");
+  for (const double limit : spec.strain_limits) {
+    if (!(limit > 0)) throw UsageError("--strain: a limit must be above 0");
+  }
+  if (spec.strain_limits.empty()) throw UsageError("--strain has no limit");
+  spec.step = given.step;
+  spec.frames_per_second = given.frames_per_second;
+  return spec;
+}
+
+void tell(const Take& take, std::size_t frame, std::size_t frames) {
+  if (isatty(STDERR_FILENO) != 1 && frame < frames) return;
+  std::cerr << (isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "") << take.label << " at "
+            << number_text(100 * take.strain_limit) << " %: frame " << frame << " of " << frames
+            << (frame == frames || isatty(STDERR_FILENO) != 1 ? "\n" : "");
+}
+
+// How long a frame took: what an engine asks for.
+void print_times(const Recording& recording) {
+  std::cout << "steps of 1/" << number_text(1 / recording.step, 6) << " s, "
+            << recording.steps_per_frame << " a frame; milliseconds a frame:\n";
+  for (const Take& take : recording.takes) {
+    std::vector<double> sorted = take.seconds;
+    std::sort(sorted.begin(), sorted.end());
+    std::cout << "  " << take.solver << ", " << number_text(100 * take.strain_limit) << " %: ";
+    if (!sorted.empty()) {
+      const auto at = [&sorted](double part) {
+        return number_text(
+            1e3 * sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1))],
+            3);
+      };
+      std::cout << "median " << at(0.5) << ", 99 of 100 below " << at(0.99) << ", worst " << at(1)
+                << "; largest strain "
+                << number_text(100 * *std::max_element(take.largest_strain.begin(),
+                                                       take.largest_strain.end()),
+                               3)
+                << " %";
+    }
+    std::cout << (take.detail.empty() ? "" : "; " + take.detail) << '\n';
+  }
+}
+
+// Positions go to the renderer in a folder of their own.
+int render(const FilmOptions& given, const Recording& recording) {
+  std::string folder = (std::filesystem::temp_directory_path() / "bench-film-XXXXXX").string();
+  if (!mkdtemp(folder.data())) throw FileError(folder, "make");
+  write_atomically(folder + "/film.json", compact(film_header(recording)) + "\n");
+  write_atomically(folder + "/film.f32", film_positions(recording));
+  std::vector<std::string> words{folder, given.out, "--width", std::to_string(given.width)};
+  if (!given.stills.empty()) words.insert(words.end(), {"--stills", given.stills});
+  const int code = draw(words, "film.py");
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
+  return code;
+}
+
+int film(const FilmOptions& given) {
+  const std::string extension = std::filesystem::path(given.out).extension().string();
+  using Writer = std::vector<std::string> (*)(const Recording&, const Take&, const std::string&,
+                                              const std::string&);
+  const std::vector<std::pair<std::string, Writer>> writers{
+      {".obj", write_obj}, {".pvd", write_vtk}, {".pc2", write_pc2}};
+  const auto writer = std::find_if(writers.begin(), writers.end(),
+                                   [&](const auto& w) { return w.first == extension; });
+  if (writer == writers.end() && extension != ".png" && extension != ".webp" && extension != ".mp4")
+    throw UsageError("--out '" + given.out +
+                     "': must end in .webp, .mp4, .png (stills), .obj, .pvd (ParaView) or .pc2 "
+                     "(Blender)");
+  const FilmSpec spec = spec_of(given);
+  check_writable(given.out);
+  catch_interrupts();
+  const Recording recording = record(spec, interrupted, tell);
+  print_times(recording);
+  if (writer == writers.end()) return render(given, recording);
+  const std::filesystem::path out(given.out);
+  const std::string folder = out.has_parent_path() ? out.parent_path().string() : ".";
+  for (const Take& take : recording.takes) {
+    const bool one = recording.takes.size() == 1;
+    const std::string name =
+        out.stem().string() + (one ? "" : "-" + take.solver + "-" + number_text(take.strain_limit));
+    for (const std::string& path : writer->second(recording, take, folder, name))
+      std::cout << path << '\n';
+  }
+  return success;
+}
+
+}  // namespace
+
+void add_film_command(const Command& program) {
+  const auto given = std::make_shared<FilmOptions>();
+  const Command command =
+      program.subcommand("film", "a scene as stills, a film, or files for ParaView and Blender");
+  command.option("--scene", given->scene, "which (bench list scenes)", "SCENE");
+  command.option("--set", given->parameters, "a parameter of the scene; repeatable", "NAME=NUMBER")
+      .repeatable();
+  command.option("--solver", given->solver, "one or several between commas, side by side", "NAMES");
+  command.option("--strain", given->limits, "permitted strain, one or several between commas",
+                 "LIMITS");
+  command.option("--step", given->step, "s; shortened to a whole part of a frame", "S").positive();
+  command.option("--fps", given->frames_per_second, "frames a second", "N").positive();
+  command.option("--stills", given->stills,
+                 "times of the pictures in a .png, s, between commas; default: four", "TIMES");
+  command.option("--width", given->width, "of each picture, pixels", "PIXELS").within(16, 4096);
+  command
+      .option("--out", given->out,
+              ".webp or .mp4: a film; .png: stills; .obj, .pvd, .pc2: for other programs", "FILE")
+      .required();
+  command.does([given] { return film(*given); });
+}
+
+}  // namespace harness

@@ -1,0 +1,169 @@
+#include "harness/film/recording.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "harness/base/clock.h"
+#include "harness/base/errors.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/text.h"
+#include "harness/run/runner.h"
+#include "inextensible/problem/triangle_collider.h"
+#include "inextensible/registry.h"
+#include "inextensible/systems/constrained_acceleration.h"
+
+namespace harness {
+namespace {
+
+using inextensible::State;
+
+Stage stage_of(const Scene& scene) {
+  Stage stage;
+  stage.triangles = scene.triangles;
+  for (const auto [a, b] : scene.problem->edges()) stage.edges.push_back({a, b});
+  stage.rest_length = scene.problem->rest_length();
+  const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(scene.problem->collider());
+  if (body) {
+    stage.body = body->mesh().vertices;
+    stage.body_triangles = body->mesh().triangles;
+  }
+  return stage;
+}
+
+// The settings given, and for springs the stiffness that a sweep would find.
+inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contestant, double limit,
+                                  double step, const std::function<bool()>& interrupted) {
+  const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
+  inextensible::Settings settings = contestant.settings;
+  if (backend.knob != inextensible::Knob::stiffness || settings.contains("stiffness"))
+    return settings;
+  PointSpec point;
+  point.sweep = "strain";
+  point.scene = spec.scene;
+  point.scene_parameters = spec.parameters;
+  point.solver = contestant.solver;
+  point.settings = settings;
+  point.strain_limit = limit;
+  point.step = step;
+  RunLimits limits;
+  limits.interrupted = interrupted;
+  const PointResult found = run_point(point, limits);
+  if (found.stiffness) settings["stiffness"] = *found.stiffness;
+  return settings;
+}
+
+struct Pace {
+  double step;  // s
+  int steps_per_frame;
+  std::size_t frames;
+};
+
+Take take_of(const Scene& scene, const Stage& stage, const Contestant& contestant, double limit,
+             const inextensible::Settings& settings, const Pace& pace,
+             const std::function<bool()>& interrupted,
+             const std::function<void(const Take&)>& told) {
+  Take take{contestant.name, label_of(contestant), limit, "", {}, {}, {}};
+  State state = scene.start;
+  if (scene.staggered && inextensible::find_backend(contestant.solver)->velocities ==
+                             inextensible::Velocities::half_step)
+    state = inextensible::start_half_step_back(*scene.problem, state, pace.step);
+  const auto stepper =
+      inextensible::make_stepper(contestant.solver, scene.problem, {limit, 1, settings, &state});
+  const auto keep = [&] {
+    take.frames.push_back(state.x);
+    const std::vector<double> all = strains(stage, state.x);
+    take.largest_strain.push_back(all.empty() ? 0 : *std::max_element(all.begin(), all.end()));
+    told(take);
+  };
+  keep();
+  while (take.frames.size() < pace.frames) {
+    const auto begin = Clock::now();
+    for (int i = 0; i < pace.steps_per_frame; ++i) {
+      if (interrupted()) throw Interrupted();
+      const auto result = stepper->advance(state, pace.step);
+      if (!result) {
+        take.detail = "gives up at t = " + number_text(state.time, 3) + " s: " + result.detail;
+        return take;
+      }
+    }
+    take.seconds.push_back(since(begin));
+    keep();
+  }
+  return take;
+}
+
+}  // namespace
+
+std::vector<double> strains(const Stage& stage, const inextensible::Positions& x) {
+  std::vector<double> all;
+  all.reserve(stage.edges.size());
+  for (std::size_t k = 0; k < stage.edges.size(); ++k) {
+    const auto [a, b] = stage.edges[k];
+    all.push_back(std::abs((x.col(b) - x.col(a)).norm() / stage.rest_length[k] - 1));
+  }
+  return all;
+}
+
+Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
+                 const std::function<void(const Take&, std::size_t, std::size_t)>& told) {
+  const Scene scene = find_scene(spec.scene)->build(spec.parameters);
+  Recording recording;
+  recording.spec = spec;
+  recording.steps_per_frame =
+      std::max(1, static_cast<int>(std::ceil(1 / (spec.frames_per_second * spec.step) - 1e-9)));
+  recording.step = 1 / (spec.frames_per_second * recording.steps_per_frame);
+  recording.stage = stage_of(scene);
+  const auto frames =
+      1 + static_cast<std::size_t>(std::floor(scene.duration * spec.frames_per_second + 1e-9));
+  for (const double limit : spec.strain_limits) {
+    for (const Contestant& contestant : spec.solvers) {
+      const auto settings = calibrated(spec, contestant, limit, recording.step, interrupted);
+      recording.takes.push_back(
+          take_of(scene, recording.stage, contestant, limit, settings,
+                  {recording.step, recording.steps_per_frame, frames}, interrupted,
+                  [&](const Take& take) { told(take, take.frames.size(), frames); }));
+    }
+  }
+  return recording;
+}
+
+nlohmann::json film_header(const Recording& recording) {
+  nlohmann::json takes = nlohmann::json::array(), body = nlohmann::json::array();
+  for (const Take& take : recording.takes)
+    takes.push_back({{"solver", take.solver},
+                     {"label", take.label},
+                     {"strain_limit", take.strain_limit},
+                     {"detail", take.detail},
+                     {"frames", take.frames.size()},
+                     {"largest_strain", take.largest_strain},
+                     {"seconds", take.seconds}});
+  for (const Eigen::Vector3d& v : recording.stage.body) body.push_back({v.x(), v.y(), v.z()});
+  return {{"schema", "inextensible-film/1"},
+          {"scene", recording.spec.scene},
+          {"scene_parameters", recording.spec.parameters},
+          {"step", recording.step},
+          {"frames_per_second", recording.spec.frames_per_second},
+          {"vertices", recording.takes.empty() ? 0 : recording.takes[0].frames[0].cols()},
+          {"triangles", recording.stage.triangles},
+          {"edges", recording.stage.edges},
+          {"rest_length", recording.stage.rest_length},
+          {"body", body},
+          {"body_triangles", recording.stage.body_triangles},
+          {"takes", takes}};
+}
+
+std::string film_positions(const Recording& recording) {
+  static_assert(std::endian::native == std::endian::little);
+  std::string bytes;
+  for (const Take& take : recording.takes) {
+    for (const inextensible::Positions& frame : take.frames) {
+      const Eigen::Matrix3Xf single = frame.cast<float>();
+      bytes.append(reinterpret_cast<const char*>(single.data()),
+                   static_cast<std::size_t>(single.size()) * sizeof(float));
+    }
+  }
+  return bytes;
+}
+
+}  // namespace harness

@@ -1,0 +1,64 @@
+// Runs to look at: the positions of a scene's vertices at the frames of a film, by several solvers.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "harness/points/contestant.h"
+#include "harness/scenes/scene.h"
+
+namespace harness {
+
+struct FilmSpec {
+  std::string scene;
+  SceneParameters parameters;  // complete
+  Contestants solvers;
+  std::vector<double> strain_limits;  // every solver at each
+  double step = 0.01;                 // s; shortened to a whole part of a frame
+  double frames_per_second = 30;
+};
+
+// One run.
+struct Take {
+  std::string solver, label;
+  double strain_limit = 0;
+  std::string detail;                           // why it ended early; empty: it did not
+  std::vector<inextensible::Positions> frames;  // from the start on
+  std::vector<double> largest_strain;           // of each frame, as delivered
+  std::vector<double> seconds;                  // of wall time, each frame but the first took
+};
+
+// What there is to see besides vertices.
+struct Stage {
+  std::vector<std::array<int, 3>> triangles;  // of a cloth; none of a chain
+  std::vector<std::array<int, 2>> edges;      // warp and weft
+  std::vector<double> rest_length;            // m
+  std::vector<Eigen::Vector3d> body;          // m; empty: no obstacle
+  std::vector<std::array<int, 3>> body_triangles;
+};
+
+struct Recording {
+  FilmSpec spec;
+  double step = 0;  // s, that runs took
+  int steps_per_frame = 1;
+  Stage stage;
+  std::vector<Take> takes;
+};
+
+// told: of every frame. Springs get the stiffness that keeps the limit. Throws Interrupted.
+Recording record(
+    const FilmSpec& spec, const std::function<bool()>& interrupted,
+    const std::function<void(const Take&, std::size_t frame, std::size_t frames)>& told);
+
+// |strain| of every edge of the stage.
+std::vector<double> strains(const Stage& stage, const inextensible::Positions& x);
+
+// For the renderer: all but positions, and these as 32-bit floats, little-endian, x y z of every
+// vertex of every frame of every take in turn.
+nlohmann::json film_header(const Recording& recording);
+std::string film_positions(const Recording& recording);
+
+}  // namespace harness

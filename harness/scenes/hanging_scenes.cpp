@@ -1,0 +1,201 @@
+#include "harness/scenes/hanging_scenes.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <stdexcept>
+
+#include "harness/scenes/meshes.h"
+
+namespace harness {
+namespace {
+
+using inextensible::Positions;
+
+// The Laguerre polynomials' recurrence x L_i = -(i + 1) L_{i+1} + (2 i + 1) L_i - i L_{i-1} as a
+// matrix: its eigenvalues are the zeros of L_N, ascending, and component i of an eigenvector is
+// L_i(x_k) up to a factor (Golub and Welsch 1969).
+Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> laguerre(int masses, int options) {
+  Eigen::VectorXd diagonal(masses), off(masses - 1);
+  for (int i = 0; i < masses; ++i) diagonal(i) = 2 * i + 1;
+  for (int i = 0; i + 1 < masses; ++i) off(i) = -(i + 1);
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(diagonal, off, options);
+  return solver;
+}
+
+int chosen_mode(const SceneParameters& p) {
+  const int mode = static_cast<int>(p.at("mode")), masses = static_cast<int>(p.at("n")) - 1;
+  if (mode > masses)
+    throw std::invalid_argument("mode " + std::to_string(mode) + " of a chain of " +
+                                std::to_string(masses) + " links");
+  return mode;
+}
+
+// Vertex 0 is the pin. Deflections in x are the free end's times L_i(x_k) cos(omega t), i counted
+// from the free end; heights follow from the links.
+Positions swung(const SceneParameters& p, double time) {
+  const int masses = static_cast<int>(p.at("n")) - 1, mode = chosen_mode(p);
+  const double link = row_link(p);
+  const auto laguerres = laguerre(masses, Eigen::ComputeEigenvectors);
+  const double omega = std::sqrt(p.at("gravity") / link * laguerres.eigenvalues()(mode - 1));
+  const Eigen::VectorXd shape = laguerres.eigenvectors().col(mode - 1);
+  const double aside = p.at("amplitude") * p.at("length") * std::cos(omega * time) / shape(0);
+  Positions x = Positions::Zero(3, masses + 1);
+  for (int i = 1; i <= masses; ++i) {
+    x(0, i) = aside * shape(masses - i);
+    const double across = x(0, i) - x(0, i - 1);
+    if (!(std::abs(across) < link))
+      throw std::invalid_argument("an amplitude of " + std::to_string(p.at("amplitude")) +
+                                  " lengths is not small: link " + std::to_string(i - 1) +
+                                  " would be horizontal");
+    x(1, i) = x(1, i - 1) - std::sqrt(link * link - across * across);
+  }
+  return x;
+}
+
+Scene build_hanging_chain(const SceneParameters& p) {
+  Draft chain = vertex_row(p);
+  chain.parts.pinned = {0};
+  chain.scene.start.x = swung(p, 0);
+  chain.scene.conserves_energy = true;
+  return finished(std::move(chain));
+}
+
+// Link i of N, from the left, leads in the direction (H, V_i), V_i = m g (i - (N + 1) / 2): what
+// bears the horizontal tension H at both ends and the weight between. H is where the links reach
+// from pin to pin.
+Positions catenary(const SceneParameters& p) {
+  const int n = static_cast<int>(p.at("n")), links = n - 1;
+  const double link = row_link(p), span = p.at("length") / p.at("slack");
+  const double weight = p.at("mass") / n * p.at("gravity");
+  const auto direction = [&](int i, double tension) {
+    return Eigen::Vector3d(tension, weight * (i - 0.5 * (links + 1)), 0).normalized();
+  };
+  double low = 1e-9 * weight, high = 1e9 * weight * links;
+  for (int k = 0; k < 200; ++k) {
+    const double tension = std::sqrt(low * high);
+    double reach = 0;
+    for (int i = 1; i <= links; ++i) reach += link * direction(i, tension).x();
+    (reach < span ? low : high) = tension;
+  }
+  Positions x = Positions::Zero(3, n);
+  for (int i = 1; i < n; ++i) x.col(i) = x.col(i - 1) + link * direction(i, low);
+  return x;
+}
+
+Scene build_catenary(const SceneParameters& p) {
+  Draft chain = vertex_row(p);
+  chain.parts.pinned = {0, static_cast<int>(p.at("n")) - 1};
+  chain.scene.start.x = catenary(p);
+  chain.scene.conserves_energy = true;
+  return finished(std::move(chain));
+}
+
+Positions hung(const SceneParameters& p, double /*time*/) { return catenary(p); }
+
+double whirling_rate(const SceneParameters& p) {  // rad/s
+  return p.at("rate") *
+         hanging_frequency(static_cast<int>(p.at("n")) - 1, row_link(p), p.at("gravity"), 1);
+}
+
+// Distances from the axis and depths below the pin, from the free end at the distance `radius`
+// upwards: each link leads along the force that keeps all below it on their circles.
+Eigen::Matrix2Xd whirled(const SceneParameters& p, double radius) {
+  const int n = static_cast<int>(p.at("n"));
+  const double link = row_link(p), omega = whirling_rate(p);
+  Eigen::Matrix2Xd at(2, n);
+  at.col(n - 1) << radius, 0;
+  Eigen::Vector2d force(0, 0);  // over one vertex's mass: inwards, upwards
+  for (int i = n - 1; i > 0; --i) {
+    force += Eigen::Vector2d(-omega * omega * at(0, i), p.at("gravity"));
+    at.col(i - 1) = at.col(i) + link * force.normalized();
+  }
+  at.row(1).array() -= at(1, 0);
+  return at;
+}
+
+// In the plane x-y, with the pin on the axis.
+Eigen::Matrix2Xd whirling_shape(const SceneParameters& p) {
+  double low = 1e-6 * p.at("length"), high = p.at("length");
+  for (int k = 0; k < 200; ++k) {
+    const double radius = 0.5 * (low + high);
+    (whirled(p, radius)(0, 0) < 0 ? low : high) = radius;
+  }
+  return whirled(p, 0.5 * (low + high));
+}
+
+Positions whirling(const SceneParameters& p, double time) {
+  const Eigen::Matrix2Xd shape = whirling_shape(p);
+  Positions x = Positions::Zero(3, shape.cols());
+  x.topRows(2) = shape;
+  x.col(0).setZero();
+  return Eigen::AngleAxisd(whirling_rate(p) * time, Eigen::Vector3d::UnitY()).toRotationMatrix() *
+         x;
+}
+
+Scene build_whirling_chain(const SceneParameters& p) {
+  Draft chain = vertex_row(p);
+  chain.parts.pinned = {0};
+  chain.scene.mirrors.clear();  // it leaves every plane
+  inextensible::State& start = chain.scene.start;
+  start.x = whirling(p, 0);
+  start.v.row(2) = -whirling_rate(p) * start.x.row(0);
+  chain.scene.conserves_energy = true;
+  return finished(std::move(chain));
+}
+
+// The first of every chain here; sizes to which eigenvectors are quick to find.
+std::vector<SceneParameterInfo> hanging_parameters(int n, std::vector<SceneParameterInfo> more) {
+  std::vector<SceneParameterInfo> all{{"n", static_cast<double>(n), "vertices", 3, 2000, true},
+                                      {"length", 1, "m", 0, 1e6},
+                                      {"mass", 1, "total, kg", 0, 1e6},
+                                      {"gravity", 9.81, "m/s^2, along -y", 0, 1e4}};
+  all.insert(all.end(), more.begin(), more.end());
+  all.push_back({"duration", 1, "s", 0, 1e4});
+  return all;
+}
+
+}  // namespace
+
+double hanging_frequency(int masses, double link, double gravity, int mode) {
+  return std::sqrt(gravity / link *
+                   laguerre(masses, Eigen::EigenvaluesOnly).eigenvalues()(mode - 1));
+}
+
+SceneType hanging_chain_scene() {
+  return {"hanging_chain",
+          "a chain that hangs and swings a little in one of its modes: its motion is known",
+          "n",
+          hanging_parameters(21, {{"mode", 1, "of its oscillations", 1, 1999, true},
+                                  {"amplitude", 1e-3, "of the free end, over the length", 0, 0.1}}),
+          build_hanging_chain,
+          count_row,
+          swung,
+          "chain"};
+}
+
+SceneType catenary_scene() {
+  return {"catenary",
+          "a chain that hangs at rest between two pins: it stays",
+          "n",
+          hanging_parameters(21, {{"slack", 1.2, "length over the distance of the pins", 1, 100}}),
+          build_catenary,
+          count_row,
+          hung,
+          "chain"};
+}
+
+SceneType whirling_chain_scene() {
+  return {
+      "whirling_chain",
+      "a chain that whirls about the vertical as a rigid curve: its motion is known",
+      "n",
+      hanging_parameters(21, {{"rate", 1.5, "of turning, over the slowest oscillation's", 1, 2.2}}),
+      build_whirling_chain,
+      count_row,
+      whirling,
+      "chain"};
+}
+
+}  // namespace harness

@@ -1,0 +1,38 @@
+// Bending as a quadratic energy,
+//   V(x) = 1/2 sum over stencils s of k_s |sum_i c_i x_i|^2,
+// whose gradient is a constant matrix times x. Where edges keep their length a thread's curvature
+// and a surface's mean curvature normal are linear in x, so that this is no linearization (Bergou,
+// Wardetzky, Harmon, Zorin and Grinspun 2006, "A Quadratic Bending Model for Inextensible
+// Surfaces").
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+namespace inextensible {
+
+struct BendingStencil {
+  std::array<int, 4> vertex;          // the last is the first again in a stencil of three
+  std::array<double, 4> coefficient;  // 1/m or 1, sum 0; 0 of what is no vertex of its own
+  double stiffness;                   // N m or N/m, so that the energy is in J
+};
+using Bending = std::vector<BendingStencil>;
+
+// Of a thread that goes through the vertices a, b, c in links of the lengths l_ab and l_bc (m),
+// with the flexural rigidity EI (N m^2): energy EI / 2 times squared curvature times the length
+// that falls to b.
+BendingStencil thread_bending(int a, int b, int c, double l_ab, double l_bc, double rigidity);
+
+// Isometric bending of a triangle mesh, flat at rest: one stencil an inner edge (Bergou et al.
+// 2006, eq. 5). x: 3 x n, m, where lengths and angles are those of rest. rigidity: of the plate, N
+// m, when it is rolled to a cylinder of equilateral triangles; squares cut along alternating
+// diagonals have that along their sides and half as much again across, squares all cut alike up to
+// three times. Throws std::invalid_argument for a triangle without area.
+Bending plate_bending(const std::vector<std::array<int, 3>>& triangles, const Eigen::Matrix3Xd& x,
+                      double rigidity);
+
+// J, at x (3 x n, m).
+double bending_energy(const Bending& bending, const Eigen::Matrix3Xd& x);
+
+}  // namespace inextensible

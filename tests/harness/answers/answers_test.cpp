@@ -1,0 +1,220 @@
+// Known answers: the formulas against published numbers, the scenes against the equations of
+// motion, the readings against exact motion, and solvers against all of them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "harness/answers/measure.h"
+#include "harness/scenes/folded_scenes.h"
+#include "harness/scenes/hanging_scenes.h"
+#include "harness/scenes/meshes.h"
+#include "inextensible/registry.h"
+#include "inextensible/systems/constrained_acceleration.h"
+
+namespace harness {
+namespace {
+
+using inextensible::Positions;
+using inextensible::State;
+
+constexpr double g = 9.81;
+
+struct Built {
+  explicit Built(const std::string& name, const SceneParameters& given = {})
+      : type(*find_scene(name)),
+        parameters(complete_parameters(type, given)),
+        scene(type.build(parameters)),
+        at{type, parameters, scene} {}
+  const SceneType& type;
+  SceneParameters parameters;
+  Scene scene;
+  AnswerScene at;
+};
+
+// What an answer's reading makes of the scene's exact motion.
+double read_off_exact_motion(const KnownAnswer& answer, double step) {
+  const Built built(answer.scene, answer.given);
+  const auto reading = answer.reading(built.at);
+  State before = built.scene.start, state = before;
+  for (int i = 1; i <= std::lround(built.scene.duration / step); ++i) {
+    before = state;
+    state.time = i * step;
+    state.x = built.type.exact(built.parameters, state.time);
+    state.v = (state.x - before.x) / step;
+    reading->after(before, state, step);
+  }
+  return reading->value();
+}
+
+TEST(HangingFrequency, IsThatOfTheLiterature) {
+  // Zeros of L_2 are 2 -+ sqrt 2: the double pendulum's.
+  EXPECT_NEAR(hanging_frequency(2, 1, 1, 1), std::sqrt(2 - std::sqrt(2.0)), 1e-12);
+  EXPECT_NEAR(hanging_frequency(2, 1, 1, 2), std::sqrt(2 + std::sqrt(2.0)), 1e-12);
+  // 79 links of 1 m in all.
+  EXPECT_NEAR(hanging_frequency(79, 1.0 / 79, g, 1), 3.7542, 1e-4);
+  EXPECT_NEAR(hanging_frequency(79, 1.0 / 79, g, 2), 8.618, 1e-3);
+  // Bernoulli's continuous chain: j_{0,k} / 2.
+  EXPECT_NEAR(hanging_frequency(1000, 1e-3, 1, 1), 0.5 * 2.404825557695773, 1e-3);
+}
+
+TEST(FoldedChain, FallsInTheTimesOfCalkinAndMarch) {
+  EXPECT_NEAR(folded_fall_time(0.2, 1, 1), 0.621042, 2e-6);
+  EXPECT_NEAR(folded_fall_time(0.9, 1, 1), 1.177013, 2e-6);
+  // The whole length, over free fall: the famous 85 %.
+  EXPECT_NEAR(folded_fall_time(1, 1, 1) / std::sqrt(2.0), 0.847213, 2e-5);
+}
+
+// Where the exact motion is known, its second derivative is what forces and tensions make of it.
+TEST(ScenesOfKnownMotion, ObeyTheEquationsOfMotion) {
+  const struct {
+    const char* scene;
+    SceneParameters given;
+    double tolerance;  // m/s^2
+  } cases[] = {
+      {"spinning_net", {{"n", 5}}, 1e-3},   {"baton", {{"n", 6}}, 1e-3},
+      {"hoop", {{"n", 7}}, 1e-3},           {"hoop", {{"n", 8}}, 1e-3},
+      {"catenary", {{"n", 9}}, 1e-6},       {"catenary", {{"n", 10}, {"slack", 3}}, 1e-6},
+      {"whirling_chain", {{"n", 8}}, 1e-3}, {"whirling_chain", {{"n", 30}}, 1e-3},
+      {"hanging_chain", {{"n", 9}}, 1e-3},  {"hanging_chain", {{"n", 9}, {"mode", 3}}, 1e-2}};
+  for (const auto& [name, given, tolerance] : cases) {
+    const Built built(name, given);
+    const auto at = [&built](double t) { return built.type.exact(built.parameters, t); };
+    EXPECT_LT((at(0) - built.scene.start.x).cwiseAbs().maxCoeff(), 1e-12) << name;
+    const double dt = 1e-4;
+    const Positions acceleration = (at(dt) - 2 * at(0) + at(-dt)) / (dt * dt);
+    EXPECT_LT(((at(dt) - at(-dt)) / (2 * dt) - built.scene.start.v).cwiseAbs().maxCoeff(), 1e-3)
+        << name;
+    EXPECT_LT((inextensible::constrained_acceleration(*built.scene.problem, built.scene.start) -
+               acceleration)
+                  .cwiseAbs()
+                  .maxCoeff(),
+              tolerance)
+        << name;
+  }
+}
+
+TEST(Readings, OfExactMotionAreTheExactValues) {
+  for (const KnownAnswer& answer : known_answers()) {
+    if (answer.continuum || answer.needs_multipliers) continue;
+    EXPECT_NEAR(read_off_exact_motion(answer, answer.steps.back()), exact_value(answer),
+                1e-5 * std::max(1.0, exact_value(answer)))
+        << answer.name;
+  }
+}
+
+// A net that is put on a ball edge by edge: the fourth corner of a cell is where three spheres
+// meet. Its central threads are great circles.
+Positions net_on_ball(int n, double link, double radius) {
+  Positions x(3, n * n);
+  const int c = n / 2;
+  const auto at = [&x, n](int i, int j) { return x.col(i * n + j); };
+  const double turn = 2 * std::asin(0.5 * link / radius);
+  for (int k = 0; k < n; ++k) {
+    const double angle = (k - c) * turn;
+    at(c, k) << radius * std::sin(angle), radius * std::cos(angle), 0;
+    at(k, c) << 0, radius * std::cos(angle), radius * std::sin(angle);
+  }
+  for (const int down : {-1, 1}) {
+    for (const int right : {-1, 1}) {
+      for (int i = c + down; i >= 0 && i < n; i += down) {
+        for (int j = c + right; j >= 0 && j < n; j += right) {
+          // On the ball and as far from a as from b: in the plane through the centre whose normal
+          // is a - b. There the two points `link` from both are each other's mirror images in the
+          // line from the centre through the middle of a and b, and one of them is the corner
+          // across.
+          const Eigen::Vector3d a = at(i - down, j), b = at(i, j - right);
+          const Eigen::Vector3d across = at(i - down, j - right), line = (a + b).normalized();
+          at(i, j) = 2 * line * line.dot(across) - across;
+        }
+      }
+    }
+  }
+  return x;
+}
+
+TEST(Fishnet, OfADiscreteNetComesCloserToTheAngleAsItIsRefined) {
+  double coarse = 0;
+  for (const int n : {41, 81}) {
+    const Built built("drape", {{"n", n}, {"side", 0.5}, {"radius", 0.3}, {"subdivisions", 1}});
+    const double link = square_link(built.parameters), radius = 0.3;
+    State state = built.scene.start;
+    state.x = net_on_ball(n, link, radius);
+    for (std::size_t k = 0; k < built.scene.problem->edges().size(); ++k) {
+      const auto [a, b] = built.scene.problem->edges()[k];
+      ASSERT_NEAR((state.x.col(a) - state.x.col(b)).norm(), link, 1e-9);
+    }
+    const auto reading = find_answer("fishnet")->reading(built.at);
+    reading->after(state, state, 1);
+    const double deviation = reading->value();
+    EXPECT_LT(deviation, 1) << n;
+    if (n == 81) {
+      EXPECT_LT(deviation, 0.6 * coarse) << coarse;
+    }
+    coarse = deviation;
+    // Strained by a tenth along one thread's direction, it is a net no more.
+    state.x.row(0) *= 1.1;
+    state.x.row(1) *= 0.9;
+    state.x.row(2) *= 0.9;
+    const auto strained = find_answer("fishnet")->reading(built.at);
+    strained->after(state, state, 1);
+    EXPECT_GT(strained->value(), 3 * deviation);
+  }
+}
+
+// The rows of one answer by one solver.
+std::vector<AnswerRow> measured(const char* answer, const char* solver) {
+  AnswerSelection selection;
+  selection.answer = Pattern("answer", answer);
+  selection.solver = Pattern("solver", solver);
+  return run_answers(plan_answers(selection), 20, {}).rows;
+}
+
+TEST(KnownAnswers, AreMetWithTheOrdersOfTheMethods) {
+  const struct {
+    const char *answer, *solver;
+    double order, deviation;  // of the finest step; at most
+  } cases[] = {{"baton_place", "fast_projection", 1, 0.1},
+               {"baton_place", "rattle", 2, 1e-4},
+               {"baton_rate", "fast_projection_bdf2", 2, 1e-3},
+               {"swing_frequency", "rattle", 2, 1e-4},
+               {"whirl_place", "rattle", 2, 1e-3},
+               {"catenary_place", "fast_projection", 2, 1e-4}};
+  for (const auto& [answer, solver, order, deviation] : cases) {
+    const auto rows = measured(answer, solver);
+    ASSERT_FALSE(rows.empty());
+    EXPECT_LT(std::abs(rows.back().deviation), deviation) << answer << ", " << solver;
+    EXPECT_NEAR(rows.back().order, order, 0.3) << answer << ", " << solver;
+  }
+}
+
+TEST(KnownAnswers, OfTheFoldedChainComeCloserWithMoreLinks) {
+  for (const auto& [answer, most] : {std::pair("fold_fall_time", 0.02), {"whip_speed", 0.1}}) {
+    const auto rows = measured(answer, "rattle");
+    EXPECT_LT(std::abs(rows.back().deviation), most) << answer << ": " << rows.back().detail;
+  }
+}
+
+// The multipliers of fast projection, found along the iterates' directions, tend to the tensions.
+TEST(KnownAnswers, MultipliersAreTensions) {
+  const auto rows = measured("catenary_tensions", "fast_projection");
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_LT(rows[3].deviation, 0.05);
+  EXPECT_LT(rows[3].deviation, rows[0].deviation);
+}
+
+TEST(KnownAnswers, SayWhyThereIsNone) {
+  const KnownAnswer& answer = *find_answer("baton_place");
+  AnswerSelection selection;
+  selection.answer = Pattern("answer", answer.name);
+  selection.solver = Pattern("solver", "jacobi");
+  const auto outcome = run_answers(plan_answers(selection), 1e-9, {});  // s: no run is as fast
+  ASSERT_EQ(outcome.rows.size(), answer.steps.size());
+  for (const AnswerRow& row : outcome.rows) {
+    EXPECT_TRUE(std::isnan(row.value));
+    EXPECT_NE(row.detail, "");
+  }
+}
+
+}  // namespace
+}  // namespace harness

@@ -1,0 +1,163 @@
+// Bending: energies of shapes whose curvature is known, and forces against the energy's
+// differences.
+#include "inextensible/problem/bending.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "inextensible/problem/forces.h"
+
+namespace inextensible {
+namespace {
+
+using Eigen::Vector3d;
+
+// n x n vertices of a flat sheet: equilateral triangles, or squares cut along alternating
+// diagonals.
+struct Sheet {
+  Positions x;
+  std::vector<std::array<int, 3>> triangles;
+  double area;
+};
+Sheet sheet(int n, bool equilateral) {
+  const double l = 1.0 / (n - 1), row = equilateral ? std::sqrt(0.75) * l : l;
+  Sheet s{Positions(3, n * n), {}, (n - 1) * l * (n - 1) * row};
+  const auto at = [n](int i, int j) { return i * n + j; };
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      s.x.col(at(i, j)) << j * l + (equilateral ? 0.5 * i * l : 0), i * row, 0;
+      if (i + 1 == n || j + 1 == n) continue;
+      const int a = at(i, j), b = at(i, j + 1), c = at(i + 1, j), d = at(i + 1, j + 1);
+      if (!equilateral && (i + j) % 2 == 0) {
+        s.triangles.insert(s.triangles.end(), {{a, b, d}, {a, d, c}});
+      } else {
+        s.triangles.insert(s.triangles.end(), {{a, b, c}, {b, d, c}});
+      }
+    }
+  }
+  return s;
+}
+
+// The energy of a sheet rolled to a cylinder, its axis turned by `angle`, over that of the
+// continuum.
+double rolled(int n, bool equilateral, double angle) {
+  constexpr double radius = 0.8, rigidity = 0.02;
+  const Sheet flat = sheet(n, equilateral);
+  const Bending bending = plate_bending(flat.triangles, flat.x, rigidity);
+  Positions x = Eigen::AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix() * flat.x;
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    const double s = x(0, i) / radius;
+    x.col(i) << radius * std::sin(s), x(1, i), radius * (1 - std::cos(s));
+  }
+  return bending_energy(bending, x) / (0.5 * rigidity / (radius * radius) * flat.area);
+}
+
+TEST(ThreadBending, OfACircleIsHalfItsRigidityTimesCurvatureSquaredTimesLength) {
+  constexpr double radius = 0.7, rigidity = 0.3;
+  double last = 0;
+  for (const int n : {20, 40}) {
+    const double sector = 2 * std::numbers::pi / n, link = 2 * radius * std::sin(0.5 * sector);
+    Positions x(3, n);
+    Bending bending;
+    for (int i = 0; i < n; ++i) {
+      x.col(i) << radius * std::cos(sector * i), radius * std::sin(sector * i), 0.2;
+      bending.push_back(thread_bending(i, (i + 1) % n, (i + 2) % n, link, link, rigidity));
+    }
+    const double exact = 0.5 * rigidity / (radius * radius) * 2 * std::numbers::pi * radius;
+    const double error = std::abs(bending_energy(bending, x) / exact - 1);
+    if (n == 40) {
+      EXPECT_NEAR(std::log2(last / error), 2, 0.1);
+    }
+    last = error;
+  }
+  EXPECT_LT(last, 0.01);
+}
+
+TEST(ThreadBending, TakesLinksOfUnlikeLength) {
+  // On a parabola y = x^2 / 2, whose curvature at 0 is 1.
+  const double a = 1e-3, b = 2e-3;
+  Positions x(3, 3);
+  x.col(0) << -a, 0.5 * a * a, 0;
+  x.col(1).setZero();
+  x.col(2) << b, 0.5 * b * b, 0;
+  const Bending bending{thread_bending(0, 1, 2, x.col(0).norm(), x.col(2).norm(), 1)};
+  EXPECT_NEAR(bending_energy(bending, x), 0.5 * 0.5 * (a + b), 1e-3 * (a + b));
+}
+
+// Free edges bear no stencil of their own: a strip along them is missing.
+TEST(PlateBending, OfACylinderIsHalfItsRigidityTimesCurvatureSquaredTimesArea) {
+  for (const double angle : {0.0, 0.3, 0.7}) {
+    EXPECT_NEAR(rolled(21, true, angle), 1, 3.0 / 21) << angle;
+    EXPECT_NEAR(rolled(81, true, angle), 1, 3.0 / 81) << angle;
+  }
+  EXPECT_NEAR(rolled(81, false, 0), 1, 3.0 / 81);
+  for (const double angle : {0.3, 0.7}) {
+    EXPECT_GT(rolled(81, false, angle), 1) << angle;
+    EXPECT_LT(rolled(81, false, angle), 1.55) << angle;
+  }
+}
+
+TEST(PlateBending, OfAFlatSheetIsNothingHoweverItLies) {
+  const Sheet flat = sheet(6, false);
+  const Bending bending = plate_bending(flat.triangles, flat.x, 1);
+  EXPECT_EQ(bending.size(), 5u * 5 + 2 * 5 * 4);  // diagonals and inner sides
+  Positions x = Eigen::AngleAxisd(0.8, Vector3d(1, 2, 3).normalized()).toRotationMatrix() * flat.x;
+  x.colwise() += Vector3d(0.3, -2, 5);
+  EXPECT_LT(bending_energy(bending, x), 1e-24);
+  EXPECT_THROW(plate_bending({{0, 1, 2}}, Positions::Zero(3, 3), 1), std::invalid_argument);
+}
+
+// Shear, bending and gravity together, on a sheet crumpled at random.
+TEST(Forces, AreTheEnergysDifferences) {
+  const unsigned seed = 7;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  const Sheet flat = sheet(4, false);
+  ProblemParts parts;
+  parts.bending = plate_bending(flat.triangles, flat.x, 0.1);
+  parts.bending.push_back(thread_bending(0, 1, 2, 0.3, 0.35, 0.2));
+  parts.shear = Springs{{{0, 5}, {1, 4}}, {0.4, 0.5}, {3, 2}};
+  for (int i = 0; i < 16; ++i) parts.mass.push_back(0.5 + 0.1 * i);
+  parts.pinned = {3};
+  const Problem problem(parts);
+  Positions x = flat.x;
+  for (Eigen::Index i = 0; i < x.size(); ++i) x(i) += 0.1 * normal(random);
+  WorkCounters work;
+  Positions force = Positions::Zero(3, 16), still = force;
+  add_forces(problem, x, still, force, work);
+  EXPECT_EQ(work.spring_evaluations, static_cast<std::int64_t>(2 + parts.bending.size()));
+  const double d = 1e-6;
+  for (int i = 0; i < 16; ++i) {
+    if (i == 3) continue;
+    for (int axis = 0; axis < 3; ++axis) {
+      Positions up = x, down = x;
+      up(axis, i) += d;
+      down(axis, i) -= d;
+      EXPECT_NEAR(force(axis, i),
+                  -(potential_energy(problem, up) - potential_energy(problem, down)) / (2 * d),
+                  1e-7);
+    }
+  }
+}
+
+TEST(Problem, RefusesBendingAndDragThatFitNoVertex) {
+  ProblemParts parts;
+  parts.mass = {1, 1, 1};
+  parts.bending = {thread_bending(0, 1, 3, 1, 1, 1)};
+  EXPECT_THROW(Problem{parts}, std::invalid_argument);
+  parts.bending = {thread_bending(0, 1, 2, 1, 1, -1)};
+  EXPECT_THROW(Problem{parts}, std::invalid_argument);
+  parts.bending.clear();
+  parts.drag = {1, 1};
+  EXPECT_THROW(Problem{parts}, std::invalid_argument);
+  parts.drag = {1, 1, -1};
+  EXPECT_THROW(Problem{parts}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace inextensible

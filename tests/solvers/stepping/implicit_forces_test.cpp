@@ -1,0 +1,241 @@
+// Shear, bending and drag at the end of the step: against closed forms, and against each other.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "inextensible/problem/forces.h"
+#include "inextensible/registry.h"
+
+namespace inextensible {
+namespace {
+
+constexpr double g = 9.81;
+
+struct Start {
+  std::shared_ptr<const Problem> problem;
+  State state;
+};
+
+// A horizontal thread in n vertices, clamped at the first two, length 1 m from the middle of its
+// first link on; Gamma = rho g L^3 / EI (Romero et al. 2021; Peirce 1930). Its end vertex is half a
+// link's mass, so that every link bears what lies beyond its middle.
+Start cantilever(int n, double gamma, bool implicit) {
+  const double link = 1 / (n - 1.5), density = 0.1, rigidity = density * g / gamma;
+  ProblemParts parts;
+  parts.mass.assign(n, density * link);
+  parts.mass.back() *= 0.5;
+  parts.pinned = {0, 1};
+  for (int i = 1; i + 1 < n; ++i) {
+    parts.edges.push_back({i, i + 1});
+    parts.rest_length.push_back(link);
+    parts.bending.push_back(thread_bending(i - 1, i, i + 1, link, link, rigidity));
+  }
+  for (const double m : parts.mass) parts.drag.push_back(6 * m);
+  parts.implicit_forces = implicit;
+  Start start;
+  start.state.x.setZero(3, n);
+  start.state.v.setZero(3, n);
+  for (int i = 0; i < n; ++i) start.state.x(0, i) = link * (i - 0.5);
+  start.problem = std::make_shared<const Problem>(std::move(parts));
+  return start;
+}
+
+void run(Stepper& stepper, State& state, double h, double time) {
+  for (int i = 0; i < std::lround(time / h); ++i) {
+    const StepResult result = stepper.advance(state, h);
+    ASSERT_TRUE(result) << to_string(result.status) << ", " << result.detail << ", step " << i;
+  }
+}
+
+TEST(Cantilever, HangsAsTheHeavyElasticaDoes) {
+  const struct {
+    double gamma, reach, drop;  // of the tip, over the length: EI th'' = -rho g (L - s) cos th
+  } curve[] = {{1, 0.99125, 0.12347}, {10, 0.65635, 0.70020}, {100, 0.15922, 0.93752}};
+  for (const auto& [gamma, reach, drop] : curve) {
+    for (const int n : {21, 41, 81}) {
+      Start start = cantilever(n, gamma, true);
+      const auto stepper = make_stepper("fast_projection", start.problem, {1e-6, 1, {}});
+      run(*stepper, start.state, 0.02, 15);
+      SCOPED_TRACE("Gamma " + std::to_string(gamma) + ", " + std::to_string(n) + " vertices");
+      EXPECT_NEAR(start.state.x(0, n - 1), reach, 0.02 * std::max(reach, drop));
+      EXPECT_NEAR(-start.state.x(1, n - 1), drop, 0.02 * std::max(reach, drop));
+      EXPECT_LT(start.state.v.cwiseAbs().maxCoeff(), 1e-4);
+    }
+  }
+}
+
+TEST(Cantilever, HangsAlikeByMethodsThatTakeBendingByOtherRoutes) {
+  const int n = 31;
+  for (const char* solver : {"implicit_springs", "fast_projection_bdf2", "icd", "shake"}) {
+    Start start = cantilever(n, 10, true);
+    Settings settings;
+    if (solver == std::string("implicit_springs")) settings["stiffness"] = 1e5;
+    const auto stepper = make_stepper(solver, start.problem, {1e-6, 1, settings});
+    run(*stepper, start.state, solver == std::string("shake") ? 0.0025 : 0.02, 15);
+    EXPECT_NEAR(start.state.x(0, n - 1), 0.65635, 0.015) << solver;
+    EXPECT_NEAR(-start.state.x(1, n - 1), 0.70020, 0.015) << solver;
+  }
+}
+
+// A square of cloth of n x n vertices, pinned at two corners, stiff enough in shear and bending to
+// matter.
+Start cloth(int n, double shear, bool implicit) {
+  const double link = 1.0 / (n - 1);
+  ProblemParts parts;
+  parts.mass.assign(n * n, 0.2 / (n * n));
+  parts.drag.assign(n * n, 0.1 / (n * n));
+  parts.pinned = {0, n - 1};
+  parts.shear.emplace();
+  Start start;
+  start.state.x.resize(3, n * n);
+  start.state.v.setZero(3, n * n);
+  const auto at = [n](int i, int j) { return i * n + j; };
+  const auto spring = [&](int a, int b) {
+    parts.shear->edges.push_back({a, b});
+    parts.shear->rest_length.push_back(std::sqrt(2.0) * link);
+    parts.shear->stiffness.push_back(shear);
+  };
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      start.state.x.col(at(i, j)) << j * link, 0, i * link;
+      const auto thread = [&](int a, int b) {
+        parts.edges.push_back({a, b});
+        parts.rest_length.push_back(link);
+      };
+      if (j + 1 < n && i > 0)
+        thread(at(i, j), at(i, j + 1));  // the pinned row is free: no taut row
+      if (i + 1 < n) thread(at(i, j), at(i + 1, j));
+      if (i + 1 < n && j + 1 < n) {
+        spring(at(i, j), at(i + 1, j + 1));
+        spring(at(i, j + 1), at(i + 1, j));
+      }
+      if (j + 2 < n)
+        parts.bending.push_back(
+            thread_bending(at(i, j), at(i, j + 1), at(i, j + 2), link, link, 1e-3 * link));
+      if (i + 2 < n)
+        parts.bending.push_back(
+            thread_bending(at(i, j), at(i + 1, j), at(i + 2, j), link, link, 1e-3 * link));
+    }
+  }
+  parts.implicit_forces = implicit;
+  start.problem = std::make_shared<const Problem>(std::move(parts));
+  return start;
+}
+
+Positions after(const char* solver, const Start& start, double h, double time) {
+  const auto stepper = make_stepper(solver, start.problem, {1e-9, 1, {}});
+  State state = start.state;
+  run(*stepper, state, h, time);
+  return state.x;
+}
+
+TEST(ImplicitForces, HaveTheOrderOfTheirStepper) {
+  const Start start = cloth(5, 5, true);
+  for (const auto& [solver, order] :
+       {std::pair("fast_projection", 1.0), {"fast_projection_bdf2", 2.0}}) {
+    const Positions a = after(solver, start, 1.0 / 800, 0.2),
+                    b = after(solver, start, 1.0 / 1600, 0.2),
+                    c = after(solver, start, 1.0 / 3200, 0.2);
+    EXPECT_NEAR(std::log2((a - b).norm() / (b - c).norm()), order, 0.25) << solver;
+  }
+}
+
+TEST(ImplicitForces, TendToTheSameMotionAsExplicitOnes) {
+  const double h = 1.0 / 6400, time = 0.2;
+  const Positions x = after("fast_projection_bdf2", cloth(5, 5, true), h, time);
+  const Positions y = after("fast_projection_bdf2", cloth(5, 5, false), h, time);
+  const Positions rattle = after("rattle", cloth(5, 5, false), h, time);
+  EXPECT_LT((x - y).cwiseAbs().maxCoeff(), 3e-5);
+  EXPECT_LT((x - rattle).cwiseAbs().maxCoeff(), 3e-5);
+  const double moved = (x - cloth(5, 5, true).state.x).cwiseAbs().maxCoeff();
+  EXPECT_GT(moved, 0.05);
+}
+
+TEST(ImplicitForces, AreStableWhereExplicitOnesBlowUp) {
+  for (const char* solver :
+       {"fast_projection", "fast_projection_bdf2", "gauss_seidel", "jacobi", "icd"}) {
+    const Start start = cloth(7, 50, true);  // explicit ones would want 1/100 s
+    const auto stepper = make_stepper(solver, start.problem, {0.01, 1, {}});
+    State state = start.state;
+    const double begin = potential_energy(*start.problem, state.x);
+    for (int i = 0; i < 50; ++i) {
+      ASSERT_TRUE(stepper->advance(state, 0.04)) << solver << ", step " << i;
+      ASSERT_LT(potential_energy(*start.problem, state.x), begin + 0.05 * 0.2 * g) << solver;
+    }
+  }
+  const Start start = cloth(7, 50, false);
+  const auto stepper = make_stepper("fast_projection", start.problem, {0.01, 1, {}});
+  State state = start.state;
+  bool blown = false;
+  for (int i = 0; i < 50 && !blown; ++i) {
+    blown = !stepper->advance(state, 0.04) ||
+            !(potential_energy(*start.problem, state.x) < 0.05 * 0.2 * g);
+  }
+  EXPECT_TRUE(blown);
+}
+
+// One vertex on a spring: the step is that of backward Euler, to the last digits.
+TEST(ImplicitForces, DampASpringAsBackwardEulerDoes) {
+  ProblemParts parts;
+  parts.mass = {1, 0.5};
+  parts.pinned = {0};
+  parts.gravity.setZero();
+  parts.shear = Springs{{{0, 1}}, {1}, {2000}};
+  parts.implicit_forces = true;
+  const auto problem = std::make_shared<const Problem>(parts);
+  State state;
+  state.x.setZero(3, 2);
+  state.v.setZero(3, 2);
+  state.x(0, 1) = 1.1;
+  state.v(0, 1) = 0.3;
+  const double h = 0.05, flight = 0.1 + h * 0.3;
+  ASSERT_TRUE(make_stepper("fast_projection", problem, {0.01, 1, {}})->advance(state, h));
+  EXPECT_NEAR(state.x(0, 1) - 1, flight / (1 + h * h * 2000 / 0.5), 1e-14);
+}
+
+TEST(Drag, LetsFallAtTheSpeedAtWhichItBearsTheWeight) {
+  for (const bool implicit : {false, true}) {
+    for (const char* solver :
+         {"fast_projection", "fast_projection_bdf2", "rattle", "implicit_springs"}) {
+      if (implicit && solver == std::string("rattle")) continue;
+      ProblemParts parts;
+      parts.mass = {0.5, 2};
+      parts.drag = {1, 4};
+      parts.implicit_forces = implicit;
+      State state;
+      state.x.setZero(3, 2);
+      state.v.setZero(3, 2);
+      const auto stepper =
+          make_stepper(solver, std::make_shared<const Problem>(parts), {0.01, 1, {}});
+      run(*stepper, state, 0.01, 8);
+      for (int i = 0; i < 2; ++i) EXPECT_NEAR(state.v(1, i), -0.5 * g, 1e-5) << solver << implicit;
+    }
+  }
+}
+
+TEST(ImplicitForces, AreRefusedByMethodsThatHaveNone) {
+  EXPECT_THROW(make_stepper("rattle", cloth(4, 1, true).problem, {0.01, 1, {}}),
+               std::invalid_argument);
+}
+
+TEST(ImplicitForces, CostNothingWhereThereIsNothingToTakeThere) {
+  ProblemParts parts;
+  parts.mass = {1, 1};
+  parts.edges = {{0, 1}};
+  parts.rest_length = {1};
+  parts.implicit_forces = true;
+  const auto problem = std::make_shared<const Problem>(parts);
+  EXPECT_FALSE(problem->implicit_forces());
+  State state;
+  state.x.setZero(3, 2);
+  state.v.setZero(3, 2);
+  state.x(0, 1) = 1;
+  const auto stepper = make_stepper("fast_projection", problem, {0.01, 1, {}});
+  ASSERT_TRUE(stepper->advance(state, 0.01));
+  EXPECT_EQ(stepper->work().force_solves, 0);
+}
+
+}  // namespace
+}  // namespace inextensible
