@@ -50,6 +50,12 @@ struct AnswerTable {
   }
 };
 
+// As a sentence begins.
+std::string capitalized(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] -= 'a' - 'A';
+  return text;
+}
+
 }  // namespace
 
 void print_answers(std::ostream& out, const NamedResult& result) {
@@ -62,9 +68,9 @@ void print_answers(std::ostream& out, const NamedResult& result) {
     const double exact = answer.at("exact");
     out << "### " << answer.at("name").get<std::string>() << ", scene `"
         << answer.at("scene").get<std::string>() << "`\n\n"
-        << answer.at("quantity").get<std::string>() << ". Exact: " << number_text(exact, 6)
+        << capitalized(answer.at("quantity")) << ". Exact: " << number_text(exact, 6)
         << (answer.at("continuum").get<bool>() ? ", for ever more vertices" : "") << ". "
-        << answer.at("source").get<std::string>() << ". Permitted strain "
+        << capitalized(answer.at("source")) << ". Permitted strain "
         << number_text(100 * answer.at("strain_limit").get<double>(), 2) << " %.\n\n";
     const AnswerTable table(result.document, answer.at("name"));
     std::vector<std::string> head{"solver"};
