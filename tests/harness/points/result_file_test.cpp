@@ -125,6 +125,7 @@ TEST(ResultFile, TheSchemaRefusesAWrongStatusAndAnUnknownCounter) {
 TEST(ResultFile, WhoseLinearSolverIsANumberIsNone) {
   const Suite suite = tiny_suite();
   PointResult point;
+  point.spec = plan(suite, {}).front().base;
   point.linear_solver = "tridiagonal";
   point.stiffness = 3;
   json document = result_document(machine_context(), suite, {"bench"}, true, {point});
