@@ -19,9 +19,13 @@ using testing::RandomMesh;
 
 RandomMesh falling(const RandomMesh& mesh, const Eigen::Vector3d& gravity) {
   const Problem& p = *mesh.problem;
-  return {std::make_shared<const Problem>(
-              ProblemParts{p.mass(), p.pinned(), p.edges(), p.rest_length(), gravity, {}, {}}),
-          mesh.x};
+  ProblemParts parts;
+  parts.mass = p.mass();
+  parts.pinned = p.pinned();
+  parts.edges = p.edges();
+  parts.rest_length = p.rest_length();
+  parts.gravity = gravity;
+  return {std::make_shared<const Problem>(std::move(parts)), mesh.x};
 }
 
 // Random velocities; pinned vertices rest.
