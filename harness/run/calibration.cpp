@@ -17,6 +17,7 @@ constexpr double close_enough = 0.85;  // of the limit
 const double aim = 0.5 * std::log(close_enough);
 // In decades; where a run was cut short, its strain would have been more.
 constexpr double least_stride_from_cut_short = 0.4;
+constexpr double stride_from_failure = 0.3;  // in decades
 
 // Runs that came to their end. What else they did wrong is said of the measured run.
 bool strain_counts(PointStatus status) {
@@ -30,7 +31,13 @@ std::optional<double> Calibration::find(double guess) {
   std::optional<double> soft, stiff;  // logarithms: too soft, stiff enough
   double at = std::log10(guess);
   for (int i = 1; alive() && !best_close(); ++i) {
+    const int failures = failures_;
     const double f = excess(at);
+    if (failures_ > failures && !soft && !stiff) {  // both sides in turn, softer springs first
+      at = std::log10(guess) +
+           (failures_ % 2 ? -1 : 1) * stride_from_failure * ((failures_ + 1) / 2);
+      continue;
+    }
     (f > 0 ? soft : stiff) = at;
     if (soft && stiff) break;
     double stride = i * std::abs(f - aim) / std::log(10);
@@ -43,7 +50,8 @@ std::optional<double> Calibration::find(double guess) {
 
 bool Calibration::best_close() const { return best_ && best_excess_ >= std::log(close_enough); }
 
-// log(max strain / limit); a run that fails counts as far above.
+// log(max strain / limit). Of a run that failed, its strain up to there tells the side, not how
+// far.
 double Calibration::excess(double log_stiffness) {
   const auto [known, fresh] = known_.try_emplace(log_stiffness, 0.0);
   if (fresh) known->second = evaluate(log_stiffness);
@@ -65,7 +73,8 @@ double Calibration::evaluate(double log_stiffness) {
   if (!strain_counts(trial.status)) {
     status_ = trial.status;
     detail_ = "calibration, " + trial.detail;
-    return std::log(cut_short);
+    ++failures_;
+    return trial.strain <= limit_ ? -std::log(cut_short) : std::log(cut_short);
   }
   const double f = std::log(std::max(trial.strain, 1e-300) / limit_);
   if (f <= 0 && (!best_ || stiffness < *best_)) {

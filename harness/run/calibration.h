@@ -25,12 +25,14 @@ class Calibration {
   using Run = std::function<Trial(double stiffness)>;
   static constexpr double cut_short = 2;
   static constexpr int run_limit = 16;
+  static constexpr int failure_limit = 6;
 
   Calibration(double strain_limit, Run run) : limit_(strain_limit), run_(std::move(run)) {}
 
   // The softest stiffness tried that met the limit; none if there is none (status() then says why).
   // A run that times out says nothing of its strain: it ends the search, without a stiffness and
-  // with the status `skipped`. guess: EA, N.
+  // with the status `skipped`. A run that fails otherwise is never the answer; springs may be too
+  // stiff for Newton's iteration, or too soft, and both are tried. guess: EA, N.
   std::optional<double> find(double guess);
 
   int runs() const { return runs_; }
@@ -39,14 +41,14 @@ class Calibration {
 
  private:
   bool best_close() const;
-  bool alive() const { return runs_ < run_limit && !timed_out_; }
+  bool alive() const { return runs_ < run_limit && failures_ < failure_limit && !timed_out_; }
   double excess(double log_stiffness);
   double evaluate(double log_stiffness);
   void brent(double soft, double stiff);
 
   double limit_;
   Run run_;
-  int runs_ = 0;
+  int runs_ = 0, failures_ = 0;
   bool timed_out_ = false;
   std::map<double, double> known_;  // Brent's method asks for the bracket's ends again
   std::optional<double> best_;

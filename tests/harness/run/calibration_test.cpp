@@ -98,6 +98,41 @@ TEST(Calibration, EndsWithTheFirstRunThatTimesOut) {
   }
 }
 
+// Runs that fail beyond some stiffness, or below one, as Newton's iteration does, at a strain that
+// the run's beginning alone has seen.
+TEST(Calibration, LooksOnBothSidesOfARunThatFailed) {
+  for (const bool stiff_ones_fail : {true, false}) {
+    const auto works = [&](double stiffness) {
+      return stiff_ones_fail ? stiffness < 330 : stiffness > 301;
+    };
+    for (const double guess : stiff_ones_fail ? std::vector{400.0, 1000.0} : std::vector{150.0}) {
+      int failures = 0;
+      Calibration calibration(limit, [&](double stiffness) -> Trial {
+        const double strain = tension_law(stiffness);
+        if (!works(stiffness)) {
+          ++failures;
+          return {PointStatus::not_converged, 0.4 * strain, 1, "Newton"};
+        }
+        return {strain <= limit ? PointStatus::ok : PointStatus::strain_missed, strain, 1, ""};
+      });
+      const auto found = calibration.find(guess);
+      ASSERT_TRUE(found) << guess;
+      EXPECT_TRUE(works(*found));
+      EXPECT_LE(tension_law(*found), limit);
+      EXPECT_GE(tension_law(*found), 0.85 * limit);
+      EXPECT_GT(failures, 0);
+    }
+  }
+}
+
+TEST(Calibration, EndsWhereEverythingFails) {
+  Calibration calibration(limit, [](double) -> Trial {
+    return {PointStatus::not_converged, 0.002, 1, "Newton"};
+  });
+  EXPECT_FALSE(calibration.find(100));
+  EXPECT_EQ(calibration.runs(), Calibration::failure_limit);
+}
+
 TEST(Calibration, SaysHowTheLastRunFailed) {
   Calibration calibration(limit, [](double) -> Trial {
     return {PointStatus::not_converged, 0.002, 1, "step 3: the Newton matrix is singular"};
