@@ -14,6 +14,7 @@
 #include "inextensible/methods/null_filter.h"
 #include "inextensible/methods/rattle.h"
 #include "inextensible/methods/shake.h"
+#include "inextensible/methods/strips.h"
 
 namespace inextensible {
 namespace {
@@ -32,6 +33,8 @@ std::vector<Backend> built_in() {
       fast_projection_smoothed_row(),
       fast_projection_bdf2_row(),
       rattle_row(),
+      strips_row(),
+      strips_bdf2_row(),
       fast_projection_bdf2opt_row(),
       null_row(),
       oracle_row(),

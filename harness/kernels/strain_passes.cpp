@@ -4,6 +4,7 @@
 #include "inextensible/methods/gauss_seidel.h"
 #include "inextensible/methods/gauss_seidel_colored.h"
 #include "inextensible/methods/jacobi.h"
+#include "inextensible/methods/strips.h"
 
 namespace harness::kernels {
 namespace {
@@ -18,6 +19,7 @@ void strain_pass(benchmark::State& state, int n) {
   const Moment& m = moment("drape", n);
   typename Filter::Settings settings;
   settings.max_iterations = 1;
+  if constexpr (requires { settings.sweeps; }) settings.sweeps = 0;  // a pass over threads alone
   Filter one(m.problem(), settings);
   settings.max_iterations = 0;
   Filter none(m.problem(), settings);
@@ -54,6 +56,7 @@ void register_strain_passes(int n, const std::string& at) {
     strain_pass<GaussSeidelColored>(s, n);
   })->UseManualTime();
   add("strain_pass/jacobi" + at, [=](State& s) { strain_pass<Jacobi>(s, n); })->UseManualTime();
+  add("strain_pass/strips" + at, [=](State& s) { strain_pass<Strips>(s, n); })->UseManualTime();
 }
 
 }  // namespace harness::kernels

@@ -34,6 +34,7 @@ class ColoredEdges {
   // Whether a() is the place of the problem's b.
   bool turned(int entry) const { return turned_[entry]; }
   int vertex(int place) const { return vertex_[place]; }
+  int place(int vertex) const { return place_[vertex]; }
 
   // Positions by place: x, y and z apart. Places without a vertex copy vertex 0, so that they are
   // finite where it is. store() leaves pinned vertices alone.

@@ -40,6 +40,7 @@ class StrainSweep {
   void load(const Positions& x) { edges_.load(x, x_); }
   void store(Positions& x) const { edges_.store(x_, x); }
   bool finite() const { return x_.allFinite(); }
+  ColoredEdges::Places& positions() { return x_; }
 
   // Sweeps until one finds nothing to correct, at most `most_sweeps`; the last one, which is the
   // test of convergence, is not counted. Refuses x if an edge (of `edges`, in any order) is still

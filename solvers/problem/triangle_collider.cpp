@@ -123,9 +123,13 @@ TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
   low_ -= margin;
   cell_size_ = (high + margin - low_) / resolution;
   inverse_cell_size_ = cell_size_.cwiseInverse();
+  for (std::size_t f = 0; f < count; ++f)
+    planes_.push_back({face[f].x(), face[f].y(), face[f].z(),
+                       face[f].dot(corner(mesh_, static_cast<int>(f), 0))});
   all_.resize(count);
   std::iota(all_.begin(), all_.end(), 0);
   cell_.assign(resolution * resolution * resolution, outside);
+  lists_.push_back(add_list(all_));  // deep
   refine(Eigen::Vector3i::Zero(), resolution, all_);
 }
 
@@ -164,8 +168,7 @@ void TriangleCollider::refine(const Eigen::Vector3i& cell, int size,
   }
   if (size == 1) {
     cell_[cell_index(cell)] = static_cast<int>(lists_.size());
-    lists_.push_back(static_cast<int>(kept.size()));
-    lists_.insert(lists_.end(), kept.begin(), kept.end());
+    lists_.push_back(add_list(kept));
     return;
   }
   for (int octant = 0; octant < 8; ++octant) {
@@ -222,39 +225,70 @@ TriangleCollider::Nearest TriangleCollider::nearest_by_all(const Vector3d& p) co
   return nearest_among(all_, p);
 }
 
-std::span<const int> TriangleCollider::list(int cell) const {
-  if (cell == deep) return all_;
-  return {lists_.begin() + cell + 1, static_cast<std::size_t>(lists_[cell])};
+TriangleCollider::List TriangleCollider::add_list(const std::vector<int>& triangles) {
+  const List list{static_cast<int>(listed_.size()), static_cast<int>(triangles.size())};
+  listed_.insert(listed_.end(), triangles.begin(), triangles.end());
+  return list;
+}
+
+std::span<const int> TriangleCollider::triangles_of(const List& list) const {
+  return {listed_.begin() + list.first, static_cast<std::size_t>(list.count)};
+}
+
+int TriangleCollider::cell_at(const Vector3d& p) const {
+  const Vector3d scaled = (p - low_).cwiseProduct(inverse_cell_size_);
+  const bool in_box = (scaled.array() >= 0).all() && (scaled.array() < resolution).all();
+  return in_box ? cell_[cell_index(scaled.cast<int>())] : outside;
 }
 
 TriangleCollider::Nearest TriangleCollider::nearest(const Vector3d& p) const {
-  const Vector3d scaled = (p - low_).cwiseProduct(inverse_cell_size_);
-  if ((scaled.array() >= 0).all() && (scaled.array() < resolution).all()) {
-    const int cell = cell_[cell_index(scaled.cast<int>())];
-    if (cell != outside) return nearest_among(list(cell), p);
+  const int cell = cell_at(p);
+  return cell == outside ? nearest_by_all(p) : nearest_among(triangles_of(lists_[cell]), p);
+}
+
+bool TriangleCollider::touches(const List& list, const Vector3d& p, Contact& contact) const {
+  if (!convex_) {
+    const Nearest nearest = nearest_among(triangles_of(list), p);
+    if (nearest.signed_distance >= 0) return false;
+    contact.depth = -nearest.signed_distance;
+    contact.point = nearest.point;
+    contact.normal = (nearest.point - p) / contact.depth;
+    return true;
   }
-  return nearest_by_all(p);
+  const double px = p.x(), py = p.y(), pz = p.z();
+  double largest = -std::numeric_limits<double>::infinity();
+  int nearest = 0;
+  for (const int triangle : triangles_of(list)) {
+    const Plane& plane = planes_[triangle];
+    const double distance = plane.x * px + plane.y * py + plane.z * pz - plane.offset;
+    if (!(distance < 0)) return false;
+    if (distance > largest) {
+      largest = distance;
+      nearest = triangle;
+    }
+  }
+  contact.normal = pseudonormal_[nearest][0];
+  contact.depth = -largest;
+  contact.point = p + contact.depth * contact.normal;
+  return true;
 }
 
 void TriangleCollider::resolve(const Eigen::Matrix3Xd& x_start,
                                const std::vector<double>& inverse_mass, Eigen::Matrix3Xd& x,
                                WorkCounters& work) const {
+  Contact contact;
   for (Eigen::Index v = 0; v < x.cols(); ++v) {
-    const Vector3d scaled = (x.col(v) - low_).cwiseProduct(inverse_cell_size_);
-    if (!((scaled.array() >= 0).all() && (scaled.array() < resolution).all())) continue;
-    const int cell = cell_[cell_index(scaled.cast<int>())];
+    const int cell = cell_at(x.col(v));
     if (cell == outside || inverse_mass[v] == 0) continue;
-    const std::span<const int> triangles = list(cell);
-    work.triangle_tests += static_cast<std::int64_t>(triangles.size());
-    const Nearest contact = nearest_among(triangles, x.col(v));
-    if (contact.signed_distance >= 0) continue;
+    const List& list = lists_[cell];
+    work.triangle_tests += list.count;
+    if (!touches(list, x.col(v), contact)) continue;
     ++work.contacts;
     // Out along the shortest way; then friction takes up to mu times that way off the tangential
     // displacement.
-    const Vector3d normal = (contact.point - x.col(v)) / -contact.signed_distance;
     const Vector3d displacement = contact.point - x_start.col(v);
-    const Vector3d tangential = displacement - displacement.dot(normal) * normal;
-    const double slide = tangential.norm(), grip = friction_ * -contact.signed_distance;
+    const Vector3d tangential = displacement - displacement.dot(contact.normal) * contact.normal;
+    const double slide = tangential.norm(), grip = friction_ * contact.depth;
     const double kept = slide > grip ? 1 - grip / slide : 0;
     const Vector3d place = contact.point - (1 - kept) * tangential;
     // Where the mesh is not convex, friction's way back may lead into it.

@@ -5,7 +5,9 @@
 // A uniform grid over the mesh's box lists for each cell every triangle that is nearest to some
 // point of the cell (exact: those no farther from the cell's centre than the nearest one plus the
 // cell's diagonal), found by refining an octree. Cells that lie wholly outside are empty, so a
-// vertex away from the mesh costs one look-up.
+// vertex away from the mesh costs one look-up. Of a convex mesh the planes of these triangles are
+// enough: a point is inside if it is behind all of them, and its nearest point is
+// its foot on the plane that it is least behind.
 #pragma once
 
 #include <array>
@@ -55,21 +57,37 @@ class TriangleCollider final : public Collider {
   template <class Triangles>
   Nearest nearest_among(const Triangles& triangles, const Eigen::Vector3d& p) const;
   void refine(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);
-  // The triangles to ask for a point in this cell, not outside.
-  std::span<const int> list(int cell) const;
+  // Of a cell: its triangles.
+  struct List {
+    int first, count;
+  };
+  struct Plane {  // n . p - offset
+    double x, y, z, offset;
+  };
+  struct Contact {
+    Eigen::Vector3d point, normal;
+    double depth;  // m, > 0
+  };
+  // Whether p, in a cell that is not outside, is inside the mesh, and where it leaves.
+  bool touches(const List& list, const Eigen::Vector3d& p, Contact& contact) const;
+  List add_list(const std::vector<int>& triangles);
+  std::span<const int> triangles_of(const List& list) const;
+  int cell_at(const Eigen::Vector3d& p) const;  // of cell_; outside where p is outside the box
   std::size_t cell_index(const Eigen::Vector3i& cell) const;
 
-  static constexpr int resolution = 32;          // cells an axis, a power of two
-  static constexpr int outside = -1, deep = -2;  // cells without a list
+  static constexpr int resolution = 32;  // cells an axis, a power of two
+  static constexpr int outside = -1;     // a cell without a list
+  static constexpr int deep = 0;         // the list of all triangles
   TriangleMesh mesh_;
   double friction_;
   bool convex_ = false;
   std::vector<std::array<Eigen::Vector3d, 7>> pseudonormal_;  // per triangle, by feature
   Eigen::Vector3d low_, cell_size_, inverse_cell_size_;
-  std::vector<int> all_;  // 0, 1, 2, ...
-  // Of each cell: where its list begins in lists_ (its length first), or outside or deep.
-  std::vector<int> cell_;
-  std::vector<int> lists_;
+  std::vector<int> all_;   // 0, 1, 2, ...
+  std::vector<int> cell_;  // its list, or outside
+  std::vector<List> lists_;
+  std::vector<int> listed_;
+  std::vector<Plane> planes_;  // of the faces
 };
 
 }  // namespace inextensible

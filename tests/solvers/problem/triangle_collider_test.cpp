@@ -111,6 +111,42 @@ double deepest_after_resolve(const TriangleMesh& mesh, double friction, Random& 
   return deepest;
 }
 
+// The planes of a convex mesh against the nearest points of all its triangles. Without friction a
+// vertex goes to its nearest point.
+TEST(TriangleCollider, OfAConvexMeshGoesToTheNearestPoint) {
+  for (const int subdivisions : {0, 1, 3}) {
+    for (std::uint64_t seed = 0; seed < 3; ++seed) {
+      SCOPED_TRACE("seed " + std::to_string(seed));
+      Random random(seed);
+      TriangleMesh mesh = icosphere(Vector3d::Zero(), 0.9, subdivisions);
+      // An affine image of a convex body is convex.
+      Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
+      for (int i = 0; i < 3; ++i) stretch.col(i) += random_point(random, 0.3);
+      ASSERT_GT(stretch.determinant(), 0);
+      for (Vector3d& v : mesh.vertices) v = (stretch * v).eval();
+      const TriangleCollider collider(mesh, 0);
+      const int n = 2000;
+      Eigen::Matrix3Xd before(3, n);
+      for (int v = 0; v < n; ++v) before.col(v) = random_point(random, 1.3);
+      Eigen::Matrix3Xd x = before;
+      WorkCounters work;
+      collider.resolve(before, std::vector<double>(n, 1), x, work);
+      int inside = 0;
+      for (int v = 0; v < n; ++v) {
+        const auto nearest = collider.nearest_by_all(before.col(v));
+        inside += nearest.signed_distance < 0;
+        // Of two faces as near as each other either will do.
+        EXPECT_NEAR((x.col(v) - before.col(v)).norm(), std::max(0.0, -nearest.signed_distance),
+                    1e-12)
+            << before.col(v).transpose();
+        EXPECT_GE(collider.nearest_by_all(x.col(v)).signed_distance, -1e-12);
+      }
+      EXPECT_GT(inside, 100);
+      EXPECT_EQ(work.contacts, inside);
+    }
+  }
+}
+
 TEST(TriangleCollider, ResolveLeavesNothingInsideAConvexMeshWhateverTheFriction) {
   for (const double friction : {0.0, 0.3, 10.0}) {
     for (const int subdivisions : {0, 3}) {

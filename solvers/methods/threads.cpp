@@ -1,0 +1,121 @@
+#include "inextensible/methods/threads.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace inextensible {
+namespace {
+
+using Neighbours = std::vector<std::vector<std::pair<int, int>>>;  // of a vertex: (vertex, edge)
+
+Neighbours neighbours_of(const Problem& problem) {
+  Neighbours at(problem.vertices());
+  for (int k = 0; k < problem.constraints(); ++k) {
+    const Edge e = problem.edges()[k];
+    at[e.a].emplace_back(e.b, k);
+    at[e.b].emplace_back(e.a, k);
+  }
+  return at;
+}
+
+bool joined(const Neighbours& at, int a, int b) {
+  return std::any_of(at[a].begin(), at[a].end(), [b](const auto& n) { return n.first == b; });
+}
+
+// Whether the edges from v to a and to b are sides of one triangle or quad.
+bool share_a_face(const Neighbours& at, int v, int a, int b) {
+  if (a == b || joined(at, a, b)) return true;
+  return std::any_of(at[a].begin(), at[a].end(),
+                     [&](const auto& n) { return n.first != v && joined(at, n.first, b); });
+}
+
+// Of each edge the one that goes on at its ends a and b, -1: none.
+std::vector<std::array<int, 2>> continuations(const Problem& problem, const Neighbours& at) {
+  std::vector<std::array<int, 2>> next(problem.constraints(), {-1, -1});
+  const auto end_of = [&](int edge, int v) { return problem.edges()[edge].a == v ? 0 : 1; };
+  for (int v = 0; v < problem.vertices(); ++v) {
+    // In the order of the mesh, each edge takes the first free one that lies opposite.
+    for (std::size_t i = 0; i < at[v].size(); ++i) {
+      const auto [a, edge] = at[v][i];
+      if (next[edge][end_of(edge, v)] >= 0) continue;
+      for (std::size_t j = i + 1; j < at[v].size(); ++j) {
+        const auto [b, other] = at[v][j];
+        if (next[other][end_of(other, v)] >= 0 || share_a_face(at, v, a, b)) continue;
+        next[edge][end_of(edge, v)] = other;
+        next[other][end_of(other, v)] = edge;
+        break;
+      }
+    }
+  }
+  return next;
+}
+
+int other_end(const Problem& problem, int edge, int v) {
+  const Edge e = problem.edges()[edge];
+  return e.a == v ? e.b : e.a;
+}
+
+// The first color that none of a thread's vertices has yet.
+void paint(std::vector<Thread>& threads, int vertices) {
+  std::vector<std::set<int>> taken(vertices);
+  for (Thread& thread : threads) {
+    const auto fits = [&](int color) {
+      return std::none_of(thread.vertices.begin(), thread.vertices.end(),
+                          [&](int v) { return taken[v].contains(color); });
+    };
+    thread.color = 0;
+    while (!fits(thread.color)) ++thread.color;
+    for (const int v : thread.vertices) taken[v].insert(thread.color);
+  }
+}
+
+}  // namespace
+
+std::vector<Thread> threads_of(const Problem& problem) {
+  const Neighbours at = neighbours_of(problem);
+  const auto next = continuations(problem, at);
+  const auto at_end = [&](int edge, int v) {
+    return next[edge][problem.edges()[edge].a == v ? 0 : 1];
+  };
+  std::vector<bool> used(problem.constraints(), false);
+  std::vector<bool> seen(problem.vertices(), false);
+  std::vector<Thread> threads;
+  // From an edge on, beginning at its end v, until the thread ends or meets itself.
+  const auto follow = [&](int edge, int v) {
+    Thread thread{{v}, {}, 0};
+    seen[v] = true;
+    while (edge >= 0 && !used[edge]) {
+      const int to = other_end(problem, edge, v);
+      if (seen[to]) break;
+      used[edge] = seen[to] = true;
+      thread.edges.push_back(edge);
+      thread.vertices.push_back(to);
+      edge = at_end(edge, to);
+      v = to;
+    }
+    for (const int vertex : thread.vertices) seen[vertex] = false;
+    if (!thread.edges.empty()) threads.push_back(std::move(thread));
+  };
+  for (int k = 0; k < problem.constraints(); ++k) {  // those that have an end
+    const Edge e = problem.edges()[k];
+    if (!used[k] && next[k][0] < 0) follow(k, e.a);
+    if (!used[k] && next[k][1] < 0) follow(k, e.b);
+  }
+  for (int k = 0; k < problem.constraints(); ++k) {  // rings, and what was cut off
+    if (!used[k]) follow(k, problem.edges()[k].a);
+  }
+  paint(threads, problem.vertices());
+  std::map<int, std::size_t> edges_of;
+  for (const Thread& thread : threads) edges_of[thread.color] += thread.edges.size();
+  std::stable_sort(threads.begin(), threads.end(), [&](const Thread& p, const Thread& q) {
+    if (p.color != q.color)
+      return std::pair(edges_of[q.color], p.color) < std::pair(edges_of[p.color], q.color);
+    return p.edges.size() > q.edges.size();
+  });
+  return threads;
+}
+
+}  // namespace inextensible

@@ -1,0 +1,74 @@
+// Threads are found whatever the mesh; a thread's projection is fast projection's on a chain.
+#include "inextensible/methods/strips.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "inextensible/methods/fast_projection.h"
+#include "support/random_mesh.h"
+
+namespace inextensible {
+namespace {
+
+void check(const Problem& problem, const std::vector<Thread>& threads) {
+  std::multiset<int> edges;
+  std::map<int, std::set<int>> vertices_of_color;
+  for (const Thread& thread : threads) {
+    ASSERT_EQ(thread.vertices.size(), thread.edges.size() + 1);
+    for (std::size_t i = 0; i < thread.edges.size(); ++i) {
+      const Edge e = problem.edges()[thread.edges[i]];
+      const std::set<int> ends{e.a, e.b}, here{thread.vertices[i], thread.vertices[i + 1]};
+      ASSERT_EQ(ends, here);
+      edges.insert(thread.edges[i]);
+    }
+    for (const int vertex : thread.vertices)
+      ASSERT_TRUE(vertices_of_color[thread.color].insert(vertex).second)
+          << "color " << thread.color;
+  }
+  ASSERT_EQ(edges.size(), static_cast<std::size_t>(problem.constraints()));
+  ASSERT_EQ(std::set<int>(edges.begin(), edges.end()).size(), edges.size()) << "an edge twice";
+}
+
+TEST(Threads, OfWovenClothAreItsRowsAndColumns) {
+  testing::Random random(1);
+  for (const auto& [rows, columns] : {std::pair(5, 7), std::pair(2, 9), std::pair(12, 3)}) {
+    const auto mesh = testing::random_mesh(random, rows, columns, 1);
+    const auto threads = threads_of(*mesh.problem);
+    check(*mesh.problem, threads);
+    EXPECT_EQ(threads.size(), static_cast<std::size_t>(rows + columns));
+    std::set<int> colors;
+    for (const Thread& thread : threads) colors.insert(thread.color);
+    EXPECT_EQ(colors, (std::set{0, 1})) << "warp and weft";
+  }
+}
+
+TEST(Threads, OfAChainAreOne) {
+  testing::Random random(1);
+  const auto chain = testing::random_mesh(random, 1, 30, 2);
+  const auto threads = threads_of(*chain.problem);
+  check(*chain.problem, threads);
+  EXPECT_EQ(threads.size(), 1U);
+}
+
+TEST(Strips, OnAChainAreFastProjection) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    testing::Random random(seed);
+    const auto chain = testing::random_mesh(random, 1, 2 + static_cast<int>(random() % 40), 1);
+    Strips strips(*chain.problem, {.strain_limit = 1e-3, .sweeps = 0, .target = 0});
+    FastProjection projection(*chain.problem, {.strain_limit = 1e-3});
+    Positions x = testing::perturbed(random, chain, 0.05), y = x;
+    WorkCounters work;
+    const StepResult mine = strips.apply(chain.x, 0.01, x, work);
+    const StepResult wanted = projection.apply(chain.x, 0.01, y, work);
+    ASSERT_TRUE(mine) << mine.detail;
+    ASSERT_TRUE(wanted) << wanted.detail;
+    EXPECT_EQ(mine.iterations, wanted.iterations);
+    EXPECT_LE((x - y).cwiseAbs().maxCoeff(), 1e-10);
+  }
+}
+
+}  // namespace
+}  // namespace inextensible
