@@ -34,8 +34,8 @@ std::optional<double> Calibration::find(double guess) {
     const int failures = failures_;
     const double f = excess(at);
     if (failures_ > failures && !soft && !stiff) {  // both sides in turn, softer springs first
-      at = std::log10(guess) +
-           (failures_ % 2 ? -1 : 1) * stride_from_failure * ((failures_ + 1) / 2);
+      const int pair = (failures_ + 1) / 2;
+      at = std::log10(guess) + (failures_ % 2 ? -1 : 1) * stride_from_failure * pair;
       continue;
     }
     (f > 0 ? soft : stiff) = at;
