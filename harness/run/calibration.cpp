@@ -30,7 +30,7 @@ bool strain_counts(PointStatus status) {
 std::optional<double> Calibration::find(double guess) {
   std::optional<double> soft, stiff;  // logarithms: too soft, stiff enough
   double at = std::log10(guess);
-  for (int i = 1; alive() && !best_close(); ++i) {
+  for (int strides = 0; alive() && !best_close();) {
     const int failures = failures_;
     const double f = excess(at);
     if (failures_ > failures && !soft && !stiff) {  // both sides in turn, softer springs first
@@ -40,8 +40,9 @@ std::optional<double> Calibration::find(double guess) {
     }
     (f > 0 ? soft : stiff) = at;
     if (soft && stiff) break;
-    double stride = i * std::abs(f - aim) / std::log(10);
-    if (f >= std::log(cut_short)) stride = std::max(stride, i * least_stride_from_cut_short);
+    ++strides;
+    double stride = strides * std::abs(f - aim) / std::log(10);
+    if (f >= std::log(cut_short)) stride = std::max(stride, strides * least_stride_from_cut_short);
     at += f > 0 ? stride : -stride;
   }
   if (alive() && !best_close() && soft && stiff) brent(*soft, *stiff);

@@ -15,9 +15,9 @@ class Strips final : public VelocityFilter {
  public:
   struct Settings {
     double strain_limit = 0.01;
-    int max_iterations = 20000;  // passes over all threads, a step
-    int sweeps = 20;             // between two passes; none where threads share no vertex
-    double relaxation = 1.8;     // of a sweep's correction
+    int max_iterations = 5000;  // passes over all threads, a step
+    int sweeps = 20;            // between two passes; none where threads share no vertex
+    double relaxation = 1.8;    // of a sweep's correction
     // Links strained beyond this fraction of the limit are brought to it, in a thread that has one
     // beyond the limit; a sweep brings its edges to `sweep_target`.
     // At 0 over-relaxed sweeps throw edges to the other side of the band, and runs gain energy.

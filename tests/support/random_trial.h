@@ -13,6 +13,7 @@ using harness::Trial;
 
 // The backend's own sweep limit is meant for real problems; here most of them are hopeless.
 inline Settings impatient(const std::string& backend) {
+  if (backend.starts_with("strips")) return {{"max_iterations", 20.0}};
   if (backend == "jacobi" || backend.starts_with("gauss_seidel"))
     return {{"max_iterations", 300.0}};
   return {};
