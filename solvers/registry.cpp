@@ -6,6 +6,7 @@
 
 #include "inextensible/methods/dense_oracle.h"
 #include "inextensible/methods/fast_projection.h"
+#include "inextensible/methods/fast_projection_adaptive.h"
 #include "inextensible/methods/gauss_seidel.h"
 #include "inextensible/methods/gauss_seidel_colored.h"
 #include "inextensible/methods/icd.h"
@@ -15,6 +16,7 @@
 #include "inextensible/methods/rattle.h"
 #include "inextensible/methods/shake.h"
 #include "inextensible/methods/strips.h"
+#include "inextensible/methods/xpbd_small_steps.h"
 
 namespace inextensible {
 namespace {
@@ -35,6 +37,9 @@ std::vector<Backend> built_in() {
       rattle_row(),
       strips_row(),
       strips_bdf2_row(),
+      fast_projection_adaptive_row(),
+      fast_projection_adaptive_bdf2_row(),
+      xpbd_small_steps_row(),
       fast_projection_bdf2opt_row(),
       null_row(),
       oracle_row(),

@@ -16,13 +16,13 @@
 namespace harness {
 namespace {
 
-struct Given {
+struct AnswersOptions {
   SweepCommand output;  // --out, --force, --solver, --no-plots
   std::string answer;
   double timeout = 20;
 };
 
-int answers(const Given& given, const std::vector<std::string>& command) {
+int answers(const AnswersOptions& given, const std::vector<std::string>& command) {
   AnswerSelection selection;
   selection.timeout = given.timeout;
   if (!given.output.solver.empty()) {
@@ -61,7 +61,7 @@ int answers(const Given& given, const std::vector<std::string>& command) {
 }  // namespace
 
 void add_answers_command(const Command& program, const std::vector<std::string>& words) {
-  const auto given = std::make_shared<Given>();
+  const auto given = std::make_shared<AnswersOptions>();
   const Command command = program.subcommand(
       "answers", "figures that theory knows (orbits, oscillations, falls), by each solver");
   command.alternatives("--solver", given->output.solver, "these only, each by its whole name");

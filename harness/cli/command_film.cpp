@@ -48,7 +48,7 @@ std::vector<double> numbers_in(const std::string& text, const std::string& optio
   return all;
 }
 
-FilmSpec spec_of(const FilmOptions& given) {
+FilmSpec film_spec(const FilmOptions& given) {
   FilmSpec spec;
   const SceneType* type = find_scene(given.scene);
   if (!type) throw unknown_name("scene", given.scene, names_of(scene_types()));
@@ -136,7 +136,7 @@ int film(const FilmOptions& given) {
     throw UsageError("--out '" + given.out +
                      "': must end in .webp, .mp4, .png (stills), .obj, .pvd (ParaView) or .pc2 "
                      "(Blender)");
-  const FilmSpec spec = spec_of(given);
+  const FilmSpec spec = film_spec(given);
   check_writable(given.out);
   catch_interrupts();
   const Recording recording = record(spec, interrupted, tell);

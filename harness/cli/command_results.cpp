@@ -10,7 +10,7 @@
 namespace harness {
 namespace {
 
-struct Given {
+struct ResultsOptions {
   std::vector<std::string> results, growth, answers;
   std::string out;
 };
@@ -23,7 +23,7 @@ std::vector<NamedResult> read(const std::vector<std::string>& files) {
 }
 
 // The page begins with the command that makes it again.
-std::string page(const Given& given) {
+std::string page(const ResultsOptions& given) {
   std::ostringstream out;
   out << "# Results\n\nThis page is generated; do not edit it. The command, which gives every file "
          "that the numbers come from:\n\n```sh\n./bench results";
@@ -48,7 +48,7 @@ std::string page(const Given& given) {
 }  // namespace
 
 void add_results_command(const Command& program) {
-  const auto given = std::make_shared<Given>();
+  const auto given = std::make_shared<ResultsOptions>();
   const Command command = program.subcommand(
       "results", "tables of what result files say, in Markdown (docs/results.md)");
   command

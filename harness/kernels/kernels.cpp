@@ -35,9 +35,10 @@ void register_drape(int n) {
   register_steps("drape", n, at);
   register_collision("drape", n, at);
   register_strain_passes(n, at);
-  register_schur_complement("drape", n, at,
-                            {"eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal",
-                             "fixed_pattern", "fixed_pattern_single", "line_cg"});
+  register_schur_complement(
+      "drape", n, at,
+      {"eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern",
+       "fixed_pattern_single", "fixed_pattern_mixed", "line_cg"});
   register_saddle_point(n, at, {"projected_cg", "quasi_definite", "umfpack"});
 }
 

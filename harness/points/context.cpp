@@ -67,6 +67,10 @@ json caches() {
   return list;
 }
 
+// What the program is built from and reads: other changes, of a text or a result, do not count.
+constexpr const char* program_parts =
+    "CMakeLists.txt CMakePresets.json cmake configs harness solvers";
+
 // Output of git in the source folder, "" without git or outside a checkout.
 std::string git(const std::string& arguments) {
   const std::string command = "git -C '" INEXTENSIBLE_SOURCE_DIR "' " + arguments + " 2>/dev/null";
@@ -142,12 +146,14 @@ json machine_context() {
   const bool load_known = getloadavg(load.data(), 3) == 3;
   const std::string governor = first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
   const std::string commit = git("rev-parse HEAD");
-  const json build = {{"git", commit},
-                      {"dirty", !git("status --porcelain --untracked-files=no").empty()},
-                      {"binary", fnv1a(read_file("/proc/self/exe", "program"))},
-                      {"compiler", INEXTENSIBLE_COMPILER},
-                      {"flags", INEXTENSIBLE_FLAGS},
-                      {"type", INEXTENSIBLE_BUILD_TYPE}};
+  const json build = {
+      {"git", commit},
+      {"dirty",
+       !git(std::string("status --porcelain --untracked-files=no -- ") + program_parts).empty()},
+      {"binary", fnv1a(read_file("/proc/self/exe", "program"))},
+      {"compiler", INEXTENSIBLE_COMPILER},
+      {"flags", INEXTENSIBLE_FLAGS},
+      {"type", INEXTENSIBLE_BUILD_TYPE}};
   const json libraries = libraries_json();
   const std::string cpu = cpu_field("model name");
   json context = {

@@ -28,15 +28,21 @@ std::vector<Expectation> long_chain(int links) {
             start,
             {strain_limiting, survives, "an edge a pass, squared: some thousand passes at most"},
             {everyone, survives, "an edge an iteration: 30 of the 200 allowed at most"}};
+  const Expectation small_steps{{"xpbd_small_steps"},
+                                Outcome::diverged,
+                                "a sweep carries a load by some edges: the first link follows the "
+                                "pin's pull alone, and is torn to several times its length"};
   if (links > 30000)
-    return {implicit,
+    return {small_steps,
+            implicit,
             energy,
             start,
             {strain_limiting, refuses,
              "an edge a pass, squared: a million passes, where their budget is some thousand"},
             {everyone, refuses,
              "a kink moves by an edge an iteration: over the steps 300 to 2000 of 200 allowed"}};
-  return {implicit,
+  return {small_steps,
+          implicit,
           energy,
           start,
           {strain_limiting,
@@ -55,7 +61,8 @@ void add_large(std::vector<HardCase>& cases, const HardCaseValues& values) {
   const auto budget = [](Trial& trial) {  // edge visits that strain limiting may spend on a step
     const double passes = std::max(100.0, 2e8 / trial.scene.problem->constraints());
     for (const auto& backend : inextensible::backends())
-      if (backend.direction == strain_limiting && inextensible::is_built_in(backend.name))
+      if (backend.direction == strain_limiting && inextensible::is_built_in(backend.name) &&
+          backend.knob == inextensible::Knob::strain_limit)
         trial.settings[backend.name] = {{"max_iterations", std::min(1e5, std::floor(passes))}};
   };
   for (const double value : values.at("links")) {

@@ -13,8 +13,6 @@ using inextensible::State;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 constexpr double momentum_duration = 0.04;  // s
 // Rounding, and the 1e-10 to which the KKT system's residual is refined.
 constexpr double momentum_tolerance = 1e-9, spin_tolerance = 1e-9;
@@ -33,7 +31,7 @@ double loss_of_spin(const Examinee& solver, const Case& c, double step, double& 
     scale += problem.mass()[i] * state.v.col(i).norm();
   for (int i = 0; i < std::lround(momentum_duration / step); ++i) {
     const Vector3d before = linear_momentum(problem, state.v);
-    if (!stepper->advance(state, step)) return infinity;
+    if (!stepper->advance(state, step)) return std::numeric_limits<double>::infinity();
     linear = std::max(linear, (linear_momentum(problem, state.v) - before).norm() / scale);
   }
   return (angular_momentum(problem, state) - start).norm() / (scale * c.scene.size);

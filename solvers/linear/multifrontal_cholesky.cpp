@@ -39,16 +39,16 @@ constexpr int panel_ld(int K, int n) {
 }
 
 template <class Real>
-struct Vector {
+struct LaneVector {
   typedef Real type __attribute__((vector_size(vector_bytes), aligned(sizeof(Real)), may_alias));
 };
 template <class Real>
 auto& lanes_at(Real* p) {
-  return *reinterpret_cast<typename Vector<Real>::type*>(p);
+  return *reinterpret_cast<typename LaneVector<Real>::type*>(p);
 }
 template <class Real>
 const auto& lanes_at(const Real* p) {
-  return *reinterpret_cast<const typename Vector<Real>::type*>(p);
+  return *reinterpret_cast<const typename LaneVector<Real>::type*>(p);
 }
 
 // Eliminates the K columns of a panel of n rows: the triangle of K rows, then the rows below, each
@@ -81,7 +81,7 @@ int eliminate(Real* l, Distance ld, int n, const Real* bound, Real* pivots) {
     }
   }
   for (int i = K; i < n; i += lanes<Real>) {
-    typename Vector<Real>::type y[K];  // rows of L D
+    typename LaneVector<Real>::type y[K];  // rows of L D
 #pragma GCC unroll 8
     for (int c = 0; c < K; ++c) y[c] = lanes_at(l + c * ld + i);
 #pragma GCC unroll 8
@@ -108,7 +108,7 @@ void subtract_columns(const Real* p, Distance ld_p, const Real* d, int n, int j,
   }
   c += j * ld_c;
   for (int i = j / lanes<Real> * lanes<Real>; i < n; i += lanes<Real>) {
-    typename Vector<Real>::type sum[J] = {};
+    typename LaneVector<Real>::type sum[J] = {};
 #pragma GCC unroll 8
     for (int k = 0; k < K; ++k) {
       const auto& value = lanes_at(p + k * ld_p + i);
@@ -207,7 +207,7 @@ void substitute_forward(const Real* l, Distance ld, int n, Real* w) {
 // K columns of back substitution: the rows below, then the triangle.
 template <int K, class Real>
 void substitute_back(const Real* l, Distance ld, int n, Real* w) {
-  typename Vector<Real>::type sum[K] = {};
+  typename LaneVector<Real>::type sum[K] = {};
   for (int i = K; i < n; i += lanes<Real>) {
     const auto& value = lanes_at(w + i);
 #pragma GCC unroll 8

@@ -48,8 +48,9 @@ struct BackendOptions {
   const State* start = nullptr;
 };
 
-// What the harness may turn to make a run keep its strain limit.
-enum class Knob { strain_limit, stiffness, none };
+// What the harness may turn to make a run keep its strain limit: the limit itself, which the method
+// then promises; a stiffness; the time step alone. none: no run is asked to keep one.
+enum class Knob { strain_limit, stiffness, none, time_step };
 
 // Where a method's constraint forces take their direction from: each edge from its own ends in turn
 // (local), the gradient at the start of the step, at the current iterate, from springs, or the

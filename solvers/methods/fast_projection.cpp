@@ -21,8 +21,6 @@
 #include <cmath>
 #include <limits>
 
-#include "inextensible/stepping/bdf2_stepper.h"
-
 namespace inextensible {
 namespace {
 
@@ -108,11 +106,7 @@ void FastProjection::show(int j, const Positions& x) {
 void FastProjection::smooth(int sweeps, Positions& x, WorkCounters& work) {
   if (sweeps == 0) return;
   sweep_->load(x);
-  for (int i = 0; i < sweeps; ++i) {
-    const std::int64_t corrected = sweep_->in_turn();
-    work.edge_projections += corrected;
-    if (corrected == 0) break;
-  }
+  sweep_->in_turn(sweeps, work);
   sweep_->store(x);
 }
 
@@ -238,12 +232,6 @@ SettingInfo blend() {
           .range = {0, 0.48}};
 }
 
-std::unique_ptr<Stepper> make_bdf2(std::shared_ptr<const Problem> problem,
-                                   const BackendOptions& options, double bdf3) {
-  auto filter = std::make_unique<FastProjection>(*problem, settings_of<FastProjection>(options));
-  return std::make_unique<Bdf2Stepper>(std::move(problem), std::move(filter), bdf3);
-}
-
 }  // namespace
 
 Backend fast_projection_bdf2_row() {
@@ -254,9 +242,7 @@ Backend fast_projection_bdf2_row() {
   defaults.min_iterations = 1;
   defaults.smoothing_sweeps = 30;
   row.settings = setting_infos(FastProjection::fields(), defaults);
-  row.make = [](std::shared_ptr<const Problem> problem, const BackendOptions& options) {
-    return make_bdf2(std::move(problem), options, 0);
-  };
+  row.make = make_bdf2_stepper<FastProjection>;
   row.citation = "Goldenthal et al. 2007; English and Bridson 2008";
   row.label = "fast projection in BDF2";
   row.velocities = Velocities::whole_step;
@@ -269,9 +255,11 @@ Backend fast_projection_bdf2opt_row() {
   row.summary = "the same with half the error constant: BDF2 blended with BDF3";
   row.contestant = false;
   row.settings.push_back(blend());
-  row.make = [](std::shared_ptr<const Problem> problem, const BackendOptions& options) {
-    return make_bdf2(std::move(problem), options,
-                     std::get<double>(options.settings.at(blend().name)));
+  row.make = [](std::shared_ptr<const Problem> problem,
+                const BackendOptions& options) -> std::unique_ptr<Stepper> {
+    auto filter = std::make_unique<FastProjection>(*problem, settings_of<FastProjection>(options));
+    return std::make_unique<Bdf2Stepper>(std::move(problem), std::move(filter),
+                                         std::get<double>(options.settings.at(blend().name)));
   };
   row.citation = "Goldenthal et al. 2007; Vatsa, Carpenter and Lockard 2010";
   row.label = "fast projection in BDF2 with BDF3";

@@ -7,8 +7,8 @@
 namespace inextensible {
 namespace {
 
-constexpr int line_search_limit = 30;
-constexpr double sufficient_decrease = 1e-4;
+constexpr int halving_limit = 30;
+constexpr double armijo_fraction = 1e-4;
 constexpr double rounding = 1e-14;
 // What a step with an old factorization must shrink to, times the last. The error it leaves is then
 // no more than the step itself.
@@ -63,13 +63,13 @@ ImplicitSprings::Search ImplicitSprings::search(const Positions& x, double h, do
     work_.spring_evaluations += static_cast<std::int64_t>(springs_.size());
     // Near the minimum the decrease drowns in rounding: a step below the tolerance is then taken
     // as it is.
-    if (next <= current + sufficient_decrease * scale * slope || longest <= step_tolerance_) {
+    if (next <= current + armijo_fraction * scale * slope || longest <= step_tolerance_) {
       current = next;
       return halvings == 0 ? Search::full : Search::shortened;
     }
     // The decrease that is left is below the energy's rounding error: this is the minimum.
     if (-slope <= rounding * current) return Search::at_minimum;
-    if (halvings == line_search_limit || !std::isfinite(slope)) return Search::failed;
+    if (halvings == halving_limit || !std::isfinite(slope)) return Search::failed;
     scale *= 0.5;
     ++work_.line_search_steps;
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "inextensible/methods/backend.h"
+#include "inextensible/stepping/bdf2_stepper.h"
 #include "inextensible/stepping/velocity_filter.h"
 
 namespace inextensible {
@@ -82,6 +83,14 @@ std::unique_ptr<Stepper> make_filter_stepper(std::shared_ptr<const Problem> prob
                                              const BackendOptions& options) {
   auto filter = std::make_unique<Filter>(*problem, settings_of<Filter>(options));
   return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
+}
+
+// The same inside BDF2.
+template <class Filter>
+std::unique_ptr<Stepper> make_bdf2_stepper(std::shared_ptr<const Problem> problem,
+                                           const BackendOptions& options) {
+  auto filter = std::make_unique<Filter>(*problem, settings_of<Filter>(options));
+  return std::make_unique<Bdf2Stepper>(std::move(problem), std::move(filter), 0);
 }
 
 // What methods share.

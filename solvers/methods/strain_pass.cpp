@@ -66,8 +66,8 @@ inline int correct(const Ends& from, const Ends& to, const double* inverse_squar
 }  // namespace
 
 StrainBand::StrainBand(double strain_limit, double target)
-    : low(strain_limit < 1 ? (1 - strain_limit) * (1 - strain_limit) * (1 + 1e-15) : 0),
-      high((1 + strain_limit) * (1 + strain_limit) * (1 - 1e-15)),
+    : low(PermissibleSquares(strain_limit).low * (1 + 1e-15)),
+      high(PermissibleSquares(strain_limit).high * (1 - 1e-15)),
       target_low(std::max(1 - target * strain_limit, std::sqrt(low) * (1 + 1e-15))),
       target_high(std::min(1 + target * strain_limit, std::sqrt(high) * (1 - 1e-15))) {}
 
@@ -120,6 +120,16 @@ StepResult StrainSweep::limit(Order order, int most_sweeps, const EdgeConstraint
 }
 
 std::int64_t StrainSweep::in_turn() { return sweep<true>(x_); }
+
+StrainSweep::Swept StrainSweep::in_turn(int most, WorkCounters& work) {
+  Swept swept{1, 0};
+  while (swept.sweeps < most && swept.left > 0) {
+    swept.left = in_turn();
+    work.edge_projections += swept.left;
+    ++swept.sweeps;
+  }
+  return swept;
+}
 
 std::int64_t StrainSweep::at_once() {
   const std::int64_t corrected = sweep<false>(correction_);

@@ -53,6 +53,13 @@ class StrainSweep {
   // corrected along and counts as none.
   std::int64_t in_turn();  // in the order of edges(), each from where the last one left its ends
   std::int64_t at_once();  // all from the same positions
+  // Sweeps in turn until one corrects nothing, at most `most` of them, all counted; `left`: what
+  // the last one corrected.
+  struct Swept {
+    std::int64_t left;
+    int sweeps;
+  };
+  Swept in_turn(int most, WorkCounters& work);
 
   const ColoredEdges& edges() const { return edges_; }
 

@@ -1,162 +1,16 @@
-// With J and W of one thread alone, J W J^T is tridiagonal: a step of Newton's method on it costs
-// little more than a sweep and carries along the thread as far as it is long, for which sweeps need
-// the square of that. With g = d / l of a link and nu = 4 mu,
-//   (w_a + w_b) |g|^2 nu + couplings -w g . g' nu' = C~,   x -= W J^T mu = w g nu / 2 at an end.
-// C~ is what of C lies beyond the target, so that slack within it is not taken back. A thread none
-// of whose links is beyond the limit is left alone. Where a thread lies straight between two pins
-// the last pivot vanishes: pivots are kept from falling below a part of the diagonal.
-//
-// Threads of one color are solved side by side, one in each lane of a vector (Thomas's algorithm in
-// step). Loops: two passes over links forwards and one back a thread; then sweeps (strain_pass.h).
+// Loops: two passes over links forwards and one back a thread (thread_pass.cpp), then sweeps
+// (strain_pass.cpp).
 #include "inextensible/methods/strips.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "inextensible/stepping/bdf2_stepper.h"
-
 namespace inextensible {
-namespace {
-
-constexpr double least_pivot = 1e-3;  // of the diagonal
-
-}  // namespace
 
 Strips::Strips(const Problem& problem, const Settings& settings)
     : edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
-      sweeps_(settings.sweeps),
-      band_(settings.strain_limit, settings.target),
-      target_low_(settings.target * (edges_.permissible_low - 1)),
-      target_high_(settings.target * (edges_.permissible_high - 1)),
       sweep_(StrainSweep::by_mass(problem, {settings.strain_limit, settings.sweep_target},
-                                  settings.relaxation)) {
-  const std::vector<Thread> threads = threads_of(problem);
-  std::vector<const Thread*> side_by_side;
-  for (const Thread& thread : threads) {
-    if (!side_by_side.empty() &&
-        (side_by_side.size() == lanes || side_by_side.front()->color != thread.color)) {
-      add_bundle(problem, side_by_side);
-      side_by_side.clear();
-    }
-    side_by_side.push_back(&thread);
-  }
-  if (!side_by_side.empty()) add_bundle(problem, side_by_side);
-  if (threads.empty() || threads.front().color == threads.back().color) sweeps_ = 0;
-  int longest = 0;
-  for (const Bundle& bundle : bundles_) longest = std::max(longest, bundle.links);
-  rows_.resize(static_cast<std::size_t>(longest) + 1, Row{});
-}
-
-void Strips::add_bundle(const Problem& problem, const std::vector<const Thread*>& threads) {
-  const int links = static_cast<int>(threads.front()->edges.size());  // the longest comes first
-  bundles_.push_back(
-      {links, static_cast<int>(place_.size()) / lanes, static_cast<int>(threads.size())});
-  for (int i = 0; i <= links; ++i) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      // A lane without a thread stays at the first one's begin, a short thread at its end.
-      const Thread& thread = *threads[lane < threads.size() ? lane : 0];
-      const int count = lane < threads.size() ? static_cast<int>(thread.edges.size()) : 0;
-      const int vertex = thread.vertices[std::min(i, count)];
-      const bool link = i < count;
-      place_.push_back(sweep_.edges().place(vertex));
-      inverse_mass_.push_back(i <= count && lane < threads.size() ? problem.inverse_mass()[vertex]
-                                                                  : 0);
-      rest_.push_back(link ? problem.rest_length()[thread.edges[i]] : 0);
-      inverse_rest_.push_back(link ? 1 / rest_.back() : 0);
-    }
-  }
-}
-
-// Projects the first `used` lanes; returns how many links were beyond the limit.
-template <int used>
-std::int64_t Strips::project(const Bundle& bundle, WorkCounters& work) {
-  double* const x[3] = {sweep_.positions().col(0).data(), sweep_.positions().col(1).data(),
-                        sweep_.positions().col(2).data()};
-  const std::size_t first = static_cast<std::size_t>(bundle.first) * lanes;
-  const int* place = place_.data() + first;
-  const double *w = inverse_mass_.data() + first, *l = rest_.data() + first,
-               *il = inverse_rest_.data() + first;
-  const double low = band_.low, high = band_.high, target_low = target_low_,
-               target_high = target_high_;
-  alignas(64) double here[3][lanes], next[3][lanes], violated[lanes] = {};
-  const auto gather = [&](int vertex, double(&to)[3][lanes]) {
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int i = 0; i < used; ++i) to[axis][i] = x[axis][place[vertex * lanes + i]];
-    }
-  };
-  gather(0, here);
-  for (int k = 0; k < bundle.links; ++k) {
-    Row& row = rows_[k + 1];
-    gather(k + 1, next);
-    const double *lk = l + k * lanes, *ilk = il + k * lanes;
-    for (int i = 0; i < used; ++i) {
-      const double g0 = (next[0][i] - here[0][i]) * ilk[i], g1 = (next[1][i] - here[1][i]) * ilk[i],
-                   g2 = (next[2][i] - here[2][i]) * ilk[i];
-      const double q = g0 * g0 + g1 * g1 + g2 * g2, strained = q - 1;
-      const double kept = std::min(std::max(strained, target_low), target_high);
-      row.g[0][i] = g0;
-      row.g[1][i] = g1;
-      row.g[2][i] = g2;
-      row.c[i] = lk[i] * (strained - kept);
-      violated[i] += (static_cast<int>(q < low) | static_cast<int>(!(q <= high))) && q != 0 ? 1 : 0;
-      here[0][i] = next[0][i];
-      here[1][i] = next[1][i];
-      here[2][i] = next[2][i];
-    }
-  }
-  double all = 0, solved[lanes];
-  int threads = 0;
-  for (int i = 0; i < used; ++i) {
-    all += violated[i];
-    solved[i] = violated[i] > 0 ? 1 : 0;
-    threads += static_cast<int>(violated[i] > 0);
-  }
-  if (threads == 0) return 0;
-  work.assemblies += threads;
-  work.factorizations += threads;
-  work.back_solves += threads;
-
-  for (int k = 0; k < bundle.links; ++k) {
-    Row& row = rows_[k + 1];
-    const Row& before = rows_[k];
-    const double *wa = w + k * lanes, *wb = wa + lanes;
-    for (int i = 0; i < used; ++i) {
-      const double own = (wa[i] + wb[i]) * (row.g[0][i] * row.g[0][i] + row.g[1][i] * row.g[1][i] +
-                                            row.g[2][i] * row.g[2][i]);
-      const double diagonal = own > 0 ? own : 1;
-      const double off = -wa[i] * (row.g[0][i] * before.g[0][i] + row.g[1][i] * before.g[1][i] +
-                                   row.g[2][i] * before.g[2][i]);
-      const double factor = off * before.inverse_pivot[i];
-      const double pivot = std::max(diagonal - factor * off, least_pivot * diagonal);
-      row.c[i] = solved[i] * row.c[i] - factor * before.c[i];
-      row.off[i] = off;
-      row.inverse_pivot[i] = 1 / pivot;
-    }
-  }
-  alignas(64) double after[3][lanes] = {}, nu_after[lanes] = {}, off_after[lanes] = {};
-  for (int k = bundle.links; k >= 0; --k) {
-    const Row& row = rows_[k];
-    const double* wb = w + k * lanes;
-    alignas(64) double move[3][lanes];
-    for (int i = 0; i < used; ++i) {
-      const double nu = (row.c[i] - off_after[i] * nu_after[i]) * row.inverse_pivot[i];
-      const double half = 0.5 * wb[i];
-      for (int axis = 0; axis < 3; ++axis) {
-        const double pull = nu * row.g[axis][i];
-        move[axis][i] = half * (after[axis][i] - pull);
-        after[axis][i] = pull;
-      }
-      nu_after[i] = nu;
-      off_after[i] = row.off[i];
-    }
-    const int* to = place + k * lanes;
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int i = 0; i < used; ++i) x[axis][to[i]] += move[axis][i];
-    }
-  }
-  return static_cast<std::int64_t>(all);
-}
+                                  settings.relaxation)),
+      threads_(problem, settings.strain_limit, settings.target, sweep_.edges()),
+      sweeps_(threads_.crossing() ? settings.sweeps : 0) {}
 
 StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
                          WorkCounters& work) {
@@ -164,16 +18,9 @@ StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Positions& 
   sweep_.load(x);
   for (int passes = 0;; ++passes) {
     const bool gives_up = passes == max_iterations_ || (passes % 64 == 63 && !sweep_.finite());
-    std::int64_t corrected = 0;
-    if (!gives_up) {
-      for (const Bundle& bundle : bundles_)
-        corrected += bundle.threads == 1 ? project<1>(bundle, work) : project<lanes>(bundle, work);
-    }
+    std::int64_t corrected = gives_up ? 0 : threads_.project(sweep_.positions(), work);
     work.edge_projections += corrected;
-    for (int i = 0; i < sweeps_ && corrected > 0; ++i) {
-      corrected = sweep_.in_turn();
-      work.edge_projections += corrected;
-    }
+    if (corrected > 0) corrected = sweep_.in_turn(sweeps_, work).left;
     if (corrected > 0) continue;
     sweep_.store(x);
     if (edges_.permissible(x)) return {Status::ok, passes};
@@ -213,11 +60,7 @@ Backend strips_bdf2_row() {
   Backend row = strips_row();
   row.name = "strips_bdf2";
   row.summary = "strips inside the two-step formula BDF2: second order";
-  row.make = [](std::shared_ptr<const Problem> problem,
-                const BackendOptions& options) -> std::unique_ptr<Stepper> {
-    auto filter = std::make_unique<Strips>(*problem, settings_of<Strips>(options));
-    return std::make_unique<Bdf2Stepper>(std::move(problem), std::move(filter), 0);
-  };
+  row.make = make_bdf2_stepper<Strips>;
   row.citation = "Bender and Bayer 2008; English and Bridson 2008";
   row.label = "strips in BDF2";
   row.family = "strips";

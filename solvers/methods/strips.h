@@ -7,7 +7,7 @@
 
 #include "inextensible/methods/setting_fields.h"
 #include "inextensible/methods/strain_pass.h"
-#include "inextensible/methods/threads.h"
+#include "inextensible/methods/thread_pass.h"
 
 namespace inextensible {
 
@@ -29,32 +29,11 @@ class Strips final : public VelocityFilter {
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
 
  private:
-  static constexpr int lanes = 8;
-  // Threads of one color side by side, one a lane; shorter ones end in links that are none.
-  struct Bundle {
-    int links, first, threads;  // first: row of vertices and links in the arrays below
-  };
-  void add_bundle(const Problem& problem, const std::vector<const Thread*>& threads);
-  template <int used>
-  std::int64_t project(const Bundle& bundle, WorkCounters& work);
-
   EdgeConstraints edges_;
-  int max_iterations_, sweeps_;
-  StrainBand band_;
-  double target_low_, target_high_;  // of q - 1 = |d|^2 / l^2 - 1
+  int max_iterations_;
   StrainSweep sweep_;
-  std::vector<Bundle> bundles_;
-  // Rows of `lanes` numbers. Of vertices: place in the sweep's positions, inverse mass; of the link
-  // to the next vertex: rest length and its inverse (0: no link).
-  std::vector<int> place_;
-  std::vector<double> inverse_mass_, rest_, inverse_rest_;
-  struct Row {
-    alignas(64) double g[3][lanes];  // d / l of a link
-    alignas(64) double off[lanes];   // coupling with the link before
-    alignas(64) double inverse_pivot[lanes];
-    alignas(64) double c[lanes];  // right-hand side, then the multiplier
-  };
-  std::vector<Row> rows_;  // the first is zero: no link comes before
+  ThreadPass threads_;
+  int sweeps_;
 };
 
 Backend strips_row();

@@ -9,27 +9,17 @@
 namespace inextensible {
 namespace {
 
-using Neighbours = std::vector<std::vector<std::pair<int, int>>>;  // of a vertex: (vertex, edge)
-
-Neighbours neighbours_of(const Problem& problem) {
-  Neighbours at(problem.vertices());
-  for (int k = 0; k < problem.constraints(); ++k) {
-    const Edge e = problem.edges()[k];
-    at[e.a].emplace_back(e.b, k);
-    at[e.b].emplace_back(e.a, k);
-  }
-  return at;
-}
+using Neighbours = std::vector<std::vector<Neighbour>>;
 
 bool joined(const Neighbours& at, int a, int b) {
-  return std::any_of(at[a].begin(), at[a].end(), [b](const auto& n) { return n.first == b; });
+  return std::any_of(at[a].begin(), at[a].end(), [b](const auto& n) { return n.vertex == b; });
 }
 
 // Whether the edges from v to a and to b are sides of one triangle or quad.
 bool share_a_face(const Neighbours& at, int v, int a, int b) {
   if (a == b || joined(at, a, b)) return true;
   return std::any_of(at[a].begin(), at[a].end(),
-                     [&](const auto& n) { return n.first != v && joined(at, n.first, b); });
+                     [&](const auto& n) { return n.vertex != v && joined(at, n.vertex, b); });
 }
 
 // Of each edge the one that goes on at its ends a and b, -1: none.

@@ -8,8 +8,8 @@ namespace inextensible {
 
 EdgeConstraints::EdgeConstraints(const Problem& problem, double strain_limit,
                                  std::vector<int> order)
-    : permissible_low(strain_limit < 1 ? (1 - strain_limit) * (1 - strain_limit) : 0),
-      permissible_high((1 + strain_limit) * (1 + strain_limit)),
+    : permissible_low(PermissibleSquares(strain_limit).low),
+      permissible_high(PermissibleSquares(strain_limit).high),
       order_(std::move(order)) {
   const std::size_t m = problem.constraints();
   for (auto* array : {&a, &b}) array->resize(m);

@@ -12,6 +12,14 @@
 
 namespace inextensible {
 
+// Bounds on |d|^2 / l^2 of an edge within the strain limit.
+struct PermissibleSquares {
+  explicit PermissibleSquares(double strain_limit)
+      : low(strain_limit < 1 ? (1 - strain_limit) * (1 - strain_limit) : 0),
+        high((1 + strain_limit) * (1 + strain_limit)) {}
+  double low, high;
+};
+
 // The edges of a problem as arrays, in an order of the caller's choice (a fill-reducing one, say).
 class EdgeConstraints {
  public:

@@ -82,6 +82,12 @@ class Problem {
   double shortest_rest_length_ = 0, longest_rest_length_ = 0, total_mass_ = 0;
 };
 
+// Of each vertex, in the order of the edges.
+struct Neighbour {
+  int vertex, edge;
+};
+std::vector<std::vector<Neighbour>> neighbours_of(const Problem& problem);
+
 struct State {
   Positions x;      // m
   Positions v;      // m/s

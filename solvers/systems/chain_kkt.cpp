@@ -11,9 +11,7 @@
 namespace inextensible {
 namespace {
 
-constexpr double refinement_goal = 1e-10;     // relative residual
-constexpr double acceptable_residual = 1e-6;  // Newton converges as well with a step this accurate
-constexpr int refinement_limit = 4;
+constexpr int chain_refinement_limit = 4;
 constexpr double numbers_per_block = 16;      // g, s, a, S and the curvature
 constexpr double operations_per_block = 245;  // counted in the text of chain_block.h
 
@@ -229,7 +227,7 @@ bool ChainKkt::solve(const Positions& r, const Eigen::VectorXd& c, Positions& p,
   p.setZero();
   q.setZero();
   double error = scale;
-  for (int i = 0; i < refinement_limit && error > refinement_goal * scale; ++i) {
+  for (int i = 0; i < chain_refinement_limit && error > refinement_goal * scale; ++i) {
     correction_p_ = r_;
     correction_q_ = c_;
     substitute(correction_p_, correction_q_);

@@ -16,7 +16,7 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr double regularization = 1e-9;  // of the diagonal
+constexpr double relative_shift = 1e-9;  // of the diagonal
 constexpr double free_fall = 1e-12;      // of accelerations over rest lengths: rounding
 constexpr int most_iterations = 50;      // one or two where A is regular
 
@@ -38,7 +38,7 @@ Sparse regular_schur_complement(const EdgeConstraints& edges, const Eigen::Matri
   shift.setIdentity();
   for (int k = 0; k < edges.count(); ++k) {
     // An edge of no length has an empty row: any number will do.
-    shift.coeffRef(k, k) = diagonal[k] > 0 ? regularization * diagonal[k] : 1;
+    shift.coeffRef(k, k) = diagonal[k] > 0 ? relative_shift * diagonal[k] : 1;
   }
   return schur + shift;
 }

@@ -13,6 +13,10 @@
 
 namespace inextensible {
 
+// Where iterative refinement of a solve ends, and what is good enough if that is not reached:
+// residuals relative to the right-hand side. Newton converges as well with the latter.
+inline constexpr double refinement_goal = 1e-10, acceptable_residual = 1e-6;
+
 class KktSolver {
  public:
   explicit KktSolver(const Problem& problem);

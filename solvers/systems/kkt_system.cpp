@@ -7,9 +7,7 @@
 namespace inextensible {
 namespace {
 
-constexpr double regularization = 1e-10;      // relative to J W J^T, of order one after scaling
-constexpr double refinement_goal = 1e-10;     // relative residual
-constexpr double acceptable_residual = 1e-6;  // Newton converges as well with a step this accurate
+constexpr double regularization = 1e-10;  // relative to J W J^T, of order one after scaling
 constexpr int refinement_limit = 8;
 
 // Upper-triangular compressed columns of a set of (row, column) places; find() gives an entry's

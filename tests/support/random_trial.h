@@ -13,7 +13,8 @@ using harness::Trial;
 
 // The backend's own sweep limit is meant for real problems; here most of them are hopeless.
 inline Settings impatient(const std::string& backend) {
-  if (backend.starts_with("strips")) return {{"max_iterations", 20.0}};
+  if (backend.starts_with("strips") || backend.starts_with("fast_projection_adaptive"))
+    return {{"max_iterations", 20.0}};
   if (backend == "jacobi" || backend.starts_with("gauss_seidel"))
     return {{"max_iterations", 300.0}};
   return {};

@@ -16,7 +16,7 @@ namespace {
 
 class Lock : public testing::Test {
  protected:
-  void SetUp() override { setenv("TMPDIR", testing::TempDir().c_str(), 1); }
+  void SetUp() override { setenv("TMPDIR", ::testing::TempDir().c_str(), 1); }
 };
 
 // In a child: 0 if it gets the lock at once, 1 if it is refused.

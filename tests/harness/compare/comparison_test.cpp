@@ -17,6 +17,7 @@
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
+#include "support/effort.h"
 
 namespace harness {
 namespace {
@@ -69,7 +70,7 @@ Times random_times(std::mt19937_64& random, std::size_t n) {
 }
 
 TEST(MannWhitney, IgnoresOrderAndUnits) {
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+  for (std::uint64_t seed = 1; seed <= inextensible::testing::trials(std::uint64_t{200}); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(seed);
     Times a = random_times(random, 3 + random() % 40);
@@ -91,7 +92,7 @@ TEST(MannWhitney, IgnoresOrderAndUnits) {
 
 // Not where there are ties: making or breaking one changes what all outcomes are.
 TEST(MannWhitney, FallsAsOneValueRises) {
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+  for (std::uint64_t seed = 1; seed <= inextensible::testing::trials(std::uint64_t{200}); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> time(1, 2);
@@ -348,8 +349,8 @@ TEST(Baseline, HoldsCountersAndRoundedErrorsOnePointALineAndNoTimes) {
 }
 
 TEST(Baseline, ComparesAsTheResultItCameFrom) {
-  const std::string result = testing::TempDir() + "result.json",
-                    baseline = testing::TempDir() + "baseline.json";
+  const std::string result = ::testing::TempDir() + "result.json",
+                    baseline = ::testing::TempDir() + "baseline.json";
   write_atomically(result, one_result().dump());
   write_atomically(baseline, document_text(baseline_document({one_result()})));
   const Comparison same = compare(read_compared({baseline}), read_compared({result}), Gate());

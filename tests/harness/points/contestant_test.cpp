@@ -17,7 +17,7 @@ namespace {
 using nlohmann::json;
 
 std::string write_tuned(const std::string& entries) {
-  const std::string path = testing::TempDir() + "tuned_of_test.json";
+  const std::string path = ::testing::TempDir() + "tuned_of_test.json";
   FILE* file = std::fopen(path.c_str(), "w");
   std::fputs((R"({"schema": "inextensible-tuned/1", "tuned": [)" + entries + "]}").c_str(), file);
   std::fclose(file);

@@ -8,6 +8,7 @@
 
 #include "harness/points/context.h"
 #include "harness/points/fuzz_documents.h"
+#include "support/effort.h"
 #include "support/spoil.h"
 
 namespace {
@@ -40,7 +41,7 @@ TEST(Documents, SpoiltSuitesAreReadOrRefusedInALine) {
   for (const char* name : {"quick.json", "default.json", "paper.json", "large.json"}) {
     const std::string text = text_of(std::filesystem::path(SOURCE_DIR) / "configs" / name);
     ASSERT_EQ(read_as_suite(text), "") << name;
-    spoil_and_read(text, read_as_suite, 2000);
+    spoil_and_read(text, read_as_suite, inextensible::testing::trials(2000));
   }
 }
 
@@ -61,7 +62,7 @@ TEST(Documents, SpoiltResultsAreReadOrRefusedInALine) {
                                                     {"bench"}, true, points)
                                .dump(1);
   ASSERT_EQ(read_as_result(text), "");
-  spoil_and_read(text, read_as_result, 2000);
+  spoil_and_read(text, read_as_result, inextensible::testing::trials(2000));
 }
 
 }  // namespace

@@ -64,6 +64,7 @@ Suite tiny_suite() {
     sweep.limits = {0.01};
     if (sweep.scene == "drape") sweep.scene_parameters["subdivisions"] = 1;
     sweep.finest = 1.0 / 800;
+    sweep.scene_parameters["duration"] = 0.2;
   }
   suite.reps = 2;
   return suite;
@@ -295,7 +296,7 @@ TEST(Baselines, FitTheirSchema) {
 }
 
 TEST(WriteAtomically, KeepsTheOldFileWhenTheNewOneCannotBeWritten) {
-  const std::string path = testing::TempDir() + "kept.json";
+  const std::string path = ::testing::TempDir() + "kept.json";
   write_atomically(path, "old");
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
@@ -309,7 +310,7 @@ TEST(WriteAtomically, KeepsTheOldFileWhenTheNewOneCannotBeWritten) {
   std::string text;
   file >> text;
   EXPECT_EQ(text, "old");
-  EXPECT_THROW(check_writable(testing::TempDir()), UsageError);  // a folder
+  EXPECT_THROW(check_writable(::testing::TempDir()), UsageError);  // a folder
 }
 
 }  // namespace

@@ -10,11 +10,9 @@
 namespace harness {
 namespace {
 
-using Trial = Calibration::Trial;
-
 constexpr double limit = 0.01;
 
-struct Outcome {
+struct Found {
   std::optional<double> stiffness;
   std::vector<double> tried;
   PointStatus status;
@@ -23,9 +21,9 @@ struct Outcome {
 
 // strain(stiffness), in runs that are cut short as real ones are.
 template <class Strain>
-Outcome search(double guess, Strain strain) {
+Found search(double guess, Strain strain) {
   std::vector<double> tried;
-  Calibration calibration(limit, [&](double stiffness) -> Trial {
+  Calibration calibration(limit, [&](double stiffness) -> Calibration::Trial {
     tried.push_back(stiffness);
     const double reached = std::min(strain(stiffness), 1.05 * Calibration::cut_short * limit);
     return {reached <= limit ? PointStatus::ok : PointStatus::strain_missed, reached, 1, "formula"};
@@ -41,7 +39,7 @@ double tension_law(double stiffness) { return 3 / stiffness; }
 
 TEST(Calibration, TakesTwoRunsFromAboveWhereTensionIsConstant) {
   for (const double guess : {400.0, 3000.0, 3e6}) {
-    const Outcome outcome = search(guess, tension_law);
+    const Found outcome = search(guess, tension_law);
     ASSERT_TRUE(outcome.stiffness);
     EXPECT_LE(tension_law(*outcome.stiffness), limit);
     EXPECT_GE(tension_law(*outcome.stiffness), 0.85 * limit);
@@ -53,7 +51,7 @@ TEST(Calibration, TakesTwoRunsFromAboveWhereTensionIsConstant) {
 // From below runs are cut short, and say little.
 TEST(Calibration, FindsItsWayFromBelow) {
   for (const double guess : {290.0, 100.0, 10.0, 0.1}) {
-    const Outcome outcome = search(guess, tension_law);
+    const Found outcome = search(guess, tension_law);
     ASSERT_TRUE(outcome.stiffness) << guess;
     EXPECT_LE(tension_law(*outcome.stiffness), limit);
     EXPECT_GE(tension_law(*outcome.stiffness), 0.85 * limit);
@@ -66,7 +64,7 @@ TEST(Calibration, FindsItsWayWhereTensionGrowsWithStiffness) {
     return 0.3 * std::pow(stiffness, -0.5) * (1 + 0.05 * std::sin(7 * std::log(stiffness)));
   };
   for (const double guess : {1.0, 100.0, 1e4, 1e6}) {
-    const Outcome outcome = search(guess, strain);
+    const Found outcome = search(guess, strain);
     ASSERT_TRUE(outcome.stiffness) << guess;
     EXPECT_LE(strain(*outcome.stiffness), limit);
     EXPECT_GE(strain(*outcome.stiffness), 0.85 * limit);
@@ -74,7 +72,7 @@ TEST(Calibration, FindsItsWayWhereTensionGrowsWithStiffness) {
 }
 
 TEST(Calibration, GivesUpWhereNoStiffnessHelps) {
-  const Outcome outcome = search(100, [](double) { return 0.02; });
+  const Found outcome = search(100, [](double) { return 0.02; });
   EXPECT_FALSE(outcome.stiffness);
   EXPECT_EQ(outcome.status, PointStatus::strain_missed);
 }
@@ -83,7 +81,7 @@ TEST(Calibration, GivesUpWhereNoStiffnessHelps) {
 TEST(Calibration, EndsWithTheFirstRunThatTimesOut) {
   for (const bool after_a_success : {false, true}) {
     std::vector<double> tried;
-    Calibration calibration(limit, [&](double stiffness) -> Trial {
+    Calibration calibration(limit, [&](double stiffness) -> Calibration::Trial {
       tried.push_back(stiffness);
       if (after_a_success && tried.size() == 1) return {PointStatus::ok, 0.1 * limit, 1, ""};
       return {PointStatus::timeout, 0.0035, 61.5, "longer than 60 s; stopped at t = 0.25 s"};
@@ -107,7 +105,7 @@ TEST(Calibration, LooksOnBothSidesOfARunThatFailed) {
     };
     for (const double guess : stiff_ones_fail ? std::vector{400.0, 1000.0} : std::vector{150.0}) {
       int failures = 0;
-      Calibration calibration(limit, [&](double stiffness) -> Trial {
+      Calibration calibration(limit, [&](double stiffness) -> Calibration::Trial {
         const double strain = tension_law(stiffness);
         if (!works(stiffness)) {
           ++failures;
@@ -126,7 +124,7 @@ TEST(Calibration, LooksOnBothSidesOfARunThatFailed) {
 }
 
 TEST(Calibration, EndsWhereEverythingFails) {
-  Calibration calibration(limit, [](double) -> Trial {
+  Calibration calibration(limit, [](double) -> Calibration::Trial {
     return {PointStatus::not_converged, 0.002, 1, "Newton"};
   });
   EXPECT_FALSE(calibration.find(100));
@@ -134,7 +132,7 @@ TEST(Calibration, EndsWhereEverythingFails) {
 }
 
 TEST(Calibration, SaysHowTheLastRunFailed) {
-  Calibration calibration(limit, [](double) -> Trial {
+  Calibration calibration(limit, [](double) -> Calibration::Trial {
     return {PointStatus::not_converged, 0.002, 1, "step 3: the Newton matrix is singular"};
   });
   EXPECT_FALSE(calibration.find(100));

@@ -256,7 +256,7 @@ TEST(Plan, RefusesFiltersThatLeaveNothing) {
 
 // What a wrong suite is told. Each message must name the key or value.
 std::string complaint(const std::string& text) {
-  const std::string path = testing::TempDir() + "suite.json";
+  const std::string path = ::testing::TempDir() + "suite.json";
   std::ofstream(path) << text;
   try {
     static_cast<void>(read_suite(path));

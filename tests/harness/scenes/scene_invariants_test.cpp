@@ -7,16 +7,13 @@
 #include "harness/scenes/scene.h"
 #include "inextensible/problem/forces.h"
 #include "inextensible/registry.h"
+#include "support/scenes.h"
 
 namespace harness {
 namespace {
 
 using inextensible::State;
-
-Scene build(const char* name, const SceneParameters& given) {
-  const SceneType& type = *find_scene(name);
-  return type.build(complete_parameters(type, given));
-}
+using testing::build;
 
 // Largest rise of the total energy above its start, over weight times length.
 double energy_rise(const char* solver, double limit, double h,

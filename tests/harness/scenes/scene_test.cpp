@@ -14,16 +14,14 @@
 #include "inextensible/problem/triangle_collider.h"
 #include "inextensible/registry.h"
 #include "inextensible/systems/schur_complement.h"
+#include "support/effort.h"
+#include "support/scenes.h"
 
 namespace harness {
 namespace {
 
 using inextensible::State;
-
-Scene build(const char* name, const SceneParameters& given) {
-  const SceneType& type = *find_scene(name);
-  return type.build(complete_parameters(type, given));
-}
+using testing::build;
 
 TEST(Chain, HasNoPartsThatItDoesNotAskFor) {
   const Scene chain = build("chain", {});
@@ -197,7 +195,7 @@ TEST(TriangleCollider, GridFindsWhatASearchOfAllTrianglesFinds) {
     state = state * 6364136223846793005ULL + 1442695040888963407ULL;
     return static_cast<double>(state >> 11) * 0x1p-53 - 0.5;
   };
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < inextensible::testing::trials(20000); ++i) {
     const Eigen::Vector3d p(0.54 * random(), 0.54 * random(), 0.54 * random());
     const auto quick = collider.nearest(p), slow = collider.nearest_by_all(p);
     ASSERT_NEAR(quick.signed_distance, slow.signed_distance, 1e-14) << p.transpose();

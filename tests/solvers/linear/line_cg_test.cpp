@@ -19,7 +19,7 @@ using testing::perturbed;
 using testing::Random;
 using testing::random_mesh;
 using testing::uniform;
-constexpr std::uint64_t seeds = 20;
+constexpr std::uint64_t examples = 20;
 
 // The upper triangle of a dense matrix, entries that are exactly 0 left out but on the diagonal.
 SymmetricPattern pattern_of(const Eigen::MatrixXd& matrix) {
@@ -64,7 +64,7 @@ Eigen::MatrixXd dense_schur(const Problem& problem, const Positions& x) {
 }
 
 TEST(LineCg, SolvesRandomMatricesToTheToleranceAskedFor) {
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+  for (std::uint64_t seed = 0; seed < examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const int n = 1 + static_cast<int>(uniform(random, 0, 60));
@@ -104,7 +104,7 @@ TEST(LineCg, SolvesASystemOfLinesAloneWithoutIterating) {
 }
 
 TEST(LineCg, FindsTheThreadsOfACrumpledClothAndAgreesWithDenseAlgebra) {
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+  for (std::uint64_t seed = 0; seed < examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const auto mesh = random_mesh(random, 7, 9, 0);
@@ -130,7 +130,7 @@ TEST(LineCg, FindsTheThreadsOfACrumpledClothAndAgreesWithDenseAlgebra) {
 }
 
 TEST(LineCg, LinesAreASymmetricPositiveDefinitePreconditionerAndThoseEliminatedAreIndependent) {
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+  for (std::uint64_t seed = 0; seed < examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const int n = 40;
@@ -248,7 +248,7 @@ TEST(Hybrid, FactorsWhereConjugateGradientsAreSlowAndComesBackFromThere) {
 
 TEST(FastProjection, KeepsTheLimitAlikeWithConjugateGradientsAndWithAFactorization) {
   constexpr double limit = 1e-3;
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+  for (std::uint64_t seed = 0; seed < examples; ++seed) {
     Random random(seed);
     const auto mesh = random_mesh(random, 8, 8, static_cast<int>(seed % 3));
     const Positions candidate = perturbed(random, mesh, 0.05);

@@ -4,23 +4,27 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <bit>
 #include <cmath>
 
 #include "inextensible/methods/fast_projection.h"
 #include "inextensible/problem/edge_constraints.h"
 #include "inextensible/registry.h"
+#include "support/motion.h"
 #include "support/random_graph.h"
 
 namespace inextensible {
 namespace {
 
 using Eigen::Vector3d;
+using testing::angular_momentum;
+using testing::h;
+using testing::linear_momentum;
+using testing::moving_state;
 using testing::Random;
 using testing::random_graph;
 using testing::random_mesh;
-constexpr std::uint64_t seeds = 8;
-constexpr double h = 0.01;
+using testing::same_bits;
+constexpr std::uint64_t examples = 8;
 
 // Every backend that holds edges: those with a strain limit, implicit springs and the oracle.
 std::vector<std::string> steppers() {
@@ -33,28 +37,6 @@ std::vector<std::string> steppers() {
 
 bool limits_strain(const std::string& name) {
   return find_backend(name)->knob == Knob::strain_limit;
-}
-
-bool same_bits(const Positions& a, const Positions& b) {
-  const auto bits = [](double number) { return std::bit_cast<std::uint64_t>(number); };
-  return a.cols() == b.cols() && std::equal(a.data(), a.data() + a.size(), b.data(),
-                                            [&](double p, double q) { return bits(p) == bits(q); });
-}
-
-State moving_state(Random& random, const testing::RandomMesh& mesh, double speed) {
-  return {mesh.x, (testing::perturbed(random, mesh, 1) - mesh.x) * speed, 0};
-}
-
-Vector3d linear_momentum(const Problem& p, const Positions& v) {
-  return v * Eigen::Map<const Eigen::VectorXd>(p.mass().data(), p.vertices());
-}
-
-Vector3d angular_momentum(const Problem& p, const Positions& x, const Positions& v) {
-  Vector3d sum = Vector3d::Zero();
-  for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    sum += p.mass()[i] * Vector3d(x.col(i)).cross(Vector3d(v.col(i)));
-  }
-  return sum;
 }
 
 // What a momentum is compared with: the sum of |m v|, which does not cancel.
@@ -85,7 +67,7 @@ class Steppers : public ::testing::TestWithParam<std::string> {
 // direction at the start, by the smaller root s of |d - s d_start| = 1.
 TEST_P(Steppers, ShortenOneEdgeByTheClosedForm) {
   if (GetParam() == "implicit_springs") GTEST_SKIP() << "an elastic edge";
-  for (std::uint64_t seed = 0; seed < 4 * seeds; ++seed) {
+  for (std::uint64_t seed = 0; seed < 4 * examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     ProblemParts parts;
@@ -127,7 +109,7 @@ TEST_P(Steppers, ShortenOneEdgeByTheClosedForm) {
 }
 
 TEST_P(Steppers, CommuteWithRotationsAndTranslations) {
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+  for (std::uint64_t seed = 0; seed < examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const auto mesh = random_mesh(random, 4, 4, 2);
@@ -151,7 +133,7 @@ TEST_P(Steppers, CommuteWithRotationsAndTranslations) {
 // Only ratios of masses matter to a filter; springs need their stiffness in the same unit.
 TEST_P(Steppers, DoNotDependOnTheUnitOfMass) {
   constexpr double factor = 1024;  // no rounding of its own in any precision
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+  for (std::uint64_t seed = 0; seed < examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const auto mesh = random_mesh(random, 4, 4, 2);
@@ -177,7 +159,7 @@ TEST_P(Steppers, DoNotDependOnTheUnitOfMass) {
 // angular momentum x^n x m v^n is kept over the whole run too; end-of-step directions lose some, at
 // first order in h.
 TEST_P(Steppers, KeepMomentumOverARun) {
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+  for (std::uint64_t seed = 0; seed < examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const auto graph = random_graph(random, 16, 10, 0, 0.01);
@@ -203,8 +185,8 @@ TEST_P(Steppers, LeaveAPermissibleCandidateBitForBit) {
     if (setting.name == std::string("min_iterations") && std::get<double>(setting.initial) > 0)
       GTEST_SKIP() << "corrects every candidate";
   }
-  if (GetParam() == "strips_bdf2") GTEST_SKIP() << "another candidate than the null filter's";
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+  if (GetParam().ends_with("_bdf2")) GTEST_SKIP() << "another candidate than the null filter's";
+  for (std::uint64_t seed = 0; seed < examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const auto mesh = random_mesh(random, 4, 4, 1);
@@ -221,7 +203,7 @@ TEST_P(Steppers, LeaveAPermissibleCandidateBitForBit) {
 // Claim C10: the constraint error of a step does not depend on the error it began with.
 TEST_P(Steppers, MendAStretchedStartInOneStep) {
   if (!limits_strain(GetParam())) GTEST_SKIP() << "no strain limit";
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+  for (std::uint64_t seed = 0; seed < examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const auto mesh = random_mesh(random, 4, 5, 1);
@@ -238,7 +220,7 @@ TEST_P(Steppers, MendAStretchedStartInOneStep) {
 // fresh stepper's (but for Gauss-Seidel's random numbers, which have moved on).
 TEST_P(Steppers, SurviveOverflowAndGoOnAsIfNothingHadBeen) {
   for (const double speed : {1e160, 1e300}) {
-    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    for (std::uint64_t seed = 0; seed < examples; ++seed) {
       SCOPED_TRACE((speed < 1e200 ? "speed 1e160, seed " : "speed 1e300, seed ") +
                    std::to_string(seed));
       Random random(seed);
@@ -271,6 +253,7 @@ TEST_P(Steppers, SurviveOverflowAndGoOnAsIfNothingHadBeen) {
 // A triangle of rest lengths 1, 1 and 3 does not exist.
 TEST_P(Steppers, RefuseAProblemWithoutSolutionAndNameAnEdge) {
   if (GetParam() == "implicit_springs") GTEST_SKIP() << "springs stretch instead";
+  if (find_backend(GetParam())->knob == Knob::time_step) GTEST_SKIP() << "promises no limit";
   ProblemParts parts;
   parts.gravity.setZero();
   parts.mass = {1, 0.3, 2};
@@ -298,7 +281,7 @@ INSTANTIATE_TEST_SUITE_P(All, Steppers, ::testing::ValuesIn(steppers()),
 
 // One iteration's forces go along the candidate's edges: no torque on x0, to the last digits.
 TEST(FastProjection, OneIterationDoesNoTorqueOnTheCandidate) {
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+  for (std::uint64_t seed = 0; seed < examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const auto mesh = random_mesh(random, 4, 5, 0);

@@ -3,23 +3,26 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <bit>
 #include <cmath>
 
 #include "inextensible/methods/dense_oracle.h"
 #include "inextensible/methods/fast_projection.h"
 #include "inextensible/methods/icd.h"
 #include "inextensible/registry.h"
-#include "support/random_mesh.h"
+#include "support/motion.h"
 
 namespace inextensible {
 namespace {
 
+using testing::angular_momentum;
+using testing::h;
+using testing::linear_momentum;
+using testing::moving_state;
 using testing::Random;
 using testing::random_mesh;
 using testing::RandomMesh;
+using testing::same_bits;
 constexpr int seeds = 8;
-constexpr double h = 0.01;
 
 std::vector<std::string> filters() {
   std::vector<std::string> names;
@@ -28,35 +31,6 @@ std::vector<std::string> filters() {
   }
   names.emplace_back("oracle");
   return names;
-}
-
-bool same_bits(const Positions& a, const Positions& b) {
-  const auto bits = [](double number) { return std::bit_cast<std::uint64_t>(number); };
-  return a.cols() == b.cols() && std::equal(a.data(), a.data() + a.size(), b.data(),
-                                            [&](double p, double q) { return bits(p) == bits(q); });
-}
-
-// Velocities that would stretch edges by some per cent in one step.
-State moving_state(Random& random, const testing::RandomMesh& mesh, double speed) {
-  State state;
-  state.x = mesh.x;
-  state.v = (testing::perturbed(random, mesh, 1) - mesh.x) * speed;
-  return state;
-}
-
-Eigen::Vector3d linear_momentum(const Problem& p, const Positions& v) {
-  return v * Eigen::Map<const Eigen::VectorXd>(p.mass().data(), p.vertices());
-}
-
-Eigen::Vector3d angular_momentum(const Problem& p, const Positions& x, const Positions& v) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    const Eigen::Vector3d xi = x.col(i), vi = v.col(i);
-    sum +=
-        p.mass()[i] * Eigen::Vector3d(xi[1] * vi[2] - xi[2] * vi[1], xi[2] * vi[0] - xi[0] * vi[2],
-                                      xi[0] * vi[1] - xi[1] * vi[0]);
-  }
-  return sum;
 }
 
 class Filters : public ::testing::TestWithParam<std::string> {};

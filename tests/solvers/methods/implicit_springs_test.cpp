@@ -4,15 +4,16 @@
 #include <cmath>
 
 #include "inextensible/registry.h"
-#include "support/random_mesh.h"
+#include "support/motion.h"
 
 namespace inextensible {
 namespace {
 
+using testing::h;
 using testing::Random;
 using testing::random_mesh;
 using testing::RandomMesh;
-constexpr double h = 0.01, strain_limit = 0.01, tolerance = 0.1;
+constexpr double strain_limit = 0.01, tolerance = 0.1;
 
 std::unique_ptr<Stepper> springs(const RandomMesh& mesh, Settings settings) {
   settings["stiffness"] = 1e5;
@@ -25,8 +26,8 @@ const Settings plain_newton{{"start", std::string("flight")},
                             {"newton_tolerance", 1e-7}};
 
 // Gently enough that the energy has one minimum nearby: springs buckle neither way.
-State moving_state(Random& random, const RandomMesh& mesh, double speed = 0.5) {
-  return {mesh.x, (testing::perturbed(random, mesh, 1) - mesh.x) * speed, 0};
+State gently_moving(Random& random, const RandomMesh& mesh, double speed = 0.5) {
+  return testing::moving_state(random, mesh, speed);
 }
 
 // However Newton starts and whatever matrix it steps with, each step ends within the tolerance of
@@ -45,7 +46,7 @@ TEST(ImplicitSprings, EndEveryStepAtTheMinimumThatPlainNewtonFinds) {
                                             {"tension", std::string(tension)},
                                             {"reuse", reuse},
                                             {"newton_tolerance", tolerance}});
-          State elsewhere = moving_state(random, mesh), state = moving_state(random, mesh);
+          State elsewhere = gently_moving(random, mesh), state = gently_moving(random, mesh);
           ASSERT_TRUE(other->advance(elsewhere, 2 * h));
           for (int step = 0; step < 20; ++step) {
             State copy = state;
@@ -64,7 +65,7 @@ TEST(ImplicitSprings, EndEveryStepAtTheMinimumThatPlainNewtonFinds) {
 WorkCounters work(const Settings& settings) {
   Random random(3);
   const RandomMesh mesh = random_mesh(random, 1, 30, 1);
-  State state = moving_state(random, mesh, 10);
+  State state = gently_moving(random, mesh, 10);
   const auto stepper = springs(mesh, settings);
   for (int step = 0; step < 50; ++step) EXPECT_TRUE(stepper->advance(state, h));
   return stepper->work();
@@ -89,7 +90,7 @@ TEST(ImplicitSprings, TakeFewerIterationsFromAPredictedStartAndTension) {
 TEST(ImplicitSprings, StartAgainAfterARefusalAsIfItHadNotBeen) {
   Random random(5);
   const RandomMesh mesh = random_mesh(random, 4, 4, 2);
-  State refused = moving_state(random, mesh);
+  State refused = gently_moving(random, mesh);
   State straight = refused;
   const auto first = springs(mesh, {});
   const auto second = springs(mesh, {});

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "inextensible/methods/fast_projection.h"
+#include "inextensible/methods/fast_projection_adaptive.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {
@@ -105,6 +106,57 @@ TEST(Strips, OnSeveralChainsAreFastProjectionOnEach) {
     }
     ASSERT_TRUE(strips.apply(start, 0.01, x, work));
     EXPECT_LE((x - wanted).cwiseAbs().maxCoeff(), 1e-10);
+  }
+}
+
+// Where threads do not cross, the projection of the whole has nothing to add.
+TEST(FastProjectionAdaptive, OnAChainIsStrips) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    testing::Random random(seed);
+    const auto chain = testing::random_mesh(random, 1, 2 + static_cast<int>(random() % 40), 1);
+    Strips strips(*chain.problem, {.strain_limit = 1e-3});
+    FastProjectionAdaptive adaptive(*chain.problem, {.strain_limit = 1e-3});
+    Positions x = testing::perturbed(random, chain, 0.05), y = x;
+    WorkCounters work, same_work;
+    ASSERT_TRUE(strips.apply(chain.x, 0.01, x, work));
+    ASSERT_TRUE(adaptive.apply(chain.x, 0.01, y, same_work));
+    EXPECT_TRUE((x.array() == y.array()).all());
+  }
+}
+
+// What strips need many rounds for, cloth stretched as a whole, the projection of the whole does in
+// a few; where strips are quick nothing is factored.
+TEST(FastProjectionAdaptive, ProjectsTheWholeWhereStripsAreSlowAndNotWhereTheyAreQuick) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    testing::Random random(seed);
+    const auto cloth = testing::random_mesh(random, 50, 50, 1);
+    const int pin = cloth.problem->pinned().front();
+    for (const double limit : {0.1, 1e-5}) {
+      Strips strips(*cloth.problem, {.strain_limit = limit});
+      FastProjectionAdaptive adaptive(*cloth.problem, {.strain_limit = limit});
+      const EdgeConstraints edges(*cloth.problem, limit);
+      WorkCounters work, strips_work;
+      int rounds = 0, strips_rounds = 0;
+      for (int step = 0; step < 5; ++step) {
+        Positions x = testing::perturbed(random, cloth, limit < 1e-3 ? 1e-6 : 0.005);
+        if (limit < 1e-3) x = (1.03 * (x.colwise() - x.col(pin))).colwise() + x.col(pin).eval();
+        Positions y = x;
+        const StepResult mine = adaptive.apply(cloth.x, 0.01, x, work);
+        const StepResult theirs = strips.apply(cloth.x, 0.01, y, strips_work);
+        ASSERT_TRUE(mine && theirs) << mine.detail;
+        EXPECT_TRUE(edges.permissible(x));
+        rounds += mine.iterations;
+        strips_rounds += theirs.iterations;
+      }
+      if (limit < 1e-3) {
+        EXPECT_LT(2 * rounds, strips_rounds);
+        EXPECT_GT(work.factor_flops, 0);
+      } else {
+        EXPECT_EQ(work.factor_flops, 0);
+      }
+    }
   }
 }
 

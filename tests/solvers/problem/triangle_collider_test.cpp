@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "support/effort.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {
@@ -65,7 +66,7 @@ TEST(TriangleCollider, DistanceAndSignAreRightOnAMeshThatIsNotConvex) {
     Random random(seed);
     const TriangleMesh mesh = spiky(random, 2);
     const TriangleCollider collider(mesh, 0.3);
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < testing::trials(3000); ++i) {
       const Vector3d p = random_point(random, i % 3 ? 0.8 : 1.2);  // also beyond the grid's box
       double distance = std::numeric_limits<double>::infinity();
       for (const auto& t : mesh.triangles) {
@@ -82,14 +83,14 @@ TEST(TriangleCollider, DistanceAndSignAreRightOnAMeshThatIsNotConvex) {
       ASSERT_EQ(found.signed_distance < 0, is_inside) << p.transpose();
     }
   }
-  EXPECT_GT(inside, 1000);
-  EXPECT_GT(outside, 1000);
+  EXPECT_GT(inside, testing::trials(1000));
+  EXPECT_GT(outside, testing::trials(1000));
 }
 
-// The least signed distance of 5,000 random vertices after resolve().
+// The least signed distance of some random vertices after resolve().
 double deepest_after_resolve(const TriangleMesh& mesh, double friction, Random& random) {
   const TriangleCollider collider(mesh, friction);
-  const int n = 5000;
+  const int n = testing::trials(5000);
   Eigen::Matrix3Xd start(3, n), x(3, n);
   int inside = 0;
   for (int v = 0; v < n; ++v) {
@@ -125,7 +126,7 @@ TEST(TriangleCollider, OfAConvexMeshGoesToTheNearestPoint) {
       ASSERT_GT(stretch.determinant(), 0);
       for (Vector3d& v : mesh.vertices) v = (stretch * v).eval();
       const TriangleCollider collider(mesh, 0);
-      const int n = 2000;
+      const int n = testing::trials(2000);
       Eigen::Matrix3Xd before(3, n);
       for (int v = 0; v < n; ++v) before.col(v) = random_point(random, 1.3);
       Eigen::Matrix3Xd x = before;
@@ -141,7 +142,7 @@ TEST(TriangleCollider, OfAConvexMeshGoesToTheNearestPoint) {
             << before.col(v).transpose();
         EXPECT_GE(collider.nearest_by_all(x.col(v)).signed_distance, -1e-12);
       }
-      EXPECT_GT(inside, 100);
+      EXPECT_GT(inside, testing::trials(100));
       EXPECT_EQ(work.contacts, inside);
     }
   }

@@ -1,0 +1,55 @@
+// Threads of the cloth (threads.h), each projected as a whole: what strips and
+// fast_projection_adaptive share.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "inextensible/methods/strain_pass.h"
+#include "inextensible/methods/threads.h"
+#include "inextensible/problem/work_counters.h"
+
+namespace inextensible {
+
+class ThreadPass {
+ public:
+  // Links strained beyond `target` of the limit are brought to it, in a thread that has one beyond
+  // the limit. `places`: where vertices are in the positions that project() takes.
+  ThreadPass(const Problem& problem, double strain_limit, double target,
+             const ColoredEdges& places);
+
+  // One step of Newton's method for every thread, color after color. Returns how many links were
+  // beyond the limit; one without length counts as none.
+  std::int64_t project(ColoredEdges::Places& x, WorkCounters& work);
+
+  bool crossing() const { return crossing_; }  // whether threads share vertices
+
+ private:
+  static constexpr int lanes = 8;
+  // Threads of one color side by side, one a lane; shorter ones end in links that are none.
+  struct Bundle {
+    int links, first, threads;  // first: row of vertices and links in the arrays below
+  };
+  void add_bundle(const Problem& problem, const std::vector<const Thread*>& threads,
+                  const ColoredEdges& places);
+  template <int used>
+  std::int64_t project(const Bundle& bundle, ColoredEdges::Places& x, WorkCounters& work);
+
+  StrainBand band_;
+  double target_low_, target_high_;  // of q - 1 = |d|^2 / l^2 - 1
+  bool crossing_ = false;
+  std::vector<Bundle> bundles_;
+  // Rows of `lanes` numbers. Of vertices: place, inverse mass; of the link to the next vertex: rest
+  // length and its inverse (0: no link).
+  std::vector<int> place_;
+  std::vector<double> inverse_mass_, rest_, inverse_rest_;
+  struct Row {
+    alignas(64) double g[3][lanes];  // d / l of a link
+    alignas(64) double off[lanes];   // coupling with the link before
+    alignas(64) double inverse_pivot[lanes];
+    alignas(64) double c[lanes];  // right-hand side, then the multiplier
+  };
+  std::vector<Row> rows_;  // the first is zero: no link comes before
+};
+
+}  // namespace inextensible

@@ -1,0 +1,139 @@
+// Compliance is 0, so that with one sweep from lambda = 0 an edge's multiplier is its correction
+// (Macklin et al. 2016, eq. 18), and no multiplier is read again: every edge is brought to its rest
+// length, warp and weft, one color after the other. Loops: one pass over edges a sweep, one over
+// attachments a step.
+//
+// At rest under gravity an edge keeps a strain of about g h^2 / l times the edges below it: one
+// sweep carries a load by one edge, or by one color.
+#include "inextensible/methods/xpbd_small_steps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <stdexcept>
+
+namespace inextensible {
+namespace {
+
+constexpr int most_attachments = 4;  // of a vertex: to the nearest pins
+
+// Along edges, from one vertex to all (Dijkstra 1959); infinite where there is no way.
+std::vector<double> distances_from(int start, const Problem& problem,
+                                   const std::vector<std::vector<Neighbour>>& at) {
+  std::vector<double> distance(problem.vertices(), std::numeric_limits<double>::infinity());
+  using Entry = std::pair<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  distance[start] = 0;
+  open.emplace(0.0, start);
+  while (!open.empty()) {
+    const auto [so_far, v] = open.top();
+    open.pop();
+    if (so_far > distance[v]) continue;
+    for (const auto [to, edge] : at[v]) {
+      const double length = so_far + problem.rest_length()[edge];
+      if (length >= distance[to]) continue;
+      distance[to] = length;
+      open.emplace(length, to);
+    }
+  }
+  return distance;
+}
+
+}  // namespace
+
+XpbdSmallSteps::XpbdSmallSteps(const Problem& problem, const Settings& settings,
+                               const Positions* rest)
+    : sweeps_(settings.sweeps), sweep_(StrainSweep::by_mass(problem, {0, 0}, settings.relaxation)) {
+  if (settings.attachments == "edges") attach_along_edges(problem);
+  if (settings.attachments == "straight") {
+    if (!rest) throw std::invalid_argument("straight attachments need the positions at rest");
+    attach_straight(problem, *rest);
+  }
+}
+
+void XpbdSmallSteps::attach_along_edges(const Problem& problem) {
+  const auto neighbours = neighbours_of(problem);
+  for (const int pin : problem.pinned()) {
+    const std::vector<double> distance = distances_from(pin, problem, neighbours);
+    for (int v = 0; v < problem.vertices(); ++v) {
+      if (distance[v] < std::numeric_limits<double>::infinity())
+        attachments_.push_back({v, pin, distance[v]});
+    }
+    keep_nearest(problem);
+  }
+}
+
+void XpbdSmallSteps::attach_straight(const Problem& problem, const Positions& rest) {
+  for (const int pin : problem.pinned()) {
+    for (int v = 0; v < problem.vertices(); ++v)
+      attachments_.push_back({v, pin, (rest.col(v) - rest.col(pin)).norm()});
+    keep_nearest(problem);
+  }
+}
+
+// Of each vertex that is free; by vertex, nearest first.
+void XpbdSmallSteps::keep_nearest(const Problem& problem) {
+  std::erase_if(attachments_,
+                [&](const Attachment& a) { return problem.inverse_mass()[a.vertex] == 0; });
+  std::stable_sort(attachments_.begin(), attachments_.end(),
+                   [](const Attachment& p, const Attachment& q) {
+                     return p.vertex != q.vertex ? p.vertex < q.vertex : p.distance < q.distance;
+                   });
+  int vertex = -1, count = 0;
+  std::erase_if(attachments_, [&](const Attachment& a) {
+    count = a.vertex == vertex ? count + 1 : 1;
+    vertex = a.vertex;
+    return count > most_attachments;
+  });
+}
+
+StepResult XpbdSmallSteps::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
+                                 WorkCounters& work) {
+  sweep_.load(x);
+  for (int i = 0; i < sweeps_; ++i) work.edge_projections += sweep_.in_turn();
+  if (!sweep_.finite()) return {Status::not_finite, sweeps_, -1, 0, "overflow"};
+  sweep_.store(x);
+  for (const Attachment& a : attachments_) {
+    const Eigen::Vector3d d = x.col(a.vertex) - x.col(a.pin);
+    const double square = d.squaredNorm();
+    if (square > a.distance * a.distance)
+      x.col(a.vertex) = x.col(a.pin) + a.distance / std::sqrt(square) * d;
+  }
+  return {Status::ok, sweeps_};
+}
+
+SettingFields<XpbdSmallSteps::Settings> XpbdSmallSteps::fields() {
+  using S = Settings;
+  return {
+      {"sweeps", &S::sweeps, "colored Gauss-Seidel sweeps a step", at_least_one, Range{1, 8}},
+      {"relaxation", &S::relaxation, "times a correction", relaxation_range, tunable_relaxation},
+      {"attachments",
+       &S::attachments,
+       "of vertices to pinned ones, at their rest distance along edges or straight",
+       {},
+       {},
+       {"none", "edges", "straight"}}};
+}
+
+Backend xpbd_small_steps_row() {
+  return {.name = "xpbd_small_steps",
+          .summary = "a fixed number of sweeps a step, no test of convergence: small steps do it",
+          .knob = Knob::time_step,
+          .contestant = true,
+          .settings = setting_infos(XpbdSmallSteps::fields()),
+          .make = [](std::shared_ptr<const Problem> problem,
+                     const BackendOptions& options) -> std::unique_ptr<Stepper> {
+            // The start is taken for the shape at rest.
+            auto filter =
+                std::make_unique<XpbdSmallSteps>(*problem, settings_of<XpbdSmallSteps>(options),
+                                                 options.start ? &options.start->x : nullptr);
+            return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
+          },
+          .direction = Direction::local,
+          .citation = "Macklin et al. 2016, 2019",
+          .label = "XPBD, small steps"};
+}
+
+}  // namespace inextensible

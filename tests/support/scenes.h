@@ -1,0 +1,13 @@
+#pragma once
+
+#include "harness/scenes/scene.h"
+
+namespace harness::testing {
+
+// A scene by its name; parameters that are not given have the scene's own values.
+inline Scene build(const char* name, const SceneParameters& given) {
+  const SceneType& type = *find_scene(name);
+  return type.build(complete_parameters(type, given));
+}
+
+}  // namespace harness::testing
