@@ -76,7 +76,7 @@ json context_of(const SweepSpec& scene, const TuneCommand& options) {
   const json machine = machine_context();
   const SceneType& type = *find_scene(scene.scene);
   SceneParameters given = scene.scene_parameters;
-  given[type.resolution] = scene.resolutions.front();
+  given[type.resolution] = scene.resolutions.front();  // the others stand with their places
   return {{"date", machine.at("date")},
           {"cpu_model", machine.at("cpu_model")},
           {"commit", machine.at("build").at("git")},
@@ -135,7 +135,7 @@ void add_tune_command(const Command& program) {
   const Command command = program.subcommand(
       "tune",
       "search the settings of each solver, with one budget and one rule, on scenes that no result "
-      "reports; half an hour for all");
+      "reports; an hour for all");
   command.alternatives("--solver", options.solver, "only solvers whose name matches; others stay");
   command.option("--scene", options.scene, "chain, drape or patch only; others stay", "NAME");
   command

@@ -28,6 +28,8 @@ const json& list_in(JsonReader& reader, const char* key) {
 TunedPlace read_place(const json& object, const std::string& where) {
   JsonReader reader(object, where);
   TunedPlace place;
+  place.resolution =
+      static_cast<int>(reader.number("resolution", 0, {.least = 1, .most = 1e6, .whole = true}));
   for (const auto& [key, member] :
        {std::pair("limit", &TunedPlace::limit),
         std::pair("default_seconds", &TunedPlace::default_seconds),
@@ -112,7 +114,8 @@ ordered_json tuned_document(const std::vector<TunedEntry>& entries) {
   for (const TunedEntry& entry : entries) {
     ordered_json places = ordered_json::array();
     for (const TunedPlace& p : entry.places)
-      places.push_back({{"limit", p.limit},
+      places.push_back({{"resolution", p.resolution},
+                        {"limit", p.limit},
                         {"default_seconds", p.default_seconds},
                         {"default_step", p.default_step},
                         {"seconds", p.seconds},

@@ -10,8 +10,9 @@
 
 namespace harness {
 
-// The time at one strain limit of a tuning scene, each at its best step of those tried.
+// The time at one size and strain limit of a tuning scene, each at its best step of those tried.
 struct TunedPlace {
+  int resolution = 0;
   double limit = 0;
   double default_seconds = 0, default_step = 0;  // s/s, s
   double seconds = 0, step = 0;                  // with the settings that were found

@@ -13,8 +13,9 @@ namespace {
 
 constexpr double give_up_at = 2.5;  // times the best time known at a limit
 constexpr int samples = 3;          // of the best steps, whose medians count
+constexpr double luck = 1.1;        // how far above its median one run may lie
 
-// One strain limit of the scene, and what is known there.
+// One size and strain limit of the scene, and what is known there.
 struct Place {
   Search search;
   std::optional<double> stiffness = {};  // to begin calibrations from
@@ -59,23 +60,33 @@ class Tuner {
     const TuneOutcome outcome = tune_values(numbers_, seconds, options_.rules);
     entry_.gain = outcome.gain;
     entry_.evaluations = outcome.evaluations;
-    Values initial;
-    for (std::size_t i = 0; i < numbers_.size(); ++i) {
-      initial.push_back(numbers_[i].initial);
-      if (outcome.values[i] != initial[i]) entry_.settings[numbers_[i].name] = outcome.values[i];
-    }
-    const auto was = last_.find(initial), is = last_.find(outcome.values);
+    entry_.settings = settings_of(outcome.values);
+    const auto was = last_.find(initial()), is = last_.find(outcome.values);
     if (was == last_.end() || is == last_.end()) return entry_;
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const auto step = [&](const Found& found) { return places_[i].search.ladder[found.rung]; };
       const Found &before = was->second[i], &now = is->second[i];
-      entry_.places.push_back({places_[i].search.base.strain_limit, before.seconds, step(before),
+      const PointSpec& base = places_[i].search.base;
+      entry_.places.push_back({base.resolution, base.strain_limit, before.seconds, step(before),
                                now.seconds, step(now)});
     }
     return entry_;
   }
 
  private:
+  Values initial() const {
+    Values values;
+    for (const TunedNumber& number : numbers_) values.push_back(number.initial);
+    return values;
+  }
+
+  inextensible::Settings settings_of(const Values& values) const {
+    inextensible::Settings settings;
+    for (std::size_t i = 0; i < numbers_.size(); ++i)
+      if (values[i] != numbers_[i].initial) settings[numbers_[i].name] = values[i];
+    return settings;
+  }
+
   PointSpec spec(const Place& place, std::size_t rung, const inextensible::Settings& settings) {
     PointSpec spec = place.search.base;
     spec.step = place.search.ladder[rung];
@@ -113,11 +124,17 @@ class Tuner {
     std::erase_if(places_, [](const Place& place) { return place.best_seconds >= 1e300; });
   }
 
-  // Geometric mean over the places; none if one fails, or the mean is bound to be above `hopeless`.
+  // Whether that is too much time at a place, in view of what it is without any settings.
+  bool loses(std::size_t place, double seconds) const {
+    const auto without = last_.find(initial());
+    return without != last_.end() &&
+           seconds > (1 + options_.most_loss) * without->second[place].seconds;
+  }
+
+  // Geometric mean over the places; none if one fails or loses too much, or the mean is bound to be
+  // above `hopeless`.
   std::optional<double> evaluate(const Values& values, double hopeless) {
-    inextensible::Settings settings;
-    for (std::size_t i = 0; i < numbers_.size(); ++i)
-      if (values[i] != numbers_[i].initial) settings[numbers_[i].name] = values[i];
+    const inextensible::Settings settings = settings_of(values);
     const bool in_race = hopeless < 1e300;
     std::vector<PointResult> fastest;
     std::vector<std::size_t> rungs;
@@ -126,7 +143,7 @@ class Tuner {
     for (Place& place : places_) {
       PointResult point;
       const auto rung = best_step(place, settings, in_race, point);
-      if (!rung) break;
+      if (!rung || (!settings.empty() && loses(rungs.size(), point.median_seconds() / luck))) break;
       rungs.push_back(*rung);
       fastest.push_back(std::move(point));
       log_rest -= std::log(0.5 * place.best_seconds);
@@ -139,6 +156,8 @@ class Tuner {
       if (!in_race || mean_of(fastest) < lowest_) repeat(fastest);
       mean = mean_of(fastest);
     }
+    for (std::size_t i = 0; mean && i < places_.size() && !settings.empty(); ++i)
+      if (loses(i, fastest[i].median_seconds())) mean.reset();
     tell(settings, mean);
     if (mean) learn(values, rungs, fastest);
     return mean;
@@ -189,8 +208,9 @@ class Tuner {
   }
 
   void tell(const inextensible::Settings& settings, const std::optional<double>& mean) {
-    options_.tell(entry_.kind + "/" + entry_.solver + " " + to_json(settings).dump() + ": " +
-                  (mean ? duration_text(*mean) + "/s" : std::string("fails, or too slow")));
+    options_.tell(
+        entry_.kind + "/" + entry_.solver + " " + to_json(settings).dump() + ": " +
+        (mean ? duration_text(*mean) + "/s" : std::string("fails, too slow, or slower somewhere")));
   }
 
   TuneOptions options_;
@@ -202,12 +222,13 @@ class Tuner {
   TunedEntry entry_;
 };
 
-SweepSpec tuning_scene(const char* scene, int n, double coarsest, double duration) {
+SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarsest,
+                       double duration) {
   SweepSpec spec;
   spec.sweep = "strain";
   spec.scene = scene;
-  spec.limits = {0.1, 0.01, 0.001};
-  spec.resolutions = {n};
+  spec.limits = {0.1, 0.01, 0.001, 0.0001};
+  spec.resolutions = std::move(sizes);
   spec.coarsest = coarsest;
   spec.finest = 1.0 / 6400;
   spec.scene_parameters = {{"duration", duration}};
@@ -218,8 +239,8 @@ SweepSpec tuning_scene(const char* scene, int n, double coarsest, double duratio
 
 std::vector<SweepSpec> tuning_scenes() {
   // The drape is hardest from 0.3 s on, where it has sheared.
-  return {tuning_scene("chain", 50, 0.2, 1), tuning_scene("drape", 41, 0.02, 0.6),
-          tuning_scene("patch", 21, 0.02, 1)};
+  return {tuning_scene("chain", {50, 200}, 0.2, 1), tuning_scene("drape", {17, 45}, 0.02, 0.6),
+          tuning_scene("patch", {13, 23}, 0.02, 1)};
 }
 
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene,

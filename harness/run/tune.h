@@ -9,18 +9,22 @@
 
 namespace harness {
 
-// The scenes that settings are searched on, one a kind: none of them is in a reported result.
+// The scenes that settings are searched on, one a kind, each at two sizes, so that a setting that
+// suits one size alone is found out. None of them is in a reported result.
 std::vector<SweepSpec> tuning_scenes();
 
 struct TuneOptions {
   TuneRules rules;
+  // Settings are out that make the solver slower by more than this at any limit and size at which
+  // it runs without them, whatever they gain elsewhere.
+  double most_loss = 0.1;
   double timeout = 10;  // s, of a run
   std::function<bool()> interrupted = nullptr;
   std::function<void(const std::string&)> tell = [](const std::string&) {};  // lines of progress
 };
 
-// Without `context`. No settings where nothing is gained, or the solver fails at every limit as it
-// is. Throws Interrupted.
+// Without `context`. No settings where nothing is gained, or the solver fails everywhere as it is.
+// Throws Interrupted.
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene,
                        const TuneOptions& options, const SweepRunners& runners = {});
 

@@ -10,8 +10,8 @@ using inextensible::State;
 
 void add_whip(std::vector<HardCase>& cases, const HardCaseValues& /*values*/) {
   const char* row = "whip";
-  const Expectation others{everyone, survives,
-                           "each edge keeps its own direction, however far it turns"};
+  const Expectation everybody{everyone, survives,
+                              "each edge keeps its own direction, however far it turns"};
   cases.push_back({row,
                    "crack",
                    "a folded chain, one end released: the tip outruns gravity",
@@ -31,7 +31,7 @@ void add_whip(std::vector<HardCase>& cases, const HardCaseValues& /*values*/) {
                    {{start_direction, refuses,
                      "the last link of 25 mm turns over within two steps: more than 60 degrees in "
                      "one, where no multiple of the old direction reaches its length"},
-                    others}});
+                    everybody}});
   cases.push_back({row,
                    "spin",
                    "a free chain turning at 100 rad/s, 0.1 rad a step",
@@ -58,7 +58,7 @@ void add_whip(std::vector<HardCase>& cases, const HardCaseValues& /*values*/) {
                    {{start_direction, refuses,
                      "the vertex is 0.1 m above the others, edges are 0.07 m long, and all old "
                      "directions are horizontal (Q1)"},
-                    others}});
+                    everybody}});
   cases.push_back({row,
                    "jump",
                    "the pin of a hanging chain jumps by 10 edge lengths in one step",
@@ -72,7 +72,7 @@ void add_whip(std::vector<HardCase>& cases, const HardCaseValues& /*values*/) {
                    {{start_direction, refuses,
                      "the chain must move sideways by ten edges, and all old directions but one "
                      "are plumb (Q1)"},
-                    others}});
+                    everybody}});
 }
 
 }  // namespace harness

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <new>
 #include <stdexcept>
 #include <type_traits>
@@ -40,15 +41,18 @@ constexpr int panel_ld(int K, int n) {
 
 template <class Real>
 struct LaneVector {
-  typedef Real type __attribute__((vector_size(vector_bytes), aligned(sizeof(Real)), may_alias));
+  typedef Real type __attribute__((vector_size(vector_bytes)));
 };
 template <class Real>
-auto& lanes_at(Real* p) {
-  return *reinterpret_cast<typename LaneVector<Real>::type*>(p);
+using Lanes = typename LaneVector<Real>::type;
+// memcpy, because numbers in memory are not aligned as vectors are.
+template <class Real>
+void load_lanes(const Real* p, Lanes<Real>& values) {
+  std::memcpy(&values, p, sizeof values);
 }
 template <class Real>
-const auto& lanes_at(const Real* p) {
-  return *reinterpret_cast<const typename LaneVector<Real>::type*>(p);
+void store_lanes(const Lanes<Real>& values, Real* p) {
+  std::memcpy(p, &values, sizeof values);
 }
 
 // Eliminates the K columns of a panel of n rows: the triangle of K rows, then the rows below, each
@@ -81,14 +85,14 @@ int eliminate(Real* l, Distance ld, int n, const Real* bound, Real* pivots) {
     }
   }
   for (int i = K; i < n; i += lanes<Real>) {
-    typename LaneVector<Real>::type y[K];  // rows of L D
+    Lanes<Real> y[K];  // rows of L D
 #pragma GCC unroll 8
-    for (int c = 0; c < K; ++c) y[c] = lanes_at(l + c * ld + i);
+    for (int c = 0; c < K; ++c) load_lanes(l + c * ld + i, y[c]);
 #pragma GCC unroll 8
     for (int c = 0; c < K; ++c) {
 #pragma GCC unroll 8
       for (int k = c + 1; k < K; ++k) y[k] -= y[c] * triangle[k][c];
-      lanes_at(l + c * ld + i) = y[c] * inverse[c];
+      store_lanes<Real>(y[c] * inverse[c], l + c * ld + i);
     }
   }
   return K;
@@ -108,17 +112,19 @@ void subtract_columns(const Real* p, Distance ld_p, const Real* d, int n, int j,
   }
   c += j * ld_c;
   for (int i = j / lanes<Real> * lanes<Real>; i < n; i += lanes<Real>) {
-    typename LaneVector<Real>::type sum[J] = {};
+    Lanes<Real> sum[J] = {};
 #pragma GCC unroll 8
     for (int k = 0; k < K; ++k) {
-      const auto& value = lanes_at(p + k * ld_p + i);
+      Lanes<Real> value;
+      load_lanes(p + k * ld_p + i, value);
 #pragma GCC unroll 4
       for (int t = 0; t < J; ++t) sum[t] += value * factor[k][t];
     }
 #pragma GCC unroll 4
     for (int t = 0; t < J; ++t) {
-      auto& result = lanes_at(c + t * ld_c + i);
-      result = begin ? -sum[t] : result - sum[t];
+      Lanes<Real> before = {};
+      if (!begin) load_lanes(c + t * ld_c + i, before);
+      store_lanes<Real>(before - sum[t], c + t * ld_c + i);
     }
   }
 }
@@ -197,21 +203,29 @@ void substitute_forward(const Real* l, Distance ld, int n, Real* w) {
 #pragma GCC unroll 8
   for (int c = 0; c < K; ++c) w[c] = x[c];
   for (int i = K; i < n; i += lanes<Real>) {
-    auto sum = lanes_at(w + i);
+    Lanes<Real> sum, column;
+    load_lanes(w + i, sum);
 #pragma GCC unroll 8
-    for (int c = 0; c < K; ++c) sum -= lanes_at(l + c * ld + i) * x[c];
-    lanes_at(w + i) = sum;
+    for (int c = 0; c < K; ++c) {
+      load_lanes(l + c * ld + i, column);
+      sum -= column * x[c];
+    }
+    store_lanes(sum, w + i);
   }
 }
 
 // K columns of back substitution: the rows below, then the triangle.
 template <int K, class Real>
 void substitute_back(const Real* l, Distance ld, int n, Real* w) {
-  typename LaneVector<Real>::type sum[K] = {};
+  Lanes<Real> sum[K] = {};
   for (int i = K; i < n; i += lanes<Real>) {
-    const auto& value = lanes_at(w + i);
+    Lanes<Real> value, column;
+    load_lanes(w + i, value);
 #pragma GCC unroll 8
-    for (int c = 0; c < K; ++c) sum[c] += lanes_at(l + c * ld + i) * value;
+    for (int c = 0; c < K; ++c) {
+      load_lanes(l + c * ld + i, column);
+      sum[c] += column * value;
+    }
   }
   Real x[K];
 #pragma GCC unroll 8

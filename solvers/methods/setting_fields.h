@@ -119,6 +119,6 @@ constexpr Range tunable_below_limit{0, 0.9};
 constexpr Range forcing_range{0, 1, true};
 constexpr Range tunable_forcing{1e-4, 0.3};
 constexpr Range relaxation_range{0, 2, true};
-constexpr Range tunable_relaxation{0.5, 1.95};
+constexpr Range tunable_relaxation{0.5, 1.98};
 
 }  // namespace inextensible

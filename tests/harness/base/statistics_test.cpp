@@ -50,8 +50,9 @@ double skewed(std::mt19937& random) {
 TEST(Ratio, IntervalHasItsCoverageWhateverTheDistribution) {
   std::mt19937 random = seeded();
   std::lognormal_distribution<double> log_normal(0, 0.1);
-  for (const auto& [n, most] : {std::pair(5u, 20000), {9u, 20000}, {25u, 400}}) {
-    const int trials = inextensible::testing::trials(most);
+  for (const auto& sizes : {std::pair(5u, 20000), {9u, 20000}, {25u, 400}}) {
+    const unsigned n = sizes.first;
+    const int trials = inextensible::testing::trials(sizes.second);
     const double plain = coverage(trials, 1.3, [&] {
       return ratio_of_medians(draw(n, [&] { return 1.3 * log_normal(random); }),
                               draw(n, [&] { return log_normal(random); }));

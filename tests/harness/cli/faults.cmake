@@ -19,6 +19,9 @@ function(with_fault file from to)
   list(REMOVE_DUPLICATES fault_sources)
   set(fault_sources ${fault_sources} PARENT_SCOPE)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/solvers/methods/${file})
+  # Joined with others, it could not be replaced alone.
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/solvers/methods/${file} TARGET_DIRECTORY inextensible_methods
+    PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 set(fault_sources)

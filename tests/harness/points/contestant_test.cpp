@@ -115,7 +115,7 @@ TEST(Tuned, SettingsAreUsedForTheirKindOfSceneAndBelowWhatASuiteSays) {
 
 TEST(Tuned, AFileIsReadAsItIsWrittenAndItsHashIsThatOfItsSettings) {
   TunedEntry e{"chain", "jacobi", {{"relaxation", 1.7}}, 1.25, 12, 40, {}, {{"date", "today"}}};
-  e.places.push_back({0.01, 2, 0.005, 1, 0.01});
+  e.places.push_back({50, 0.01, 2, 0.005, 1, 0.01});
   const std::string text = tuned_document({e}).dump();
   const Tuned once = parse_tuned(text, "t");
   ASSERT_EQ(once.entries.size(), 1u);

@@ -232,7 +232,7 @@ TEST(Tuned, SettingsThatAreCommittedFitTheirSchemaAndAreAccepted) {
   EXPECT_EQ(misfits(read(source("configs/tuned.json")), "configs/tuned.schema.json"), "");
   EXPECT_NO_THROW(static_cast<void>(read_tuned("tuned.json")));
   TunedEntry entry{"chain", "icd", {{"max_iterations", 3.0}}, 1.5, 2, 3, {}, {}};
-  entry.places.push_back({0.01, 2, 0.01, 1, 0.02});
+  entry.places.push_back({50, 0.01, 2, 0.01, 1, 0.02});
   entry.context = {{"date", "d"},
                    {"cpu_model", "c"},
                    {"commit", "c"},

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -136,12 +137,13 @@ TEST(Tune, FindsASettingAndSaysWhatItGains) {
   const double relaxation = std::get<double>(entry.settings.at("relaxation"));
   EXPECT_NEAR(relaxation, 1.7, 0.1);
   EXPECT_NEAR(entry.gain, (0.1 + 0.49) / (0.1 + std::pow(relaxation - 1.7, 2)), 1e-6);
-  ASSERT_EQ(entry.places.size(), 3u);
+  ASSERT_EQ(entry.places.size(), 8u);
   for (const TunedPlace& place : entry.places) {
     EXPECT_NEAR(place.default_seconds / place.seconds, entry.gain, 1e-6);
     EXPECT_NEAR(place.step, 0.005, 0.002);
   }
-  for (const PointSpec& spec : specs) EXPECT_EQ(spec.resolution, 50);
+  EXPECT_TRUE(std::ranges::all_of(
+      specs, [](const PointSpec& s) { return s.resolution == 50 || s.resolution == 200; }));
 }
 
 TEST(Tune, WhatFailsWhereTheDefaultSucceedsIsOut) {
@@ -152,10 +154,37 @@ TEST(Tune, WhatFailsWhereTheDefaultSucceedsIsOut) {
   EXPECT_GT(entry.gain, 1.05);
 }
 
+// At the small size it gains up to a relaxation of 1.9; at the large one it loses from some value
+// on.
+TEST(Tune, WhatLosesAtOneSizeIsOutHoweverMuchItGainsElsewhere) {
+  for (const double bearable : {1.2, 1.5}) {
+    SweepRunners runners = fake(10);
+    runners.run = [=](const PointSpec& spec, const RunLimits&, std::optional<double>) {
+      const auto given = spec.settings.find("relaxation");
+      const double relaxation =
+          given == spec.settings.end() ? 1.0 : std::get<double>(given->second);
+      PointResult point;
+      point.spec = spec;
+      point.status = PointStatus::ok;
+      point.samples = {spec.resolution == 50   ? 0.01 + std::pow(relaxation - 1.9, 2)
+                       : relaxation > bearable ? 2
+                                               : 1};
+      return point;
+    };
+    const TunedEntry entry =
+        tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 60}}, runners);
+    ASSERT_TRUE(entry.settings.contains("relaxation"));
+    EXPECT_NEAR(std::get<double>(entry.settings.at("relaxation")), bearable, 0.15);
+    EXPECT_LE(std::get<double>(entry.settings.at("relaxation")), bearable);
+    for (const TunedPlace& place : entry.places)
+      EXPECT_LE(place.seconds, 1.1 * place.default_seconds) << place.resolution;
+  }
+}
+
 TEST(Tune, ALimitThatTheDefaultMissesCountsForNothing) {
   const TunedEntry entry =
       tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 60}}, fake(0.9));
-  EXPECT_EQ(entry.places.size(), 2u);
+  EXPECT_EQ(entry.places.size(), 4u);
   EXPECT_NEAR(std::get<double>(entry.settings.at("relaxation")), 1.7, 0.1);
 }
 

@@ -326,7 +326,9 @@ TEST(ChainSolvers, TellPositiveDefiniteMatricesFromIndefiniteOnes) {
 // A chain of springs that hangs on nothing: its Laplacian is singular, and so nearly that of one
 // whose ends are held by weak ones.
 TEST(ChainSolvers, RefusePivotsThatLostTheirDigitsWhereToldTo) {
-  for (const auto [name, block] : chain_solvers) {
+  for (const auto& chain : chain_solvers) {
+    const auto& name = chain.name;
+    const int block = chain.block;
     for (const int rows : {2, 3, 12, 13}) {
       for (const int held : {0, rows / 2, rows - 1}) {
         SCOPED_TRACE(std::string(name) + ", " + std::to_string(rows) + " rows, held at " +
