@@ -150,7 +150,7 @@ import json
 document = json.load(open("tuned.json"))
 found = {entry["solver"]: entry for entry in document["tuned"]}
 assert set(found) == {"gauss_seidel_colored", "icd"}, set(found)
-assert all(0 < entry["evaluations"] <= 5 and len(entry["places"]) == 3 for entry in found.values()), found
+assert all(0 < entry["evaluations"] <= 5 and {p["resolution"] for p in entry["places"]} == {50, 200} for entry in found.values()), found
 PYTHON
 refused "did you mean 'chain'" tune --scene chian --out out.json
 refused "did you mean 'icd'" tune --solver idc --out out.json
