@@ -67,7 +67,7 @@ FilmSpec film_spec(const FilmOptions& given) {
     spec.solvers.push_back({name, name});
   }
   if (spec.solvers.empty()) throw UsageError("--solver names none");
-  tune(spec.solvers, read_tuned("tuned.json"), type->kind(), {}, false);
+  tune(spec.solvers, read_tuned("tuned.json"), type->kind(), {}, Untuned::none);
   spec.strain_limits = numbers_in(given.limits, "--strain");
   for (const double limit : spec.strain_limits) {
     if (!(limit > 0)) throw UsageError("--strain: a limit must be above 0");

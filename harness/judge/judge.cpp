@@ -109,6 +109,7 @@ double Judge::after(const Positions& filtered, const State& state, double h, boo
     raise(running_.max_strain_after_collision, strain_range(*scene_.problem, state.x).most);
   }
   energy_.after(state, h);
+  look_at_marks(state, h);
   if (counts && ++steps_ % options_.sample_every == 0) {
     sample(filtered, state);
     if (const auto residuals = probe_ ? probe_->residuals() : std::nullopt)
@@ -116,6 +117,16 @@ double Judge::after(const Positions& filtered, const State& state, double h, boo
   }
   if (options_.reference) compare(state);
   return range.most;
+}
+
+void Judge::look_at_marks(const State& state, double h) {
+  if (scene_.marks.empty() || state.time < scene_.duration * 2 / 3 + time_tolerance) return;
+  if (!state.x.allFinite() || !state.v.allFinite()) return;
+  for (const Scene::Mark& mark : scene_.marks)
+    running_.sag[mark.name] += h * (mark.height - state.x(1, mark.vertex));
+  const inextensible::Problem& problem = *scene_.problem;
+  squared_speed_ += h * 2 * inextensible::kinetic_energy(problem, state.v) / problem.total_mass();
+  marked_time_ += h;
 }
 
 void Judge::sample(const Positions& filtered, const State& state) {
@@ -153,6 +164,10 @@ Measures Judge::measures() const {
     const bool moved = scene_.problem->collider();  // else what was measured is what is delivered
     measures.delivered_strain_rms = moved ? root_mean_square(delivered_) : measures.rms_strain;
     measures.delivered_strain_p99 = moved ? quantile(delivered_, 0.99) : measures.p99_strain;
+  }
+  if (marked_time_ > 0) {
+    for (auto& [name, sag] : measures.sag) sag /= marked_time_;
+    measures.rest_speed = std::sqrt(squared_speed_ / marked_time_);
   }
   if (!measures.residuals.empty()) {
     const auto count = static_cast<double>(measures.residuals.size());

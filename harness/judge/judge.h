@@ -39,6 +39,7 @@ class Judge {
 
  private:
   void sample(const inextensible::Positions& filtered, const inextensible::State& state);
+  void look_at_marks(const inextensible::State& state, double h);
   void compare(const inextensible::State& state);
   void compare_positions(const inextensible::Positions& x);
   void add_errors(Measures& measures) const;
@@ -52,6 +53,7 @@ class Judge {
   std::vector<double> delivered_;  // the same after the collision filter; with a collider only
   EnergyRecord energy_;
   double kinetic_sum_ = 0;
+  double marked_time_ = 0, squared_speed_ = 0;  // s, m^2/s^2 times s: over the last third
   int samples_ = 0;
 
   std::optional<ResidualProbe> probe_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,8 @@ struct Measures {
   double shape_potential_energy = unknown, shape_corner_height = unknown, shape_shadow = unknown;
   double residual_first = unknown, residual_last = unknown;
   std::vector<ResidualSample> residuals;
+  std::map<std::string, double> sag;
+  double rest_speed = unknown;
 };
 
 inline constexpr FieldTraits number_or_null{.nullable = true};
@@ -128,7 +131,15 @@ inline constexpr std::tuple measure_fields{
     field("residuals", &Measures::residuals, "s, m, m",
           "time, mean |F| after the first and after the last iteration; of step sweeps alone, so "
           "that files stay small",
-          {.inside = "error"})};
+          {.inside = "error"}),
+    field("sag", &Measures::sag, "m",
+          "how far the vertices that the scene marks are below where they would hang if nothing "
+          "stretched, mean over the last third of the run",
+          {.later = true}),
+    field("rest_speed", &Measures::rest_speed, "m/s",
+          "root mean square over vertices (by mass) and the last third of the run, of scenes that "
+          "mark vertices: 0 at rest",
+          {.later = true, .nullable = true})};
 
 // Root mean square distance to the reference over the samples at which 3 gap is below `target`; for
 // all runs the same, so that "within an error of 1 %" means one thing. Unknown if there is none. A

@@ -32,6 +32,13 @@ struct PointSpec {
       const;  // drape/fast_projection/n:5041/strain:0.01/h:0.004 (adaptive: /h:adaptive)
 };
 
+// Wall time of a frame at a rate of pictures, over the frames of a run, s.
+struct FrameTime {
+  double rate;  // frames a second
+  double median, slow, worst;
+  bool operator==(const FrameTime&) const = default;
+};
+
 struct PointResult {
   PointSpec spec;
   PointStatus status = PointStatus::skipped;
@@ -43,6 +50,7 @@ struct PointResult {
   double calibration_guess = unknown;  // N, where the search began; unknown: at an estimate
   std::optional<double> stiffness;     // EA, N, found by calibration
   inextensible::PhaseSeconds phases;   // of the run of the first filter sample
+  std::vector<FrameTime> frame_times;  // of the run of the first sample
   inextensible::WorkCounters work;
   Measures measures;
   double smallest_step = unknown;  // s, of the accepted ones of a step controller

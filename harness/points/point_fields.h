@@ -34,6 +34,13 @@ struct FieldCodec<std::vector<ErrorSample>> {
   static nlohmann::ordered_json schema(const FieldTraits& traits);
 };
 
+template <>
+struct FieldCodec<std::vector<FrameTime>> {
+  static nlohmann::json write(const std::vector<FrameTime>& rates, bool nullable);
+  static void read(const nlohmann::json& from, std::vector<FrameTime>& rates, bool nullable);
+  static nlohmann::ordered_json schema(const FieldTraits& traits);
+};
+
 // What is run: two runs that agree in these may stand for each other.
 inline constexpr std::tuple spec_fields{
     field("sweep", &PointSpec::sweep, "", "kind of the sweep that it is a point of"),
@@ -72,6 +79,10 @@ inline constexpr std::tuple result_fields{
           {.later = true, .nullable = true}),
     field("smallest_step", &PointResult::smallest_step, "s", "of the accepted ones; adaptive only",
           {.later = true, .nullable = true}),
+    field("frame_times", &PointResult::frame_times, "frames a second, then s",
+          "of one run, at each rate of pictures that steps are fine enough for: the rate, and the "
+          "wall time of a frame, median, 99 % and worst",
+          {.later = true}),
     field("steps_planned", &PointResult::steps_planned, "steps",
           "that the duration takes at this step; older files: to be computed", {.later = true}),
     field("peak_rss_bytes", &PointResult::peak_rss_bytes, "bytes", "largest resident memory"),

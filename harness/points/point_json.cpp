@@ -117,6 +117,22 @@ ordered_json FieldCodec<std::vector<ErrorSample>>::schema(const FieldTraits&) {
   return rows_schema(5);
 }
 
+json FieldCodec<std::vector<FrameTime>>::write(const std::vector<FrameTime>& rates, bool) {
+  json list = json::array();
+  for (const FrameTime& f : rates) list.push_back({f.rate, f.median, f.slow, f.worst});
+  return list;
+}
+
+void FieldCodec<std::vector<FrameTime>>::read(const json& from, std::vector<FrameTime>& rates,
+                                              bool) {
+  rates.clear();
+  for (const json& f : from) rates.push_back({f.at(0), f.at(1), f.at(2), f.at(3)});
+}
+
+ordered_json FieldCodec<std::vector<FrameTime>>::schema(const FieldTraits&) {
+  return rows_schema(4);
+}
+
 json to_json(const inextensible::Settings& settings) {
   return FieldCodec<inextensible::Settings>::write(settings, false);
 }

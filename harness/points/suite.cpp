@@ -20,16 +20,25 @@ using nlohmann::json;
 // What a suite says of the contestants of all its sweeps.
 struct Everywhere {
   std::optional<Tuned> tuned;
-  bool untuned = false;
+  Untuned untuned = Untuned::none;
   std::string same;
 };
+
+Untuned read_untuned(JsonReader& reader) {
+  const json* value = reader.find("untuned");
+  if (!value || *value == false) return Untuned::none;
+  if (*value == true) return Untuned::all;
+  if (*value == "where_faster") return Untuned::where_faster;
+  reader.fail_at("untuned", *value, "true, false or \"where_faster\"");
+}
 
 Everywhere read_everywhere(JsonReader& reader) {
   Everywhere all;
   if (const std::string file = reader.text("tuned", ""); !file.empty())
     all.tuned = read_tuned(file);
-  all.untuned = reader.flag("untuned", false);
-  if (all.untuned && !all.tuned) throw UsageError(reader.where("untuned") + " goes with 'tuned'");
+  all.untuned = read_untuned(reader);
+  if (all.untuned != Untuned::none && !all.tuned)
+    throw UsageError(reader.where("untuned") + " goes with 'tuned'");
   all.same = reader.text("same", "");
   return all;
 }

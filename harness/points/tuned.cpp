@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "harness/base/errors.h"
+#include "harness/base/fields_json.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
 #include "harness/base/paths.h"
@@ -30,12 +31,15 @@ TunedPlace read_place(const json& object, const std::string& where) {
   TunedPlace place;
   place.resolution =
       static_cast<int>(reader.number("resolution", 0, {.least = 1, .most = 1e6, .whole = true}));
-  for (const auto& [key, member] :
-       {std::pair("limit", &TunedPlace::limit),
-        std::pair("default_seconds", &TunedPlace::default_seconds),
-        std::pair("default_step", &TunedPlace::default_step),
-        std::pair("seconds", &TunedPlace::seconds), std::pair("step", &TunedPlace::step)})
+  for (const auto& [key, member] : {std::pair("limit", &TunedPlace::limit),
+                                    std::pair("default_seconds", &TunedPlace::default_seconds),
+                                    std::pair("default_step", &TunedPlace::default_step)})
     place.*member = reader.number(key, 0, Bounds::positive());
+  for (const auto& [key, member] :
+       {std::pair("seconds", &TunedPlace::seconds), std::pair("step", &TunedPlace::step)}) {
+    const json* value = reader.find(key);
+    place.*member = value && value->is_null() ? unknown : reader.number(key, 0, Bounds::positive());
+  }
   reader.finish();
   return place;
 }
@@ -118,8 +122,8 @@ ordered_json tuned_document(const std::vector<TunedEntry>& entries) {
                         {"limit", p.limit},
                         {"default_seconds", p.default_seconds},
                         {"default_step", p.default_step},
-                        {"seconds", p.seconds},
-                        {"step", p.step}});
+                        {"seconds", number(p.seconds)},
+                        {"step", number(p.step)}});
     list.push_back({{"kind", entry.kind},
                     {"solver", entry.solver},
                     {"settings", to_json(entry.settings)},
@@ -132,8 +136,20 @@ ordered_json tuned_document(const std::vector<TunedEntry>& entries) {
   return {{"schema", schema}, {"tuned", list}};
 }
 
+namespace {
+
+// By more than what two runs of the same differ by.
+bool faster_without(const TunedEntry& entry) {
+  constexpr double noise = 0.05;
+  return std::any_of(entry.places.begin(), entry.places.end(), [](const TunedPlace& p) {
+    return !(p.seconds <= (1 + noise) * p.default_seconds);
+  });
+}
+
+}  // namespace
+
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
-          const std::map<std::string, inextensible::Settings>& given, bool untuned) {
+          const std::map<std::string, inextensible::Settings>& given, Untuned untuned) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const TunedEntry* entry = all[i].own_name() ? tuned.find(kind, all[i].solver) : nullptr;
     if (!entry) continue;
@@ -144,7 +160,9 @@ void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
         all[i].settings.emplace(name, value);
     }
     before.name += "_untuned";
-    if (!untuned || all[i].settings == before.settings ||
+    const bool beside =
+        untuned == Untuned::all || (untuned == Untuned::where_faster && faster_without(*entry));
+    if (!beside || all[i].settings == before.settings ||
         find_contestant(all, before.name) != all.end())
       continue;
     before.label = label_of(all[i]) + ", untuned";

@@ -15,14 +15,16 @@ struct TunedPlace {
   int resolution = 0;
   double limit = 0;
   double default_seconds = 0, default_step = 0;  // s/s, s
-  double seconds = 0, step = 0;                  // with the settings that were found
+  // With the settings that were found; not-a-number where they fail.
+  double seconds = 0, step = 0;
 };
 
 struct TunedEntry {
   std::string kind;  // of scene
   std::string solver;
   inextensible::Settings settings;  // those that are not the default
-  double gain = 1;                  // geometric mean over the places of default_seconds / seconds
+  // Geometric mean over the places of default_seconds over the smaller of both.
+  double gain = 1;
   int evaluations = 0, budget = 0;  // sets of settings that were tried, and that might have been
   std::vector<TunedPlace> places;
   nlohmann::json context;  // date, commit and machine
@@ -43,10 +45,13 @@ Tuned parse_tuned(const std::string& text, const std::string& file);
 
 nlohmann::ordered_json tuned_document(const std::vector<TunedEntry>& entries);
 
+// Which solvers stand there once more, hollow, without their tuned settings, as <name>_untuned:
+// none, those that were faster without somewhere when they were tuned, or all that have any.
+enum class Untuned { none, where_faster, all };
+
 // Under its own name a solver gets its tuned settings, as far as neither its entry nor `given`
-// says otherwise. untuned: one that thereby differs from its defaults stands there once more,
-// hollow, without them, as <name>_untuned.
+// says otherwise.
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
-          const std::map<std::string, inextensible::Settings>& given, bool untuned);
+          const std::map<std::string, inextensible::Settings>& given, Untuned untuned);
 
 }  // namespace harness

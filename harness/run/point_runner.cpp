@@ -8,6 +8,7 @@
 #include "harness/base/text.h"
 #include "harness/judge/judge.h"
 #include "harness/judge/measures.h"
+#include "harness/run/frame_times.h"
 #include "inextensible/stepping/step_controller.h"
 #include "inextensible/systems/constrained_acceleration.h"
 
@@ -95,13 +96,15 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
   if (spec_.adaptive)
     controller.emplace(*run.stepper, inextensible::StepController::Settings{.largest = spec_.step});
   beat(0, 0);
+  FrameTimes frames(spec_.step);
   int block = 1;  // steps that are timed as one
   for (int i = 0; i < steps_;) {
     if (judged) judge.before(state, spec_.step);
     inextensible::StepResult result;
     bool whole = true;
+    int taken = 0;
     const auto before = Clock::now();
-    for (int k = 0; k < block && i < steps_; ++k) {
+    for (int k = 0; k < block && i < steps_; ++k, ++taken) {
       result = controller ? controller->advance(state) : run.stepper->advance(state, spec_.step);
       if (!result) break;
       whole = !controller || controller->aligned();
@@ -110,6 +113,8 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
     }
     const double seconds = since(before);
     run.seconds += seconds;
+    if (taken > 0)
+      frames.add(controller ? 1 : taken, spec_.step, state.time - first_state_.time, seconds);
     if (!judged && seconds < shortest_block) block *= 2;
     if (!result) {
       run.status =
@@ -136,6 +141,7 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
   }
   run.stepper->observe(nullptr);
   run.measures = judge.finish();
+  run.frame_times = frames.summary();
   if (judged && run.status == PointStatus::ok) decide(judge, run);
   return run;
 }

@@ -20,6 +20,7 @@ struct Run {
   bool observed = false;  // the judge was shown the iterates of its steps
   double setup_seconds = 0;
   double smallest_step = unknown;
+  std::vector<FrameTime> frame_times;
 };
 
 // Scenes are the same for every run of a point; the stepper is made anew each time.

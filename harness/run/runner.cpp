@@ -55,6 +55,7 @@ std::optional<Run> add_samples(PointResult& point, const PointRunner& runner,
   add_filter_sample(point, runner, run);
   if (short_steps) run = runner.run(settings, false, diverged_strain, false);
   if (run.status != PointStatus::ok) return run;
+  if (point.samples.empty()) point.frame_times = run.frame_times;
   point.samples.push_back(runner.seconds_per_step(run) / point.spec.step);
   return std::nullopt;
 }

@@ -11,9 +11,8 @@
 namespace harness {
 namespace {
 
-constexpr double give_up_at = 2.5;  // times the best time known at a limit
+constexpr double give_up_at = 2.5;  // times the time that is known at a place
 constexpr int samples = 3;          // of the best steps, whose medians count
-constexpr double luck = 1.1;        // how far above its median one run may lie
 
 // One size and strain limit of the scene, and what is known there.
 struct Place {
@@ -24,16 +23,9 @@ struct Place {
 };
 
 struct Found {
-  std::size_t rung = 0;
-  double seconds = 0;  // s/s
+  std::optional<std::size_t> rung = {};  // of the best step; none: all that were tried fail
+  double seconds = 0;                    // s/s
 };
-
-// Geometric.
-double mean_of(const std::vector<PointResult>& points) {
-  double sum = 0;
-  for (const PointResult& point : points) sum += std::log(point.median_seconds());
-  return std::exp(sum / static_cast<double>(points.size()));
-}
 
 class Tuner {
  public:
@@ -64,11 +56,13 @@ class Tuner {
     const auto was = last_.find(initial()), is = last_.find(outcome.values);
     if (was == last_.end() || is == last_.end()) return entry_;
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      const auto step = [&](const Found& found) { return places_[i].search.ladder[found.rung]; };
+      const auto step = [&](const Found& found) {
+        return found.rung ? places_[i].search.ladder[*found.rung] : unknown;
+      };
       const Found &before = was->second[i], &now = is->second[i];
       const PointSpec& base = places_[i].search.base;
       entry_.places.push_back({base.resolution, base.strain_limit, before.seconds, step(before),
-                               now.seconds, step(now)});
+                               now.rung ? now.seconds : unknown, step(now)});
     }
     return entry_;
   }
@@ -124,100 +118,107 @@ class Tuner {
     std::erase_if(places_, [](const Place& place) { return place.best_seconds >= 1e300; });
   }
 
-  // Whether that is too much time at a place, in view of what it is without any settings.
-  bool loses(std::size_t place, double seconds) const {
-    const auto without = last_.find(initial());
-    return without != last_.end() &&
-           seconds > (1 + options_.most_loss) * without->second[place].seconds;
-  }
-
-  // Geometric mean over the places; none if one fails or loses too much, or the mean is bound to be
-  // above `hopeless`.
+  // Geometric mean, over the places, of the faster of these settings and none; none if that is
+  // bound to be above `hopeless`.
   std::optional<double> evaluate(const Values& values, double hopeless) {
     const inextensible::Settings settings = settings_of(values);
     const bool in_race = hopeless < 1e300;
-    std::vector<PointResult> fastest;
-    std::vector<std::size_t> rungs;
-    double log_rest = 0;
-    for (const Place& place : places_) log_rest += std::log(0.5 * place.best_seconds);
-    for (Place& place : places_) {
-      PointResult point;
-      const auto rung = best_step(place, settings, in_race, point);
-      if (!rung || (!settings.empty() && loses(rungs.size(), point.median_seconds() / luck))) break;
-      rungs.push_back(*rung);
-      fastest.push_back(std::move(point));
-      log_rest -= std::log(0.5 * place.best_seconds);
-      const double sum = log_rest + std::log(mean_of(fastest)) * static_cast<double>(rungs.size());
-      if (sum / static_cast<double>(places_.size()) > std::log(hopeless)) break;
-    }
-    std::optional<double> mean;
-    if (fastest.size() == places_.size()) {
-      // One run is enough to say of what is slower that it is not better.
-      if (!in_race || mean_of(fastest) < lowest_) repeat(fastest);
-      mean = mean_of(fastest);
-    }
-    for (std::size_t i = 0; mean && i < places_.size() && !settings.empty(); ++i)
-      if (loses(i, fastest[i].median_seconds())) mean.reset();
-    tell(settings, mean);
-    if (mean) learn(values, rungs, fastest);
-    return mean;
-  }
-
-  void repeat(std::vector<PointResult>& points) {
-    for (int i = 1; i < samples; ++i) {
-      for (PointResult& point : points)
-        runners_.repeat(point, {options_.timeout, 1e300, options_.interrupted, nullptr});
-    }
-  }
-
-  void learn(const Values& values, const std::vector<std::size_t>& rungs,
-             const std::vector<PointResult>& fastest) {
-    lowest_ = std::min(lowest_, mean_of(fastest));
+    const auto untuned = last_.find(initial());
     std::vector<Found> found;
+    std::vector<PointResult> points;
+    const auto counted = [&](std::size_t i) {
+      const double without = settings.empty() ? 1e300 : untuned->second[i].seconds;
+      return std::min(found[i].seconds, without);
+    };
+    double log_rest = 0, log_sum = 0;
+    for (const Place& place : places_) log_rest += std::log(0.5 * place.best_seconds);
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      found.push_back({rungs[i], fastest[i].median_seconds()});
-      if (found[i].seconds >= places_[i].best_seconds) continue;
+      const Found* own = last_.contains(values) ? &last_.at(values)[i] : nullptr;
+      PointResult point;
+      const std::size_t start = own && own->rung ? *own->rung : places_[i].best_rung;
+      const double enough = settings.empty() ? 1e300 : untuned->second[i].seconds;
+      const auto rung = best_step(places_[i], settings, start, enough, point);
+      found.push_back({rung, rung ? point.median_seconds() : 1e300});
+      points.push_back(std::move(point));
+      if (counted(i) >= 1e300) break;
+      log_rest -= std::log(0.5 * places_[i].best_seconds);
+      log_sum += std::log(counted(i));
+      if (in_race &&
+          (log_sum + log_rest) / static_cast<double>(places_.size()) > std::log(hopeless))
+        break;
+    }
+    const auto mean = [&] {
+      double sum = 0;
+      for (std::size_t i = 0; i < places_.size(); ++i) sum += std::log(counted(i));
+      return std::exp(sum / static_cast<double>(places_.size()));
+    };
+    const bool whole = found.size() == places_.size() && counted(found.size() - 1) < 1e300;
+    // One run is enough to say of what is slower that it is not better.
+    if (whole && (!in_race || mean() < lowest_)) {
+      repeat(points, found);
+      lowest_ = std::min(lowest_, mean());
+    }
+    const auto result = whole ? std::optional(mean()) : std::nullopt;
+    tell(settings, result);
+    if (whole) learn(values, std::move(found));
+    return result;
+  }
+
+  void repeat(std::vector<PointResult>& points, std::vector<Found>& found) {
+    for (int i = 1; i < samples; ++i) {
+      for (std::size_t p = 0; p < points.size(); ++p) {
+        if (!found[p].rung) continue;
+        runners_.repeat(points[p], {options_.timeout, 1e300, options_.interrupted, nullptr});
+        found[p].seconds = points[p].median_seconds();
+      }
+    }
+  }
+
+  void learn(const Values& values, std::vector<Found> found) {
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      if (!found[i].rung || found[i].seconds >= places_[i].best_seconds) continue;
       places_[i].best_seconds = found[i].seconds;
-      places_[i].best_rung = rungs[i];
+      places_[i].best_rung = *found[i].rung;
     }
     last_[values] = std::move(found);
   }
 
-  // The rung of the fastest, which goes to `fastest`: from the best step so far to both sides, as
-  // long as it gets faster. in_race: what is much slower than what is known is not run to its end.
+  // The rung of the fastest step, whose run goes to `fastest`: from `start` to both sides, beyond
+  // one that is not faster, but not beyond two. What takes much longer than `enough` is of no use.
   std::optional<std::size_t> best_step(Place& place, const inextensible::Settings& settings,
-                                       bool in_race, PointResult& fastest) {
+                                       std::size_t start, double enough, PointResult& fastest) {
     std::optional<std::size_t> best;
     const auto faster = [&](std::size_t rung) {
-      const double most = best      ? fastest.median_seconds()
-                          : in_race ? give_up_at * place.best_seconds
-                                    : 1e300;
+      const double most = best ? fastest.median_seconds() : give_up_at * enough;
       PointResult point = run_once(place, rung, settings, most);
       if (!point.ok() || (best && point.median_seconds() >= fastest.median_seconds())) return false;
       best = rung;
       fastest = std::move(point);
       return true;
     };
-    const std::size_t start = place.best_rung, rungs = place.search.ladder.size();
     faster(start);
-    std::size_t finer = start + 1;
-    while (finer < rungs && faster(finer)) ++finer;
-    const bool moved = best && *best > start;
-    for (std::size_t coarser = start; !moved && coarser > 0 && faster(coarser - 1);) --coarser;
+    const auto go = [&](int direction) {
+      int in_vain = 0;
+      for (auto at = static_cast<int>(start) + direction;
+           in_vain < 2 && at >= 0 && at < static_cast<int>(place.search.ladder.size());
+           at += direction)
+        in_vain = faster(static_cast<std::size_t>(at)) ? 0 : in_vain + 1;
+    };
+    go(1);
+    go(-1);
     return best;
   }
 
   void tell(const inextensible::Settings& settings, const std::optional<double>& mean) {
-    options_.tell(
-        entry_.kind + "/" + entry_.solver + " " + to_json(settings).dump() + ": " +
-        (mean ? duration_text(*mean) + "/s" : std::string("fails, too slow, or slower somewhere")));
+    options_.tell(entry_.kind + "/" + entry_.solver + " " + to_json(settings).dump() + ": " +
+                  (mean ? duration_text(*mean) + "/s" : std::string("too slow")));
   }
 
   TuneOptions options_;
   SweepRunners runners_;
   std::vector<Place> places_;
   std::vector<TunedNumber> numbers_;
-  std::map<Values, std::vector<Found>> last_;  // of the last time that they were measured
+  std::map<Values, std::vector<Found>> last_;  // of the last time that all were measured
   double lowest_ = 1e300;                      // mean of what was run several times
   TunedEntry entry_;
 };

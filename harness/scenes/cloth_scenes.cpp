@@ -93,6 +93,26 @@ Scene build_patch(const SceneParameters& p) {
   return finished(std::move(cloth));
 }
 
+// Below its pins, turned by `tilt` out of the vertical so that it may fold, in air that brings it
+// to rest.
+Scene build_hung_patch(const SceneParameters& p) {
+  Draft cloth = vertex_square(p, 0);
+  Scene& scene = cloth.scene;
+  const double side = p.at("side"), tilt = p.at("tilt"), l = square_link(p);
+  for (Eigen::Index v = 0; v < scene.start.x.cols(); ++v) {
+    auto x = scene.start.x.col(v);
+    const double below = x.z() + 0.5 * side;
+    x << x.x(), -below * std::cos(tilt), below * std::sin(tilt);
+  }
+  cloth.parts.pinned = {scene.corners[0], scene.corners[1]};
+  if (p.at("drag") > 0) cloth.parts.drag.assign(cloth.parts.mass.size(), p.at("drag") * l * l);
+  const int n = static_cast<int>(p.at("n"));
+  scene.marks = {{"top_row", n / 2, 0}, {"lower_edge", (n - 1) * n + n / 2, -side}};
+  scene.mirrors.pop_back();
+  scene.staggered = false;  // its rest is compared, and not the way there
+  return finished(std::move(cloth));
+}
+
 using ParameterInfos = std::vector<SceneParameterInfo>;
 
 ParameterInfos cloth_parameters(int n) {
@@ -163,6 +183,21 @@ SceneType folded_drape_scene() {
           count_square,
           nullptr,
           "drape"};
+}
+
+SceneType hung_patch_scene() {
+  return {"hung_patch",
+          "the patch as it hangs from two corners, brought to rest by air (Figure 1)",
+          "n",
+          joined({cloth_parameters(31),
+                  {{"tilt", 0.3, "out of the vertical, at the start, rad", -1.5, 1.5},
+                   {"drag", 2, "of still air, N s/m^3: force per area and speed; 0: none", -1e-300,
+                    1e6},
+                   {"duration", 3, "s", 0, 1e4}}}),
+          build_hung_patch,
+          count_square,
+          nullptr,
+          "patch"};
 }
 
 SceneType patch_scene() {

@@ -9,5 +9,6 @@ SceneType drape_scene();
 SceneType folded_drape_scene();
 SceneType fabric_drape_scene();
 SceneType patch_scene();
+SceneType hung_patch_scene();
 
 }  // namespace harness

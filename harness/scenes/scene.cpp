@@ -16,10 +16,10 @@ namespace {
 // A scene is a function that returns its SceneType, and a line here.
 const std::vector<SceneType>& table() {
   static const std::vector<SceneType> rows = {
-      chain_scene(),        drape_scene(),         folded_drape_scene(),   fabric_drape_scene(),
-      patch_scene(),        spinning_net_scene(),  taut_row_scene(),       baton_scene(),
-      hoop_scene(),         hanging_chain_scene(), whirling_chain_scene(), catenary_scene(),
-      folded_chain_scene(), whip_scene(),
+      chain_scene(),    drape_scene(),        folded_drape_scene(),  fabric_drape_scene(),
+      patch_scene(),    hung_patch_scene(),   spinning_net_scene(),  taut_row_scene(),
+      baton_scene(),    hoop_scene(),         hanging_chain_scene(), whirling_chain_scene(),
+      catenary_scene(), folded_chain_scene(), whip_scene(),
   };
   return rows;
 }

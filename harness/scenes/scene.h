@@ -45,6 +45,13 @@ struct Scene {
   double energy_bound = 0.05;
   // Whether methods whose velocities are of the middle of a step start half a step back.
   bool staggered = true;
+  // Vertices of which a result tells how far they sag at the end.
+  struct Mark {
+    const char* name;
+    int vertex;
+    double height;  // m, at which it would hang if nothing stretched
+  };
+  std::vector<Mark> marks;
   // Of a cloth, for shape statistics: its corners, and triangles that cover it.
   std::vector<int> corners;
   std::vector<std::array<int, 3>> triangles;

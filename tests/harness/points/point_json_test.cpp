@@ -43,6 +43,11 @@ class Random {
     fill(number, false);
     value["a number"] = number;
   }
+  void fill(std::vector<FrameTime>& rates, bool) {
+    rates.resize(1 + generator_() % 3);
+    for (FrameTime& at : rates)
+      for (double* value : {&at.rate, &at.median, &at.slow, &at.worst}) fill(*value, false);
+  }
   void fill(std::vector<ErrorSample>& series, bool) {
     series.resize(generator_() % 4);
     for (ErrorSample& at : series)

@@ -82,6 +82,43 @@ TEST(Patch, IsSurvivedByFastProjectionAtAllLimits) {
   }
 }
 
+// Rows lie below their pins, as the cloth was cut; marks are the middles of the first and the last
+// row.
+TEST(HungPatch, IsThePatchTurnedAboutItsPins) {
+  for (const double tilt : {0.0, 0.3}) {
+    const Scene hung = build("hung_patch", {{"n", 9}, {"tilt", tilt}, {"side", 2}});
+    const inextensible::Problem& problem = *hung.problem;
+    for (std::size_t k = 0; k < problem.edges().size(); ++k) {
+      const auto [a, b] = problem.edges()[k];
+      EXPECT_NEAR((hung.start.x.col(b) - hung.start.x.col(a)).norm(), problem.rest_length()[k],
+                  1e-15);
+    }
+    ASSERT_EQ(hung.marks.size(), 2u);
+    EXPECT_EQ(hung.start.x.col(hung.marks[0].vertex), Eigen::Vector3d::Zero());
+    EXPECT_NEAR(hung.start.x(1, hung.marks[1].vertex), -2 * std::cos(tilt), 1e-15);
+    EXPECT_EQ(hung.marks[1].height, -2);
+  }
+}
+
+// Springs come to rest; a row that is longer by a strain sags at most as two straight halves would.
+TEST(HungPatch, OfSpringsComesToRestAndSagsNoMoreThanItsTopRowIsLonger) {
+  const Scene hung = build("hung_patch", {{"n", 9}});
+  double last_sag = 0;
+  for (const double stiffness : {1000.0, 10.0, 1.0}) {
+    State state = hung.start;
+    const auto stepper = inextensible::make_stepper("implicit_springs", hung.problem,
+                                                    {0.01, 1, {{"stiffness", stiffness}}});
+    for (int i = 0; i < 300; ++i) ASSERT_TRUE(stepper->advance(state, 1.0 / 50));
+    double length = 0;
+    for (int j = 0; j + 1 < 9; ++j) length += (state.x.col(j + 1) - state.x.col(j)).norm();
+    const double sag = -state.x(1, hung.marks[0].vertex);
+    EXPECT_GT(sag, last_sag);
+    EXPECT_LE(sag, std::sqrt(length * length - 1) / 2);
+    EXPECT_LT(state.v.cwiseAbs().maxCoeff(), 0.01);
+    last_sag = sag;
+  }
+}
+
 TEST(Drape, KeepsItsMirrorSymmetryUnderADirectFilterUntilContact) {
   const Scene drape = build("drape", {{"n", 15}, {"gap", 0.2}});
   State state = drape.start;
