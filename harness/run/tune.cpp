@@ -11,8 +11,9 @@
 namespace harness {
 namespace {
 
-constexpr double give_up_at = 2.5;  // times the time that is known at a place
-constexpr int samples = 3;          // of the best steps, whose medians count
+constexpr double give_up_at = 2.5;    // times the time that is known at a place
+constexpr double no_use_above = 1.2;  // times the time without settings: that would count instead
+constexpr int samples = 3;            // of the best steps, whose medians count
 
 // One size and strain limit of the scene, and what is known there.
 struct Place {
@@ -184,12 +185,12 @@ class Tuner {
   }
 
   // The rung of the fastest step, whose run goes to `fastest`: from `start` to both sides, beyond
-  // one that is not faster, but not beyond two. What takes much longer than `enough` is of no use.
+  // one that is not faster, but not beyond two. What takes longer than `enough` is of no use.
   std::optional<std::size_t> best_step(Place& place, const inextensible::Settings& settings,
                                        std::size_t start, double enough, PointResult& fastest) {
     std::optional<std::size_t> best;
     const auto faster = [&](std::size_t rung) {
-      const double most = best ? fastest.median_seconds() : give_up_at * enough;
+      const double most = best ? fastest.median_seconds() : no_use_above * enough;
       PointResult point = run_once(place, rung, settings, most);
       if (!point.ok() || (best && point.median_seconds() >= fastest.median_seconds())) return false;
       best = rung;
