@@ -138,7 +138,7 @@ class Tuner {
       PointResult point;
       const std::size_t start = own && own->rung ? *own->rung : places_[i].best_rung;
       const double enough = settings.empty() ? 1e300 : untuned->second[i].seconds;
-      const auto rung = best_step(places_[i], settings, start, enough, point);
+      const auto rung = best_step(places_[i], settings, start, in_race ? 1 : 2, enough, point);
       found.push_back({rung, rung ? point.median_seconds() : 1e300});
       points.push_back(std::move(point));
       if (counted(i) >= 1e300) break;
@@ -184,10 +184,11 @@ class Tuner {
     last_[values] = std::move(found);
   }
 
-  // The rung of the fastest step, whose run goes to `fastest`: from `start` to both sides, beyond
-  // one that is not faster, but not beyond two. What takes longer than `enough` is of no use.
+  // The rung of the fastest step, whose run goes to `fastest`: from `start` to both sides, until
+  // `patience` steps in a row are not faster. What takes longer than `enough` is of no use.
   std::optional<std::size_t> best_step(Place& place, const inextensible::Settings& settings,
-                                       std::size_t start, double enough, PointResult& fastest) {
+                                       std::size_t start, int patience, double enough,
+                                       PointResult& fastest) {
     std::optional<std::size_t> best;
     const auto faster = [&](std::size_t rung) {
       const double most = best ? fastest.median_seconds() : no_use_above * enough;
@@ -201,7 +202,7 @@ class Tuner {
     const auto go = [&](int direction) {
       int in_vain = 0;
       for (auto at = static_cast<int>(start) + direction;
-           in_vain < 2 && at >= 0 && at < static_cast<int>(place.search.ladder.size());
+           in_vain < patience && at >= 0 && at < static_cast<int>(place.search.ladder.size());
            at += direction)
         in_vain = faster(static_cast<std::size_t>(at)) ? 0 : in_vain + 1;
     };
@@ -241,7 +242,7 @@ SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarses
 
 std::vector<SweepSpec> tuning_scenes() {
   // The drape is hardest from 0.3 s on, where it has sheared.
-  return {tuning_scene("chain", {50, 200}, 0.2, 1), tuning_scene("drape", {17, 45}, 0.02, 0.6),
+  return {tuning_scene("chain", {50, 200}, 0.2, 1), tuning_scene("drape", {17, 35}, 0.02, 0.6),
           tuning_scene("patch", {13, 23}, 0.02, 1)};
 }
 

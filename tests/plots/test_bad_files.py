@@ -21,9 +21,10 @@ from parts.words import inches, shorten, wrap
 SCRIPT = ROOT / "plots" / "figures.py"
 HISTORY = ROOT / "plots" / "history.py"
 HOSTILE = {
-    "formula": r"$\frac{1}{2$ and $x^$", "escapes": "\\n\\x{41} %s {0} $\\alpha$", "markup": "<script>alert(1)</script>-->]]>&amp;",
-    "lines": "one\ntwo\r\nthree\ttab\x00\x07\u2028end", "long": "W" * 500, "words": "wide words " * 50, "path": "../../etc/$HOME",
-    "half a character": "\ud800x", "backwards": "\u202eabc", "blank": " \n ",
+    "formula": r"$\frac{1}{2$ and $x^$",
+    # Escapes, markup, a path, half a character, and what turns the direction of writing.
+    "signs": "\\n\\x{41} %s {0} $\\alpha$ <script>alert(1)</script>-->]]>&amp; ../../etc/$HOME \ud800x \u202eabc",
+    "lines": "one\ntwo\r\nthree\ttab\x00\x07\u2028end", "long": "W" * 500, "words": "wide words " * 50, "blank": " \n ",
 }
 SWEEPS = {"strain": strain_sweep, "resolution": resolution_sweep, "step": step_sweep}
 
