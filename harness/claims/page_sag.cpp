@@ -1,4 +1,4 @@
-// How far marked vertices sag at the end.
+// How far marked vertices sag.
 #include "harness/base/text.h"
 #include "harness/claims/page.h"
 #include "harness/claims/sag.h"

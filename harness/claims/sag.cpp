@@ -1,6 +1,5 @@
 #include "harness/claims/sag.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -30,10 +29,8 @@ void patch_sag(const Points& points, ClaimVerdict& c) {
   c.rule =
       "the hung patch, each of the paper's methods at its best step, mean over the last of three "
       "seconds: how much lower the middle of its lower edge hangs at 10 % than at 1 %, and there "
-      "than "
-      "at 0.1 %; reproduced if both are at least 1 % of the side for every method that has all "
-      "three, "
-      "not reproduced if for none, else changed";
+      "than at 0.1 %; reproduced if both are at least 1 % of the side for every method that has "
+      "all three, not reproduced if for none, else changed";
   std::map<std::string, std::map<double, double>> hangs;  // method -> limit -> sag over side
   for (const Point& p : points.where([](const Point& q) {
          return q.is("scene", "hung_patch") && q.ok() && q.flag("best");

@@ -124,45 +124,46 @@ class Tuner {
   std::optional<double> evaluate(const Values& values, double hopeless) {
     const inextensible::Settings settings = settings_of(values);
     const bool in_race = hopeless < 1e300;
-    const auto untuned = last_.find(initial());
+    const auto own = last_.find(values);
     std::vector<Found> found;
     std::vector<PointResult> points;
-    const auto counted = [&](std::size_t i) {
-      const double without = settings.empty() ? 1e300 : untuned->second[i].seconds;
-      return std::min(found[i].seconds, without);
+    const auto without = [&](std::size_t i) {
+      return settings.empty() ? 1e300 : last_.at(initial())[i].seconds;
     };
-    double log_rest = 0, log_sum = 0;
+    const auto log_sum = [&] {  // over the places so far
+      double sum = 0;
+      for (std::size_t i = 0; i < found.size(); ++i)
+        sum += std::log(std::min(found[i].seconds, without(i)));
+      return sum;
+    };
+    const auto count = static_cast<double>(places_.size());
+    double log_rest = 0;
     for (const Place& place : places_) log_rest += std::log(0.5 * place.best_seconds);
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      const Found* own = last_.contains(values) ? &last_.at(values)[i] : nullptr;
       PointResult point;
-      const std::size_t start = own && own->rung ? *own->rung : places_[i].best_rung;
-      const double enough = settings.empty() ? 1e300 : untuned->second[i].seconds;
-      const auto rung = best_step(places_[i], settings, start, in_race ? 1 : 2, enough, point);
+      const std::size_t start = own == last_.end()
+                                    ? places_[i].best_rung
+                                    : own->second[i].rung.value_or(places_[i].best_rung);
+      const auto rung = best_step(places_[i], settings, start, in_race ? 1 : 2, without(i), point);
+      if (!rung && settings.empty()) break;
       found.push_back({rung, rung ? point.median_seconds() : 1e300});
       points.push_back(std::move(point));
-      if (counted(i) >= 1e300) break;
       log_rest -= std::log(0.5 * places_[i].best_seconds);
-      log_sum += std::log(counted(i));
-      if (in_race &&
-          (log_sum + log_rest) / static_cast<double>(places_.size()) > std::log(hopeless))
-        break;
+      if (in_race && (log_sum() + log_rest) / count > std::log(hopeless)) break;
     }
-    const auto mean = [&] {
-      double sum = 0;
-      for (std::size_t i = 0; i < places_.size(); ++i) sum += std::log(counted(i));
-      return std::exp(sum / static_cast<double>(places_.size()));
-    };
-    const bool whole = found.size() == places_.size() && counted(found.size() - 1) < 1e300;
-    // One run is enough to say of what is slower that it is not better.
-    if (whole && (!in_race || mean() < lowest_)) {
-      repeat(points, found);
-      lowest_ = std::min(lowest_, mean());
+    std::optional<double> mean;
+    if (found.size() == places_.size()) {
+      mean = std::exp(log_sum() / count);
+      // One run is enough to say of what is slower that it is not better.
+      if (!in_race || *mean < lowest_) {
+        repeat(points, found);
+        mean = std::exp(log_sum() / count);
+        lowest_ = std::min(lowest_, *mean);
+      }
     }
-    const auto result = whole ? std::optional(mean()) : std::nullopt;
-    tell(settings, result);
-    if (whole) learn(values, std::move(found));
-    return result;
+    tell(settings, mean);
+    if (mean) learn(values, std::move(found));
+    return mean;
   }
 
   void repeat(std::vector<PointResult>& points, std::vector<Found>& found) {

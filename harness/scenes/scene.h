@@ -45,7 +45,7 @@ struct Scene {
   double energy_bound = 0.05;
   // Whether methods whose velocities are of the middle of a step start half a step back.
   bool staggered = true;
-  // Vertices of which a result tells how far they sag at the end.
+  // Vertices of which a result tells how far they sag.
   struct Mark {
     const char* name;
     int vertex;

@@ -235,17 +235,15 @@ SettingInfo blend() {
 }  // namespace
 
 Backend fast_projection_bdf2_row() {
-  Backend row = fast_projection_smoothed_row();
+  Backend row = inside_bdf2<FastProjection>(fast_projection_smoothed_row());
   row.name = "fast_projection_bdf2";
   row.summary = "fast projection inside the two-step formula BDF2: second order";
   FastProjection::Settings defaults;
   defaults.min_iterations = 1;
   defaults.smoothing_sweeps = 30;
   row.settings = setting_infos(FastProjection::fields(), defaults);
-  row.make = make_bdf2_stepper<FastProjection>;
   row.citation = "Goldenthal et al. 2007; English and Bridson 2008";
   row.label = "fast projection in BDF2";
-  row.velocities = Velocities::whole_step;
   return row;
 }
 

@@ -93,6 +93,15 @@ std::unique_ptr<Stepper> make_bdf2_stepper(std::shared_ptr<const Problem> proble
   return std::make_unique<Bdf2Stepper>(std::move(problem), std::move(filter), 0);
 }
 
+// The row of a filter that takes part inside BDF2 instead: all that follows from that.
+template <class Filter>
+Backend inside_bdf2(Backend row) {
+  if (!*row.family) row.family = row.name;
+  row.make = make_bdf2_stepper<Filter>;
+  row.velocities = Velocities::whole_step;
+  return row;
+}
+
 // What methods share.
 std::vector<const char*> schur_solvers();  // "auto" and all that take some J W J^T
 template <class Struct>

@@ -57,14 +57,11 @@ Backend strips_row() {
 }
 
 Backend strips_bdf2_row() {
-  Backend row = strips_row();
+  Backend row = inside_bdf2<Strips>(strips_row());
   row.name = "strips_bdf2";
   row.summary = "strips inside the two-step formula BDF2: second order";
-  row.make = make_bdf2_stepper<Strips>;
   row.citation = "Bender and Bayer 2008; English and Bridson 2008";
   row.label = "strips in BDF2";
-  row.family = "strips";
-  row.velocities = Velocities::whole_step;
   return row;
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# bench ab: a program against itself passes 6 times of 6 on a busy machine (the load comes and goes, so that it does not fall
+# bench ab: a program against itself passes 10 times of 10 on a busy machine (the load comes and goes, so that it does not fall
 # on all runs alike; tests/attack does this for as long as one likes); one that is 15 % slower in one solver is found, and so are a
 # solver that fails and an extra iteration.
 rm -rf -- ./*  # of the last time
@@ -26,7 +26,7 @@ against() {
   "$BENCH_BINARY" ab "$BENCH_BINARY" "$@" --scene chain --filter 'strain:0.01/h:0.0025$' >table.txt 2>log.txt
 }
 
-for run in {1..6}; do
+for run in {1..10}; do
   against "$BENCH_BINARY" --solver fast_projection --pairs 15 --seconds 0.03 || fail "run $run, exit $?: $(cat table.txt log.txt)"
 done
 

@@ -142,15 +142,15 @@ wait $waiting && [[ -s waited.json ]] || fail "a run that had to wait"
 /usr/bin/python3 -c 'import json; assert json.load(open("interrupted.json"))["complete"] is False' || fail "interrupted.json"
 
 # Settings are searched, written after each solver, and kept where others are searched.
-tune=(tune --scene chain --budget 4 --timeout 0.3 --out tuned.json --quiet)
-"$BENCH_BINARY" "${tune[@]}" --solver gauss_seidel_colored >/dev/null && "$BENCH_BINARY" "${tune[@]}" --solver icd >/dev/null ||
+tune=(tune --scene chain --budget 5 --timeout 2 --out tuned.json --quiet)
+"$BENCH_BINARY" "${tune[@]}" --solver fast_projection >/dev/null && "$BENCH_BINARY" "${tune[@]}" --solver icd >/dev/null ||
   fail "tune"
 /usr/bin/python3 - <<'PYTHON' || fail "tuned.json"
 import json
 document = json.load(open("tuned.json"))
 found = {entry["solver"]: entry for entry in document["tuned"]}
-assert set(found) == {"gauss_seidel_colored", "icd"}, set(found)
-assert all(0 < entry["evaluations"] <= 4 and {p["resolution"] for p in entry["places"]} == {50, 200} for entry in found.values()), found
+assert set(found) == {"fast_projection", "icd"}, set(found)
+assert all(0 < entry["evaluations"] <= 5 and {p["resolution"] for p in entry["places"]} == {50, 200} for entry in found.values()), found
 PYTHON
 refused "did you mean 'chain'" tune --scene chian --out out.json
 refused "did you mean 'icd'" tune --solver idc --out out.json
