@@ -1,6 +1,7 @@
 // What a step does beside its filter, and whole iterations of solvers.
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "harness/kernels/hardware_peak.h"
@@ -32,10 +33,13 @@ void vertex_pass(benchmark::State& state, bool collision, const std::string& sce
   const Problem& problem = m.problem();
   Positions x = m.x0;
   WorkCounters work;
+  std::optional<Contacts> contacts;
+  if (collision) contacts.emplace(problem);
   while (state.KeepRunning()) {
     if (collision) {
       x = m.x0;
-      problem.collider()->resolve(m.state.x, problem.inverse_mass(), x, work);
+      contacts->begin(m.state.x);
+      contacts->push_out(x, work);
     } else {
       unconstrained_step(problem, m.state, m.h, x, work);
     }

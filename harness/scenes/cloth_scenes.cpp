@@ -46,6 +46,7 @@ void add_ball(Draft& cloth, const SceneParameters& p) {
       inextensible::icosphere(Eigen::Vector3d::Zero(), p.at("radius"),
                               static_cast<int>(p.at("subdivisions"))),
       p.at("friction"));
+  cloth.parts.contact_inside = p.at("contact") != 0;
 }
 
 // Above the ball.
@@ -129,7 +130,10 @@ ParameterInfos sphere_parameters() {
   return {{"radius", 0.25, "of the sphere, m; 0: no collider at all", -1e-300, 1e6},
           {"subdivisions", 3, "of the icosahedron; 3: 1,280 triangles", 0, 6, true},
           {"gap", 0.001, "between sphere and cloth at the start, m", -1e-300, 1e6},
-          {"friction", 0.3, "Coulomb coefficient", -1e-300, 1e3}};
+          {"friction", 0.3, "Coulomb coefficient", -1e-300, 1e3},
+          {"contact", 1,
+           "1: kept while edges are; 0: in a pass of its own after that, as the paper does",
+           -1e-300, 1, true}};
 }
 
 ParameterInfos joined(std::initializer_list<ParameterInfos> parts) {

@@ -74,7 +74,7 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
       return found;
     }
     const double time = static_cast<double>(i) * wanted.step;
-    if (std::isnan(found.first_contact) && runs[0].stepper->filtered_positions() != runs[0].state.x)
+    if (std::isnan(found.first_contact) && runs[0].stepper->work().contacts > 0)
       found.first_contact = time;
     if (time > densely_until && i % sample_every != 0) continue;
     found.times.push_back(time);

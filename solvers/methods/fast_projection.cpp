@@ -24,9 +24,10 @@
 namespace inextensible {
 namespace {
 
-// Iterations without a new least |C|: Newton often recovers from a rise or two. But not from this
-// one of |C|^2, where J W J^T was singular in all but rounding, and digits are lost on the way.
-constexpr int patience = 8;
+// Iterations without a new least |C|: Newton often recovers from a rise or two, and friction makes
+// |C| rise and fall for longer. But not from this rise of |C|^2, where J W J^T was singular in all
+// but rounding, and digits are lost on the way.
+constexpr int free_patience = 8, patience_in_contact = 60;
 constexpr double overshoot = 1e8;
 constexpr double least_forcing = 1e-8, damped_forcing = 1e-4;
 constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1e8;
@@ -41,7 +42,8 @@ FastProjection::FastProjection(const Problem& problem, const Settings& settings)
       u_(3, problem.constraints()),
       mu_(problem.constraints()),
       excess_(problem.constraints()) {
-  const bool sweeps = settings.smoothing_sweeps > 0 || settings.sweeps_before > 0;
+  const bool sweeps = settings.smoothing_sweeps > 0 || settings.sweeps_before > 0 ||
+                      (problem.contact_inside() && settings.contact_sweeps > 0);
   if (sweeps && system_.solver_name() != "tridiagonal") {
     sweep_ = std::make_unique<StrainSweep>(
         StrainSweep::by_mass(problem, {settings.strain_limit, settings.smoothing_target},
@@ -65,7 +67,7 @@ StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Pos
     if (observer_) show(j, x);
     bool permissible = linearize(settings_.target, x);
     if (j == 0 && !permissible && sweep_ && settings_.sweeps_before > 0) {
-      smooth(settings_.sweeps_before, x, work);
+      sweep(settings_.sweeps_before, x, work);
       permissible = linearize(settings_.target, x);
     }
     if (permissible && j >= settings_.min_iterations) return {Status::ok, j};
@@ -75,21 +77,40 @@ StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Pos
     if (next_error == 0) return {Status::ok, j};  // nothing left to project
     if (next_error < error) {
       error = next_error;
-      best_ = x;
+      keep_best(x);
       best_j = j;
-      if (observer_) best_multipliers_ = multipliers_;
     } else if (j == 0) {
       return refuse(Status::not_finite, j, edges, x, "overflow");
     }
     if (j > 0)
       forcing = std::clamp(0.9 * next_error / last_error, least_forcing, settings_.first_forcing);
     last_error = next_error;
-    if (j - best_j == patience || !(next_error < overshoot * error) || !system_.factor(u_, work) ||
+    if (j - best_j == (touches() ? patience_in_contact : free_patience) ||
+        !(next_error < overshoot * error) || !system_.factor(u_, work) ||
         !system_.solve(mu_, work, forcing))  // (7)
       return damped(j, x, work);
-    edges.apply(u_, mu_, x);  // (5)
-    if (sweep_) smooth(settings_.smoothing_sweeps, x, work);
+    correct(x);
+    smooth(x, work);
+    if (contacts_ && contacts_->find(x, work) > 0) contacts_->settle(x);
   }
+}
+
+// Contacts are settled where (5) has moved their vertices.
+void FastProjection::correct(Positions& x) {
+  system_.edges().apply(u_, mu_, x);  // (5)
+  if (contacts_) contacts_->settle(x);
+}
+
+void FastProjection::keep_best(const Positions& x) {
+  best_ = x;
+  if (observer_) best_multipliers_ = multipliers_;
+  if (contacts_) contacts_->save(best_contacts_);
+}
+
+void FastProjection::heed(Contacts* contacts) {
+  VelocityFilter::heed(contacts);
+  system_.heed(contacts);
+  if (sweep_) sweep_->heed(contacts);
 }
 
 // Before mu_, the step to x_j, is overwritten. Smoothing moves vertices without multipliers.
@@ -103,10 +124,17 @@ void FastProjection::show(int j, const Positions& x) {
   observer_->iterate(system_.edges(), j, x, multipliers_);
 }
 
-void FastProjection::smooth(int sweeps, Positions& x, WorkCounters& work) {
-  if (sweeps == 0) return;
+// After a projection.
+void FastProjection::smooth(Positions& x, WorkCounters& work) {
+  const int sweeps = touches() ? std::max(settings_.smoothing_sweeps, settings_.contact_sweeps)
+                               : settings_.smoothing_sweeps;
+  if (sweep_ && sweeps > 0) sweep(sweeps, x, work);
+}
+
+void FastProjection::sweep(int sweeps, Positions& x, WorkCounters& work) {
   sweep_->load(x);
   sweep_->in_turn(sweeps, work);
+  sweep_->settle_contacts();
   sweep_->store(x);
 }
 
@@ -120,6 +148,7 @@ StepResult FastProjection::damped(int j, Positions& x, WorkCounters& work) {
       ++work.line_search_steps;
       x = best_;
       if (observer_) multipliers_ = best_multipliers_;
+      if (contacts_) contacts_->restore(best_contacts_);
       linearize(settings_.inner_band, x);
       error = mu_.squaredNorm();
     }
@@ -136,7 +165,7 @@ StepResult FastProjection::damped(int j, Positions& x, WorkCounters& work) {
                     "no damped projection lowers the constraint error");
     }
     const double predicted_error = damped_prediction(damping);
-    edges.apply(u_, mu_, x);
+    correct(x);
     if (observer_) show(j + 1, x);
     if (linearize(settings_.inner_band, x)) return {Status::ok, j + 1};
     const double next_error = mu_.squaredNorm();
@@ -150,8 +179,7 @@ StepResult FastProjection::damped(int j, Positions& x, WorkCounters& work) {
       damping = std::max(damping, least_damping);
       growth = 2;
       error = next_error;
-      best_ = x;
-      if (observer_) best_multipliers_ = multipliers_;
+      keep_best(x);
     }
   }
 }
@@ -184,6 +212,11 @@ SettingFields<FastProjection::Settings> FastProjection::fields() {
        count_from_zero, Range{0, 120}},
       {"smoothing_sweeps", &S::smoothing_sweeps,
        "the same after each projection, at most; none on chains", count_from_zero, Range{0, 120}},
+      {"contact_sweeps", &S::contact_sweeps,
+       "at least so many of them where vertices touch an obstacle: friction is a local matter, "
+       "which a "
+       "projection of the whole does not see",
+       count_from_zero, Range{0, 120}},
       {"smoothing_target", &S::smoothing_target,
        "an edge that a sweep corrects is brought to this fraction of the strain limit", fraction,
        fraction},

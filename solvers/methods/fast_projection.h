@@ -22,6 +22,9 @@ class FastProjection final : public VelocityFilter {
     // cloth, but only to first order; most of what it leaves is local, and cheaper to mend by
     // sweeps. Not on chains, where a projection costs no more than some sweeps.
     int smoothing_sweeps = 0;
+    // At least so many where vertices touch an obstacle: friction is a local matter, which a
+    // projection of the whole does not see.
+    int contact_sweeps = 30;
     double smoothing_target = 0.5;      // of the strain limit
     double smoothing_relaxation = 1.4;  // of a correction
     // The same sweeps before the first projection, at most: what they mend is nothing to project.
@@ -38,12 +41,17 @@ class FastProjection final : public VelocityFilter {
   static SettingFields<Settings> fields();
   FastProjection(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+  void heed(Contacts* contacts) override;
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
   double reciprocal_condition() const override { return system_.reciprocal_condition(); }
 
  private:
   bool linearize(double target, const Positions& x);
-  void smooth(int sweeps, Positions& x, WorkCounters& work);
+  bool touches() const { return contacts_ && contacts_->count() > 0; }
+  void correct(Positions& x);
+  void keep_best(const Positions& x);
+  void smooth(Positions& x, WorkCounters& work);
+  void sweep(int sweeps, Positions& x, WorkCounters& work);
   void show(int j, const Positions& x);
   StepResult damped(int j, Positions& x, WorkCounters& work);
   double damped_prediction(double damping) const;
@@ -57,6 +65,7 @@ class FastProjection final : public VelocityFilter {
   Eigen::VectorXd excess_;              // C~ of a damped iteration
   // With an observer only: h^2 lambda at x_j and at best_.
   Eigen::VectorXd multipliers_, best_multipliers_;
+  Contacts::Record best_contacts_;  // at best_; with contacts only
 };
 
 Backend fast_projection_row();

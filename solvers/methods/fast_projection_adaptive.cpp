@@ -59,6 +59,7 @@ StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*
   for (int rounds = 0;; ++rounds) {
     const bool gives_up =
         rounds == settings_.max_iterations || (rounds % 64 == 63 && !sweep_.finite());
+    sweep_.settle_contacts();
     const std::int64_t corrected = gives_up ? 0 : threads_.project(sweep_.positions(), work);
     work.edge_projections += corrected;
     StrainSweep::Swept swept{corrected, 0};
@@ -67,6 +68,7 @@ StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*
     price += round;
     if (swept.left == 0) {
       sweep_.store(x);
+      if (contacts_ && !gives_up && contacts_->find(x, work) > 0) continue;
       if (edges.permissible(x)) {
         learn(way, price);
         return {Status::ok, rounds};
@@ -112,14 +114,27 @@ void FastProjectionAdaptive::learn(Way way, double price) {
   mean = mean == 0 ? price : memory * mean + (1 - memory) * price;
 }
 
-// false: J W J^T is singular; nothing has moved then.
+// false: J W J^T is singular, or, as it may happen to cloth that friction holds, the projection
+// makes matters worse; nothing has moved then.
 bool FastProjectionAdaptive::project_the_whole(WorkCounters& work) {
+  sweep_.settle_contacts();
   sweep_.store(x_);
   system_.edges().linearize(x_, u_, mu_);
   system_.edges().excess(settings_.target, mu_);
+  const double error = mu_.squaredNorm();
   if (!system_.factor(u_, work) || !system_.solve(mu_, work, settings_.forcing))
     return false;                      // (7)
   system_.edges().apply(u_, mu_, x_);  // (5)
+  if (contacts_) {
+    contacts_->save(record_);
+    contacts_->settle(x_);
+    system_.edges().linearize(x_, u_, mu_);
+    system_.edges().excess(settings_.target, mu_);
+    if (!(mu_.squaredNorm() < error)) {
+      contacts_->restore(record_);
+      return false;
+    }
+  }
   sweep_.load(x_);
   return true;
 }

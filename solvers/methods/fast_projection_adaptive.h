@@ -26,6 +26,12 @@ class FastProjectionAdaptive final : public VelocityFilter {
   static SettingFields<Settings> fields();
   FastProjectionAdaptive(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+  void heed(Contacts* contacts) override {
+    VelocityFilter::heed(contacts);
+    sweep_.heed(contacts);
+    threads_.heed(contacts);
+    system_.heed(contacts);
+  }
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
   double reciprocal_condition() const override { return system_.reciprocal_condition(); }
 
@@ -41,8 +47,9 @@ class FastProjectionAdaptive final : public VelocityFilter {
   StrainSweep sweep_;
   ThreadPass threads_;
   Positions x_;
-  Eigen::Matrix3Xd u_;  // gradient of C
-  Eigen::VectorXd mu_;  // C~, then h^2 dlambda
+  Eigen::Matrix3Xd u_;       // gradient of C
+  Eigen::VectorXd mu_;       // C~, then h^2 dlambda
+  Contacts::Record record_;  // with contacts only
   // What steps have cost each way, in visits of an edge; 0: not tried yet.
   struct Seen {
     double mean[2] = {};

@@ -87,6 +87,7 @@ StepResult GaussSeidel::apply(const Positions& /*x_start*/, double /*h*/, Positi
     shuffle();
     const std::int64_t projections = sweep(x);
     work.edge_projections += projections;
+    if (contacts_) contacts_->settle(x);
     if (projections == 0)
       return refuse(Status::not_converged, sweeps, edges_, x, "an edge has no length");
   }

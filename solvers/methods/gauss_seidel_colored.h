@@ -20,6 +20,10 @@ class GaussSeidelColored final : public VelocityFilter {
   static SettingFields<Settings> fields();
   GaussSeidelColored(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+  void heed(Contacts* contacts) override {
+    VelocityFilter::heed(contacts);
+    sweep_.heed(contacts);
+  }
 
  private:
   EdgeConstraints edges_;

@@ -23,6 +23,8 @@ namespace inextensible {
 namespace {
 
 constexpr int line_search_limit = 12;
+constexpr double sweep_relaxation = 1.4;
+constexpr int most_sweeps = 100'000;
 constexpr double sufficient_decrease = 1e-4;
 
 // Without fill, as on trees, factoring the saddle-point matrix is cheaper than any iteration; and
@@ -31,6 +33,7 @@ constexpr double sufficient_decrease = 1e-4;
 constexpr int many_edges = 600;
 std::string choose(std::string_view wanted, const Problem& problem) {
   if (wanted != "auto") return std::string(wanted);
+  if (problem.contact_inside()) return "projected_cg";
   if (ChainKkt::fits(problem)) return "block_tridiagonal";
   const bool fill = problem.constraints() >= problem.vertices();
   return fill && problem.constraints() >= many_edges ? "projected_cg" : "quasi_definite";
@@ -63,6 +66,11 @@ Icd::Icd(const Problem& problem, const Settings& settings)
   u_.resize(3, problem.constraints());
   for (Eigen::VectorXd* v : {&c_, &mu_, &trial_mu_, &dq_}) v->resize(problem.constraints());
   previous_lambda_ = Eigen::VectorXd::Zero(problem.constraints());
+  if (problem.contact_inside()) {
+    reaction_.resize(problem.vertices());
+    sweep_ = std::make_unique<StrainSweep>(
+        StrainSweep::by_mass(problem, {settings.strain_limit, 0.5}, sweep_relaxation));
+  }
 }
 
 // u_, c_, f_, largest_f_ and merit_ at x0 + dx (in trial_) with multipliers trial_mu_.
@@ -76,6 +84,13 @@ void Icd::evaluate(const Positions& dx) {
     f_.col(edges_.b[k]) += trial_mu_[e] * u_.col(e);
   }
   for (const int vertex : problem_.pinned()) f_.col(vertex).setZero();
+  for (int c = 0; contacts_ && c < contacts_->count(); ++c) {
+    const Eigen::Vector3d normal = contacts_->normal(c);
+    auto f = f_.col(contacts_->vertex(c));
+    const double reaction = contacts_->holds(c) ? normal.dot(f) : 0;
+    reaction_[c] = reaction / mass_[contacts_->vertex(c)];
+    f -= reaction * normal;
+  }
   double sum = 0, largest = 0;
   for (Eigen::Index v = 0; v < f_.cols(); ++v) {
     const double squared = f_.col(v).squaredNorm() / (mass_[v] * mass_[v]);
@@ -86,10 +101,28 @@ void Icd::evaluate(const Positions& dx) {
   merit_ = sum + c_.squaredNorm();
 }
 
+// With contacts: the closest point within their planes. What pulls there decides which of them hold
+// and how much friction there is; what that moves is a local matter, which sweeps mend.
 StepResult Icd::apply(const Positions& /*x_start*/, double h, Positions& x, WorkCounters& work) {
   // dx = 0 and lambda = 0 solve both equations as far as is asked.
   if (min_iterations_ == 0 && edges_.permissible(x)) return {Status::ok, 0};
+  if (!kkt_->heed(contacts_) && contacts_->count() > 0) {
+    return refuse(Status::not_converged, 0, edges_, x,
+                  "this linear solver cannot hold contacts, projected_cg can");
+  }
   x0_ = x;
+  StepResult result = closest(h, x, work);
+  if (!result || !contacts_ || contacts_->count() == 0) return result;
+  for (int c = 0; c < contacts_->count(); ++c)
+    x.col(contacts_->vertex(c)) -= reaction_[c] * contacts_->normal(c);
+  contacts_->settle(x);
+  sweep_->heed(contacts_);
+  const StepResult swept = sweep_->limit(StrainSweep::Order::in_turn, most_sweeps, edges_, x, work);
+  return swept ? result : swept;
+}
+
+// The point on the manifold that is closest to x0_.
+StepResult Icd::closest(double h, Positions& x, WorkCounters& work) {
   mu_ = previous_lambda_ * (h * h);
   StepResult result = newton(h, x, work);
   if (!result && previous_lambda_.squaredNorm() > 0) {

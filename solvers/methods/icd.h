@@ -3,6 +3,7 @@
 #pragma once
 
 #include "inextensible/methods/setting_fields.h"
+#include "inextensible/methods/strain_pass.h"
 #include "inextensible/systems/constraint_system.h"
 #include "inextensible/systems/kkt_solver.h"
 
@@ -31,6 +32,7 @@ class Icd final : public VelocityFilter {
 
  private:
   void evaluate(const Positions& dx);
+  StepResult closest(double h, Positions& x, WorkCounters& work);
   bool direction(bool convex, WorkCounters& work);
   bool line_search(WorkCounters& work);
   StepResult newton(double h, Positions& x, WorkCounters& work);
@@ -48,8 +50,11 @@ class Icd final : public VelocityFilter {
   Eigen::Matrix3Xd u_;
   Eigen::VectorXd c_, mu_, trial_mu_, dq_;  // c_: what of C lies beyond the target
   bool permissible_ = false;
-  double largest_f_ = 0;             // m, over vertices
-  double merit_ = 0;                 // sum of |F|^2 and C^2, m^2
+  double largest_f_ = 0;  // m, over vertices
+  double merit_ = 0;      // sum of |F|^2 and C^2, m^2
+  // With contacts only: n . f_ / m of each, which f_ itself has lost; and what follows on them.
+  std::vector<double> reaction_;
+  std::unique_ptr<StrainSweep> sweep_;
   Eigen::VectorXd previous_lambda_;  // of the last accepted step, 1/kg-scaled: mu / h^2
 };
 

@@ -22,6 +22,10 @@
 namespace inextensible {
 namespace {
 
+// A contact's stiffness over that of an edge: depths stay out of sight. What friction lets slip in
+// a step, of a rest length.
+constexpr double over_stretch = 100, slip = 1e-3;
+
 // Whether vertices are numbered along chains: every spring joins one to the next.
 bool chains(const std::vector<Edge>& pairs) {
   return std::all_of(pairs.begin(), pairs.end(), [](Edge e) { return std::abs(e.a - e.b) == 1; });
@@ -123,6 +127,12 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Se
   inertial_.resize(3, p.vertices());
   trial_.resize(3, p.vertices());
   if (p.has_drag()) before_.resize(3, p.vertices());
+  if (p.contact_inside()) {
+    contact_energy_ = std::make_unique<ContactEnergy>(
+        *contacts_, p.vertices(), over_stretch * settings.stiffness / p.shortest_rest_length(),
+        slip * p.shortest_rest_length());
+    free_place_ = place;
+  }
   gradient_.resize(3 * n);
   step_.resize(3 * n);
   v_before_.resize(3, p.vertices());
@@ -141,6 +151,7 @@ double ImplicitSprings::energy(const Positions& x, double h) const {
       inertia += h * problem().drag(v) * (x.col(v) - before_.col(v)).squaredNorm();
   }
   potential += 2 * bending_energy(problem().bending(), x);
+  if (contact_energy_) potential += 2 * contact_energy_->value(x);
   const double* p = x.data();
   for (const Spring& s : springs_) {
     const double* pa = p + 3 * s.a;
@@ -176,6 +187,7 @@ void ImplicitSprings::assemble(const Positions& x, double h, bool matrix) {
     }
   }
   assemble_bending(x, h, matrix);
+  if (contact_energy_) assemble_contacts(x, h, matrix);
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     const Spring& s = springs_[k];
     const double* pa = p + 3 * s.a;
@@ -214,6 +226,20 @@ void ImplicitSprings::assemble(const Positions& x, double h, bool matrix) {
     cx[0] -= xx, cx[1] -= xy, cx[2] -= xz;
     cy[0] -= xy, cy[1] -= yy, cy[2] -= yz;
     cz[0] -= xz, cz[1] -= yz, cz[2] -= zz;
+  }
+}
+
+void ImplicitSprings::assemble_contacts(const Positions& x, double h, bool matrix) {
+  double* value = solver_->values();
+  for (int c = 0; c < contacts_->count(); ++c) {
+    const int vertex = contacts_->vertex(c), f = free_place_[vertex];
+    const auto [first, second] = contact_energy_->derivatives(c, x.col(vertex));
+    gradient_.segment<3>(3 * f) += h * h * first;
+    if (!matrix) continue;
+    const Places& at = diagonal_[f];
+    const Eigen::Matrix3d block = h * h * second;
+    value[at.xx] += block(0, 0), value[at.xy] += block(0, 1), value[at.yy] += block(1, 1);
+    value[at.xz] += block(0, 2), value[at.yz] += block(1, 2), value[at.zz] += block(2, 2);
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include "inextensible/linear/spd_solver.h"
 #include "inextensible/methods/setting_fields.h"
+#include "inextensible/systems/contact_energy.h"
 
 namespace inextensible {
 
@@ -38,9 +39,11 @@ class ImplicitSprings final : public Stepper {
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override;
+  StepResult newton(double h, double current, Positions& x);
   double energy(const Positions& x, double h) const;
   void assemble(const Positions& x, double h, bool matrix);
   void assemble_bending(const Positions& x, double h, bool matrix);
+  void assemble_contacts(const Positions& x, double h, bool matrix);
   double start(const State& state, double h, Positions& x);
   void predict_tension(const Positions& x, const Positions& to);
   enum class Search { full, shortened, at_minimum, failed };
@@ -75,6 +78,9 @@ class ImplicitSprings final : public Stepper {
   std::unique_ptr<SpdSolver> solver_;
   Positions inertial_, trial_;  // x + h v + h^2 g, and a line search's positions
   Positions before_;            // x^n, with drag only
+  // With contact inside only: the energy of contacts, and the place of each vertex among the free.
+  std::unique_ptr<ContactEnergy> contact_energy_;
+  std::vector<int> free_place_;
   Eigen::VectorXd gradient_, step_;
   std::vector<double> pull_, pull_before_;  // N/m, predicted tension over length; the last step's
   Positions v_before_;                      // v^{n-1}

@@ -10,6 +10,10 @@ namespace {
 constexpr int halving_limit = 30;
 constexpr double armijo_fraction = 1e-4;
 constexpr double rounding = 1e-14;
+// Rounds in which friction follows pressures and contacts are found, and the change of pressures
+// that ends them.
+constexpr int most_rounds = 10;
+constexpr double pressure_tolerance = 0.1;
 // What a step with an old factorization must shrink to, times the last. The error it leaves is then
 // no more than the step itself.
 constexpr double fast_convergence = 0.5;
@@ -81,10 +85,24 @@ StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
   inertial_ = state.x + h * state.v;
   inertial_.colwise() += fall;
   for (const int vertex : problem().pinned()) inertial_.col(vertex) = state.x.col(vertex);
-  double current = start(state, h, x);
+  pull_ = pull_before_;
+  if (!contact_energy_) return newton(h, start(state, h, x), x);
+  contacts_->find(inertial_, work_);
+  contact_energy_->expect_pressures(problem().mass(), h, inertial_);
+  for (int round = 0, iterations = 0;; ++round) {
+    StepResult result = newton(h, round == 0 ? start(state, h, x) : energy(x, h), x);
+    result.iterations = iterations += result.iterations;
+    if (!result || round == most_rounds) return result;
+    const int found = contacts_->find(x, work_);
+    const double change = contact_energy_->take_pressures(x);
+    if (found == 0 && change <= pressure_tolerance) return result;
+  }
+}
+
+// Lowers the energy, `current` at x, to its minimum.
+StepResult ImplicitSprings::newton(double h, double current, Positions& x) {
   // Every step would seem to lower it.
   if (!std::isfinite(current)) return {Status::not_finite, 0, -1, 0, "the energy overflows"};
-  pull_ = pull_before_;
   if (free_vertex_.empty()) return {};  // all are pinned: x is where they are
 
   bool reuse = false;

@@ -15,7 +15,7 @@ StepResult Rattle::solve(const State& state, double h, Positions& x) {
   if (problem_->has_drag()) add_drag(*problem_, state.v, 0.5 * h * h, x);
   for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
   phases_.unconstrained += lap();
-  const StepResult result = shake_.apply(state.x, h, x, work_);
+  const StepResult result = apply_until_clear(shake_, contacts_inside(), state.x, h, x, work_);
   phases_.filter += lap();
   return result;
 }
@@ -30,6 +30,12 @@ StepResult Rattle::end_velocities(const State& start, double h, const Positions&
   }
   add_acceleration(*problem_, x, 0.5 * h, v, work_);
   for (const int vertex : problem_->pinned()) v.col(vertex).setZero();
+  if (contacts_) {  // which bear what presses on them
+    for (int c = 0; c < contacts_->count(); ++c) {
+      const int vertex = contacts_->vertex(c);
+      if (contacts_->holds(c)) v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
+    }
+  }
   phases_.unconstrained += lap();
   const StepResult result = shake_.project_velocity(x, v, work_);
   phases_.filter += lap();

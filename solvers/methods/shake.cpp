@@ -80,12 +80,12 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, Wo
       }
       ++work.line_search_steps;
       mu_ *= 0.5;
-      x = best_;
-      edges.apply(u_start_, mu_, x);
+      take_back(x);
+      correct(x);
       continue;
     } else {
       if (!(next_error < error)) {
-        x = best_;
+        take_back(x);
         linearize(x);
       }
       if (!rebuild(work))
@@ -94,6 +94,7 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, Wo
     }
     error = c_.norm();
     best_ = x;
+    if (contacts_) contacts_->save(best_contacts_);
     mu_ = c_;
     if (matrix == Matrix::start) {
       if (!system_.solve(mu_, work, forcing_))  // (7) with J(x^n) on both sides
@@ -103,8 +104,24 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, Wo
       ++work.back_solves;
     }
     full_step_ = mu_.norm();
-    edges.apply(u_start_, mu_, x);  // (5) with J(x^n)
+    correct(x);
   }
+}
+
+// Contacts are settled where (5) has moved their vertices.
+void Shake::correct(Positions& x) {
+  system_.edges().apply(u_start_, mu_, x);  // (5) with J(x^n)
+  if (contacts_) contacts_->settle(x);
+}
+
+void Shake::take_back(Positions& x) {
+  x = best_;
+  if (contacts_) contacts_->restore(best_contacts_);
+}
+
+void Shake::heed(Contacts* contacts) {
+  VelocityFilter::heed(contacts);
+  system_.heed(contacts);
 }
 
 bool Shake::factor_start(const Positions& x_start, WorkCounters& work) {
@@ -121,10 +138,16 @@ StepResult Shake::project_velocity(const Positions& x, Positions& v, WorkCounter
                   "J W J^T at the end of the step is not positive definite");
   }
   x_factored_ = x;
-  factored_ = true;
+  factored_ = !contacts_;        // which will be others in the next step
   edges.rate(u_start_, v, mu_);  // J v
   if (!system_.solve(mu_, work)) return refuse(Status::singular, 0, edges, x, no_solution);
   edges.apply(u_start_, mu_, v);
+  if (contacts_) {
+    for (int c = 0; c < contacts_->count(); ++c) {
+      auto at = v.col(contacts_->vertex(c));
+      if (contacts_->holds(c)) at -= contacts_->normal(c).dot(at) * contacts_->normal(c);
+    }
+  }
   return {};
 }
 
@@ -141,6 +164,14 @@ bool Shake::rebuild(WorkCounters& work) {
     current_solver_ = make_unsymmetric_solver(current_->column_start, current_->row_index);
   }
   current_->assemble(u_, u_start_, current_solver_->values());
+  if (contacts_) {
+    if (!current_contact_terms_) {
+      current_contact_terms_ = std::make_unique<ContactTerms>(
+          system_.edges(), problem_.vertices(), current_->column_start, current_->row_index);
+    }
+    current_contact_terms_->subtract(*contacts_, problem_.inverse_mass().data(), u_, u_start_,
+                                     current_solver_->values());
+  }
   ++work.assemblies;
   ++work.factorizations;
   return current_solver_->factor();

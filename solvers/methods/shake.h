@@ -24,8 +24,11 @@ class Shake final : public VelocityFilter {
   Shake(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
 
-  // RATTLE's velocity stage (Andersen 1983): v -= W J^T nu with J = J(x), so that J v = 0. The
-  // factor is kept: a step that starts at this x does not build it again.
+  void heed(Contacts* contacts) override;
+
+  // RATTLE's velocity stage (Andersen 1983): v -= W J^T nu with J = J(x), so that J v = 0, and
+  // nothing moves through a plane that holds it. Without contacts the factor is kept: a step that
+  // starts at this x does not build it again.
   StepResult project_velocity(const Positions& x, Positions& v, WorkCounters& work);
 
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
@@ -36,6 +39,8 @@ class Shake final : public VelocityFilter {
   bool factor_start(const Positions& x_start, WorkCounters& work);
   bool linearize(const Positions& x);
   bool rebuild(WorkCounters& work);
+  void correct(Positions& x);
+  void take_back(Positions& x);
   // |x - x_start| in the norm of M.
   double distance(const Positions& x_start, const Positions& x) const;
 
@@ -53,6 +58,9 @@ class Shake final : public VelocityFilter {
   // J(x_j) W J(x^n)^T, made at the first failure to converge: most runs never need it.
   std::unique_ptr<UnsymmetricSchurComplement> current_;
   std::unique_ptr<UnsymmetricSolver> current_solver_;
+  // With contacts only.
+  Contacts::Record best_contacts_;
+  std::unique_ptr<ContactTerms> current_contact_terms_;
 };
 
 Backend shake_row();

@@ -119,7 +119,16 @@ StepResult StrainSweep::limit(Order order, int most_sweeps, const EdgeConstraint
   }
 }
 
-std::int64_t StrainSweep::in_turn() { return sweep<true>(x_); }
+void StrainSweep::settle_contacts() {
+  if (!contacts_) return;
+  contacts_->settle(
+      [this](int vertex, int axis) -> double& { return x_(edges_.place(vertex), axis); });
+}
+
+std::int64_t StrainSweep::in_turn() {
+  settle_contacts();
+  return sweep<true>(x_);
+}
 
 StrainSweep::Swept StrainSweep::in_turn(int most, WorkCounters& work) {
   Swept swept{1, 0};
@@ -132,6 +141,7 @@ StrainSweep::Swept StrainSweep::in_turn(int most, WorkCounters& work) {
 }
 
 std::int64_t StrainSweep::at_once() {
+  settle_contacts();
   const std::int64_t corrected = sweep<false>(correction_);
   if (corrected == 0) return 0;
   x_ += correction_;

@@ -42,6 +42,11 @@ class StrainSweep {
   bool finite() const { return x_.allFinite(); }
   ColoredEdges::Places& positions() { return x_; }
 
+  // Contacts that are settled before each sweep from now on, so that they hold wherever a sweep
+  // finds nothing to correct; null: none.
+  void heed(Contacts* contacts) { contacts_ = contacts; }
+  void settle_contacts();  // at positions()
+
   // Sweeps until one finds nothing to correct, at most `most_sweeps`; the last one, which is the
   // test of convergence, is not counted. Refuses x if an edge (of `edges`, in any order) is still
   // beyond its limit.
@@ -67,6 +72,7 @@ class StrainSweep {
   template <bool in_place>
   std::int64_t sweep(ColoredEdges::Places& to);
 
+  Contacts* contacts_ = nullptr;
   ColoredEdges edges_;
   StrainBand band_;
   Eigen::ArrayXd inverse_square_;  // 1 / l^2, by entry

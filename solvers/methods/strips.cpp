@@ -18,6 +18,7 @@ StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Positions& 
   sweep_.load(x);
   for (int passes = 0;; ++passes) {
     const bool gives_up = passes == max_iterations_ || (passes % 64 == 63 && !sweep_.finite());
+    sweep_.settle_contacts();
     std::int64_t corrected = gives_up ? 0 : threads_.project(sweep_.positions(), work);
     work.edge_projections += corrected;
     if (corrected > 0) corrected = sweep_.in_turn(sweeps_, work).left;

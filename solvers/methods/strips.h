@@ -27,6 +27,11 @@ class Strips final : public VelocityFilter {
   static SettingFields<Settings> fields();
   Strips(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+  void heed(Contacts* contacts) override {
+    VelocityFilter::heed(contacts);
+    sweep_.heed(contacts);
+    threads_.heed(contacts);
+  }
 
  private:
   EdgeConstraints edges_;

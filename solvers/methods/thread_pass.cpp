@@ -24,7 +24,8 @@ ThreadPass::ThreadPass(const Problem& problem, double strain_limit, double targe
                        const ColoredEdges& places)
     : band_(strain_limit, target),
       target_low_(target * (PermissibleSquares(strain_limit).low - 1)),
-      target_high_(target * (PermissibleSquares(strain_limit).high - 1)) {
+      target_high_(target * (PermissibleSquares(strain_limit).high - 1)),
+      places_(places) {
   const std::vector<Thread> threads = threads_of(problem);
   std::vector<const Thread*> side_by_side;
   for (const Thread& thread : threads) {
@@ -63,8 +64,24 @@ void ThreadPass::add_bundle(const Problem& problem, const std::vector<const Thre
   }
 }
 
+void ThreadPass::heed(const Contacts* contacts) {
+  contacts_ = contacts;
+  if (contacts && normal_.size() == 0) normal_ = places_.make_places();
+}
+
+void ThreadPass::show_normals(bool shown) {
+  for (int c = 0; c < contacts_->count(); ++c) {
+    const int place = places_.place(contacts_->vertex(c));
+    if (!shown) {
+      normal_.row(place).setZero();
+    } else if (contacts_->holds(c)) {
+      normal_.row(place) = contacts_->normal(c).transpose();
+    }
+  }
+}
+
 // The first `used` lanes.
-template <int used>
+template <int used, bool contact>
 std::int64_t ThreadPass::project(const Bundle& bundle, ColoredEdges::Places& positions,
                                  WorkCounters& work) {
   double* const x[3] = {positions.col(0).data(), positions.col(1).data(), positions.col(2).data()};
@@ -113,16 +130,38 @@ std::int64_t ThreadPass::project(const Bundle& bundle, ColoredEdges::Places& pos
   work.factorizations += threads;
   work.back_solves += threads;
 
+  const double* normal[3] = {};
+  if constexpr (contact) {
+    for (int axis = 0; axis < 3; ++axis) normal[axis] = normal_.col(axis).data();
+  }
   for (int k = 0; k < bundle.links; ++k) {
     Row& row = rows_[k + 1];
     const Row& before = rows_[k];
     const double *wa = w + k * lanes, *wb = wa + lanes;
+    alignas(64) double begin_along[lanes];
+    if constexpr (contact) {
+      const int *a = place + k * lanes, *b = a + lanes;
+      for (int i = 0; i < used; ++i) {
+        begin_along[i] = row.g[0][i] * normal[0][a[i]] + row.g[1][i] * normal[1][a[i]] +
+                         row.g[2][i] * normal[2][a[i]];
+        row.along[i] = row.g[0][i] * normal[0][b[i]] + row.g[1][i] * normal[1][b[i]] +
+                       row.g[2][i] * normal[2][b[i]];
+      }
+    }
     for (int i = 0; i < used; ++i) {
-      const double own = (wa[i] + wb[i]) * (row.g[0][i] * row.g[0][i] + row.g[1][i] * row.g[1][i] +
-                                            row.g[2][i] * row.g[2][i]);
+      const double squared =
+          row.g[0][i] * row.g[0][i] + row.g[1][i] * row.g[1][i] + row.g[2][i] * row.g[2][i];
+      double own = (wa[i] + wb[i]) * squared;
+      double coupled = row.g[0][i] * before.g[0][i] + row.g[1][i] * before.g[1][i] +
+                       row.g[2][i] * before.g[2][i];
+      if constexpr (contact) {  // w (I - n n^T) for w
+        const double held =
+            wa[i] * begin_along[i] * begin_along[i] + wb[i] * row.along[i] * row.along[i];
+        own = std::max(own - held, least_pivot * own);
+        coupled -= begin_along[i] * before.along[i];
+      }
       const double diagonal = own > 0 ? own : 1;
-      const double off = -wa[i] * (row.g[0][i] * before.g[0][i] + row.g[1][i] * before.g[1][i] +
-                                   row.g[2][i] * before.g[2][i]);
+      const double off = -wa[i] * coupled;
       const double factor = off * before.inverse_pivot[i];
       const double pivot = std::max(diagonal - factor * off, least_pivot * diagonal);
       row.c[i] = solved[i] * row.c[i] - factor * before.c[i];
@@ -154,11 +193,21 @@ std::int64_t ThreadPass::project(const Bundle& bundle, ColoredEdges::Places& pos
   return static_cast<std::int64_t>(all);
 }
 
-std::int64_t ThreadPass::project(ColoredEdges::Places& x, WorkCounters& work) {
+template <bool contact>
+std::int64_t ThreadPass::project_all(ColoredEdges::Places& x, WorkCounters& work) {
   std::int64_t violated = 0;
   for (const Bundle& bundle : bundles_) {
-    violated += bundle.threads == 1 ? project<1>(bundle, x, work) : project<lanes>(bundle, x, work);
+    violated += bundle.threads == 1 ? project<1, contact>(bundle, x, work)
+                                    : project<lanes, contact>(bundle, x, work);
   }
+  return violated;
+}
+
+std::int64_t ThreadPass::project(ColoredEdges::Places& x, WorkCounters& work) {
+  if (!contacts_ || contacts_->count() == 0) return project_all<false>(x, work);
+  show_normals(true);
+  const std::int64_t violated = project_all<true>(x, work);
+  show_normals(false);
   return violated;
 }
 

@@ -14,13 +14,17 @@ namespace inextensible {
 class ThreadPass {
  public:
   // Links strained beyond `target` of the limit are brought to it, in a thread that has one beyond
-  // the limit. `places`: where vertices are in the positions that project() takes.
+  // the limit. `places`: where vertices are in the positions that project() takes; they
+  // outlive this.
   ThreadPass(const Problem& problem, double strain_limit, double target,
              const ColoredEdges& places);
 
   // One step of Newton's method for every thread, color after color. Returns how many links were
   // beyond the limit; one without length counts as none.
   std::int64_t project(ColoredEdges::Places& x, WorkCounters& work);
+
+  // Contacts whose vertices move within their planes only, from the next projection on; null: none.
+  void heed(const Contacts* contacts);
 
   bool crossing() const { return crossing_; }  // whether threads share vertices
 
@@ -32,8 +36,11 @@ class ThreadPass {
   };
   void add_bundle(const Problem& problem, const std::vector<const Thread*>& threads,
                   const ColoredEdges& places);
-  template <int used>
+  template <bool contact>
+  std::int64_t project_all(ColoredEdges::Places& x, WorkCounters& work);
+  template <int used, bool contact>
   std::int64_t project(const Bundle& bundle, ColoredEdges::Places& x, WorkCounters& work);
+  void show_normals(bool shown);
 
   StrainBand band_;
   double target_low_, target_high_;  // of q - 1 = |d|^2 / l^2 - 1
@@ -47,9 +54,15 @@ class ThreadPass {
     alignas(64) double g[3][lanes];  // d / l of a link
     alignas(64) double off[lanes];   // coupling with the link before
     alignas(64) double inverse_pivot[lanes];
-    alignas(64) double c[lanes];  // right-hand side, then the multiplier
+    alignas(64) double c[lanes];      // right-hand side, then the multiplier
+    alignas(64) double along[lanes];  // g along the normal at the link's end; with contacts only
   };
   std::vector<Row> rows_;  // the first is zero: no link comes before
+
+  // With contacts only.
+  const Contacts* contacts_ = nullptr;
+  const ColoredEdges& places_;
+  ColoredEdges::Places normal_;  // of the plane that holds a place's vertex, or zero
 };
 
 }  // namespace inextensible

@@ -93,6 +93,7 @@ StepResult XpbdSmallSteps::apply(const Positions& /*x_start*/, double /*h*/, Pos
                                  WorkCounters& work) {
   sweep_.load(x);
   for (int i = 0; i < sweeps_; ++i) work.edge_projections += sweep_.in_turn();
+  sweep_.settle_contacts();
   if (!sweep_.finite()) return {Status::not_finite, sweeps_, -1, 0, "overflow"};
   sweep_.store(x);
   for (const Attachment& a : attachments_) {

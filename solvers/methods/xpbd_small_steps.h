@@ -23,6 +23,10 @@ class XpbdSmallSteps final : public VelocityFilter {
   // Throws std::invalid_argument if they are needed.
   XpbdSmallSteps(const Problem& problem, const Settings& settings, const Positions* rest);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+  void heed(Contacts* contacts) override {
+    VelocityFilter::heed(contacts);
+    sweep_.heed(contacts);
+  }
 
  private:
   struct Attachment {

@@ -1,5 +1,5 @@
-// The collision filter: the last pass of a step, so that nothing penetrates visibly (paper,
-// section 4.4).
+// An obstacle, as those of its half-spaces that vertices have come to (paper, section 4.4: nothing
+// is to penetrate visibly).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,6 +9,13 @@
 
 namespace inextensible {
 
+// What keeps a vertex out of an obstacle: normal . x >= offset.
+struct ContactPlane {
+  int vertex;
+  Eigen::Vector3d normal;  // unit, out of the obstacle
+  double offset;           // m
+};
+
 class Collider {
  public:
   Collider() = default;
@@ -16,12 +23,18 @@ class Collider {
   Collider& operator=(const Collider&) = delete;
   virtual ~Collider() = default;
 
-  // Moves every free vertex of x (3 x n, m) that is inside the obstacle back to its surface, and
-  // takes Coulomb friction off its displacement since x_start. Vertices of inverse mass 0 are not
-  // touched.
-  virtual void resolve(const Eigen::Matrix3Xd& x_start, const std::vector<double>& inverse_mass,
-                       Eigen::Matrix3Xd& x, WorkCounters& work) const = 0;
+  // Of each vertex, what the collider remembers from one call to the next; -1 at first. It makes
+  // calls cheaper, and changes no answer.
+  using Memory = std::vector<int>;
 
+  // Replaces `planes` by one for every vertex of x (3 x n, m) that is deeper than `depth` inside
+  // the obstacle, but for those of inverse mass 0: through the nearest point of the surface, across
+  // the way there. By ascending vertex. `memory` has n numbers.
+  virtual void find(const Eigen::Matrix3Xd& x, const std::vector<double>& inverse_mass,
+                    double depth, Memory& memory, std::vector<ContactPlane>& planes,
+                    WorkCounters& work) const = 0;
+
+  virtual double friction() const = 0;  // Coulomb coefficient
   virtual int triangles() const = 0;
 };
 

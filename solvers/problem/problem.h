@@ -46,6 +46,10 @@ struct ProblemParts {
   // (systems/implicit_forces.h).
   bool implicit_forces = false;
   std::shared_ptr<const Collider> collider;  // null: nothing to collide with
+  // Methods keep vertices out of the obstacle while they keep edges to their lengths. false: a step
+  // ends with a pass that moves vertices out, after which nobody looks at edges again (the paper's
+  // pipeline, section 4.4).
+  bool contact_inside = true;
 };
 
 // Immutable. The constructor throws std::invalid_argument, naming the vertex or edge, unless masses
@@ -75,6 +79,8 @@ class Problem {
     return parts_.implicit_forces && (parts_.shear || !parts_.bending.empty() || has_drag());
   }
   const Collider* collider() const { return parts_.collider.get(); }
+  // Whether there is a collider that methods are to heed.
+  bool contact_inside() const { return parts_.collider && parts_.contact_inside; }
 
  private:
   ProblemParts parts_;

@@ -228,6 +228,7 @@ TriangleCollider::Nearest TriangleCollider::nearest_by_all(const Vector3d& p) co
 TriangleCollider::List TriangleCollider::add_list(const std::vector<int>& triangles) {
   const List list{static_cast<int>(listed_.size()), static_cast<int>(triangles.size())};
   listed_.insert(listed_.end(), triangles.begin(), triangles.end());
+  for (const int t : triangles) listed_planes_.push_back(planes_[t]);
   return list;
 }
 
@@ -246,54 +247,53 @@ TriangleCollider::Nearest TriangleCollider::nearest(const Vector3d& p) const {
   return cell == outside ? nearest_by_all(p) : nearest_among(triangles_of(lists_[cell]), p);
 }
 
-bool TriangleCollider::touches(const List& list, const Vector3d& p, Contact& contact) const {
+bool TriangleCollider::touches(const List& list, const Vector3d& p, double depth,
+                               ContactPlane& plane, int& witness) const {
   if (!convex_) {
     const Nearest nearest = nearest_among(triangles_of(list), p);
-    if (nearest.signed_distance >= 0) return false;
-    contact.depth = -nearest.signed_distance;
-    contact.point = nearest.point;
-    contact.normal = (nearest.point - p) / contact.depth;
+    if (!(nearest.signed_distance < -depth)) return false;
+    plane.normal = (nearest.point - p) / -nearest.signed_distance;
+    plane.offset = plane.normal.dot(nearest.point);
     return true;
   }
   const double px = p.x(), py = p.y(), pz = p.z();
+  const Plane* planes = listed_planes_.data() + list.first;
   double largest = -std::numeric_limits<double>::infinity();
   int nearest = 0;
-  for (const int triangle : triangles_of(list)) {
-    const Plane& plane = planes_[triangle];
-    const double distance = plane.x * px + plane.y * py + plane.z * pz - plane.offset;
-    if (!(distance < 0)) return false;
+  for (int i = 0; i < list.count; ++i) {
+    const double distance =
+        planes[i].x * px + planes[i].y * py + planes[i].z * pz - planes[i].offset;
     if (distance > largest) {
       largest = distance;
-      nearest = triangle;
+      nearest = i;
     }
   }
-  contact.normal = pseudonormal_[nearest][0];
-  contact.depth = -largest;
-  contact.point = p + contact.depth * contact.normal;
+  if (!(largest < -depth)) {
+    witness = listed_[list.first + nearest];
+    return false;
+  }
+  plane.normal = {planes[nearest].x, planes[nearest].y, planes[nearest].z};
+  plane.offset = planes[nearest].offset;
   return true;
 }
 
-void TriangleCollider::resolve(const Eigen::Matrix3Xd& x_start,
-                               const std::vector<double>& inverse_mass, Eigen::Matrix3Xd& x,
-                               WorkCounters& work) const {
-  Contact contact;
+void TriangleCollider::find(const Eigen::Matrix3Xd& x, const std::vector<double>& inverse_mass,
+                            double depth, Memory& memory, std::vector<ContactPlane>& planes,
+                            WorkCounters& work) const {
+  planes.clear();
+  ContactPlane plane;
   for (Eigen::Index v = 0; v < x.cols(); ++v) {
+    if (const int last = memory[v]; last >= 0) {
+      const Plane& t = planes_[last];
+      if (t.x * x(0, v) + t.y * x(1, v) + t.z * x(2, v) - t.offset >= -depth) continue;
+    }
     const int cell = cell_at(x.col(v));
     if (cell == outside || inverse_mass[v] == 0) continue;
     const List& list = lists_[cell];
     work.triangle_tests += list.count;
-    if (!touches(list, x.col(v), contact)) continue;
-    ++work.contacts;
-    // Out along the shortest way; then friction takes up to mu times that way off the tangential
-    // displacement.
-    const Vector3d displacement = contact.point - x_start.col(v);
-    const Vector3d tangential = displacement - displacement.dot(contact.normal) * contact.normal;
-    const double slide = tangential.norm(), grip = friction_ * contact.depth;
-    const double kept = slide > grip ? 1 - grip / slide : 0;
-    const Vector3d place = contact.point - (1 - kept) * tangential;
-    // Where the mesh is not convex, friction's way back may lead into it.
-    const bool inside = !convex_ && kept < 1 && nearest(place).signed_distance < 0;
-    x.col(v) = inside ? contact.point : place;
+    if (!touches(list, x.col(v), depth, plane, memory[v])) continue;
+    plane.vertex = static_cast<int>(v);
+    planes.push_back(plane);
   }
 }
 

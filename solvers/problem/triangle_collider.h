@@ -1,13 +1,13 @@
 // Collision of vertices against a closed triangle mesh: signed distance from the nearest triangle,
-// with the sign from angle-weighted pseudonormals (Baerentzen and Aanaes 2005), Coulomb friction on
-// displacements (Bridson et al. 2002).
+// with the sign from angle-weighted pseudonormals (Baerentzen and Aanaes 2005).
 //
 // A uniform grid over the mesh's box lists for each cell every triangle that is nearest to some
 // point of the cell (exact: those no farther from the cell's centre than the nearest one plus the
 // cell's diagonal), found by refining an octree. Cells that lie wholly outside are empty, so a
 // vertex away from the mesh costs one look-up. Of a convex mesh the planes of these triangles are
-// enough: a point is inside if it is behind all of them, and its nearest point is
-// its foot on the plane that it is least behind.
+// enough: a point is inside if it is behind all of them, and its nearest point is its foot on the
+// plane that it is least behind. A plane that it is not behind shows that it is outside: the one
+// that did so last is asked first.
 #pragma once
 
 #include <array>
@@ -31,8 +31,9 @@ class TriangleCollider final : public Collider {
   // friction: Coulomb coefficient. Throws std::invalid_argument for a mesh that is not closed.
   TriangleCollider(TriangleMesh mesh, double friction);
 
-  void resolve(const Eigen::Matrix3Xd& x_start, const std::vector<double>& inverse_mass,
-               Eigen::Matrix3Xd& x, WorkCounters& work) const override;
+  void find(const Eigen::Matrix3Xd& x, const std::vector<double>& inverse_mass, double depth,
+            Memory& memory, std::vector<ContactPlane>& planes, WorkCounters& work) const override;
+  double friction() const override { return friction_; }
   int triangles() const override { return static_cast<int>(mesh_.triangles.size()); }
   const TriangleMesh& mesh() const { return mesh_; }
 
@@ -64,12 +65,11 @@ class TriangleCollider final : public Collider {
   struct Plane {  // n . p - offset
     double x, y, z, offset;
   };
-  struct Contact {
-    Eigen::Vector3d point, normal;
-    double depth;  // m, > 0
-  };
-  // Whether p, in a cell that is not outside, is inside the mesh, and where it leaves.
-  bool touches(const List& list, const Eigen::Vector3d& p, Contact& contact) const;
+  // Whether p, of a cell that is not outside, is deeper than `depth` inside the mesh; if so,
+  // `plane` keeps it out, else `witness` is a triangle whose plane shows that it is not, if there
+  // is one.
+  bool touches(const List& list, const Eigen::Vector3d& p, double depth, ContactPlane& plane,
+               int& witness) const;
   List add_list(const std::vector<int>& triangles);
   std::span<const int> triangles_of(const List& list) const;
   int cell_at(const Eigen::Vector3d& p) const;  // of cell_; outside where p is outside the box
@@ -87,7 +87,8 @@ class TriangleCollider final : public Collider {
   std::vector<int> cell_;  // its list, or outside
   std::vector<List> lists_;
   std::vector<int> listed_;
-  std::vector<Plane> planes_;  // of the faces
+  std::vector<Plane> planes_;         // of the faces
+  std::vector<Plane> listed_planes_;  // of listed_
 };
 
 }  // namespace inextensible

@@ -61,7 +61,7 @@ StepResult Bdf2Stepper::solve(const State& state, double h, Positions& x) {
   }
   for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
   phases_.unconstrained += lap();
-  const StepResult result = filter_->apply(state.x, h, x, work_);
+  const StepResult result = apply_until_clear(*filter_, contacts_inside(), state.x, h, x, work_);
   phases_.filter += lap();
   return result;
 }
@@ -102,7 +102,7 @@ bool Bdf2Stepper::implicit_solve(const State& state, double h, bool known, Posit
   return true;
 }
 
-StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Positions& filtered,
+StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Positions& /*filtered*/,
                                        const Positions& x, Positions& v) {
   Lap lap(phases_wanted_);
   const Coefficients c = coefficients(h);
@@ -115,9 +115,10 @@ StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Posit
   }
   x_before_ = start.x;
   v_before_ = start.v;
-  if (problem_->collider()) {
-    for (Eigen::Index i = 0; i < x.cols(); ++i) {
-      if (x.col(i) == filtered.col(i)) continue;
+  if (contacts_) {
+    for (int contact = 0; contact < contacts_->count(); ++contact) {
+      if (!contacts_->holds(contact)) continue;
+      const int i = contacts_->vertex(contact);
       v.col(i) = (x.col(i) - start.x.col(i)) / h;
       x_before_.col(i) = x.col(i) - h * v.col(i) + (0.5 * h * h) * acceleration_.col(i);
       v_before_.col(i) = v.col(i) - h * acceleration_.col(i);

@@ -11,7 +11,9 @@ Stepper::Stepper(std::shared_ptr<const Problem> problem)
     : problem_(std::move(problem)),
       next_(3, problem_->vertices()),
       velocity_(3, problem_->vertices()) {
-  if (problem_->collider()) filtered_.resize(3, problem_->vertices());
+  if (!problem_->collider()) return;
+  contacts_ = std::make_unique<Contacts>(*problem_);
+  filtered_.resize(3, problem_->vertices());
 }
 
 StepResult Stepper::advance(State& state, double h) {
@@ -19,16 +21,17 @@ StepResult Stepper::advance(State& state, double h) {
     ++work_.rejected_steps;
     return {Status::not_finite, 0, -1, 0, "the step must be a positive, finite time"};
   }
+  if (contacts_) contacts_->begin(state.x);
   StepResult result = solve(state, h, next_);
   work_.iterations += result.iterations;
   if (!result) {
     ++work_.rejected_steps;
     return result;
   }
-  if (const Collider* collider = problem_->collider()) {
+  if (contacts_) {
     Lap lap(phases_wanted_);
     filtered_ = next_;
-    collider->resolve(state.x, problem_->inverse_mass(), next_, work_);
+    contacts_->push_out(next_, work_);
     phases_.collision += lap();
   }
   // A sum is not finite if any term is not.

@@ -1,15 +1,16 @@
 // What every backend offers: advance a state by h, or refuse and leave it bit for bit as it was.
 //
-// A step is: inextensible positions from the state (a backend's own business), then the collision
-// filter, then v = (x^{n+1} - x^n) / h. Constraint methods are velocity filters behind one common
-// unconstrained step; a method that treats stretching inside its time stepper (implicit springs)
-// derives from Stepper directly.
+// A step is: positions from the state that are inextensible and, where the problem asks for contact
+// inside, out of the obstacle (a backend's own business); a collision filter, which moves out what
+// is still inside; then v = (x^{n+1} - x^n) / h. Constraint methods are velocity filters behind one
+// common unconstrained step; a method that treats stretching inside its time stepper (implicit
+// springs) derives from Stepper directly.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 
-#include "inextensible/problem/problem.h"
+#include "inextensible/problem/contacts.h"
 #include "inextensible/problem/step_result.h"
 #include "inextensible/problem/work_counters.h"
 
@@ -45,7 +46,7 @@ class Stepper {
 
   // Positions of the last accepted step after the inextensibility filter and before the collision
   // filter: where strain is measured. Meaningful until the next call of advance.
-  const Positions& filtered_positions() const { return problem_->collider() ? filtered_ : next_; }
+  const Positions& filtered_positions() const { return contacts_ ? filtered_ : next_; }
 
   const Problem& problem() const { return *problem_; }
   const WorkCounters& work() const { return work_; }
@@ -76,6 +77,12 @@ class Stepper {
   WorkCounters work_;
   PhaseSeconds phases_;
   bool phases_wanted_ = false;  // for Lap
+  // Of the present step; null without a collider.
+  std::unique_ptr<Contacts> contacts_;
+  // The same where a method is to heed them, else null.
+  Contacts* contacts_inside() const {
+    return problem_->contact_inside() ? contacts_.get() : nullptr;
+  }
 
  private:
   Positions next_, filtered_, velocity_;

@@ -4,6 +4,26 @@
 #include "inextensible/stepping/lap.h"
 
 namespace inextensible {
+namespace {
+
+// What is inside after so many is left to the collision filter. Of a convex obstacle every vertex
+// is found once at most.
+constexpr int most_rounds = 30;
+
+}  // namespace
+
+StepResult apply_until_clear(VelocityFilter& filter, Contacts* contacts, const Positions& x_start,
+                             double h, Positions& x, WorkCounters& work) {
+  filter.heed(contacts);
+  if (!contacts) return filter.apply(x_start, h, x, work);
+  contacts->find(x, work);
+  for (int round = 0, iterations = 0;; ++round) {
+    contacts->settle(x);
+    StepResult result = filter.apply(x_start, h, x, work);
+    result.iterations = iterations += result.iterations;
+    if (!result || round == most_rounds || contacts->find(x, work) == 0) return result;
+  }
+}
 
 FilterStepper::FilterStepper(std::shared_ptr<const Problem> problem,
                              std::unique_ptr<VelocityFilter> filter)
@@ -25,7 +45,7 @@ StepResult FilterStepper::solve(const State& state, double h, Positions& x) {
     unconstrained_step(*problem_, state, h, x, work_);
   }
   phases_.unconstrained += lap();
-  const StepResult result = filter_->apply(state.x, h, x, work_);
+  const StepResult result = apply_until_clear(*filter_, contacts_inside(), state.x, h, x, work_);
   phases_.filter += lap();
   return result;
 }

@@ -18,17 +18,26 @@ class VelocityFilter {
   VelocityFilter& operator=(const VelocityFilter&) = delete;
 
   // x_start = x^n and x = x0 (both 3 x n) in, x = x^{n+1} out; the filtered velocity is (x -
-  // x_start) / h. On refusal x is unspecified. Pinned vertices keep their place bit for bit.
+  // x_start) / h. On refusal x is unspecified. Pinned vertices keep their place bit for bit, and
+  // contacts hold when it ends: another settle() would change nothing.
   virtual StepResult apply(const Positions& x_start, double h, Positions& x,
                            WorkCounters& work) = 0;
 
   virtual const char* linear_solver() const { return ""; }
   virtual double reciprocal_condition() const { return 1; }  // as the stepper's
   void observe(IterateObserver* observer) { observer_ = observer; }
+  // From the next apply() on; null: none.
+  virtual void heed(Contacts* contacts) { contacts_ = contacts; }
 
  protected:
   IterateObserver* observer_ = nullptr;
+  Contacts* contacts_ = nullptr;
 };
+
+// The filter, as often as it takes until nothing is inside the obstacle: a contact is found when it
+// is needed. contacts: null, or begun.
+StepResult apply_until_clear(VelocityFilter& filter, Contacts* contacts, const Positions& x_start,
+                             double h, Positions& x, WorkCounters& work);
 
 // v* = v - h W grad V(x), x0 = x + h v*, filter: the pipeline of the paper's section 4.4 with V
 // explicit, or, where the problem asks for it, implicit (ImplicitForces).

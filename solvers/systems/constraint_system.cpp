@@ -19,7 +19,8 @@ std::string choose(std::string_view wanted, const SymmetricPattern& pattern,
 }  // namespace
 
 ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
-                                   std::string_view linear_solver, Digits digits) {
+                                   std::string_view linear_solver, Digits digits)
+    : problem_(problem) {
   const auto natural = SymmetricPattern::Triangle::upper;
   edges_ = std::make_unique<EdgeConstraints>(problem, strain_limit);
   schur_ = std::make_unique<SchurComplement>(*edges_, problem.vertices(), natural);
@@ -33,10 +34,18 @@ ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
   solver_ = make_spd_solver(solver_name_, schur_->pattern());
   solver_->set_least_pivot(least_pivot);
   checked_ = solver_name_ != "tridiagonal";
+  if (problem.contact_inside()) {
+    const SymmetricPattern& pattern = schur_->pattern();
+    contact_terms_ = std::make_unique<ContactTerms>(*edges_, problem.vertices(),
+                                                    pattern.column_start, pattern.row_index);
+  }
 }
 
 bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, WorkCounters& work, double damping) {
   schur_->assemble(u, solver_->values());
+  if (contacts_) {
+    contact_terms_->subtract(*contacts_, problem_.inverse_mass().data(), u, u, solver_->values());
+  }
   if (damping > 0) schur_->scale_diagonal(1 + damping, solver_->values());
   ++work.assemblies;
   ++work.factorizations;

@@ -8,6 +8,7 @@
 
 #include "inextensible/problem/edge_constraints.h"
 #include "inextensible/problem/step_result.h"
+#include "inextensible/systems/contact_terms.h"
 #include "inextensible/systems/schur_complement.h"
 
 namespace inextensible {
@@ -40,6 +41,11 @@ class ConstraintSystem {
   double reciprocal_condition() const { return solver_->reciprocal_condition(); }
   const std::string& solver_name() const { return solver_name_; }
 
+  // Contacts whose vertices move within their planes only, from the next factorization on; null:
+  // none.
+  void heed(const Contacts* contacts) { contacts_ = contacts; }
+  const Contacts* contacts() const { return contacts_; }
+
   // Assembles J W J^T at gradients u, its diagonal times 1 + damping, and factors it; false: not
   // positive definite.
   bool factor(const Eigen::Matrix3Xd& u, WorkCounters& work, double damping = 0);
@@ -50,6 +56,9 @@ class ConstraintSystem {
  private:
   bool moderate(const Eigen::VectorXd& mu, double largest) const;
 
+  const Problem& problem_;
+  const Contacts* contacts_ = nullptr;
+  std::unique_ptr<ContactTerms> contact_terms_;  // where the problem has contact inside
   std::string solver_name_;
   bool checked_ = false;  // multipliers are: all but those of a chain
   std::unique_ptr<EdgeConstraints> edges_;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string_view>
 
+#include "inextensible/problem/contacts.h"
 #include "inextensible/problem/edge_constraints.h"
 #include "inextensible/problem/work_counters.h"
 
@@ -30,6 +31,10 @@ class KktSolver {
   // the null space of J does so by itself.
   virtual bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex,
                       WorkCounters& work) = 0;
+  // Contacts whose vertices move within their planes only, from the next factorization on; null:
+  // none. False, if there are some: this solver cannot.
+  virtual bool heed(const Contacts* contacts) { return contacts == nullptr; }
+
   // Whether they were left out, of the last solve.
   bool convexified() const { return convexified_; }
 

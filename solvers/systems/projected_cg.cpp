@@ -47,6 +47,10 @@ ProjectedCg::ProjectedCg(const Problem& problem, const EdgeConstraints& edges,
   for (Positions* p : {&residual_, &direction_, &image_, &correction_})
     p->resize(3, problem.vertices());
   find_meetings();
+  if (problem.contact_inside()) {
+    contact_terms_ = std::make_unique<ContactTerms>(edges, problem.vertices(),
+                                                    pattern_.column_start, pattern_.row_index);
+  }
 }
 
 void ProjectedCg::find_meetings() {
@@ -103,6 +107,7 @@ bool ProjectedCg::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, b
       value[i] = weight * u.col(pattern_.row_index[i]).dot(u.col(l));
     }
   }
+  if (touches()) contact_terms_->subtract(*contacts_, inverse_metric_.data(), u, u, value);
   ++work.assemblies;
   ++work.factorizations;
   if (!solver_->factor()) return factor_directly(work);
@@ -111,12 +116,20 @@ bool ProjectedCg::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, b
   return true;
 }
 
+// The saddle-point matrix knows no contacts: its steps may leave their planes.
 bool ProjectedCg::factor_directly(WorkCounters& work) {
   if (!direct_) direct_ = std::make_unique<KktSystem>(problem_, edges_, "quasi_definite");
   direct_in_use_ = true;
   const bool factored = direct_->factor(*u_, *mu_, convex_, work);
   convexified_ = direct_->convexified();
   return factored;
+}
+
+void ProjectedCg::keep_in_planes(Positions& p) const {
+  for (int c = 0; c < contacts_->count(); ++c) {
+    auto at = p.col(contacts_->vertex(c));
+    if (contacts_->holds(c)) at -= contacts_->normal(c).dot(at) * contacts_->normal(c);
+  }
 }
 
 // r -= J^T q.
@@ -149,12 +162,14 @@ bool ProjectedCg::precondition(Positions& r, const Eigen::VectorXd* c, Positions
                                Eigen::VectorXd& q, WorkCounters& work) {
   const auto metric = inverse_metric_.head(problem_.vertices());
   p = r * metric.asDiagonal();
+  if (touches()) keep_in_planes(p);
   edges_.rate(*u_, p, q);
   if (c) q -= *c;
   ++work.back_solves;
   if (!solver_->solve_within(projection_tolerance, q.data())) return false;
   subtract_gradients(q, r);
   p = r * metric.asDiagonal();
+  if (touches()) keep_in_planes(p);
   return true;
 }
 
@@ -173,7 +188,8 @@ bool ProjectedCg::solve(const Positions& r, const Eigen::VectorXd& c, Positions&
 // Translations change no edge, so that p's share of them is known exactly: what is left of the
 // residual over the total mass. Linear momentum is kept to rounding this way.
 ProjectedCg::Outcome ProjectedCg::finish(Positions& p) const {
-  if (problem_.pinned().empty()) p.colwise() += residual_.rowwise().sum() / mass_.sum();
+  if (problem_.pinned().empty() && !touches())
+    p.colwise() += residual_.rowwise().sum() / mass_.sum();
   return Outcome::converged;
 }
 

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "inextensible/systems/contact_terms.h"
 #include "inextensible/systems/kkt_solver.h"
 #include "inextensible/systems/kkt_system.h"
 #include "inextensible/systems/schur_complement.h"
@@ -27,6 +28,10 @@ class ProjectedCg final : public KktSolver {
               WorkCounters& work) override;
   bool solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
              WorkCounters& work) override;
+  bool heed(const Contacts* contacts) override {
+    contacts_ = contacts;
+    return true;
+  }
   double reciprocal_condition() const override {
     return direct_in_use_ ? direct_->reciprocal_condition() : solver_->reciprocal_condition();
   }
@@ -42,6 +47,8 @@ class ProjectedCg final : public KktSolver {
 
   void find_meetings();
   bool factor_directly(WorkCounters& work);
+  bool touches() const { return contacts_ && contacts_->count() > 0; }
+  void keep_in_planes(Positions& p) const;
   void set_curvature(bool convex);
   Outcome iterate(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
                   WorkCounters& work);
@@ -57,7 +64,9 @@ class ProjectedCg final : public KktSolver {
   SymmetricPattern pattern_;
   std::vector<Meeting> first_, second_;  // an entry of pattern_ each
   std::unique_ptr<SpdSolver> solver_;
-  std::unique_ptr<KktSystem> direct_;  // made when first needed
+  const Contacts* contacts_ = nullptr;
+  std::unique_ptr<ContactTerms> contact_terms_;  // where the problem has contact inside
+  std::unique_ptr<KktSystem> direct_;            // made when first needed
   bool direct_in_use_ = false;
 
   const Eigen::Matrix3Xd* u_ = nullptr;

@@ -21,12 +21,14 @@ struct RandomMesh {
 
 // A crumpled quad grid of rows x columns vertices with unequal edge lengths and masses (a decade
 // apart). pinned: how many vertices; gravity is zero, so that momentum can be checked.
-inline RandomMesh random_mesh(Random& random, int rows, int columns, int pinned) {
+inline RandomMesh random_mesh(Random& random, int rows, int columns, int pinned,
+                              std::shared_ptr<const Collider> collider = nullptr) {
   RandomMesh mesh;
   const int n = rows * columns;
   mesh.x.resize(3, n);
   ProblemParts parts;
   parts.gravity.setZero();
+  parts.collider = std::move(collider);
   for (int i = 0; i < rows; ++i) {
     for (int j = 0; j < columns; ++j) {
       const int v = i * columns + j;

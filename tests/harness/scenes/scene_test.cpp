@@ -14,6 +14,7 @@
 #include "inextensible/problem/triangle_collider.h"
 #include "inextensible/registry.h"
 #include "inextensible/systems/schur_complement.h"
+#include "support/contact.h"
 #include "support/effort.h"
 #include "support/scenes.h"
 
@@ -247,7 +248,7 @@ TEST(TriangleCollider, GridFindsWhatASearchOfAllTrianglesFinds) {
 
 // A vertex pressed 1 cm into the top of a sphere of 1,280 faces, with a sideways displacement.
 Eigen::Vector3d press(double sideways, double friction) {
-  const inextensible::TriangleCollider collider(
+  const auto collider = std::make_shared<const inextensible::TriangleCollider>(
       inextensible::icosphere(Eigen::Vector3d::Zero(), 0.25, 0), friction);
   // The centre of a face; tangent, normal and the point in its frame.
   const auto mesh = inextensible::icosphere(Eigen::Vector3d::Zero(), 0.25, 0);
@@ -259,7 +260,7 @@ Eigen::Vector3d press(double sideways, double friction) {
   start.col(0) = centre;
   x.col(0) = centre + sideways * tangent - 0.01 * normal;
   inextensible::WorkCounters work;
-  collider.resolve(start, {1.0}, x, work);
+  inextensible::testing::push_out(collider, start, x, work);
   EXPECT_EQ(work.contacts, 1);
   const Eigen::Vector3d moved = x.col(0) - centre;
   return {moved.dot(tangent), moved.dot(normal),
@@ -274,12 +275,12 @@ TEST(TriangleCollider, FrictionSticksBelowAndSlidesAboveCoulombsLimit) {
 }
 
 TEST(TriangleCollider, LeavesPinnedVerticesWhereTheyAre) {
-  const inextensible::TriangleCollider collider(
+  const auto collider = std::make_shared<const inextensible::TriangleCollider>(
       inextensible::icosphere(Eigen::Vector3d::Zero(), 0.25, 2), 0.3);
   Eigen::Matrix3Xd x = Eigen::Matrix3Xd::Constant(3, 1, 0.01);
   const Eigen::Matrix3Xd start = x;
   inextensible::WorkCounters work;
-  collider.resolve(start, {0.0}, x, work);
+  inextensible::testing::push_out(collider, start, x, work, {0});
   EXPECT_EQ(x, start);
 }
 

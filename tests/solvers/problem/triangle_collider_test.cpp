@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "support/contact.h"
 #include "support/effort.h"
 #include "support/random_mesh.h"
 
@@ -87,9 +88,10 @@ TEST(TriangleCollider, DistanceAndSignAreRightOnAMeshThatIsNotConvex) {
   EXPECT_GT(outside, testing::trials(1000));
 }
 
-// The least signed distance of some random vertices after resolve().
-double deepest_after_resolve(const TriangleMesh& mesh, double friction, Random& random) {
-  const TriangleCollider collider(mesh, friction);
+// The least signed distance of some random vertices after a collision filter's pass.
+double deepest_after_push_out(const TriangleMesh& mesh, double friction, Random& random) {
+  const auto shared = std::make_shared<const TriangleCollider>(mesh, friction);
+  const TriangleCollider& collider = *shared;
   const int n = testing::trials(5000);
   Eigen::Matrix3Xd start(3, n), x(3, n);
   int inside = 0;
@@ -100,7 +102,7 @@ double deepest_after_resolve(const TriangleMesh& mesh, double friction, Random& 
   }
   const Eigen::Matrix3Xd before = x;
   WorkCounters work;
-  collider.resolve(start, std::vector<double>(n, 1), x, work);
+  testing::push_out(shared, start, x, work);
   EXPECT_EQ(work.contacts, inside);
   double deepest = 0;
   for (int v = 0; v < n; ++v) {
@@ -125,13 +127,14 @@ TEST(TriangleCollider, OfAConvexMeshGoesToTheNearestPoint) {
       for (int i = 0; i < 3; ++i) stretch.col(i) += random_point(random, 0.3);
       ASSERT_GT(stretch.determinant(), 0);
       for (Vector3d& v : mesh.vertices) v = (stretch * v).eval();
-      const TriangleCollider collider(mesh, 0);
+      const auto shared = std::make_shared<const TriangleCollider>(mesh, 0);
+      const TriangleCollider& collider = *shared;
       const int n = testing::trials(2000);
       Eigen::Matrix3Xd before(3, n);
       for (int v = 0; v < n; ++v) before.col(v) = random_point(random, 1.3);
       Eigen::Matrix3Xd x = before;
       WorkCounters work;
-      collider.resolve(before, std::vector<double>(n, 1), x, work);
+      testing::push_out(shared, before, x, work);
       int inside = 0;
       for (int v = 0; v < n; ++v) {
         const auto nearest = collider.nearest_by_all(before.col(v));
@@ -148,25 +151,25 @@ TEST(TriangleCollider, OfAConvexMeshGoesToTheNearestPoint) {
   }
 }
 
-TEST(TriangleCollider, ResolveLeavesNothingInsideAConvexMeshWhateverTheFriction) {
+TEST(TriangleCollider, PushOutLeavesNothingInsideAConvexMeshWhateverTheFriction) {
   for (const double friction : {0.0, 0.3, 10.0}) {
     for (const int subdivisions : {0, 3}) {
       Random random(1);
       EXPECT_GE(
-          deepest_after_resolve(icosphere(Vector3d::Zero(), 0.9, subdivisions), friction, random),
+          deepest_after_push_out(icosphere(Vector3d::Zero(), 0.9, subdivisions), friction, random),
           -1e-12)
           << "friction " << friction << ", subdivisions " << subdivisions;
     }
   }
 }
 
-TEST(TriangleCollider, ResolveLeavesNothingInsideAMeshThatIsNotConvexWhateverTheFriction) {
+TEST(TriangleCollider, PushOutLeavesNothingInsideAMeshThatIsNotConvexWhateverTheFriction) {
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const TriangleMesh mesh = spiky(random, 2);
     for (const double friction : {0.0, 0.3, 10.0}) {
-      EXPECT_GE(deepest_after_resolve(mesh, friction, random), -1e-12) << friction;
+      EXPECT_GE(deepest_after_push_out(mesh, friction, random), -1e-12) << friction;
     }
   }
 }

@@ -1,0 +1,145 @@
+// Contact and friction of single vertices against their definitions.
+#include "inextensible/problem/contacts.h"
+
+#include <gtest/gtest.h>
+
+#include "support/contact.h"
+#include "support/random_mesh.h"
+
+namespace inextensible {
+namespace {
+
+using Eigen::Vector3d;
+using testing::Ground;
+using testing::Random;
+using testing::uniform;
+
+Vector3d random_vector(Random& random, double size) {
+  return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
+}
+
+// Points that fell through a ground: n of them, where they began, and where they would be.
+struct Fallen {
+  Fallen(Random& random, int n, double friction)
+      : normal(random_vector(random, 1).normalized()),
+        ground(std::make_shared<const Ground>(normal, uniform(random, -1, 1), friction)),
+        problem(testing::points(n, ground)),
+        start(3, n),
+        candidate(3, n),
+        contacts(problem) {
+    for (int v = 0; v < n; ++v) {
+      start.col(v) = random_vector(random, 1);
+      candidate.col(v) = start.col(v) + random_vector(random, 1);
+    }
+    contacts.begin(start);
+    found = contacts.find(candidate, work);
+  }
+
+  Vector3d normal;
+  std::shared_ptr<const Ground> ground;
+  Problem problem;
+  Positions start, candidate;
+  WorkCounters work;
+  Contacts contacts;
+  int found;
+};
+
+TEST(Contacts, SettleIsContactWithCoulombsFriction) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const double mu = uniform(random, 0, 1);
+    const int n = 1 + static_cast<int>(seed);  // whole lanes and parts of one
+    Fallen fallen(random, n, mu);
+    Contacts& contacts = fallen.contacts;
+    EXPECT_EQ(contacts.count(), fallen.found);
+    EXPECT_EQ(fallen.work.contacts, fallen.found);
+    Positions x = fallen.candidate;
+    contacts.settle(x);
+    std::vector<bool> touched(static_cast<std::size_t>(n), false);
+    for (int c = 0; c < contacts.count(); ++c) {
+      const int v = contacts.vertex(c);
+      touched[static_cast<std::size_t>(v)] = true;
+      const double depth = -contacts.gap(c, fallen.candidate.col(v));
+      EXPECT_GT(depth, 0);
+      EXPECT_TRUE(contacts.holds(c));
+      EXPECT_NEAR(contacts.gap(c, x.col(v)), 0, 1e-14);
+      const Vector3d wanted = contacts.tangential(c, fallen.candidate.col(v)),
+                     slid = contacts.tangential(c, x.col(v));
+      // Sticks, or slides on the way that it was going, by what friction leaves of it.
+      const double left = std::max(0.0, wanted.norm() - mu * depth);
+      EXPECT_NEAR(slid.norm(), left, 1e-14);
+      EXPECT_NEAR((slid - left * wanted.normalized()).norm(), 0, 1e-14);
+    }
+    for (int v = 0; v < n; ++v) {
+      if (!touched[static_cast<std::size_t>(v)]) {
+        EXPECT_EQ(x.col(v), fallen.candidate.col(v));
+      }
+    }
+    const Positions once = x;
+    contacts.settle(x);
+    EXPECT_LT((x - once).cwiseAbs().maxCoeff(), 1e-14);
+    EXPECT_EQ(contacts.find(x, fallen.work), 0);
+  }
+}
+
+// However the way there was divided, with pulls outwards between.
+TEST(Contacts, WhatPushesAndPullsLaterCountsAsIfItHadAtOnce) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    Fallen fallen(random, 20, 0);
+    Contacts& contacts = fallen.contacts;
+    Positions x = fallen.candidate, free = fallen.candidate;
+    contacts.settle(x);
+    for (int visit = 0; visit < 10; ++visit) {
+      for (int v = 0; v < 20; ++v) {
+        const Vector3d pull = random_vector(random, 0.3);
+        x.col(v) += pull;
+        free.col(v) += pull;
+      }
+      contacts.settle(x);
+      for (int c = 0; c < contacts.count(); ++c) {
+        const int v = contacts.vertex(c);
+        const double gap = contacts.gap(c, free.col(v));
+        EXPECT_NEAR((x.col(v) - free.col(v)).norm(), std::max(0.0, -gap), 1e-13);
+        EXPECT_EQ(contacts.holds(c), gap < 0);
+      }
+    }
+  }
+}
+
+TEST(Contacts, RestoreTakesUpWhatWasSaved) {
+  Random random(3);
+  Fallen fallen(random, 20, 0.3);
+  Contacts& contacts = fallen.contacts;
+  Positions x = fallen.candidate;
+  contacts.settle(x);
+  const Positions saved = x;
+  Contacts::Record record;
+  contacts.save(record);
+  const auto pulled = [&] {
+    Positions y = saved;
+    y.array() += 0.1;
+    contacts.settle(y);
+    return y;
+  };
+  const Positions first = pulled();
+  contacts.restore(record);
+  EXPECT_EQ(pulled(), first);
+}
+
+TEST(Contacts, BeginForgets) {
+  Random random(4);
+  Fallen fallen(random, 20, 0.3);
+  ASSERT_GT(fallen.contacts.count(), 0);
+  fallen.contacts.begin(fallen.start);
+  EXPECT_EQ(fallen.contacts.count(), 0);
+  Positions x = fallen.candidate;
+  fallen.contacts.settle(x);
+  EXPECT_EQ(x, fallen.candidate);
+  EXPECT_EQ(fallen.contacts.find(x, fallen.work), fallen.found);
+}
+
+}  // namespace
+}  // namespace inextensible

@@ -1,0 +1,175 @@
+// What contacts do to the systems of projections and of springs, against dense algebra and finite
+// differences.
+#include "support/contact.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "inextensible/systems/contact_energy.h"
+#include "inextensible/systems/contact_terms.h"
+#include "inextensible/systems/schur_complement.h"
+#include "support/random_mesh.h"
+
+namespace inextensible {
+namespace {
+
+using testing::Ground;
+using testing::Random;
+using testing::uniform;
+
+// Cloth, some of it pressed into a ground.
+struct Pressed {
+  explicit Pressed(std::uint64_t seed, double friction = 0.4)
+      : random(seed),
+        mesh(testing::random_mesh(
+            random, 4, 5, 2,
+            std::make_shared<const Ground>(Eigen::Vector3d(0.3, 1, 0.2), 1, friction))),
+        x(testing::perturbed(random, mesh, 0.2)),
+        contacts(*mesh.problem) {
+    contacts.begin(mesh.x);
+    contacts.find(x, work);
+  }
+
+  Random random;
+  testing::RandomMesh mesh;
+  Positions x;
+  WorkCounters work;
+  Contacts contacts;
+};
+
+// J (3 n columns) with gradients u.
+Eigen::MatrixXd jacobian(const EdgeConstraints& edges, int n, const Eigen::Matrix3Xd& u) {
+  Eigen::MatrixXd j = Eigen::MatrixXd::Zero(edges.count(), 3 * n);
+  for (int k = 0; k < edges.count(); ++k) {
+    const auto e = static_cast<std::size_t>(k);
+    j.block<1, 3>(k, 3 * edges.a[e]) = -u.col(k).transpose();
+    j.block<1, 3>(k, 3 * edges.b[e]) = u.col(k).transpose();
+  }
+  return j;
+}
+
+// W, with (I - n n^T) where a plane holds a vertex.
+Eigen::MatrixXd mobility(const Problem& problem, const Contacts& contacts) {
+  const int n = problem.vertices();
+  Eigen::MatrixXd w = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  for (int v = 0; v < n; ++v) {
+    w.block<3, 3>(3 * v, 3 * v) =
+        problem.inverse_mass()[static_cast<std::size_t>(v)] * Eigen::Matrix3d::Identity();
+  }
+  for (int c = 0; c < contacts.count(); ++c) {
+    const int v = contacts.vertex(c);
+    const Eigen::Vector3d normal = contacts.normal(c);
+    if (contacts.holds(c))
+      w.block<3, 3>(3 * v, 3 * v) *= Eigen::Matrix3d::Identity() - normal * normal.transpose();
+  }
+  return w;
+}
+
+TEST(ContactTerms, MakeTheMatrixOfVerticesThatMoveWithinTheirPlanes) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Pressed cloth(seed);
+    const Problem& problem = *cloth.mesh.problem;
+    const int n = problem.vertices();
+    Positions x = cloth.x;
+    cloth.contacts.settle(x);
+    for (int v = 0; v < n; v += 2) x(1, v) += 0.5;  // some are let go of
+    cloth.contacts.settle(x);
+    int held = 0;
+    for (int c = 0; c < cloth.contacts.count(); ++c) held += cloth.contacts.holds(c);
+    ASSERT_GT(held, 0);
+
+    const EdgeConstraints edges(problem, 0.01);
+    Eigen::Matrix3Xd u(3, edges.count()), u_start(3, edges.count());
+    edges.gradient(x, u);
+    edges.gradient(cloth.mesh.x, u_start);
+    const Eigen::MatrixXd w = mobility(problem, cloth.contacts);
+    const Eigen::MatrixXd j = jacobian(edges, n, u), j_start = jacobian(edges, n, u_start);
+
+    for (const auto triangle :
+         {SymmetricPattern::Triangle::lower, SymmetricPattern::Triangle::upper}) {
+      const SchurComplement schur(edges, n, triangle);
+      const SymmetricPattern& pattern = schur.pattern();
+      std::vector<double> values(static_cast<std::size_t>(pattern.entries()));
+      schur.assemble(u, values.data());
+      ContactTerms(edges, n, pattern.column_start, pattern.row_index)
+          .subtract(cloth.contacts, problem.inverse_mass().data(), u, u, values.data());
+      const Eigen::MatrixXd dense = j * w * j.transpose();
+      for (int l = 0; l < pattern.n; ++l) {
+        for (int i = pattern.column_start[static_cast<std::size_t>(l)];
+             i < pattern.column_start[static_cast<std::size_t>(l) + 1]; ++i) {
+          EXPECT_NEAR(values[static_cast<std::size_t>(i)],
+                      dense(pattern.row_index[static_cast<std::size_t>(i)], l), 1e-12);
+        }
+      }
+    }
+    const UnsymmetricSchurComplement whole(edges, n);
+    std::vector<double> values(whole.row_index.size());
+    whole.assemble(u, u_start, values.data());
+    ContactTerms(edges, n, whole.column_start, whole.row_index)
+        .subtract(cloth.contacts, problem.inverse_mass().data(), u, u_start, values.data());
+    const Eigen::MatrixXd dense = j * w * j_start.transpose();
+    for (int l = 0; l < edges.count(); ++l) {
+      for (int i = whole.column_start[static_cast<std::size_t>(l)];
+           i < whole.column_start[static_cast<std::size_t>(l) + 1]; ++i) {
+        EXPECT_NEAR(values[static_cast<std::size_t>(i)],
+                    dense(whole.row_index[static_cast<std::size_t>(i)], l), 1e-12);
+      }
+    }
+  }
+}
+
+TEST(ContactEnergy, DerivativesAreThoseOfItsValue) {
+  constexpr double step = 1e-6;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Pressed cloth(seed);
+    const Problem& problem = *cloth.mesh.problem;
+    // Within the slip and beyond it.
+    ContactEnergy energy(cloth.contacts, problem.vertices(), 50, seed % 2 == 0 ? 2.0 : 0.01);
+    energy.expect_pressures(problem.mass(), 0.1, cloth.x);
+    for (int c = 0; c < cloth.contacts.count(); ++c) {
+      const int v = cloth.contacts.vertex(c);
+      const auto [first, second] = energy.derivatives(c, cloth.x.col(v));
+      EXPECT_GE(second.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-12);
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto at = [&](double by) {
+          Positions x = cloth.x;
+          x(axis, v) += by;
+          return energy.value(x);
+        };
+        EXPECT_NEAR(first[axis], (at(step) - at(-step)) / (2 * step),
+                    1e-6 * (1 + first.cwiseAbs().maxCoeff()));
+      }
+      // Along the way it has slid no curvature is left out of the normal part: beyond the plane,
+      // the second derivative across it is the stiffness.
+      const Eigen::Vector3d normal = cloth.contacts.normal(c);
+      EXPECT_NEAR(normal.dot(second * normal), 50, 1e-9);
+    }
+  }
+}
+
+TEST(ContactEnergy, PressuresAreWhatStopsOrWhatTheSpringsBear) {
+  Pressed cloth(1);
+  const Problem& problem = *cloth.mesh.problem;
+  constexpr double stiffness = 50, h = 0.1;
+  ContactEnergy energy(cloth.contacts, problem.vertices(), stiffness, 1e-3);
+  EXPECT_DOUBLE_EQ(energy.take_pressures(cloth.x), 1);  // there were none
+  EXPECT_DOUBLE_EQ(energy.take_pressures(cloth.x), 0);
+  // m depth / h^2 stops a mass: the friction it brings is mu times that, far from the start.
+  energy.expect_pressures(problem.mass(), h, cloth.x);
+  for (int c = 0; c < cloth.contacts.count(); ++c) {
+    const int v = cloth.contacts.vertex(c);
+    const double depth = -cloth.contacts.gap(c, cloth.x.col(v));
+    const Eigen::Vector3d normal = cloth.contacts.normal(c);
+    const Eigen::Vector3d first = energy.derivatives(c, cloth.x.col(v)).first;
+    const Eigen::Vector3d drag = first - normal.dot(first) * normal;
+    EXPECT_NEAR(normal.dot(first), -stiffness * depth, 1e-9);
+    EXPECT_NEAR(drag.norm(), 0.4 * problem.mass()[static_cast<std::size_t>(v)] * depth / (h * h),
+                1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace inextensible

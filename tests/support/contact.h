@@ -1,0 +1,53 @@
+// Obstacles and what stands on them, for tests of contact.
+#pragma once
+
+#include <memory>
+
+#include "inextensible/problem/contacts.h"
+
+namespace inextensible::testing {
+
+// All that lies behind a plane.
+class Ground final : public Collider {
+ public:
+  Ground(const Eigen::Vector3d& normal, double offset, double friction)
+      : normal_(normal.normalized()), offset_(offset), friction_(friction) {}
+
+  void find(const Eigen::Matrix3Xd& x, const std::vector<double>& inverse_mass, double depth,
+            Memory& /*memory*/, std::vector<ContactPlane>& planes,
+            WorkCounters& /*work*/) const override {
+    planes.clear();
+    for (Eigen::Index v = 0; v < x.cols(); ++v) {
+      if (inverse_mass[static_cast<std::size_t>(v)] > 0 && normal_.dot(x.col(v)) - offset_ < -depth)
+        planes.push_back({static_cast<int>(v), normal_, offset_});
+    }
+  }
+  double friction() const override { return friction_; }
+  int triangles() const override { return 0; }
+
+ private:
+  Eigen::Vector3d normal_;
+  double offset_, friction_;
+};
+
+// Points without edges, of mass 1, beside an obstacle.
+inline Problem points(int n, std::shared_ptr<const Collider> collider,
+                      std::vector<int> pinned = {}) {
+  ProblemParts parts;
+  parts.mass.assign(static_cast<std::size_t>(n), 1.0);
+  parts.pinned = std::move(pinned);
+  parts.collider = std::move(collider);
+  return Problem(std::move(parts));
+}
+
+// A collision filter's pass over points that were at `start`.
+inline void push_out(std::shared_ptr<const Collider> collider, const Positions& start, Positions& x,
+                     WorkCounters& work, std::vector<int> pinned = {}) {
+  const Problem problem =
+      points(static_cast<int>(x.cols()), std::move(collider), std::move(pinned));
+  Contacts contacts(problem);
+  contacts.begin(start);
+  contacts.push_out(x, work);
+}
+
+}  // namespace inextensible::testing
