@@ -54,6 +54,7 @@ Scene build_drape(const SceneParameters& p) {
   const double y = p.at("radius") + p.at("gap");
   Draft cloth = vertex_square(p, y);
   if (p.contains("folds") && p.at("folds") > 0) fold(cloth.scene, p, y);
+  cloth.parts.implicit_forces = p.contains("implicit") && p.at("implicit") != 0;
   if (p.contains("speed")) cloth.scene.start.v.row(1).setConstant(-p.at("speed"));
   add_ball(cloth, p);
   return finished(std::move(cloth));
@@ -148,7 +149,11 @@ SceneType drape_scene() {
   return {"drape",
           "a square of cloth that falls onto a polygonal sphere",
           "n",
-          joined({cloth_parameters(71), sphere_parameters(), {{"duration", 1, "s", 0, 1e4}}}),
+          joined({cloth_parameters(71),
+                  {{"implicit", 0, "shear as it is at the end of a step: 1; at its start: 0",
+                    -1e-300, 1, true}},
+                  sphere_parameters(),
+                  {{"duration", 1, "s", 0, 1e4}}}),
           build_drape,
           count_square};
 }
