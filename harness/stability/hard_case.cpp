@@ -17,6 +17,7 @@ constexpr void (*families[])(std::vector<HardCase>&, const HardCaseValues&) = {
     add_mass_ratios,
     add_whip,
     add_large,
+    add_contact,
     add_far_starts,
     add_impossible_numbers,
 };

@@ -12,6 +12,7 @@ void add_degenerate(std::vector<HardCase>& cases, const HardCaseValues& values);
 void add_mass_ratios(std::vector<HardCase>& cases, const HardCaseValues& values);
 void add_whip(std::vector<HardCase>& cases, const HardCaseValues& values);
 void add_large(std::vector<HardCase>& cases, const HardCaseValues& values);
+void add_contact(std::vector<HardCase>& cases, const HardCaseValues& values);
 void add_far_starts(std::vector<HardCase>& cases, const HardCaseValues& values);
 void add_impossible_numbers(std::vector<HardCase>& cases, const HardCaseValues& values);
 

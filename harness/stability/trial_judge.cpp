@@ -15,6 +15,7 @@ using inextensible::Positions;
 using inextensible::State;
 
 constexpr double time_rounding = 1e-6;     // s
+constexpr double visible_depth = 1e-6;     // in scene sizes
 constexpr double diverged_distance = 1e6;  // in scene sizes
 
 Outcome fail(TrialResult& result, Outcome outcome, const std::string& why) {
@@ -61,6 +62,9 @@ std::optional<Outcome> Witness::after(const Positions& filtered, const State& st
                 "success claimed, but edge " + std::to_string(worst.edge) + " is strained by " +
                     told_apart(worst.strain, trial_.strain_limit));
   }
+  if (problem_.contact_inside()) {
+    if (const auto outcome = judge_contact(state, result)) return outcome;
+  }
   for (const int pin : problem_.pinned()) {
     if (state.x.col(pin) != start_.x.col(pin))
       return fail(result, Outcome::wrong, "pinned vertex " + std::to_string(pin) + " moved");
@@ -80,6 +84,25 @@ std::optional<Outcome> Witness::after(const Positions& filtered, const State& st
   const double of_this_step = 0.5 * mass_ * std::pow(1.5 * trial_.slack / h, 2) / energy_.scale();
   const double before = std::exchange(release_, of_this_step);
   return judge_energy(energy_.after(state, h), std::max(before, of_this_step), result);
+}
+
+// What is delivered: positions after everything that a step does.
+std::optional<Outcome> Witness::judge_contact(const State& state, TrialResult& result) {
+  const WorstEdge worst = worst_edge(problem_, state.x);
+  if (limit_promised_ && worst.strain > trial_.strain_limit * (1 + 1e-9)) {
+    return fail(result, Outcome::wrong,
+                "success claimed, but after the collision filter edge " +
+                    std::to_string(worst.edge) + " is strained by " +
+                    told_apart(worst.strain, trial_.strain_limit));
+  }
+  memory_.resize(problem_.vertices(), -1);
+  inextensible::WorkCounters work;
+  problem_.collider()->find(state.x, problem_.inverse_mass(), visible_depth * trial_.scene.size,
+                            memory_, inside_, work);
+  if (inside_.empty()) return {};
+  return fail(result, Outcome::wrong,
+              "success claimed, but vertex " + std::to_string(inside_.front().vertex) +
+                  " is inside the obstacle");
 }
 
 std::optional<Outcome> Witness::finish(TrialResult& result) {

@@ -26,6 +26,7 @@ class Witness {
  private:
   std::optional<Outcome> judge_energy(std::optional<double> gain, double release,
                                       TrialResult& result) const;
+  std::optional<Outcome> judge_contact(const inextensible::State& state, TrialResult& result);
   double momentum_defect(const inextensible::State& state, double h) const;
 
   const Trial& trial_;
@@ -40,6 +41,9 @@ class Witness {
   double release_ = 0;  // of energy by slack in the last step
   inextensible::State start_;
   Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero();
+  // With contact inside only: what the collider remembers and finds.
+  inextensible::Collider::Memory memory_;
+  std::vector<inextensible::ContactPlane> inside_;
 };
 
 }  // namespace harness

@@ -47,7 +47,7 @@ TEST(Energy, OfTheEightyVertexChainNeverRisesUnderImplicitMethods) {
 // and outside the ball; and friction and collision only take energy.
 TEST(Drape, IsDeliveredWithinTheLimitAndOutsideTheBallByEveryMethod) {
   constexpr double limit = 0.01, h = 0.005, invisible = 1e-6;
-  const Scene drape = build("drape", {{"n", 15}});
+  const Scene drape = build("drape", {{"n", 11}});
   const auto& ball =
       dynamic_cast<const inextensible::TriangleCollider&>(*drape.problem->collider());
   const double scale = energy_scale(drape), before = total_energy(*drape.problem, drape.start);
@@ -56,7 +56,7 @@ TEST(Drape, IsDeliveredWithinTheLimitAndOutsideTheBallByEveryMethod) {
     SCOPED_TRACE(backend.name);
     const auto stepper = inextensible::make_stepper(backend.name, drape.problem, {limit, 1, {}});
     State state = drape.start;
-    for (int step = 0; step < 60; ++step) {
+    for (int step = 0; step < 40; ++step) {
       const auto result = stepper->advance(state, h);
       ASSERT_TRUE(result) << "step " << step << ": " << result.detail;
       EXPECT_LE(strain_range(*drape.problem, state.x).most, limit * (1 + 1e-9)) << "step " << step;
