@@ -38,6 +38,9 @@ Route smooth_route() { return {"rattle", 1e-12, 2}; }
 // start (a row straight between its pins: the patch); BDF2 takes its place then, at a limit that
 // keeps off the singularity.
 Route contact_route() { return {"rattle", 1e-9, 1}; }
+// Friction inside the solve is no smooth function of the start, and RATTLE's small steps along old
+// directions get stuck on it; sweeps that mend it set the limit.
+Route contact_inside_route() { return {"fast_projection_bdf2", 1e-5, 1}; }
 Route contact_route_when_singular() { return {"fast_projection_bdf2", 1e-6, 1}; }
 // The second one there, at the first one's limit. The two differ in the direction of constraint
 // forces, the velocity's place in the step and the linear solver.
@@ -172,6 +175,7 @@ void compute_chain(Reference& r, const Scene& scene, double finest, const Tell& 
 
 // The first route where there is no smooth motion in angles.
 Route first_contact_route(const Scene& scene, double h) {
+  if (scene.problem->contact_inside()) return contact_inside_route();
   Route route = contact_route();
   inextensible::State state = scene.start;
   const auto stepper =
