@@ -22,9 +22,9 @@
 namespace inextensible {
 namespace {
 
-// A contact's stiffness over that of an edge: depths stay out of sight. What friction lets slip in
-// a step, of a rest length.
-constexpr double over_stretch = 100, slip = 1e-3;
+// A contact's stiffness, over that of an edge, and over that which bears a vertex's weight out of
+// sight. What friction lets slip in a step, of a rest length.
+constexpr double over_stretch = 100, load = 10, slip = 1e-3;
 
 // Whether vertices are numbered along chains: every spring joins one to the next.
 bool chains(const std::vector<Edge>& pairs) {
@@ -128,8 +128,11 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Se
   trial_.resize(3, p.vertices());
   if (p.has_drag()) before_.resize(3, p.vertices());
   if (p.contact_inside()) {
+    const double weight = p.total_mass() * p.gravity().norm() / p.vertices();
     contact_energy_ = std::make_unique<ContactEnergy>(
-        *contacts_, p.vertices(), over_stretch * settings.stiffness / p.shortest_rest_length(),
+        *contacts_, p.vertices(),
+        std::max(over_stretch * settings.stiffness / p.shortest_rest_length(),
+                 load * weight / contacts_->tolerance()),
         slip * p.shortest_rest_length());
     free_place_ = place;
   }

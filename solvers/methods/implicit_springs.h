@@ -39,6 +39,7 @@ class ImplicitSprings final : public Stepper {
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override;
+  bool finds_contacts(const Positions& x);
   StepResult newton(double h, double current, Positions& x);
   double energy(const Positions& x, double h) const;
   void assemble(const Positions& x, double h, bool matrix);

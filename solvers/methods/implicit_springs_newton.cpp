@@ -10,8 +10,7 @@ namespace {
 constexpr int halving_limit = 30;
 constexpr double armijo_fraction = 1e-4;
 constexpr double rounding = 1e-14;
-// Rounds in which friction follows pressures and contacts are found, and the change of pressures
-// that ends them.
+// Rounds in which friction follows pressures, and the change of pressures that ends them.
 constexpr int most_rounds = 10;
 constexpr double pressure_tolerance = 0.1;
 // What a step with an old factorization must shrink to, times the last. The error it leaves is then
@@ -93,10 +92,15 @@ StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
     StepResult result = newton(h, round == 0 ? start(state, h, x) : energy(x, h), x);
     result.iterations = iterations += result.iterations;
     if (!result || round == most_rounds) return result;
-    const int found = contacts_->find(x, work_);
-    const double change = contact_energy_->take_pressures(x);
-    if (found == 0 && change <= pressure_tolerance) return result;
+    if (contact_energy_->take_pressures(x) <= pressure_tolerance) return result;
   }
+}
+
+bool ImplicitSprings::finds_contacts(const Positions& x) {
+  if (!contact_energy_) return false;
+  const int known = contacts_->count();
+  contacts_->find(x, work_);
+  return contacts_->count() > known;
 }
 
 // Lowers the energy, `current` at x, to its minimum.
@@ -137,6 +141,12 @@ StepResult ImplicitSprings::newton(double h, double current, Positions& x) {
     }
     if (predicts_tension_) predict_tension(x, trial_);
     x.swap(trial_);
+    if (finds_contacts(x)) {  // which are in the energy from now on
+      current = energy(x, h);
+      reuse = false;
+      last_longest = longest;
+      continue;
+    }
     const bool fast = !reuse || longest <= fast_convergence * last_longest;
     if (found == Search::full && fast && longest <= step_tolerance_) return {Status::ok, j + 1};
     reuse = found == Search::full && fast && longest <= reuse_below_;
