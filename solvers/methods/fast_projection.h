@@ -47,7 +47,6 @@ class FastProjection final : public VelocityFilter {
 
  private:
   bool linearize(double target, const Positions& x);
-  bool touches() const { return contacts_ && contacts_->count() > 0; }
   void correct(Positions& x);
   void keep_best(const Positions& x);
   void smooth(Positions& x, WorkCounters& work);

@@ -106,13 +106,13 @@ void Icd::evaluate(const Positions& dx) {
 StepResult Icd::apply(const Positions& /*x_start*/, double h, Positions& x, WorkCounters& work) {
   // dx = 0 and lambda = 0 solve both equations as far as is asked.
   if (min_iterations_ == 0 && edges_.permissible(x)) return {Status::ok, 0};
-  if (!kkt_->heed(contacts_) && contacts_->count() > 0) {
+  if (!kkt_->heed(contacts_) && touches()) {
     return refuse(Status::not_converged, 0, edges_, x,
                   "this linear solver cannot hold contacts, projected_cg can");
   }
   x0_ = x;
   StepResult result = closest(h, x, work);
-  if (!result || !contacts_ || contacts_->count() == 0) return result;
+  if (!result || !touches()) return result;
   for (int c = 0; c < contacts_->count(); ++c)
     x.col(contacts_->vertex(c)) -= reaction_[c] * contacts_->normal(c);
   contacts_->settle(x);

@@ -30,10 +30,10 @@ StepResult Rattle::end_velocities(const State& start, double h, const Positions&
   }
   add_acceleration(*problem_, x, 0.5 * h, v, work_);
   for (const int vertex : problem_->pinned()) v.col(vertex).setZero();
-  if (contacts_) {  // which bear what presses on them
-    for (int c = 0; c < contacts_->count(); ++c) {
-      const int vertex = contacts_->vertex(c);
-      if (contacts_->holds(c)) v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
+  if (const Contacts* contacts = contacts_inside()) {  // which bear what presses on them
+    for (int c = 0; c < contacts->count(); ++c) {
+      const int vertex = contacts->vertex(c);
+      if (contacts->holds(c)) v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
     }
   }
   phases_.unconstrained += lap();

@@ -142,12 +142,7 @@ StepResult Shake::project_velocity(const Positions& x, Positions& v, WorkCounter
   edges.rate(u_start_, v, mu_);  // J v
   if (!system_.solve(mu_, work)) return refuse(Status::singular, 0, edges, x, no_solution);
   edges.apply(u_start_, mu_, v);
-  if (contacts_) {
-    for (int c = 0; c < contacts_->count(); ++c) {
-      auto at = v.col(contacts_->vertex(c));
-      if (contacts_->holds(c)) at -= contacts_->normal(c).dot(at) * contacts_->normal(c);
-    }
-  }
+  if (contacts_) contacts_->keep_in_planes(v);
   return {};
 }
 

@@ -53,6 +53,13 @@ int Contacts::find(const Positions& x, WorkCounters& work) {
   return static_cast<int>(found_.size());
 }
 
+void Contacts::keep_in_planes(Positions& v) const {
+  for (int c = 0; c < count_; ++c) {
+    auto at = v.col(vertex_[c]);
+    if (holds(c)) at -= normal(c).dot(at) * normal(c);
+  }
+}
+
 // Where the obstacle is not convex, friction's way back may lead into it again; in the end a vertex
 // goes the shortest way out.
 void Contacts::push_out(Positions& x, WorkCounters& work) {

@@ -41,6 +41,10 @@ class Contacts {
     settle([&x](int vertex, int axis) -> double& { return x(axis, vertex); });
   }
 
+  // Takes from v (3 x n, displacements or velocities) what leads through or out of a plane that
+  // holds its vertex.
+  void keep_in_planes(Positions& v) const;
+
   // What a step must do in the end, whatever it did before: leaves no vertex inside.
   void push_out(Positions& x, WorkCounters& work);
 

@@ -30,6 +30,8 @@ class VelocityFilter {
   virtual void heed(Contacts* contacts) { contacts_ = contacts; }
 
  protected:
+  bool touches() const { return contacts_ && contacts_->count() > 0; }
+
   IterateObserver* observer_ = nullptr;
   Contacts* contacts_ = nullptr;
 };

@@ -125,13 +125,6 @@ bool ProjectedCg::factor_directly(WorkCounters& work) {
   return factored;
 }
 
-void ProjectedCg::keep_in_planes(Positions& p) const {
-  for (int c = 0; c < contacts_->count(); ++c) {
-    auto at = p.col(contacts_->vertex(c));
-    if (contacts_->holds(c)) at -= contacts_->normal(c).dot(at) * contacts_->normal(c);
-  }
-}
-
 // r -= J^T q.
 void ProjectedCg::subtract_gradients(const Eigen::VectorXd& q, Positions& r) const {
   const double* u = u_->data();
@@ -162,14 +155,14 @@ bool ProjectedCg::precondition(Positions& r, const Eigen::VectorXd* c, Positions
                                Eigen::VectorXd& q, WorkCounters& work) {
   const auto metric = inverse_metric_.head(problem_.vertices());
   p = r * metric.asDiagonal();
-  if (touches()) keep_in_planes(p);
+  if (contacts_) contacts_->keep_in_planes(p);
   edges_.rate(*u_, p, q);
   if (c) q -= *c;
   ++work.back_solves;
   if (!solver_->solve_within(projection_tolerance, q.data())) return false;
   subtract_gradients(q, r);
   p = r * metric.asDiagonal();
-  if (touches()) keep_in_planes(p);
+  if (contacts_) contacts_->keep_in_planes(p);
   return true;
 }
 

@@ -48,7 +48,6 @@ class ProjectedCg final : public KktSolver {
   void find_meetings();
   bool factor_directly(WorkCounters& work);
   bool touches() const { return contacts_ && contacts_->count() > 0; }
-  void keep_in_planes(Positions& p) const;
   void set_curvature(bool convex);
   Outcome iterate(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
                   WorkCounters& work);
