@@ -28,7 +28,8 @@ class DistanceAtTheEnd final : public Reading {
 const std::vector<KnownAnswer>& table() {
   static const std::vector<KnownAnswer> rows = [] {
     std::vector<KnownAnswer> all;
-    for (auto* list : {spinning_answers, hanging_answers, folded_answers, fishnet_answers}) {
+    for (auto* list :
+         {spinning_answers, hanging_answers, folded_answers, fishnet_answers, fabric_answers}) {
       for (KnownAnswer& answer : list()) all.push_back(std::move(answer));
     }
     return all;

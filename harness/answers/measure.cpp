@@ -34,7 +34,8 @@ struct Built {
   Built& operator=(const Built&) = delete;
 
   static Scene make(const KnownAnswer& answer) {
-    const SceneType& type = *find_scene(answer.scene);
+    const auto found_type = find_scene(answer.scene);
+    const SceneType& type = *found_type;
     return type.build(complete_parameters(type, answer.given));
   }
 

@@ -14,5 +14,6 @@ std::vector<KnownAnswer> spinning_answers();
 std::vector<KnownAnswer> hanging_answers();
 std::vector<KnownAnswer> folded_answers();
 std::vector<KnownAnswer> fishnet_answers();
+std::vector<KnownAnswer> fabric_answers();
 
 }  // namespace harness

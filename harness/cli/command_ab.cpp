@@ -11,6 +11,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
+#include "harness/base/temporary_folder.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/compare_options.h"
@@ -46,35 +47,6 @@ struct AbCommand : CompareOptions {
   }
 };
 
-// A folder that goes away again, with the process or, if that was killed, before the next one.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    const std::string stem = "bench-ab-" + std::to_string(getuid()) + "-";
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(fs::temp_directory_path(), ignored)) {
-      const std::string name = entry.path().filename().string();
-      if (!name.starts_with(stem)) continue;
-      const pid_t owner = std::atoi(name.c_str() + stem.size());
-      if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH) fs::remove_all(entry, ignored);
-    }
-    std::string name =
-        (fs::temp_directory_path() / (stem + std::to_string(getpid()) + "-XXXXXX")).string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  fs::path path_;
-};
-
 ProgramResult run_or_interrupt(const std::vector<std::string>& words, const std::string& input,
                                double timeout) {
   ProgramResult result = run_program(words, input, timeout, interrupted);
@@ -107,7 +79,7 @@ void check_plugins(const AbCommand& options, Side side) {
 
 // What the old program finds best; the new one runs the same.
 json old_result(const AbCommand& options) {
-  const TemporaryFolder folder;
+  const TemporaryFolder folder("ab");
   const std::string out = folder.file("old.json");
   std::vector<std::string> words = options.program(Side::old_one);
   words.insert(words.end(), {"--sweep", "strain"});

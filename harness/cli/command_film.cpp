@@ -10,6 +10,7 @@
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/json_text.h"
+#include "harness/base/temporary_folder.h"
 #include "harness/base/text.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/sweep_options.h"
@@ -22,7 +23,7 @@ namespace {
 
 struct FilmOptions {
   std::string scene = "drape", solver = "fast_projection", limits = "0.01", out;
-  std::vector<std::string> parameters;
+  SceneWords words;
   std::string stills;
   double step = 0.01, frames_per_second = 30;
   int width = 480;
@@ -50,17 +51,10 @@ std::vector<double> numbers_in(const std::string& text, const std::string& optio
 
 FilmSpec film_spec(const FilmOptions& given) {
   FilmSpec spec;
-  const SceneType* type = find_scene(given.scene);
-  if (!type) throw unknown_name("scene", given.scene, names_of(scene_types()));
-  spec.scene = given.scene;
-  SceneParameters parameters;
-  for (const std::string& word : given.parameters) {
-    const auto equals = word.find('=');
-    if (equals == std::string::npos)
-      throw UsageError("--set " + word + ": must be NAME=NUMBER, a parameter of the scene");
-    parameters[word.substr(0, equals)] = number_in(word.substr(equals + 1), "--set " + word);
-  }
-  spec.parameters = complete_parameters(*type, parameters);
+  spec.scene = scene_of(given.scene, given.words);
+  const auto type = find_scene(spec.scene);
+  if (!type) throw unknown_name("scene", spec.scene, names_of(scene_types()));
+  spec.parameters = complete_parameters(*type, parameters_of(given.words));
   std::istringstream names(given.solver);
   for (std::string name; std::getline(names, name, ',');) {
     (void)checked_backend(name, "--solver");
@@ -112,16 +106,12 @@ void print_times(const Recording& recording) {
 
 // Positions go to the renderer in a folder of their own.
 int render(const FilmOptions& given, const Recording& recording) {
-  std::string folder = (std::filesystem::temp_directory_path() / "bench-film-XXXXXX").string();
-  if (!mkdtemp(folder.data())) throw FileError(folder, "make");
-  write_atomically(folder + "/film.json", compact(film_header(recording)) + "\n");
-  write_atomically(folder + "/film.f32", film_positions(recording));
-  std::vector<std::string> words{folder, given.out, "--width", std::to_string(given.width)};
+  const TemporaryFolder folder("film");
+  write_atomically(folder.file("film.json"), compact(film_header(recording)) + "\n");
+  write_atomically(folder.file("film.f32"), film_positions(recording));
+  std::vector<std::string> words{folder.path(), given.out, "--width", std::to_string(given.width)};
   if (!given.stills.empty()) words.insert(words.end(), {"--stills", given.stills});
-  const int code = draw(words, "film.py");
-  std::error_code ignored;
-  std::filesystem::remove_all(folder, ignored);
-  return code;
+  return draw(words, "film.py");
 }
 
 int film(const FilmOptions& given) {
@@ -160,9 +150,8 @@ void add_film_command(const Command& program) {
   const auto given = std::make_shared<FilmOptions>();
   const Command command =
       program.subcommand("film", "a scene as stills, a film, or files for ParaView and Blender");
-  command.option("--scene", given->scene, "which (bench list scenes)", "SCENE");
-  command.option("--set", given->parameters, "a parameter of the scene; repeatable", "NAME=NUMBER")
-      .repeatable();
+  command.option("--scene", given->scene, "which (bench list scenes), or mesh:FILE.obj", "SCENE");
+  add_scene_words(command, given->words);
   command.option("--solver", given->solver, "one or several between commas, side by side", "NAMES");
   command.option("--strain", given->limits, "permitted strain, one or several between commas",
                  "LIMITS");

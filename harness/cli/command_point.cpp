@@ -29,7 +29,7 @@ void check_count(const std::string& where, const char* key, int given, int actua
 }
 
 void check_spec(const PointSpec& spec, const std::string& where) {
-  const SceneType* type = find_scene(spec.scene);
+  const auto type = find_scene(spec.scene);
   if (!type)
     throw UsageError(where + ": " +
                      unknown_name("scene", spec.scene, names_of(scene_types())).what());

@@ -74,7 +74,8 @@ void put_in(std::vector<TunedEntry>& entries, TunedEntry entry) {
 
 json context_of(const SweepSpec& scene, const TuneCommand& options) {
   const json machine = machine_context();
-  const SceneType& type = *find_scene(scene.scene);
+  const auto found_type = find_scene(scene.scene);
+  const SceneType& type = *found_type;
   SceneParameters given = scene.scene_parameters;
   given[type.resolution] = scene.resolutions.front();  // the others stand with their places
   return {{"date", machine.at("date")},

@@ -32,6 +32,7 @@ void add_answers_command(const Command& program, const std::vector<std::string>&
 void add_merge_command(const Command& program);
 void add_show_command(const Command& program);
 void add_plot_command(const Command& program);
+void add_report_command(const Command& program);
 void add_emit_command(const Command& program);
 void add_check_command(const Command& program);
 void add_compare_command(const Command& program);

@@ -46,6 +46,7 @@ int run(int argc, char** argv) {
       "  bench --sweep strain --profile quick     a first look, in under a minute\n"
       "  bench show RESULT.json                   the tables of a result file\n"
       "  bench plot RESULT.json                   draws the figures of a result file again\n"
+      "  bench report RESULT.json ... -o it.html  one page that tells what results found\n"
       "  bench --sweep step --scene chain         time against error, and a table of time to reach "
       "an error\n"
       "  bench --sweep stability                  hard cases: which solver breaks where\n"
@@ -71,6 +72,7 @@ int run(int argc, char** argv) {
   add_tune_command(program);
   add_show_command(program);
   add_plot_command(program);
+  add_report_command(program);
   add_reference_command(program);
   add_claims_command(program);
   add_results_command(program);

@@ -71,6 +71,9 @@ void check_options(const SweepCommand& options) {
   }
   const char* others = "strain, resolution and step";
   only(!options.scene.empty(), "--scene", others);
+  only(!options.scene_words.parameters.empty(), "--set", others);
+  only(!options.scene_words.pins.empty(), "--pins", others);
+  only(!options.scene_words.body.empty(), "--collider", others);
   only(!options.n.empty(), "--n", others);
   only(!options.limits.empty(), "--limit", others);
   only(!options.filter.empty(), "--filter", std::string(others) + " (--case chooses hard cases)");

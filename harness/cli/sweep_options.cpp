@@ -12,6 +12,7 @@
 #include "harness/base/text.h"
 #include "harness/cli/commands.h"
 #include "harness/judge/reference_file.h"
+#include "harness/scenes/mesh_scenes.h"
 
 namespace harness {
 
@@ -47,13 +48,41 @@ void cut_ladders(Suite& suite, double finest) {
 
 }  // namespace
 
+void add_scene_words(const Command& to, SceneWords& words) {
+  to.option("--set", words.parameters, "a parameter of the scene; repeatable", "NAME=NUMBER")
+      .repeatable();
+  to.option("--pins", words.pins,
+            "of mesh:FILE.obj: which vertices are held, e.g. 'y > 1.2' or 'y > 1.2 and x < 0'",
+            "WHERE");
+  to.option("--collider", words.body, "of mesh:FILE.obj: the body, a closed mesh", "FILE.obj");
+}
+
+std::string scene_of(const std::string& scene, const SceneWords& words) {
+  return with_mesh_parts(scene, words.pins, words.body);
+}
+
+SceneParameters parameters_of(const SceneWords& words) {
+  SceneParameters parameters;
+  for (const std::string& word : words.parameters) {
+    const auto equals = word.find('=');
+    char* end = nullptr;
+    const std::string number = equals == std::string::npos ? "" : word.substr(equals + 1);
+    const double value = std::strtod(number.c_str(), &end);
+    if (number.empty() || *end != '\0')
+      throw UsageError("--set " + word + ": must be NAME=NUMBER, a parameter of the scene");
+    parameters[word.substr(0, equals)] = value;
+  }
+  return parameters;
+}
+
 void add_selection(const Command& to, SweepOptions& options) {
   to.option("--sweep", options.sweep, "axis: strain (limit), resolution, step or stability",
             "AXIS");
   to.option("--scene", options.scene,
-            "one of `bench list scenes`, also one that the suite has not; all of the suite's if "
-            "left out",
+            "one of `bench list scenes`, also one that the suite has not, or mesh:FILE.obj; all of "
+            "the suite's if left out",
             "NAME");
+  add_scene_words(to, options.scene_words);
   to.option("--n", options.n, "sizes instead of the suite's, e.g. 41 or 20,40,80", "N,...");
   to.option("--limit", options.limits, "strain limits instead of the suite's, e.g. 0.01,0.001",
             "STRAIN,...");
@@ -163,6 +192,9 @@ void put_in_scene(json& sweeps, const SweepOptions& options) {
 // The suite with what the options say instead: it then is one like any other, checked as a whole.
 Suite edited_suite(const std::string& path, const SweepOptions& options) {
   const std::string text = read_file(path, "suite");
+  const SceneParameters given = parameters_of(options.scene_words);
+  if (!given.empty() && options.scene.empty())
+    throw UsageError("--set goes with --scene: whose parameter is it?");
   if (options.n.empty() && options.limits.empty() && options.scene.empty())
     return parse_suite(text, path);
   json document = parse_commented(text, path);
@@ -172,6 +204,9 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
   put_in_scene(sweeps, options);
   for (json& sweep : sweeps) {
     if (!is(sweep, "sweep", options.sweep)) continue;
+    if (is(sweep, "scene", options.scene)) {
+      for (const auto& [name, value] : given) sweep["scene_parameters"][name] = value;
+    }
     if (!options.limits.empty()) {
       const json limits = numbers_of("--limit", options.limits, Bounds::positive());
       if (options.sweep == "resolution" && limits.size() > 1)
@@ -183,7 +218,7 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
     const json sizes = numbers_of("--n", options.n, Bounds::whole_number(2));
     if (options.sweep != "resolution" && sizes.size() > 1)
       throw UsageError("--n: a " + options.sweep + " sweep has one size");
-    const SceneType* type = find_scene(sweep.value("scene", ""));
+    const auto type = find_scene(sweep.value("scene", ""));
     if (type && sweep.contains("scene_parameters"))
       sweep["scene_parameters"].erase(type->resolution);
     sweep["resolutions"] = sizes;
@@ -193,7 +228,9 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
 
 }  // namespace
 
-Suite load_suite(const SweepOptions& options) {
+Suite load_suite(const SweepOptions& given) {
+  SweepOptions options = given;
+  options.scene = scene_of(given.scene, given.scene_words);
   const std::string path = suite_path(options);
   Suite suite = edited_suite(path, options);
   if (!options.solver.empty()) check_solver_pattern(options.solver, contestants_of(suite));

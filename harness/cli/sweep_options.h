@@ -9,16 +9,28 @@
 
 namespace harness {
 
+// What the command line says of a scene besides its name.
+struct SceneWords {
+  std::vector<std::string> parameters;  // NAME=NUMBER
+  std::string pins, body;               // of a mesh
+};
+void add_scene_words(const Command& to, SceneWords& words);
+// Throw UsageError.
+std::string scene_of(const std::string& scene, const SceneWords& words);
+SceneParameters parameters_of(const SceneWords& words);
+
 struct SweepOptions {
   std::string sweep, scene, solver, filter, exclude, config, profile = "default", step = "search";
   std::string reps;       // "5", or "5..40" with rel_ci
   std::string n, limits;  // numbers between commas, in place of the suite's
+  SceneWords scene_words;
   double timeout = 0, max_error = 0, rel_ci = 0, finest = 0;
   std::int64_t seed = -1;
   bool untimed = false;  // nobody will read the times: no turn to be waited for
 };
 
-// --sweep, --scene, --n, --limit, --solver, --filter, --exclude, --profile and --config.
+// --sweep, --scene with its words, --n, --limit, --solver, --filter, --exclude, --profile and
+// --config.
 void add_selection(const Command& to, SweepOptions& options);
 
 // --reps, --rel-ci, --timeout, --step, --max-error, --seed and --untimed.

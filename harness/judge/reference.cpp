@@ -82,7 +82,8 @@ std::string Reference::name() const { return exact ? "exact" : reference_name(sc
 
 std::shared_ptr<const Reference> exact_reference(const std::string& scene_name,
                                                  const SceneParameters& complete) {
-  const SceneType& type = *find_scene(scene_name);
+  const auto found_type = find_scene(scene_name);
+  const SceneType& type = *found_type;
   if (!type.exact) return nullptr;
   const auto r = std::make_shared<Reference>();
   r->scene = scene_name;

@@ -38,7 +38,7 @@ std::vector<ShapeStatistics> shape_of(const json& rows) {
 
 // That it is of a scene of ours, with as many vertices.
 void check_mesh(const Reference& r, const std::string& path) {
-  const SceneType* type = find_scene(r.scene);
+  const auto type = find_scene(r.scene);
   if (!type) throw UsageError("'" + path + "': no scene '" + shortened(r.scene, 40) + "'");
   if (complete_parameters(*type, r.parameters) != r.parameters)
     throw UsageError("'" + path + "': 'scene_parameters' must hold every parameter of the scene");
@@ -53,7 +53,8 @@ void check_mesh(const Reference& r, const std::string& path) {
 }  // namespace
 
 std::string reference_name(const std::string& scene, const SceneParameters& complete) {
-  const SceneType& type = *find_scene(scene);
+  const auto found_type = find_scene(scene);
+  const SceneType& type = *found_type;
   std::string changed;
   for (const auto& info : type.parameters) {
     const std::string name = info.name;
@@ -120,7 +121,7 @@ Reference read_reference(const std::string& path) {
     r.valid_until = document.at("valid_until").get<double>();
     r.energy_drift = document.at("energy_drift").get<double>();
     r.observed_order = number_of(document.at("observed_order"));
-    r.expected_order = document.value("expected_order", expected_order(find_scene(r.scene)));
+    r.expected_order = document.value("expected_order", expected_order(find_scene(r.scene).get()));
     r.times = document.at("times").get<std::vector<double>>();
     r.gap = document.at("gap").get<std::vector<double>>();
     // Older files know one norm: nothing in the other one is sure then.

@@ -261,7 +261,8 @@ void compute_contact(Reference& r, const Scene& scene, double finest, const Tell
 
 Reference compute_reference(const std::string& scene_name, const SceneParameters& complete,
                             double finest, const Tell& tell) {
-  const SceneType& type = *find_scene(scene_name);
+  const auto found_type = find_scene(scene_name);
+  const SceneType& type = *found_type;
   const Scene scene = type.build(complete);
   Reference r;
   r.scene = scene_name;

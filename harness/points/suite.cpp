@@ -51,7 +51,7 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
   if (std::find(kinds.begin(), kinds.end(), spec.sweep) == kinds.end())
     throw UsageError(where + ": " + unknown_name("sweep", spec.sweep, kinds).what());
   spec.scene = reader.text("scene", "");
-  const SceneType* type = find_scene(spec.scene);
+  const auto type = find_scene(spec.scene);
   if (!type)
     throw UsageError(where + ": " +
                      unknown_name("scene", spec.scene, names_of(scene_types())).what());

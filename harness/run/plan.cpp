@@ -29,7 +29,8 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
   std::vector<Search> searches;
   std::size_t family = 0;
   for (const SweepSpec& sweep : suite.sweeps) {
-    const SceneType& type = *find_scene(sweep.scene);
+    const auto found_type = find_scene(sweep.scene);
+    const SceneType& type = *found_type;
     std::vector<double> limits = sweep.limits;
     std::sort(limits.rbegin(), limits.rend());  // loose to tight
     std::vector<int> resolutions = sweep.resolutions;

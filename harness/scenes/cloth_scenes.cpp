@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <numbers>
 
+#include "harness/scenes/fabrics.h"
 #include "harness/scenes/meshes.h"
 #include "inextensible/problem/triangle_collider.h"
 
@@ -143,6 +144,33 @@ ParameterInfos joined(std::initializer_list<ParameterInfos> parts) {
   return all;
 }
 
+// density in kg/m^2, bending in N m, shear in N/m.
+SceneType fabric_on_ball(const char* name, const char* summary, double density, double bending,
+                         double shear) {
+  return {name,
+          summary,
+          "n",
+          joined({{{"n", 71, "vertices along each side", 3, 4000, true},
+                   {"side", 1, "m", 0, 1e6},
+                   {"density", density, "kg/m^2", 0, 1e4},
+                   {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
+                   {"shear", shear, "shear stiffness, N/m; 0: none", -1e-300, 1e9},
+                   {"bending", bending, "bending rigidity of warp and weft, N m; 0: none", -1e-300,
+                    1e6},
+                   {"drag", 0.05, "of still air, N s/m^3: force per area and speed; 0: none",
+                    -1e-300, 1e6}},
+                  sphere_parameters(),
+                  {{"duration", 1, "s", 0, 1e4}}}),
+          build_fabric_drape,
+          count_square,
+          nullptr,
+          "drape"};
+}
+
+SceneType preset(const char* name, const char* summary, const Fabric& cloth) {
+  return fabric_on_ball(name, summary, cloth.density, cloth.bending, fabric_shear);
+}
+
 }  // namespace
 
 SceneType drape_scene() {
@@ -159,24 +187,23 @@ SceneType drape_scene() {
 }
 
 SceneType fabric_drape_scene() {
-  return {
+  return fabric_on_ball(
       "fabric_drape",
       "the drape with a fabric's weight, shear and bending in physical units, implicit, and air",
-      "n",
-      joined({{{"n", 71, "vertices along each side", 3, 4000, true},
-               {"side", 1, "m", 0, 1e6},
-               {"density", 0.15, "kg/m^2", 0, 1e4},
-               {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
-               {"shear", 20, "shear stiffness, N/m; 0: none", -1e-300, 1e9},
-               {"bending", 1e-5, "bending rigidity of warp and weft, N m; 0: none", -1e-300, 1e6},
-               {"drag", 0.05, "of still air, N s/m^3: force per area and speed; 0: none", -1e-300,
-                1e6}},
-              sphere_parameters(),
-              {{"duration", 1, "s", 0, 1e4}}}),
-      build_fabric_drape,
-      count_square,
-      nullptr,
-      "drape"};
+      0.15, 1e-5, 20);
+}
+
+SceneType cotton_drape_scene() {
+  return preset("cotton_drape", "fabric_drape of cotton broadcloth, as measured", fabric("cotton"));
+}
+
+SceneType wool_drape_scene() {
+  return preset("wool_drape", "fabric_drape of wool tropical, as measured", fabric("wool"));
+}
+
+SceneType polyester_drape_scene() {
+  return preset("polyester_drape", "fabric_drape of polyester tropical, as measured",
+                fabric("polyester"));
 }
 
 SceneType folded_drape_scene() {

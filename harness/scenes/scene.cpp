@@ -5,9 +5,11 @@
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/scenes/cloth_scenes.h"
+#include "harness/scenes/disc_scenes.h"
 #include "harness/scenes/folded_scenes.h"
 #include "harness/scenes/hanging_scenes.h"
 #include "harness/scenes/line_scenes.h"
+#include "harness/scenes/mesh_scenes.h"
 #include "harness/scenes/spinning_scenes.h"
 
 namespace harness {
@@ -16,10 +18,25 @@ namespace {
 // A scene is a function that returns its SceneType, and a line here.
 const std::vector<SceneType>& table() {
   static const std::vector<SceneType> rows = {
-      chain_scene(),    drape_scene(),        folded_drape_scene(),  fabric_drape_scene(),
-      patch_scene(),    hung_patch_scene(),   spinning_net_scene(),  taut_row_scene(),
-      baton_scene(),    hoop_scene(),         hanging_chain_scene(), whirling_chain_scene(),
-      catenary_scene(), folded_chain_scene(), whip_scene(),
+      chain_scene(),
+      drape_scene(),
+      folded_drape_scene(),
+      fabric_drape_scene(),
+      cotton_drape_scene(),
+      wool_drape_scene(),
+      polyester_drape_scene(),
+      cusick_scene(),
+      patch_scene(),
+      hung_patch_scene(),
+      spinning_net_scene(),
+      taut_row_scene(),
+      baton_scene(),
+      hoop_scene(),
+      hanging_chain_scene(),
+      whirling_chain_scene(),
+      catenary_scene(),
+      folded_chain_scene(),
+      whip_scene(),
   };
   return rows;
 }
@@ -28,9 +45,10 @@ const std::vector<SceneType>& table() {
 
 std::span<const SceneType> scene_types() { return table(); }
 
-const SceneType* find_scene(std::string_view name) {
+std::shared_ptr<const SceneType> find_scene(std::string_view name) {
+  if (names_mesh(name)) return std::make_shared<const SceneType>(mesh_scene(std::string(name)));
   for (const SceneType& type : table()) {
-    if (type.name == name) return &type;
+    if (type.name == name) return {std::shared_ptr<const SceneType>(), &type};  // lives for ever
   }
   return nullptr;
 }
@@ -51,8 +69,7 @@ SceneParameters complete_parameters(const SceneType& type, const SceneParameters
     names.emplace_back(info.name);
   }
   for (const auto& [name, value] : given) {
-    if (!all.contains(name))
-      throw unknown_name("parameter of scene " + std::string(type.name), name, names);
+    if (!all.contains(name)) throw unknown_name("parameter of scene " + type.name, name, names);
     all[name] = value;
   }
   for (const auto& info : type.parameters) {
@@ -62,9 +79,8 @@ SceneParameters complete_parameters(const SceneType& type, const SceneParameters
     const std::string bound = info.integer ? "a whole number of at least " + number_text(info.low)
                               : info.low == -1e-300 ? "at least 0"
                                                     : "above " + number_text(info.low);
-    throw UsageError("scene " + std::string(type.name) + ": '" + info.name + "' is " +
-                     number_text(value) + ", must be " + bound + " and at most " +
-                     number_text(info.high));
+    throw UsageError("scene " + type.name + ": '" + info.name + "' is " + number_text(value) +
+                     ", must be " + bound + " and at most " + number_text(info.high));
   }
   return all;
 }

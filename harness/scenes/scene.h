@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -58,13 +59,13 @@ struct Scene {
 };
 
 struct SceneType {
-  const char* name;
+  std::string name;
   const char* summary;
   const char* resolution;  // the parameter that a resolution sweep turns
   std::vector<SceneParameterInfo> parameters;
-  Scene (*build)(const SceneParameters& complete);
+  std::function<Scene(const SceneParameters& complete)> build;
   // Vertices and constraints, without building anything.
-  std::pair<int, int> (*counts)(const SceneParameters& complete);
+  std::function<std::pair<int, int>(const SceneParameters& complete)> counts;
   // Positions at a time (s) where the motion is known exactly: errors need no reference then.
   inextensible::Positions (*exact)(const SceneParameters& complete, double time) = nullptr;
   const char* like = "";  // the scene whose tuned settings it takes; empty: its own
@@ -72,11 +73,13 @@ struct SceneType {
   // smooth motion scenes/pendulum.h integrates in angles.
   bool pendulum = false;
 
-  const char* kind() const { return *like ? like : name; }
+  std::string kind() const { return *like ? like : name; }
 };
 
 std::span<const SceneType> scene_types();
-const SceneType* find_scene(std::string_view name);
+// Also "mesh:...", see mesh_scenes.h, which throws UsageError for files that it cannot use. Null:
+// no such scene.
+std::shared_ptr<const SceneType> find_scene(std::string_view name);
 std::vector<std::string> scene_kinds();  // of all scenes, each once
 
 // The scene's parameters with `given` put in. Throws UsageError, naming the parameter, for unknown

@@ -76,7 +76,8 @@ Trial trial_of(Mesh mesh, double step, int steps, double strain_limit) {
 }
 
 Scene scene_of(const char* name, const SceneParameters& given) {
-  const SceneType& type = *find_scene(name);
+  const auto found_type = find_scene(name);
+  const SceneType& type = *found_type;
   return type.build(complete_parameters(type, given));
 }
 

@@ -12,7 +12,8 @@ using inextensible::State;
 
 Case scene_case(const std::string& name, const char* type, const SceneParameters& given,
                 double step, int steps) {
-  const SceneType& scene = *find_scene(type);
+  const auto found_scene = find_scene(type);
+  const SceneType& scene = *found_scene;
   return {name, scene.build(complete_parameters(scene, given)), step, steps, 0.01};
 }
 

@@ -160,6 +160,7 @@ StepResult ImplicitSprings::end_velocities(const State& before, double h, const 
   v_before_ = before.v;
   h_before_ = h;
   pull_before_.swap(pull_);
+  if (contact_energy_) contact_energy_->accept();
   return Stepper::end_velocities(before, h, filtered, x, v);
 }
 

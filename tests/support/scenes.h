@@ -6,7 +6,8 @@ namespace harness::testing {
 
 // A scene by its name; parameters that are not given have the scene's own values.
 inline Scene build(const char* name, const SceneParameters& given) {
-  const SceneType& type = *find_scene(name);
+  const auto found_type = find_scene(name);
+  const SceneType& type = *found_type;
   return type.build(complete_parameters(type, given));
 }
 

@@ -162,6 +162,58 @@ TEST(Fishnet, OfADiscreteNetComesCloserToTheAngleAsItIsRefined) {
   }
 }
 
+// What is read off the cone that a disc without warp and weft would be: flat for 0, a tube for
+// pi/2.
+double coefficient_of_cone(double slope) {
+  const Built built("cusick", {{"n", 61}});
+  const double table = built.parameters.at("table");
+  State state = built.scene.start;
+  for (Eigen::Index v = 0; v < state.x.cols(); ++v) {
+    const double x = state.x(0, v), z = state.x(2, v), r = std::hypot(x, z);
+    if (r <= table) continue;
+    const double out = (table + (r - table) * std::cos(slope)) / r;
+    state.x.col(v) << out * x, -(r - table) * std::sin(slope), out * z;
+  }
+  const auto reading = find_answer("drape_of_cotton")->reading(built.at);
+  reading->after(state, state, 1);
+  return reading->value();
+}
+
+TEST(DrapeCoefficient, OfConesIsThatOfTheirShadows) {
+  const double radius = 0.15, table = 0.09, ring = radius * radius - table * table;
+  for (const double slope : {0.0, 0.5, 1.0, 0.5 * std::numbers::pi}) {
+    const double rim = table + (radius - table) * std::cos(slope);
+    EXPECT_NEAR(coefficient_of_cone(slope), 100 * (rim * rim - table * table) / ring, 1.5) << slope;
+  }
+}
+
+// By the method that takes shear, bending and stretch in one system: its rest does not depend on
+// steps.
+double coefficient_at_rest(const SceneParameters& given, double stiffness) {
+  const Built built("cusick", given);
+  const auto reading = find_answer("drape_of_cotton")->reading(built.at);
+  const auto stepper = inextensible::make_stepper("implicit_springs", built.scene.problem,
+                                                  {.settings = {{"stiffness", stiffness}}});
+  State state = built.scene.start;
+  for (int i = 0; i < 400; ++i) {
+    const State before = state;
+    EXPECT_TRUE(stepper->advance(state, 0.005));
+    reading->after(before, state, 0.005);
+  }
+  return reading->value();
+}
+
+TEST(DrapeCoefficient, DependsOnRatiosOfStiffnessAndWeightAlone) {
+  const SceneParameters light{
+      {"n", 25}, {"density", 0.1}, {"bending", 5e-6}, {"shear", 5}, {"drag", 1}};
+  SceneParameters heavy = light, stiff = light;
+  for (const char* name : {"density", "bending", "shear", "drag"}) heavy[name] *= 4;
+  const double coefficient = coefficient_at_rest(light, 0.5);
+  EXPECT_NEAR(coefficient_at_rest(heavy, 2), coefficient, 0.5);
+  stiff["bending"] *= 10;
+  EXPECT_GT(coefficient_at_rest(stiff, 0.5), coefficient + 5);
+}
+
 // The rows of one answer by one solver.
 std::vector<AnswerRow> measured(const char* answer, const char* solver) {
   AnswerSelection selection;

@@ -12,7 +12,8 @@ namespace {
 using inextensible::State;
 
 Scene small_chain() {
-  const SceneType& type = *find_scene("chain");
+  const auto found_type = find_scene("chain");
+  const SceneType& type = *found_type;
   return type.build(complete_parameters(type, {{"n", 4}}));
 }
 
@@ -92,7 +93,8 @@ TEST(Judge, MeasuresHowFarARunHasMoved) {
 }
 
 TEST(Judge, MeasuresStrainBeforeAndAfterTheObstacle) {
-  const SceneType& type = *find_scene("drape");
+  const auto found_type = find_scene("drape");
+  const SceneType& type = *found_type;
   const Scene scene = type.build(complete_parameters(type, {{"n", 3}}));
   Judge judge(scene, {});
   State state = scene.start;

@@ -95,7 +95,8 @@ TEST(Pendulum, OfEightyVerticesKeepsItsEnergyAndMeetsTheKnownPlaces) {
 }
 
 TEST(Reference, OfAShortChainIsTheSameByBothRoutes) {
-  const SceneType& type = *find_scene("chain");
+  const auto found_type = find_scene("chain");
+  const SceneType& type = *found_type;
   const Reference r = compute_reference("chain", complete_parameters(type, {{"n", 12}}), 0.04 / 256,
                                         [](const std::string&) {});
   EXPECT_NEAR(r.observed_order, 2, 0.05);
@@ -107,7 +108,8 @@ TEST(Reference, OfAShortChainIsTheSameByBothRoutes) {
 
 // RATTLE does not survive a start at which J W J^T is singular; two other routes do, and agree.
 TEST(Reference, OfThePatchIsByTwoRoutesThatSurviveIt) {
-  const SceneType& type = *find_scene("patch");
+  const auto found_type = find_scene("patch");
+  const SceneType& type = *found_type;
   const Reference r =
       compute_reference("patch", complete_parameters(type, {{"n", 5}, {"duration", 0.2}}),
                         0.04 / 80, [](const std::string&) {});
@@ -118,7 +120,8 @@ TEST(Reference, OfThePatchIsByTwoRoutesThatSurviveIt) {
 }
 
 TEST(Reference, SurvivesItsFile) {
-  const SceneType& type = *find_scene("chain");
+  const auto found_type = find_scene("chain");
+  const SceneType& type = *found_type;
   const auto parameters = complete_parameters(type, {{"n", 4}, {"duration", 0.2}});
   const Reference r = compute_reference("chain", parameters, 0.04 / 64, [](const std::string&) {});
   const std::string folder = ::testing::TempDir() + "references";
@@ -141,7 +144,8 @@ TEST(Reference, SurvivesItsFile) {
 }
 
 TEST(Reference, ThatIsCommittedIsTheOneThisProgramComputes) {
-  const SceneType& type = *find_scene("chain");
+  const auto found_type = find_scene("chain");
+  const SceneType& type = *found_type;
   const auto parameters = complete_parameters(type, {});
   ReferenceShelf shelf(std::string(SOURCE_DIR) + "/results/references");
   const auto stored = shelf.find("chain", parameters);
@@ -155,7 +159,8 @@ TEST(Reference, ThatIsCommittedIsTheOneThisProgramComputes) {
 }
 
 TEST(ShapeStatistics, OfAFlatSquareAreItsHeightAndItsArea) {
-  const SceneType& type = *find_scene("drape");
+  const auto found_type = find_scene("drape");
+  const SceneType& type = *found_type;
   const auto parameters = complete_parameters(type, {{"n", 9}, {"subdivisions", 0}});
   const Scene scene = type.build(parameters);
   const ShapeStatistics shape = shape_statistics(scene, scene.start.x);

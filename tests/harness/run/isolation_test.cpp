@@ -24,7 +24,8 @@ PointSpec chain_of_ten() {
   PointSpec spec;
   spec.sweep = "strain";
   spec.scene = "chain";
-  const SceneType& type = *find_scene("chain");
+  const auto found_type = find_scene("chain");
+  const SceneType& type = *found_type;
   spec.scene_parameters = complete_parameters(type, {{"n", 10}});
   spec.resolution = spec.vertices = 10;
   spec.constraints = 9;

@@ -41,7 +41,8 @@ TEST_P(NoAllocation, InsideAStepAfterWarmUp) {
   GTEST_SKIP() << "malloc belongs to the sanitizer";
 #endif
   const auto [scene_name, n, solver, step, linear_solver] = GetParam();
-  const SceneType& type = *find_scene(scene_name);
+  const auto found_type = find_scene(scene_name);
+  const SceneType& type = *found_type;
   const Scene scene = type.build(complete_parameters(type, {{"n", n}}));
   inextensible::BackendOptions options{0.01, 1, {}};
   if (linear_solver != std::string("auto")) options.settings["linear_solver"] = linear_solver;

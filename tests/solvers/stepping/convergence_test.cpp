@@ -26,7 +26,8 @@ constexpr double stretch = 0.32;  // s, of smooth motion
 constexpr double tight = 1e-11;   // strain limit: slack must not matter
 
 Scene short_chain() {
-  const SceneType& type = *find_scene("chain");
+  const auto found_type = find_scene("chain");
+  const SceneType& type = *found_type;
   return type.build(complete_parameters(type, {{"n", 8}}));
 }
 
@@ -130,7 +131,8 @@ TEST(Energy, IsLostByImplicitMethodsInProportionToTheStepAndKeptByRattle) {
 // Slack within the limit builds up in steps without a correction. Taken back all at once it is a
 // blow; what lies beyond most of the limit is a small one.
 TEST(Energy, IsNotGainedWhereOnlyStrainNearTheLimitIsTakenBack) {
-  const SceneType& type = *find_scene("patch");
+  const auto found_type = find_scene("patch");
+  const SceneType& type = *found_type;
   const Scene scene = type.build(complete_parameters(type, {{"n", 15}}));
   const auto gain = [&](double target) {
     const auto stepper =
@@ -235,7 +237,8 @@ TEST_P(Bdf2, KeepsItsOrderWhenTheStepChanges) {
 // A body that hits the ground must not bounce off it by a velocity that is extrapolated over the
 // impact.
 TEST_P(Bdf2, DoesNotBounceOffACollider) {
-  const SceneType& type = *find_scene("drape");
+  const auto found_type = find_scene("drape");
+  const SceneType& type = *found_type;
   const Scene scene = type.build(
       complete_parameters(type, {{"n", 5}, {"side", 0.05}, {"gap", 0.05}, {"shear", 0}}));
   auto stepper = bdf2(scene.problem, 1e-4);

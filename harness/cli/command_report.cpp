@@ -1,0 +1,91 @@
+// bench report: one page that tells what result files found.
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/json_text.h"
+#include "harness/base/temporary_folder.h"
+#include "harness/claims/claims.h"
+#include "harness/cli/commands.h"
+#include "harness/film/recording.h"
+#include "harness/points/result_file.h"
+#include "harness/points/suite.h"
+#include "harness/points/tuned.h"
+
+namespace harness {
+namespace {
+
+nlohmann::json claims_json(const std::vector<ClaimVerdict>& claims) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (const ClaimVerdict& claim : claims)
+    rows.push_back({{"id", claim.id},
+                    {"statement", claim.statement},
+                    {"verdict", claim.verdict},
+                    {"measured", claim.measured},
+                    {"rule", claim.rule}});
+  return rows;
+}
+
+// By three methods at 1 %, small enough for a page.
+FilmSpec motion(const std::string& scene, const SceneParameters& given) {
+  const auto found_type = find_scene(scene);
+  const SceneType& type = *found_type;
+  FilmSpec spec;
+  spec.scene = scene;
+  spec.parameters = complete_parameters(type, given);
+  for (const char* solver : {"gauss_seidel_colored", "fast_projection", "fast_projection_bdf2"})
+    spec.solvers.push_back({solver, solver});
+  tune(spec.solvers, read_tuned("tuned.json"), type.kind(), {}, Untuned::none);
+  spec.strain_limits = {0.01};
+  return spec;
+}
+
+std::string record_into(const std::string& folder, const FilmSpec& spec) {
+  const Recording recording = record(spec, interrupted, [](auto&&...) {});
+  std::filesystem::create_directory(folder);
+  write_atomically(folder + "/film.json", compact(film_header(recording)) + "\n");
+  write_atomically(folder + "/film.f32", film_positions(recording));
+  return folder;
+}
+
+struct ReportOptions {
+  std::vector<std::string> results, answers;
+  std::string out;
+  bool still = false;
+};
+
+int report(const ReportOptions& given) {
+  check_writable(given.out);
+  std::vector<nlohmann::json> results;
+  for (const std::string& file : given.results) results.push_back(read_result(file));
+  for (const std::string& file : given.answers) (void)read_answers(file);
+  const TemporaryFolder folder("report");
+  std::vector<std::string> words = given.results;
+  words.insert(words.end(), given.answers.begin(), given.answers.end());
+  words.insert(words.end(), {"--out", given.out, "--claims", folder.file("claims.json")});
+  write_atomically(folder.file("claims.json"), compact(claims_json(judge_claims(results))) + "\n");
+  if (!given.still) {
+    words.emplace_back("--motion");
+    words.push_back(record_into(folder.file("drape"), motion("drape", {{"n", 31}})));
+    words.push_back(record_into(folder.file("patch"), motion("patch", {{"n", 25}})));
+  }
+  return draw(words, "report.py");
+}
+
+}  // namespace
+
+void add_report_command(const Command& program) {
+  const auto given = std::make_shared<ReportOptions>();
+  const Command command =
+      program.subcommand("report", "one page, to open offline, that tells what results found");
+  command.option("results", given->results, "result files", "RESULT.json ...").required();
+  command.option("--answers", given->answers, "results of bench answers", "ANSWERS.json ...");
+  command.option("-o,--out", given->out, "the page", "report.html").required();
+  command.flag("--still", given->still, "no scenes in motion, which take seconds to simulate");
+  command.does([given] { return report(*given); });
+}
+
+}  // namespace harness

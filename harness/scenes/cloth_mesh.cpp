@@ -1,0 +1,249 @@
+#include "harness/scenes/cloth_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "harness/base/errors.h"
+
+namespace harness {
+namespace {
+
+Side side(int a, int b) { return std::minmax(a, b); }
+
+template <class Face>
+Side side_of(const Face& face, std::size_t k) {
+  return side(face[k], face[(k + 1) % face.size()]);
+}
+
+double triangle_area(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  return 0.5 * (b - a).cross(c - a).norm();
+}
+
+// How far the worst of a quad's angles is from a right one, degrees.
+double obliqueness(const std::vector<Eigen::Vector3d>& x, const std::array<int, 4>& quad) {
+  double worst = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Eigen::Vector3d at = x[quad[k]], to = x[quad[(k + 1) % 4]] - at,
+                          back = x[quad[(k + 3) % 4]] - at;
+    const double angle = std::atan2(to.cross(back).norm(), to.dot(back));
+    worst = std::max(worst, std::abs(angle - 0.5 * std::numbers::pi));
+  }
+  return worst * 180 / std::numbers::pi;
+}
+
+void check(const MeshFile& file, const std::string& path) {
+  std::map<Side, int> faces_at;
+  const auto name = [](Side s) {
+    return std::to_string(s.first + 1) + " and " + std::to_string(s.second + 1);
+  };
+  for (const std::vector<int>& face : file.faces) {
+    if (face.size() > 4)
+      throw UsageError("'" + path + "': a face of " + std::to_string(face.size()) +
+                       " corners at vertex " + std::to_string(face[0] + 1) +
+                       "; cloth is made of quads and triangles");
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Side s = side_of(face, k);
+      if (!((file.vertices[s.first] - file.vertices[s.second]).norm() > 0))
+        throw UsageError("'" + path + "': the side between vertices " + name(s) + " has no length");
+      if (++faces_at[s] > 2)
+        throw UsageError("'" + path + "': the side between vertices " + name(s) +
+                         " belongs to more than two faces");
+    }
+  }
+}
+
+// Triangles i and j that share the side between their corners, as a quad around it.
+struct Pairing {
+  double oblique;
+  std::size_t i, j;
+  std::array<int, 4> quad;
+};
+
+std::vector<Pairing> pairings(const std::vector<Eigen::Vector3d>& x,
+                              const std::vector<std::array<int, 3>>& triangles) {
+  std::map<Side, std::pair<std::size_t, std::size_t>> first;  // triangle and corner before the side
+  std::vector<Pairing> all;
+  for (std::size_t j = 0; j < triangles.size(); ++j) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [found, fresh] = first.try_emplace(side_of(triangles[j], k), j, k);
+      if (fresh) continue;
+      const auto [i, c] = found->second;
+      const auto& t = triangles[i];
+      const std::array<int, 4> quad{t[(c + 2) % 3], t[c], triangles[j][(k + 2) % 3],
+                                    t[(c + 1) % 3]};
+      all.push_back({obliqueness(x, quad), i, j, quad});
+    }
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Pairing& a, const Pairing& b) { return a.oblique < b.oblique; });
+  return all;
+}
+
+}  // namespace
+
+ClothMesh cloth_of(const MeshFile& file, const std::string& path) {
+  check(file, path);
+  ClothMesh cloth;
+  std::vector<int> place(file.vertices.size(), -1);
+  const auto vertex = [&](int v) {
+    if (place[v] < 0) {
+      place[v] = static_cast<int>(cloth.vertices.size());
+      cloth.vertices.push_back(file.vertices[v]);
+    }
+    return place[v];
+  };
+  std::vector<std::array<int, 3>> triangles;
+  for (const std::vector<int>& face : file.faces) {
+    if (face.size() == 4)
+      cloth.quads.push_back({vertex(face[0]), vertex(face[1]), vertex(face[2]), vertex(face[3])});
+    else
+      triangles.push_back({vertex(face[0]), vertex(face[1]), vertex(face[2])});
+  }
+  std::vector<char> taken(triangles.size(), 0);
+  for (const Pairing& pairing : pairings(cloth.vertices, triangles)) {
+    if (pairing.oblique > most_oblique || taken[pairing.i] || taken[pairing.j]) continue;
+    taken[pairing.i] = taken[pairing.j] = 1;
+    cloth.quads.push_back(pairing.quad);
+  }
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    if (!taken[t]) cloth.triangles.push_back(triangles[t]);
+  return cloth;
+}
+
+ClothMesh refined(const ClothMesh& mesh, int n) {
+  if (n == 1) return mesh;
+  ClothMesh fine;
+  fine.vertices = mesh.vertices;
+  std::map<Side, int> first_on;                    // of n - 1 new vertices from the lower end on
+  const auto on_side = [&](int a, int b, int i) {  // i of n parts from a to b
+    if (i == 0) return a;
+    if (i == n) return b;
+    const Side s = side(a, b);
+    const auto [found, fresh] = first_on.try_emplace(s, static_cast<int>(fine.vertices.size()));
+    if (fresh) {
+      for (int k = 1; k < n; ++k) {
+        const double part = static_cast<double>(k) / n;
+        fine.vertices.emplace_back((1 - part) * mesh.vertices[s.first] +
+                                   part * mesh.vertices[s.second]);
+      }
+    }
+    return found->second + (a == s.first ? i : n - i) - 1;
+  };
+  for (const auto& [a, b, c, d] : mesh.quads) {
+    std::vector<std::vector<int>> at(n + 1, std::vector<int>(n + 1));
+    for (int i = 0; i <= n; ++i) {
+      for (int j = 0; j <= n; ++j) {
+        if (i == 0) {
+          at[i][j] = on_side(a, b, j);
+        } else if (i == n) {
+          at[i][j] = on_side(d, c, j);
+        } else if (j == 0) {
+          at[i][j] = on_side(a, d, i);
+        } else if (j == n) {
+          at[i][j] = on_side(b, c, i);
+        } else {
+          const double u = static_cast<double>(i) / n, v = static_cast<double>(j) / n;
+          at[i][j] = static_cast<int>(fine.vertices.size());
+          fine.vertices.emplace_back((1 - u) * ((1 - v) * mesh.vertices[a] + v * mesh.vertices[b]) +
+                                     u * ((1 - v) * mesh.vertices[d] + v * mesh.vertices[c]));
+        }
+      }
+    }
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j)
+        fine.quads.push_back({at[i][j], at[i][j + 1], at[i + 1][j + 1], at[i + 1][j]});
+    }
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    std::map<std::pair<int, int>, int> inside;
+    const auto at = [&](int i, int j) {  // i parts from a to b, j from a to c
+      if (j == 0) return on_side(a, b, i);
+      if (i == 0) return on_side(a, c, j);
+      if (i + j == n) return on_side(b, c, j);
+      const auto [found, fresh] =
+          inside.try_emplace({i, j}, static_cast<int>(fine.vertices.size()));
+      if (fresh) {
+        const double u = static_cast<double>(i) / n, v = static_cast<double>(j) / n;
+        fine.vertices.emplace_back((1 - u - v) * mesh.vertices[a] + u * mesh.vertices[b] +
+                                   v * mesh.vertices[c]);
+      }
+      return found->second;
+    };
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; i + j < n; ++j) {
+        fine.triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+        if (i + j + 1 < n) fine.triangles.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+      }
+    }
+  }
+  return fine;
+}
+
+std::vector<Side> sides_of_quads(const ClothMesh& mesh) {
+  std::set<Side> sides;
+  for (const auto& quad : mesh.quads)
+    for (std::size_t k = 0; k < 4; ++k) sides.insert(side_of(quad, k));
+  return {sides.begin(), sides.end()};
+}
+
+std::vector<Side> sides_of_triangles(const ClothMesh& mesh) {
+  const std::vector<Side> quads = sides_of_quads(mesh);
+  std::set<Side> sides;
+  for (const auto& triangle : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Side s = side_of(triangle, k);
+      if (!std::binary_search(quads.begin(), quads.end(), s)) sides.insert(s);
+    }
+  }
+  return {sides.begin(), sides.end()};
+}
+
+std::vector<std::array<int, 3>> threads_of(const ClothMesh& mesh) {
+  std::vector<std::set<int>> ends(mesh.vertices.size());
+  for (const auto& [a, b] : sides_of_quads(mesh)) {
+    ends[a].insert(b);
+    ends[b].insert(a);
+  }
+  // Neighbours of a corner that are in one quad with it are not opposite each other.
+  std::vector<std::set<Side>> beside(mesh.vertices.size());
+  for (const auto& quad : mesh.quads) {
+    for (std::size_t k = 0; k < 4; ++k)
+      beside[quad[k]].insert(side(quad[(k + 1) % 4], quad[(k + 3) % 4]));
+  }
+  std::vector<std::array<int, 3>> threads;
+  for (std::size_t v = 0; v < ends.size(); ++v) {
+    if (ends[v].size() > 4) continue;
+    for (const int a : ends[v]) {
+      for (const int b : ends[v]) {
+        if (a >= b || beside[v].contains(side(a, b))) continue;
+        // Within the cloth a side has one side opposite; on its rim the two along it are.
+        const auto others = std::count_if(ends[v].begin(), ends[v].end(), [&](int c) {
+          return c != a && !beside[v].contains(side(a, c));
+        });
+        if (others == 1 && ends[v].size() >= 3) threads.push_back({a, static_cast<int>(v), b});
+      }
+    }
+  }
+  return threads;
+}
+
+std::vector<double> areas(const ClothMesh& mesh) {
+  const auto& x = mesh.vertices;
+  std::vector<double> all(x.size(), 0.0);
+  for (const auto& [a, b, c, d] : mesh.quads) {
+    // The mean of both ways to cut it.
+    const double area = 0.5 * (triangle_area(x[a], x[b], x[c]) + triangle_area(x[a], x[c], x[d]) +
+                               triangle_area(x[a], x[b], x[d]) + triangle_area(x[b], x[c], x[d]));
+    for (const int v : {a, b, c, d}) all[v] += area / 4;
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    for (const int v : {a, b, c}) all[v] += triangle_area(x[a], x[b], x[c]) / 3;
+  }
+  return all;
+}
+
+}  // namespace harness

@@ -1,0 +1,259 @@
+#include "harness/scenes/mesh_scenes.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "harness/base/errors.h"
+#include "harness/base/text.h"
+#include "harness/scenes/cloth_mesh.h"
+#include "harness/scenes/meshes.h"
+#include "inextensible/problem/triangle_collider.h"
+
+namespace harness {
+namespace {
+
+constexpr std::string_view prefix = "mesh:";
+
+// "y > 1.2": which coordinate, and where.
+struct Comparison {
+  int axis;
+  bool above;
+  double value;
+  bool holds(const Eigen::Vector3d& x) const { return above ? x[axis] > value : x[axis] < value; }
+};
+
+std::string without_spaces(std::string text) {
+  std::erase_if(text, [](unsigned char c) { return std::isspace(c) != 0; });
+  return text;
+}
+
+// "y>1.2andx<0".
+std::vector<Comparison> read_pins(const std::string& text) {
+  std::vector<Comparison> all;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find("and", begin), text.size());
+    const std::string part = text.substr(begin, end - begin);
+    std::size_t read = 0;
+    Comparison one{part.empty() ? -1 : part[0] - 'x', false, 0};
+    try {
+      if (part.size() > 2) one.value = std::stod(part.substr(2), &read);
+    } catch (const std::exception&) {
+      read = 0;
+    }
+    if (one.axis < 0 || one.axis > 2 || (part[1] != '>' && part[1] != '<') || read == 0 ||
+        read + 2 != part.size())
+      throw UsageError("pins are '" + text +
+                       "', must be like y>1.2, or several such joined by 'and'");
+    one.above = part[1] == '>';
+    all.push_back(one);
+    begin = end + 3;
+  }
+  return all;
+}
+
+// What a scene's name says.
+struct MeshParts {
+  std::string file, body;
+  std::vector<Comparison> pins;
+};
+
+MeshParts parts_of(const std::string& name) {
+  MeshParts parts;
+  std::istringstream words(name.substr(prefix.size()));
+  std::getline(words, parts.file, ',');
+  for (std::string word; std::getline(words, word, ',');) {
+    if (word.starts_with("pins=")) {
+      parts.pins = read_pins(without_spaces(word.substr(5)));
+    } else if (word.starts_with("body=")) {
+      parts.body = word.substr(5);
+    } else {
+      throw UsageError("scene '" + name + "': '" + word +
+                       "' must be pins=... or body=..., as in mesh:shirt.obj,pins=y>1.2");
+    }
+  }
+  return parts;
+}
+
+// The files, read once; scenes of all parameters are made of them.
+struct MeshModel {
+  std::string name;
+  MeshParts parts;
+  ClothMesh cloth;
+  inextensible::TriangleMesh body;
+
+  bool pinned(const Eigen::Vector3d& x) const {
+    return !parts.pins.empty() && std::all_of(parts.pins.begin(), parts.pins.end(),
+                                              [&](const Comparison& one) { return one.holds(x); });
+  }
+};
+
+inextensible::TriangleMesh body_of(const MeshFile& file) {
+  inextensible::TriangleMesh body;
+  body.vertices = file.vertices;
+  for (const std::vector<int>& face : file.faces) {
+    for (std::size_t k = 1; k + 1 < face.size(); ++k)
+      body.triangles.push_back({face[0], face[k], face[k + 1]});
+  }
+  double volume = 0;  // negative: faces are the wrong way round
+  for (const auto& [a, b, c] : body.triangles)
+    volume += body.vertices[a].dot(body.vertices[b].cross(body.vertices[c])) / 6;
+  if (volume < 0) {
+    for (auto& [a, b, c] : body.triangles) std::swap(b, c);
+  }
+  return body;
+}
+
+std::shared_ptr<const MeshModel> read_model(const std::string& name) {
+  auto model = std::make_shared<MeshModel>();
+  model->name = name;
+  model->parts = parts_of(name);
+  model->cloth = cloth_of(read_mesh_file(model->parts.file), model->parts.file);
+  if (!model->parts.body.empty()) {
+    model->body = body_of(read_mesh_file(model->parts.body));
+    try {
+      (void)inextensible::TriangleCollider(model->body, 0);
+    } catch (const std::invalid_argument& error) {
+      throw UsageError("'" + model->parts.body + "' is no body to collide with: " + error.what());
+    }
+  }
+  const auto& x = model->cloth.vertices;
+  const bool holds = std::any_of(x.begin(), x.end(), [&](auto& v) { return model->pinned(v); });
+  if (!model->parts.pins.empty() && !holds)
+    throw UsageError("scene '" + name + "': no vertex is where the pins are");
+  if (!holds && model->parts.body.empty())
+    throw UsageError("scene '" + name +
+                     "': nothing is pinned and nothing is below; add ,pins=y>... or ,body=FILE");
+  return model;
+}
+
+// Metres, with y upwards.
+Eigen::Vector3d placed(const Eigen::Vector3d& x, const SceneParameters& p) {
+  const double s = p.at("scale");
+  if (p.at("up") == 2) return {s * x.x(), s * x.z(), -s * x.y()};
+  return s * x;
+}
+
+Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
+  ClothMesh cloth = refined(model.cloth, static_cast<int>(p.at("n")));
+  Draft draft;
+  inextensible::ProblemParts& parts = draft.parts;
+  Scene& scene = draft.scene;
+  const auto n = static_cast<int>(cloth.vertices.size());
+  scene.start.x.resize(3, n);
+  scene.start.v.setZero(3, n);
+  std::vector<char> held(n, 0);
+  for (int v = 0; v < n; ++v) {
+    held[v] = model.pinned(cloth.vertices[v]);
+    if (held[v]) parts.pinned.push_back(v);
+    cloth.vertices[v] = placed(cloth.vertices[v], p);
+    scene.start.x.col(v) = cloth.vertices[v];
+  }
+  const std::vector<double> area = areas(cloth);
+  for (int v = 0; v < n; ++v) {
+    parts.mass.push_back(p.at("density") * area[v]);
+    if (p.at("drag") > 0) parts.drag.push_back(p.at("drag") * area[v]);
+  }
+  parts.gravity = {0, -p.at("gravity"), 0};
+  const auto length = [&](int a, int b) { return (cloth.vertices[a] - cloth.vertices[b]).norm(); };
+  for (const auto& [a, b] : sides_of_quads(cloth)) {
+    if (held[a] && held[b]) continue;
+    parts.edges.push_back({a, b});
+    parts.rest_length.push_back(length(a, b));
+  }
+  if (p.at("shear") > 0) {
+    inextensible::Springs springs;
+    const auto join = [&](int a, int b) {
+      if (held[a] && held[b]) return;
+      springs.edges.push_back({a, b});
+      springs.rest_length.push_back(length(a, b));
+      springs.stiffness.push_back(p.at("shear"));
+    };
+    for (const auto& [a, b, c, d] : cloth.quads) {
+      join(a, c);
+      join(b, d);
+    }
+    for (const auto& [a, b] : sides_of_triangles(cloth)) join(a, b);
+    if (!springs.edges.empty()) parts.shear = std::move(springs);
+  }
+  if (p.at("bending") > 0) {
+    for (const auto& [a, b, c] : threads_of(cloth)) {
+      if (held[a] && held[b] && held[c]) continue;
+      const double before = length(a, b), after = length(b, c);
+      const double width = area[b] / (0.5 * (before + after));
+      parts.bending.push_back(
+          inextensible::thread_bending(a, b, c, before, after, p.at("bending") * width));
+    }
+  }
+  parts.implicit_forces = true;
+  if (!model.body.triangles.empty()) {
+    inextensible::TriangleMesh body = model.body;
+    for (Eigen::Vector3d& v : body.vertices) v = placed(v, p);
+    parts.collider =
+        std::make_shared<const inextensible::TriangleCollider>(std::move(body), p.at("friction"));
+  }
+  for (const auto& [a, b, c, d] : cloth.quads) {
+    scene.triangles.push_back({a, b, d});
+    scene.triangles.push_back({c, d, b});
+  }
+  scene.triangles.insert(scene.triangles.end(), cloth.triangles.begin(), cloth.triangles.end());
+  scene.staggered = false;
+  scene.duration = p.at("duration");
+  scene.size = (scene.start.x.rowwise().maxCoeff() - scene.start.x.rowwise().minCoeff()).norm();
+  return finished(std::move(draft));
+}
+
+std::pair<int, int> count_mesh(const MeshModel& model, const SceneParameters& p) {
+  const ClothMesh cloth = refined(model.cloth, static_cast<int>(p.at("n")));
+  const std::vector<Side> sides = sides_of_quads(cloth);
+  const auto free = std::count_if(sides.begin(), sides.end(), [&](const Side& s) {
+    return !model.pinned(cloth.vertices[s.first]) || !model.pinned(cloth.vertices[s.second]);
+  });
+  return {static_cast<int>(cloth.vertices.size()), static_cast<int>(free)};
+}
+
+}  // namespace
+
+bool names_mesh(std::string_view scene) { return scene.starts_with(prefix); }
+
+std::string with_mesh_parts(const std::string& scene, const std::string& pins,
+                            const std::string& body) {
+  if (pins.empty() && body.empty()) return scene;
+  if (!names_mesh(scene))
+    throw UsageError("--pins and --collider go with --scene mesh:FILE.obj, not with '" + scene +
+                     "'");
+  for (const std::string& part : {pins, body}) {
+    if (part.find(',') != std::string::npos)
+      throw UsageError("'" + part + "': a comma cannot stand in pins or a file's name here");
+  }
+  return scene + (pins.empty() ? "" : ",pins=" + without_spaces(pins)) +
+         (body.empty() ? "" : ",body=" + body);
+}
+
+SceneType mesh_scene(const std::string& name) {
+  const std::shared_ptr<const MeshModel> model = read_model(name);
+  return {name,
+          "cloth of your own",
+          "n",
+          {{"n", 1, "parts that each side of the file's faces is cut into", 1, 64, true},
+           {"scale", 1, "m per unit of the files", 0, 1e6},
+           {"up", 1, "which of the files' axes is up: 1 is y, 2 is z", 1, 2, true},
+           {"density", 0.15, "kg/m^2", 0, 1e4},
+           {"gravity", 9.81, "m/s^2, downwards", -1e4, 1e4},
+           {"shear", 20, "shear stiffness, N/m; 0: none", -1e-300, 1e9},
+           {"bending", 1e-5, "bending rigidity of warp and weft, straight at rest, N m; 0: none",
+            -1e-300, 1e6},
+           {"drag", 0.05, "of still air, N s/m^3: force per area and speed; 0: none", -1e-300, 1e6},
+           {"friction", 0.3, "Coulomb coefficient of the body", -1e-300, 1e3},
+           {"duration", 1, "s", 0, 1e4}},
+          [model](const SceneParameters& p) { return build_mesh(*model, p); },
+          [model](const SceneParameters& p) { return count_mesh(*model, p); },
+          nullptr,
+          model->parts.body.empty() ? "patch" : "drape"};
+}
+
+}  // namespace harness

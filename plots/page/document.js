@@ -1,0 +1,65 @@
+"use strict";
+// What all parts share: the data, and elements made without ever reading text as markup.
+const data = JSON.parse(document.getElementById("data").textContent);
+const column = Object.fromEntries(data.columns.map((name, index) => [name, index]));
+const points = data.points.map((row) => Object.fromEntries(data.columns.map((name, index) => [name, row[index]])));
+const hidden = new Set();  // solvers, by number
+const onHide = [];         // what is to be done when it changes
+
+function element(name, properties = {}, ...children) {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(properties)) {
+    if (key in made) made[key] = value; else made.setAttribute(key, value);
+  }
+  made.append(...children);
+  return made;
+}
+
+function drawn(name, attributes, ...children) {
+  const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  made.append(...children);
+  return made;
+}
+
+function timeText(seconds) {
+  if (seconds === null) return "";
+  for (const [unit, scale] of [["s", 1], ["ms", 1e-3], ["µs", 1e-6]]) {
+    if (seconds >= scale) return `${Number((seconds / scale).toPrecision(3))} ${unit}`;
+  }
+  return `${seconds.toPrecision(3)} s`;
+}
+const percent = (part) => part === null ? "" : `${Number((100 * part).toPrecision(3))} %`;
+const stepText = (step) => step === null ? "" : step < 0.5 ? `1/${Number((1 / step).toPrecision(4))} s` : `${step} s`;
+const words = (name) => name.replaceAll("_", " ");
+
+// What repeats one point: the run that made it, with a filter that keeps this id alone.
+function commandOf(point) {
+  const pattern = `^${point.id.replace(/[.*+?^${}()|[\]\\]/g, "\\$&")}$`;
+  return `${data.files[point.file].command} --filter '${pattern.replaceAll("'", "'\\''")}'`;
+}
+
+function tell(place, point) {
+  const solver = data.solvers[point.solver];
+  const parts = [solver.label, point.id];
+  if (point.seconds !== null) {
+    parts.push(`${timeText(point.seconds)} a simulated second` +
+      (point.low === null ? "" : ` (${timeText(point.low)} to ${timeText(point.high)}, ${point.runs} runs)`));
+  }
+  if (point.status !== "ok") parts.push(`${point.status}: ${point.detail}`);
+  for (const name of ["iterations", "factorizations", "projections"]) {
+    if (point[name]) parts.push(`${point[name]} ${name}`);
+  }
+  if (point.error !== null) parts.push(`error ${point.error.toPrecision(3)}`);
+  place.textContent = parts.join(" · ");
+}
+
+async function copy(place, point) {
+  const command = commandOf(point);
+  try {
+    await navigator.clipboard.writeText(command);
+    place.textContent = `Copied: ${command}`;
+  } catch {
+    place.textContent = command;  // a page from a file may not write to the clipboard
+  }
+}

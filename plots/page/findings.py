@@ -1,0 +1,97 @@
+"""What the report says in words. Every sentence is computed from the points; none says who is fastest where noise may have
+decided it."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+
+from parts.best_points import FigureData, sweeps_in
+from parts.legend import Legend
+from parts.result_file import Json, noise_factor
+
+LIMITS = (0.1, 0.01, 0.001, 0.0001)
+
+
+def findings(documents: list[Json], legend: Legend) -> list[str]:
+    sentences = []
+    for document in documents:
+        if "points" in document:
+            sentences += _contests(document, legend)
+        if "matrix" in document:
+            sentences += _hard_cases(document)
+        if "rows" in document and "answers" in document:
+            sentences.append(_answers(document))
+    return sentences
+
+
+def _contests(document: Json, legend: Legend) -> list[str]:
+    factor = noise_factor(document) or 1
+    sentences = []
+    for data in sweeps_in(document, legend, "strain"):
+        if data.max_error is not None:
+            continue
+        parts = [text for limit in LIMITS if (text := _fastest(data, limit, factor, legend))]
+        if parts:
+            how = ", steps chosen by a controller" if data.adaptive else ""
+            sentences.append(f"{data.scene.replace('_', ' ').capitalize()} of {data.fixed:g} vertices{how}: " + "; ".join(parts) + ".")
+    for data in sweeps_in(document, legend, "resolution"):
+        if data.max_error is None and (text := _growth(data, legend)):
+            sentences.append(text)
+    return sentences
+
+
+def _fastest(data: FigureData, limit: float, factor: float, legend: Legend) -> str:
+    """Who is first at a limit, with the next of another method's name; equals are named together."""
+    runs = sorted(((best.seconds, name, best) for name, curve in data.curves.items() if legend.ranked(name)
+                   for best in curve.best if math.isclose(best.x, limit)), key=lambda run: (run[0], run[1]))
+    if len(runs) < 2:
+        return ""
+    first = runs[0][2]
+    equal = [name for seconds, name, best in runs if best.low <= first.high or seconds < factor * first.seconds]
+    rest = [(seconds, name) for seconds, name, _ in runs if name not in equal]
+    who = " and ".join(legend.label(name) for name in equal[:3]) + (f" and {len(equal) - 3} more" if len(equal) > 3 else "")
+    verb = "is the fastest" if len(equal) == 1 else "are the fastest, with no difference beyond the noise"
+    text = f"at {100 * limit:g} % {who} {verb} ({_time(first.seconds)} a simulated second)"
+    if rest:
+        seconds, name = rest[0]
+        text += f", before {legend.label(name)} ({seconds / first.seconds:.2g} times)"
+    return text
+
+
+def _growth(data: FigureData, legend: Legend) -> str:
+    sizes = data.xs()
+    if len(sizes) < 3:
+        return ""
+    exponents = []
+    for name, curve in data.curves.items():
+        at = {best.x: best.seconds for best in curve.best}
+        if legend.ranked(name) and sizes[0] in at and sizes[-1] in at:
+            exponents.append((math.log(at[sizes[-1]] / at[sizes[0]]) / math.log(sizes[-1] / sizes[0]), name))
+    if len(exponents) < 2:
+        return ""
+    slow, fast = max(exponents), min(exponents)
+    return (f"{data.scene.replace('_', ' ').capitalize()} at {100 * data.fixed:g} %, from {sizes[0]:g} to {sizes[-1]:g} vertices: the time of "
+            f"{legend.label(fast[1])} grows least, with the power {fast[0]:.2f} of the vertices, that of {legend.label(slow[1])} most, "
+            f"with {slow[0]:.2f}.")
+
+
+def _hard_cases(document: Json) -> list[str]:
+    cells = document["matrix"]
+    outcomes = Counter(cell["outcome"] for cell in cells)
+    cases = len({cell["row"] for cell in cells})
+    return [f"Hard cases: {len(cells)} runs of {cases} cases; " + ", ".join(f"{count} {name}" for name, count in outcomes.most_common()) + "."]
+
+
+def _answers(document: Json) -> str:
+    rows = document["rows"]
+    finished = sum(isinstance(row.get("deviation"), (int, float)) for row in rows)
+    return (f"Known answers: {len(document['answers'])} figures that theory or measurement knows, {len(rows)} runs, of which {finished} "
+            f"gave a figure.")
+
+
+def _time(seconds: float) -> str:
+    for unit, scale in (("s", 1), ("ms", 1e-3), ("us", 1e-6)):
+        if seconds >= scale:
+            return f"{seconds / scale:.3g} {unit}"
+    return f"{seconds:.3g} s"

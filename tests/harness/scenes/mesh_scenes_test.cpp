@@ -1,0 +1,195 @@
+// Cloth from files: the square of the built-in scenes, read back, must be that square, however its
+// faces are cut; and what can be no cloth is refused in one line.
+#include "harness/scenes/mesh_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include "harness/base/errors.h"
+#include "harness/scenes/cloth_mesh.h"
+#include "inextensible/registry.h"
+
+namespace harness {
+namespace {
+
+using inextensible::Problem;
+
+std::string file_with(const std::string& name, const std::string& text) {
+  const std::string path = ::testing::TempDir() + name;
+  std::ofstream(path) << text;
+  return path;
+}
+
+// n x n vertices in the plane z = 0, 1 wide, the highest row at y = 0. cut: each quad in two.
+std::string square(int n, const std::function<bool(int, int)>& cut = nullptr) {
+  std::ostringstream text;
+  text.precision(17);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j)
+      text << "v " << static_cast<double>(j) / (n - 1) << ' ' << -static_cast<double>(i) / (n - 1)
+           << " 0\n";
+  }
+  for (int i = 0; i + 1 < n; ++i) {
+    for (int j = 0; j + 1 < n; ++j) {
+      const int a = i * n + j + 1, b = a + 1, c = a + n + 1, d = a + n;
+      if (!cut) {
+        text << "f " << a << "//1 " << b << "//1 " << c << "//1 " << d << "//1\n";
+      } else if (cut(i, j)) {
+        text << "f " << a << ' ' << b << ' ' << c << "\nf " << a << ' ' << c << ' ' << d << '\n';
+      } else {
+        text << "f " << a << ' ' << b << ' ' << d << "\nf " << b << ' ' << c << ' ' << d << '\n';
+      }
+    }
+  }
+  return text.str();
+}
+
+struct Built {
+  explicit Built(const std::string& name, const SceneParameters& given = {})
+      : type(mesh_scene(name)),
+        parameters(complete_parameters(type, given)),
+        scene(type.build(parameters)) {}
+  const Problem& problem() const { return *scene.problem; }
+  // Pairs of places, and what belongs to each: the same whatever the numbers of vertices are.
+  using Place = std::array<long, 3>;
+  Place place(int v) const {
+    const Eigen::Vector3d x = scene.start.x.col(v);
+    return {std::lround(1e6 * x.x()), std::lround(1e6 * x.y()), std::lround(1e6 * x.z())};
+  }
+  std::set<std::pair<Place, Place>> pairs(const std::vector<inextensible::Edge>& edges) const {
+    std::set<std::pair<Place, Place>> all;
+    for (const auto& [a, b] : edges) all.insert(std::minmax(place(a), place(b)));
+    return all;
+  }
+  SceneType type;
+  SceneParameters parameters;
+  Scene scene;
+};
+
+TEST(MeshScene, OfASquareIsThePatch) {
+  const int n = 7;
+  const Built mesh("mesh:" + file_with("square.obj", square(n)) + ",pins=y>-0.01andx<0.01",
+                   {{"density", 0.2}});
+  const Problem& problem = mesh.problem();
+  EXPECT_EQ(problem.vertices(), n * n);
+  EXPECT_EQ(problem.constraints(), 2 * n * (n - 1));
+  EXPECT_EQ(problem.pinned().size(), 1);
+  ASSERT_TRUE(problem.shear());
+  EXPECT_EQ(problem.shear()->edges.size(), 2 * (n - 1) * (n - 1));
+  EXPECT_NEAR(problem.total_mass(), 0.2, 1e-12);
+  EXPECT_EQ(problem.bending().size(), 2 * n * (n - 2));
+  for (const double l : problem.rest_length()) EXPECT_NEAR(l, 1.0 / (n - 1), 1e-12);
+  EXPECT_EQ(mesh.type.counts(mesh.parameters), std::pair(n * n, 2 * n * (n - 1)));
+}
+
+TEST(MeshScene, OfTrianglesIsThatOfTheQuadsTheyMake) {
+  std::mt19937_64 random(3);
+  for (const auto& cut : {std::function<bool(int, int)>([](int, int) { return true; }),
+                          std::function<bool(int, int)>([](int i, int j) { return (i + j) % 2; }),
+                          std::function<bool(int, int)>([&](int, int) { return random() % 2; })}) {
+    const Built quads("mesh:" + file_with("quads.obj", square(6)) + ",pins=y>-0.01");
+    const Built triangles("mesh:" + file_with("triangles.obj", square(6, cut)) + ",pins=y>-0.01");
+    EXPECT_EQ(quads.pairs(quads.problem().edges()), triangles.pairs(triangles.problem().edges()));
+    EXPECT_EQ(quads.pairs(quads.problem().shear()->edges),
+              triangles.pairs(triangles.problem().shear()->edges));
+  }
+}
+
+TEST(MeshScene, CutFinerIsTheFinerSquare) {
+  const Built coarse("mesh:" + file_with("coarse.obj", square(4)) + ",pins=y>-0.01", {{"n", 3}});
+  const Built fine("mesh:" + file_with("fine.obj", square(10)) + ",pins=y>-0.01");
+  EXPECT_EQ(coarse.pairs(coarse.problem().edges()), fine.pairs(fine.problem().edges()));
+  EXPECT_NEAR(coarse.problem().total_mass(), fine.problem().total_mass(), 1e-12);
+  EXPECT_EQ(coarse.problem().bending().size(), fine.problem().bending().size());
+}
+
+// Three flat triangles around a vertex: no two of them make a good quad, so that springs hold them,
+// and cut finer they stay of one piece.
+TEST(MeshScene, TrianglesThatMakeNoQuadsHoldWithSprings) {
+  std::ostringstream text;
+  text << "v 0 0 0\n";
+  for (int k = 0; k < 3; ++k)
+    text << "v " << std::cos(2 * k * std::numbers::pi / 3) << " 0 "
+         << std::sin(2 * k * std::numbers::pi / 3) << '\n';
+  text << "f 1 2 3\nf 1 3 4\nf 1 4 2\n";
+  const std::string name = "mesh:" + file_with("three.obj", text.str()) + ",pins=x>0.9999";
+  for (const int n : {1, 2, 5}) {
+    const Built mesh(name, {{"n", n}});
+    const int vertices = 1 + 3 * n * (n + 1) / 2, triangles = 3 * n * n;
+    EXPECT_EQ(mesh.problem().vertices(), vertices);
+    EXPECT_EQ(mesh.scene.triangles.size(), triangles);
+    EXPECT_NEAR(mesh.problem().total_mass(), 0.15 * 0.75 * std::sqrt(3.0), 1e-5);
+    EXPECT_EQ(mesh.problem().constraints(), 0);
+    ASSERT_TRUE(mesh.problem().shear());
+    EXPECT_EQ(mesh.problem().shear()->edges.size(), vertices + triangles - 1);  // Euler
+  }
+}
+
+TEST(MeshScene, FallsOntoItsBodyAndKeepsItsLimit) {
+  const std::string body = file_with(
+      "box.obj",
+      "v -1 -1 -1\nv 2 -1 -1\nv 2 -1 1\nv -1 -1 1\nv -1 -1.5 -1\nv 2 -1.5 -1\nv 2 -1.5 1\nv -1 "
+      "-1.5 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  // It hangs above, its lowest row on the box, and folds.
+  const Built mesh("mesh:" + file_with("sheet.obj", square(8)) + ",body=" + body,
+                   {{"duration", 0.6}});
+  const auto stepper =
+      inextensible::make_stepper("fast_projection", mesh.scene.problem, {.strain_limit = 0.01});
+  inextensible::State state = mesh.scene.start;
+  for (int i = 0; i < 60; ++i) ASSERT_TRUE(stepper->advance(state, 0.01));
+  EXPECT_GE(state.x.row(1).minCoeff(), -1 - 1e-5);
+  EXPECT_LT(state.x.row(1).minCoeff(), -0.99);
+  for (std::size_t k = 0; k < mesh.problem().edges().size(); ++k) {
+    const auto [a, b] = mesh.problem().edges()[k];
+    const double strain =
+        (state.x.col(a) - state.x.col(b)).norm() / mesh.problem().rest_length()[k] - 1;
+    EXPECT_LE(std::abs(strain), 0.01 + 1e-9);
+  }
+}
+
+TEST(MeshScene, WhatCanBeNoClothIsRefusedInALine) {
+  const std::string good = file_with("good.obj", square(3));
+  const std::string two = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  const struct {
+    std::string scene, part;
+  } cases[] = {
+      {"mesh:" + good, "nothing is pinned and nothing is below"},
+      {"mesh:" + good + ",pins=y>5", "no vertex is where the pins are"},
+      {"mesh:" + good + ",pins=height>1", "must be like y>1.2"},
+      {"mesh:" + good + ",pins=y>", "must be like y>1.2"},
+      {"mesh:" + good + ",colour=red", "must be pins=... or body=..."},
+      {"mesh:" + good + ",body=" + good, "no body to collide with"},
+      {"mesh:nowhere.obj,pins=y>0", "nowhere.obj"},
+      {"mesh:" + file_with("empty.obj", "# nothing\n") + ",pins=y>0", "no faces"},
+      {"mesh:" + file_with("short.obj", "v 1 2\n") + ",pins=y>0", "line 1: a vertex needs three"},
+      {"mesh:" + file_with("beyond.obj", two + "f 1 2 9\n") + ",pins=y>0", "line 5: no vertex 9"},
+      {"mesh:" + file_with("five.obj", two + "v 2 2 2\nf 1 2 3 4 5\n") + ",pins=y>0",
+       "a face of 5 corners"},
+      {"mesh:" + file_with("flat.obj", two + "v 0 0 0\nf 1 5 3\n") + ",pins=y>0",
+       "between vertices 1 and 5 has no length"},
+      {"mesh:" + file_with("fan.obj", two + "v 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 2 5\n") + ",pins=y>0",
+       "between vertices 1 and 2 belongs to more than two faces"},
+  };
+  for (const auto& [scene, part] : cases) {
+    try {
+      (void)mesh_scene(scene);
+      ADD_FAILURE() << scene;
+    } catch (const UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
+          << scene << ": " << error.what();
+    }
+  }
+  EXPECT_EQ(with_mesh_parts("mesh:a.obj", "y > 1.2 and x < 0", "b.obj"),
+            "mesh:a.obj,pins=y>1.2andx<0,body=b.obj");
+  EXPECT_THROW((void)with_mesh_parts("drape", "y > 1", ""), UsageError);
+}
+
+}  // namespace
+}  // namespace harness
