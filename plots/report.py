@@ -51,7 +51,10 @@ def section(name: str, title: str, body: str) -> str:
 
 
 def findings_part(documents: list[Json], legend: Legend) -> str:
-    return "<ul>\n" + "".join(f"<li>{escape(sentence)}</li>\n" for sentence in findings(documents, legend)) + "</ul>"
+    def items(texts: list[str]) -> str:
+        return "<ul>\n" + "".join(f"<li>{text}</li>\n" for text in texts) + "</ul>"
+    return items([escape(found.text) + (items([escape(part) for part in found.parts]) if found.parts else "")
+                  for found in findings(documents, legend)])
 
 
 def pictures_of(documents: dict[Path, Json]) -> list[Picture]:
@@ -63,7 +66,7 @@ def pictures_of(documents: dict[Path, Json]) -> list[Picture]:
 def picture_part(item: Picture) -> str:
     name, title = escape(item.name), escape(item.title)
     return (f'<figure id="figure-{name}"><img src="{item.svg}" alt="{title}" loading="lazy">'
-            f'<figcaption>{title} <a download="{name}.svg" href="{item.svg}">SVG</a> '
+            f'<figcaption>{title} <a download="{name}.svg" data-of="figure-{name}" href="#figure-{name}">SVG</a> '
             f'<a download="{name}.csv" href="{item.csv}">CSV</a></figcaption></figure>\n')
 
 

@@ -21,6 +21,21 @@
   const axis = (point) => point.sweep === "strain" ? point.limit : point.vertices;
   const axisText = (point) => point.sweep === "strain" ? percent(point.limit) : `${point.vertices} vertices`;
 
+  // A solver's mark, as in the figures: corners on a circle, by the letters of matplotlib.
+  const corners = {s: [4, 45], D: [4, 0], d: [4, 0, 0.6], "^": [3, -90], v: [3, 90], "<": [3, 180], ">": [3, 0], p: [5, -90], h: [6, -90],
+    H: [6, 0], "*": [5, -90, 1, 0.45], X: [4, 0, 1, 0.45], P: [4, -45, 1, 0.45]};
+  function outline(marker) {
+    const radius = 6.5;
+    if (!(marker in corners)) return `M ${radius} 0 A ${radius} ${radius} 0 1 0 ${-radius} 0 A ${radius} ${radius} 0 1 0 ${radius} 0 Z`;
+    const [count, turn, narrow = 1, inner = 0] = corners[marker];
+    const steps = inner ? 2 * count : count;
+    const places = Array.from({length: steps}, (_, k) => {
+      const angle = (turn + 360 * k / steps) * Math.PI / 180, far = inner && k % 2 ? inner * radius : radius;
+      return `${(narrow * far * Math.cos(angle)).toFixed(2)} ${(far * Math.sin(angle)).toFixed(2)}`;
+    });
+    return `M ${places.join(" L ")} Z`;
+  }
+
   function fillPlaces() {
     const texts = new Map(contests.get(choice.value).map((point) => [axis(point), axisText(point)]));
     const was = place.value;
@@ -35,9 +50,8 @@
         if (tick.checked) hidden.delete(number); else hidden.add(number);
         onHide.forEach((act) => act());
       });
-      const swatch = element("span", {className: "swatch"});
-      swatch.style.borderColor = solver.color;
-      swatch.style.background = solver.hollow ? "transparent" : solver.color;
+      const swatch = drawn("svg", {class: "swatch", viewBox: "-8 -8 16 16", "aria-hidden": "true"},
+        drawn("path", {d: outline(solver.marker), stroke: solver.color, "stroke-width": 1.5, fill: solver.hollow ? "transparent" : solver.color}));
       box.append(element("label", {}, tick, swatch, solver.label));
     }
   }
@@ -73,8 +87,8 @@
         if (point.low !== null) {
           chart.append(drawn("line", {stroke: solver.color, x1: x(axis(point)), x2: x(axis(point)), y1: y(point.low), y2: y(point.high)}));
         }
-        const mark = drawn("circle", {class: "mark", cx: x(axis(point)), cy: y(point.seconds), r: 5.5, stroke: solver.color, tabindex: 0,
-          "stroke-width": 2, fill: solver.hollow ? "transparent" : solver.color, role: "button",
+        const mark = drawn("path", {class: "mark", d: outline(solver.marker), stroke: solver.color, tabindex: 0,
+          transform: `translate(${x(axis(point))} ${y(point.seconds)})`, "stroke-width": 1.5, fill: solver.hollow ? "transparent" : solver.color, role: "button",
           "aria-label": `${solver.label}, ${axisText(point)}: ${timeText(point.seconds)}; press to copy its command`});
         for (const event of ["focus", "mouseenter"]) mark.addEventListener(event, () => tell(detail, point));
         mark.addEventListener("click", () => copy(detail, point));

@@ -63,3 +63,8 @@ async function copy(place, point) {
     place.textContent = command;  // a page from a file may not write to the clipboard
   }
 }
+
+// The picture that is shown is the file: it need not be in the page twice.
+for (const link of document.querySelectorAll("a[data-of]")) {
+  link.href = document.getElementById(link.dataset.of).querySelector("img").src;
+}

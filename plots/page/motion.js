@@ -82,7 +82,7 @@
     gl.drawElements(mode, indices.length, gl.UNSIGNED_SHORT, 0);
   }
 
-  let film, turn = 0.7, lift = 0.35, distance = 2.2, playing = false, frame = 0, last = 0;
+  let film, turn = 0.7, lift = 0.35, distance = 1.5, playing = false, frame = 0, last = 0;
 
   // Perspective times a look at the middle of what moves.
   function view(aspect) {

@@ -50,22 +50,32 @@ def report(folder: Path, documents: list[Json], *more: object) -> subprocess.Com
 
 def test_findings_name_the_first_and_how_far_the_next_is() -> None:
     made = sampled(strain_sweep())
-    sentence, = findings([made], legend_of(made))
-    assert "at 1 % fast projection is the fastest (100 ms a simulated second), before SHAKE (2 times)" in sentence
+    found, = findings([made], legend_of(made))
+    assert found.text == "Chain of 80 vertices:"
+    assert found.parts[1] == ("at 1 % fast projection is the fastest: 100 ms a simulated second (steps of 1/100 s, error 0.02 of its size); "
+                              "then SHAKE, 2 times that (steps of 1/100 s, error 0.02 of its size)")
+
+
+def test_findings_tell_of_strain_that_collisions_leave() -> None:
+    made = sampled(strain_sweep("drape"))
+    for entry in made["points"]:
+        entry["max_strain_after_collision"] = 0.25
+    found, = findings([made], legend_of(made))
+    assert found.parts[1].count("25 % of strain after collisions") == 2
 
 
 def test_findings_name_no_winner_within_the_noise() -> None:
     made = sampled(document([point("fast_projection", seconds=0.1, best=True), point("shake", seconds=0.101, best=True),
                              point("jacobi", seconds=0.3, best=True)]))
-    sentence, = findings([made], legend_of(made))
-    assert "fast projection and SHAKE are the fastest, with no difference beyond the noise" in sentence
-    assert "before Jacobi strain limiting (3 times)" in sentence
+    part, = findings([made], legend_of(made))[0].parts
+    assert "fast projection and SHAKE are the fastest, with no difference beyond the noise" in part
+    assert "then Jacobi strain limiting, 3 times that" in part
 
 
 def test_findings_say_how_times_grow() -> None:
     made = resolution_sweep()
-    assert any("fast projection grows least, with the power 1.00" in text and "SHAKE most, with 1.50" in text
-               for text in findings([made], legend_of(made)))
+    assert any("fast projection grows least, with the power 1.00" in found.text and "SHAKE most, with 1.50" in found.text
+               for found in findings([made], legend_of(made)))
 
 
 def test_the_data_are_those_of_the_points() -> None:
@@ -161,6 +171,8 @@ def test_every_part_is_there_and_nothing_complains(browser: Any, tmp_path: Path)
         browser.execute_script("arguments[0].scrollIntoView()", image)
         browser.execute_async_script("arguments[0].decode().then(arguments[1], arguments[1])", image)
         assert image.get_property("naturalWidth") > 100
+    for link in find(browser, "figcaption a"):
+        assert link.get_attribute("href").startswith("data:")
     assert (tmp_path / "report.html").stat().st_size < 10_000_000
 
 
