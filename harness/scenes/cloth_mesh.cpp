@@ -27,8 +27,8 @@ double triangle_area(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const E
 double obliqueness(const std::vector<Eigen::Vector3d>& x, const std::array<int, 4>& quad) {
   double worst = 0;
   for (std::size_t k = 0; k < 4; ++k) {
-    const Eigen::Vector3d at = x[quad[k]], to = x[quad[(k + 1) % 4]] - at,
-                          back = x[quad[(k + 3) % 4]] - at;
+    const Eigen::Vector3d& at = x[quad[k]];
+    const Eigen::Vector3d to = x[quad[(k + 1) % 4]] - at, back = x[quad[(k + 3) % 4]] - at;
     const double angle = std::atan2(to.cross(back).norm(), to.dot(back));
     worst = std::max(worst, std::abs(angle - 0.5 * std::numbers::pi));
   }
@@ -158,7 +158,8 @@ ClothMesh refined(const ClothMesh& mesh, int n) {
         fine.quads.push_back({at[i][j], at[i][j + 1], at[i + 1][j + 1], at[i + 1][j]});
     }
   }
-  for (const auto& [a, b, c] : mesh.triangles) {
+  for (const auto& triangle : mesh.triangles) {
+    const int a = triangle[0], b = triangle[1], c = triangle[2];
     std::map<std::pair<int, int>, int> inside;
     const auto at = [&](int i, int j) {  // i parts from a to b, j from a to c
       if (j == 0) return on_side(a, b, i);
