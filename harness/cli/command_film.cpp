@@ -9,7 +9,6 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
-#include "harness/base/json_text.h"
 #include "harness/base/temporary_folder.h"
 #include "harness/base/text.h"
 #include "harness/cli/commands.h"
@@ -107,8 +106,7 @@ void print_times(const Recording& recording) {
 // Positions go to the renderer in a folder of their own.
 int render(const FilmOptions& given, const Recording& recording) {
   const TemporaryFolder folder("film");
-  write_atomically(folder.file("film.json"), compact(film_header(recording)) + "\n");
-  write_atomically(folder.file("film.f32"), film_positions(recording));
+  write_recording(folder.path(), recording);
   std::vector<std::string> words{folder.path(), given.out, "--width", std::to_string(given.width)};
   if (!given.stills.empty()) words.insert(words.end(), {"--stills", given.stills});
   return draw(words, "film.py");

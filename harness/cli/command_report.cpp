@@ -1,9 +1,6 @@
 // bench report: one page that tells what result files found.
 #include <filesystem>
-#include <iostream>
-#include <sstream>
 
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/json_text.h"
@@ -12,7 +9,6 @@
 #include "harness/cli/commands.h"
 #include "harness/film/recording.h"
 #include "harness/points/result_file.h"
-#include "harness/points/suite.h"
 #include "harness/points/tuned.h"
 
 namespace harness {
@@ -31,23 +27,20 @@ nlohmann::json claims_json(const std::vector<ClaimVerdict>& claims) {
 
 // By three methods at 1 %, small enough for a page.
 FilmSpec motion(const std::string& scene, const SceneParameters& given) {
-  const auto found_type = find_scene(scene);
-  const SceneType& type = *found_type;
+  const auto type = find_scene(scene);
   FilmSpec spec;
   spec.scene = scene;
-  spec.parameters = complete_parameters(type, given);
+  spec.parameters = complete_parameters(*type, given);
   for (const char* solver : {"gauss_seidel_colored", "fast_projection", "fast_projection_bdf2"})
     spec.solvers.push_back({solver, solver});
-  tune(spec.solvers, read_tuned("tuned.json"), type.kind(), {}, Untuned::none);
+  tune(spec.solvers, read_tuned("tuned.json"), type->kind(), {}, Untuned::none);
   spec.strain_limits = {0.01};
   return spec;
 }
 
 std::string record_into(const std::string& folder, const FilmSpec& spec) {
-  const Recording recording = record(spec, interrupted, [](auto&&...) {});
   std::filesystem::create_directory(folder);
-  write_atomically(folder + "/film.json", compact(film_header(recording)) + "\n");
-  write_atomically(folder + "/film.f32", film_positions(recording));
+  write_recording(folder, record(spec, interrupted, [](auto&&...) {}));
   return folder;
 }
 

@@ -6,7 +6,9 @@
 
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
+#include "harness/base/files.h"
 #include "harness/base/interrupt.h"
+#include "harness/base/json_text.h"
 #include "harness/base/text.h"
 #include "harness/run/runner.h"
 #include "inextensible/problem/triangle_collider.h"
@@ -128,6 +130,8 @@ Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
   return recording;
 }
 
+namespace {
+
 nlohmann::json film_header(const Recording& recording) {
   nlohmann::json takes = nlohmann::json::array(), body = nlohmann::json::array();
   for (const Take& take : recording.takes)
@@ -164,6 +168,13 @@ std::string film_positions(const Recording& recording) {
     }
   }
   return bytes;
+}
+
+}  // namespace
+
+void write_recording(const std::string& folder, const Recording& recording) {
+  write_atomically(folder + "/film.json", compact(film_header(recording)) + "\n");
+  write_atomically(folder + "/film.f32", film_positions(recording));
 }
 
 }  // namespace harness

@@ -56,9 +56,9 @@ Recording record(
 // |strain| of every edge of the stage.
 std::vector<double> strains(const Stage& stage, const inextensible::Positions& x);
 
-// For the renderer: all but positions, and these as 32-bit floats, little-endian, x y z of every
-// vertex of every frame of every take in turn.
-nlohmann::json film_header(const Recording& recording);
-std::string film_positions(const Recording& recording);
+// For renderers, into a folder that is there: film.json holds all but positions, film.f32 these as
+// 32-bit floats, little-endian, x y z of every vertex of every frame of every take in turn. Throws
+// FileError.
+void write_recording(const std::string& folder, const Recording& recording);
 
 }  // namespace harness
