@@ -24,9 +24,11 @@ struct Everywhere {
   std::string same;
 };
 
-Untuned read_untuned(JsonReader& reader) {
+Untuned read_untuned(JsonReader& reader, bool tuned, Untuned otherwise) {
   const json* value = reader.find("untuned");
-  if (!value || *value == false) return Untuned::none;
+  if (!value) return otherwise;
+  if (*value == false) return Untuned::none;
+  if (!tuned) throw UsageError(reader.where("untuned") + " goes with 'tuned'");
   if (*value == true) return Untuned::all;
   if (*value == "where_faster") return Untuned::where_faster;
   reader.fail_at("untuned", *value, "true, false or \"where_faster\"");
@@ -36,9 +38,7 @@ Everywhere read_everywhere(JsonReader& reader) {
   Everywhere all;
   if (const std::string file = reader.text("tuned", ""); !file.empty())
     all.tuned = read_tuned(file);
-  all.untuned = read_untuned(reader);
-  if (all.untuned != Untuned::none && !all.tuned)
-    throw UsageError(reader.where("untuned") + " goes with 'tuned'");
+  all.untuned = read_untuned(reader, all.tuned.has_value(), Untuned::none);
   all.same = reader.text("same", "");
   return all;
 }
@@ -103,8 +103,9 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
       spec.solver_options[name] = read_settings(value, where + ": 'solver_options'", backend);
     }
   }
+  const Untuned untuned = read_untuned(reader, all.tuned.has_value(), all.untuned);
   reader.finish();
-  if (all.tuned) tune(spec.contestants, *all.tuned, type->kind(), spec.solver_options, all.untuned);
+  if (all.tuned) tune(spec.contestants, *all.tuned, type->kind(), spec.solver_options, untuned);
   add_double(spec.contestants, all.same);
   try {  // impossible values are found before anything runs
     const double duration = complete_parameters(*type, spec.scene_parameters).at("duration");

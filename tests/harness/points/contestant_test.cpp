@@ -86,6 +86,7 @@ TEST(Contestants, ThatAreWrongAreRefusedByName) {
   says(complaint("", R"("solvers": [5])"), "solvers' names");
   says(complaint(R"("same": "idc", )", R"("solvers": ["icd"])"), "did you mean 'icd'");
   says(complaint(R"("untuned": true, )", R"("solvers": ["icd"])"), "goes with 'tuned'");
+  says(complaint("", R"("solvers": ["icd"], "untuned": true)"), "goes with 'tuned'");
   says(complaint(R"("tuned": "no_such.json", )", R"("solvers": ["icd"])"), "no_such.json");
 }
 
@@ -102,6 +103,9 @@ TEST(Tuned, SettingsAreUsedForTheirKindOfSceneAndBelowWhatASuiteSays) {
   EXPECT_TRUE(drape.sweeps[0].contestants[1].hollow);
   EXPECT_EQ(names(suite_with(tuned, both, "folded_drape")), names(drape)) << "it is like a drape";
   EXPECT_EQ(names(suite_with(tuned, both)), (std::vector<std::string>{"jacobi", "icd"}));
+  EXPECT_EQ(names(suite_with(tuned, both + R"(, "untuned": false)", "drape")),
+            (std::vector<std::string>{"jacobi", "icd"}))
+      << "what a sweep says itself goes first";
 
   const Suite given =
       suite_with(tuned, both + R"(, "solver_options": {"jacobi": {"relaxation": 1.1}})", "drape");
