@@ -27,6 +27,7 @@ except ImportError:
     sys.exit(2)
 
 from parts.legend import legend_of
+from parts.program import exit_code
 from parts.result_file import Json, ResultError, load
 from parts.sheet import save
 from parts.style import RC
@@ -95,14 +96,5 @@ def run(arguments: list[str]) -> None:
                 print(path, flush=True)
 
 
-def main() -> int:
-    try:
-        run(sys.argv[1:])
-    except ResultError as error:
-        print(f"figures.py: {error}", file=sys.stderr)
-        return 2
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(exit_code(run))

@@ -181,12 +181,21 @@ def thinner(body: np.ndarray, size: float) -> np.ndarray:
     return middle + (body - middle) * max(0.9, 1 - BODY_GAP * size / reach)
 
 
+def body_at(header: dict[str, Any], frame: int) -> np.ndarray:
+    """Where the body's corners are."""
+    points = np.array(header["body"], dtype=float)
+    if not header["body_poses"]:
+        return points
+    pose = np.array(header["body_poses"][frame], dtype=float).reshape(3, 4)
+    return points @ pose[:, :3].T + pose[:, 3]
+
+
 def picture(film: Film, take: int, frame: int, view: View, width: int, folder: Path) -> Image.Image:
     header = film.header
     x = film.takes[take][min(frame, len(film.takes[take]) - 1)]
     text = view.scene() + cloth(film, x, header["takes"][take]["strain_limit"], view.size)
     if header["body"]:
-        text += mesh(thinner(np.array(header["body"], dtype=float), view.size), np.array(header["body_triangles"], dtype=int),
+        text += mesh(thinner(body_at(header, frame), view.size), np.array(header["body_triangles"], dtype=int),
                      f"texture {{ pigment {{ rgb {BODY} }} finish {{ ambient 0.25 diffuse 0.7 specular 0.15 roughness 0.05 }} }}\n", None)
     source, image = folder / "frame.pov", folder / "frame.png"
     source.write_text(text, encoding="utf-8")
@@ -250,7 +259,9 @@ def sheet(film: Film, cells: list[list[tuple[int, int]]], view: View, width: int
 
 
 def render(film: Film, out: Path, width: int, stills: list[float] | None) -> None:
-    points = [take.reshape(-1, 3) for take in film.takes] + ([np.array(film.header["body"], dtype=float)] if film.header["body"] else [])
+    points = [take.reshape(-1, 3) for take in film.takes]
+    if film.header["body"]:
+        points += [body_at(film.header, frame) for frame in range(max(1, len(film.header["body_poses"])))]
     seen = np.concatenate(points)
     view = View.of(seen, float(np.ptp(seen[:, 2])) < 1e-3 * float(np.ptp(seen, axis=0).max()))
     frames = max(take["frames"] for take in film.header["takes"])

@@ -24,6 +24,7 @@ except ImportError:
     sys.exit(2)
 
 from drawings.times_over_results import draw, entries_in
+from parts.program import exit_code
 from parts.result_file import ResultError
 from parts.sheet import save
 from parts.style import RC
@@ -43,14 +44,5 @@ def run(arguments: list[str]) -> None:
     print(out, flush=True)
 
 
-def main() -> int:
-    try:
-        run(sys.argv[1:])
-    except ResultError as error:
-        print(f"history.py: {error}", file=sys.stderr)
-        return 2
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(exit_code(run))

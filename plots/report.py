@@ -30,6 +30,7 @@ from page.findings import findings
 from page.motion import recorded
 from page.pictures import Picture, picture
 from parts.legend import Legend, legend_of, merged
+from parts.program import exit_code
 from parts.result_file import Json, ResultError, load, object_in
 from parts.style import RC
 
@@ -133,14 +134,5 @@ def run(arguments: list[str]) -> None:
     print(options.out)
 
 
-def main() -> int:
-    try:
-        run(sys.argv[1:])
-    except ResultError as error:
-        print(f"report.py: {error}", file=sys.stderr)
-        return 2
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(exit_code(run))

@@ -14,6 +14,7 @@
 #include "inextensible/methods/jacobi.h"
 #include "inextensible/methods/null_filter.h"
 #include "inextensible/methods/rattle.h"
+#include "inextensible/methods/rattle_suzuki.h"
 #include "inextensible/methods/shake.h"
 #include "inextensible/methods/strips.h"
 #include "inextensible/methods/xpbd_small_steps.h"
@@ -41,6 +42,7 @@ std::vector<Backend> built_in() {
       fast_projection_adaptive_bdf2_row(),
       xpbd_small_steps_row(),
       fast_projection_bdf2opt_row(),
+      rattle_suzuki_row(),
       null_row(),
       oracle_row(),
   };

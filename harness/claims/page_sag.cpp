@@ -11,7 +11,7 @@ void print_sag(std::ostream& out, const NamedResult& result) {
     double side = 0;
     for (const Point& p : scene.points) {
       if (!p.flag("best") || !p.ok() || !p.document().contains("sag")) continue;
-      if (p.document().at("sag").empty()) continue;
+      if (!p.document().at("sag").contains("lower_edge")) continue;
       best.add(p.number("strain_limit"), p);
       side = p.scene_parameter("side");
     }

@@ -8,7 +8,8 @@
 
 namespace harness {
 
-// All write into a folder, which is made, and return the paths of what to open.
+// All write into a folder, which is made, and return the paths of what to open. A body beside the
+// cloth has files of its own, <name>-body...: one where it stays, else as many as the cloth.
 
 // Wavefront OBJ, one file a frame, <name>-0001.obj and so on: faces of a cloth, lines of a chain.
 std::vector<std::string> write_obj(const Recording& recording, const Take& take,

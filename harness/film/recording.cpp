@@ -107,6 +107,15 @@ std::vector<double> strains(const Stage& stage, const inextensible::Positions& x
   return all;
 }
 
+inextensible::Positions body_at(const Stage& stage, std::size_t frame) {
+  const inextensible::Pose pose =
+      stage.body_poses.empty() ? inextensible::Pose{} : stage.body_poses.at(frame);
+  inextensible::Positions x(3, stage.body.size());
+  for (std::size_t i = 0; i < stage.body.size(); ++i)
+    x.col(static_cast<Eigen::Index>(i)) = pose(stage.body[i]);
+  return x;
+}
+
 Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
                  const std::function<void(const Take&, std::size_t, std::size_t)>& told) {
   const Scene scene = find_scene(spec.scene)->build(spec.parameters);
@@ -118,6 +127,11 @@ Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
   recording.stage = stage_of(scene);
   const auto frames =
       1 + static_cast<std::size_t>(std::floor(scene.duration * spec.frames_per_second + 1e-9));
+  if (const auto& motion = scene.problem->body_motion()) {
+    for (std::size_t i = 0; i < frames; ++i)
+      recording.stage.body_poses.push_back(
+          motion(scene.start.time + static_cast<double>(i) / spec.frames_per_second));
+  }
   for (const double limit : spec.strain_limits) {
     for (const Contestant& contestant : spec.solvers) {
       const auto settings = calibrated(spec, contestant, limit, recording.step, interrupted);
@@ -133,7 +147,8 @@ Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
 namespace {
 
 nlohmann::json film_header(const Recording& recording) {
-  nlohmann::json takes = nlohmann::json::array(), body = nlohmann::json::array();
+  nlohmann::json takes = nlohmann::json::array(), body = nlohmann::json::array(),
+                 poses = nlohmann::json::array();
   for (const Take& take : recording.takes)
     takes.push_back({{"solver", take.solver},
                      {"label", take.label},
@@ -143,6 +158,11 @@ nlohmann::json film_header(const Recording& recording) {
                      {"largest_strain", take.largest_strain},
                      {"seconds", take.seconds}});
   for (const Eigen::Vector3d& v : recording.stage.body) body.push_back({v.x(), v.y(), v.z()});
+  for (const inextensible::Pose& pose : recording.stage.body_poses) {
+    const auto& r = pose.turn;
+    poses.push_back({r(0, 0), r(0, 1), r(0, 2), pose.way[0], r(1, 0), r(1, 1), r(1, 2), pose.way[1],
+                     r(2, 0), r(2, 1), r(2, 2), pose.way[2]});
+  }
   return {{"schema", "inextensible-film/1"},
           {"scene", recording.spec.scene},
           {"scene_parameters", recording.spec.parameters},
@@ -154,6 +174,7 @@ nlohmann::json film_header(const Recording& recording) {
           {"rest_length", recording.stage.rest_length},
           {"body", body},
           {"body_triangles", recording.stage.body_triangles},
+          {"body_poses", poses},
           {"takes", takes}};
 }
 

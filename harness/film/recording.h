@@ -38,6 +38,7 @@ struct Stage {
   std::vector<double> rest_length;            // m
   std::vector<Eigen::Vector3d> body;          // m; empty: no obstacle
   std::vector<std::array<int, 3>> body_triangles;
+  std::vector<inextensible::Pose> body_poses;  // of each frame; empty: it stays
 };
 
 struct Recording {
@@ -53,12 +54,15 @@ Recording record(
     const FilmSpec& spec, const std::function<bool()>& interrupted,
     const std::function<void(const Take&, std::size_t frame, std::size_t frames)>& told);
 
+// Where the body's corners are at a frame.
+inextensible::Positions body_at(const Stage& stage, std::size_t frame);
+
 // |strain| of every edge of the stage.
 std::vector<double> strains(const Stage& stage, const inextensible::Positions& x);
 
-// For renderers, into a folder that is there: film.json holds all but positions, film.f32 these as
-// 32-bit floats, little-endian, x y z of every vertex of every frame of every take in turn. Throws
-// FileError.
+// For renderers, into a folder that is there: film.json holds all but positions (poses as the rows
+// of [turn way]), film.f32 these as 32-bit floats, little-endian, x y z of every vertex of every
+// frame of every take in turn. Throws FileError.
 void write_recording(const std::string& folder, const Recording& recording);
 
 }  // namespace harness

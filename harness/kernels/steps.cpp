@@ -38,7 +38,7 @@ void vertex_pass(benchmark::State& state, bool collision, const std::string& sce
   while (state.KeepRunning()) {
     if (collision) {
       x = m.x0;
-      contacts->begin(m.state.x);
+      contacts->begin(m.state.x, m.state.time, m.h);
       contacts->push_out(x, work);
     } else {
       unconstrained_step(problem, m.state, m.h, x, work);

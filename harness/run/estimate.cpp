@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "harness/base/clock.h"
+#include "harness/run/sweep.h"
 #include "harness/scenes/scene.h"
 #include "inextensible/registry.h"
 
@@ -53,8 +54,8 @@ Estimate estimate(const Suite& suite, const std::vector<Search>& searches) {
                                               : std::min(static_cast<double>(search->ladder.size()),
                                                          runs_of_a_search);
       const double repeated = search->base.sweep == "step" ? tried : 1;
-      result.seconds +=
-          run * (tried * (calibrated ? runs_of_a_calibration : 1) + repeated * (suite.reps - 1));
+      result.seconds += run * tried * (calibrated ? runs_of_a_calibration : 1) +
+                        repeated * std::min(run * (suite.reps - 1), repeat_for);
     }
     ++result.timed;
   }

@@ -18,10 +18,6 @@ namespace {
 // risen.
 constexpr double hopeless_factor = 3;
 constexpr double hopeless_least = 0.2;  // s; shorter runs are always finished
-// Runs that take longer than this are not repeated: what disturbs a machine averages out within
-// them, and the intervals of their ratios are as wide as the A/A pair's noise.
-constexpr double repeat_up_to = 6;  // s
-
 // Steps whose one time is within this factor of the best are repeated before one is called best.
 constexpr double candidate_factor = 1.2;
 
@@ -59,10 +55,8 @@ void repeat_candidates(const Suite& suite, const std::vector<Choice>& choices,
   }
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double seconds =
-        points[i].median_seconds() * points[i].spec.step * points[i].steps_planned;
     const bool wanted = points[i].spec.sweep == "step" ? points[i].ok() : candidates.contains(i);
-    if (wanted && seconds <= repeat_up_to) order.push_back(i);
+    if (wanted) order.push_back(i);
   }
   if (order.empty()) return;  // GSL's shuffle does not take nothing
   const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
@@ -70,13 +64,20 @@ void repeat_candidates(const Suite& suite, const std::vector<Choice>& choices,
   gsl_rng_set(random.get(), suite.seed);
   const int most = std::max(suite.reps, suite.most_reps);
   std::size_t done = 0;
+  const auto long_enough = [&](std::size_t i) {
+    const PointResult& point = points[i];
+    return static_cast<double>(point.samples.size()) * point.median_seconds() * point.spec.step *
+               point.steps_planned >=
+           repeat_for;
+  };
   for (int rep = 1; rep < most; ++rep) {
+    std::erase_if(order, long_enough);
     if (rep >= suite.reps) {
       std::erase_if(order, [&](std::size_t i) {
         return median_uncertainty(points[i].samples) <= suite.rel_ci;
       });
-      if (order.empty()) return;
     }
+    if (order.empty()) return;
     const std::size_t all = done + order.size() * static_cast<std::size_t>(
                                                       (rep < suite.reps ? suite.reps : most) - rep);
     gsl_ran_shuffle(random.get(), order.data(), order.size(), sizeof(std::size_t));

@@ -13,6 +13,10 @@
 
 namespace harness {
 
+// A point is repeated until all its runs have taken so long together: what disturbs a machine
+// averages out within long runs. s.
+inline constexpr double repeat_for = 10;
+
 // What a sweep tells while it runs.
 struct SweepEvents {
   std::function<void(const PointResult&, std::size_t search, std::size_t searches)> point =

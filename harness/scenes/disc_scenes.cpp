@@ -1,68 +1,47 @@
 #include "harness/scenes/disc_scenes.h"
 
 #include <cmath>
-#include <map>
 #include <stdexcept>
 
+#include "harness/scenes/cloth_draft.h"
 #include "harness/scenes/fabrics.h"
-#include "harness/scenes/meshes.h"
 
 namespace harness {
 namespace {
 
-using inextensible::Edge;
+struct Disc {
+  ClothMesh mesh;
+  std::vector<char> held;  // on the table
+};
 
 // The quads of a square grid whose middle lies in the disc: its area is the disc's, but for what
-// the grid leaves open.
-class DiscGrid {
- public:
-  explicit DiscGrid(const SceneParameters& p)
-      : n_(static_cast<int>(p.at("n"))),
-        link_(2 * p.at("radius") / (n_ - 1)),
-        radius_(p.at("radius")),
-        table_(p.at("table")) {
-    for (int i = 0; i < n_; ++i) {
-      for (int j = 0; j < n_; ++j)
-        if (quad(i, j) || quad(i - 1, j) || quad(i, j - 1) || quad(i - 1, j - 1))
-          number_.try_emplace({i, j}, static_cast<int>(number_.size()));
+// the grid leaves open. In the plane y = 0.
+Disc disc_of(const SceneParameters& p) {
+  const auto n = static_cast<int>(p.at("n"));
+  const double radius = p.at("radius"), link = 2 * radius / (n - 1);
+  const auto place = [&](double index) { return link * (index - 0.5 * (n - 1)); };
+  const auto quad = [&](int i, int j) {
+    return i >= 0 && j >= 0 && i + 1 < n && j + 1 < n &&
+           std::hypot(place(i + 0.5), place(j + 0.5)) <= radius;
+  };
+  Disc disc;
+  std::vector<int> number(n * n, -1);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      if (!quad(i, j) && !quad(i - 1, j) && !quad(i, j - 1) && !quad(i - 1, j - 1)) continue;
+      number[i * n + j] = static_cast<int>(disc.mesh.vertices.size());
+      disc.mesh.vertices.emplace_back(place(j), 0, place(i));
+      disc.held.push_back(std::hypot(place(i), place(j)) <= p.at("table"));
     }
   }
-
-  double link() const { return link_; }
-  int vertices() const { return static_cast<int>(number_.size()); }
-  // Of row i and column j; -1: none.
-  int vertex(int i, int j) const {
-    const auto found = number_.find({i, j});
-    return found == number_.end() ? -1 : found->second;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const int* at = number.data() + i * n + j;
+      if (quad(i, j)) disc.mesh.quads.push_back({at[0], at[1], at[n + 1], at[n]});
+    }
   }
-  // Whether vertices (i, j), (i, j + 1), (i + 1, j), (i + 1, j + 1) are a quad.
-  bool quad(int i, int j) const {
-    return i >= 0 && j >= 0 && i + 1 < n_ && j + 1 < n_ &&
-           std::hypot(place(i + 0.5), place(j + 0.5)) <= radius_;
-  }
-  double place(double index) const { return link_ * (index - 0.5 * (n_ - 1)); }
-  bool on_table(int i, int j) const { return std::hypot(place(i), place(j)) <= table_; }
-
-  template <class Visit>
-  void each_vertex(const Visit& visit) const {
-    for (const auto& [at, v] : number_) visit(at.first, at.second, v);
-  }
-  // Sides of quads of which an end may move.
-  template <class Visit>
-  void each_edge(const Visit& visit) const {
-    each_vertex([&](int i, int j, int v) {
-      if ((quad(i, j) || quad(i - 1, j)) && !(on_table(i, j) && on_table(i, j + 1)))
-        visit(v, vertex(i, j + 1));
-      if ((quad(i, j) || quad(i, j - 1)) && !(on_table(i, j) && on_table(i + 1, j)))
-        visit(v, vertex(i + 1, j));
-    });
-  }
-
- private:
-  int n_;
-  double link_, radius_, table_;
-  std::map<std::pair<int, int>, int> number_;  // in the order of rows
-};
+  return disc;
+}
 
 // Height at the start, m: a few waves of unlike length, so that no symmetry holds folds back.
 double unevenness(const SceneParameters& p, double x, double z) {
@@ -72,85 +51,22 @@ double unevenness(const SceneParameters& p, double x, double z) {
          (std::cos(3 * angle + 0.4) + std::cos(5 * angle + 1.9) + std::cos(7 * angle + 0.9));
 }
 
-void bend(Draft& cloth, const DiscGrid& grid, const SceneParameters& p) {
-  const double rigidity = p.at("bending") * grid.link();  // of a thread
-  const auto thread = [&](std::array<std::pair<int, int>, 3> at) {
-    std::array<int, 3> v{};
-    bool moves = false;
-    for (std::size_t k = 0; k < 3; ++k) {
-      v[k] = grid.vertex(at[k].first, at[k].second);
-      if (v[k] < 0) return;
-      moves = moves || !grid.on_table(at[k].first, at[k].second);
-    }
-    if (moves)
-      cloth.parts.bending.push_back(
-          inextensible::thread_bending(v[0], v[1], v[2], grid.link(), grid.link(), rigidity));
-  };
-  grid.each_vertex([&](int i, int j, int /*v*/) {
-    thread({{{i, j}, {i, j + 1}, {i, j + 2}}});
-    thread({{{i, j}, {i + 1, j}, {i + 2, j}}});
-  });
-}
-
-// On each diagonal of a quad a spring whose stiffness is the cloth's shear stiffness, as in
-// fabric_drape.
-void shear(Draft& cloth, const DiscGrid& grid, const SceneParameters& p) {
-  inextensible::Springs springs;
-  grid.each_vertex([&](int i, int j, int v) {
-    if (!grid.quad(i, j)) return;
-    const int right = grid.vertex(i, j + 1), below = grid.vertex(i + 1, j),
-              across = grid.vertex(i + 1, j + 1);
-    cloth.scene.triangles.push_back({v, right, below});
-    cloth.scene.triangles.push_back({across, right, below});
-    if (!(grid.on_table(i, j) && grid.on_table(i + 1, j + 1))) springs.edges.push_back({v, across});
-    if (!(grid.on_table(i, j + 1) && grid.on_table(i + 1, j)))
-      springs.edges.push_back({right, below});
-  });
-  if (!(p.at("shear") > 0)) return;
-  springs.rest_length.assign(springs.edges.size(), std::sqrt(2.0) * grid.link());
-  springs.stiffness.assign(springs.edges.size(), p.at("shear"));
-  cloth.parts.shear = std::move(springs);
-}
-
 Scene build_cusick(const SceneParameters& p) {
   if (!(p.at("table") < p.at("radius")))
     throw std::invalid_argument("a table of " + std::to_string(p.at("table")) +
                                 " m under a disc of " + std::to_string(p.at("radius")) +
                                 " m: nothing hangs over");
-  const DiscGrid grid(p);
-  Draft cloth;
-  inextensible::ProblemParts& parts = cloth.parts;
-  const double tile = grid.link() * grid.link();
-  parts.mass.assign(grid.vertices(), 0);
-  cloth.scene.start.x.resize(3, grid.vertices());
-  cloth.scene.start.v.setZero(3, grid.vertices());
-  grid.each_vertex([&](int i, int j, int v) {
-    const double x = grid.place(j), z = grid.place(i);
-    cloth.scene.start.x.col(v) << x, unevenness(p, x, z), z;
-    if (grid.on_table(i, j)) parts.pinned.push_back(v);
-    int quads = 0;
-    for (const int a : {i - 1, i})
-      for (const int b : {j - 1, j}) quads += grid.quad(a, b);
-    parts.mass[v] = p.at("density") * tile * quads / 4;
-    if (p.at("drag") > 0) parts.drag.push_back(p.at("drag") * tile * quads / 4);
-  });
-  grid.each_edge([&](int a, int b) { parts.edges.push_back({a, b}); });
-  parts.rest_length.assign(parts.edges.size(), grid.link());
-  parts.gravity = {0, -p.at("gravity"), 0};
-  shear(cloth, grid, p);
-  if (p.at("bending") > 0) bend(cloth, grid, p);
-  parts.implicit_forces = true;
-  cloth.scene.staggered = false;  // its rest is compared, and not the way there
-  cloth.scene.duration = p.at("duration");
-  cloth.scene.size = 2 * p.at("radius");
-  return finished(std::move(cloth));
+  const Disc disc = disc_of(p);
+  Draft draft = cloth_draft(disc.mesh, disc.held, p);
+  inextensible::Positions& x = draft.scene.start.x;
+  for (Eigen::Index v = 0; v < x.cols(); ++v) x(1, v) = unevenness(p, x(0, v), x(2, v));
+  draft.scene.size = 2 * p.at("radius");
+  return finished(std::move(draft));
 }
 
 std::pair<int, int> count_disc(const SceneParameters& p) {
-  const DiscGrid grid(p);
-  int edges = 0;
-  grid.each_edge([&](int /*a*/, int /*b*/) { ++edges; });
-  return {grid.vertices(), edges};
+  const Disc disc = disc_of(p);
+  return count_cloth(disc.mesh, disc.held);
 }
 
 }  // namespace

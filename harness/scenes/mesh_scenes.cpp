@@ -9,8 +9,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
-#include "harness/scenes/cloth_mesh.h"
-#include "harness/scenes/meshes.h"
+#include "harness/scenes/cloth_draft.h"
 #include "inextensible/problem/triangle_collider.h"
 
 namespace harness {
@@ -138,82 +137,37 @@ Eigen::Vector3d placed(const Eigen::Vector3d& x, const SceneParameters& p) {
   return s * x;
 }
 
+struct MeshCloth {
+  ClothMesh mesh;
+  std::vector<char> held;  // of each vertex
+};
+
+MeshCloth cloth_for(const MeshModel& model, const SceneParameters& p) {
+  MeshCloth cloth{refined(model.cloth, static_cast<int>(p.at("n"))), {}};
+  for (Eigen::Vector3d& v : cloth.mesh.vertices) {
+    cloth.held.push_back(model.pinned(v));
+    v = placed(v, p);
+  }
+  return cloth;
+}
+
 Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
-  ClothMesh cloth = refined(model.cloth, static_cast<int>(p.at("n")));
-  Draft draft;
-  inextensible::ProblemParts& parts = draft.parts;
-  Scene& scene = draft.scene;
-  const auto n = static_cast<int>(cloth.vertices.size());
-  scene.start.x.resize(3, n);
-  scene.start.v.setZero(3, n);
-  std::vector<char> held(n, 0);
-  for (int v = 0; v < n; ++v) {
-    held[v] = model.pinned(cloth.vertices[v]);
-    if (held[v]) parts.pinned.push_back(v);
-    cloth.vertices[v] = placed(cloth.vertices[v], p);
-    scene.start.x.col(v) = cloth.vertices[v];
-  }
-  const std::vector<double> area = areas(cloth);
-  for (int v = 0; v < n; ++v) {
-    parts.mass.push_back(p.at("density") * area[v]);
-    if (p.at("drag") > 0) parts.drag.push_back(p.at("drag") * area[v]);
-  }
-  parts.gravity = {0, -p.at("gravity"), 0};
-  const auto length = [&](int a, int b) { return (cloth.vertices[a] - cloth.vertices[b]).norm(); };
-  for (const auto& [a, b] : sides_of_quads(cloth)) {
-    if (held[a] && held[b]) continue;
-    parts.edges.push_back({a, b});
-    parts.rest_length.push_back(length(a, b));
-  }
-  if (p.at("shear") > 0) {
-    inextensible::Springs springs;
-    const auto join = [&](int a, int b) {
-      if (held[a] && held[b]) return;
-      springs.edges.push_back({a, b});
-      springs.rest_length.push_back(length(a, b));
-      springs.stiffness.push_back(p.at("shear"));
-    };
-    for (const auto& [a, b, c, d] : cloth.quads) {
-      join(a, c);
-      join(b, d);
-    }
-    for (const auto& [a, b] : sides_of_triangles(cloth)) join(a, b);
-    if (!springs.edges.empty()) parts.shear = std::move(springs);
-  }
-  if (p.at("bending") > 0) {
-    for (const auto& [a, b, c] : threads_of(cloth)) {
-      if (held[a] && held[b] && held[c]) continue;
-      const double before = length(a, b), after = length(b, c);
-      const double width = area[b] / (0.5 * (before + after));
-      parts.bending.push_back(
-          inextensible::thread_bending(a, b, c, before, after, p.at("bending") * width));
-    }
-  }
-  parts.implicit_forces = true;
+  const MeshCloth cloth = cloth_for(model, p);
+  Draft draft = cloth_draft(cloth.mesh, cloth.held, p);
   if (!model.body.triangles.empty()) {
     inextensible::TriangleMesh body = model.body;
     for (Eigen::Vector3d& v : body.vertices) v = placed(v, p);
-    parts.collider =
+    draft.parts.collider =
         std::make_shared<const inextensible::TriangleCollider>(std::move(body), p.at("friction"));
   }
-  for (const auto& [a, b, c, d] : cloth.quads) {
-    scene.triangles.push_back({a, b, d});
-    scene.triangles.push_back({c, d, b});
-  }
-  scene.triangles.insert(scene.triangles.end(), cloth.triangles.begin(), cloth.triangles.end());
-  scene.staggered = false;
-  scene.duration = p.at("duration");
-  scene.size = (scene.start.x.rowwise().maxCoeff() - scene.start.x.rowwise().minCoeff()).norm();
+  const inextensible::Positions& x = draft.scene.start.x;
+  draft.scene.size = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).norm();
   return finished(std::move(draft));
 }
 
 std::pair<int, int> count_mesh(const MeshModel& model, const SceneParameters& p) {
-  const ClothMesh cloth = refined(model.cloth, static_cast<int>(p.at("n")));
-  const std::vector<Side> sides = sides_of_quads(cloth);
-  const auto free = std::count_if(sides.begin(), sides.end(), [&](const Side& s) {
-    return !model.pinned(cloth.vertices[s.first]) || !model.pinned(cloth.vertices[s.second]);
-  });
-  return {static_cast<int>(cloth.vertices.size()), static_cast<int>(free)};
+  const MeshCloth cloth = cloth_for(model, p);
+  return count_cloth(cloth.mesh, cloth.held);
 }
 
 }  // namespace

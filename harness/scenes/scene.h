@@ -43,7 +43,7 @@ struct Scene {
   // at the start: enough to lift the whole by 5 % of its size. Runs that blow up gain ten times as
   // much or go on to; what honest methods gain by truncation, at the coarsest steps of the ladders,
   // stays below.
-  double energy_bound = 0.05;
+  double energy_bound = 0.05;  // infinite where a body that moves does work
   // Whether methods whose velocities are of the middle of a step start half a step back.
   bool staggered = true;
   // Vertices of which a result tells how far they sag.

@@ -95,10 +95,10 @@ std::optional<Outcome> Witness::judge_contact(const State& state, TrialResult& r
                     std::to_string(worst.edge) + " is strained by " +
                     told_apart(worst.strain, trial_.strain_limit));
   }
-  memory_.resize(problem_.vertices(), -1);
   inextensible::WorkCounters work;
-  problem_.collider()->find(state.x, problem_.inverse_mass(), visible_depth * trial_.scene.size,
-                            memory_, inside_, work);
+  if (!obstacle_) obstacle_.emplace(problem_);
+  obstacle_->place(state.time);
+  obstacle_->find(state.x, visible_depth * trial_.scene.size, inside_, work);
   if (inside_.empty()) return {};
   return fail(result, Outcome::wrong,
               "success claimed, but vertex " + std::to_string(inside_.front().vertex) +

@@ -6,6 +6,7 @@
 
 #include "harness/judge/energy.h"
 #include "harness/stability/trial.h"
+#include "inextensible/problem/obstacle.h"
 
 namespace harness {
 
@@ -41,8 +42,8 @@ class Witness {
   double release_ = 0;  // of energy by slack in the last step
   inextensible::State start_;
   Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero();
-  // With contact inside only: what the collider remembers and finds.
-  inextensible::Collider::Memory memory_;
+  // With contact inside only: where the obstacle is, and what is in it.
+  std::optional<inextensible::Obstacle> obstacle_;
   std::vector<inextensible::ContactPlane> inside_;
 };
 

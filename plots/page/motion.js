@@ -100,6 +100,12 @@
     return new Float32Array([0, 1, 2, 3].flatMap((column) => rows.map((row) => row[column])));
   }
 
+  function bodyAt(frame) {
+    if (!film.body_poses.length) return film.body.flat();
+    const m = film.body_poses[Math.min(frame, film.body_poses.length - 1)];
+    return film.body.flatMap(([x, y, z]) => [0, 4, 8].map((row) => m[row] * x + m[row + 1] * y + m[row + 2] * z + m[row + 3]));
+  }
+
   function draw() {
     const ratio = window.devicePixelRatio || 1;
     canvas.width = canvas.clientWidth * ratio;
@@ -116,7 +122,7 @@
       gl.viewport(stacked ? 0 : number * width, stacked ? (takes.length - 1 - number) * height : 0, width, height);
       gl.uniformMatrix4fv(viewAt, false, view(width / height));
       if (film.body.length) {
-        const body = new Float32Array(film.body.flat());
+        const body = new Float32Array(bodyAt(frame));
         drawMesh(body, normalsOf(body, film.body_triangles), new Float32Array(body.length).fill(0.62), new Uint16Array(film.body_triangles.flat()), gl.TRIANGLES);
       }
       const most = new Float32Array(n), tints = new Float32Array(3 * n);

@@ -23,7 +23,7 @@ def recorded(folder: Path) -> Json:
     low, high = x.min(axis=0), x.max(axis=0)
     span = np.where(high > low, high - low, 1)
     whole = np.rint((x - low) / span * STEPS).astype("<u2")
-    kept = ("scene", "frames_per_second", "vertices", "triangles", "edges", "rest_length", "body", "body_triangles")
+    kept = ("scene", "frames_per_second", "vertices", "triangles", "edges", "rest_length", "body", "body_triangles", "body_poses")
     return {**{key: header[key] for key in kept},
             "takes": [{key: take[key] for key in ("solver", "label", "strain_limit", "frames", "detail")} for take in header["takes"]],
             "low": low.tolist(), "span": span.tolist(), "positions": base64.b64encode(whole.tobytes()).decode()}

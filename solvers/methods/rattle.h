@@ -10,17 +10,18 @@
 
 namespace inextensible {
 
-class Rattle final : public Stepper {
+class Rattle : public Stepper {
  public:
   Rattle(std::shared_ptr<const Problem> problem, const Shake::Settings& settings);
   const char* linear_solver() const override { return shake_.linear_solver(); }
   double reciprocal_condition() const override { return shake_.reciprocal_condition(); }
 
- private:
+ protected:
   StepResult solve(const State& state, double h, Positions& x) override;
   StepResult end_velocities(const State& start, double h, const Positions& filtered,
                             const Positions& x, Positions& v) override;
 
+ private:
   Shake shake_;
   Positions v_half_;  // with drag only
 };

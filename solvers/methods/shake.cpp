@@ -56,7 +56,8 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, Wo
   for (int j = 0;; ++j) {
     const bool permissible = linearize(x);
     // Within the target nothing is left to project.
-    if (permissible && (j >= min_iterations_ || (target_ > 0 && c_.squaredNorm() == 0))) {
+    if (permissible &&
+        (j >= min_iterations_ || ((target_ > 0 || j > 0) && c_.squaredNorm() == 0))) {
       if (j > 0 && distance(x_start, x) > reach)
         return refuse(Status::not_converged, j, edges, x, "a spurious solution, far from x^n");
       return {Status::ok, j};
@@ -142,7 +143,7 @@ StepResult Shake::project_velocity(const Positions& x, Positions& v, WorkCounter
   edges.rate(u_start_, v, mu_);  // J v
   if (!system_.solve(mu_, work)) return refuse(Status::singular, 0, edges, x, no_solution);
   edges.apply(u_start_, mu_, v);
-  if (contacts_) contacts_->keep_in_planes(v);
+  if (contacts_) contacts_->keep_on_planes(x, v);
   return {};
 }
 

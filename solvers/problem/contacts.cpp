@@ -16,15 +16,20 @@ Contacts::Contacts(const Problem& problem)
       friction_(problem.collider()->friction()),
       vertex_(problem.vertices()),
       place_(problem.vertices(), -1),
-      memory_(problem.vertices(), -1) {
+      obstacle_(problem) {
   for (std::vector<double>& column : numbers_) column.assign(problem.vertices() + lanes, 0.0);
   found_.reserve(problem.vertices());
 }
 
-void Contacts::begin(const Positions& x_start) {
+void Contacts::begin(const Positions& x_start, double time, double h) {
   for (int c = 0; c < count_; ++c) place_[vertex_[c]] = -1;
   count_ = 0;
   start_ = &x_start;
+  const BodyMotion& motion = problem_.body_motion();
+  if (!motion) return;
+  carry_ = motion(time + h) * motion(time).inverse();
+  obstacle_.place(time + h);
+  h_ = h;
 }
 
 void Contacts::set_plane(int contact, const ContactPlane& plane) {
@@ -35,13 +40,14 @@ void Contacts::set_plane(int contact, const ContactPlane& plane) {
 }
 
 int Contacts::find(const Positions& x, WorkCounters& work) {
-  problem_.collider()->find(x, problem_.inverse_mass(), tolerance_, memory_, found_, work);
+  obstacle_.find(x, tolerance_, found_, work);
   for (const ContactPlane& plane : found_) {
     int& place = place_[plane.vertex];
     if (place < 0) {
       place = count_++;
       vertex_[place] = plane.vertex;
-      const auto start = start_->col(plane.vertex);
+      Eigen::Vector3d start = start_->col(plane.vertex);
+      if (problem_.body_motion()) start = carry_(start);
       value(start_x, place) = start.x();
       value(start_y, place) = start.y();
       value(start_z, place) = start.z();
@@ -53,10 +59,21 @@ int Contacts::find(const Positions& x, WorkCounters& work) {
   return static_cast<int>(found_.size());
 }
 
-void Contacts::keep_in_planes(Positions& v) const {
+void Contacts::keep_in_planes(Positions& d) const {
   for (int c = 0; c < count_; ++c) {
-    auto at = v.col(vertex_[c]);
+    auto at = d.col(vertex_[c]);
     if (holds(c)) at -= normal(c).dot(at) * normal(c);
+  }
+}
+
+void Contacts::keep_on_planes(const Positions& x, Positions& v) const {
+  keep_in_planes(v);
+  if (!problem_.body_motion()) return;
+  const Pose back = carry_.inverse();
+  for (int c = 0; c < count_; ++c) {
+    if (!holds(c)) continue;
+    const Eigen::Vector3d at = x.col(vertex_[c]), obstacle = (at - back(at)) / h_;
+    v.col(vertex_[c]) += normal(c).dot(obstacle) * normal(c);
   }
 }
 

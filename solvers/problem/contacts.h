@@ -6,6 +6,7 @@
 //   push >= 0,  n . x >= offset,  push (n . x - offset) = 0,
 //   |drag| <= mu push, and the vertex stays where it began the step, or |drag| = mu push against
 //   the way it slides.
+// On an obstacle that moves, "where it began" moves with it.
 // settle() visits vertices by projected Gauss-Seidel for these (Jourdan, Alart and Jean 1998): push
 // and drag are kept, so that a contact can be let go of again, and friction grows with all that
 // presses, gravity or the tension of the cloth.
@@ -16,7 +17,7 @@
 #include <cmath>
 #include <vector>
 
-#include "inextensible/problem/problem.h"
+#include "inextensible/problem/obstacle.h"
 
 namespace inextensible {
 
@@ -25,8 +26,9 @@ class Contacts {
   // The problem has a collider, and outlives this.
   explicit Contacts(const Problem& problem);
 
-  // A step begins at x_start (3 x n); there are no contacts.
-  void begin(const Positions& x_start);
+  // A step of h begins at x_start (3 x n) and `time`, s; there are no contacts. The obstacle is
+  // where it will be when the step ends, and carries along what friction holds.
+  void begin(const Positions& x_start, double time, double h);
 
   // Adds a contact for every vertex of x that is inside and has none; one that is inside in spite
   // of its plane, as it may be where the obstacle is not convex, takes the plane that is nearest
@@ -41,9 +43,12 @@ class Contacts {
     settle([&x](int vertex, int axis) -> double& { return x(axis, vertex); });
   }
 
-  // Takes from v (3 x n, displacements or velocities) what leads through or out of a plane that
-  // holds its vertex.
-  void keep_in_planes(Positions& v) const;
+  // Takes from displacements d (3 x n, m) what leads through or out of a plane that holds its
+  // vertex.
+  void keep_in_planes(Positions& d) const;
+  // Takes from velocities v (3 x n, m/s) of vertices at x what leads them through or out of a plane
+  // that holds them, as it moves.
+  void keep_on_planes(const Positions& x, Positions& v) const;
 
   // What a step must do in the end, whatever it did before: leaves no vertex inside.
   void push_out(Positions& x, WorkCounters& work);
@@ -54,7 +59,8 @@ class Contacts {
   bool holds(int contact) const { return value(push, contact) > 0; }
 
   double friction() const { return friction_; }  // Coulomb coefficient
-  // Of its vertex at x: m above the plane; and the way since the start of the step, within it.
+  // Of its vertex at x: m above the plane; and the way since the start of the step, within it and
+  // as the obstacle sees it.
   double gap(int contact, const Eigen::Vector3d& x) const {
     return normal(contact).dot(x) - value(offset, contact);
   }
@@ -100,11 +106,14 @@ class Contacts {
   const Problem& problem_;
   double tolerance_, friction_;
   const Positions* start_ = nullptr;
+  // Of an obstacle that moves: what it does during the step, and how long that is, s.
+  Pose carry_;
+  double h_ = 0;
   int count_ = 0;
   std::vector<int> vertex_;
   std::array<std::vector<double>, numbers> numbers_;  // filled up to whole lanes
   std::vector<int> place_;                            // of a vertex's contact, or -1
-  Collider::Memory memory_;
+  Obstacle obstacle_;
   std::vector<ContactPlane> found_;
 };
 

@@ -99,6 +99,8 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
     if (!(parts_.drag[i] >= 0) || !std::isfinite(parts_.drag[i]))
       refuse("vertex", i, "its drag is negative or not finite");
   }
+  if (parts_.body_motion && !parts_.collider)
+    throw std::invalid_argument("a body's motion without a collider");
   total_mass_ = std::accumulate(parts_.mass.begin(), parts_.mass.end(), 0.0);
   if (!parts_.rest_length.empty()) {
     const auto [shortest, longest] =

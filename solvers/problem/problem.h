@@ -15,6 +15,7 @@
 
 #include "inextensible/problem/bending.h"
 #include "inextensible/problem/collider.h"
+#include "inextensible/problem/pose.h"
 
 namespace inextensible {
 
@@ -46,6 +47,7 @@ struct ProblemParts {
   // (systems/implicit_forces.h).
   bool implicit_forces = false;
   std::shared_ptr<const Collider> collider;  // null: nothing to collide with
+  BodyMotion body_motion;                    // of the collider; empty: it stays
   // Methods keep vertices out of the obstacle while they keep edges to their lengths. false: a step
   // ends with a pass that moves vertices out, after which nobody looks at edges again (the paper's
   // pipeline, section 4.4).
@@ -79,6 +81,7 @@ class Problem {
     return parts_.implicit_forces && (parts_.shear || !parts_.bending.empty() || has_drag());
   }
   const Collider* collider() const { return parts_.collider.get(); }
+  const BodyMotion& body_motion() const { return parts_.body_motion; }
   // Whether there is a collider that methods are to heed.
   bool contact_inside() const { return parts_.collider && parts_.contact_inside; }
 

@@ -21,7 +21,7 @@ StepResult Stepper::advance(State& state, double h) {
     ++work_.rejected_steps;
     return {Status::not_finite, 0, -1, 0, "the step must be a positive, finite time"};
   }
-  if (contacts_) contacts_->begin(state.x);
+  if (contacts_) contacts_->begin(state.x, state.time, h);
   StepResult result = solve(state, h, next_);
   work_.iterations += result.iterations;
   if (!result) {

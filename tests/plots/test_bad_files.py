@@ -15,6 +15,7 @@ import pytest
 import figures
 from documents import (ROOT, Json, document, drawn, legend_labels, point, resolution_sweep, stability, step_sweep, strain_sweep,
                        texts_outside, written)
+from parts.program import exit_code
 from parts.result_file import ResultError, load
 from parts.words import inches, shorten, wrap
 
@@ -121,7 +122,7 @@ def test_a_bad_file_is_one_line_and_exit_code_2(what: str, tmp_path: Path, capsy
     path = tmp_path / "bad.json"
     path.write_text(content if isinstance(content, str) else json.dumps(content))
     monkeypatch.setattr(sys, "argv", ["figures.py", str(path)])
-    assert figures.main() == 2
+    assert exit_code(figures.run) == 2
     said = capsys.readouterr()
     assert said.out == "" and said.err.count("\n") == 1 and said.err.startswith("figures.py: ") and len(said.err) < 500
     assert message in said.err

@@ -19,7 +19,7 @@ SCRIPT = ROOT / "plots" / "film.py"
 needs_povray = pytest.mark.skipif(not shutil.which("povray"), reason="povray is not installed")
 
 
-def recorded(folder: Path, stretched: float = 1.0, chain: bool = False, body: bool = False) -> Path:
+def recorded(folder: Path, stretched: float = 1.0, chain: bool = False, body: bool = False, moves: bool = False) -> Path:
     """Two takes of three frames: a square of 4 x 4 vertices, or a chain, that falls; the second is stretched."""
     n = 4
     count = n if chain else n * n
@@ -33,6 +33,7 @@ def recorded(folder: Path, stretched: float = 1.0, chain: bool = False, body: bo
     header = {"schema": "inextensible-film/1", "scene": "falling", "scene_parameters": {}, "step": 0.01, "frames_per_second": 10,
               "vertices": count, "triangles": triangles, "edges": edges, "rest_length": [1 / (n - 1)] * len(edges),
               "body": tetrahedron if body else [], "body_triangles": [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] if body else [],
+              "body_poses": [[0, 0, 1, frame, 0, 1, 0, 0, -1, 0, 0, 0] for frame in range(3)] if moves else [],
               "takes": [{"solver": name, "label": name, "strain_limit": 0.01, "detail": "", "frames": 3,
                          "largest_strain": [0.0] * 3, "seconds": [0.01] * 2} for name in ("one", "other")]}
     (folder / "film.json").write_text(json.dumps(header))
@@ -54,6 +55,14 @@ def test_colours_go_from_cloth_to_alarm() -> None:
     assert shades[3].tolist() == shades[2].tolist()
     assert shades[2][0] > 2 * shades[2][2]  # red
     assert shades[1][2] > shades[1][0]      # blue
+
+
+def test_a_body_goes_where_its_pose_takes_it(tmp_path: Path) -> None:
+    made = film.load(recorded(tmp_path, body=True, moves=True))
+    assert np.allclose(film.body_at(made.header, 2)[1], [2, -1.2, -1])  # a quarter turn about y, then 2 along x
+    (tmp_path / "still").mkdir()
+    still = film.load(recorded(tmp_path / "still", body=True))
+    assert np.allclose(film.body_at(still.header, 2)[1], [1, -1.2, 0])
 
 
 def test_normals_of_a_flat_square_are_upright() -> None:

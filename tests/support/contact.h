@@ -46,7 +46,7 @@ inline void push_out(std::shared_ptr<const Collider> collider, const Positions& 
   const Problem problem =
       points(static_cast<int>(x.cols()), std::move(collider), std::move(pinned));
   Contacts contacts(problem);
-  contacts.begin(start);
+  contacts.begin(start, 0, 1);
   contacts.push_out(x, work);
 }
 

@@ -67,6 +67,7 @@ class Steppers : public ::testing::TestWithParam<std::string> {
 // direction at the start, by the smaller root s of |d - s d_start| = 1.
 TEST_P(Steppers, ShortenOneEdgeByTheClosedForm) {
   if (GetParam() == "implicit_springs") GTEST_SKIP() << "an elastic edge";
+  if (GetParam() == "rattle_suzuki") GTEST_SKIP() << "five steps in one";
   for (std::uint64_t seed = 0; seed < 4 * examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);

@@ -31,7 +31,7 @@ struct Fallen {
       start.col(v) = random_vector(random, 1);
       candidate.col(v) = start.col(v) + random_vector(random, 1);
     }
-    contacts.begin(start);
+    contacts.begin(start, 0, 0.01);
     found = contacts.find(candidate, work);
   }
 
@@ -133,7 +133,7 @@ TEST(Contacts, BeginForgets) {
   Random random(4);
   Fallen fallen(random, 20, 0.3);
   ASSERT_GT(fallen.contacts.count(), 0);
-  fallen.contacts.begin(fallen.start);
+  fallen.contacts.begin(fallen.start, 0, 0.01);
   EXPECT_EQ(fallen.contacts.count(), 0);
   Positions x = fallen.candidate;
   fallen.contacts.settle(x);

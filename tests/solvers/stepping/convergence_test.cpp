@@ -80,6 +80,10 @@ TEST(Order, OfRattleAndBdf2IsTwo) {
   EXPECT_NEAR(order("fast_projection_bdf2opt").value, 2, 0.25);
 }
 
+TEST(Order, OfComposedRattleIsFour) {
+  EXPECT_NEAR(order("rattle_suzuki", {{"min_iterations", 6.0}}).value, 4, 0.25);
+}
+
 TEST(Order, OfImplicitSpringsTowardsTheirOwnStiffLimitIsOne) {
   const inextensible::Settings settings{{"stiffness", 1e4}, {"newton_tolerance", 1.0}};
   const Scene scene = short_chain();

@@ -27,7 +27,7 @@ struct Pressed {
             std::make_shared<const Ground>(Eigen::Vector3d(0.3, 1, 0.2), 1, friction))),
         x(testing::perturbed(random, mesh, 0.2)),
         contacts(*mesh.problem) {
-    contacts.begin(mesh.x);
+    contacts.begin(mesh.x, 0, 0.01);
     contacts.find(x, work);
   }
 

@@ -1,0 +1,88 @@
+#include "harness/scenes/cloth_draft.h"
+
+#include <algorithm>
+
+namespace harness {
+namespace {
+
+double length(const ClothMesh& mesh, int a, int b) {
+  return (mesh.vertices[a] - mesh.vertices[b]).norm();
+}
+
+void hold_threads(const ClothMesh& mesh, const std::vector<char>& held,
+                  inextensible::ProblemParts& parts) {
+  for (const auto& [a, b] : sides_of_quads(mesh)) {
+    if (held[a] && held[b]) continue;
+    parts.edges.push_back({a, b});
+    parts.rest_length.push_back(length(mesh, a, b));
+  }
+}
+
+void resist_shear(const ClothMesh& mesh, const std::vector<char>& held, double stiffness,
+                  inextensible::ProblemParts& parts) {
+  inextensible::Springs springs;
+  const auto join = [&](int a, int b) {
+    if (held[a] && held[b]) return;
+    springs.edges.push_back({a, b});
+    springs.rest_length.push_back(length(mesh, a, b));
+    springs.stiffness.push_back(stiffness);
+  };
+  for (const auto& [a, b, c, d] : mesh.quads) {
+    join(a, c);
+    join(b, d);
+  }
+  for (const auto& [a, b] : sides_of_triangles(mesh)) join(a, b);
+  if (!springs.edges.empty()) parts.shear = std::move(springs);
+}
+
+// area: of each vertex, m^2; rigidity: of the cloth, N m.
+void resist_bending(const ClothMesh& mesh, const std::vector<char>& held,
+                    const std::vector<double>& area, double rigidity,
+                    inextensible::ProblemParts& parts) {
+  for (const auto& [a, b, c] : threads_of(mesh)) {
+    if (held[a] && held[b] && held[c]) continue;
+    const double before = length(mesh, a, b), after = length(mesh, b, c);
+    const double width = area[b] / (0.5 * (before + after));
+    parts.bending.push_back(inextensible::thread_bending(a, b, c, before, after, rigidity * width));
+  }
+}
+
+}  // namespace
+
+Draft cloth_draft(const ClothMesh& mesh, const std::vector<char>& held, const SceneParameters& p) {
+  Draft draft;
+  inextensible::ProblemParts& parts = draft.parts;
+  Scene& scene = draft.scene;
+  const auto n = static_cast<int>(mesh.vertices.size());
+  const std::vector<double> area = areas(mesh);
+  scene.start.x.resize(3, n);
+  scene.start.v.setZero(3, n);
+  for (int v = 0; v < n; ++v) {
+    scene.start.x.col(v) = mesh.vertices[v];
+    if (held[v]) parts.pinned.push_back(v);
+    parts.mass.push_back(p.at("density") * area[v]);
+    if (p.at("drag") > 0) parts.drag.push_back(p.at("drag") * area[v]);
+  }
+  parts.gravity = {0, -p.at("gravity"), 0};
+  hold_threads(mesh, held, parts);
+  if (p.at("shear") > 0) resist_shear(mesh, held, p.at("shear"), parts);
+  if (p.at("bending") > 0) resist_bending(mesh, held, area, p.at("bending"), parts);
+  parts.implicit_forces = true;
+  for (const auto& [a, b, c, d] : mesh.quads) {
+    scene.triangles.push_back({a, b, d});
+    scene.triangles.push_back({c, d, b});
+  }
+  scene.triangles.insert(scene.triangles.end(), mesh.triangles.begin(), mesh.triangles.end());
+  scene.staggered = false;
+  scene.duration = p.at("duration");
+  return draft;
+}
+
+std::pair<int, int> count_cloth(const ClothMesh& mesh, const std::vector<char>& held) {
+  const std::vector<Side> sides = sides_of_quads(mesh);
+  const auto constrained = std::count_if(
+      sides.begin(), sides.end(), [&](const Side& s) { return !held[s.first] || !held[s.second]; });
+  return {static_cast<int>(mesh.vertices.size()), static_cast<int>(constrained)};
+}
+
+}  // namespace harness

@@ -1,0 +1,28 @@
+// A problem's collider, there where its motion has brought it.
+#pragma once
+
+#include "inextensible/problem/problem.h"
+
+namespace inextensible {
+
+class Obstacle {
+ public:
+  // The problem has a collider, and outlives this.
+  explicit Obstacle(const Problem& problem);
+
+  // From now on it is where it is at `time`, s.
+  void place(double time);
+
+  // As Collider::find, of all vertices but the pinned ones.
+  void find(const Positions& x, double depth, std::vector<ContactPlane>& planes,
+            WorkCounters& work);
+
+ private:
+  const Problem& problem_;
+  Collider::Memory memory_;
+  // Of a body that moves only.
+  Pose pose_;
+  Positions seen_;  // x as the body sees it
+};
+
+}  // namespace inextensible

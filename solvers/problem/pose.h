@@ -1,0 +1,23 @@
+// Where a rigid body is, and how it moves.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+
+namespace inextensible {
+
+// Takes the body's own points to where they are: p -> turn p + way.
+struct Pose {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // a rotation
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();       // m
+
+  Eigen::Vector3d operator()(const Eigen::Vector3d& p) const { return turn * p + way; }
+  Pose inverse() const { return {turn.transpose(), -(turn.transpose() * way)}; }
+  // First the other, then this.
+  Pose operator*(const Pose& other) const { return {turn * other.turn, turn * other.way + way}; }
+};
+
+// Of a time, s. Does not depend on what was asked before.
+using BodyMotion = std::function<Pose(double time)>;
+
+}  // namespace inextensible

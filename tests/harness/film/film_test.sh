@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# bench film: the same run in three formats, read back by Python, which knows nothing of the program.
+rm -rf -- ./*  # of the last time
+set -u
+here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+# refused PART ARGUMENTS...: exit 2, one line on stderr that contains PART, nothing written.
+refused() {
+  local part=$1 code
+  shift
+  "$BENCH_BINARY" film "$@" >stdout.txt 2>stderr.txt </dev/null
+  code=$?
+  [[ $code == 2 && $(wc -l <stderr.txt) == 1 && ! -s stdout.txt ]] && grep -qF -- "$part" stderr.txt ||
+    fail "film $* -> exit $code: $(cat stderr.txt)"
+}
+
+# A body that moves, one that stays, and none.
+for scene in 'garment --set n=12 --set period=0.3' 'drape --set n=7' 'chain --set n=9'; do
+  name=${scene%% *}
+  for format in obj pvd pc2; do
+    mkdir -p "$name"
+    # shellcheck disable=SC2086
+    "$BENCH_BINARY" film --scene $scene --set duration=0.1 --solver fast_projection --strain 0.02 --step 0.005 \
+      --out "$name/it.$format" >paths.txt 2>stderr.txt || fail "$scene as $format: $(tail -1 stderr.txt)"
+    while read -r path; do [[ -s $path ]] || fail "$path was named, but is not there"; done < <(grep "^$name/" paths.txt)
+  done
+done
+/usr/bin/python3 "$here/read_back.py" || fail "read_back.py"
+
+refused "must end in" --out it.avi
+refused "did you mean" --scene garmnet --out it.obj
+
+((failures == 0)) && echo passed
+exit $((failures > 0))

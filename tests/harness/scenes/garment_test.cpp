@@ -1,0 +1,83 @@
+// The garment: a skirt that its rim holds, against the geometry of the body that it is on.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "harness/scenes/scene.h"
+#include "inextensible/registry.h"
+
+namespace harness {
+namespace {
+
+using inextensible::Pose;
+using inextensible::State;
+
+constexpr int around = 24;
+
+Scene garment(const SceneParameters& given) {
+  const auto type = find_scene("garment");
+  return type->build(complete_parameters(*type, given));
+}
+
+State after(const Scene& scene, double limit, double seconds) {
+  const double h = 1.0 / 200;
+  State state = scene.start;
+  const auto stepper =
+      inextensible::make_stepper("fast_projection", scene.problem, {limit, 1, {}, &state});
+  while (state.time < seconds - 0.5 * h) {
+    if (!stepper->advance(state, h)) ADD_FAILURE() << "gave up at t = " << state.time;
+  }
+  return state;
+}
+
+// It slides down until its rim is taut where the body is as wide as that: circumference over
+// 2 pi is the rim's radius and at most the strain limit more.
+TEST(Garment, RestsWhereTheBodyIsAsWideAsItsRimMayBe) {
+  const Scene scene = garment({{"n", around}, {"sway", 0}, {"turn", 0}, {"friction", 0.05}});
+  const double limit = 0.01, rim = 0.13, waist = 0.115, hips = 0.137, drop = 0.12;
+  const State state = after(scene, limit, 1.5);
+  for (int v = 0; v < around; ++v) {
+    const double y = state.x(1, v);
+    ASSERT_GT(y, -drop) << "vertex " << v;
+    const double radius =
+        waist + (hips - waist) * 0.5 * (1 - std::cos(std::numbers::pi * y / drop));
+    EXPECT_GT(radius, rim * (1 - limit)) << "vertex " << v;
+    EXPECT_LT(radius, rim * (1 + limit) * 1.005) << "vertex " << v;
+  }
+}
+
+TEST(Garment, SlipsPastHipsThatItsRimMayPass) {
+  const Scene scene = garment({{"n", around}, {"sway", 0}, {"turn", 0}, {"friction", 0.05}});
+  const State state = after(scene, 0.1, 1);
+  for (int v = 0; v < around; ++v) EXPECT_LT(state.x(1, v), -0.12) << "vertex " << v;
+}
+
+TEST(Garment, IsCarriedAlongByTheBodyThatItIsOn) {
+  const Scene scene = garment({{"n", around}, {"sway", 0.1}, {"turn", 0}, {"period", 1}});
+  const State state = after(scene, 0.01, 1.25);  // when the body is farthest to one side
+  const Pose pose = scene.problem->body_motion()(state.time);
+  ASSERT_NEAR(pose.way.x(), 0.1, 1e-9);
+  double middle = 0;
+  for (int v = 0; v < around; ++v) middle += state.x(0, v) / around;
+  EXPECT_NEAR(middle, pose.way.x(), 0.01);
+}
+
+TEST(Garment, ItsBodyStartsAtRestWhereItIs) {
+  const Scene scene = garment({{"n", around}});
+  const auto& motion = scene.problem->body_motion();
+  const Pose start = motion(0), soon = motion(1e-4);
+  EXPECT_EQ(start.turn, Eigen::Matrix3d::Identity());
+  EXPECT_EQ(start.way, Eigen::Vector3d::Zero().eval());
+  EXPECT_LT((soon.turn - start.turn).norm() + (soon.way - start.way).norm(), 1e-9);
+  EXPECT_FALSE(garment({{"sway", 0}, {"turn", 0}}).problem->body_motion());
+}
+
+// What makes no garment is said.
+TEST(Garment, ThatTheWaistDoesNotFitIsRefused) {
+  EXPECT_THROW(garment({{"rim", 0.1}}), std::invalid_argument);
+  EXPECT_THROW(garment({{"flare", 10}}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace harness

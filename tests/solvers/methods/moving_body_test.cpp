@@ -1,0 +1,150 @@
+// Bodies that move: what they do to a vertex, in closed form, and Galileo's relativity with every
+// backend.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "inextensible/problem/triangle_collider.h"
+#include "inextensible/registry.h"
+#include "support/contact.h"
+#include "support/random_mesh.h"
+
+namespace inextensible {
+namespace {
+
+using Eigen::Vector3d;
+using testing::Random;
+using testing::uniform;
+
+constexpr double free_fall = 9.81, tick = 1.0 / 128;  // m/s^2; s, so that times are exact
+
+// One vertex at rest on a ground through the origin that moves.
+struct OnGround {
+  OnGround(double friction, BodyMotion motion, const Vector3d& at) {
+    ProblemParts parts;
+    parts.mass = {0.3};
+    parts.collider = std::make_shared<const testing::Ground>(Vector3d(0, 1, 0), 0, friction);
+    parts.body_motion = std::move(motion);
+    state = {at, Positions::Zero(3, 1), 0};
+    stepper = make_stepper("fast_projection", std::make_shared<const Problem>(parts), {0.01, 1});
+  }
+
+  State state;
+  std::unique_ptr<Stepper> stepper;
+};
+
+BodyMotion straight(const Vector3d& velocity) {
+  return [=](double time) { return Pose{Eigen::Matrix3d::Identity(), time * velocity}; };
+}
+
+BodyMotion turning(double rate) {
+  return [=](double time) {
+    return Pose{Eigen::AngleAxisd(rate * time, Vector3d::UnitY()).toRotationMatrix(),
+                Vector3d::Zero()};
+  };
+}
+
+// Friction accelerates by mu g until the vertex goes with the belt.
+TEST(MovingBody, ABeltTakesALoadAlongAtTheRateOfFriction) {
+  const double mu = 0.25, speed = 0.8;
+  OnGround load(mu, straight({speed, 0, 0}), {0, 0, 0});
+  double v = 0, x = 0;
+  for (int step = 1; step <= 128; ++step) {
+    ASSERT_TRUE(load.stepper->advance(load.state, tick));
+    v = std::min(speed, v + mu * free_fall * tick);
+    x += tick * v;
+    ASSERT_NEAR(load.state.v(0, 0), v, 1e-12) << "step " << step;
+    ASSERT_NEAR(load.state.x(0, 0), x, 1e-12) << "step " << step;
+    ASSERT_NEAR(load.state.x(1, 0), 0, 1e-8) << "step " << step;
+  }
+  EXPECT_EQ(v, speed);
+}
+
+// It is carried round where friction bears its centripetal acceleration, and flung off where not.
+TEST(MovingBody, ATurntableHoldsWhatFrictionCanHold) {
+  const double rate = 4, radius = 0.5, needed = rate * rate * radius / free_fall;
+  const auto after = [&](double friction) {
+    OnGround load(friction, turning(rate), {radius, 0, 0});
+    load.state.v.col(0) = Vector3d(0, 0, -rate * radius);  // with the table
+    while (load.state.time < 0.5) EXPECT_TRUE(load.stepper->advance(load.state, tick));
+    return load.state;
+  };
+  const State held = after(1.1 * needed), flung = after(0.5 * needed);
+  const Vector3d with_table = turning(rate)(held.time)(Vector3d(radius, 0, 0));
+  EXPECT_LT((held.x.col(0) - with_table).norm(), 1e-12);
+  EXPECT_GT(flung.x.col(0).norm(), 1.1 * radius);
+}
+
+// A body that rises pushes, and a lift that falls faster than its load leaves it behind.
+TEST(MovingBody, ALiftCarriesItsLoadUpAndLosesItDownwards) {
+  OnGround up(0, straight({0, 0.5, 0}), {0, 0, 0}), down(0, straight({0, -20, 0}), {0, 0, 0});
+  for (int step = 0; step < 64; ++step) {
+    ASSERT_TRUE(up.stepper->advance(up.state, tick));
+    ASSERT_TRUE(down.stepper->advance(down.state, tick));
+  }
+  EXPECT_NEAR(up.state.x(1, 0), 0.5 * up.state.time, 1e-8);
+  EXPECT_NEAR(down.state.v(1, 0), -free_fall * down.state.time, 1e-12);
+}
+
+TEST(MovingBody, NeedsABody) {
+  ProblemParts parts;
+  parts.mass = {1};
+  parts.body_motion = straight({1, 0, 0});
+  EXPECT_THROW(Problem{parts}, std::invalid_argument);
+}
+
+class EveryMethod : public ::testing::TestWithParam<const char*> {};
+
+// Cloth that falls onto a ball sees no difference between a ball at rest and both in the same
+// steady motion, but for what iterations stop at: who forgot to carry contacts along would be wrong
+// by 0.1.
+TEST_P(EveryMethod, SeesNoSteadyMotionThatItShares) {
+  const Vector3d velocity(0.7, -0.4, 1.1);
+  const Eigen::Matrix3d turned =
+      Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitY()).toRotationMatrix();
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const auto run = [&](bool moves) {
+      Random random(seed);
+      const Vector3d middle(2, -1.15 + uniform(random, -0.1, 0.1), 1.5);
+      const auto mesh = testing::random_mesh(random, 4, 5, 0);
+      ProblemParts parts;
+      parts.mass = mesh.problem->mass();
+      parts.edges = mesh.problem->edges();
+      parts.rest_length = mesh.problem->rest_length();
+      // In coordinates of its own that are turned, which its pose turns back.
+      TriangleMesh ball = icosphere(middle, 0.9, 2);
+      if (moves)
+        for (Vector3d& v : ball.vertices) v = turned.transpose() * v;
+      parts.collider = std::make_shared<const TriangleCollider>(ball, 0.3);
+      if (moves) parts.body_motion = [=](double time) { return Pose{turned, time * velocity}; };
+      State state{mesh.x, Positions::Zero(3, mesh.x.cols()), 0};
+      if (moves) state.v.colwise() += velocity;
+      Settings settings;
+      if (find_backend(GetParam())->knob == Knob::stiffness) settings["stiffness"] = 2000.0;
+      const auto stepper = make_stepper(GetParam(), std::make_shared<const Problem>(parts),
+                                        {0.01, 1, settings, &state});
+      for (int step = 0; step < 56; ++step) EXPECT_TRUE(stepper->advance(state, tick));
+      EXPECT_GT(stepper->work().contacts, 0) << "nothing touched: this tests nothing";
+      if (moves) state.x.colwise() -= state.time * velocity;
+      return state.x;
+    };
+    EXPECT_LT((run(true) - run(false)).cwiseAbs().maxCoeff(), 5e-3);
+  }
+}
+
+std::vector<const char*> methods() {
+  std::vector<const char*> names;
+  for (const Backend& backend : backends()) {
+    if (backend.contestant && backend.takes_collider) names.push_back(backend.name);
+  }
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryMethod, ::testing::ValuesIn(methods()),
+                         [](const auto& parameter) { return std::string(parameter.param); });
+
+}  // namespace
+}  // namespace inextensible
