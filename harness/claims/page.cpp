@@ -145,4 +145,13 @@ void PlaceTable::print(std::ostream& out, const std::function<std::string(double
   out << '\n';
 }
 
+PlaceTable best_over_limits(const ScenePoints& scene, const char* name) {
+  PlaceTable best(scene.contestants());
+  for (const Point& p : scene.points) {
+    if (p.is("scene", name) && p.flag("best") && p.ok()) best.add(p.number("strain_limit"), p);
+  }
+  best.loose_to_tight();
+  return best;
+}
+
 }  // namespace harness::claims

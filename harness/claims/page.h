@@ -65,6 +65,10 @@ class PlaceTable {
   std::map<std::pair<std::string, double>, Point> cells_;
 };
 
+// The best points over the strain limit, loose to tight, of a scene of that name; empty of another
+// scene. `scene`: of strain sweeps.
+PlaceTable best_over_limits(const ScenePoints& scene, const char* name);
+
 // ---- families of tables ----
 // sweep: "strain" or "resolution".
 void print_best_points(std::ostream& out, const NamedResult& result, const std::string& sweep);

@@ -7,16 +7,9 @@ namespace harness::claims {
 
 void print_sag(std::ostream& out, const NamedResult& result) {
   for (const ScenePoints& scene : scenes_of(result.document, "strain", true)) {
-    PlaceTable best(scene.contestants());
-    double side = 0;
-    for (const Point& p : scene.points) {
-      if (!p.flag("best") || !p.ok() || !p.document().contains("sag")) continue;
-      if (!p.document().at("sag").contains("lower_edge")) continue;
-      best.add(p.number("strain_limit"), p);
-      side = p.scene_parameter("side");
-    }
+    const PlaceTable best = best_over_limits(scene, "hung_patch");
     if (best.empty()) continue;
-    best.loose_to_tight();
+    const double side = scene.points.front().scene_parameter("side");
     out << "## Sag\n\n### " << scene.title << " (`" << result.name << "`)\n\n"
         << "How far the middle of the top row, and that of the lower edge, hang below where they "
            "would if nothing stretched, mean over the last third of the run, each solver at its "

@@ -12,13 +12,8 @@ constexpr double frame = 1.0 / 30;  // s
 
 void print_slip(std::ostream& out, const NamedResult& result) {
   for (const ScenePoints& scene : scenes_of(result.document, "strain", true)) {
-    PlaceTable best(scene.contestants());
-    for (const Point& p : scene.points) {
-      if (p.flag("best") && p.ok() && p.is("scene", "garment"))
-        best.add(p.number("strain_limit"), p);
-    }
+    const PlaceTable best = best_over_limits(scene, "garment");
     if (best.empty()) continue;
-    best.loose_to_tight();
     out << "## Slip\n\n### " << scene.title << " (`" << result.name
         << "`)\n\nHow far the garment's rim is below the waist, where it began, mean over the last "
            "third of the run, of the way to the hips: above 100 % it has slipped past them. In "

@@ -2,6 +2,8 @@
 // solvers by name.
 #pragma once
 
+#include <array>
+
 namespace harness::claims {
 
 struct PaperMethod {
@@ -13,5 +15,7 @@ inline constexpr PaperMethod implicit_springs{"implicit_springs", "implicit spri
     jacobi{"jacobi", "Jacobi"}, gauss_seidel{"gauss_seidel", "Gauss-Seidel"},
     shake{"shake", "SHAKE"}, icd{"icd", "ICD"},
     fast_projection{"fast_projection", "fast projection"};
+inline constexpr std::array all_paper_methods{implicit_springs, jacobi, gauss_seidel, shake, icd,
+                                              fast_projection};
 
 }  // namespace harness::claims

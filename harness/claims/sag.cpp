@@ -1,7 +1,6 @@
 #include "harness/claims/sag.h"
 
 #include <cmath>
-#include <map>
 
 #include "harness/claims/paper_methods.h"
 
@@ -31,30 +30,21 @@ void patch_sag(const Points& points, ClaimVerdict& c) {
       "seconds: how much lower the middle of its lower edge hangs at 10 % than at 1 %, and there "
       "than at 0.1 %; reproduced if both are at least 1 % of the side for every method that has "
       "all three, not reproduced if for none, else changed";
-  std::map<std::string, std::map<double, double>> hangs;  // method -> limit -> sag over side
-  for (const Point& p : points.where([](const Point& q) {
-         return q.is("scene", "hung_patch") && q.ok() && q.flag("best");
-       })) {
-    for (const PaperMethod& method :
-         {implicit_springs, jacobi, gauss_seidel, shake, icd, fast_projection}) {
-      if (p.contestant() != method.name) continue;
-      hangs[method.words][p.number("strain_limit")] =
-          p.document().at("sag").at("lower_edge").get<double>() / p.scene_parameter("side");
-      c.points.push_back(p.id());
-    }
-  }
-  int all = 0, seen = 0;
-  for (const auto& [words, sag] : hangs) {
-    const auto loose = sag.find(0.1), middle = sag.find(0.01), tight = sag.find(0.001);
-    if (loose == sag.end() || middle == sag.end() || tight == sag.end()) continue;
-    ++all;
-    const double first = loose->second - middle->second, second = middle->second - tight->second;
-    seen += first >= visible && second >= visible;
+  const auto hangs = [](const Point& p) {
+    return p.document().at("sag").at("lower_edge").get<double>() / p.scene_parameter("side");
+  };
+  std::vector<std::string> verdicts;
+  for (const PaperMethod& method : all_paper_methods) {
+    const Curve best = points.best("hung_patch", "strain", method.name);
+    cite(c, best);
+    const auto loose = at(best, 0.1), middle = at(best, 0.01), tight = at(best, 0.001);
+    if (!loose || !middle || !tight) continue;
+    const double first = hangs(*loose) - hangs(*middle), second = hangs(*middle) - hangs(*tight);
+    verdicts.push_back(first >= visible && second >= visible ? reproduced : not_reproduced);
     c.measured += (c.measured.empty() ? "lower by " : ", ") + percent(first) + " and " +
-                  percent(second) + " of the side with " + words;
+                  percent(second) + " of the side with " + method.words;
   }
-  if (all == 0) return;
-  c.verdict = seen == all ? reproduced : seen == 0 ? not_reproduced : changed;
+  c.verdict = verdict_of_all(verdicts);
 }
 
 }  // namespace harness::claims

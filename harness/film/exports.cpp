@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <sstream>
 
 #include "harness/base/files.h"
@@ -83,75 +84,73 @@ void append(std::string& bytes, Number number) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
+// A mesh of a film: the cloth of a take, or the body beside it.
+struct Part {
+  std::string name;  // of its files
+  Stage mesh;
+  bool stays;  // one frame is all
+  std::function<inextensible::Positions(std::size_t frame)> at;
+
+  std::string file(std::size_t frame, const char* extension) const {
+    return stays ? name + extension : numbered(name, frame, extension);
+  }
+};
+
+// The take must outlive them.
+std::vector<Part> parts_of(const Recording& recording, const Take& take, const std::string& name) {
+  const Stage& stage = recording.stage;
+  std::vector<Part> parts{
+      {name, stage, false, [&take](std::size_t frame) { return take.frames[frame]; }}};
+  if (stage.body.empty()) return parts;
+  Stage body;
+  body.triangles = stage.body_triangles;
+  parts.push_back({name + "-body", body, stage.body_poses.empty(),
+                   [&stage](std::size_t frame) { return body_at(stage, frame); }});
+  return parts;
+}
+
 // The header: "POINTCACHE2\0", version 1, points, first frame, frames per sample, samples.
-std::string pc2_bytes(const std::vector<inextensible::Positions>& frames) {
+std::string pc2_bytes(const Part& part, std::size_t frames) {
   std::string bytes("POINTCACHE2\0", 12);
   append(bytes, std::int32_t{1});
-  append(bytes, static_cast<std::int32_t>(frames[0].cols()));
+  append(bytes, static_cast<std::int32_t>(part.at(0).cols()));
   append(bytes, 0.0F);
   append(bytes, 1.0F);
-  append(bytes, static_cast<std::int32_t>(frames.size()));
-  for (const inextensible::Positions& frame : frames) {
-    for (Eigen::Index i = 0; i < frame.size(); ++i) append(bytes, static_cast<float>(frame(i)));
+  append(bytes, static_cast<std::int32_t>(frames));
+  for (std::size_t i = 0; i < frames; ++i) {
+    const inextensible::Positions x = part.at(i);
+    for (Eigen::Index k = 0; k < x.size(); ++k) append(bytes, static_cast<float>(x(k)));
   }
   return bytes;
 }
-
-// The body as a mesh like the cloth.
-class Body {
- public:
-  explicit Body(const Stage& of) : of_(of) { mesh_.triangles = of.body_triangles; }
-  bool stays() const { return !of_.body.empty() && of_.body_poses.empty(); }
-  bool moves() const { return !of_.body_poses.empty(); }
-  const Stage& stage() const { return mesh_; }
-  inextensible::Positions at(std::size_t frame) const { return body_at(of_, frame); }
-
- private:
-  const Stage& of_;
-  Stage mesh_;
-};
 
 }  // namespace
 
 std::vector<std::string> write_obj(const Recording& recording, const Take& take,
                                    const std::string& folder, const std::string& name) {
   std::vector<std::string> paths;
-  for (std::size_t i = 0; i < take.frames.size(); ++i)
-    paths.push_back(written(numbered(folder + "/" + name, i, ".obj"),
-                            obj_text(recording.stage, take.frames[i])));
-  const Body body(recording.stage);
-  if (body.stays())
-    paths.push_back(written(folder + "/" + name + "-body.obj", obj_text(body.stage(), body.at(0))));
-  if (body.moves()) {
-    for (std::size_t i = 0; i < take.frames.size(); ++i)
-      paths.push_back(written(numbered(folder + "/" + name + "-body", i, ".obj"),
-                              obj_text(body.stage(), body.at(i))));
+  for (const Part& part : parts_of(recording, take, name)) {
+    for (std::size_t i = 0; i < (part.stays ? 1 : take.frames.size()); ++i)
+      paths.push_back(
+          written(folder + "/" + part.file(i, ".obj"), obj_text(part.mesh, part.at(i))));
   }
   return paths;
 }
 
 std::vector<std::string> write_vtk(const Recording& recording, const Take& take,
                                    const std::string& folder, const std::string& name) {
+  const std::vector<Part> parts = parts_of(recording, take, name);
   std::ostringstream play;
   play << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
           "byte_order=\"LittleEndian\">\n<Collection>\n";
-  const auto show = [&](std::size_t frame, int part, const std::string& file) {
-    play << "<DataSet timestep=\"" << static_cast<double>(frame) / recording.spec.frames_per_second
-         << "\" part=\"" << part << "\" file=\"" << file << "\"/>\n";
-  };
-  const auto write = [&](const std::string& file, const Stage& stage,
-                         const inextensible::Positions& x) {
-    written(folder + "/" + file, vtp_text(stage, x));
-    return file;
-  };
-  const Body body(recording.stage);
-  std::string body_file;
-  if (body.stays()) body_file = write(name + "-body.vtp", body.stage(), body.at(0));
   for (std::size_t i = 0; i < take.frames.size(); ++i) {
-    show(i, 0, write(numbered(name, i, ".vtp"), recording.stage, take.frames[i]));
-    if (body.moves())
-      body_file = write(numbered(name + "-body", i, ".vtp"), body.stage(), body.at(i));
-    if (!body_file.empty()) show(i, 1, body_file);
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const std::string file = parts[p].file(i, ".vtp");
+      if (i == 0 || !parts[p].stays)
+        written(folder + "/" + file, vtp_text(parts[p].mesh, parts[p].at(i)));
+      play << "<DataSet timestep=\"" << static_cast<double>(i) / recording.spec.frames_per_second
+           << "\" part=\"" << p << "\" file=\"" << file << "\"/>\n";
+    }
   }
   play << "</Collection>\n</VTKFile>\n";
   return {written(folder + "/" + name + ".pvd", play.str())};
@@ -159,16 +158,11 @@ std::vector<std::string> write_vtk(const Recording& recording, const Take& take,
 
 std::vector<std::string> write_pc2(const Recording& recording, const Take& take,
                                    const std::string& folder, const std::string& name) {
-  std::vector<std::string> paths{
-      written(folder + "/" + name + ".obj", obj_text(recording.stage, take.frames[0])),
-      written(folder + "/" + name + ".pc2", pc2_bytes(take.frames))};
-  const Body body(recording.stage);
-  if (body.stays() || body.moves())
-    paths.push_back(written(folder + "/" + name + "-body.obj", obj_text(body.stage(), body.at(0))));
-  if (body.moves()) {
-    std::vector<inextensible::Positions> frames;
-    for (std::size_t i = 0; i < take.frames.size(); ++i) frames.push_back(body.at(i));
-    paths.push_back(written(folder + "/" + name + "-body.pc2", pc2_bytes(frames)));
+  std::vector<std::string> paths;
+  for (const Part& part : parts_of(recording, take, name)) {
+    const std::string path = folder + "/" + part.name;
+    paths.push_back(written(path + ".obj", obj_text(part.mesh, part.at(0))));
+    if (!part.stays) paths.push_back(written(path + ".pc2", pc2_bytes(part, take.frames.size())));
   }
   return paths;
 }

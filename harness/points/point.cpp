@@ -57,6 +57,7 @@ double error_known_until(const Measures& measures, double target) {
 }
 
 double PointResult::median_seconds() const { return quantile(samples, 0.5); }
+double PointResult::median_run() const { return median_seconds() * spec.step * steps_planned; }
 double PointResult::median_filter_seconds() const { return quantile(filter_samples, 0.5); }
 double PointResult::mean_step() const {
   if (!spec.adaptive || work.steps == 0) return spec.step;

@@ -64,6 +64,7 @@ struct PointResult {
 
   bool ok() const { return status == PointStatus::ok; }
   double median_seconds() const;         // of the samples
+  double median_run() const;             // s that a run takes
   double median_filter_seconds() const;  // of the filter's
   double mean_step() const;              // s; the spec's, but for adaptive steps
 };

@@ -58,17 +58,13 @@ void repeat_candidates(const Suite& suite, const std::vector<Choice>& choices,
     const bool wanted = points[i].spec.sweep == "step" ? points[i].ok() : candidates.contains(i);
     if (wanted) order.push_back(i);
   }
-  if (order.empty()) return;  // GSL's shuffle does not take nothing
   const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
                                                                  gsl_rng_free);
   gsl_rng_set(random.get(), suite.seed);
   const int most = std::max(suite.reps, suite.most_reps);
   std::size_t done = 0;
   const auto long_enough = [&](std::size_t i) {
-    const PointResult& point = points[i];
-    return static_cast<double>(point.samples.size()) * point.median_seconds() * point.spec.step *
-               point.steps_planned >=
-           repeat_for;
+    return static_cast<double>(points[i].samples.size()) * points[i].median_run() >= repeat_for;
   };
   for (int rep = 1; rep < most; ++rep) {
     std::erase_if(order, long_enough);
@@ -77,7 +73,7 @@ void repeat_candidates(const Suite& suite, const std::vector<Choice>& choices,
         return median_uncertainty(points[i].samples) <= suite.rel_ci;
       });
     }
-    if (order.empty()) return;
+    if (order.empty()) return;  // GSL's shuffle does not take nothing
     const std::size_t all = done + order.size() * static_cast<std::size_t>(
                                                       (rep < suite.reps ? suite.reps : most) - rep);
     gsl_ran_shuffle(random.get(), order.data(), order.size(), sizeof(std::size_t));
@@ -170,8 +166,7 @@ class LadderRun {
         neighbour_.guess_of_stiffness(spec));
     if (point.stiffness)
       neighbour_.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
-    if (point.ok())
-      best_run_ = std::min(best_run_, point.median_seconds() * spec.step * point.steps_planned);
+    if (point.ok()) best_run_ = std::min(best_run_, point.median_run());
     point_of_rung_[rung] = sweep_.points.size();
     return sweep_.add(std::move(point), number_);
   }

@@ -9,8 +9,9 @@ double length(const ClothMesh& mesh, int a, int b) {
   return (mesh.vertices[a] - mesh.vertices[b]).norm();
 }
 
-void hold_threads(const ClothMesh& mesh, const std::vector<char>& held,
-                  inextensible::ProblemParts& parts) {
+void hold_threads(const PinnedMesh& cloth, inextensible::ProblemParts& parts) {
+  const ClothMesh& mesh = cloth.mesh;
+  const std::vector<char>& held = cloth.held;
   for (const auto& [a, b] : sides_of_quads(mesh)) {
     if (held[a] && held[b]) continue;
     parts.edges.push_back({a, b});
@@ -18,8 +19,9 @@ void hold_threads(const ClothMesh& mesh, const std::vector<char>& held,
   }
 }
 
-void resist_shear(const ClothMesh& mesh, const std::vector<char>& held, double stiffness,
-                  inextensible::ProblemParts& parts) {
+void resist_shear(const PinnedMesh& cloth, double stiffness, inextensible::ProblemParts& parts) {
+  const ClothMesh& mesh = cloth.mesh;
+  const std::vector<char>& held = cloth.held;
   inextensible::Springs springs;
   const auto join = [&](int a, int b) {
     if (held[a] && held[b]) return;
@@ -36,9 +38,10 @@ void resist_shear(const ClothMesh& mesh, const std::vector<char>& held, double s
 }
 
 // area: of each vertex, m^2; rigidity: of the cloth, N m.
-void resist_bending(const ClothMesh& mesh, const std::vector<char>& held,
-                    const std::vector<double>& area, double rigidity,
+void resist_bending(const PinnedMesh& cloth, const std::vector<double>& area, double rigidity,
                     inextensible::ProblemParts& parts) {
+  const ClothMesh& mesh = cloth.mesh;
+  const std::vector<char>& held = cloth.held;
   for (const auto& [a, b, c] : threads_of(mesh)) {
     if (held[a] && held[b] && held[c]) continue;
     const double before = length(mesh, a, b), after = length(mesh, b, c);
@@ -49,7 +52,22 @@ void resist_bending(const ClothMesh& mesh, const std::vector<char>& held,
 
 }  // namespace
 
-Draft cloth_draft(const ClothMesh& mesh, const std::vector<char>& held, const SceneParameters& p) {
+std::vector<SceneParameterInfo> with_cloth_parameters(std::vector<SceneParameterInfo> own,
+                                                      const ClothDefaults& cloth) {
+  own.insert(own.end(),
+             {{"density", cloth.density, "kg/m^2", 0, 1e4},
+              {"gravity", 9.81, "m/s^2, downwards", -1e4, 1e4},
+              {"shear", cloth.shear, "shear stiffness, N/m; 0: none", -1e-300, 1e9},
+              {"bending", cloth.bending,
+               "bending rigidity of warp and weft, straight at rest, N m; 0: none", -1e-300, 1e6},
+              {"drag", cloth.drag, "of still air, N s/m^3: force per area and speed; 0: none",
+               -1e-300, 1e6},
+              {"duration", cloth.duration, "s", 0, 1e4}});
+  return own;
+}
+
+Draft cloth_draft(const PinnedMesh& cloth, const SceneParameters& p) {
+  const auto& [mesh, held] = cloth;
   Draft draft;
   inextensible::ProblemParts& parts = draft.parts;
   Scene& scene = draft.scene;
@@ -64,9 +82,9 @@ Draft cloth_draft(const ClothMesh& mesh, const std::vector<char>& held, const Sc
     if (p.at("drag") > 0) parts.drag.push_back(p.at("drag") * area[v]);
   }
   parts.gravity = {0, -p.at("gravity"), 0};
-  hold_threads(mesh, held, parts);
-  if (p.at("shear") > 0) resist_shear(mesh, held, p.at("shear"), parts);
-  if (p.at("bending") > 0) resist_bending(mesh, held, area, p.at("bending"), parts);
+  hold_threads(cloth, parts);
+  if (p.at("shear") > 0) resist_shear(cloth, p.at("shear"), parts);
+  if (p.at("bending") > 0) resist_bending(cloth, area, p.at("bending"), parts);
   parts.implicit_forces = true;
   for (const auto& [a, b, c, d] : mesh.quads) {
     scene.triangles.push_back({a, b, d});
@@ -78,11 +96,12 @@ Draft cloth_draft(const ClothMesh& mesh, const std::vector<char>& held, const Sc
   return draft;
 }
 
-std::pair<int, int> count_cloth(const ClothMesh& mesh, const std::vector<char>& held) {
-  const std::vector<Side> sides = sides_of_quads(mesh);
+std::pair<int, int> count_cloth(const PinnedMesh& cloth) {
+  const std::vector<char>& held = cloth.held;
+  const std::vector<Side> sides = sides_of_quads(cloth.mesh);
   const auto constrained = std::count_if(
       sides.begin(), sides.end(), [&](const Side& s) { return !held[s.first] || !held[s.second]; });
-  return {static_cast<int>(mesh.vertices.size()), static_cast<int>(constrained)};
+  return {static_cast<int>(cloth.mesh.vertices.size()), static_cast<int>(constrained)};
 }
 
 }  // namespace harness

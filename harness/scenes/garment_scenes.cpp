@@ -120,8 +120,9 @@ Scene build_garment(const SceneParameters& p) {
   if (!(p.at("waist") < p.at("rim")))
     throw std::invalid_argument("'rim' of " + std::to_string(p.at("rim")) +
                                 " m: must be wider than the waist");
-  const ClothMesh mesh = cone(p);
-  Draft draft = cloth_draft(mesh, std::vector<char>(mesh.vertices.size(), 0), p);
+  ClothMesh mesh = cone(p);
+  std::vector<char> free(mesh.vertices.size(), 0);
+  Draft draft = cloth_draft({std::move(mesh), std::move(free)}, p);
   draft.parts.collider = std::make_shared<const inextensible::TriangleCollider>(
       turned(profile(p), static_cast<int>(p.at("segments"))), p.at("friction"));
   if (p.at("sway") != 0 || p.at("turn") != 0) {
@@ -142,9 +143,11 @@ std::pair<int, int> count_garment(const SceneParameters& p) {
 }  // namespace
 
 SceneType garment_scene() {
-  return {"garment",
-          "a skirt that nothing but its rim holds, on a body that sways and turns (Figure 7)",
-          "n",
+  return {
+      "garment",
+      "a skirt that nothing but its rim holds, on a body that sways and turns (Figure 7)",
+      "n",
+      with_cloth_parameters(
           {{"n", 64, "vertices around", 8, 4000, true},
            {"rim", 0.13, "radius of the garment's upper end, which starts at the waist, m", 0, 1e3},
            {"flare", 1.5, "radius of its lower end over that; 1: a tube", 0, 100},
@@ -156,18 +159,12 @@ SceneType garment_scene() {
            {"friction", 0.2, "Coulomb coefficient", -1e-300, 1e3},
            {"sway", 0.06, "how far the body goes to either side, m; 0: not at all", -1e-300, 1e3},
            {"turn", 0.6, "how far it turns either way, rad; 0: not at all", -1e-300, 10},
-           {"period", 1, "of both, s", 0, 1e3},
-           {"density", 0.15, "kg/m^2", 0, 1e4},
-           {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
-           {"shear", 5, "shear stiffness, N/m; 0: none", -1e-300, 1e9},
-           {"bending", 1e-5, "bending rigidity of both threads, straight at rest, N m; 0: none",
-            -1e-300, 1e6},
-           {"drag", 0.1, "of still air, N s/m^3: force per area and speed; 0: none", -1e-300, 1e6},
-           {"duration", 3, "s", 0, 1e4}},
-          build_garment,
-          count_garment,
-          nullptr,
-          "drape"};
+           {"period", 1, "of both, s", 0, 1e3}},
+          {.density = 0.15, .shear = 5, .bending = 1e-5, .drag = 0.1, .duration = 3}),
+      build_garment,
+      count_garment,
+      nullptr,
+      "drape"};
 }
 
 }  // namespace harness

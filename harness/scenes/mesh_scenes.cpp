@@ -137,13 +137,8 @@ Eigen::Vector3d placed(const Eigen::Vector3d& x, const SceneParameters& p) {
   return s * x;
 }
 
-struct MeshCloth {
-  ClothMesh mesh;
-  std::vector<char> held;  // of each vertex
-};
-
-MeshCloth cloth_for(const MeshModel& model, const SceneParameters& p) {
-  MeshCloth cloth{refined(model.cloth, static_cast<int>(p.at("n"))), {}};
+PinnedMesh cloth_for(const MeshModel& model, const SceneParameters& p) {
+  PinnedMesh cloth{refined(model.cloth, static_cast<int>(p.at("n"))), {}};
   for (Eigen::Vector3d& v : cloth.mesh.vertices) {
     cloth.held.push_back(model.pinned(v));
     v = placed(v, p);
@@ -152,8 +147,8 @@ MeshCloth cloth_for(const MeshModel& model, const SceneParameters& p) {
 }
 
 Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
-  const MeshCloth cloth = cloth_for(model, p);
-  Draft draft = cloth_draft(cloth.mesh, cloth.held, p);
+  const PinnedMesh cloth = cloth_for(model, p);
+  Draft draft = cloth_draft(cloth, p);
   if (!model.body.triangles.empty()) {
     inextensible::TriangleMesh body = model.body;
     for (Eigen::Vector3d& v : body.vertices) v = placed(v, p);
@@ -166,8 +161,8 @@ Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
 }
 
 std::pair<int, int> count_mesh(const MeshModel& model, const SceneParameters& p) {
-  const MeshCloth cloth = cloth_for(model, p);
-  return count_cloth(cloth.mesh, cloth.held);
+  const PinnedMesh cloth = cloth_for(model, p);
+  return count_cloth(cloth);
 }
 
 }  // namespace
@@ -193,17 +188,12 @@ SceneType mesh_scene(const std::string& name) {
   return {name,
           "cloth of your own",
           "n",
-          {{"n", 1, "parts that each side of the file's faces is cut into", 1, 64, true},
-           {"scale", 1, "m per unit of the files", 0, 1e6},
-           {"up", 1, "which of the files' axes is up: 1 is y, 2 is z", 1, 2, true},
-           {"density", 0.15, "kg/m^2", 0, 1e4},
-           {"gravity", 9.81, "m/s^2, downwards", -1e4, 1e4},
-           {"shear", 20, "shear stiffness, N/m; 0: none", -1e-300, 1e9},
-           {"bending", 1e-5, "bending rigidity of warp and weft, straight at rest, N m; 0: none",
-            -1e-300, 1e6},
-           {"drag", 0.05, "of still air, N s/m^3: force per area and speed; 0: none", -1e-300, 1e6},
-           {"friction", 0.3, "Coulomb coefficient of the body", -1e-300, 1e3},
-           {"duration", 1, "s", 0, 1e4}},
+          with_cloth_parameters(
+              {{"n", 1, "parts that each side of the file's faces is cut into", 1, 64, true},
+               {"scale", 1, "m per unit of the files", 0, 1e6},
+               {"up", 1, "which of the files' axes is up: 1 is y, 2 is z", 1, 2, true},
+               {"friction", 0.3, "Coulomb coefficient of the body", -1e-300, 1e3}},
+              {.density = 0.15, .shear = 20, .bending = 1e-5, .drag = 0.05, .duration = 1}),
           [model](const SceneParameters& p) { return build_mesh(*model, p); },
           [model](const SceneParameters& p) { return count_mesh(*model, p); },
           nullptr,

@@ -116,14 +116,14 @@
     const takes = film.takes, n = film.vertices;
     const stacked = canvas.width < canvas.height * takes.length * 0.6;  // narrow screens: one above the other
     const width = Math.floor(canvas.width / (stacked ? 1 : takes.length)), height = Math.floor(canvas.height / (stacked ? takes.length : 1));
+    const body = new Float32Array(bodyAt(frame)), bodyNormals = normalsOf(body, film.body_triangles);
     takes.forEach((take, number) => {
       const at = Math.min(frame, take.frames - 1), begin = take.begin + at * n * 3;
       const x = film.x.subarray(begin, begin + 3 * n);
       gl.viewport(stacked ? 0 : number * width, stacked ? (takes.length - 1 - number) * height : 0, width, height);
       gl.uniformMatrix4fv(viewAt, false, view(width / height));
       if (film.body.length) {
-        const body = new Float32Array(bodyAt(frame));
-        drawMesh(body, normalsOf(body, film.body_triangles), new Float32Array(body.length).fill(0.62), new Uint16Array(film.body_triangles.flat()), gl.TRIANGLES);
+        drawMesh(body, bodyNormals, new Float32Array(body.length).fill(0.62), new Uint16Array(film.body_triangles.flat()), gl.TRIANGLES);
       }
       const most = new Float32Array(n), tints = new Float32Array(3 * n);
       film.edges.forEach(([a, b], k) => {

@@ -25,10 +25,11 @@ void Contacts::begin(const Positions& x_start, double time, double h) {
   for (int c = 0; c < count_; ++c) place_[vertex_[c]] = -1;
   count_ = 0;
   start_ = &x_start;
-  const BodyMotion& motion = problem_.body_motion();
-  if (!motion) return;
-  carry_ = motion(time + h) * motion(time).inverse();
+  if (!problem_.body_motion()) return;
+  obstacle_.place(time);
+  const Pose back = obstacle_.pose().inverse();
   obstacle_.place(time + h);
+  carry_ = obstacle_.pose() * back;
   h_ = h;
 }
 

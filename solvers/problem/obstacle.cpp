@@ -3,9 +3,7 @@
 namespace inextensible {
 
 Obstacle::Obstacle(const Problem& problem) : problem_(problem), memory_(problem.vertices(), -1) {
-  if (!problem.body_motion()) return;
-  seen_.resize(3, problem.vertices());
-  place(0);
+  if (problem.body_motion()) seen_.resize(3, problem.vertices());
 }
 
 void Obstacle::place(double time) {

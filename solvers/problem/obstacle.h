@@ -10,8 +10,9 @@ class Obstacle {
   // The problem has a collider, and outlives this.
   explicit Obstacle(const Problem& problem);
 
-  // From now on it is where it is at `time`, s.
+  // From now on it is where it is at `time`, s. Of one that moves, before anything else.
   void place(double time);
+  const Pose& pose() const { return pose_; }
 
   // As Collider::find, of all vertices but the pinned ones.
   void find(const Positions& x, double depth, std::vector<ContactPlane>& planes,
