@@ -80,6 +80,7 @@ std::vector<PointSpec> read_specs(std::istream& in) {
 int run_points(const PointCommand& options) {
   RunLimits limits;
   limits.timeout = options.timeout;
+  limits.references = std::make_shared<ReferenceShelf>(source_path("results/references"));
   const std::string fingerprint = counters_fingerprint();
   for (const PointSpec& spec : read_specs(std::cin)) {
     PointResult point = run_point(spec, limits);

@@ -8,6 +8,12 @@
 
 namespace harness {
 
+namespace {
+
+constexpr double window_length = 0.01;  // s
+
+}  // namespace
+
 EnergyRecord::EnergyRecord(const inextensible::Problem& problem, double scale,
                            inextensible::Velocities velocities)
     : problem_(problem), scale_(scale), velocities_(velocities) {}
@@ -16,6 +22,7 @@ void EnergyRecord::begin(const inextensible::State& state, double scale) {
   scale_ = scale;
   start_ = total_energy(problem_, state);
   before_ = last_ = {};
+  window_ = {};
 }
 
 std::optional<double> EnergyRecord::after(const inextensible::State& state, double h) {
@@ -44,6 +51,13 @@ double EnergyRecord::settle(const Instant& at, double kinetic) {
     gain_step_ = at.step;
   }
   raise(drift_, std::abs(gain));
+  window_.sum += gain * at.h;
+  window_.length += at.h;
+  if (window_.length >= window_length * (1 - 1e-9)) {
+    const double mean = window_.sum / window_.length;
+    rise_ += std::max(0.0, mean - window_.before);
+    window_ = {0, 0, mean};
+  }
   return gain;
 }
 

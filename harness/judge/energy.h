@@ -34,6 +34,11 @@ class EnergyRecord {
   double gain_time() const { return gain_time_; }
   int gain_step() const { return gain_step_; }
   double drift() const { return drift_; }  // the largest |E - E_0| / scale
+  // All rises of energy together, over scale, from the mean of one window of 0.01 s to that of the
+  // next, or from step to step where steps are longer: what was dissipated and is then pumped back
+  // shows here, and not in gain(). Means, since the velocities of two-step methods overshoot for a
+  // step wherever an edge meets its limit.
+  double rise() const { return rise_; }
   double start_energy() const { return start_; }
   double scale() const { return scale_; }
 
@@ -50,6 +55,10 @@ class EnergyRecord {
   double start_ = 0;
   Instant before_, last_;
   double gain_ = unknown, gain_time_ = unknown, drift_ = unknown;
+  double rise_ = 0;
+  struct Window {
+    double sum = 0, length = 0, before = 0;  // of gains by time, s, mean of the last one
+  } window_;
   int gain_step_ = 0;
 };
 

@@ -37,6 +37,7 @@ struct Measures {
   double kinetic_energy_mean = unknown;
   double energy_drift = unknown;
   double energy_gain = unknown, energy_gain_time = unknown;
+  double energy_rise = unknown;
   double symmetry_defect = unknown;
   std::string reference;
   double trajectory = unknown, trajectory_max = unknown;
@@ -85,6 +86,9 @@ inline constexpr std::tuple measure_fields{
           "largest E - E_0, over all steps; negative: energy was lost throughout",
           later_error_or_null),
     field("energy_gain_time", &Measures::energy_gain_time, "s", "when that was",
+          later_error_or_null),
+    field("energy_rise", &Measures::energy_rise, "weight times size",
+          "sum of all rises of E from one step to the next, where energy can only fall",
           later_error_or_null),
     field("symmetry_defect", &Measures::symmetry_defect, "scene's size",
           "largest distance to the mirror image", error_or_null),

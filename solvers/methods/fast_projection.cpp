@@ -24,11 +24,10 @@
 namespace inextensible {
 namespace {
 
-// Iterations without a new least |C|: Newton often recovers from a rise or two, and friction makes
-// |C| rise and fall for longer. But not from this rise of |C|^2, where J W J^T was singular in all
-// but rounding, and digits are lost on the way.
-constexpr int free_patience = 8, patience_in_contact = 60;
-constexpr double overshoot = 1e8;
+// Iterations without a new least |C|: Newton often recovers from a rise or two. But not from this
+// rise of |C|^2, where J W J^T was singular in all but rounding, and digits are lost on the way.
+constexpr int patience = 8;
+constexpr double overshoot = 1e8, overshoot_in_contact = 100;
 constexpr double least_forcing = 1e-8, damped_forcing = 1e-4;
 constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1e8;
 
@@ -42,8 +41,7 @@ FastProjection::FastProjection(const Problem& problem, const Settings& settings)
       u_(3, problem.constraints()),
       mu_(problem.constraints()),
       excess_(problem.constraints()) {
-  const bool sweeps = settings.smoothing_sweeps > 0 || settings.sweeps_before > 0 ||
-                      (problem.contact_inside() && settings.contact_sweeps > 0);
+  const bool sweeps = settings.smoothing_sweeps > 0 || settings.sweeps_before > 0;
   if (sweeps && system_.solver_name() != "tridiagonal") {
     sweep_ = std::make_unique<StrainSweep>(
         StrainSweep::by_mass(problem, {settings.strain_limit, settings.smoothing_target},
@@ -85,13 +83,13 @@ StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Pos
     if (j > 0)
       forcing = std::clamp(0.9 * next_error / last_error, least_forcing, settings_.first_forcing);
     last_error = next_error;
-    if (j - best_j == (touches() ? patience_in_contact : free_patience) ||
-        !(next_error < overshoot * error) || !system_.factor(u_, work) ||
-        !system_.solve(mu_, work, forcing))  // (7)
+    if (j - best_j == patience ||
+        !(next_error < (touches() ? overshoot_in_contact : overshoot) * error) ||
+        !system_.factor(u_, work) || !system_.solve(mu_, work, forcing))  // (7)
       return damped(j, x, work);
     correct(x);
     smooth(x, work);
-    if (contacts_ && contacts_->find(x, work) > 0) contacts_->settle(x);
+    if (contacts_) contacts_->update(x, work);
   }
 }
 
@@ -126,9 +124,7 @@ void FastProjection::show(int j, const Positions& x) {
 
 // After a projection.
 void FastProjection::smooth(Positions& x, WorkCounters& work) {
-  const int sweeps = touches() ? std::max(settings_.smoothing_sweeps, settings_.contact_sweeps)
-                               : settings_.smoothing_sweeps;
-  if (sweep_ && sweeps > 0) sweep(sweeps, x, work);
+  if (sweep_ && settings_.smoothing_sweeps > 0) sweep(settings_.smoothing_sweeps, x, work);
 }
 
 void FastProjection::sweep(int sweeps, Positions& x, WorkCounters& work) {
@@ -212,11 +208,6 @@ SettingFields<FastProjection::Settings> FastProjection::fields() {
        count_from_zero, Range{0, 120}},
       {"smoothing_sweeps", &S::smoothing_sweeps,
        "the same after each projection, at most; none on chains", count_from_zero, Range{0, 120}},
-      {"contact_sweeps", &S::contact_sweeps,
-       "at least so many of them where vertices touch an obstacle: friction is a local matter, "
-       "which a "
-       "projection of the whole does not see",
-       count_from_zero, Range{0, 120}},
       {"smoothing_target", &S::smoothing_target,
        "an edge that a sweep corrects is brought to this fraction of the strain limit", fraction,
        fraction},

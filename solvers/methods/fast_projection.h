@@ -22,9 +22,6 @@ class FastProjection final : public VelocityFilter {
     // cloth, but only to first order; most of what it leaves is local, and cheaper to mend by
     // sweeps. Not on chains, where a projection costs no more than some sweeps.
     int smoothing_sweeps = 0;
-    // At least so many where vertices touch an obstacle: friction is a local matter, which a
-    // projection of the whole does not see.
-    int contact_sweeps = 30;
     double smoothing_target = 0.5;      // of the strain limit
     double smoothing_relaxation = 1.4;  // of a correction
     // The same sweeps before the first projection, at most: what they mend is nothing to project.

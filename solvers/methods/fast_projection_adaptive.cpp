@@ -20,6 +20,7 @@ namespace {
 constexpr double most_overshoot = 100;
 constexpr double memory = 0.6;                           // of a mean, a step
 constexpr int first_holiday = 4, longest_holiday = 128;  // steps
+constexpr int most_rounds_in_contact = 100, most_sweeps = 100'000;
 constexpr int first_rounds = 8;  // until a projection of the whole is tried for the first time
 
 // In visits of an edge by a sweep, 1.3 ns, as kernels measures them: a link in a pass over threads;
@@ -60,7 +61,14 @@ StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*
   bool regular = threads_.crossing();  // else a thread's projection is that of the whole
   Way way = regular ? choose() : rounds_alone;
   double price = 0;
+  if (contacts_) contacts_->save(start_record_);
   for (int rounds = 0;; ++rounds) {
+    // Newton's method overshoots where a step takes vertices far round an obstacle; sweeps do not.
+    if (touches() && rounds == most_rounds_in_contact) {
+      contacts_->restore(start_record_);
+      seen_ = {};
+      return sweep_.limit(StrainSweep::Order::in_turn, most_sweeps, edges, x, work);
+    }
     const bool gives_up =
         rounds == settings_.max_iterations || (rounds % 64 == 63 && !sweep_.finite());
     sweep_.settle_contacts();

@@ -47,9 +47,9 @@ class FastProjectionAdaptive final : public VelocityFilter {
   StrainSweep sweep_;
   ThreadPass threads_;
   Positions x_;
-  Eigen::Matrix3Xd u_;       // gradient of C
-  Eigen::VectorXd mu_;       // C~, then h^2 dlambda
-  Contacts::Record record_;  // with contacts only
+  Eigen::Matrix3Xd u_;                      // gradient of C
+  Eigen::VectorXd mu_;                      // C~, then h^2 dlambda
+  Contacts::Record start_record_, record_;  // with contacts only
   // What steps have cost each way, in visits of an edge; 0: not tried yet.
   struct Seen {
     double mean[2] = {};

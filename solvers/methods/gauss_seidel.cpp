@@ -88,6 +88,7 @@ StepResult GaussSeidel::apply(const Positions& /*x_start*/, double /*h*/, Positi
     const std::int64_t projections = sweep(x);
     work.edge_projections += projections;
     if (contacts_) contacts_->settle(x);
+    if (contacts_ && sweeps % 1024 == 1023) contacts_->update(x, work);
     if (projections == 0)
       return refuse(Status::not_converged, sweeps, edges_, x, "an edge has no length");
   }

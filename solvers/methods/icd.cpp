@@ -13,6 +13,7 @@
 // one assembly, one factorization, several solves and one or more evaluations an iteration.
 #include "inextensible/methods/icd.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "inextensible/systems/chain_kkt.h"
@@ -23,8 +24,7 @@ namespace inextensible {
 namespace {
 
 constexpr int line_search_limit = 12;
-constexpr double sweep_relaxation = 1.4;
-constexpr int most_sweeps = 100'000;
+constexpr int most_rounds = 20;
 constexpr double sufficient_decrease = 1e-4;
 
 // Without fill, as on trees, factoring the saddle-point matrix is cheaper than any iteration; and
@@ -67,9 +67,8 @@ Icd::Icd(const Problem& problem, const Settings& settings)
   for (Eigen::VectorXd* v : {&c_, &mu_, &trial_mu_, &dq_}) v->resize(problem.constraints());
   previous_lambda_ = Eigen::VectorXd::Zero(problem.constraints());
   if (problem.contact_inside()) {
+    free_.resize(3, problem.vertices());
     reaction_.resize(problem.vertices());
-    sweep_ = std::make_unique<StrainSweep>(
-        StrainSweep::by_mass(problem, {settings.strain_limit, 0.5}, sweep_relaxation));
   }
 }
 
@@ -101,8 +100,6 @@ void Icd::evaluate(const Positions& dx) {
   merit_ = sum + c_.squaredNorm();
 }
 
-// With contacts: the closest point within their planes. What pulls there decides which of them hold
-// and how much friction there is; what that moves is a local matter, which sweeps mend.
 StepResult Icd::apply(const Positions& /*x_start*/, double h, Positions& x, WorkCounters& work) {
   // dx = 0 and lambda = 0 solve both equations as far as is asked.
   if (min_iterations_ == 0 && edges_.permissible(x)) return {Status::ok, 0};
@@ -110,15 +107,45 @@ StepResult Icd::apply(const Positions& /*x_start*/, double h, Positions& x, Work
     return refuse(Status::not_converged, 0, edges_, x,
                   "this linear solver cannot hold contacts, projected_cg can");
   }
-  x0_ = x;
-  StepResult result = closest(h, x, work);
-  if (!result || !touches()) return result;
+  if (!touches()) {
+    x0_ = x;
+    return closest(h, x, work);
+  }
+  free_ = x;
   for (int c = 0; c < contacts_->count(); ++c)
-    x.col(contacts_->vertex(c)) -= reaction_[c] * contacts_->normal(c);
-  contacts_->settle(x);
-  sweep_->heed(contacts_);
-  const StepResult swept = sweep_->limit(StrainSweep::Order::in_turn, most_sweeps, edges_, x, work);
-  return swept ? result : swept;
+    free_.col(contacts_->vertex(c)) -= contacts_->push(c) * contacts_->normal(c);
+  for (int round = 0, iterations = 0;; ++round) {
+    x0_ = free_;
+    for (int c = 0; c < contacts_->count(); ++c) {
+      auto at = x0_.col(contacts_->vertex(c));
+      if (contacts_->holds(c)) at -= contacts_->gap(c, at) * contacts_->normal(c);
+    }
+    if (round == 0) x = x0_;
+    StepResult result = closest(h, x, work);
+    result.iterations = iterations += result.iterations;
+    if (!result || !planes_change(x) || round == most_rounds) return result;
+    for (int c = 0; c < contacts_->count(); ++c) {
+      auto at = x.col(contacts_->vertex(c));
+      if (contacts_->holds(c)) at -= contacts_->gap(c, at) * contacts_->normal(c);
+    }
+  }
+}
+
+// Whether a plane pulls at x and so releases its vertex, or a released one has gone through.
+bool Icd::planes_change(const Positions& x) {
+  bool changed = false;
+  for (int c = 0; c < contacts_->count(); ++c) {
+    const int vertex = contacts_->vertex(c);
+    if (contacts_->holds(c)) {
+      const double push = reaction_[c] - contacts_->gap(c, free_.col(vertex));
+      contacts_->set_push(c, std::max(push, 0.0));
+      changed |= push < 0;
+    } else if (const double gap = contacts_->gap(c, x.col(vertex)); gap < -contacts_->tolerance()) {
+      contacts_->set_push(c, -gap);
+      changed = true;
+    }
+  }
+  return changed;
 }
 
 // The point on the manifold that is closest to x0_.
@@ -164,8 +191,8 @@ bool Icd::line_search(WorkCounters& work) {
 }
 
 StepResult Icd::newton(double h, Positions& x, WorkCounters& work) {
-  dx_.setZero();
-  trial_ = x0_;
+  dx_ = x - x0_;
+  trial_ = x;
   trial_mu_ = mu_;
   evaluate(dx_);
   for (int j = 0;; ++j) {

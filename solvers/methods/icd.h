@@ -3,7 +3,6 @@
 #pragma once
 
 #include "inextensible/methods/setting_fields.h"
-#include "inextensible/methods/strain_pass.h"
 #include "inextensible/systems/constraint_system.h"
 #include "inextensible/systems/kkt_solver.h"
 
@@ -13,7 +12,7 @@ class Icd final : public VelocityFilter {
  public:
   struct Settings {
     double strain_limit = 0.01;
-    int max_iterations = 50;
+    int max_iterations = 200;
     int min_iterations = 0;  // even where the candidate is permissible already
     double target = 0;       // of the strain limit; as FastProjection's
     // |F| of every vertex must fall below this times strain_limit times the shortest rest length
@@ -32,6 +31,7 @@ class Icd final : public VelocityFilter {
 
  private:
   void evaluate(const Positions& dx);
+  bool planes_change(const Positions& x);
   StepResult closest(double h, Positions& x, WorkCounters& work);
   bool direction(bool convex, WorkCounters& work);
   bool line_search(WorkCounters& work);
@@ -52,9 +52,10 @@ class Icd final : public VelocityFilter {
   bool permissible_ = false;
   double largest_f_ = 0;  // m, over vertices
   double merit_ = 0;      // sum of |F|^2 and C^2, m^2
-  // With contacts only: n . f_ / m of each, which f_ itself has lost; and what follows on them.
+  // With contacts only: the candidate without any push, and n . f_ / m of each contact, which f_
+  // itself has lost.
+  Positions free_;
   std::vector<double> reaction_;
-  std::unique_ptr<StrainSweep> sweep_;
   Eigen::VectorXd previous_lambda_;  // of the last accepted step, 1/kg-scaled: mu / h^2
 };
 

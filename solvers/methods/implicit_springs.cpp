@@ -22,9 +22,8 @@
 namespace inextensible {
 namespace {
 
-// A contact's stiffness, over that of an edge, and over that which bears a vertex's weight out of
-// sight. What friction lets slip in a step, of a rest length.
-constexpr double over_stretch = 100, load = 10, slip = 1e-3;
+// A held vertex's stiffness along the normal, over the rest of its diagonal block.
+constexpr double stiff_normal = 1e6;
 
 // Whether vertices are numbered along chains: every spring joins one to the next.
 bool chains(const std::vector<Edge>& pairs) {
@@ -126,15 +125,12 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Se
   solver_ = make_spd_solver(linear_solver_, std::move(pattern));
   inertial_.resize(3, p.vertices());
   trial_.resize(3, p.vertices());
+  ahead_.resize(3, p.vertices());
   if (p.has_drag()) before_.resize(3, p.vertices());
   if (p.contact_inside()) {
-    const double weight = p.total_mass() * p.gravity().norm() / p.vertices();
-    contact_energy_ = std::make_unique<ContactEnergy>(
-        *contacts_, p.vertices(),
-        std::max(over_stretch * settings.stiffness / p.shortest_rest_length(),
-                 load * weight / contacts_->tolerance()),
-        slip * p.shortest_rest_length());
     free_place_ = place;
+    reaction_.resize(p.vertices());
+    released_.resize(p.vertices());
   }
   gradient_.resize(3 * n);
   step_.resize(3 * n);
@@ -154,7 +150,6 @@ double ImplicitSprings::energy(const Positions& x, double h) const {
       inertia += h * problem().drag(v) * (x.col(v) - before_.col(v)).squaredNorm();
   }
   potential += 2 * bending_energy(problem().bending(), x);
-  if (contact_energy_) potential += 2 * contact_energy_->value(x);
   const double* p = x.data();
   for (const Spring& s : springs_) {
     const double* pa = p + 3 * s.a;
@@ -190,7 +185,6 @@ void ImplicitSprings::assemble(const Positions& x, double h, bool matrix) {
     }
   }
   assemble_bending(x, h, matrix);
-  if (contact_energy_) assemble_contacts(x, h, matrix);
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     const Spring& s = springs_[k];
     const double* pa = p + 3 * s.a;
@@ -230,19 +224,27 @@ void ImplicitSprings::assemble(const Positions& x, double h, bool matrix) {
     cy[0] -= xy, cy[1] -= yy, cy[2] -= yz;
     cz[0] -= xz, cz[1] -= yz, cz[2] -= zz;
   }
+  if (contacts_inside()) hold_in_planes(matrix);
 }
 
-void ImplicitSprings::assemble_contacts(const Positions& x, double h, bool matrix) {
+// A held vertex moves within its plane (the filter S = I - n n^T of Baraff and Witkin 1998): its
+// gradient loses what leads along n, and so does the step, by a stiffness along n that leaves next
+// to nothing of it.
+void ImplicitSprings::hold_in_planes(bool matrix) {
   double* value = solver_->values();
   for (int c = 0; c < contacts_->count(); ++c) {
-    const int vertex = contacts_->vertex(c), f = free_place_[vertex];
-    const auto [first, second] = contact_energy_->derivatives(c, x.col(vertex));
-    gradient_.segment<3>(3 * f) += h * h * first;
+    if (!contacts_->holds(c)) continue;
+    const Eigen::Vector3d n = contacts_->normal(c);
+    const int f = free_place_[contacts_->vertex(c)];
+    auto g = gradient_.segment<3>(3 * f);
+    reaction_[c] = n.dot(g);
+    g -= reaction_[c] * n;
     if (!matrix) continue;
     const Places& at = diagonal_[f];
-    const Eigen::Matrix3d block = h * h * second;
-    value[at.xx] += block(0, 0), value[at.xy] += block(0, 1), value[at.yy] += block(1, 1);
-    value[at.xz] += block(0, 2), value[at.yz] += block(1, 2), value[at.zz] += block(2, 2);
+    const double k = stiff_normal * (value[at.xx] + value[at.yy] + value[at.zz]);
+    value[at.xx] += k * n[0] * n[0], value[at.xy] += k * n[0] * n[1];
+    value[at.yy] += k * n[1] * n[1], value[at.xz] += k * n[0] * n[2];
+    value[at.yz] += k * n[1] * n[2], value[at.zz] += k * n[2] * n[2];
   }
 }
 

@@ -11,7 +11,6 @@
 
 #include "inextensible/linear/spd_solver.h"
 #include "inextensible/methods/setting_fields.h"
-#include "inextensible/systems/contact_energy.h"
 
 namespace inextensible {
 
@@ -20,7 +19,7 @@ class ImplicitSprings final : public Stepper {
   struct Settings {
     double stiffness = 1e4;      // EA, N
     double strain_limit = 0.01;  // only sets the accuracy of Newton's iteration
-    int max_iterations = 100;
+    int max_iterations = 300;
     // Newton stops when its step moves no vertex by more than this times strain_limit times the
     // shortest rest length.
     double newton_tolerance = 0.1;
@@ -39,12 +38,13 @@ class ImplicitSprings final : public Stepper {
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override;
-  bool finds_contacts(const Positions& x);
+  bool put_on_planes(Positions& x);
+  bool release_pulled();
   StepResult newton(double h, double current, Positions& x);
   double energy(const Positions& x, double h) const;
   void assemble(const Positions& x, double h, bool matrix);
   void assemble_bending(const Positions& x, double h, bool matrix);
-  void assemble_contacts(const Positions& x, double h, bool matrix);
+  void hold_in_planes(bool matrix);
   double start(const State& state, double h, Positions& x);
   void predict_tension(const Positions& x, const Positions& to);
   enum class Search { full, shortened, at_minimum, failed };
@@ -78,10 +78,14 @@ class ImplicitSprings final : public Stepper {
   std::size_t entries_ = 0;
   std::unique_ptr<SpdSolver> solver_;
   Positions inertial_, trial_;  // x + h v + h^2 g, and a line search's positions
+  Positions ahead_;             // where history leads
   Positions before_;            // x^n, with drag only
-  // With contact inside only: the energy of contacts, and the place of each vertex among the free.
-  std::unique_ptr<ContactEnergy> contact_energy_;
+  // With contact inside only: the place of each vertex among the free, and n . gradient of each
+  // contact, J s^2 / m / kg: what its plane bears.
   std::vector<int> free_place_;
+  std::vector<double> reaction_;
+  enum class Release : char { never, once };
+  std::vector<Release> released_;  // of each contact, in this step
   Eigen::VectorXd gradient_, step_;
   std::vector<double> pull_, pull_before_;  // N/m, predicted tension over length; the last step's
   Positions v_before_;                      // v^{n-1}

@@ -1,18 +1,17 @@
 // A step of the implicit springs: where Newton starts, its iterations, and their line search.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "inextensible/methods/implicit_springs.h"
 
 namespace inextensible {
 namespace {
 
+constexpr double held = 1e-300;  // m: a push that says no more than that
 constexpr int halving_limit = 30;
 constexpr double armijo_fraction = 1e-4;
 constexpr double rounding = 1e-14;
-// Rounds in which friction follows pressures, and the change of pressures that ends them.
-constexpr int most_rounds = 10;
-constexpr double pressure_tolerance = 0.1;
 // What a step with an old factorization must shrink to, times the last. The error it leaves is then
 // no more than the step itself.
 constexpr double fast_convergence = 0.5;
@@ -22,21 +21,25 @@ constexpr double fast_convergence = 0.5;
 // Where Newton starts, to x; returns its energy. Whatever the history is, the start is never higher
 // than the free flight and the start of the step.
 double ImplicitSprings::start(const State& state, double h, Positions& x) {
-  const auto count = static_cast<std::int64_t>(springs_.size());
-  const double flight = energy(inertial_, h), rest = energy(state.x, h);
-  work_.spring_evaluations += 2 * count;
-  double lowest = std::min(flight, rest);
-  x = flight <= rest ? inertial_ : state.x;
+  double lowest = std::numeric_limits<double>::infinity();
+  const auto consider = [&](const Positions& candidate) {
+    trial_ = candidate;
+    if (contacts_inside()) put_on_planes(trial_);
+    const double here = energy(trial_, h);
+    work_.spring_evaluations += static_cast<std::int64_t>(springs_.size());
+    if (here < lowest) {
+      lowest = here;
+      x.swap(trial_);
+    }
+  };
+  x = state.x;
+  consider(inertial_);
+  consider(state.x);
   if (!extrapolates_) return lowest;
-  trial_ = state.x + h * state.v;
-  if (h_before_ > 0) trial_ += (h * h / h_before_) * (state.v - v_before_);
-  for (const int vertex : problem().pinned()) trial_.col(vertex) = state.x.col(vertex);
-  const double ahead = energy(trial_, h);
-  work_.spring_evaluations += count;
-  if (ahead < lowest) {
-    lowest = ahead;
-    x.swap(trial_);
-  }
+  ahead_ = state.x + h * state.v;
+  if (h_before_ > 0) ahead_ += (h * h / h_before_) * (state.v - v_before_);
+  for (const int vertex : problem().pinned()) ahead_.col(vertex) = state.x.col(vertex);
+  consider(ahead_);
   return lowest;
 }
 
@@ -85,22 +88,50 @@ StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
   inertial_.colwise() += fall;
   for (const int vertex : problem().pinned()) inertial_.col(vertex) = state.x.col(vertex);
   pull_ = pull_before_;
-  if (!contact_energy_) return newton(h, start(state, h, x), x);
-  contacts_->find(inertial_, work_);
-  contact_energy_->expect_pressures(problem().mass(), h, inertial_);
-  for (int round = 0, iterations = 0;; ++round) {
-    StepResult result = newton(h, round == 0 ? start(state, h, x) : energy(x, h), x);
-    result.iterations = iterations += result.iterations;
-    if (!result || round == most_rounds) return result;
-    if (contact_energy_->take_pressures(x) <= pressure_tolerance) return result;
+  if (contacts_inside()) {
+    contacts_->rub(inertial_, work_);
+    contacts_->find(inertial_, work_);
+    std::fill(released_.begin(), released_.end(), Release::never);
+    for (int c = 0; c < contacts_->count(); ++c) contacts_->set_push(c, held);
   }
+  const double lowest = start(state, h, x);
+  return newton(h, lowest, x);
 }
 
-bool ImplicitSprings::finds_contacts(const Positions& x) {
-  if (!contact_energy_) return false;
-  const int known = contacts_->count();
+// Vertices that went through planes, and those that are held: onto them. Whether that moved any.
+bool ImplicitSprings::put_on_planes(Positions& x) {
   contacts_->find(x, work_);
-  return contacts_->count() > known;
+  bool moved = false;
+  for (int c = 0; c < contacts_->count(); ++c) {
+    auto at = x.col(contacts_->vertex(c));
+    const double gap = contacts_->gap(c, at);
+    if (!contacts_->holds(c)) {
+      if (gap >= -contacts_->tolerance()) continue;
+      contacts_->set_push(c, held);
+    }
+    moved |= std::abs(gap) > contacts_->tolerance();
+    at -= gap * contacts_->normal(c);
+  }
+  return moved;
+}
+
+// At the energy's minimum within the planes: whether one of them pulls, and so releases its vertex.
+// One that comes back stays for the rest of the step, so that this ends. The others push by what
+// moves a free mass as far.
+bool ImplicitSprings::release_pulled() {
+  bool released = false;
+  for (int c = 0; c < contacts_->count(); ++c) {
+    if (!contacts_->holds(c)) continue;
+    const double push = reaction_[c] / problem().mass()[contacts_->vertex(c)];
+    if (push < 0 && released_[c] == Release::never) {
+      contacts_->set_push(c, 0);
+      released_[c] = Release::once;
+      released = true;
+    } else {
+      contacts_->set_push(c, std::max(push, held));
+    }
+  }
+  return released;
 }
 
 // Lowers the energy, `current` at x, to its minimum.
@@ -134,22 +165,28 @@ StepResult ImplicitSprings::newton(double h, double current, Positions& x) {
                                          .squaredNorm()
                                          .maxCoeff());
     const Search found = search(x, h, longest, current);
-    if (found == Search::at_minimum) return {Status::ok, j + 1};
+    if (found == Search::at_minimum) {
+      if (!contacts_inside() || !release_pulled()) return {Status::ok, j + 1};
+      reuse = false;
+      continue;
+    }
     if (found == Search::failed) {
       return {Status::not_converged, j, -1, 0,
               "no step along Newton's direction lowers the energy"};
     }
     if (predicts_tension_) predict_tension(x, trial_);
     x.swap(trial_);
-    if (finds_contacts(x)) {  // which are in the energy from now on
+    if (contacts_inside() && put_on_planes(x)) {
       current = energy(x, h);
       reuse = false;
       last_longest = longest;
       continue;
     }
     const bool fast = !reuse || longest <= fast_convergence * last_longest;
-    if (found == Search::full && fast && longest <= step_tolerance_) return {Status::ok, j + 1};
-    reuse = found == Search::full && fast && longest <= reuse_below_;
+    const bool ended = found == Search::full && fast && longest <= step_tolerance_;
+    const bool released = ended && contacts_inside() && release_pulled();
+    if (ended && !released) return {Status::ok, j + 1};
+    reuse = found == Search::full && fast && longest <= reuse_below_ && !released;
     last_longest = longest;
   }
 }
@@ -160,7 +197,6 @@ StepResult ImplicitSprings::end_velocities(const State& before, double h, const 
   v_before_ = before.v;
   h_before_ = h;
   pull_before_.swap(pull_);
-  if (contact_energy_) contact_energy_->accept();
   return Stepper::end_velocities(before, h, filtered, x, v);
 }
 

@@ -111,12 +111,21 @@ StepResult StrainSweep::limit(Order order, int most_sweeps, const EdgeConstraint
     const bool gives_up = sweeps == most_sweeps || (sweeps % 64 == 63 && !finite());
     const std::int64_t corrected = gives_up ? 0 : order == Order::in_turn ? in_turn() : at_once();
     work.edge_projections += corrected;
-    if (corrected > 0) continue;
+    if (corrected > 0) {
+      if (contacts_ && sweeps % 1024 == 1023) update_planes(x, work);
+      continue;
+    }
     store(x);
     if (edges.permissible(x)) return {Status::ok, sweeps};
     return refuse(Status::not_converged, sweeps, edges, x,
                   gives_up ? "sweep limit" : "an edge has no length");
   }
+}
+
+// By way of x, where vertices lie as contacts know them.
+void StrainSweep::update_planes(Positions& x, WorkCounters& work) {
+  store(x);
+  if (contacts_->update(x, work) > 0) load(x);
 }
 
 void StrainSweep::settle_contacts() {

@@ -41,6 +41,7 @@ class StrainSweep {
   void store(Positions& x) const { edges_.store(x_, x); }
   bool finite() const { return x_.allFinite(); }
   ColoredEdges::Places& positions() { return x_; }
+  void update_planes(Positions& x, WorkCounters& work);  // Contacts::update, at positions()
 
   // Contacts that are settled before each sweep from now on, so that they hold wherever a sweep
   // finds nothing to correct; null: none.

@@ -3,6 +3,11 @@
 #include "inextensible/methods/strips.h"
 
 namespace inextensible {
+namespace {
+
+constexpr int most_passes_in_contact = 100, most_sweeps = 100'000;
+
+}  // namespace
 
 Strips::Strips(const Problem& problem, const Settings& settings)
     : edges_(problem, settings.strain_limit),
@@ -15,8 +20,14 @@ Strips::Strips(const Problem& problem, const Settings& settings)
 StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
                          WorkCounters& work) {
   if (edges_.permissible(x)) return {Status::ok, 0};
+  if (contacts_) contacts_->save(record_);
   sweep_.load(x);
   for (int passes = 0;; ++passes) {
+    // Newton's method overshoots where a step takes vertices far round an obstacle; sweeps do not.
+    if (touches() && passes == most_passes_in_contact) {
+      contacts_->restore(record_);
+      return sweep_.limit(StrainSweep::Order::in_turn, most_sweeps, edges_, x, work);
+    }
     const bool gives_up = passes == max_iterations_ || (passes % 64 == 63 && !sweep_.finite());
     sweep_.settle_contacts();
     std::int64_t corrected = gives_up ? 0 : threads_.project(sweep_.positions(), work);

@@ -39,6 +39,7 @@ class Strips final : public VelocityFilter {
   StrainSweep sweep_;
   ThreadPass threads_;
   int sweeps_;
+  Contacts::Record record_;  // with contacts only
 };
 
 Backend strips_row();

@@ -34,6 +34,12 @@ class Collider {
                     double depth, Memory& memory, std::vector<ContactPlane>& planes,
                     WorkCounters& work) const = 0;
 
+  // The plane through the point of the surface that is nearest to p, inside or outside, across the
+  // way there; of a convex obstacle, another that p is in front of will do. False, and no plane,
+  // where the surface is not near. The vertex is left as it is.
+  virtual bool plane_at(const Eigen::Vector3d& p, ContactPlane& plane,
+                        WorkCounters& work) const = 0;
+
   virtual double friction() const = 0;  // Coulomb coefficient
   virtual int triangles() const = 0;
 };

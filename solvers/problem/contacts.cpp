@@ -1,63 +1,154 @@
 #include "inextensible/problem/contacts.h"
 
+#include <cmath>
+#include <limits>
+
 namespace inextensible {
 namespace {
 
 // Of the shortest rest length: a depth that nobody sees and no strain notices. Without edges, m.
 constexpr double invisible = 1e-5, invisible_point = 1e-9;
-constexpr int rounds_with_friction = 8;
+// Of the shortest rest length: a vertex on its plane that is so far from the obstacle has left it.
+// With less, planes change to and fro at the corners of a polygonal obstacle.
+constexpr double margin = 0.5;
+// Of the same, for every vertex: what edges within their limits may be away from the closest point.
+constexpr double room = 0.1;
+// Of what edges did in the last step, in what they are expected to press with. More of it lets
+// friction and edges drive each other at steps that take vertices past several edges.
+constexpr double newest = 0.1;
 
 }  // namespace
 
 Contacts::Contacts(const Problem& problem)
     : problem_(problem),
-      tolerance_(problem.constraints() > 0 ? invisible * problem.shortest_rest_length()
-                                           : invisible_point),
       friction_(problem.collider()->friction()),
       vertex_(problem.vertices()),
       place_(problem.vertices(), -1),
       obstacle_(problem) {
+  const double length = problem.constraints() > 0 ? problem.shortest_rest_length() : 0;
+  tolerance_ = length > 0 ? invisible * length : invisible_point;
+  margin_ = margin * length;
+  slack_ = length > 0 ? room * length * std::sqrt(problem.total_mass())
+                      : std::numeric_limits<double>::infinity();
   for (std::vector<double>& column : numbers_) column.assign(problem.vertices() + lanes, 0.0);
+  push_.assign(problem.vertices() + lanes, 0.0);
   found_.reserve(problem.vertices());
+  if (!problem.contact_inside() || friction_ == 0) return;
+  candidate_.resize(3, problem.vertices());
+  expected_.resize(3, problem.vertices());
+  for (Positions* p : {&before_, &pulling_, &pressing_}) p->setZero(3, problem.vertices());
 }
 
 void Contacts::begin(const Positions& x_start, double time, double h) {
   for (int c = 0; c < count_; ++c) place_[vertex_[c]] = -1;
   count_ = 0;
   start_ = &x_start;
+  h_ = h;
   if (!problem_.body_motion()) return;
   obstacle_.place(time);
   const Pose back = obstacle_.pose().inverse();
   obstacle_.place(time + h);
   carry_ = obstacle_.pose() * back;
-  h_ = h;
 }
 
-void Contacts::set_plane(int contact, const ContactPlane& plane) {
-  value(normal_x, contact) = plane.normal.x();
-  value(normal_y, contact) = plane.normal.y();
-  value(normal_z, contact) = plane.normal.z();
-  value(offset, contact) = plane.offset;
+double Contacts::way(const Positions& x) const {
+  double sum = 0;
+  for (int v = 0; v < problem_.vertices(); ++v) {
+    double squared = (x.col(v) - start_->col(v)).squaredNorm();
+    if (problem_.body_motion()) squared = std::min(squared, (x.col(v) - carried(v)).squaredNorm());
+    sum += problem_.mass()[v] * squared;
+  }
+  return std::sqrt(sum);
+}
+
+void Contacts::put(const ContactPlane& plane, WorkCounters& work) {
+  int& place = place_[plane.vertex];
+  if (place < 0) {
+    place = count_++;
+    vertex_[place] = plane.vertex;
+    push_[place] = 0;
+    ++work.contacts;
+  }
+  value(normal_x, place) = plane.normal.x();
+  value(normal_y, place) = plane.normal.y();
+  value(normal_z, place) = plane.normal.z();
+  value(offset, place) = plane.offset;
 }
 
 int Contacts::find(const Positions& x, WorkCounters& work) {
   obstacle_.find(x, tolerance_, found_, work);
-  for (const ContactPlane& plane : found_) {
-    int& place = place_[plane.vertex];
-    if (place < 0) {
-      place = count_++;
-      vertex_[place] = plane.vertex;
-      Eigen::Vector3d start = start_->col(plane.vertex);
-      if (problem_.body_motion()) start = carry_(start);
-      value(start_x, place) = start.x();
-      value(start_y, place) = start.y();
-      value(start_z, place) = start.z();
-      for (const Number number : {push, drag_x, drag_y, drag_z}) value(number, place) = 0;
-      ++work.contacts;
-    }
-    set_plane(place, plane);
-  }
+  for (const ContactPlane& plane : found_) put(plane, work);
   return static_cast<int>(found_.size());
+}
+
+int Contacts::update(Positions& x, WorkCounters& work) {
+  int changed = 0;
+  ContactPlane plane{};
+  for (int c = 0; c < count_; ++c) {
+    plane.vertex = vertex_[c];
+    auto at = x.col(plane.vertex);
+    if (!holds(c)) continue;
+    if (!obstacle_.plane_at(at, plane, work)) {
+      plane.normal = normal(c);
+      plane.offset = -std::numeric_limits<double>::infinity();  // none
+    } else if (plane.normal.dot(at) - plane.offset <= margin_) {
+      continue;
+    }
+    at -= push_[c] * normal(c);
+    push_[c] = 0;
+    put(plane, work);
+    ++changed;
+  }
+  changed += find(x, work);
+  if (changed > 0) settle(x);
+  return changed;
+}
+
+// Where the step begins, as the obstacle carries it.
+Eigen::Vector3d Contacts::carried(int vertex) const {
+  const Eigen::Vector3d start = start_->col(vertex);
+  return problem_.body_motion() ? carry_(start) : start;
+}
+
+// Coulomb's friction of a push on a vertex that goes this way.
+void Contacts::take_friction(const ContactPlane& plane, double push, const Eigen::Vector3d& way,
+                             Positions& x) const {
+  const Eigen::Vector3d slide = way - plane.normal.dot(way) * plane.normal;
+  const double length = slide.norm(), most = friction_ * push;
+  if (length > 0) x.col(plane.vertex) -= std::min(1.0, most / length) * slide;
+}
+
+void Contacts::rub(Positions& x0, WorkCounters& work) {
+  if (candidate_.size() == 0) return;
+  const double scale = h_ * h_;
+  expected_ = x0 + scale * pressing_;
+  obstacle_.find(expected_, 0, found_, work);
+  for (const ContactPlane& plane : found_) {
+    put(plane, work);
+    const int v = plane.vertex;
+    const double push = plane.offset - plane.normal.dot(expected_.col(v));
+    take_friction(plane, push, x0.col(v) + scale * pulling_.col(v) - carried(v), x0);
+  }
+  candidate_ = x0;
+}
+
+// What edges did in one step alone, as in an impact, is not expected of them again: of the last two
+// steps the lesser counts, and none where they contradict each other.
+void Contacts::accept(const Positions& x) {
+  if (candidate_.size() == 0) return;
+  const double scale = 1 / (h_ * h_);
+  expected_ = scale * (x - candidate_);
+  for (int c = 0; c < count_; ++c) expected_.col(vertex_[c]) -= scale * push_[c] * normal(c);
+  for (Eigen::Index v = 0; v < x.cols(); ++v) {
+    const auto now = expected_.col(v), before = before_.col(v);
+    if (now.dot(before) <= 0) {
+      pulling_.col(v).setZero();
+    } else {
+      pulling_.col(v) = now.squaredNorm() < before.squaredNorm() ? now : before;
+    }
+  }
+  before_.swap(expected_);
+  pressing_ += newest * (pulling_ - pressing_);
 }
 
 void Contacts::keep_in_planes(Positions& d) const {
@@ -78,33 +169,42 @@ void Contacts::keep_on_planes(const Positions& x, Positions& v) const {
   }
 }
 
-// Where the obstacle is not convex, friction's way back may lead into it again; in the end a vertex
-// goes the shortest way out.
+// In the paper's pipeline, with friction of this push; where contacts are kept inside the solve,
+// little is left to do, and friction was before.
 void Contacts::push_out(Positions& x, WorkCounters& work) {
-  for (int round = 0; find(x, work) > 0; ++round) {
-    if (round < rounds_with_friction) {
-      settle(x);
-      continue;
-    }
-    for (const ContactPlane& plane : found_) {
-      auto at = x.col(plane.vertex);
-      at += (plane.offset - plane.normal.dot(at)) * plane.normal;
-    }
-    return;
+  obstacle_.find(x, tolerance_, found_, work);
+  for (const ContactPlane& plane : found_) {
+    auto at = x.col(plane.vertex);
+    const double depth = plane.offset - plane.normal.dot(at);
+    at += depth * plane.normal;
+    put(plane, work);
+    push_[place_[plane.vertex]] += depth;
+    if (!problem_.contact_inside()) take_friction(plane, depth, at - carried(plane.vertex), x);
+  }
+  if (problem_.contact_inside() || friction_ == 0) return;
+  // Where the obstacle is not convex, friction's way back may lead into it again.
+  obstacle_.find(x, tolerance_, found_, work);
+  for (const ContactPlane& plane : found_) {
+    auto at = x.col(plane.vertex);
+    at += (plane.offset - plane.normal.dot(at)) * plane.normal;
   }
 }
 
 void Contacts::save(Record& record) const {
   for (std::size_t i = 0; i < record.done.size(); ++i) {
-    const auto from = numbers_[push + i].begin();
-    record.done[i].reserve(numbers_[push + i].size());
-    record.done[i].assign(from, from + count_);
+    const std::vector<double>& from = i < numbers ? numbers_[i] : push_;
+    record.done[i].reserve(from.size());
+    record.done[i].assign(from.begin(), from.begin() + count_);
   }
 }
 
 void Contacts::restore(const Record& record) {
-  for (std::size_t i = 0; i < record.done.size(); ++i)
-    std::copy(record.done[i].begin(), record.done[i].end(), numbers_[push + i].begin());
+  const int known = static_cast<int>(record.done[0].size());
+  while (count_ > known) place_[vertex_[--count_]] = -1;
+  for (std::size_t i = 0; i < record.done.size(); ++i) {
+    std::vector<double>& to = i < numbers ? numbers_[i] : push_;
+    std::copy(record.done[i].begin(), record.done[i].end(), to.begin());
+  }
 }
 
 }  // namespace inextensible

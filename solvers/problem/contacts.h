@@ -1,20 +1,24 @@
 // The vertices that a collider keeps out of its obstacle during one step: where each may not go,
-// and what has been done to keep it from there.
+// what has pushed it back from there, and the friction that this brings.
 //
-// A step with contact and Coulomb friction moves a vertex, beside all else, by push along the
-// plane's normal n and by drag within the plane, such that
+// A plane of normal n pushes and never pulls:
 //   push >= 0,  n . x >= offset,  push (n . x - offset) = 0,
-//   |drag| <= mu push, and the vertex stays where it began the step, or |drag| = mu push against
-//   the way it slides.
-// On an obstacle that moves, "where it began" moves with it.
-// settle() visits vertices by projected Gauss-Seidel for these (Jourdan, Alart and Jean 1998): push
-// and drag are kept, so that a contact can be let go of again, and friction grows with all that
-// presses, gravity or the tension of the cloth.
+// which settle() brings about vertex by vertex, by projected Gauss-Seidel (Jourdan, Alart and Jean
+// 1998): the push is kept, so that a plane releases a vertex that is pulled away from it.
+//
+// Friction is lagged: it is found before edges and planes are solved, and held fixed while they
+// are. Coulomb's cone with the push of the same step couples all three, and a tight ring then locks
+// itself: no positions satisfy them together. Planes and edges alone always have a solution where
+// the geometry has one. What the edges will do to a vertex is expected to be what they did in the
+// last steps (Kaufman et al. 2008 and Li et al. 2020 lag the push in this way). With it, a vertex
+// whose expected way leads `depth` into the obstacle is pushed back by as much, and friction takes
+// off at most mu depth of its expected way along the surface: all of it, and it sticks, or so much
+// that it slides. On an obstacle that moves, the way is counted from where the obstacle carries the
+// vertex.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
 #include "inextensible/problem/obstacle.h"
@@ -27,13 +31,25 @@ class Contacts {
   explicit Contacts(const Problem& problem);
 
   // A step of h begins at x_start (3 x n) and `time`, s; there are no contacts. The obstacle is
-  // where it will be when the step ends, and carries along what friction holds.
+  // where it will be when the step ends.
   void begin(const Positions& x_start, double time, double h);
+
+  // Friction, once a step: takes from the candidate x0 (3 x n, the end of the step without edges
+  // and planes) what friction takes from its way. Vertices that are expected to touch get a
+  // contact.
+  void rub(Positions& x0, WorkCounters& work);
+  // The step is accepted, and ended at x before the collision filter: what edges did to the
+  // candidate is expected of them in the next step.
+  void accept(const Positions& x);
 
   // Adds a contact for every vertex of x that is inside and has none; one that is inside in spite
   // of its plane, as it may be where the obstacle is not convex, takes the plane that is nearest
   // now. Returns how many were inside, deeper than `tolerance()`.
   int find(const Positions& x, WorkCounters& work);
+  // As find(); and every contact takes the plane that is nearest now: the one of the start of an
+  // iteration keeps its vertex out of half a space, where the obstacle may be long past. Then
+  // settles. Returns how many planes are new or others.
+  int update(Positions& x, WorkCounters& work);
   double tolerance() const { return tolerance_; }  // m
 
   // Visits every contact once; x(vertex, axis) is a coordinate to read and write.
@@ -53,46 +69,34 @@ class Contacts {
   // What a step must do in the end, whatever it did before: leaves no vertex inside.
   void push_out(Positions& x, WorkCounters& work);
 
+  // |x - x_start| in the norm of M, each vertex from where it began or from where the obstacle
+  // would have carried it, whichever is nearer; and what of it is no motion, but the room that
+  // edges have.
+  double way(const Positions& x) const;
+  double slack() const { return slack_; }
+
   int count() const { return count_; }
   int vertex(int contact) const { return vertex_[contact]; }
   Eigen::Vector3d normal(int contact) const { return vector(normal_x, contact); }
-  bool holds(int contact) const { return value(push, contact) > 0; }
-
-  double friction() const { return friction_; }  // Coulomb coefficient
-  // Of its vertex at x: m above the plane; and the way since the start of the step, within it and
-  // as the obstacle sees it.
+  bool holds(int contact) const { return push_[contact] > 0; }
+  double push(int contact) const { return push_[contact]; }  // m, along the normal
+  void set_push(int contact, double push) { push_[contact] = push; }
+  // Of its vertex at x: m above the plane.
   double gap(int contact, const Eigen::Vector3d& x) const {
     return normal(contact).dot(x) - value(offset, contact);
   }
-  Eigen::Vector3d tangential(int contact, const Eigen::Vector3d& x) const {
-    const Eigen::Vector3d way = x - vector(start_x, contact);
-    return way - way.dot(normal(contact)) * normal(contact);
-  }
 
-  // What settle() has done so far, to be taken up again with the positions of that time and no
-  // contacts found since.
+  // Planes and pushes, to be taken up again with the positions of that time. Contacts that were
+  // found since are forgotten.
   struct Record {
-    std::array<std::vector<double>, 4> done;
+    std::array<std::vector<double>, 5> done;
   };
   void save(Record& record) const;
   void restore(const Record& record);
 
  private:
   // Numbers of a contact, m; each has a column of its own.
-  enum Number {
-    normal_x,
-    normal_y,
-    normal_z,
-    offset,
-    start_x,
-    start_y,
-    start_z,
-    push,
-    drag_x,
-    drag_y,
-    drag_z,
-    numbers
-  };
+  enum Number { normal_x, normal_y, normal_z, offset, numbers };
   static constexpr int lanes = 8;  // contacts that are visited side by side
 
   double& value(Number number, int contact) { return numbers_[number][contact]; }
@@ -100,11 +104,14 @@ class Contacts {
   Eigen::Vector3d vector(Number first, int contact) const {
     return {numbers_[first][contact], numbers_[first + 1][contact], numbers_[first + 2][contact]};
   }
-  void set_plane(int contact, const ContactPlane& plane);
+  void put(const ContactPlane& plane, WorkCounters& work);
+  Eigen::Vector3d carried(int vertex) const;
+  void take_friction(const ContactPlane& plane, double push, const Eigen::Vector3d& way,
+                     Positions& x) const;
   void visit(int first, double (&x)[3][lanes]);
 
   const Problem& problem_;
-  double tolerance_, friction_;
+  double tolerance_ = 0, margin_ = 0, slack_ = 0, friction_;
   const Positions* start_ = nullptr;
   // Of an obstacle that moves: what it does during the step, and how long that is, s.
   Pose carry_;
@@ -112,40 +119,30 @@ class Contacts {
   int count_ = 0;
   std::vector<int> vertex_;
   std::array<std::vector<double>, numbers> numbers_;  // filled up to whole lanes
+  std::vector<double> push_;                          // as they are
   std::vector<int> place_;                            // of a vertex's contact, or -1
   Obstacle obstacle_;
   std::vector<ContactPlane> found_;
+  // With friction only: the candidate after it, where edges are expected to take it, and what they
+  // have done to vertices, m/s^2: in the last step; in the last two, the lesser; and its mean over
+  // some steps.
+  Positions candidate_, expected_, before_, pulling_, pressing_;
 };
 
 // Contacts first ... first + lanes - 1, at x. Without branches, so that compilers turn it into
 // vector instructions.
 inline void Contacts::visit(int first, double (&x)[3][lanes]) {
   const double* n[3] = {&value(normal_x, first), &value(normal_y, first), &value(normal_z, first)};
-  const double* begin[3] = {&value(start_x, first), &value(start_y, first), &value(start_z, first)};
-  double* d[3] = {&value(drag_x, first), &value(drag_y, first), &value(drag_z, first)};
   const double* plane = &value(offset, first);
-  double* pushed = &value(push, first);
-  const double mu = friction_;
+  double* pushed = push_.data() + first;
 #pragma GCC ivdep
   for (int i = 0; i < lanes; ++i) {
-    const double n0 = n[0][i], n1 = n[1][i], n2 = n[2][i];
-    const double gap = n0 * x[0][i] + n1 * x[1][i] + n2 * x[2][i] - plane[i];
+    const double gap = n[0][i] * x[0][i] + n[1][i] * x[1][i] + n[2][i] * x[2][i] - plane[i];
     const double now = std::max(0.0, pushed[i] - gap), more = now - pushed[i];
     pushed[i] = now;
-    const double p0 = x[0][i] + more * n0, p1 = x[1][i] + more * n1, p2 = x[2][i] + more * n2;
-    const double w0 = p0 - begin[0][i], w1 = p1 - begin[1][i], w2 = p2 - begin[2][i];
-    const double along = w0 * n0 + w1 * n1 + w2 * n2;
-    // What would hold it where it began; as much of it as friction can.
-    const double h0 = d[0][i] - (w0 - along * n0), h1 = d[1][i] - (w1 - along * n1),
-                 h2 = d[2][i] - (w2 - along * n2);
-    const double most = mu * now, squared = h0 * h0 + h1 * h1 + h2 * h2;
-    const double part = squared > most * most ? most / std::sqrt(squared) : 1;
-    x[0][i] = p0 + (part * h0 - d[0][i]);
-    x[1][i] = p1 + (part * h1 - d[1][i]);
-    x[2][i] = p2 + (part * h2 - d[2][i]);
-    d[0][i] = part * h0;
-    d[1][i] = part * h1;
-    d[2][i] = part * h2;
+    x[0][i] += more * n[0][i];
+    x[1][i] += more * n[1][i];
+    x[2][i] += more * n[2][i];
   }
 }
 

@@ -20,10 +20,20 @@ void Obstacle::find(const Positions& x, double depth, std::vector<ContactPlane>&
   const Pose back = pose_.inverse();
   for (Eigen::Index i = 0; i < x.cols(); ++i) seen_.col(i) = back(x.col(i));
   collider.find(seen_, problem_.inverse_mass(), depth, memory_, planes, work);
-  for (ContactPlane& plane : planes) {
-    plane.normal = pose_.turn * plane.normal;
-    plane.offset += plane.normal.dot(pose_.way);
-  }
+  for (ContactPlane& plane : planes) place_plane(plane);
+}
+
+bool Obstacle::plane_at(const Eigen::Vector3d& p, ContactPlane& plane, WorkCounters& work) const {
+  const Collider& collider = *problem_.collider();
+  if (!problem_.body_motion()) return collider.plane_at(p, plane, work);
+  if (!collider.plane_at(pose_.inverse()(p), plane, work)) return false;
+  place_plane(plane);
+  return true;
+}
+
+void Obstacle::place_plane(ContactPlane& plane) const {
+  plane.normal = pose_.turn * plane.normal;
+  plane.offset += plane.normal.dot(pose_.way);
 }
 
 }  // namespace inextensible

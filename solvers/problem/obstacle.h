@@ -17,8 +17,12 @@ class Obstacle {
   // As Collider::find, of all vertices but the pinned ones.
   void find(const Positions& x, double depth, std::vector<ContactPlane>& planes,
             WorkCounters& work);
+  // As Collider::plane_at.
+  bool plane_at(const Eigen::Vector3d& p, ContactPlane& plane, WorkCounters& work) const;
 
  private:
+  void place_plane(ContactPlane& plane) const;  // from the body's frame
+
   const Problem& problem_;
   Collider::Memory memory_;
   // Of a body that moves only.

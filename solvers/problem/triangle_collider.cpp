@@ -297,4 +297,31 @@ void TriangleCollider::find(const Eigen::Matrix3Xd& x, const std::vector<double>
   }
 }
 
+bool TriangleCollider::plane_at(const Vector3d& p, ContactPlane& plane, WorkCounters& work) const {
+  const int cell = cell_at(p);
+  if (cell == outside) return false;
+  const List& list = lists_[cell];
+  work.triangle_tests += list.count;
+  if (convex_) {
+    const Plane* planes = listed_planes_.data() + list.first;
+    const auto behind = [&p](const Plane& t) {
+      return t.offset - t.x * p.x() - t.y * p.y() - t.z * p.z();
+    };
+    const Plane* least = std::min_element(
+        planes, planes + list.count,
+        [&behind](const Plane& s, const Plane& t) { return behind(s) < behind(t); });
+    plane.normal = {least->x, least->y, least->z};
+    plane.offset = least->offset;
+    return true;
+  }
+  const Nearest nearest = nearest_among(triangles_of(list), p);
+  const double distance = nearest.signed_distance;
+  // At the surface itself the way there has no direction.
+  plane.normal = std::abs(distance) > 1e-9 * cell_size_.norm()
+                     ? Vector3d((p - nearest.point) / distance)
+                     : nearest.normal;
+  plane.offset = plane.normal.dot(nearest.point);
+  return true;
+}
+
 }  // namespace inextensible

@@ -33,6 +33,7 @@ class TriangleCollider final : public Collider {
 
   void find(const Eigen::Matrix3Xd& x, const std::vector<double>& inverse_mass, double depth,
             Memory& memory, std::vector<ContactPlane>& planes, WorkCounters& work) const override;
+  bool plane_at(const Eigen::Vector3d& p, ContactPlane& plane, WorkCounters& work) const override;
   double friction() const override { return friction_; }
   int triangles() const override { return static_cast<int>(mesh_.triangles.size()); }
   const TriangleMesh& mesh() const { return mesh_; }

@@ -48,6 +48,7 @@ StepResult Stepper::advance(State& state, double h) {
     ++work_.rejected_steps;
     return {Status::not_finite, result.iterations, -1, 0, "a velocity overflowed"};
   }
+  if (contacts_) contacts_->accept(filtered_);
   state.v.swap(velocity_);
   state.x = next_;
   state.time += h;

@@ -6,9 +6,12 @@
 namespace inextensible {
 namespace {
 
-// What is inside after so many is left to the collision filter. Of a convex obstacle every vertex
-// is found once at most.
+// Of a convex obstacle every vertex is found once at most.
 constexpr int most_rounds = 30;
+// The start is permissible and outside, but for what the obstacle moves: the closest point that is
+// so too lies no farther from the candidate than the start, and twice as far from the start as the
+// candidate. An iteration that wandered off ends elsewhere, and gives energy.
+constexpr double farthest = 4;
 
 }  // namespace
 
@@ -16,12 +19,19 @@ StepResult apply_until_clear(VelocityFilter& filter, Contacts* contacts, const P
                              double h, Positions& x, WorkCounters& work) {
   filter.heed(contacts);
   if (!contacts) return filter.apply(x_start, h, x, work);
+  contacts->rub(x, work);
   contacts->find(x, work);
+  const double reach = farthest * contacts->way(x) + contacts->slack();
   for (int round = 0, iterations = 0;; ++round) {
     contacts->settle(x);
     StepResult result = filter.apply(x_start, h, x, work);
     result.iterations = iterations += result.iterations;
-    if (!result || round == most_rounds || contacts->find(x, work) == 0) return result;
+    if (!result) return result;
+    if (contacts->count() > 0 && !(contacts->way(x) <= reach))
+      return {Status::not_converged, iterations, -1, 0, "a spurious solution, far from the start"};
+    if (contacts->find(x, work) == 0) return result;
+    if (round == most_rounds)
+      return {Status::not_converged, iterations, -1, 0, "ever more vertices in the obstacle"};
   }
 }
 

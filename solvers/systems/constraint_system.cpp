@@ -43,10 +43,10 @@ ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
 
 bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, WorkCounters& work, double damping) {
   schur_->assemble(u, solver_->values());
+  if (damping > 0) schur_->scale_diagonal(1 + damping, solver_->values());
   if (contacts_) {
     contact_terms_->subtract(*contacts_, problem_.inverse_mass().data(), u, u, solver_->values());
   }
-  if (damping > 0) schur_->scale_diagonal(1 + damping, solver_->values());
   ++work.assemblies;
   ++work.factorizations;
   const bool factored = solver_->factor();

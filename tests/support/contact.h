@@ -22,8 +22,16 @@ class Ground final : public Collider {
         planes.push_back({static_cast<int>(v), normal_, offset_});
     }
   }
+  bool plane_at(const Eigen::Vector3d& /*p*/, ContactPlane& plane,
+                WorkCounters& /*work*/) const override {
+    plane.normal = normal_;
+    plane.offset = offset_;
+    return true;
+  }
   double friction() const override { return friction_; }
   int triangles() const override { return 0; }
+  const Eigen::Vector3d& normal() const { return normal_; }
+  double offset() const { return offset_; }
 
  private:
   Eigen::Vector3d normal_;

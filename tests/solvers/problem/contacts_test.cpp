@@ -44,13 +44,12 @@ struct Fallen {
   int found;
 };
 
-TEST(Contacts, SettleIsContactWithCoulombsFriction) {
+TEST(Contacts, SettlePushesWhatIsInsideOntoItsPlane) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    const double mu = uniform(random, 0, 1);
     const int n = 1 + static_cast<int>(seed);  // whole lanes and parts of one
-    Fallen fallen(random, n, mu);
+    Fallen fallen(random, n, 0.5);
     Contacts& contacts = fallen.contacts;
     EXPECT_EQ(contacts.count(), fallen.found);
     EXPECT_EQ(fallen.work.contacts, fallen.found);
@@ -63,13 +62,9 @@ TEST(Contacts, SettleIsContactWithCoulombsFriction) {
       const double depth = -contacts.gap(c, fallen.candidate.col(v));
       EXPECT_GT(depth, 0);
       EXPECT_TRUE(contacts.holds(c));
-      EXPECT_NEAR(contacts.gap(c, x.col(v)), 0, 1e-14);
-      const Vector3d wanted = contacts.tangential(c, fallen.candidate.col(v)),
-                     slid = contacts.tangential(c, x.col(v));
-      // Sticks, or slides on the way that it was going, by what friction leaves of it.
-      const double left = std::max(0.0, wanted.norm() - mu * depth);
-      EXPECT_NEAR(slid.norm(), left, 1e-14);
-      EXPECT_NEAR((slid - left * wanted.normalized()).norm(), 0, 1e-14);
+      EXPECT_NEAR(contacts.push(c), depth, 1e-14);
+      EXPECT_NEAR((x.col(v) - fallen.candidate.col(v) - depth * contacts.normal(c)).norm(), 0,
+                  1e-14);
     }
     for (int v = 0; v < n; ++v) {
       if (!touched[static_cast<std::size_t>(v)]) {
@@ -80,6 +75,55 @@ TEST(Contacts, SettleIsContactWithCoulombsFriction) {
     contacts.settle(x);
     EXPECT_LT((x - once).cwiseAbs().maxCoeff(), 1e-14);
     EXPECT_EQ(contacts.find(x, fallen.work), 0);
+  }
+}
+
+// Without edges the expected way is the candidate's.
+TEST(Contacts, FrictionTakesFromTheWayWhatCoulombGrants) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const double mu = uniform(random, 0.1, 1);
+    Fallen fallen(random, 20, mu);
+    Contacts contacts(fallen.problem);
+    contacts.begin(fallen.start, 0, 0.01);
+    Positions x = fallen.candidate;
+    contacts.rub(x, fallen.work);
+    for (int v = 0; v < 20; ++v) {
+      const Vector3d n = fallen.ground->normal(),
+                     way = fallen.candidate.col(v) - fallen.start.col(v);
+      const Vector3d slide = way - n.dot(way) * n;
+      const double depth = fallen.ground->offset() - n.dot(fallen.candidate.col(v));
+      // Sticks, or slides on the way that it was going, by what friction leaves of it.
+      const double left = depth > 0 ? std::max(0.0, slide.norm() - mu * depth) : slide.norm();
+      const Vector3d moved = x.col(v) - fallen.start.col(v), slid = moved - n.dot(moved) * n;
+      EXPECT_NEAR((slid - left * slide.normalized()).norm(), 0, 1e-14);
+      EXPECT_NEAR(n.dot(x.col(v) - fallen.candidate.col(v)), 0,
+                  1e-14);  // a plane's push comes later
+    }
+  }
+}
+
+// What edges have done twice in the same direction is expected of them, and held by friction before
+// they do it again; what they did once is not.
+TEST(Contacts, FrictionHoldsWhatEdgesPullSteadily) {
+  const auto ground = std::make_shared<const Ground>(Vector3d(0, 1, 0), 0, 0.5);
+  const Problem problem = testing::points(1, ground);
+  Contacts contacts(problem);
+  WorkCounters work;
+  constexpr double h = 0.01, fall = 1e-3, pull = 2e-4;  // m a step, below mu fall
+  const Positions start = Positions::Zero(3, 1);
+  double slid = 0;
+  for (int step = 0; step < 4; ++step) {
+    contacts.begin(start, step * h, h);
+    Positions x = start;
+    x(1, 0) -= fall;
+    contacts.rub(x, work);
+    contacts.settle(x);
+    x(0, 0) += pull;  // the edges
+    slid = x(0, 0);
+    contacts.accept(x);
+    EXPECT_NEAR(slid, step < 2 ? pull : 0, 1e-15);
   }
 }
 
@@ -116,6 +160,7 @@ TEST(Contacts, RestoreTakesUpWhatWasSaved) {
   Positions x = fallen.candidate;
   contacts.settle(x);
   const Positions saved = x;
+  const int known = contacts.count();
   Contacts::Record record;
   contacts.save(record);
   const auto pulled = [&] {
@@ -125,8 +170,13 @@ TEST(Contacts, RestoreTakesUpWhatWasSaved) {
     return y;
   };
   const Positions first = pulled();
+  Positions deep = saved - 10 * fallen.normal.replicate(1, 20);
+  EXPECT_EQ(contacts.find(deep, fallen.work), 20);
+  EXPECT_EQ(contacts.count(), 20);
   contacts.restore(record);
+  EXPECT_EQ(contacts.count(), known);  // those found since are forgotten
   EXPECT_EQ(pulled(), first);
+  EXPECT_EQ(contacts.find(deep, fallen.work), 20);
 }
 
 TEST(Contacts, BeginForgets) {

@@ -1,12 +1,10 @@
-// What contacts do to the systems of projections and of springs, against dense algebra and finite
-// differences.
+// What contacts do to the systems of projections, against dense algebra.
 #include "support/contact.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 
-#include "inextensible/systems/contact_energy.h"
 #include "inextensible/systems/contact_terms.h"
 #include "inextensible/systems/schur_complement.h"
 #include "support/random_mesh.h"
@@ -118,67 +116,6 @@ TEST(ContactTerms, MakeTheMatrixOfVerticesThatMoveWithinTheirPlanes) {
       }
     }
   }
-}
-
-TEST(ContactEnergy, DerivativesAreThoseOfItsValue) {
-  constexpr double step = 1e-6;
-  for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Pressed cloth(seed);
-    const Problem& problem = *cloth.mesh.problem;
-    // Within the slip and beyond it.
-    ContactEnergy energy(cloth.contacts, problem.vertices(), 50, seed % 2 == 0 ? 2.0 : 0.01);
-    energy.expect_pressures(problem.mass(), 0.1, cloth.x);
-    for (int c = 0; c < cloth.contacts.count(); ++c) {
-      const int v = cloth.contacts.vertex(c);
-      const auto [first, second] = energy.derivatives(c, cloth.x.col(v));
-      EXPECT_GE(second.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-12);
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto at = [&](double by) {
-          Positions x = cloth.x;
-          x(axis, v) += by;
-          return energy.value(x);
-        };
-        EXPECT_NEAR(first[axis], (at(step) - at(-step)) / (2 * step),
-                    1e-6 * (1 + first.cwiseAbs().maxCoeff()));
-      }
-      // Along the slide it is f' / y instead of f''; elsewhere it is that of the first.
-      const Eigen::Vector3d normal = cloth.contacts.normal(c);
-      const Eigen::Vector3d slide = cloth.contacts.tangential(c, cloth.x.col(v)).normalized();
-      for (const Eigen::Vector3d& along : {normal, Eigen::Vector3d(normal.cross(slide))}) {
-        const Eigen::Vector3d change = energy.derivatives(c, cloth.x.col(v) + step * along).first -
-                                       energy.derivatives(c, cloth.x.col(v) - step * along).first;
-        EXPECT_LE((second * along - change / (2 * step)).norm(), 1e-4 * (1 + second.norm()));
-      }
-      EXPECT_GE(slide.dot(second * slide), 0);
-    }
-  }
-}
-
-TEST(ContactEnergy, PressuresAreWhatStopsOrWhatTheSpringsBear) {
-  Pressed cloth(1);
-  const Problem& problem = *cloth.mesh.problem;
-  constexpr double stiffness = 50, h = 0.1;
-  ContactEnergy energy(cloth.contacts, problem.vertices(), stiffness, 1e-3);
-  EXPECT_DOUBLE_EQ(energy.take_pressures(cloth.x), 1);  // there were none
-  EXPECT_DOUBLE_EQ(energy.take_pressures(cloth.x), 0);
-  // m depth / h^2 stops a mass: the friction it brings is mu times that, far from the start.
-  energy.expect_pressures(problem.mass(), h, cloth.x);
-  for (int c = 0; c < cloth.contacts.count(); ++c) {
-    const int v = cloth.contacts.vertex(c);
-    const double depth = -cloth.contacts.gap(c, cloth.x.col(v));
-    const Eigen::Vector3d normal = cloth.contacts.normal(c);
-    const Eigen::Vector3d first = energy.derivatives(c, cloth.x.col(v)).first;
-    const Eigen::Vector3d drag = first - normal.dot(first) * normal;
-    EXPECT_NEAR(normal.dot(first), -stiffness * depth, 1e-9);
-    EXPECT_NEAR(drag.norm(), 0.4 * problem.mass()[static_cast<std::size_t>(v)] * depth / (h * h),
-                1e-9);
-  }
-  // Once a step is accepted, its pressures are expected of the next.
-  (void)energy.take_pressures(cloth.x);
-  energy.accept();
-  energy.expect_pressures(problem.mass(), 10 * h, cloth.x);
-  EXPECT_DOUBLE_EQ(energy.take_pressures(cloth.x), 0);
 }
 
 }  // namespace
