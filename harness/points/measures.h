@@ -88,7 +88,7 @@ inline constexpr std::tuple measure_fields{
     field("energy_gain_time", &Measures::energy_gain_time, "s", "when that was",
           later_error_or_null),
     field("energy_rise", &Measures::energy_rise, "weight times size",
-          "sum of all rises of E from one step to the next, where energy can only fall",
+          "sum of all rises of E between means over 0.01 s, where energy can only fall",
           later_error_or_null),
     field("symmetry_defect", &Measures::symmetry_defect, "scene's size",
           "largest distance to the mirror image", error_or_null),

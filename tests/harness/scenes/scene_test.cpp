@@ -54,7 +54,8 @@ TEST(Drape, HasThePapersSizes) {
 // What fast projection does for singular matrices costs nothing where they are regular: one
 // assembly, one factorization and one solve an iteration, nothing taken back.
 TEST(FastProjection, DampsNothingWhereTheMatrixIsRegular) {
-  const Scene chain = build("chain", {{"n", 80}}), drape = build("drape", {{"n", 15}});
+  const Scene chain = build("chain", {{"n", 80}}),
+              drape = build("drape", {{"n", 15}, {"radius", 0}});
   for (const Scene* scene : {&chain, &drape}) {
     State state = scene->start;
     const auto stepper =
