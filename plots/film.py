@@ -28,7 +28,7 @@ MARGIN = 8  # pixels
 FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
 BACKGROUND, INK, ALARM = (255, 255, 255), (20, 20, 20), (150, 30, 10)
 FRAME_RATE = 30  # Hz, of the frames whose time captions tell, as the paper does
-GREY = 0.6       # how far the picture of a run that gave up goes towards the background
+GREY = 0.4       # how far the picture of a run that gave up goes towards the background
 
 
 class FilmError(Exception):
@@ -66,6 +66,8 @@ def percent(strain: float) -> str:
 
 
 def length(metres: float) -> str:
+    if abs(metres) >= 1:
+        return f"{metres:.2f} m"
     return f"{1000 * metres:.1f} mm" if abs(metres) < 0.1 else f"{100 * metres:.1f} cm"
 
 
@@ -73,8 +75,7 @@ def caption(film: Film, take: int, frame: int) -> list[str]:
     """What stands under a panel."""
     of = film.takes[take]
     frame = min(frame, of["frames"] - 1)
-    lines = [f"{of['label']}, permitted strain {percent(of['strain_limit'])}",
-             f"largest strain so far {percent(max(of['largest_strain'][:frame + 1]))}"]
+    lines = [of["label"], f"permitted strain {percent(of['strain_limit'])}, largest so far {percent(max(of['largest_strain'][:frame + 1]))}"]
     if of["seconds"]:
         seconds = statistics.median(of["seconds"]) * film.header["frames_per_second"] / FRAME_RATE
         lines.append(f"{1000 * seconds:.3g} ms for a frame of 1/{FRAME_RATE} s")
@@ -102,7 +103,7 @@ def greyed(picture: Image.Image, text: str, film: Film) -> Image.Image:
     pale = Image.blend(picture.convert("L").convert("RGB"), Image.new("RGB", picture.size, (235, 235, 235)), GREY)
     draw = ImageDraw.Draw(pale)
     lines = wrapped(text, film.font, film.width - 4 * MARGIN)
-    top = (film.height - len(lines) * film.line) // 2
+    top = film.height - len(lines) * film.line - 3 * MARGIN
     draw.rectangle((MARGIN, top - MARGIN, film.width - MARGIN, top + len(lines) * film.line + MARGIN), fill=BACKGROUND, outline=ALARM)
     for number, line in enumerate(lines):
         draw.text(((film.width - film.font.getlength(line)) / 2, top + number * film.line), line, fill=ALARM, font=film.font)
@@ -135,7 +136,7 @@ def legend(film: Film, width: int) -> Image.Image:
     strip.paste(row.resize((bar, film.line - 6), Image.BILINEAR), (MARGIN, 3))
     draw = ImageDraw.Draw(strip)
     for stop in range(end + 1):
-        label = "0" if stop == 0 else "limit" if stop == 1 else f"{stop} x" if stop < end else f"{stop} x and more"
+        label = "0" if stop == 0 else "limit" if stop == 1 else f"{stop} x"
         at = MARGIN + bar * stop / end
         draw.text((min(at, MARGIN + bar - film.font.getlength(label)), film.line - 2), label, fill=INK, font=film.font)
     if MARGIN + bar + 12 + film.font.getlength("strain") < width:

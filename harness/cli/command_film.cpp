@@ -32,7 +32,7 @@ struct FilmOptions {
 
 constexpr int default_width = 480;
 // Rays a pixel, each way: a still can take its time, a film has hundreds of pictures.
-constexpr int still_samples = 4, film_samples = 2;
+constexpr int still_samples = 4, film_samples = 3;
 
 double number_in(const std::string& text, const std::string& option) {
   std::size_t read = 0;
@@ -189,8 +189,7 @@ int film(FilmOptions given) {
     const bool one = recording.takes.size() == 1;
     const std::string name =
         out.stem().string() + (one ? "" : "-" + take.solver + "-" + number_text(take.strain_limit));
-    for (const std::string& path : writer(recording, take, folder, name))
-      std::cout << path << '\n';
+    for (const std::string& path : writer(recording, take, folder, name)) std::cout << path << '\n';
   }
   return success;
 }
@@ -210,8 +209,7 @@ void add_film_command(const Command& program) {
   command.option("--fps", given->frames_per_second, "frames a second", "N").positive();
   command.option("--stills", given->stills,
                  "times of the pictures in a .png, s, between commas; default: four", "TIMES");
-  command
-      .option("--width", given->width, "of each picture, pixels; default 480", "PIXELS")
+  command.option("--width", given->width, "of each picture, pixels; default 480", "PIXELS")
       .within(16, 4096);
   command.option("--out", given->out,
                  ".webp or .mp4: a film; .png: stills; .obj, .pvd, .pc2: for other programs; "

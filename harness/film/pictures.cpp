@@ -14,12 +14,13 @@
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/json_text.h"
+#include "harness/film/colours.h"
 #include "harness/film/weave.h"
 
 namespace harness {
 namespace {
 
-constexpr int legend_end = 4;  // strain over its limit
+constexpr int legend_end = 4;       // strain over its limit
 constexpr double line_spacing = 7;  // pixels between lines of yarns, at least
 
 // Of each vertex, by the largest strain of its edges.
@@ -113,7 +114,7 @@ Shot shot_of(const Recording& recording, const View& view, std::size_t take, std
 void write_pictures(const std::string& folder, const Recording& recording, const PictureSpec& spec,
                     const std::function<bool()>& interrupted,
                     const std::function<void(std::size_t, std::size_t)>& told) {
-  const View view = view_of(recording);
+  const View view = view_of(recording, spec.frames);
   const std::vector<Picture> pictures = distinct(recording, spec.frames);
   std::mutex lock;
   std::size_t done = 0;

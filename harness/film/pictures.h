@@ -21,10 +21,10 @@ struct PictureSpec {
 Shot shot_of(const Recording& recording, const View& view, std::size_t take, std::size_t frame,
              int width);
 
-// Into a folder that is there: <take>-<frame>.ppm for each frame that the take has, and its last one
-// if it ended early; pictures.json with the width, the height, the frames, and the colours of strain
-// over its limit from 0 to legend_end. On all cores that the
-// process may use. told: how many of all are done. Throws FileError, Interrupted.
+// Into a folder that is there: <take>-<frame>.ppm for each frame that the take has, and its last
+// one if it ended early; pictures.json with the width, the height, the frames, and the colours of
+// strain over its limit from 0 to legend_end. On all cores that the process may use. told: how many
+// of all are done. Throws FileError, Interrupted.
 void write_pictures(const std::string& folder, const Recording& recording, const PictureSpec& spec,
                     const std::function<bool()>& interrupted,
                     const std::function<void(std::size_t done, std::size_t all)>& told);

@@ -10,6 +10,7 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/json_text.h"
 #include "harness/base/text.h"
+#include "harness/film/orientation.h"
 #include "harness/run/runner.h"
 #include "inextensible/problem/triangle_collider.h"
 #include "inextensible/registry.h"
@@ -22,7 +23,7 @@ using inextensible::State;
 
 Stage stage_of(const Scene& scene) {
   Stage stage;
-  stage.triangles = scene.triangles;
+  stage.triangles = oriented(scene.triangles);
   for (const auto [a, b] : scene.problem->edges()) stage.edges.push_back({a, b});
   stage.rest_length = scene.problem->rest_length();
   stage.marks = scene.marks;

@@ -65,8 +65,8 @@ inextensible::Positions body_at(const Stage& stage, std::size_t frame);
 std::vector<double> strains(const Stage& stage, const inextensible::Positions& x);
 
 // Into a folder that is there: film.json holds all but positions (poses as the rows of [turn way]),
-// film.f32 these as 32-bit floats, little-endian, x y z of every vertex of every frame of every take
-// in turn. Both throw FileError.
+// film.f32 these as 32-bit floats, little-endian, x y z of every vertex of every frame of every
+// take in turn. Both throw FileError.
 void write_film_header(const std::string& folder, const Recording& recording);
 void write_recording(const std::string& folder, const Recording& recording);
 

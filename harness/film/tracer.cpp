@@ -1,12 +1,13 @@
 #include "harness/film/tracer.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+
+#include "harness/film/colours.h"
+#include "harness/film/embree.h"
 
 namespace harness {
 namespace {
@@ -19,19 +20,8 @@ using Triangles = std::vector<std::array<int, 3>>;
 
 constexpr float far_away = std::numeric_limits<float>::infinity();
 
-double linear(double shade) {  // of sRGB
-  return shade <= 0.04045 ? shade / 12.92 : std::pow((shade + 0.055) / 1.055, 2.4);
-}
-
-double encoded(double light) {
-  light = std::clamp(light, 0.0, 1.0);
-  return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-}
-
-Vector3d linear(const Vector3d& rgb) { return rgb.unaryExpr([](double c) { return linear(c); }); }
-
 const Vector3d background = linear(Vector3d(0.97, 0.97, 0.98));
-const Vector3d body_colour = linear(Vector3d(0.70, 0.68, 0.72));
+const Vector3d body_colour = linear(Vector3d(0.78, 0.74, 0.72));
 
 // Weighted by the areas of the triangles about each vertex.
 Matrix3Xd normals_of(const Positions& x, const Triangles& triangles) {
@@ -45,67 +35,6 @@ Matrix3Xd normals_of(const Positions& x, const Triangles& triangles) {
     sum = length > 0 ? Vector3d(sum / length) : Vector3d::UnitY();
   }
   return sums;
-}
-
-// ---- Embree's objects, which free themselves ----
-
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-template <class Handle>
-using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
-
-template <class Value>
-Value* buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) {
-  return static_cast<Value*>(
-      rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Value), count));
-}
-
-Owned<RTCGeometry> triangle_geometry(RTCDevice device, const Positions& x,
-                                     const Triangles& triangles) {
-  Owned<RTCGeometry> made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  auto* points = buffer<std::array<float, 3>>(made.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
-                                              static_cast<std::size_t>(x.cols()));
-  for (Eigen::Index i = 0; i < x.cols(); ++i)
-    for (int k = 0; k < 3; ++k) points[i][static_cast<std::size_t>(k)] = static_cast<float>(x(k, i));
-  auto* corners = buffer<std::array<unsigned, 3>>(made.get(), RTC_BUFFER_TYPE_INDEX,
-                                                  RTC_FORMAT_UINT3, triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) corners[i][k] = static_cast<unsigned>(triangles[i][k]);
-  rtcCommitGeometry(made.get());
-  return made;
-}
-
-// A cone with round ends for each edge.
-Owned<RTCGeometry> rope_geometry(RTCDevice device, const Shot& shot) {
-  Owned<RTCGeometry> made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE));
-  auto* points = buffer<std::array<float, 4>>(made.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
-                                              2 * shot.edges.size());
-  auto* first = buffer<unsigned>(made.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT,
-                                 shot.edges.size());
-  for (std::size_t k = 0; k < shot.edges.size(); ++k) {
-    for (std::size_t end = 0; end < 2; ++end) {
-      const Vector3f p = shot.cloth.col(shot.edges[k][end]).cast<float>();
-      points[2 * k + end] = {p.x(), p.y(), p.z(), static_cast<float>(shot.yarn)};
-    }
-    first[k] = static_cast<unsigned>(2 * k);
-  }
-  rtcCommitGeometry(made.get());
-  return made;
-}
-
-Owned<RTCGeometry> knot_geometry(RTCDevice device, const Shot& shot) {
-  Owned<RTCGeometry> made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT));
-  auto* points = buffer<std::array<float, 4>>(made.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
-                                              static_cast<std::size_t>(shot.cloth.cols()));
-  for (Eigen::Index i = 0; i < shot.cloth.cols(); ++i) {
-    const Vector3f p = shot.cloth.col(i).cast<float>();
-    points[i] = {p.x(), p.y(), p.z(), static_cast<float>(1.8 * shot.yarn)};
-  }
-  rtcCommitGeometry(made.get());
-  return made;
 }
 
 // ---- Light ----
@@ -125,7 +54,7 @@ struct Surface {
 };
 
 // Points of a disk and of a half-sphere, evenly spread: Fibonacci's lattice.
-constexpr double golden = 2.399963229728653;  // angle, rad
+constexpr double golden = 2.399963229728653;  // the golden angle, rad
 
 Vector3d in_disk(int i, int count) {
   const double radius = std::sqrt((i + 0.5) / count), angle = golden * i;
@@ -150,8 +79,8 @@ struct Packet {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded4(valid, scene, &context, &rays);
-    return 0.25 * static_cast<double>(std::count_if(rays.tfar, rays.tfar + 4,
-                                                    [](float far) { return far > 0; }));
+    return 0.25 * static_cast<double>(
+                      std::count_if(rays.tfar, rays.tfar + 4, [](float far) { return far > 0; }));
   }
 };
 
@@ -161,7 +90,6 @@ class Tracer {
   Vector3d colour(const Vector3d& direction, int sample) const;
 
  private:
-  Owned<RTCScene> scene_of(std::initializer_list<RTCGeometry> parts) const;
   static Hit first(RTCScene scene, const Vector3d& from, const Vector3d& to);
   Surface on_cloth(const Hit& hit, const Vector3d& direction) const;
   Surface on_rope(const Hit& hit, const Vector3d& direction) const;
@@ -185,27 +113,20 @@ Tracer::Tracer(const Shot& shot, const View& view, int samples)
   normals_ = normals_of(shot.cloth, shot.triangles);
   body_normals_ = normals_of(shot.body, shot.body_triangles);
   const auto body = triangle_geometry(device_.get(), shot.body, shot.body_triangles);
-  body_ = scene_of({body.get()});
+  body_ = scene_of(device_.get(), {body.get()});
   if (shot.triangles.empty()) {
-    const auto rope = rope_geometry(device_.get(), shot), knots = knot_geometry(device_.get(), shot);
-    cloth_ = scene_of({rope.get(), knots.get()});
-    all_ = scene_of({rope.get(), knots.get(), body.get()});
+    const auto rope = rope_geometry(device_.get(), shot),
+               knots = knot_geometry(device_.get(), shot);
+    cloth_ = scene_of(device_.get(), {rope.get(), knots.get()});
+    all_ = scene_of(device_.get(), {rope.get(), knots.get(), body.get()});
   } else {
     const auto cloth = triangle_geometry(device_.get(), shot.cloth, shot.triangles);
-    cloth_ = scene_of({cloth.get()});
-    all_ = scene_of({cloth.get(), body.get()});
+    cloth_ = scene_of(device_.get(), {cloth.get()});
+    all_ = scene_of(device_.get(), {cloth.get(), body.get()});
   }
   light_ = (-0.5 * view.right + 1.1 * Vector3d::UnitY() + 0.75 * view.towards).normalized();
   light_x_ = light_.cross(view.towards).normalized();
   light_y_ = light_.cross(light_x_);
-}
-
-Owned<RTCScene> Tracer::scene_of(std::initializer_list<RTCGeometry> parts) const {
-  Owned<RTCScene> made(rtcNewScene(device_.get()));
-  rtcSetSceneFlags(made.get(), RTC_SCENE_FLAG_ROBUST);
-  for (const RTCGeometry part : parts) rtcAttachGeometry(made.get(), part);
-  rtcCommitScene(made.get());
-  return made;
 }
 
 Hit Tracer::first(RTCScene scene, const Vector3d& from, const Vector3d& to) {
@@ -327,8 +248,8 @@ Vector3d Tracer::colour(const Vector3d& direction, int sample) const {
   if (cloth.distance < body.distance + shot_.thickness)
     return lit(shot_.triangles.empty() ? on_rope(cloth, direction) : on_cloth(cloth, direction),
                direction, sample, apart);
-  Surface surface = on_triangle(body, direction, shot_.body, shot_.body_triangles[body.primitive],
-                                body_normals_);
+  Surface surface =
+      on_triangle(body, direction, shot_.body, shot_.body_triangles[body.primitive], body_normals_);
   surface.colour = body_colour;
   surface.shine = 0.06;
   return lit(surface, direction, sample, apart);
@@ -347,8 +268,8 @@ Pixels trace(const Shot& shot, const View& view, int width, int samples) {
       for (int sample = 0; sample < samples * samples; ++sample) {
         const double right = (sample % samples + 0.5) / samples,
                      down = (sample / samples + 0.5) / samples;
-        const Vector3d direction = view.ray(2 * (column + right) / pixels.width - 1,
-                                            1 - 2 * (row + down) / pixels.height);
+        const Vector3d direction =
+            view.ray(2 * (column + right) / pixels.width - 1, 1 - 2 * (row + down) / pixels.height);
         sum += tracer.colour(direction, sample);
       }
       const auto pixel = shade(sum / (samples * samples));
@@ -356,33 +277,6 @@ Pixels trace(const Shot& shot, const View& view, int width, int samples) {
     }
   }
   return pixels;
-}
-
-std::array<std::uint8_t, 3> shade(const Vector3d& rgb) {
-  std::array<std::uint8_t, 3> bytes{};
-  for (int k = 0; k < 3; ++k)
-    bytes[static_cast<std::size_t>(k)] =
-        static_cast<std::uint8_t>(std::lround(255 * encoded(rgb[k])));
-  return bytes;
-}
-
-Vector3d strain_colour(double over_limit) {
-  struct Stop {
-    double at;
-    Vector3d rgb;
-  };
-  // Four times the limit is as red as it gets.
-  static const std::array<Stop, 5> stops{{{0, {0.80, 0.78, 0.72}},
-                                          {0.5, {0.58, 0.70, 0.80}},
-                                          {1, {0.25, 0.50, 0.75}},
-                                          {1.5, {0.95, 0.70, 0.25}},
-                                          {4, {0.80, 0.12, 0.10}}}};
-  for (std::size_t i = 1; i < stops.size(); ++i) {
-    if (!(over_limit < stops[i].at)) continue;
-    const double part = std::max(0.0, over_limit - stops[i - 1].at) / (stops[i].at - stops[i - 1].at);
-    return linear(Vector3d(stops[i - 1].rgb + part * (stops[i].rgb - stops[i - 1].rgb)));
-  }
-  return linear(stops.back().rgb);
 }
 
 }  // namespace harness

@@ -34,29 +34,35 @@ double reach(const Positions& x, const Vector3d& from) {
   return x.cols() == 0 ? 0 : (x.colwise() - from).colwise().norm().maxCoeff();
 }
 
-std::size_t poses(const Stage& stage) { return std::max<std::size_t>(1, stage.body_poses.size()); }
+// The points that are no farther from `middle` than `followed`.
+Positions near(const Positions& x, const Vector3d& middle, double followed) {
+  Positions kept(3, x.cols());
+  Eigen::Index count = 0;
+  for (const auto& point : x.colwise())
+    if ((point - middle).norm() <= followed) kept.col(count++) = point;
+  return kept.leftCols(count);
+}
 
 // All that the camera must see.
-std::vector<Positions> in_sight(const Recording& recording) {
+std::vector<Positions> in_sight(const Recording& recording,
+                                const std::vector<std::size_t>& frames) {
   const Stage& stage = recording.stage;
   const Positions& start = recording.takes.at(0).frames.at(0);
   const bool body = !stage.body.empty();
-  std::vector<Positions> all{start};
-  for (std::size_t i = 0; body && i < poses(stage); ++i) all.push_back(body_at(stage, i));
+  const Positions body_start = body ? body_at(stage, 0) : start;
   Box about;
-  about.add(body ? all[1] : start);
-  const double followed =
-      (body ? near_body : near_start) *
-      std::max(reach(start, about.middle()), body ? reach(all[1], about.middle()) : 0);
+  about.add(body_start);
+  const double followed = (body ? near_body : near_start) *
+                          std::max(reach(start, about.middle()), reach(body_start, about.middle()));
+  std::vector<Positions> all;
   for (const Take& take : recording.takes) {
-    for (std::size_t i = 0; i < take.frames.size(); ++i) {
+    for (const std::size_t shown : frames) {
+      const std::size_t frame = std::min(shown, take.frames.size() - 1);
       Vector3d middle = about.middle();
-      if (!stage.body_poses.empty()) middle = stage.body_poses[i](stage.body_poses[0].inverse()(middle));
-      Positions kept(3, take.frames[i].cols());
-      Eigen::Index count = 0;
-      for (const auto& point : take.frames[i].colwise())
-        if ((point - middle).norm() <= followed) kept.col(count++) = point;
-      all.emplace_back(kept.leftCols(count));
+      if (!stage.body_poses.empty())
+        middle = stage.body_poses.at(frame)(stage.body_poses[0].inverse()(middle));
+      all.push_back(near(take.frames[frame], middle, followed));
+      if (body) all.push_back(body_at(stage, frame));
     }
   }
   return all;
@@ -85,12 +91,11 @@ Eigen::Vector2d View::seen(const Vector3d& point) const {
   return {from.dot(right) / depth, from.dot(up) / (depth * aspect)};
 }
 
-View view_of(const Recording& recording) {
-  const std::vector<Positions> all = in_sight(recording);
+View view_of(const Recording& recording, const std::vector<std::size_t>& frames) {
+  const std::vector<Positions> all = in_sight(recording, frames);
   View view;
   view.tangent = std::tan(half_angle);
-  view.towards =
-      (in_a_plane(all) ? Vector3d(0, 0.12, 1) : Vector3d(0.55, 0.45, 1)).normalized();
+  view.towards = (in_a_plane(all) ? Vector3d(0, 0.12, 1) : Vector3d(0.55, 0.45, 1)).normalized();
   view.right = Vector3d::UnitY().cross(view.towards).normalized();
   view.up = view.towards.cross(view.right);
   Eigen::Matrix3d axes;

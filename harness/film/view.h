@@ -1,7 +1,8 @@
-// Where the camera of a film stands: it is the same for all panels and all frames.
+// Where the camera stands: it is the same for all panels of a film or a sheet.
 #pragma once
 
 #include <Eigen/Geometry>
+#include <vector>
 
 #include "harness/film/recording.h"
 
@@ -22,8 +23,9 @@ struct View {
   Eigen::Vector2d seen(const Eigen::Vector3d& point) const;
 };
 
-// Sees the body in all its poses and the cloth of all takes, as long as the cloth stays near the
-// body, or near where it started: what falls off leaves the picture, and does not make it small.
-View view_of(const Recording& recording);
+// Sees body and cloth of all takes at the frames that are shown, as long as the cloth stays near
+// the body, or near where it started: what falls off leaves the picture, and does not make it
+// small. A take that has ended is shown as it was last.
+View view_of(const Recording& recording, const std::vector<std::size_t>& frames);
 
 }  // namespace harness

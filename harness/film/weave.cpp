@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -31,44 +32,62 @@ std::vector<Quad> quads_of(const Stage& stage, const std::set<Side>& edges) {
   return quads;
 }
 
-// Numbers yarns from the first quad on, over common sides. Where a cloth closes to a ring, the
-// numbers jump once.
-std::vector<std::optional<Cell>> number_yarns(const std::vector<Quad>& quads, std::size_t vertices) {
-  std::vector<std::optional<Cell>> cells(vertices);
+using Cells = std::vector<std::optional<Cell>>;
+
+// Of the quad beyond the side from corner k of `quad` to the next: its other corners lie as far
+// beyond that side as those of `quad` lie before it.
+void number_beyond(const Quad& quad, std::size_t k, const Quad& beyond, Cells& cells) {
+  const int a = quad[k], b = quad[(k + 1) % 4];
+  for (std::size_t i = 0; i < 4; ++i) {
+    const int from = beyond[i], left = beyond[(i + 3) % 4], right = beyond[(i + 1) % 4];
+    if (from != a && from != b) continue;
+    const int onward = left == a || left == b ? right : left;
+    if (cells[onward]) continue;
+    const Cell at = *cells[from], before = *cells[quad[from == a ? (k + 3) % 4 : (k + 2) % 4]];
+    cells[onward] = Cell{2 * at[0] - before[0], 2 * at[1] - before[1]};
+  }
+}
+
+// Numbers yarns from the first quad of each piece on, over common sides. Where a cloth closes to a
+// ring, the numbers jump once.
+Cells number_yarns(const std::vector<Quad>& quads, std::size_t vertices) {
+  Cells cells(vertices);
   std::map<Side, std::vector<std::size_t>> beside;
   for (std::size_t q = 0; q < quads.size(); ++q)
-    for (int k = 0; k < 4; ++k) beside[side(quads[q][k], quads[q][(k + 1) % 4])].push_back(q);
+    for (std::size_t k = 0; k < 4; ++k)
+      beside[side(quads[q][k], quads[q][(k + 1) % 4])].push_back(q);
   std::vector<char> seen(quads.size(), 0);
+  std::deque<std::size_t> queue;
   for (std::size_t first = 0; first < quads.size(); ++first) {
     if (seen[first]) continue;
-    const std::array<Cell, 4> corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-    for (int k = 0; k < 4; ++k)
-      if (!cells[quads[first][k]]) cells[quads[first][k]] = corners[k];
-    std::deque<std::size_t> queue{first};
     seen[first] = 1;
-    while (!queue.empty()) {
+    constexpr std::array<Cell, 4> corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+    for (std::size_t k = 0; k < 4; ++k)
+      if (!cells[quads[first][k]]) cells[quads[first][k]] = corners[k];
+    for (queue.push_back(first); !queue.empty(); queue.pop_front()) {
       const Quad quad = quads[queue.front()];
-      queue.pop_front();
-      for (int k = 0; k < 4; ++k) {
-        const int a = quad[k], b = quad[(k + 1) % 4];
-        const Cell before_a = *cells[quad[(k + 3) % 4]], before_b = *cells[quad[(k + 2) % 4]];
-        for (const std::size_t next : beside[side(a, b)]) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        for (const std::size_t next : beside[side(quad[k], quad[(k + 1) % 4])]) {
           if (seen[next]) continue;
           seen[next] = 1;
+          number_beyond(quad, k, quads[next], cells);
           queue.push_back(next);
-          const Quad& other = quads[next];
-          for (int i = 0; i < 4; ++i) {
-            const int from = other[i], left = other[(i + 3) % 4], right = other[(i + 1) % 4];
-            if (from != a && from != b) continue;
-            const int onward = left == a || left == b ? right : left;
-            const Cell at = *cells[from], before = from == a ? before_a : before_b;
-            if (!cells[onward]) cells[onward] = Cell{2 * at[0] - before[0], 2 * at[1] - before[1]};
-          }
         }
       }
     }
   }
   return cells;
+}
+
+// So that the outermost yarns are drawn.
+void number_from_zero(Cells& cells) {
+  for (std::size_t way = 0; way < 2; ++way) {
+    int least = std::numeric_limits<int>::max();
+    for (const auto& cell : cells)
+      if (cell) least = std::min(least, (*cell)[way]);
+    for (auto& cell : cells)
+      if (cell) (*cell)[way] -= least;
+  }
 }
 
 bool on_drawn_yarn(const std::optional<Cell>& a, const std::optional<Cell>& b, int every) {
@@ -87,8 +106,11 @@ std::vector<std::uint8_t> drawn_sides(const Stage& stage, int every) {
     last = std::max({last, a, b});
   }
   for (const auto& t : stage.triangles) last = std::max({last, t[0], t[1], t[2]});
-  std::vector<std::optional<Cell>> cells;
-  if (every > 1) cells = number_yarns(quads_of(stage, edges), static_cast<std::size_t>(last + 1));
+  Cells cells;
+  if (every > 1) {
+    cells = number_yarns(quads_of(stage, edges), static_cast<std::size_t>(last + 1));
+    number_from_zero(cells);
+  }
   std::vector<std::uint8_t> sides;
   sides.reserve(stage.triangles.size());
   for (const auto& t : stage.triangles) {

@@ -1,5 +1,5 @@
-// Which edges of a cloth are drawn as lines: every one, or of a fine cloth every second or third yarn
-// and so on, so that they stay lines.
+// Which edges of a cloth are drawn as lines: every one, or of a fine cloth every second or third
+// yarn and so on, so that they stay lines.
 #pragma once
 
 #include <array>
