@@ -66,9 +66,7 @@ def percent(strain: float) -> str:
 
 
 def length(metres: float) -> str:
-    if abs(metres) >= 1:
-        return f"{metres:.2f} m"
-    return f"{1000 * metres:.1f} mm" if abs(metres) < 0.1 else f"{100 * metres:.1f} cm"
+    return f"{1000 * metres:.1f} mm" if abs(metres) < 1 else f"{metres:.2f} m"
 
 
 def caption(film: Film, take: int, frame: int) -> list[str]:
@@ -197,7 +195,7 @@ def write(film: Film, out: Path) -> None:
     else:
         images = moving(film)
         next(images).save(out, save_all=True, append_images=images, duration=round(1000 / film.header["frames_per_second"]), loop=0,
-                          quality=80, method=2)
+                          quality=86, method=2)
 
 
 def main() -> int:

@@ -166,10 +166,16 @@ Writer writer_of(const FilmOptions& given, const std::string& extension) {
   return writer == writers.end() ? nullptr : writer->second;
 }
 
-// results/local/film-drape.webp, or .png where stills are asked for.
+// results/local/film-drape.webp, or .png where stills are asked for; numbered where that is there.
 std::string default_output(const FilmOptions& given) {
   const std::string scene = given.scene.substr(0, given.scene.find(':'));
-  return "results/local/film-" + scene + (given.stills.empty() ? ".webp" : ".png");
+  const auto numbered = [&](int i) {
+    return "results/local/film-" + scene + (i == 1 ? "" : "-" + std::to_string(i)) +
+           (given.stills.empty() ? ".webp" : ".png");
+  };
+  int free = 1;
+  while (std::filesystem::exists(numbered(free))) ++free;
+  return numbered(free);
 }
 
 int film(FilmOptions given) {

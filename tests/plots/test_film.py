@@ -130,7 +130,7 @@ def test_captions_tell_strain_so_far_time_and_sag(tmp_path: Path) -> None:
 
 
 def test_lengths_are_in_units_that_fit() -> None:
-    assert [film.length(metres) for metres in (0.0123, -0.0447, 0.25, 12.9)] == ["12.3 mm", "-44.7 mm", "25.0 cm", "12.90 m"]
+    assert [film.length(metres) for metres in (0.0123, -0.0447, 0.25, 12.9)] == ["12.3 mm", "-44.7 mm", "250.0 mm", "12.90 m"]
 
 
 def test_words_are_wrapped_and_none_is_lost() -> None:
