@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
@@ -14,6 +15,7 @@
 #include "harness/cli/commands.h"
 #include "harness/cli/sweep_options.h"
 #include "harness/film/exports.h"
+#include "harness/film/pictures.h"
 #include "harness/points/suite.h"
 #include "harness/points/tuned.h"
 
@@ -25,8 +27,12 @@ struct FilmOptions {
   SceneWords words;
   std::string stills;
   double step = 0.01, frames_per_second = 30;
-  int width = 480;
+  int width = 0;  // pixels; 0: not given
 };
+
+constexpr int default_width = 480;
+// Rays a pixel, each way: a still can take its time, a film has hundreds of pictures.
+constexpr int still_samples = 4, film_samples = 3;
 
 double number_in(const std::string& text, const std::string& option) {
   std::size_t read = 0;
@@ -103,41 +109,93 @@ void print_times(const Recording& recording) {
   }
 }
 
-// Positions go to the renderer in a folder of their own.
-int render(const FilmOptions& given, const Recording& recording) {
-  const TemporaryFolder folder("film");
-  write_recording(folder.path(), recording);
-  std::vector<std::string> words{folder.path(), given.out, "--width", std::to_string(given.width)};
-  if (!given.stills.empty()) words.insert(words.end(), {"--stills", given.stills});
-  return draw(words, "film.py");
+// Which frames are drawn: all of a film; of stills those nearest to the times given, or four.
+std::vector<std::size_t> shown_frames(const FilmOptions& given, const FilmSpec& spec, bool still) {
+  const std::size_t last = frames_in(spec) - 1;
+  std::vector<std::size_t> frames;
+  if (!still) {
+    for (std::size_t i = 0; i <= last; ++i) frames.push_back(i);
+    return frames;
+  }
+  if (given.stills.empty()) return {0, last / 3, 2 * last / 3, last};
+  const double end = static_cast<double>(last) / spec.frames_per_second;
+  for (const double time : numbers_in(given.stills, "--stills")) {
+    if (!(time >= 0) || time > end + 0.5 / spec.frames_per_second)
+      throw UsageError("--stills: " + number_text(time) + " s is not within the film, 0 to " +
+                       number_text(end) + " s (--set duration=SECONDS changes that)");
+    frames.push_back(static_cast<std::size_t>(std::lround(time * spec.frames_per_second)));
+  }
+  return frames;
 }
 
-int film(const FilmOptions& given) {
-  const std::string extension = std::filesystem::path(given.out).extension().string();
-  using Writer = std::vector<std::string> (*)(const Recording&, const Take&, const std::string&,
-                                              const std::string&);
+void tell_picture(std::size_t done, std::size_t all) {
+  if (isatty(STDERR_FILENO) == 1)
+    std::cerr << "\r\033[K" << done << " of " << all << " pictures" << (done == all ? "\n" : "");
+}
+
+// Pictures go to the script that puts them together in a folder of their own.
+int draw_pictures(const FilmOptions& given, const Recording& recording, bool still) {
+  const TemporaryFolder folder("film");
+  PictureSpec spec;
+  spec.frames = shown_frames(given, recording.spec, still);
+  spec.width = given.width > 0 ? given.width : default_width;
+  spec.samples = still ? still_samples : film_samples;
+  write_film_header(folder.path(), recording);
+  write_pictures(folder.path(), recording, spec, interrupted, tell_picture);
+  return draw({folder.path(), given.out}, "film.py");
+}
+
+using Writer = std::vector<std::string> (*)(const Recording&, const Take&, const std::string&,
+                                            const std::string&);
+
+// Of a file for other programs; null: pictures.
+Writer writer_of(const FilmOptions& given, const std::string& extension) {
   const std::vector<std::pair<std::string, Writer>> writers{
       {".obj", write_obj}, {".pvd", write_vtk}, {".pc2", write_pc2}};
   const auto writer = std::find_if(writers.begin(), writers.end(),
                                    [&](const auto& w) { return w.first == extension; });
-  if (writer == writers.end() && extension != ".png" && extension != ".webp" && extension != ".mp4")
+  const bool pictures = extension == ".png" || extension == ".webp" || extension == ".mp4";
+  if (writer == writers.end() && !pictures)
     throw UsageError("--out '" + given.out +
                      "': must end in .webp, .mp4, .png (stills), .obj, .pvd (ParaView) or .pc2 "
                      "(Blender)");
+  if (!given.stills.empty() && extension != ".png")
+    throw UsageError("--stills: --out '" + given.out + "' must end in .png");
+  if (given.width > 0 && !pictures)
+    throw UsageError("--width: '" + given.out + "' has no pictures");
+  return writer == writers.end() ? nullptr : writer->second;
+}
+
+// results/local/film-drape.webp, or .png where stills are asked for; numbered where that is there.
+std::string default_output(const FilmOptions& given) {
+  const std::string scene = given.scene.substr(0, given.scene.find(':'));
+  const auto numbered = [&](int i) {
+    return "results/local/film-" + scene + (i == 1 ? "" : "-" + std::to_string(i)) +
+           (given.stills.empty() ? ".webp" : ".png");
+  };
+  int free = 1;
+  while (std::filesystem::exists(numbered(free))) ++free;
+  return numbered(free);
+}
+
+int film(FilmOptions given) {
   const FilmSpec spec = film_spec(given);
+  if (given.out.empty()) given.out = default_output(given);
+  const std::string extension = std::filesystem::path(given.out).extension().string();
+  const Writer writer = writer_of(given, extension);
+  (void)shown_frames(given, spec, extension == ".png");  // refused before anything runs
   check_writable(given.out);
   catch_interrupts();
   const Recording recording = record(spec, interrupted, tell);
   print_times(recording);
-  if (writer == writers.end()) return render(given, recording);
+  if (!writer) return draw_pictures(given, recording, extension == ".png");
   const std::filesystem::path out(given.out);
   const std::string folder = out.has_parent_path() ? out.parent_path().string() : ".";
   for (const Take& take : recording.takes) {
     const bool one = recording.takes.size() == 1;
     const std::string name =
         out.stem().string() + (one ? "" : "-" + take.solver + "-" + number_text(take.strain_limit));
-    for (const std::string& path : writer->second(recording, take, folder, name))
-      std::cout << path << '\n';
+    for (const std::string& path : writer(recording, take, folder, name)) std::cout << path << '\n';
   }
   return success;
 }
@@ -157,11 +215,12 @@ void add_film_command(const Command& program) {
   command.option("--fps", given->frames_per_second, "frames a second", "N").positive();
   command.option("--stills", given->stills,
                  "times of the pictures in a .png, s, between commas; default: four", "TIMES");
-  command.option("--width", given->width, "of each picture, pixels", "PIXELS").within(16, 4096);
-  command
-      .option("--out", given->out,
-              ".webp or .mp4: a film; .png: stills; .obj, .pvd, .pc2: for other programs", "FILE")
-      .required();
+  command.option("--width", given->width, "of each picture, pixels; default 480", "PIXELS")
+      .within(16, 4096);
+  command.option("--out", given->out,
+                 ".webp or .mp4: a film; .png: stills; .obj, .pvd, .pc2: for other programs; "
+                 "default: results/local/film-<scene>.webp, .png with --stills",
+                 "FILE");
   command.does([given] { return film(*given); });
 }
 

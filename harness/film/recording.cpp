@@ -10,6 +10,7 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/json_text.h"
 #include "harness/base/text.h"
+#include "harness/film/orientation.h"
 #include "harness/run/runner.h"
 #include "inextensible/problem/triangle_collider.h"
 #include "inextensible/registry.h"
@@ -22,9 +23,10 @@ using inextensible::State;
 
 Stage stage_of(const Scene& scene) {
   Stage stage;
-  stage.triangles = scene.triangles;
+  stage.triangles = oriented(scene.triangles);
   for (const auto [a, b] : scene.problem->edges()) stage.edges.push_back({a, b});
   stage.rest_length = scene.problem->rest_length();
+  stage.marks = scene.marks;
   const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(scene.problem->collider());
   if (body) {
     stage.body = body->mesh().vertices;
@@ -85,7 +87,7 @@ Take take_of(const Scene& scene, const Stage& stage, const Contestant& contestan
       if (interrupted()) throw Interrupted();
       const auto result = stepper->advance(state, pace.step);
       if (!result) {
-        take.detail = "gives up at t = " + number_text(state.time, 3) + " s: " + result.detail;
+        take.detail = "gave up at t = " + number_text(state.time, 3) + " s: " + result.detail;
         return take;
       }
     }
@@ -116,6 +118,11 @@ inextensible::Positions body_at(const Stage& stage, std::size_t frame) {
   return x;
 }
 
+std::size_t frames_in(const FilmSpec& spec) {
+  return 1 + static_cast<std::size_t>(
+                 std::floor(spec.parameters.at("duration") * spec.frames_per_second + 1e-9));
+}
+
 Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
                  const std::function<void(const Take&, std::size_t, std::size_t)>& told) {
   const Scene scene = find_scene(spec.scene)->build(spec.parameters);
@@ -125,8 +132,7 @@ Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
       std::max(1, static_cast<int>(std::ceil(1 / (spec.frames_per_second * spec.step) - 1e-9)));
   recording.step = 1 / (spec.frames_per_second * recording.steps_per_frame);
   recording.stage = stage_of(scene);
-  const auto frames =
-      1 + static_cast<std::size_t>(std::floor(scene.duration * spec.frames_per_second + 1e-9));
+  const std::size_t frames = frames_in(spec);
   if (const auto& motion = scene.problem->body_motion()) {
     for (std::size_t i = 0; i < frames; ++i)
       recording.stage.body_poses.push_back(
@@ -146,6 +152,17 @@ Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
 
 namespace {
 
+// Of each mark, at each frame: how far below the height where it would hang if nothing stretched,
+// m.
+nlohmann::json sags(const Stage& stage, const Take& take) {
+  nlohmann::json all = nlohmann::json::object();
+  for (const Scene::Mark& mark : stage.marks) {
+    nlohmann::json& sag = all[mark.name] = nlohmann::json::array();
+    for (const auto& frame : take.frames) sag.push_back(mark.height - frame(1, mark.vertex));
+  }
+  return all;
+}
+
 nlohmann::json film_header(const Recording& recording) {
   nlohmann::json takes = nlohmann::json::array(), body = nlohmann::json::array(),
                  poses = nlohmann::json::array();
@@ -156,6 +173,7 @@ nlohmann::json film_header(const Recording& recording) {
                      {"detail", take.detail},
                      {"frames", take.frames.size()},
                      {"largest_strain", take.largest_strain},
+                     {"sag", sags(recording.stage, take)},
                      {"seconds", take.seconds}});
   for (const Eigen::Vector3d& v : recording.stage.body) body.push_back({v.x(), v.y(), v.z()});
   for (const inextensible::Pose& pose : recording.stage.body_poses) {
@@ -193,8 +211,12 @@ std::string film_positions(const Recording& recording) {
 
 }  // namespace
 
-void write_recording(const std::string& folder, const Recording& recording) {
+void write_film_header(const std::string& folder, const Recording& recording) {
   write_atomically(folder + "/film.json", compact(film_header(recording)) + "\n");
+}
+
+void write_recording(const std::string& folder, const Recording& recording) {
+  write_film_header(folder, recording);
   write_atomically(folder + "/film.f32", film_positions(recording));
 }
 

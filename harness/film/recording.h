@@ -39,6 +39,7 @@ struct Stage {
   std::vector<Eigen::Vector3d> body;          // m; empty: no obstacle
   std::vector<std::array<int, 3>> body_triangles;
   std::vector<inextensible::Pose> body_poses;  // of each frame; empty: it stays
+  std::vector<Scene::Mark> marks;              // whose sag is told
 };
 
 struct Recording {
@@ -48,6 +49,9 @@ struct Recording {
   Stage stage;
   std::vector<Take> takes;
 };
+
+// Of the whole film: the one at the start, and as many as the scene's duration has.
+std::size_t frames_in(const FilmSpec& spec);
 
 // told: of every frame. Springs get the stiffness that keeps the limit. Throws Interrupted.
 Recording record(
@@ -60,9 +64,10 @@ inextensible::Positions body_at(const Stage& stage, std::size_t frame);
 // |strain| of every edge of the stage.
 std::vector<double> strains(const Stage& stage, const inextensible::Positions& x);
 
-// For renderers, into a folder that is there: film.json holds all but positions (poses as the rows
-// of [turn way]), film.f32 these as 32-bit floats, little-endian, x y z of every vertex of every
-// frame of every take in turn. Throws FileError.
+// Into a folder that is there: film.json holds all but positions (poses as the rows of [turn way]),
+// film.f32 these as 32-bit floats, little-endian, x y z of every vertex of every frame of every
+// take in turn. Both throw FileError.
+void write_film_header(const std::string& folder, const Recording& recording);
 void write_recording(const std::string& folder, const Recording& recording);
 
 }  // namespace harness

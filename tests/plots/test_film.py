@@ -16,7 +16,7 @@ import film
 from documents import ROOT
 
 SCRIPT = ROOT / "plots" / "film.py"
-needs_povray = pytest.mark.skipif(not shutil.which("povray"), reason="povray is not installed")
+WIDTH, HEIGHT = 260, 120  # pixels
 
 
 def recorded(folder: Path, stretched: float = 1.0, chain: bool = False, body: bool = False, moves: bool = False) -> Path:
@@ -44,62 +44,109 @@ def run(*arguments: object) -> subprocess.CompletedProcess:
     return subprocess.run([sys.executable, str(SCRIPT), *map(str, arguments)], capture_output=True, text=True, check=False)
 
 
-def test_strain_is_that_of_the_edges(tmp_path: Path) -> None:
-    made = film.load(recorded(tmp_path, stretched=1.04))
-    assert np.allclose(made.strain(made.takes[0][2]), 0, atol=1e-6)
-    assert np.allclose(made.strain(made.takes[1][0]), 0.04, atol=1e-6)
+def pictured(folder: Path, frames: list[int], ends: int = 3) -> Path:
+    """The same with pictures: of take 0 blue, of take 1 orange, which ends after so many frames."""
+    recorded(folder)
+    header = json.loads((folder / "film.json").read_text())
+    header["takes"][1].update(frames=ends, detail="gave up at t = 0.06 s: iteration limit" if ends < 3 else "")
+    for take in header["takes"]:
+        take["sag"] = {"lower_edge": [0.0, 0.011, 0.022]}
+    (folder / "film.json").write_text(json.dumps(header))
+    (folder / "pictures.json").write_text(json.dumps({"width": WIDTH, "height": HEIGHT, "frames": frames, "legend_end": 4,
+                                                      "legend": [[200, 190, 180], [200, 30, 20]]}))
+    for take, rgb in enumerate(((40, 80, 200), (240, 140, 30))):
+        for frame in range(3 if take == 0 else ends):
+            Image.new("RGB", (WIDTH, HEIGHT), rgb).save(folder / f"{take}-{frame}.ppm")
+    return folder
 
 
-def test_colours_go_from_cloth_to_alarm() -> None:
-    shades = film.colour(np.array([0.0, 1.0, 4.0, 100.0]))
-    assert shades[3].tolist() == shades[2].tolist()
-    assert shades[2][0] > 2 * shades[2][2]  # red
-    assert shades[1][2] > shades[1][0]      # blue
+def run(*arguments: object) -> subprocess.CompletedProcess:
+    return subprocess.run([sys.executable, str(SCRIPT), *map(str, arguments)], capture_output=True, text=True, check=False)
 
 
-def test_a_body_goes_where_its_pose_takes_it(tmp_path: Path) -> None:
-    made = film.load(recorded(tmp_path, body=True, moves=True))
-    assert np.allclose(film.body_at(made.header, 2)[1], [2, -1.2, -1])  # a quarter turn about y, then 2 along x
-    (tmp_path / "still").mkdir()
-    still = film.load(recorded(tmp_path / "still", body=True))
-    assert np.allclose(film.body_at(still.header, 2)[1], [1, -1.2, 0])
+def pixels(picture: Image.Image) -> np.ndarray:
+    return np.asarray(picture.convert("RGB"), dtype=int)
 
 
-def test_normals_of_a_flat_square_are_upright() -> None:
-    x = np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1], [1, 0, 1]], dtype=float)
-    assert np.allclose(np.abs(film.normals(x, np.array([[0, 1, 2], [3, 2, 1]]))), [0, 1, 0])
+def colourful(part: np.ndarray) -> float:
+    """The part of pixels that are not grey."""
+    return float(np.mean(part.max(axis=2) - part.min(axis=2) > 60))
 
 
-@needs_povray
-@pytest.mark.parametrize("chain", [False, True])
-def test_stills_show_each_solver_and_strain_as_colour(tmp_path: Path, chain: bool) -> None:
+def test_stills_have_a_row_for_each_take(tmp_path: Path) -> None:
     out = tmp_path / "stills.png"
-    done = run(recorded(tmp_path, stretched=1.04, chain=chain, body=True), out, "--width", 120, "--stills", "0,0.2")
+    done = run(pictured(tmp_path, [0, 2]), out)
     assert done.returncode == 0, done.stderr
     with Image.open(out) as picture:
-        pixels = np.asarray(picture.convert("RGB"), dtype=int)
-    assert pixels.shape[1] == 240
-    row = (pixels.shape[0] - 3 * film.LINE - film.MARGIN) // 2  # legend and time lie below
-
-    def red(part: np.ndarray) -> int:
-        return int(np.sum((part[:, :, 0] > 1.6 * part[:, :, 2]) & (part[:, :, 0] > 60)))
-
-    assert red(pixels[:row]) == 0, "an unstrained cloth is not red"
-    assert red(pixels[row:2 * row]) > 20, "one strained four times its limit is"
+        shown = pixels(picture)
+    assert shown.shape[1] == 2 * WIDTH
+    assert np.array_equal(shown[HEIGHT // 2, [WIDTH // 2, WIDTH * 3 // 2]], [[40, 80, 200]] * 2)
+    assert any(np.array_equal(row[WIDTH // 2], [240, 140, 30]) for row in shown[HEIGHT:])
 
 
-@needs_povray
+def test_takes_lie_side_by_side_at_one_time(tmp_path: Path) -> None:
+    out = tmp_path / "stills.png"
+    assert run(pictured(tmp_path, [2]), out).returncode == 0
+    with Image.open(out) as picture:
+        assert np.array_equal(pixels(picture)[HEIGHT // 2, [WIDTH // 2, WIDTH * 3 // 2]], [[40, 80, 200], [240, 140, 30]])
+
+
 def test_a_film_has_all_frames(tmp_path: Path) -> None:
     out = tmp_path / "film.webp"
-    done = run(recorded(tmp_path), out, "--width", 48)
+    done = run(pictured(tmp_path, [0, 1, 2]), out)
     assert done.returncode == 0, done.stderr
     with Image.open(out) as picture:
         assert picture.n_frames == 3
-        assert picture.size[0] == 96
+        assert picture.size[0] == 2 * WIDTH
+
+
+@pytest.mark.skipif(not shutil.which("ffmpeg"), reason="ffmpeg is not installed")
+def test_a_film_for_players(tmp_path: Path) -> None:
+    out = tmp_path / "film.mp4"
+    done = run(pictured(tmp_path, [0, 1, 2]), out)
+    assert done.returncode == 0 and out.stat().st_size > 0, done.stderr
+
+
+def test_a_run_that_gave_up_is_grey_and_says_so(tmp_path: Path) -> None:
+    made = film.load(pictured(tmp_path, [0, 1, 2], ends=1))
+    runs, ended = (pixels(film.panel(made, take, 2))[:HEIGHT] for take in (0, 1))
+    assert colourful(runs) > 0.9 and colourful(ended) < 0.1
+    before = pixels(film.panel(made, 1, 0))[:HEIGHT]
+    assert colourful(before) > 0.9, "it is not grey before"
+    word = ended[HEIGHT // 2:]
+    assert np.any((word[:, :, 0] > 100) & (word[:, :, 1] < 80)), "the word is on the picture"
+
+
+def test_captions_tell_strain_so_far_time_and_sag(tmp_path: Path) -> None:
+    made = film.load(pictured(tmp_path, [0, 1, 2]))
+    made.takes[0]["largest_strain"] = [0.0, 0.0099, 0.005]
+    made.takes[0]["seconds"] = [0.01, 0.03]
+    assert film.caption(made, 0, 0)[1] == "permitted strain 1 %, largest so far below 0.001 %"
+    lines = film.caption(made, 0, 2)
+    assert lines[0] == "one"
+    assert lines[1] == "permitted strain 1 %, largest so far 0.99 %"
+    assert lines[2] == "6.67 ms for a frame of 1/30 s"  # 20 ms for a tenth of a second
+    assert lines[3] == "sag: lower edge 22.0 mm"
+
+
+def test_lengths_are_in_units_that_fit() -> None:
+    assert [film.length(metres) for metres in (0.0123, -0.0447, 0.25, 12.9)] == ["12.3 mm", "-44.7 mm", "250.0 mm", "12.90 m"]
+
+
+def test_words_are_wrapped_and_none_is_lost() -> None:
+    font = film.ImageFont.load_default()
+    text = "gave up at t = 0.06 s: iteration limit"
+    lines = film.wrapped(text, font, 80)
+    assert " ".join(lines) == text and len(lines) > 1 and all(font.getlength(line) <= 80 for line in lines)
 
 
 def test_what_is_missing_is_said_in_a_line(tmp_path: Path) -> None:
-    done = subprocess.run([sys.executable, str(SCRIPT), str(recorded(tmp_path)), str(tmp_path / "x.png")], capture_output=True, text=True,
-                          check=False, env={"PATH": "/nowhere"})
+    done = subprocess.run([sys.executable, str(SCRIPT), str(pictured(tmp_path, [0])), str(tmp_path / "x.mp4")], capture_output=True,
+                          text=True, check=False, env={"PATH": "/nowhere"})
     assert done.returncode == 2
-    assert done.stderr.startswith("film.py: povray missing") and done.stderr.count("\n") == 1
+    assert done.stderr.startswith("film.py: ffmpeg missing") and done.stderr.count("\n") == 1
+
+
+def test_a_folder_without_pictures_is_one_line(tmp_path: Path) -> None:
+    done = run(recorded(tmp_path), tmp_path / "x.png")
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and not (tmp_path / "x.png").exists()

@@ -35,6 +35,20 @@ done
 
 refused "must end in" --out it.avi
 refused "did you mean" --scene garmnet --out it.obj
+refused "must end in .png" --stills 0.1 --out it.webp
+refused "has no pictures" --width 100 --out it.obj
+refused "not within the film" --stills 0.5,7 --out it.png
+refused "not a number" --stills 0.1,x --out it.png
+[[ -z $(find . -name 'it.*' -newer paths.txt) ]] || fail "something was written"
+
+# Pictures, under a name of their own where none is given.
+film=(--scene drape --set n=7 --set duration=0.1 --solver fast_projection,jacobi --width 32)
+"$BENCH_BINARY" film "${film[@]}" >stdout.txt 2>stderr.txt || fail "a film: $(tail -1 stderr.txt)"
+grep -qx "results/local/film-drape.webp" stdout.txt && [[ -s results/local/film-drape.webp ]] || fail "no film: $(cat stdout.txt)"
+"$BENCH_BINARY" film "${film[@]}" >stdout.txt 2>stderr.txt
+grep -qx "results/local/film-drape-2.webp" stdout.txt || fail "the first film was replaced: $(cat stdout.txt)"
+"$BENCH_BINARY" film "${film[@]}" --stills 0,0.1 >stdout.txt 2>stderr.txt || fail "stills: $(tail -1 stderr.txt)"
+grep -qx "results/local/film-drape.png" stdout.txt && [[ -s results/local/film-drape.png ]] || fail "no stills: $(cat stdout.txt)"
 
 ((failures == 0)) && echo passed
 exit $((failures > 0))

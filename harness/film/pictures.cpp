@@ -1,0 +1,140 @@
+#include "harness/film/pictures.h"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/json_text.h"
+#include "harness/film/colours.h"
+#include "harness/film/weave.h"
+
+namespace harness {
+namespace {
+
+constexpr int legend_end = 4;       // strain over its limit
+constexpr double line_spacing = 7;  // pixels between lines of yarns, at least
+
+// Of each vertex, by the largest strain of its edges.
+Eigen::Matrix3Xd colours_of(const Stage& stage, const inextensible::Positions& x, double limit) {
+  std::vector<double> most(static_cast<std::size_t>(x.cols()), 0);
+  const std::vector<double> all = strains(stage, x);
+  for (std::size_t k = 0; k < all.size(); ++k)
+    for (const int end : stage.edges[k]) most[end] = std::max(most[end], all[k]);
+  Eigen::Matrix3Xd colours(3, x.cols());
+  for (Eigen::Index v = 0; v < x.cols(); ++v) colours.col(v) = strain_colour(most[v] / limit);
+  return colours;
+}
+
+struct Picture {
+  std::size_t take, frame;
+};
+
+std::vector<Picture> distinct(const Recording& recording, const std::vector<std::size_t>& frames) {
+  std::vector<Picture> pictures;
+  for (std::size_t take = 0; take < recording.takes.size(); ++take) {
+    std::set<std::size_t> shown;
+    for (const std::size_t frame : frames)
+      shown.insert(std::min(frame, recording.takes[take].frames.size() - 1));
+    for (const std::size_t frame : shown) pictures.push_back({take, frame});
+  }
+  return pictures;
+}
+
+std::string ppm(const Pixels& pixels) {
+  return "P6\n" + std::to_string(pixels.width) + " " + std::to_string(pixels.height) + "\n255\n" +
+         std::string(pixels.rgb.begin(), pixels.rgb.end());
+}
+
+unsigned own_cores() {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  if (sched_getaffinity(0, sizeof cores, &cores) != 0) return 1;
+  return static_cast<unsigned>(std::max(1, CPU_COUNT(&cores)));
+}
+
+// Calls work(0) to work(count - 1) on several threads. Rethrows what the first of them threw.
+void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr thrown;
+  std::mutex lock;
+  const auto loop = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        work(i);
+      } catch (...) {
+        const std::lock_guard held(lock);
+        if (!thrown) thrown = std::current_exception();
+        next = count;
+      }
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (unsigned i = 1; i < own_cores(); ++i) others.emplace_back(loop);
+    loop();
+  }
+  if (thrown) std::rethrow_exception(thrown);
+}
+
+}  // namespace
+
+Shot shot_of(const Recording& recording, const View& view, std::size_t take, std::size_t frame,
+             int width) {
+  const Stage& stage = recording.stage;
+  const Take& shown = recording.takes.at(take);
+  Shot shot;
+  shot.cloth = shown.frames.at(frame);
+  shot.triangles = stage.triangles;
+  shot.colours = colours_of(stage, shot.cloth, shown.strain_limit);
+  if (!stage.body.empty()) shot.body = body_at(stage, frame);
+  shot.body_triangles = stage.body_triangles;
+  const double edge = mean_edge(stage), distance = (view.eye - view.centre).norm();
+  const double pixel = 2 * view.tangent * distance / width;  // m
+  shot.thickness = std::clamp(0.25 * edge, 0.004 * view.size, 0.03 * view.size);
+  if (stage.triangles.empty()) {
+    shot.edges = stage.edges;
+    shot.yarn = std::max(1.2 * pixel, std::min(0.009 * view.size, 0.25 * edge));
+    return shot;
+  }
+  const int every = edge > 0 ? static_cast<int>(std::ceil(line_spacing * pixel / edge)) : 1;
+  shot.drawn_sides = drawn_sides(stage, std::max(1, every));
+  shot.yarn = std::clamp(0.05 * every * edge, 0.4 * pixel, 0.9 * pixel);
+  return shot;
+}
+
+void write_pictures(const std::string& folder, const Recording& recording, const PictureSpec& spec,
+                    const std::function<bool()>& interrupted,
+                    const std::function<void(std::size_t, std::size_t)>& told) {
+  const View view = view_of(recording, spec.frames);
+  const std::vector<Picture> pictures = distinct(recording, spec.frames);
+  std::mutex lock;
+  std::size_t done = 0;
+  on_all_cores(pictures.size(), [&](std::size_t i) {
+    if (interrupted()) throw Interrupted();
+    const auto [take, frame] = pictures[i];
+    const Shot shot = shot_of(recording, view, take, frame, spec.width);
+    const std::string name = std::to_string(take) + "-" + std::to_string(frame) + ".ppm";
+    write_atomically(folder + "/" + name, ppm(trace(shot, view, spec.width, spec.samples)));
+    const std::lock_guard held(lock);
+    told(++done, pictures.size());
+  });
+  nlohmann::json legend = nlohmann::json::array();
+  for (int i = 0; i <= 16 * legend_end; ++i) legend.push_back(shade(strain_colour(i / 16.0)));
+  const nlohmann::json header{{"width", spec.width},
+                              {"height", view.height(spec.width)},
+                              {"frames", spec.frames},
+                              {"legend", legend},
+                              {"legend_end", legend_end}};
+  write_atomically(folder + "/pictures.json", compact(header) + "\n");
+}
+
+}  // namespace harness

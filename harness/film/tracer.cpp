@@ -1,0 +1,282 @@
+#include "harness/film/tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "harness/film/colours.h"
+#include "harness/film/embree.h"
+
+namespace harness {
+namespace {
+
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using inextensible::Positions;
+using Triangles = std::vector<std::array<int, 3>>;
+
+constexpr float far_away = std::numeric_limits<float>::infinity();
+
+const Vector3d background = linear(Vector3d(0.97, 0.97, 0.98));
+const Vector3d body_colour = linear(Vector3d(0.78, 0.74, 0.72));
+
+// Weighted by the areas of the triangles about each vertex.
+Matrix3Xd normals_of(const Positions& x, const Triangles& triangles) {
+  Matrix3Xd sums = Matrix3Xd::Zero(3, x.cols());
+  for (const auto& t : triangles) {
+    const Vector3d face = (x.col(t[1]) - x.col(t[0])).cross(x.col(t[2]) - x.col(t[0]));
+    for (const int corner : t) sums.col(corner) += face;
+  }
+  for (auto sum : sums.colwise()) {
+    const double length = sum.norm();
+    sum = length > 0 ? Vector3d(sum / length) : Vector3d::UnitY();
+  }
+  return sums;
+}
+
+// ---- Light ----
+
+// The nearest point that a ray meets.
+struct Hit {
+  double distance = std::numeric_limits<double>::infinity();
+  unsigned geometry = 0, primitive = 0;
+  double u = 0, v = 0;
+  Vector3d face = Vector3d::UnitY();  // normal of what was hit, not of length 1
+};
+
+// What is seen where a ray meets cloth or body.
+struct Surface {
+  Vector3d point, normal, colour;
+  double shine = 0;
+};
+
+// Points of a disk and of a half-sphere, evenly spread: Fibonacci's lattice.
+constexpr double golden = 2.399963229728653;  // the golden angle, rad
+
+Vector3d in_disk(int i, int count) {
+  const double radius = std::sqrt((i + 0.5) / count), angle = golden * i;
+  return {radius * std::cos(angle), radius * std::sin(angle), 0};
+}
+
+// Four rays at once.
+struct Packet {
+  alignas(16) int valid[4];
+  RTCRay4 rays;
+  Packet() : valid{-1, -1, -1, -1}, rays{} {}
+  void set(int i, const Vector3d& from, const Vector3d& to, double begin) {
+    const Vector3f o = from.cast<float>(), d = to.cast<float>();
+    rays.org_x[i] = o.x(), rays.org_y[i] = o.y(), rays.org_z[i] = o.z();
+    rays.dir_x[i] = d.x(), rays.dir_y[i] = d.y(), rays.dir_z[i] = d.z();
+    rays.tnear[i] = static_cast<float>(begin);
+    rays.tfar[i] = far_away;
+    rays.mask[i] = 0xFFFFFFFFU;
+  }
+  // The part of the rays that meets nothing.
+  double free(RTCScene scene) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded4(valid, scene, &context, &rays);
+    return 0.25 * static_cast<double>(
+                      std::count_if(rays.tfar, rays.tfar + 4, [](float far) { return far > 0; }));
+  }
+};
+
+class Tracer {
+ public:
+  Tracer(const Shot& shot, const View& view, int samples);
+  Vector3d colour(const Vector3d& direction, int sample) const;
+
+ private:
+  static Hit first(RTCScene scene, const Vector3d& from, const Vector3d& to);
+  Surface on_cloth(const Hit& hit, const Vector3d& direction) const;
+  Surface on_rope(const Hit& hit, const Vector3d& direction) const;
+  Surface on_triangle(const Hit& hit, const Vector3d& direction, const Positions& x,
+                      const std::array<int, 3>& corners, const Matrix3Xd& normals) const;
+  double line(const Hit& hit) const;
+  Vector3d lit(const Surface& surface, const Vector3d& direction, int sample, double begin) const;
+
+  const Shot& shot_;
+  const View& view_;
+  int count_;  // samples a pixel
+  Owned<RTCDevice> device_;
+  Owned<RTCScene> cloth_, body_, all_;
+  Matrix3Xd normals_, body_normals_;
+  Vector3d light_, light_x_, light_y_;  // towards the light, and across it
+};
+
+Tracer::Tracer(const Shot& shot, const View& view, int samples)
+    : shot_(shot), view_(view), count_(samples * samples), device_(rtcNewDevice("threads=1")) {
+  if (!device_) throw std::runtime_error("Embree cannot start");
+  normals_ = normals_of(shot.cloth, shot.triangles);
+  body_normals_ = normals_of(shot.body, shot.body_triangles);
+  const auto body = triangle_geometry(device_.get(), shot.body, shot.body_triangles);
+  body_ = scene_of(device_.get(), {body.get()});
+  if (shot.triangles.empty()) {
+    const auto rope = rope_geometry(device_.get(), shot),
+               knots = knot_geometry(device_.get(), shot);
+    cloth_ = scene_of(device_.get(), {rope.get(), knots.get()});
+    all_ = scene_of(device_.get(), {rope.get(), knots.get(), body.get()});
+  } else {
+    const auto cloth = triangle_geometry(device_.get(), shot.cloth, shot.triangles);
+    cloth_ = scene_of(device_.get(), {cloth.get()});
+    all_ = scene_of(device_.get(), {cloth.get(), body.get()});
+  }
+  light_ = (-0.5 * view.right + 1.1 * Vector3d::UnitY() + 0.75 * view.towards).normalized();
+  light_x_ = light_.cross(view.towards).normalized();
+  light_y_ = light_.cross(light_x_);
+}
+
+Hit Tracer::first(RTCScene scene, const Vector3d& from, const Vector3d& to) {
+  RTCRayHit query{};
+  const Vector3f o = from.cast<float>(), d = to.cast<float>();
+  query.ray = {o.x(), o.y(), o.z(), 0, d.x(), d.y(), d.z(), 0, far_away, 0xFFFFFFFFU, 0, 0};
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &query);
+  Hit hit;
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
+  hit.distance = query.ray.tfar;
+  hit.geometry = query.hit.geomID;
+  hit.primitive = query.hit.primID;
+  hit.u = query.hit.u;
+  hit.v = query.hit.v;
+  hit.face = {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z};
+  return hit;
+}
+
+// The shading normal, towards the viewer, and a point on the smooth surface that the corners'
+// normals describe (Hanika, Hacking the shadow terminator, 2021): shadows of a coarse mesh's flat
+// triangles on each other would show them.
+Surface Tracer::on_triangle(const Hit& hit, const Vector3d& direction, const Positions& x,
+                            const std::array<int, 3>& corners, const Matrix3Xd& normals) const {
+  const std::array<double, 3> weight{1 - hit.u - hit.v, hit.u, hit.v};
+  const double facing = hit.face.dot(direction) > 0 ? -1 : 1;
+  Surface surface;
+  surface.point = surface.normal = surface.colour = Vector3d::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    surface.point += weight[k] * x.col(corners[k]);
+    surface.normal += weight[k] * facing * normals.col(corners[k]);
+  }
+  Vector3d raised = surface.point;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3d normal = facing * normals.col(corners[k]);
+    const double below = std::min(0.0, (surface.point - x.col(corners[k])).dot(normal));
+    raised -= weight[k] * below * normal;
+  }
+  surface.point = raised;
+  surface.normal.normalize();
+  return surface;
+}
+
+// How much of a yarn's line is at a point: 0 to 1.
+double Tracer::line(const Hit& hit) const {
+  const auto& t = shot_.triangles[hit.primitive];
+  const unsigned drawn = shot_.drawn_sides[hit.primitive];
+  if (drawn == 0) return 0;
+  const double twice_area = hit.face.norm();
+  const std::array<double, 3> weight{1 - hit.u - hit.v, hit.u, hit.v};  // of corners 0, 1, 2
+  double most = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!(drawn >> k & 1U)) continue;
+    const std::size_t next = (k + 1) % 3, opposite = (k + 2) % 3;
+    const double side = (shot_.cloth.col(t[next]) - shot_.cloth.col(t[k])).norm();
+    const double away = side > 0 ? weight[opposite] * twice_area / side : 0;
+    most = std::max(most, std::clamp(1.5 - away / shot_.yarn, 0.0, 1.0));
+  }
+  return most;
+}
+
+Surface Tracer::on_cloth(const Hit& hit, const Vector3d& direction) const {
+  const auto& corners = shot_.triangles[hit.primitive];
+  Surface surface = on_triangle(hit, direction, shot_.cloth, corners, normals_);
+  const std::array<double, 3> weight{1 - hit.u - hit.v, hit.u, hit.v};
+  for (std::size_t k = 0; k < 3; ++k) surface.colour += weight[k] * shot_.colours.col(corners[k]);
+  surface.colour *= 1 - 0.5 * line(hit);
+  surface.shine = 0.03;
+  return surface;
+}
+
+Surface Tracer::on_rope(const Hit& hit, const Vector3d& direction) const {
+  Surface surface;
+  surface.point = view_.eye + hit.distance * direction;
+  surface.normal = hit.face.normalized();
+  if (hit.geometry == 0) {
+    const auto [a, b] = shot_.edges[hit.primitive];
+    surface.colour = (1 - hit.u) * shot_.colours.col(a) + hit.u * shot_.colours.col(b);
+  } else {
+    surface.colour = shot_.colours.col(hit.primitive);
+  }
+  surface.shine = 0.05;
+  return surface;
+}
+
+// One light, the sky, and a little from the camera.
+Vector3d Tracer::lit(const Surface& surface, const Vector3d& direction, int sample,
+                     double begin) const {
+  constexpr double light_radius = 0.22, key = 0.72, sky = 0.36, camera = 0.12;
+  const Vector3d& n = surface.normal;
+  const Vector3d across = n.unitOrthogonal(), along = n.cross(across);
+  const Vector3d from = surface.point + 0.02 * begin * n;
+  Packet to_light, to_sky;
+  for (int i = 0; i < 4; ++i) {
+    const int number = sample + count_ * i;
+    const Vector3d d = light_radius * in_disk(number, 4 * count_);
+    to_light.set(i, from, (light_ + d.x() * light_x_ + d.y() * light_y_).normalized(), begin);
+    const Vector3d s = in_disk(number, 4 * count_);
+    const double height = std::sqrt(std::max(0.0, 1 - s.squaredNorm()));
+    to_sky.set(i, from, s.x() * across + s.y() * along + height * n, begin);
+  }
+  const double direct = std::max(0.0, n.dot(light_));
+  const double open = to_sky.free(all_.get());
+  const double sun = direct > 0 ? direct * to_light.free(all_.get()) : 0;
+  const double above = 0.75 + 0.25 * n.y();  // the sky is brighter than the ground
+  const Vector3d half = (light_ - direction).normalized();
+  const double gleam = direct > 0 ? std::pow(std::max(0.0, n.dot(half)), 24) * sun : 0;
+  const double light = key * sun + sky * above * open + camera * std::max(0.0, -n.dot(direction));
+  return light * surface.colour + surface.shine * gleam * Vector3d::Ones();
+}
+
+Vector3d Tracer::colour(const Vector3d& direction, int sample) const {
+  const Hit cloth = first(cloth_.get(), view_.eye, direction);
+  const Hit body = first(body_.get(), view_.eye, direction);
+  const double apart = std::max(1e-4 * view_.size, shot_.thickness);
+  if (std::isinf(cloth.distance) && std::isinf(body.distance)) return background;
+  if (cloth.distance < body.distance + shot_.thickness)
+    return lit(shot_.triangles.empty() ? on_rope(cloth, direction) : on_cloth(cloth, direction),
+               direction, sample, apart);
+  Surface surface =
+      on_triangle(body, direction, shot_.body, shot_.body_triangles[body.primitive], body_normals_);
+  surface.colour = body_colour;
+  surface.shine = 0.06;
+  return lit(surface, direction, sample, apart);
+}
+
+}  // namespace
+
+Pixels trace(const Shot& shot, const View& view, int width, int samples) {
+  const Tracer tracer(shot, view, samples);
+  Pixels pixels{width, view.height(width), {}};
+  pixels.rgb.reserve(3 * static_cast<std::size_t>(pixels.width) *
+                     static_cast<std::size_t>(pixels.height));
+  for (int row = 0; row < pixels.height; ++row) {
+    for (int column = 0; column < pixels.width; ++column) {
+      Vector3d sum = Vector3d::Zero();
+      for (int sample = 0; sample < samples * samples; ++sample) {
+        const double right = (sample % samples + 0.5) / samples,
+                     down = (sample / samples + 0.5) / samples;
+        const Vector3d direction =
+            view.ray(2 * (column + right) / pixels.width - 1, 1 - 2 * (row + down) / pixels.height);
+        sum += tracer.colour(direction, sample);
+      }
+      const auto pixel = shade(sum / (samples * samples));
+      pixels.rgb.insert(pixels.rgb.end(), pixel.begin(), pixel.end());
+    }
+  }
+  return pixels;
+}
+
+}  // namespace harness

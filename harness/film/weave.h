@@ -1,0 +1,20 @@
+// Which edges of a cloth are drawn as lines: every one, or of a fine cloth every second or third
+// yarn and so on, so that they stay lines.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "harness/film/recording.h"
+
+namespace harness {
+
+// Of each triangle, one bit a side: 1 from corner 0 to 1, 2 from 1 to 2, 4 from 2 to 0. `every`:
+// one of so many yarns is drawn; above 1, only those of a cloth of quads.
+std::vector<std::uint8_t> drawn_sides(const Stage& stage, int every);
+
+// Of the cloth, m; 0 without edges.
+double mean_edge(const Stage& stage);
+
+}  // namespace harness
