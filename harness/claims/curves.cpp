@@ -44,7 +44,7 @@ bool Point::within_error(double level) const {
       measures.error_series.push_back({or_unknown(sample.at(0)), or_unknown(sample.at(1)), unknown,
                                        or_unknown(sample.at(3)), unknown});
   }
-  return trajectory_within(measures, level) <= level;
+  return harness::within_error(measures, level);
 }
 
 namespace {

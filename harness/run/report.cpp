@@ -122,7 +122,7 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
   constexpr std::array targets{1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4};
   const auto sure = [&](double target) {
     return std::any_of(points.begin(), points.end(), [&](const PointResult* point) {
-      return error_known_until(point->measures, target) > 0;
+      return error_at(point->measures, target).samples > 0;
     });
   };
   out << '\n'
@@ -138,7 +138,7 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
       const PointResult* fastest = nullptr;
       for (const PointResult* point : points) {
         if (point->spec.name() != solver || !point->ok() ||
-            !(trajectory_within(point->measures, target) <= target))
+            !within_error(point->measures, target))
           continue;
         if (!fastest || point->median_seconds() < fastest->median_seconds()) fastest = point;
       }

@@ -32,11 +32,11 @@ std::vector<std::size_t> StepSearch::near_best(double factor) const {
 }
 
 double StepSearch::error(const PointResult& point) const {
-  return trajectory_within(point.measures, max_error_);
+  return error_at(point.measures, max_error_).distance;
 }
 
 bool StepSearch::permissible(const PointResult& point) const {
-  return point.ok() && (std::isinf(max_error_) || error(point) <= max_error_);
+  return point.ok() && within_error(point.measures, max_error_);
 }
 
 // A point is skipped where its calibration timed out.
