@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "harness/analysis/paper_methods.h"
 #include "harness/claims/contests.h"
-#include "harness/claims/paper_methods.h"
 
 namespace harness::claims {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/analysis/paper_methods.h"
 #include "harness/claims/contests.h"
-#include "harness/claims/paper_methods.h"
 
 namespace harness::claims {
 namespace {

@@ -1,7 +1,7 @@
 // Time over permitted strain and over resolution: each contestant at its best step.
+#include "harness/analysis/paper_methods.h"
 #include "harness/base/text.h"
 #include "harness/claims/page.h"
-#include "harness/claims/paper_methods.h"
 
 namespace harness::claims {
 namespace {

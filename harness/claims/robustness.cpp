@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/analysis/paper_methods.h"
 #include "harness/base/text.h"
-#include "harness/claims/paper_methods.h"
 
 namespace harness::claims {
 

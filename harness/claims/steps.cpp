@@ -4,8 +4,8 @@
 #include <map>
 #include <string>
 
+#include "harness/analysis/paper_methods.h"
 #include "harness/base/text.h"
-#include "harness/claims/paper_methods.h"
 
 namespace harness::claims {
 
