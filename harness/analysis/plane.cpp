@@ -22,30 +22,32 @@ bool may_answer(const Point& p) {
 
 std::string level_text(double level) { return number_text(100 * level) + " %"; }
 
-// Why nobody answers: the first of the reasons that holds of all.
+// Why nobody entries: the first of the reasons that holds of all.
 std::string why_empty(const std::vector<const Point*>& here, double level, double known_until) {
   const auto any = [&](auto has) { return std::any_of(here.begin(), here.end(), has); };
   if (!any([](const Point* p) { return may_answer(*p); })) return "no run keeps the strain limit";
   if (known_until > 0) return "no run that was tried is right to " + level_text(level);
-  const Point* named = nullptr;
-  for (const Point* p : here) {
-    const auto& error = p->document().at("error");
-    if (const auto name = error.find("reference"); name != error.end() && name->is_string())
-      named = p;
-  }
-  return named ? "the reference is not sure to " + level_text(level) : "there is no reference";
+  const auto has = [&](const char* key) {
+    return any([key](const Point* p) {
+      const auto place = p->document().at("error").find(key);
+      return place != p->document().at("error").end() && !place->empty();  // null is empty
+    });
+  };
+  if (!has("reference")) return "there is no reference";
+  return has("error_series") ? "the reference is not sure to " + level_text(level)
+                             : "the file has no errors";
 }
 
 // A hollow contestant and its solver are one row, of which the fastest counts.
-void rank(std::vector<Answer>& answers) {
-  std::stable_sort(answers.begin(), answers.end(), [](const Answer& a, const Answer& b) {
+void rank(std::vector<Entry>& entries) {
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.point.seconds() < b.point.seconds();
   });
   std::vector<std::string> rows;
-  for (Answer& answer : answers) {
-    if (answer.role.again || !answer.role.competes) continue;
-    answer.counts = std::find(rows.begin(), rows.end(), answer.row) == rows.end();
-    rows.push_back(answer.row);
+  for (Entry& entry : entries) {
+    if (entry.role.again || !entry.role.competes) continue;
+    entry.counts = std::find(rows.begin(), rows.end(), entry.row) == rows.end();
+    rows.push_back(entry.row);
   }
 }
 
@@ -63,12 +65,12 @@ Cell cell_of(const std::vector<const Point*>& here, double limit, double level, 
     for (const Point* p : here) {
       if (p->contestant() == name) own.push_back(p);
     }
-    const Point* answer = answer_of(own, level);
-    if (!answer) continue;
-    cell.answers.push_back({cast.of(name), cast.at_any_settings(name), false, *answer,
-                            answer->error_at(level).distance});
+    const Point* entry = fastest_of(own, level);
+    if (!entry) continue;
+    cell.entries.push_back({cast.of(name), cast.at_any_settings(name), false, *entry,
+                            entry->error_at(level).distance});
   }
-  rank(cell.answers);
+  rank(cell.entries);
   if (!cell.first()) cell.empty_because = why_empty(here, level, cell.known_until);
   return cell;
 }
@@ -108,7 +110,7 @@ Plane plane_of(const std::vector<const Point*>& points, const json& document, co
 
 }  // namespace
 
-const Point* answer_of(const std::vector<const Point*>& points, double level) {
+const Point* fastest_of(const std::vector<const Point*>& points, double level) {
   const Point* best = nullptr;
   for (const bool marked : {true, false}) {
     for (const Point* p : points) {
@@ -121,41 +123,41 @@ const Point* answer_of(const std::vector<const Point*>& points, double level) {
   return nullptr;
 }
 
-const Answer* Cell::counting(std::size_t place) const {
-  for (const Answer& answer : answers) {
-    if (answer.counts && place-- == 0) return &answer;
+const Entry* Cell::counting(std::size_t place) const {
+  for (const Entry& entry : entries) {
+    if (entry.counts && place-- == 0) return &entry;
   }
   return nullptr;
 }
 
-const Answer* Cell::next_family() const {
-  const Answer* best = first();
-  for (const Answer& answer : answers) {
-    if (answer.counts && answer.role.family != best->role.family) return &answer;
+const Entry* Cell::next_family() const {
+  const Entry* best = first();
+  for (const Entry& entry : entries) {
+    if (entry.counts && entry.role.family != best->role.family) return &entry;
   }
   return nullptr;
 }
 
-const Answer* Cell::paper_best() const {
-  for (const Answer& answer : answers) {
+const Entry* Cell::paper_best() const {
+  for (const Entry& entry : entries) {
     const bool of_paper =
         std::any_of(all_paper_methods.begin(), all_paper_methods.end(),
-                    [&](const PaperMethod& method) { return answer.row == method.name; });
-    if (answer.counts && of_paper) return &answer;
+                    [&](const PaperMethod& method) { return entry.row == method.name; });
+    if (entry.counts && of_paper) return &entry;
   }
   return nullptr;
 }
 
 bool Cell::clear() const {
-  const Answer* best = first();
+  const Entry* best = first();
   if (!best || !counting(1)) return false;
-  return std::all_of(answers.begin(), answers.end(), [&](const Answer& other) {
+  return std::all_of(entries.begin(), entries.end(), [&](const Entry& other) {
     return &other == best || !other.counts || ratio(other.point, best->point).above(1);
   });
 }
 
-std::optional<Ratio> Cell::lead_over(const Answer* other) const {
-  const Answer* best = first();
+std::optional<Ratio> Cell::lead_over(const Entry* other) const {
+  const Entry* best = first();
   if (!best || !other || other == best) return std::nullopt;
   return ratio(other->point, best->point);
 }

@@ -11,14 +11,14 @@
 
 namespace harness::analysis {
 
-// The run that a contestant answers with at a strain limit and a level of error (any_motion:
+// The run that stands for a contestant at a strain limit and a level of error (any_motion:
 // whatever its error): the one that its sweep marked, in files without such marks the fastest. Only
 // runs that kept their limit count, with steps of a frame at most. points: of one contestant,
 // scene, size and limit. Null: none.
-const Point* answer_of(const std::vector<const Point*>& points, double level);
+const Point* fastest_of(const std::vector<const Point*>& points, double level);
 
-// What one contestant answers.
-struct Answer {
+// What stands for one contestant in a cell.
+struct Entry {
   Role role;
   std::string row;      // whose row it stands in: a hollow contestant's is its solver's
   bool counts = false;  // the fastest of its row; not of the second of an A/A pair
@@ -29,19 +29,19 @@ struct Answer {
 // Of a strain limit and a level of error.
 struct Cell {
   double strain_limit = 0, level = any_motion;
-  std::vector<Answer> answers;  // fastest first
-  double known_until = 0;       // s: the last sample time of the level; 0: errors are not known
-  std::string empty_because;    // why there is no answer; "" if there is one
+  std::vector<Entry> entries;  // fastest first
+  double known_until = 0;      // s: the last sample time of the level; 0: errors are not known
+  std::string empty_because;   // why there is no entry; "" if there is one
 
   // Below, null: there is none.
-  const Answer* first() const { return counting(0); }
-  const Answer* counting(std::size_t place) const;  // 0: the fastest of those that count
-  const Answer* next_family() const;                // the fastest of another family than the first
-  const Answer* paper_best() const;                 // the fastest of the paper's six methods
+  const Entry* first() const { return counting(0); }
+  const Entry* counting(std::size_t place) const;  // 0: the fastest of those that count
+  const Entry* next_family() const;                // the fastest of another family than the first
+  const Entry* paper_best() const;                 // the fastest of the paper's six methods
   // Whether the first is faster than every other one that counts, beyond the noise.
   bool clear() const;
   // Times over the first's.
-  std::optional<Ratio> lead_over(const Answer* other) const;
+  std::optional<Ratio> lead_over(const Entry* other) const;
 };
 
 // Of a scene and size in one kind of sweep.

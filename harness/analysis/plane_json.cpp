@@ -21,22 +21,22 @@ json ratio_json(const std::optional<Ratio>& ratio) {
   return object;
 }
 
-json answer_json(const Answer& answer) {
-  return {{"contestant", answer.role.name},
-          {"row", answer.row},
-          {"hollow", answer.role.hollow},
-          {"counts", answer.counts},
-          {"id", answer.point.id()},
-          {"seconds", number(answer.point.seconds())},
-          {"step", number(answer.point.number("step"))},
-          {"error", number(answer.error)}};
+json entry_json(const Entry& entry) {
+  return {{"contestant", entry.role.name},
+          {"row", entry.row},
+          {"hollow", entry.role.hollow},
+          {"counts", entry.counts},
+          {"id", entry.point.id()},
+          {"seconds", number(entry.point.seconds())},
+          {"step", number(entry.point.number("step"))},
+          {"error", number(entry.error)}};
 }
 
-json name_of(const Answer* answer) { return answer ? json(answer->row) : json(nullptr); }
+json name_of(const Entry* entry) { return entry ? json(entry->row) : json(nullptr); }
 
 json cell_json(const Cell& cell) {
-  json answers = json::array();
-  for (const Answer& answer : cell.answers) answers.push_back(answer_json(answer));
+  json entries = json::array();
+  for (const Entry& entry : cell.entries) entries.push_back(entry_json(entry));
   const bool any = cell.first() != nullptr;
   return {{"strain_limit", cell.strain_limit},
           {"error_level", number(cell.level)},  // null: any motion
@@ -49,7 +49,7 @@ json cell_json(const Cell& cell) {
            ratio_json(any ? cell.lead_over(cell.next_family()) : std::nullopt)},
           {"paper_best", name_of(cell.paper_best())},
           {"lead_over_paper_best", ratio_json(cell.lead_over(cell.paper_best()))},
-          {"answers", std::move(answers)}};
+          {"entries", std::move(entries)}};
 }
 
 json plane_json(const Plane& plane) {

@@ -70,7 +70,7 @@ Curve Points::best(const std::string& scene, const std::string& sweep,
   }
   Curve curve;
   for (const auto& [place, points] : places) {
-    if (const Point* answer = answer_of(points, level)) keep_faster(curve, place.first, *answer);
+    if (const Point* answer = fastest_of(points, level)) keep_faster(curve, place.first, *answer);
   }
   return curve;
 }
@@ -85,17 +85,6 @@ Curve Points::best_at_errors(const std::string& scene, const std::string& contes
       if (p.within_error(level)) keep_faster(curve, level, p);
     }
   }
-  return curve;
-}
-
-Curve Points::best_at_error(const std::string& scene, const std::string& contestant,
-                            double level) const {
-  Curve curve;
-  for (const Point& p : where([&](const Point& q) {
-         return of(q, scene, "resolution") && cast_.at_any_settings(q.contestant()) == contestant &&
-                q.ok() && q.timed() && q.within_error(level);
-       }))
-    keep_faster(curve, p.number("vertices"), p);
   return curve;
 }
 

@@ -48,8 +48,6 @@ class Points {
   // Over error levels: the fastest point within each, at any step and limit, with tuned or untuned
   // settings, of the largest size in step sweeps.
   Curve best_at_errors(const std::string& scene, const std::string& contestant) const;
-  // Over vertices: the fastest point of the resolution sweep's within one level.
-  Curve best_at_error(const std::string& scene, const std::string& contestant, double level) const;
 
   Role about(const std::string& contestant) const { return cast_.of(contestant); }
   // Those with points in a sweep of a scene that are ranked, in the files' order.

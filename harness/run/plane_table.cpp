@@ -10,15 +10,15 @@
 
 namespace harness {
 
-using analysis::Answer;
 using analysis::Cell;
+using analysis::Entry;
 using analysis::percent;
 using analysis::Plane;
 
 namespace {
 
-constexpr int limit_width = 10, level_width = 14, winner_width = 30, time_width = 10, step_width = 10,
-              error_width = 10;
+constexpr int limit_width = 10, level_width = 14, winner_width = 30, time_width = 10,
+              step_width = 10, error_width = 10;
 
 std::string level_text(double level) { return level == any_motion ? "any" : percent(level); }
 
@@ -31,7 +31,7 @@ std::string levels_text(const Cell& loosest, const Cell& tightest) {
 
 // How the best of the paper's six compares.
 std::string lead_text(const Cell& cell) {
-  const Answer* paper = cell.paper_best();
+  const Entry* paper = cell.paper_best();
   if (!paper) return "none of the six";
   if (paper == cell.first()) return "it is of the six";
   return analysis::text(*cell.lead_over(paper)) + " by " + paper->row;
@@ -47,12 +47,12 @@ void print_cells(std::ostream& out, const std::string& limit, const Cell& looses
                  const Cell& tightest, double per_second) {
   out << std::left << std::setw(limit_width) << limit << std::setw(level_width)
       << levels_text(loosest, tightest);
-  const Answer* first = tightest.first();
+  const Entry* first = tightest.first();
   if (!first) {
     out << "- " << tightest.empty_because << '\n';
     return;
   }
-  const std::string name = first->row + (first->role.hollow ? " (untuned)" : "");
+  const std::string name = first->row + (first->role.hollow ? " u" : "");
   out << std::setw(winner_width) << name + (tightest.clear() ? "" : " ~") << std::setw(time_width)
       << number_text(per_second * first->point.seconds(), 3) << std::setw(step_width)
       << step_text(first->point.number("step")) << std::setw(error_width)
@@ -63,7 +63,7 @@ void print_cells(std::ostream& out, const std::string& limit, const Cell& looses
 void print_plane(std::ostream& out, const Plane& plane) {
   double most = 0;
   for (const Cell& cell : plane.cells) {
-    if (const Answer* first = cell.first()) most = std::max(most, first->point.seconds());
+    if (const Entry* first = cell.first()) most = std::max(most, first->point.seconds());
   }
   const bool seconds = most >= 20;
   out << '\n'
@@ -91,7 +91,8 @@ void print_planes(std::ostream& out, const nlohmann::json& document) {
   const auto planes = analysis::planes_of(document);
   for (const Plane& plane : planes) print_plane(out, plane);
   if (!planes.empty())
-    out << "(~: too close to the next to tell; errors are over the scene's size)\n";
+    out << "(~: too close to the next to tell; u: with untuned settings; errors are over the "
+           "scene's size)\n";
 }
 
 }  // namespace harness

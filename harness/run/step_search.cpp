@@ -5,6 +5,15 @@
 #include <limits>
 
 namespace harness {
+namespace {
+
+// A run that has stepped for this many times the best one's time cannot be the best; its time has
+// risen. While errors are too large yet, ten times.
+constexpr double hopeless_factor = 3, patient_factor = 10;
+// An error above this part of the one at twice the step does not fall as a method of first order's.
+constexpr double stays = 0.85;
+
+}  // namespace
 
 std::optional<std::size_t> StepSearch::find(std::optional<std::size_t> start) {
   const std::size_t first = std::min(start.value_or(0), rungs_ - 1);
@@ -63,11 +72,25 @@ bool StepSearch::consider(std::size_t rung, const PointResult& point) {
   return true;
 }
 
+double StepSearch::tenfold() const {
+  auto base = best_seconds(any_motion);
+  for (const double level : levels_) {
+    if (const auto met = best_seconds(level)) base = met;
+  }
+  return base ? patient_factor * *base : std::numeric_limits<double>::infinity();
+}
+
+double StepSearch::longest_useful() const {
+  if (wants_less_error()) return tenfold();
+  const auto fastest = best_seconds(any_motion);
+  return fastest ? hopeless_factor * *fastest : std::numeric_limits<double>::infinity();
+}
+
 // Of a walk to finer steps whose time has risen twice in a row.
 bool StepSearch::done(const PointResult& point) const {
-  if (!goal_ || error_rises_ >= 2 || gave_up(point)) return true;
+  if (!goal_ || error_stays_ >= 2 || gave_up(point)) return true;
   if (!point.ok()) return failures_ >= 2;
-  if (point.median_seconds() > most_times_slower * *best_seconds(any_motion)) return true;
+  if (point.median_seconds() > tenfold()) return true;
   const auto met = best_seconds(*goal_);
   return met && point.median_seconds() > *met;
 }
@@ -75,7 +98,7 @@ bool StepSearch::done(const PointResult& point) const {
 void StepSearch::walk(std::size_t from, int direction) {
   int rises = 0, timeouts = 0;
   double last_error = std::numeric_limits<double>::infinity();
-  error_rises_ = failures_ = 0;
+  error_stays_ = failures_ = 0;
   for (std::size_t rung = from; rung < rungs_;
        rung += static_cast<std::size_t>(direction)) {  // wraps below 0
     const PointResult& point = run_(rung);
@@ -93,7 +116,7 @@ void StepSearch::walk(std::size_t from, int direction) {
     }
     if (point.ok() && goal_) {
       const double error = error_at(point.measures, *goal_).distance;
-      error_rises_ = error > last_error && error > *goal_ ? error_rises_ + 1 : 0;
+      error_stays_ = error > stays * last_error && error > *goal_ ? error_stays_ + 1 : 0;
       last_error = error;
     }
     if (timeouts == 2 || (rises >= 2 && (direction < 0 || done(point)))) return;

@@ -11,11 +11,15 @@
 namespace harness {
 
 // The step search of docs/measuring.md, for the fastest step of any motion and for those within
-// levels of error. From coarse to fine until the time has risen twice in a row, and on until the
-// finest level is met and the next step takes longer, or time has risen tenfold, or the error has
-// grown twice in a row (slack within the strain limit then dominates it), or two steps in a row
-// have failed. With a neighbour's best step, from there in both directions. A failure counts as a
-// rise, and before the first success as a reason to go finer.
+// levels of error. From coarse to fine until the time has risen twice in a row, and on until
+//  - the finest level is met and the next step takes longer, or
+//  - time has risen tenfold above the fastest within the tightest level met so far (a fast run with
+//    a wrong motion ends no search), or
+//  - the error has fallen by less than 15 % twice in a row: slack within the strain limit then
+//    dominates it, or
+//  - two steps in a row have failed.
+// With a neighbour's best step, from there in both directions. A failure counts as a rise, and
+// before the first success as a reason to go finer.
 class StepSearch {
  public:
   using Run = std::function<const PointResult&(std::size_t rung)>;
@@ -35,15 +39,14 @@ class StepSearch {
   std::vector<std::size_t> near_best(double level, double factor) const;
 
   bool timed_out() const { return timed_out_; }
-  // Whether finer steps may still be wanted for their error, however slow they are.
-  bool wants_less_error() const { return goal_ && !best_seconds(*goal_) && error_rises_ < 2; }
-
-  // A step that takes so many times as long as the fastest ends the search.
-  static constexpr double most_times_slower = 10;
+  // Seconds per simulated second: a run that takes longer is of no use to the search.
+  double longest_useful() const;
 
  private:
   static bool gave_up(const PointResult& point);  // for want of time
   bool consider(std::size_t rung, const PointResult& point);
+  bool wants_less_error() const { return goal_ && !best_seconds(*goal_) && error_stays_ < 2; }
+  double tenfold() const;
   bool done(const PointResult& point) const;
   void walk(std::size_t from, int direction);
   std::optional<double> best_seconds(double level) const;
@@ -57,7 +60,7 @@ class StepSearch {
   std::map<double, std::map<std::size_t, double>> seconds_;  // by level and rung
   bool timed_out_ = false;
   bool unsupported_ = false;            // the solver does not take the problem, whatever the step
-  int error_rises_ = 0, failures_ = 0;  // of the current walk, in a row
+  int error_stays_ = 0, failures_ = 0;  // of the current walk, in a row
 };
 
 }  // namespace harness

@@ -14,9 +14,6 @@
 namespace harness {
 namespace {
 
-// A run that has stepped for this many times the best one's time cannot be the best; its time has
-// risen. While errors are too large yet, slower ones count too.
-constexpr double hopeless_factor = 3;
 constexpr double hopeless_least = 0.2;  // s; shorter runs are always finished
 // Steps whose one time is within this factor of the best are repeated before one is called best.
 constexpr double candidate_factor = 1.2;
@@ -159,17 +156,15 @@ class LadderRun {
       return sweep_.points[known->second];
     PointSpec spec = search_.base;
     spec.step = search_.ladder[rung];
-    const double factor =
-        steps_.wants_less_error() ? StepSearch::most_times_slower : hopeless_factor;
+    const double useful = steps_.longest_useful() * spec.scene_parameters.at("duration");
     const double hopeless =
-        search_.every_step ? 1e300 : std::max(hopeless_least, factor * best_run_);
+        search_.every_step || std::isinf(useful) ? 1e300 : std::max(hopeless_least, useful);
     PointResult point = sweep_.runners.run(
         spec,
         {sweep_.suite.timeout, hopeless, sweep_.events.interrupted, sweep_.runners.references},
         neighbour_.guess_of_stiffness(spec));
     if (point.stiffness)
       neighbour_.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
-    if (point.ok()) best_run_ = std::min(best_run_, point.median_run());
     point_of_rung_[rung] = sweep_.points.size();
     return sweep_.add(std::move(point), number_);
   }
@@ -187,7 +182,6 @@ class LadderRun {
   const Search& search_;
   Neighbour& neighbour_;
   StepSearch steps_;
-  double best_run_ = 1e300;  // s
   std::map<std::size_t, std::size_t> point_of_rung_;
 };
 

@@ -141,7 +141,7 @@ TEST(Plane, IsPrintedAndWrittenAsItIs) {
   EXPECT_EQ(cell.at("paper_best"), "shake");
   EXPECT_EQ(cell.at("clear"), true);
   EXPECT_NEAR(cell.at("lead_over_paper_best").at("value").get<double>(), 2, 1e-12);
-  EXPECT_EQ(cell.at("answers").size(), 2u);
+  EXPECT_EQ(cell.at("entries").size(), 2u);
 }
 
 }  // namespace
