@@ -249,7 +249,7 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
     return interrupted_exit;
   }
   journal.remove();
-  if (!options.no_plots && !options.untimed && draw({out}) != 0)
+  if (!options.no_plots && !options.untimed && draw_result(out) != 0)
     std::cerr << "bench: the figures could not be drawn\n";
   return success;
 }
