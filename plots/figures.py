@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Draws the figures of a result file: cost over permissible strain and over resolution, each solver at its best step, and
-for step sweeps time against error, error over step, and the residual that a solver leaves; for a stability sweep the matrix
+"""Draws the figures of a result file: cost over permissible strain and over resolution, each solver at its best step; who is
+fastest within a strain limit and an error; and for step sweeps time against error, error over step, and the residual that a solver leaves; for a stability sweep the matrix
 of hard cases; for known answers the deviations from them.
 
     plots/figures.py results/figure4.json [--out DIR] [--format svg,png]
@@ -28,7 +28,7 @@ except ImportError:
 
 from parts.legend import legend_of
 from parts.program import exit_code
-from parts.result_file import Json, ResultError, load
+from parts.result_file import Json, ResultError, load, load_analysis
 from parts.sheet import save
 from parts.style import RC
 
@@ -36,6 +36,7 @@ from parts.style import RC
 FIGURES = [import_module(f"drawings.{name}") for name in (
     "cost_over_strain",      # Figures 4a and 5a of the paper
     "cost_over_resolution",  # Figures 4b and 5b
+    "plane",                 # who is fastest within a strain limit and an error
     "growth",
     "work_precision",
     "slack",
@@ -71,6 +72,8 @@ def formats(text: str) -> list[str]:
 def parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="figures.py", description="Draws the figures of a result file.")
     parser.add_argument("result", type=Path, help="result file of the bench program (JSON)")
+    parser.add_argument("--analysis", type=Path, metavar="FILE",
+                        help="what `bench show RESULT.json --json` says of it; without it planes are not drawn")
     parser.add_argument("--out", type=Path, help="folder for the figures (default: the result file's folder)")
     parser.add_argument("--format", type=formats, default=list(FORMATS), metavar="svg,png",
                         help="file formats (default: both)")
@@ -79,7 +82,10 @@ def parse(arguments: list[str]) -> argparse.Namespace:
 
 def run(arguments: list[str]) -> None:
     options = parse(arguments)
-    figures = all_figures(load(options.result))
+    document = load(options.result)
+    if options.analysis:
+        document["analysis"] = load_analysis(options.analysis)
+    figures = all_figures(document)
     if not figures:
         raise ResultError(f"{options.result}: no points to draw")
     folder = options.out or options.result.parent

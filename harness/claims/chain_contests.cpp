@@ -1,12 +1,11 @@
-// C1 to C3: implicit springs against fast projection on the chain, each at equal strain and at
-// equal error.
-#include <iterator>
+// C1 to C3: implicit springs against fast projection on the chain.
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "harness/analysis/paper_methods.h"
 #include "harness/claims/contests.h"
-#include "harness/claims/paper_methods.h"
+#include "harness/claims/ways.h"
 
 namespace harness::claims {
 namespace {
@@ -19,35 +18,10 @@ struct Way {
   Curve springs, fast;
 };
 
-Way at_equal_strain(const Points& points, const std::string& sweep, std::string words) {
-  return {std::move(words), points.best("chain", sweep, implicit_springs.name),
-          points.best("chain", sweep, fast_projection.name)};
+Way at_level(const Points& points, const std::string& sweep, const Level& level) {
+  return {level.words, points.best("chain", sweep, implicit_springs.name, level.error),
+          points.best("chain", sweep, fast_projection.name, level.error)};
 }
-
-Way at_equal_errors(const Points& points, std::string words) {
-  return {std::move(words), points.best_at_errors("chain", implicit_springs.name),
-          points.best_at_errors("chain", fast_projection.name)};
-}
-
-// Collects what each way says; the claim's verdict is that of all ways that were measured.
-class Ways {
- public:
-  explicit Ways(ClaimVerdict& claim) : claim_(claim) {}
-
-  void add(const Way& way, const std::string& verdict, const std::string& measured) {
-    claim_.measured += (verdicts_.empty() ? "" : "; ") + way.words + ": " + verdict +
-                       (measured.empty() ? "" : ", " + measured);
-    verdicts_.push_back(verdict);
-    if (verdict == not_measured) return;
-    cite(claim_, way.springs);
-    cite(claim_, way.fast);
-  }
-  ~Ways() { claim_.verdict = verdict_of_all(verdicts_); }
-
- private:
-  ClaimVerdict& claim_;
-  std::vector<std::string> verdicts_;
-};
 
 std::string ratio_at(const Way& way, double x, const std::string& place) {
   const auto springs = at(way.springs, x), fast = at(way.fast, x);
@@ -69,9 +43,10 @@ void judge_slopes(Ways& ways, const Way& way, Answer (*fast_is_better)(const Slo
                   std::string (*place)(double)) {
   const Slope slope = slope_of_ratio(way.springs, way.fast);
   if (slope.points < 3) {
-    ways.add(way, not_measured, "");
+    ways.add(way.words, not_measured, "");
   } else {
-    ways.add(way, verdict_of(fast_is_better(slope, 0)), told(way, slope, place));
+    ways.add(way.words, verdict_of(fast_is_better(slope, 0)), told(way, slope, place),
+             {way.springs, way.fast});
   }
 }
 
@@ -87,46 +62,48 @@ std::string apart(const Point& p) {
 
 void chain_time_over_strain(const Points& points, ClaimVerdict& c) {
   c.rule =
-      "the time of implicit springs over that of fast projection, against the strain limit (each "
-      "at its best step) and against the error (step sweeps: least time within it): reproduced if "
-      "the log-log slope lies below 0 with its whole 95 % interval in both, not reproduced if "
-      "above 0 in both, changed if they differ, undecided if an interval holds 0; a way that was "
-      "not measured does not count";
+      "the time of implicit springs over that of fast projection, against the strain limit, each "
+      "at "
+      "its fastest step whose error is at most 2 % of the chain's length: reproduced if the "
+      "log-log "
+      "slope lies below 0 with its whole 95 % interval, not reproduced if above 0, undecided if it "
+      "holds 0. Beside it the same at any motion, and against the error at any limit (step sweeps: "
+      "least time within it)";
   Ways ways(c);
-  judge_slopes(ways, at_equal_strain(points, "strain", "at equal strain"), below, percent);
-  judge_slopes(ways, at_equal_errors(points, "at equal error"), below, percent);
+  for (const Level& level : claim_levels)
+    judge_slopes(ways, at_level(points, "strain", level), below, percent);
+  judge_slopes(
+      ways,
+      {"over the error at any limit", points.best_at_errors("chain", implicit_springs.name),
+       points.best_at_errors("chain", fast_projection.name)},
+      below, percent);
 }
 
 void chain_time_over_resolution(const Points& points, ClaimVerdict& c) {
   c.rule =
-      "the time of implicit springs over that of fast projection, against vertices, of best steps "
-      "and of the fastest steps within an error (the smallest level that both reach at three sizes "
-      "or more): reproduced if the log-log slope lies above "
-      "0 with its whole 95 % interval in both, not reproduced if below 0 in both, changed if they "
-      "differ, undecided if an interval holds 0; a way that was not measured does not count";
+      "the time of implicit springs over that of fast projection, against vertices, each at its "
+      "fastest step whose error is at most 2 %: reproduced if the log-log slope lies above 0 with "
+      "its whole 95 % interval, not reproduced if below 0, undecided if it holds 0. Beside it the "
+      "same at any motion";
   Ways ways(c);
-  judge_slopes(ways, at_equal_strain(points, "resolution", "at equal strain"), above, vertices);
-  for (auto level = error_levels.rbegin(); level != error_levels.rend(); ++level) {
-    Way way{"at equal error", points.best_at_error("chain", implicit_springs.name, *level),
-            points.best_at_error("chain", fast_projection.name, *level)};
-    const bool enough = slope_of_ratio(way.springs, way.fast).points >= 3;
-    if (!enough && std::next(level) != error_levels.rend()) continue;
-    if (enough) way.words = "at " + percent(*level) + " error";
-    return judge_slopes(ways, way, above, vertices);
-  }
+  for (const Level& level : claim_levels)
+    judge_slopes(ways, at_level(points, "resolution", level), above, vertices);
 }
 
 void chain_speed(const Points& points, ClaimVerdict& c) {
   c.rule =
-      "implicit springs' time over fast projection's at 1 % strain and at 1 % error: reproduced if "
-      "its 95 % interval lies between 12.5 and 50, changed if between 1 and 12.5 or above 50, not "
-      "reproduced if below 1, undecided if it holds one of these bounds; changed too if strain and "
-      "error differ; a way that was not measured does not count";
+      "implicit springs' time over fast projection's at 1 % strain, each at its fastest step whose "
+      "error is at most 2 %: reproduced if its 95 % interval lies between 12.5 and 50, changed if "
+      "between 1 and 12.5 or above 50, not reproduced if below 1, undecided if it holds one of "
+      "these bounds. Beside it the same at any motion";
   Ways ways(c);
-  const auto judge = [&](const Way& way) {
+  for (const Level& level : claim_levels) {
+    const Way way = at_level(points, "strain", level);
     const auto springs = at(way.springs, one_percent), fast = at(way.fast, one_percent);
-    if (!springs || !fast || springs->number("vertices") != paper_chain)
-      return ways.add(way, not_measured, "");
+    if (!springs || !fast || springs->number("vertices") != paper_chain) {
+      ways.add(way.words, not_measured, "");
+      continue;
+    }
     const Ratio slower = ratio(*springs, *fast);
     const auto inside = [&](double low, double high) {
       return slower.above(low) && slower.below(high);
@@ -135,13 +112,12 @@ void chain_speed(const Points& points, ClaimVerdict& c) {
                                 : inside(1, 12.5) || slower.above(50) ? changed
                                 : slower.below(1)                     ? not_reproduced
                                                                       : undecided;
-    ways.add({way.words, {{one_percent, *springs}}, {{one_percent, *fast}}}, verdict,
+    ways.add(way.words, verdict,
              "ratio " + text(slower) + ": implicit springs " + apart(*springs) +
-                 ", fast projection " + apart(*fast));
-  };
-  judge(at_equal_strain(points, "strain", "at 1 % strain"));
-  judge(at_equal_errors(points, "at 1 % error"));
-  c.measured += "; the search for a stiffness is not charged";
+                 ", fast projection " + apart(*fast) +
+                 " (the search for a stiffness is not charged)",
+             {{{one_percent, *springs}}, {{one_percent, *fast}}});
+  }
 }
 
 }  // namespace harness::claims

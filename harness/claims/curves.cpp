@@ -4,106 +4,11 @@
 #include <iterator>
 #include <set>
 
-#include "harness/points/point.h"
+#include "harness/analysis/plane.h"
 
 namespace harness::claims {
 
 using nlohmann::json;
-
-double Point::filter_seconds() const {
-  const auto given = p_->find("filter_seconds_per_simulated_second");
-  return timed() && given != p_->end() && given->is_object() ? figure(*given, "median")
-                                                             : std::nan("");
-}
-
-std::vector<double> Point::samples() const {
-  if (!timed()) return {};
-  const json& seconds = p_->at("seconds_per_simulated_second");
-  if (const auto samples = seconds.find("samples"); samples != seconds.end())
-    return samples->get<std::vector<double>>();
-  return {seconds.at("median").get<double>()};
-}
-
-double Point::delivered_strain() const {
-  for (const char* key : {"delivered_max_strain", "max_strain_after_collision", "max_strain"}) {
-    if (const double strain = number(key); std::isfinite(strain)) return strain;
-  }
-  return std::nan("");
-}
-
-bool Point::within_error(double level) const {
-  Measures measures;
-  measures.trajectory = error("trajectory");
-  measures.gap = error("gap");
-  const auto or_unknown = [](const json& value) {
-    return value.is_number() ? value.get<double>() : unknown;
-  };
-  const auto series = p_->at("error").find("error_series");
-  if (series != p_->at("error").end()) {
-    for (const auto& sample : *series)  // time, error, largest, gap, its largest
-      measures.error_series.push_back({or_unknown(sample.at(0)), or_unknown(sample.at(1)), unknown,
-                                       or_unknown(sample.at(3)), unknown});
-  }
-  return trajectory_within(measures, level) <= level;
-}
-
-namespace {
-
-Ratio times(Ratio ratio, double factor) {
-  return {ratio.value * factor, ratio.low * factor, ratio.high * factor};
-}
-
-}  // namespace
-
-Ratio ratio(const Point& a, const Point& b) {
-  return ratio_of_medians(a.samples(), b.samples(), std::fmax(a.noise(), b.noise()));
-}
-
-Ratio ratio_of_steps(const Point& a, const Point& b) {
-  return times(ratio(a, b), a.number("step") / b.number("step"));
-}
-
-Cast::Cast(const json& document) {
-  const json legend = document.value("legend", json::object());
-  for (const char* list : {"contestants", "solvers"}) {
-    for (const json& entry : legend.value(list, json::array())) {
-      const std::string name = entry.at("name");
-      known_.try_emplace(name, Role{.name = name,
-                                    .family = entry.value("family", name),
-                                    .solver = entry.value("solver", name),
-                                    .competes = entry.value("contestant", true),
-                                    .hollow = entry.value("hollow", false)});
-    }
-  }
-  const json noise = document.value("context", json::object()).value("noise", json());
-  if (noise.is_object() && noise.contains("pair")) {
-    const json& pair = noise.at("pair");
-    const std::string second = pair.is_array() ? pair.at(1) : pair;
-    known_.try_emplace(second, Role{.name = second, .family = second, .solver = second});
-    known_.at(second).again = true;
-  }
-}
-
-Role Cast::of(const std::string& contestant) const {
-  const auto place = known_.find(contestant);
-  return place != known_.end()
-             ? place->second
-             : Role{.name = contestant, .family = contestant, .solver = contestant};
-}
-
-std::string Cast::at_any_settings(const std::string& contestant) const {
-  const Role role = of(contestant);
-  return role.hollow && !role.again ? role.solver : contestant;
-}
-
-void Cast::add(const Cast& other) { known_.insert(other.known_.begin(), other.known_.end()); }
-
-double pair_noise_of(const json& document) {
-  const json noise = document.value("context", json::object()).value("noise", json());
-  return noise.is_object() && noise.contains("q95") && noise.at("q95").is_number()
-             ? noise.at("q95").get<double>()
-             : std::nan("");
-}
 
 Points::Points(const std::vector<json>& results) {
   std::set<std::tuple<std::string, std::string, std::string>> seen;  // id, contestant, sweep
@@ -156,14 +61,17 @@ void keep_faster(Curve& curve, double x, const Point& point) {
 }  // namespace
 
 Curve Points::best(const std::string& scene, const std::string& sweep,
-                   const std::string& contestant) const {
+                   const std::string& contestant, double level) const {
   const char* axis = sweep == "strain" ? "strain_limit" : "vertices";
+  std::map<std::pair<double, std::string>, std::vector<const Point*>> places;
+  for (const Point& p : all_) {
+    if (of(p, scene, sweep) && cast_.at_any_settings(p.contestant()) == contestant)
+      places[{p.number(axis), p.contestant()}].push_back(&p);
+  }
   Curve curve;
-  for (const Point& p : where([&](const Point& q) {
-         return of(q, scene, sweep) && cast_.at_any_settings(q.contestant()) == contestant &&
-                q.flag("best") && q.ok() && q.timed();
-       }))
-    keep_faster(curve, p.number(axis), p);
+  for (const auto& [place, points] : places) {
+    if (const Point* answer = fastest_of(points, level)) keep_faster(curve, place.first, *answer);
+  }
   return curve;
 }
 
@@ -177,17 +85,6 @@ Curve Points::best_at_errors(const std::string& scene, const std::string& contes
       if (p.within_error(level)) keep_faster(curve, level, p);
     }
   }
-  return curve;
-}
-
-Curve Points::best_at_error(const std::string& scene, const std::string& contestant,
-                            double level) const {
-  Curve curve;
-  for (const Point& p : where([&](const Point& q) {
-         return of(q, scene, "resolution") && cast_.at_any_settings(q.contestant()) == contestant &&
-                q.ok() && q.timed() && q.within_error(level);
-       }))
-    keep_faster(curve, p.number("vertices"), p);
   return curve;
 }
 

@@ -11,92 +11,13 @@
 #include <string>
 #include <vector>
 
+#include "harness/analysis/measured_point.h"
 #include "harness/claims/claims.h"
 #include "harness/claims/verdicts.h"
 
 namespace harness::claims {
 
-// A point of a result file, as far as claims need it; numbers that it lacks are not-a-number. The
-// document must outlive it.
-class Point {
- public:
-  // noise: of the file's A/A pair, see ratio_of_medians.
-  explicit Point(const nlohmann::json& document, double noise = std::nan(""))
-      : p_(&document), noise_(noise) {}
-
-  std::string id() const { return p_->at("id"); }
-  std::string text(const char* key) const { return p_->at(key); }
-  // Who competes: a solver with its settings. Older files have solvers only.
-  std::string contestant() const { return p_->value("contestant", text("solver")); }
-  bool is(const char* key, const std::string& value) const { return p_->at(key) == value; }
-  bool flag(const char* key) const { return p_->value(key, false); }
-  bool ok() const { return is("status", "ok"); }
-  bool timed() const { return !p_->at("seconds_per_simulated_second").is_null(); }
-  double number(const char* key) const { return figure(*p_, key); }
-  double work(const char* key) const { return figure(p_->at("work"), key); }
-  double error(const char* key) const { return figure(p_->at("error"), key); }
-  double option(const char* key) const { return figure(p_->at("options"), key); }
-  double scene_parameter(const char* key) const { return figure(p_->at("scene_parameters"), key); }
-  bool solves_by(const std::string& linear_solver) const {
-    return p_->at("options").value("linear_solver", "") == linear_solver;
-  }
-  const nlohmann::json& document() const { return *p_; }
-
-  double seconds() const {  // not-a-number where nothing was timed
-    return timed() ? p_->at("seconds_per_simulated_second").at("median").get<double>()
-                   : std::nan("");
-  }
-  // Of the inextensibility filter alone; not-a-number in older files.
-  double filter_seconds() const;
-  std::vector<double> samples() const;
-  double noise() const { return noise_; }
-  double steps() const { return number("duration") / number("step"); }
-  // The largest strain after the collision filter, which is what a user gets.
-  double delivered_strain() const;
-  // Whether its distance to the reference is known to be within a level: of the samples at which
-  // the reference is sure enough for that level.
-  bool within_error(double level) const;
-
- private:
-  static double figure(const nlohmann::json& object, const char* key) {
-    const auto place = object.find(key);
-    return place == object.end() || !place->is_number() ? std::nan("") : place->get<double>();
-  }
-  const nlohmann::json* p_;
-  double noise_;
-};
-
-// Of a's time over b's.
-Ratio ratio(const Point& a, const Point& b);
-// Of the time of a step.
-Ratio ratio_of_steps(const Point& a, const Point& b);
-
-// What a file says of who competes in it.
-struct Role {
-  std::string name, family;
-  std::string solver;  // that it is, with settings of its own
-  bool competes = true;
-  bool hollow = false;  // shown beside its tuned self, not ranked
-  bool again = false;   // the second of an A/A pair
-  bool ranked() const { return competes && !hollow && !again; }
-};
-
-// Of one file's legend and noise; contestants that it does not name are their own family.
-class Cast {
- public:
-  Cast() = default;
-  explicit Cast(const nlohmann::json& document);
-  Role of(const std::string& contestant) const;
-  // Whose row a contestant's points stand in where any settings may be chosen: a hollow one's in
-  // its solver's, but for the second of an A/A pair, which would give the first a second chance.
-  std::string at_any_settings(const std::string& contestant) const;
-  void add(const Cast& other);  // what is known already stays
-
- private:
-  std::map<std::string, Role> known_;
-};
-
-double pair_noise_of(const nlohmann::json& document);  // not-a-number: it has no A/A pair
+using namespace analysis;  // claims speak of what was analysed
 
 using Filter = std::function<bool(const Point&)>;
 using Curve = std::map<double, Point>;  // by the value on the axis: a strain limit or vertices
@@ -118,16 +39,15 @@ class Points {
   const std::vector<const nlohmann::json*>& freedom() const { return freedom_; }
   const std::vector<const nlohmann::json*>& same_frame() const { return same_frame_; }
 
-  // Over the axis of a sweep ("strain" or "resolution"): one contestant's best points, with tuned
-  // or untuned settings. One tuned setting serves all places of a scene; where the method's own
-  // default is faster, that counts, so that tuning harms nobody.
-  Curve best(const std::string& scene, const std::string& sweep,
-             const std::string& contestant) const;
+  // Over the axis of a sweep ("strain" or "resolution"): what one contestant answers within a level
+  // of error (analysis/plane.h), with tuned or untuned settings. One tuned setting serves all
+  // places of a scene; where the method's own default is faster, that counts, so that tuning harms
+  // nobody.
+  Curve best(const std::string& scene, const std::string& sweep, const std::string& contestant,
+             double level = any_motion) const;
   // Over error levels: the fastest point within each, at any step and limit, with tuned or untuned
   // settings, of the largest size in step sweeps.
   Curve best_at_errors(const std::string& scene, const std::string& contestant) const;
-  // Over vertices: the fastest point of the resolution sweep's within one level.
-  Curve best_at_error(const std::string& scene, const std::string& contestant, double level) const;
 
   Role about(const std::string& contestant) const { return cast_.of(contestant); }
   // Those with points in a sweep of a scene that are ranked, in the files' order.

@@ -70,6 +70,7 @@ class PlaceTable {
 PlaceTable best_over_limits(const ScenePoints& scene, const char* name);
 
 // ---- families of tables ----
+void print_planes(std::ostream& out, const NamedResult& result);
 // sweep: "strain" or "resolution".
 void print_best_points(std::ostream& out, const NamedResult& result, const std::string& sweep);
 // Beside a ranking of best points: strains, time of the filter, energy, failures, what tuning did.

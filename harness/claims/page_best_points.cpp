@@ -1,7 +1,8 @@
 // Time over permitted strain and over resolution: each contestant at its best step.
+#include "harness/analysis/paper_methods.h"
+#include "harness/analysis/plane.h"
 #include "harness/base/text.h"
 #include "harness/claims/page.h"
-#include "harness/claims/paper_methods.h"
 
 namespace harness::claims {
 namespace {
@@ -18,11 +19,14 @@ void print_best_points(std::ostream& out, const NamedResult& result, const std::
   const bool strain = sweep == "strain";
   for (const ScenePoints& scene : scenes_of(result.document, sweep, strain)) {
     PlaceTable best(scene.ranked()), own(scene.contestants());
-    for (const Point& p : scene.points) {
-      if (!p.flag("best") || !p.ok()) continue;
-      const double at = p.number(strain ? "strain_limit" : "vertices");
-      own.add(at, p);
-      best.add(at, p, scene.cast.at_any_settings(p.contestant()));
+    std::map<std::pair<double, std::string>, std::vector<const Point*>> places;
+    for (const Point& p : scene.points)
+      places[{p.number(strain ? "strain_limit" : "vertices"), p.contestant()}].push_back(&p);
+    for (const auto& [place, points] : places) {
+      const Point* answer = fastest_of(points, any_motion);
+      if (!answer) continue;
+      own.add(place.first, *answer);
+      best.add(place.first, *answer, scene.cast.at_any_settings(answer->contestant()));
     }
     if (best.empty()) continue;
     if (strain) own.loose_to_tight();
@@ -51,10 +55,13 @@ void print_best_points(std::ostream& out, const NamedResult& result, const std::
           if (!fast) return std::string("-");
           return p.contestant() == fast->contestant() ? std::string("1") : text(ratio(p, *fast));
         });
-    out << "The steps these are:\n\n";
+    out << "The steps these are, and the errors of these motions:\n\n";
     best.print(
-        out, [&](double at) { return place(at) + ", step in s"; },
-        [](const Point& p, double) { return step_words(p); });
+        out, [&](double at) { return place(at) + ", step in s, error"; },
+        [](const Point& p, double) {
+          const double error = p.error_at(headline_error).distance;
+          return step_words(p) + ", " + (std::isfinite(error) ? percent(error) : "-");
+        });
     print_beside(out, scene, best, own, place);
   }
 }

@@ -15,7 +15,9 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
   for (const NamedResult& result : growth) check_timed(result.document);
   out << "## The paper's claims\n\n`bench claims` on the same files gives each rule.\n\n";
   print_claims_markdown(out, judge_claims(documents));
-  out << "\n## Time over permitted strain\n\n";
+  out << "\n## Who is fastest, by strain and error\n\n";
+  for (const NamedResult& result : results) claims::print_planes(out, result);
+  out << "## Time over permitted strain, any motion\n\n";
   for (const NamedResult& result : results) claims::print_best_points(out, result, "strain");
   out << "## Time over delivered strain\n\n";
   for (const NamedResult& result : results) claims::print_delivered(out, result);

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "harness/claims/paper_methods.h"
+#include "harness/analysis/paper_methods.h"
 
 namespace harness::claims {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "harness/claims/paper_methods.h"
+#include "harness/analysis/paper_methods.h"
 
 namespace harness::claims {
 

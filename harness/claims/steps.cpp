@@ -4,8 +4,9 @@
 #include <map>
 #include <string>
 
+#include "harness/analysis/paper_methods.h"
 #include "harness/base/text.h"
-#include "harness/claims/paper_methods.h"
+#include "harness/claims/ways.h"
 
 namespace harness::claims {
 
@@ -51,13 +52,13 @@ struct Steps {
   }
 };
 
-Steps steps_of(const Points& points, const Point& best) {
+Steps steps_of(const Points& points, const Point& best, double level) {
   Steps steps{best.number("step"), best.number("step")};
   for (const Point& p : points.where([&](const Point& q) {
          return q.ok() && q.timed() && q.contestant() == best.contestant() &&
                 q.is("scene", best.text("scene")) && q.is("sweep", best.text("sweep")) &&
                 q.number("vertices") == best.number("vertices") &&
-                q.number("strain_limit") == best.number("strain_limit");
+                q.number("strain_limit") == best.number("strain_limit") && q.within_error(level);
        })) {
     if (p.id() != best.id() && above(ratio(p, best), 1) == Answer::yes) continue;
     steps.smallest = std::min(steps.smallest, p.number("step"));
@@ -77,41 +78,51 @@ std::string verdict_of_counts(int yes, int no, int all) {
   return no > 0 && 2 * yes > all ? changed : undecided;
 }
 
+void judge_steps(const Points& points, const Level& level, Ways& ways) {
+  int yes = 0, no = 0, all = 0;
+  std::string example;
+  std::vector<Curve> evidence;
+  for (const char* scene : {"chain", "drape"}) {
+    const auto icd_curve = points.best(scene, "strain", icd.name, level.error);
+    Curve compared, compared_icd;
+    for (const auto& [limit, p] : points.best(scene, "strain", shake.name, level.error)) {
+      const auto other = at(icd_curve, limit);
+      if (!other || std::isnan(p.error("energy_gain")) || std::isnan(other->error("energy_gain")))
+        continue;
+      const Steps steps = steps_of(points, p, level.error),
+                  icd_steps = steps_of(points, *other, level.error);
+      const Ratio costlier = ratio_of_steps(*other, p);
+      const Answer so = all_of({smaller(steps, icd_steps), above(costlier, 1)});
+      ++all;
+      yes += so == Answer::yes ? 1 : 0;
+      no += so == Answer::no ? 1 : 0;
+      compared.try_emplace(limit, p);
+      compared_icd.try_emplace(limit, *other);
+      if (std::abs(limit - 0.01) < 1e-9)
+        example += std::string(", ") + scene + " at 1 %: SHAKE " + steps.words(p.number("step")) +
+                   ", ICD " + icd_steps.words(other->number("step")) + ", whose step takes " +
+                   text(costlier) + " times as long";
+    }
+    evidence.insert(evidence.end(), {compared, compared_icd});
+  }
+  if (all == 0) return ways.add(level.words, not_measured, "");
+  ways.add(level.words, verdict_of_counts(yes, no, all),
+           "so at " + std::to_string(yes) + " of " + std::to_string(all) + " limits, not so at " +
+               std::to_string(no) + example,
+           evidence);
+}
+
 }  // namespace
 
 void shake_small_steps(const Points& points, ClaimVerdict& c) {
   c.rule =
-      "best points of the strain sweeps, of runs that hold their energy: reproduced if at every "
+      "the fastest steps of the strain sweeps whose error is at most 2 %: reproduced if at every "
       "limit SHAKE's step is smaller than ICD's (all steps that the 95 % interval of their time "
-      "cannot tell from the best counted in) and a step takes less time (interval of the ratio "
+      "cannot tell from the fastest counted in) and a step takes less time (interval of the ratio "
       "below 1); changed if at most limits, not reproduced if not at half of them, undecided if "
-      "intervals leave it open";
-  int yes = 0, no = 0, all = 0;
-  std::string example;
-  for (const char* scene : {"chain", "drape"}) {
-    const auto icd_curve = points.best(scene, "strain", icd.name);
-    for (const auto& [limit, p] : points.best(scene, "strain", shake.name)) {
-      const auto other = at(icd_curve, limit);
-      if (!other || std::isnan(p.error("energy_gain")) || std::isnan(other->error("energy_gain")))
-        continue;
-      const Steps steps = steps_of(points, p), icd_steps = steps_of(points, *other);
-      const Ratio dearer = ratio_of_steps(*other, p);
-      const Answer so = all_of({smaller(steps, icd_steps), above(dearer, 1)});
-      ++all;
-      yes += so == Answer::yes ? 1 : 0;
-      no += so == Answer::no ? 1 : 0;
-      c.points.push_back(p.id());
-      c.points.push_back(other->id());
-      if (std::abs(limit - 0.01) < 1e-9)
-        example += std::string("; ") + scene + " at 1 %: SHAKE " + steps.words(p.number("step")) +
-                   ", ICD " + icd_steps.words(other->number("step")) + ", whose step takes " +
-                   text(dearer) + " times as long";
-    }
-  }
-  if (all == 0) return;
-  c.measured = "so at " + std::to_string(yes) + " of " + std::to_string(all) +
-               " limits, not so at " + std::to_string(no) + example;
-  c.verdict = verdict_of_counts(yes, no, all);
+      "intervals leave it open. Beside it the same at any motion";
+  Ways ways(c);
+  for (const Level& level : claim_levels) judge_steps(points, level, ways);
 }
 
 }  // namespace harness::claims

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 
 #include "harness/base/text.h"
 
@@ -53,29 +51,9 @@ std::string verdict_of_all(const std::vector<std::string>& verdicts) {
 
 std::string text(double value, int digits) { return number_text(value, digits); }
 
-std::string percent(double fraction) { return text(100 * fraction) + " %"; }
-
 std::string text(const Slope& slope) {
   return text(slope.value, 2) +
          (std::isfinite(slope.half_width) ? " ± " + text(slope.half_width, 1) : "");
-}
-
-std::string text(const Ratio& ratio) {
-  if (std::isnan(ratio.value)) return "?";
-  if (!ratio.known() || !(ratio.value > 0))
-    return text(ratio.value, ratio.value >= 100 ? 3 : 2) + " (?)";
-  // As many decimals as show the interval's width and two digits of each number, but no more than
-  // four digits of the value.
-  const auto order = [](double x) { return static_cast<int>(std::floor(std::log10(x))); };
-  const int most = std::max(0, 3 - order(ratio.value));
-  const int width = ratio.high > ratio.low ? -order(ratio.high - ratio.low) : most;
-  const int wanted = std::max(width, 1 - order(ratio.low));
-  const auto fixed = [decimals = std::clamp(wanted, 0, most)](double x) {
-    std::ostringstream out;
-    out << std::fixed << std::setprecision(decimals) << x;
-    return out.str();
-  };
-  return fixed(ratio.value) + " (" + fixed(ratio.low) + "-" + fixed(ratio.high) + ")";
 }
 
 }  // namespace harness::claims

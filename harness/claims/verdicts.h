@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/analysis/words.h"
 #include "harness/base/fit.h"
 #include "harness/base/statistics.h"
 
@@ -31,9 +32,8 @@ std::string verdict_of(Answer one, Answer other);
 std::string verdict_of_all(const std::vector<std::string>& verdicts);
 
 std::string text(double value, int digits = 3);
-std::string percent(double fraction);  // "1.2 %"
 std::string text(const Slope& slope);  // "-0.5 ± 0.1", with its 95 % interval
-// "3.5 (3.3-3.8)" with its 95 % interval; "3.5 (?)": it is not known.
-std::string text(const Ratio& ratio);
+using analysis::percent;
+using analysis::text;  // of a ratio
 
 }  // namespace harness::claims

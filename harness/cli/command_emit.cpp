@@ -34,9 +34,10 @@ void check_sweep(const Suite& suite, const EmitCommand& given) {
                      std::to_string(most) +
                      " scenes and sizes to share out, each of which stays in one shard");
   ReferenceShelf shelf(source_path("results/references"));
-  if (suite.max_error > 0 && !without_reference(searches, shelf).empty())
+  if (given.finest_error > 0 && !without_reference(searches, shelf).empty())
     throw UsageError(
-        "--max-error needs references, some are missing (bench reference, with the same scene and "
+        "--finest-error needs references, some are missing (bench reference, with the same scene "
+        "and "
         "profile, makes them)");
   if (std::filesystem::is_directory(given.job.result))
     throw UsageError("--out '" + given.job.result + "' is a folder, must be the result's name");

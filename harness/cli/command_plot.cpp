@@ -12,9 +12,9 @@ void add_plot_command(const Command& program) {
   command.option("result", given->file, "result file", "RESULT.json").required();
   command.option("--out", given->out, "folder for the figures; default: beside the result", "DIR");
   command.does([given] {
-    std::vector<std::string> arguments{given->file};
-    if (!given->out.empty()) arguments.insert(arguments.end(), {"--out", given->out});
-    return draw(arguments);
+    std::vector<std::string> arguments;
+    if (!given->out.empty()) arguments = {"--out", given->out};
+    return draw_result(given->file, arguments);
   });
 }
 

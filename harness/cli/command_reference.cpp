@@ -10,6 +10,7 @@
 #include "harness/cli/sweep_options.h"
 #include "harness/judge/reference_file.h"
 #include "harness/judge/reference_routes.h"
+#include "harness/points/context.h"
 
 namespace harness {
 namespace {
@@ -21,9 +22,13 @@ void print_reference(std::ostream& out, const Reference& reference) {
       << reference.valid_until << " s";
   if (reference.energy_drift > 0)
     out << ", energy drift " << number_text(reference.energy_drift, 2) << " of weight times size";
-  out << "\n  gap (RMS distance of both routes over the scene's size), end vertex:\n";
+  out << "\n  gap (over the scene's size, root mean square), what it is the largest of, end "
+         "vertex:\n";
   for (std::size_t i = 0; i < reference.times.size(); ++i) {
     out << "  t = " << reference.times[i] << " s  " << number_text(reference.gap[i], 2);
+    for (const auto& [name, part] : reference.gap_parts) {
+      if (i < part.size()) out << "  " << name << ' ' << number_text(part[i], 2);
+    }
     if (i < reference.positions.size()) {
       const auto end = reference.positions[i].col(reference.positions[i].cols() - 1);
       out << "  (" << std::setprecision(12) << end.x() << ", " << end.y() << ", " << end.z() << ')'
@@ -33,7 +38,8 @@ void print_reference(std::ostream& out, const Reference& reference) {
   }
 }
 
-// Computes the references of a profile's sweeps that are missing, or all of them.
+// Computes the references of a profile's sweeps that are missing, or all of them. One that was
+// stopped goes on after the runs that were done.
 int make_references(const SweepOptions& options, bool again, double finest) {
   Suite suite = read_suite(suite_path(options));
   std::erase_if(suite.sweeps, [&](const SweepSpec& s) {
@@ -45,15 +51,30 @@ int make_references(const SweepOptions& options, bool again, double finest) {
   const std::string folder = source_path("results/references");
   ReferenceShelf shelf(again ? "" : folder);
   const auto missing = without_reference(searches, shelf);
+  const nlohmann::json build = machine_context().at("fingerprint");
   if (missing.empty()) std::cout << "nothing is missing (--again computes them anew)\n";
   for (const auto& [scene, parameters] : missing) {
     const std::string name = reference_name(scene, parameters);
     const std::string path = folder + "/" + name;
     check_writable(path);
-    const Reference reference = compute_reference(
-        scene, parameters, finest,
-        [&name](const std::string& line) { std::cerr << name << ": " << line << '\n'; });
+    const auto tell = [&name](const std::string& line) {
+      std::cerr << name << ": " << line << '\n';
+    };
+    ReferencePieces pieces(path, {{"schema", "inextensible-reference-pieces/1"},
+                                  {"scene", scene},
+                                  {"scene_parameters", parameters},
+                                  {"finest", finest},
+                                  {"build", build}});
+    if (pieces.dropped()) tell("runs of another build or --finest are dropped");
+    if (pieces.taken_up() > 0)
+      tell("goes on after " + std::to_string(pieces.taken_up()) + " runs that are done");
+    const Reference reference =
+        compute_reference(scene, parameters, finest, tell,
+                          [&pieces](const auto& run, const auto& compute) -> const RouteRun& {
+                            return pieces.run(run, compute);
+                          });
     write_atomically(path, to_json(reference).dump() + "\n");
+    pieces.remove();
     print_reference(std::cout, reference);
     std::cout << path << std::endl;
   }

@@ -3,12 +3,15 @@
 #include <iostream>
 #include <map>
 
+#include "harness/analysis/plane_json.h"
+#include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/cli/commands.h"
 #include "harness/points/noise.h"
 #include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
 #include "harness/points/suite.h"
+#include "harness/run/plane_table.h"
 #include "harness/run/report.h"
 
 namespace harness {
@@ -48,19 +51,35 @@ int show(const std::string& file) {
   std::vector<PointResult> points;
   for (const json& point : document.at("points")) points.push_back(point_of(point));
   print_table(std::cout, parse_suite(context.at("suite").dump(), file), points);
+  print_planes(std::cout, document);
   if (const auto pair = noise_of(context))
     std::cout << "\ndifferences below " << number_text(100 * std::expm1(pair->q95), 2)
               << " % are noise, by " << pair->one << " against itself\n";
   return success;
 }
 
+// The analysis of the sweep's points, for programs.
+int show_json(const std::string& file) {
+  const json document = read_result(file);
+  if (document.at("schema") != "inextensible-bench/1")
+    throw UsageError("'" + file + "' is the result of a stability sweep; --json is for sweeps");
+  std::cout << analysis::analysis_of(document).dump(1) << '\n';
+  return success;
+}
+
 }  // namespace
 
 void add_show_command(const Command& program) {
-  const auto file = std::make_shared<std::string>();
+  struct Given {
+    std::string file;
+    bool as_json = false;
+  };
+  const auto given = std::make_shared<Given>();
   const Command command = program.subcommand("show", "the tables of a result file");
-  command.option("result", *file, "result file", "RESULT.json").required();
-  command.does([file] { return show(*file); });
+  command.option("result", given->file, "result file", "RESULT.json").required();
+  command.flag("--json", given->as_json,
+               "who is fastest within each strain limit and error, for programs");
+  command.does([given] { return given->as_json ? show_json(given->file) : show(given->file); });
 }
 
 }  // namespace harness

@@ -23,6 +23,7 @@
 #include "harness/run/journal.h"
 #include "harness/run/noise_probe.h"
 #include "harness/run/overhead.h"
+#include "harness/run/plane_table.h"
 #include "harness/run/progress.h"
 #include "harness/run/report.h"
 #include "harness/run/runner.h"
@@ -40,7 +41,7 @@ void dry_run(const Suite& suite, const std::vector<Search>& searches) {
             << ", going by a few steps of " << guess.timed << " contestants and sizes\n";
 }
 
-void tell_missing_references(const Suite& suite, const std::vector<Search>& searches,
+void tell_missing_references(const SweepCommand& options, const std::vector<Search>& searches,
                              ReferenceShelf& shelf) {
   const auto missing = without_reference(searches, shelf);
   if (missing.empty()) return;
@@ -49,8 +50,8 @@ void tell_missing_references(const Suite& suite, const std::vector<Search>& sear
     std::string name = reference_name(scene, parameters);
     names += (names.empty() ? "" : ", ") + name.substr(0, name.rfind(".json"));
   }
-  if (suite.max_error > 0)
-    throw UsageError("--max-error needs references, missing: " + names +
+  if (options.finest_error > 0)
+    throw UsageError("--finest-error needs references, missing: " + names +
                      " (bench reference, with the same scene and profile, makes them)");
   std::cerr << "bench: no reference, so no trajectory error, for " << names
             << " (bench reference makes them)\n";
@@ -198,7 +199,7 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   SweepRunners runners;
   const auto shelf = std::make_shared<ReferenceShelf>(source_path("results/references"));
   runners.references = shelf;
-  tell_missing_references(suite, searches, *shelf);
+  tell_missing_references(options, searches, *shelf);
   catch_interrupts();
   std::optional<TimingLock> lock;
   if (!options.untimed) lock.emplace(!options.no_wait);
@@ -239,6 +240,7 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
                                                   outcome.points, shelf->summaries());
   write_atomically(out, result_text(document));
   print_table(std::cout, suite, outcome.points);
+  print_planes(std::cout, document);
   tell_overhead(context["harness_overhead"]);
   tell_noise(document.at("context"));
   std::cout << "\nwritten:\n" << out << std::endl;
@@ -247,7 +249,7 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
     return interrupted_exit;
   }
   journal.remove();
-  if (!options.no_plots && !options.untimed && draw({out}) != 0)
+  if (!options.no_plots && !options.untimed && draw_result(out) != 0)
     std::cerr << "bench: the figures could not be drawn\n";
   return success;
 }

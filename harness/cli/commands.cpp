@@ -5,13 +5,31 @@
 
 #include <iostream>
 
+#include "harness/analysis/plane_json.h"
+#include "harness/base/files.h"
+#include "harness/base/json_reader.h"
 #include "harness/base/paths.h"
+#include "harness/base/temporary_folder.h"
+#include "harness/points/result_file.h"
 
 namespace harness {
 
 void add_no_wait(const Command& to, bool& no_wait) {
   to.flag("--no-wait", no_wait,
           "another program is taking times on this machine: stop instead of waiting for it");
+}
+
+int draw_result(const std::string& file, const std::vector<std::string>& more) {
+  std::vector<std::string> arguments{file};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const nlohmann::json document = parse_document(read_file(file, "result file"), file);
+  if (!document.is_object() || document.value("schema", nlohmann::json()) != "inextensible-bench/1")
+    return draw(arguments);
+  check_result(document, file);
+  const TemporaryFolder folder("analysis");
+  write_atomically(folder.file("analysis.json"), analysis::analysis_of(document).dump());
+  arguments.insert(arguments.end(), {"--analysis", folder.file("analysis.json")});
+  return draw(arguments);
 }
 
 int draw(const std::vector<std::string>& arguments, const std::string& script) {

@@ -46,5 +46,8 @@ void add_no_wait(const Command& to, bool& no_wait);
 
 // Runs a script of plots/ on result files; its paths go to stdout as they are. Its exit code.
 int draw(const std::vector<std::string>& arguments, const std::string& script = "figures.py");
+// The figures of a result file, with the analysis that they are drawn from. Throws UsageError for a
+// file that is none.
+int draw_result(const std::string& file, const std::vector<std::string>& more = {});
 
 }  // namespace harness

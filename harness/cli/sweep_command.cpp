@@ -84,7 +84,7 @@ void check_options(const SweepCommand& options) {
   only(options.timeout > 0, "--timeout", others);
   only(options.step != "search", "--step", others);
   only(options.finest > 0, "--finest", others);
-  only(options.max_error > 0, "--max-error", others);
+  only(options.finest_error > 0, "--finest-error", others);
   only(options.untimed, "--untimed", others);
   only(options.memory > 0, "--memory", others);
   only(options.rerun_failed, "--rerun-failed", others);

@@ -34,6 +34,15 @@ std::pair<int, int> parse_reps(const std::string& text) {
   return {least, most};
 }
 
+void check_longest_step(const Suite& suite) {
+  for (const SweepSpec& sweep : suite.sweeps) {
+    if (sweep.coarsest > longest_step * (1 + 1e-9))
+      throw UsageError("the ladder of " + sweep.scene + " begins at " +
+                       number_text(sweep.coarsest) +
+                       " s ('steps': 'coarsest'), must be a frame, 1/24 s, at most");
+  }
+}
+
 // For all sweeps a ladder that ends earlier or later.
 void cut_ladders(Suite& suite, double finest) {
   for (SweepSpec& sweep : suite.sweeps) {
@@ -109,8 +118,10 @@ void add_measurement(const Command& to, SweepOptions& options) {
             "HOW");
   to.option("--finest", options.finest, "smallest step of the ladder instead of the suite's", "S")
       .positive();
-  to.option("--max-error", options.max_error,
-            "also find the fastest step within this trajectory error, over the scene's size", "E")
+  to.option("--finest-error", options.finest_error,
+            "the search for best steps goes on for levels of error down to this one, over the "
+            "scene's size, instead of the suite's",
+            "E")
       .positive();
   to.option("--seed", options.seed, "of random orders", "N").not_negative();
   to.flag("--untimed", options.untimed,
@@ -247,6 +258,7 @@ Suite load_suite(const SweepOptions& given) {
                      options.scene);
   if (options.step != "search" && options.step != "adaptive" && options.step != "all")
     throw unknown_name("step", options.step, {"search", "adaptive", "all"});
+  check_longest_step(suite);
   if (options.step == "adaptive") {
     if (options.sweep == "step")
       throw UsageError("--step adaptive does not go with --sweep step, whose steps are fixed");
@@ -260,7 +272,7 @@ Suite load_suite(const SweepOptions& given) {
   if (options.rel_ci > 0) suite.rel_ci = options.rel_ci;
   if (options.finest > 0) cut_ladders(suite, options.finest);
   if (options.timeout > 0) suite.timeout = options.timeout;
-  if (options.max_error > 0) suite.max_error = options.max_error;
+  if (options.finest_error > 0) suite.finest_error = options.finest_error;
   if (options.seed >= 0) suite.seed = static_cast<std::uint64_t>(options.seed);
   // A solver that is no contestant joins when it is asked for by its own name.
   if (const auto* backend = inextensible::find_backend(options.solver);

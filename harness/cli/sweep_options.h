@@ -24,7 +24,7 @@ struct SweepOptions {
   std::string reps;       // "5", or "5..40" with rel_ci
   std::string n, limits;  // numbers between commas, in place of the suite's
   SceneWords scene_words;
-  double timeout = 0, max_error = 0, rel_ci = 0, finest = 0;
+  double timeout = 0, finest_error = 0, rel_ci = 0, finest = 0;
   std::int64_t seed = -1;
   bool untimed = false;  // nobody will read the times: no turn to be waited for
 };
@@ -33,7 +33,7 @@ struct SweepOptions {
 // --config.
 void add_selection(const Command& to, SweepOptions& options);
 
-// --reps, --rel-ci, --timeout, --step, --max-error, --seed and --untimed.
+// --reps, --rel-ci, --timeout, --step, --finest-error, --seed and --untimed.
 void add_measurement(const Command& to, SweepOptions& options);
 
 std::vector<std::string> profiles();

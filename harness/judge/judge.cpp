@@ -72,33 +72,33 @@ void Judge::compare(const State& state) {
 void Judge::compare_positions(const Positions& x) {
   const Reference& reference = *options_.reference;
   const Positions& there = reference.positions[next_];
-  if (reference.converged())
-    running_.error_series.push_back({reference.times[next_], rms_distance(scene_, x, there),
-                                     max_distance(scene_, x, there), reference.gap[next_],
-                                     reference.gap_max[next_]});
+  running_.error_series.push_back({reference.times[next_], rms_distance(scene_, x, there),
+                                   max_distance(scene_, x, there), reference.gap[next_],
+                                   reference.gap_max[next_]});
   moved_squares_ += std::pow(rms_distance(scene_, x, scene_.start.x), 2);
   reference_moved_squares_ += std::pow(rms_distance(scene_, there, scene_.start.x), 2);
 }
 
-// Over the samples whose distance is the run's and not the reference's.
+// A run that ended before the last sample of the set has no error: others have that of all.
+std::string Judge::why_no_error(const ErrorAtLevel& at) const {
+  const Reference& reference = *options_.reference;
+  const int wanted = reference.samples_at(headline_error);
+  const std::string level = number_text(100 * headline_error) + " %";
+  if (wanted == 0) return "the reference is not sure to " + level + " at any sample time";
+  if (at.samples == wanted) return "";
+  return "the run ended after " + std::to_string(at.samples) + " of " + std::to_string(wanted) +
+         " samples at which the reference is sure to " + level;
+}
+
 void Judge::add_errors(Measures& measures) const {
-  double squares = 0, gap_squares = 0, all_squares = 0, all_gap_squares = 0;
-  for (const ErrorSample& at : measures.error_series) {
-    all_squares += at.error * at.error;
-    all_gap_squares += at.gap * at.gap;
-    if (at.worst > sure_gaps * at.worst_gap) raise(measures.trajectory_max, at.worst);
-    if (!(at.error > sure_gaps * at.gap)) continue;
-    squares += at.error * at.error;
-    gap_squares += at.gap * at.gap;
-    ++measures.error_samples;
-    measures.error_until = at.time;
-  }
-  const bool usable = measures.error_samples > 0;
-  const auto count = static_cast<double>(usable ? static_cast<std::size_t>(measures.error_samples)
-                                                : measures.error_series.size());
-  if (count == 0) return;
-  measures.trajectory = std::sqrt((usable ? squares : all_squares) / count);
-  measures.gap = std::sqrt((usable ? gap_squares : all_gap_squares) / count);
+  const ErrorAtLevel at = error_at(measures, headline_error);
+  measures.unknown_because = why_no_error(at);
+  measures.error_samples = at.samples;
+  if (at.samples > 0) measures.error_until = at.until;
+  if (!measures.unknown_because.empty()) return;
+  measures.trajectory = at.distance;
+  measures.trajectory_max = at.largest;
+  measures.gap = at.gap;
 }
 
 double Judge::after(const Positions& filtered, const State& state, double h, bool counts) {
@@ -179,7 +179,10 @@ Measures Judge::measures() const {
     }
     if (!options_.residual_series) measures.residuals.clear();
   }
-  if (!options_.reference) return measures;
+  if (!options_.reference) {
+    measures.unknown_because = "no reference of this scene, size and parameters";
+    return measures;
+  }
   measures.reference = options_.reference->name();
   measures.valid_until = options_.reference->valid_until;
   add_errors(measures);

@@ -43,6 +43,7 @@ class Judge {
   void compare(const inextensible::State& state);
   void compare_positions(const inextensible::Positions& x);
   void add_errors(Measures& measures) const;
+  std::string why_no_error(const ErrorAtLevel& at) const;
   Measures measures() const;
 
   const Scene& scene_;

@@ -80,6 +80,12 @@ std::vector<double> sample_times(double duration) {
 
 std::string Reference::name() const { return exact ? "exact" : reference_name(scene, parameters); }
 
+int Reference::samples_at(double level) const {
+  int count = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) count += sure_gaps * gap[i] <= level ? 1 : 0;
+  return count;
+}
+
 std::shared_ptr<const Reference> exact_reference(const std::string& scene_name,
                                                  const SceneParameters& complete) {
   const auto found_type = find_scene(scene_name);
@@ -107,8 +113,11 @@ std::shared_ptr<const Reference> ReferenceShelf::find(const std::string& scene,
   if (fresh) place->second = exact_reference(scene, complete);
   if (fresh && !place->second) {
     const std::filesystem::path path = std::filesystem::path(folder_) / name;
-    if (std::filesystem::exists(path))
-      place->second = std::make_shared<const Reference>(read_reference(path.string()));
+    if (std::filesystem::exists(path)) {
+      auto stored = std::make_shared<const Reference>(read_reference(path.string()));
+      // A file from before a parameter, or its default, was what it is now is another motion's.
+      if (stored->name() == name) place->second = std::move(stored);
+    }
   }
   return place->second;
 }

@@ -27,19 +27,24 @@ struct Reference {
   std::string method, second_method;
   std::vector<double> times;                       // s, ascending
   std::vector<inextensible::Positions> positions;  // at times up to valid_until, m
-  std::vector<double> gap;      // of both routes, or of two runs of one: the larger
+  // How far the path may be off: the largest of the distance between the routes, of each route from
+  // its own run at half as many steps, and of the first one from itself with starts moved a little.
+  std::vector<double> gap;
   std::vector<double> gap_max;  // the same in the maximum norm
+  // What the gap is the largest of; empty in older files.
+  std::map<std::string, std::vector<double>> gap_parts;
   std::vector<ShapeStatistics> shape, shape_gap;  // at all times; gap: |difference| of both routes
-  double valid_until = 0;     // s: the last sample before the gap exceeds 1 % of the scene's size
-  double energy_drift = 0;    // of the first route, where the scene conserves energy
-  double observed_order = 0;  // of the route that steps, under step halving
+  double valid_until = 0;   // s: the last sample before the gap exceeds 1 % of the scene's size
+  double energy_drift = 0;  // of the first route, where the scene conserves energy
+  // Of the route that steps, under step halving, and what theory expects of smooth motion. They
+  // explain a reference and decide nothing: kinks of contact lower an order and leave paths close.
+  double observed_order = 0;
   double expected_order = 1;
   bool exact = false;  // no route: the scene's motion is known
 
   double duration() const { return times.empty() ? 0 : times.back(); }
-  // Below half the order that theory expects, what is finer is not known to be nearer, and nothing
-  // is an error against it.
-  bool converged() const { return exact || observed_order >= 0.5 * expected_order; }
+  // How many sample times count at a level of error: those at which 3 gap is at most the level.
+  int samples_at(double level) const;
   std::string name() const;  // that of its file; "exact"
 };
 

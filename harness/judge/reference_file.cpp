@@ -88,6 +88,7 @@ json to_json(const Reference& r) {
           {"times", r.times},
           {"gap", r.gap},
           {"gap_max", r.gap_max},
+          {"gap_parts", r.gap_parts},
           {"shape", shape_json(r.shape)},
           {"shape_gap", shape_json(r.shape_gap)},
           {"positions", std::move(positions)}};
@@ -103,7 +104,6 @@ json summary_of(const Reference& r) {
           {"valid_until", r.valid_until},
           {"gap", std::sqrt(squares / valid)},
           {"observed_order", number(r.observed_order)},
-          {"converged", r.converged()},
           {"energy_drift", r.energy_drift}};
 }
 
@@ -126,6 +126,7 @@ Reference read_reference(const std::string& path) {
     r.gap = document.at("gap").get<std::vector<double>>();
     // Older files know one norm: nothing in the other one is sure then.
     r.gap_max = document.value("gap_max", std::vector<double>(r.gap.size(), unknown));
+    r.gap_parts = document.value("gap_parts", r.gap_parts);
     r.shape = shape_of(document.at("shape"));
     r.shape_gap = shape_of(document.at("shape_gap"));
     for (const json& row : document.at("positions")) {

@@ -9,6 +9,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/judge/measures.h"
+#include "harness/judge/route_runs.h"
 #include "harness/points/measures.h"
 #include "harness/scenes/pendulum.h"
 #include "inextensible/registry.h"
@@ -20,18 +21,14 @@ using inextensible::Positions;
 
 namespace {
 
-constexpr double perturbation = 1e-10;  // of a start, over the scene's size
-constexpr double parted = 1e-2;         // gap at which a reference ends, over the scene's size
-constexpr double surely_known = 1e-3;   // gap up to which an order is looked for
+constexpr double perturbation = 1e-10;             // of a start, over the scene's size
+constexpr int moved_starts = 2;                    // how many disturbed starts a route is run from
+constexpr double surely_known = 0.01 / sure_gaps;  // gap up to which an order is looked for
 constexpr double pendulum_tolerance = 1e-13;
 
-// A route that steps. This is the one place that names methods: whom to trust for a scene is the
-// maintainer's judgement, which no property of a row can replace.
-struct Route {
-  std::string solver;
-  double limit;  // of strain
-  int order;     // of the error that Richardson's rule takes away
-};
+// This is the one place that names methods: whom to trust for a scene is the maintainer's
+// judgement, which no property of a row can replace.
+//
 // Of a pendulum, beside its angles.
 Route smooth_route() { return {"rattle", 1e-12, 2}; }
 // Where a collider makes kinks anyway. RATTLE does not survive a J W J^T that is singular at the
@@ -46,74 +43,10 @@ Route contact_route_when_singular() { return {"fast_projection_bdf2", 1e-6, 1}; 
 // forces, the velocity's place in the step and the linear solver.
 Route second_contact_route(const Route& first) { return {"icd", first.limit, 1}; }
 
-using Tell = std::function<void(const std::string&)>;
-using Path = std::vector<Positions>;  // at the sample times
-
-// A backend's path at the sample times, up to where it fails; h divides the sample interval.
-Path follow(const Scene& scene, const inextensible::State& start, const Route& route, double h,
-            const std::vector<double>& times, const Tell& tell) {
-  const std::string& solver = route.solver;
-  const auto stepper = inextensible::make_stepper(solver, scene.problem, {route.limit, 1, {}});
-  const bool half =
-      inextensible::find_backend(solver)->velocities == inextensible::Velocities::half_step;
-  inextensible::State state =
-      half ? inextensible::start_half_step_back(*scene.problem, start, h) : start;
-  const auto per_sample = std::lround(sample_interval / h);
-  Path path;
-  tell(solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ...");
-  for (const double time : times) {
-    for (long i = 0; i < per_sample; ++i) {
-      const auto result = stepper->advance(state, h);
-      if (!result) {
-        tell(solver + ", h = 1/" + number_text(std::round(1 / h)) +
-             " s stopped before t = " + number_text(time) +
-             " s: " + inextensible::to_string(result.status) + ", " + result.detail);
-        return path;
-      }
-    }
-    path.push_back(state.x);
-  }
-  return path;
-}
-
-Path follow_to_the_end(const Scene& scene, const Route& route, double h,
-                       const std::vector<double>& times, const Tell& tell) {
-  Path path = follow(scene, scene.start, route, h, times, tell);
-  if (path.size() < times.size())
-    throw UsageError("no reference: " + route.solver + " with h = " + number_text(h) +
-                     " s fails before t = " + number_text(times[path.size()]) +
-                     " s (a smaller --finest may help)");
-  return path;
-}
-
-// p (finer) beyond itself by Richardson's rule, where the error is of this order.
-Path extrapolated(const Path& coarse, const Path& fine, int order) {
-  Path path;
-  const double factor = 1 / (std::pow(2.0, order) - 1);
-  for (std::size_t i = 0; i < fine.size(); ++i)
-    path.push_back(fine[i] + factor * (fine[i] - coarse[i]));
-  return path;
-}
-
-double mean_distance(const Scene& scene, const Path& a, const Path& b, std::size_t count) {
-  double squares = 0;
-  for (std::size_t i = 0; i < count; ++i) squares += std::pow(rms_distance(scene, a[i], b[i]), 2);
-  return std::sqrt(squares / static_cast<double>(count));
-}
-
-// How far `path` may be off at each sample that both others reach: it is not known better than a
-// second route agrees with it, nor than it agrees with itself from a disturbed start.
-void add_gaps(Reference& r, const Scene& scene, const Path& path, const Path& second,
-              const Path& disturbed) {
-  for (std::size_t i = 0; i < std::min({path.size(), second.size(), disturbed.size()}); ++i) {
-    r.gap.push_back(std::max(rms_distance(scene, path[i], second[i]),
-                             rms_distance(scene, path[i], disturbed[i])));
-    r.gap_max.push_back(std::max(max_distance(scene, path[i], second[i]),
-                                 max_distance(scene, path[i], disturbed[i])));
-  }
-  r.valid_until = 0;
-  for (std::size_t i = 0; i < r.gap.size() && r.gap[i] < parted; ++i) r.valid_until = r.times[i];
-}
+constexpr const char* between_routes = "routes";
+constexpr const char* of_first_step = "half_step";
+constexpr const char* of_second_step = "second_half_step";
+constexpr const char* of_starts = "moved_start";
 
 std::size_t valid_samples(const Reference& r) {
   std::size_t valid = 0;
@@ -134,40 +67,52 @@ Pendulum pendulum_of(const Scene& scene, double disturbance) {
   return Pendulum(std::move(links), std::move(angles));
 }
 
-Path swing(const Scene& scene, double disturbance, const std::vector<double>& times,
-           double* energy_drift) {
-  Pendulum pendulum = pendulum_of(scene, disturbance);
-  const double start = pendulum.energy();
-  const double scale = energy_scale(scene);
-  Path path;
-  for (const double time : times) {
-    pendulum.advance(time, pendulum_tolerance);
-    path.push_back(pendulum.positions());
-    if (energy_drift)
-      *energy_drift = std::max(*energy_drift, std::abs(pendulum.energy() - start) / scale);
-  }
-  return path;
+const RouteRun& swing(const Task& task, double disturbance, double tolerance) {
+  return task.keep("pendulum, start moved by " + number_text(disturbance) + ", tolerance " +
+                       number_text(tolerance),
+                   [&] {
+                     task.tell("pendulum in angles, tolerance " + number_text(tolerance) + " ...");
+                     Pendulum pendulum = pendulum_of(task.scene, disturbance);
+                     const double start = pendulum.energy(), scale = energy_scale(task.scene);
+                     RouteRun run;
+                     for (const double time : task.r.times) {
+                       pendulum.advance(time, tolerance);
+                       run.path.push_back(pendulum.positions());
+                       run.energy_drift =
+                           std::max(run.energy_drift, std::abs(pendulum.energy() - start) / scale);
+                     }
+                     return run;
+                   });
 }
 
-void compute_chain(Reference& r, const Scene& scene, double finest, const Tell& tell) {
-  tell("pendulum in angles, tolerance " + number_text(pendulum_tolerance) + " ...");
-  const Path path = swing(scene, 0, r.times, &r.energy_drift);
-  const Path disturbed = swing(scene, perturbation, r.times, nullptr);
+void compute_chain(const Task& task) {
+  Reference& r = task.r;
+  const RouteRun& swung = swing(task, 0, pendulum_tolerance);
+  const Path& path = swung.path;
+  r.energy_drift = swung.energy_drift;
   const Route route = smooth_route();
-  const Path coarse = follow_to_the_end(scene, route, 4 * finest, r.times, tell);
-  const Path middle = follow_to_the_end(scene, route, 2 * finest, r.times, tell);
-  const Path fine = follow_to_the_end(scene, route, finest, r.times, tell);
+  const Path& coarse = path_to_the_end(task, route, 4 * task.finest);
+  const Path& middle = path_to_the_end(task, route, 2 * task.finest);
+  const Path& fine = path_to_the_end(task, route, task.finest);
   const std::size_t all = r.times.size();
-  r.observed_order = std::log2(mean_distance(scene, coarse, middle, all) /
-                               mean_distance(scene, middle, fine, all));
+  r.observed_order = std::log2(mean_distance(task.scene, coarse, middle, all) /
+                               mean_distance(task.scene, middle, fine, all));
   const Path second = extrapolated(middle, fine, route.order);
+  const Path second_half = extrapolated(coarse, middle, route.order);
   r.method = "N-link pendulum in angles, GSL rk8pd, tolerance " + number_text(pendulum_tolerance);
   r.second_method = route.solver + ", strain limit " + number_text(route.limit) +
-                    ", steps down to " + number_text(finest) +
+                    ", steps down to " + number_text(task.finest) +
                     " s, Richardson extrapolated with order " + std::to_string(route.order);
-  add_gaps(r, scene, path, second, disturbed);
+  // An integrator that chooses its steps has no half of them: its tolerance is ten times as large.
+  std::vector<GapPart> parts{{between_routes, &path, &second},
+                             {of_first_step, &path, &swing(task, 0, 10 * pendulum_tolerance).path},
+                             {of_second_step, &second, &second_half}};
+  for (int k = 0; k < moved_starts; ++k)
+    parts.push_back({of_starts, &path,
+                     &swing(task, (k % 2 == 0 ? 1 : -1) * perturbation, pendulum_tolerance).path});
+  add_gaps(r, task.scene, parts);
   for (std::size_t i = 0; i < all; ++i) {
-    r.shape.push_back(shape_statistics(scene, path[i]));
+    r.shape.push_back(shape_statistics(task.scene, path[i]));
     r.shape_gap.push_back({});
   }
   r.positions = path;
@@ -184,26 +129,24 @@ Route first_contact_route(const Scene& scene, double h) {
   return contact_route_when_singular();
 }
 
-// The order with which the second route comes to the first one as its step is halved, by coarser
-// steps than those that the reference is made of: these are as near as kinks let any two runs come,
-// and differ by chance. Unknown if fewer than two of them are farther away than the gap.
-double order_towards(const Reference& r, const Scene& scene, const Path& fine, const Route& second,
-                     double finest, const Tell& tell) {
+// The order with which the second route comes to the first one as its step is halved, from steps
+// coarse enough to see it: those at which its distance is above the gap. Finer ones are as near as
+// any two runs come, and differ by chance. Unknown if there are fewer than two.
+double order_towards(const Task& task, const Path& fine, const Route& second) {
+  const Reference& r = task.r;
   std::size_t sure = 0;
   double gap_squares = 0;
-  for (; sure < fine.size() && r.gap[sure] < surely_known; ++sure)
+  for (; sure < std::min(fine.size(), r.gap.size()) && r.gap[sure] < surely_known; ++sure)
     gap_squares += r.gap[sure] * r.gap[sure];
   if (sure == 0) return unknown;
   const double gap = std::sqrt(gap_squares / static_cast<double>(sure));
-  const std::vector<double> times(r.times.begin(),
-                                  r.times.begin() + static_cast<std::ptrdiff_t>(sure));
   std::vector<double> halvings, logarithms;
-  for (const int factor : {32, 16, 8, 4}) {
-    const double steps = sample_interval / (factor * finest);
+  for (const int factor : {128, 64, 32, 16, 8, 4}) {
+    const double steps = sample_interval / (factor * task.finest);
     if (std::abs(steps - std::round(steps)) > 1e-6) continue;  // it would miss the samples
-    const Path path = follow(scene, scene.start, second, factor * finest, times, tell);
+    const Path& path = kept_path(task, task.scene.start, 0, second, factor * task.finest, sure);
     if (path.size() < sure) continue;
-    const double distance = mean_distance(scene, path, fine, sure);
+    const double distance = mean_distance(task.scene, path, fine, sure);
     if (!(distance > sure_gaps * gap)) break;
     halvings.push_back(-std::log2(factor));
     logarithms.push_back(-std::log2(distance));
@@ -212,38 +155,28 @@ double order_towards(const Reference& r, const Scene& scene, const Path& fine, c
   return (logarithms.back() - logarithms.front()) / (halvings.back() - halvings.front());
 }
 
-// Where a collider makes kinks neither route is better than first order.
-void compute_contact(Reference& r, const Scene& scene, double finest, const Tell& tell) {
-  inextensible::State moved = scene.start;
+// Starts off the scene's by at most the perturbation, at random; pinned vertices stay.
+std::vector<inextensible::State> starts_beside(const Scene& scene) {
   const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
                                                                  gsl_rng_free);
-  for (Eigen::Index i = 0; i < moved.x.size(); ++i)
-    moved.x.data()[i] += perturbation * scene.size * gsl_ran_flat(random.get(), -1, 1);
-  for (const int vertex : scene.problem->pinned()) moved.x.col(vertex) = scene.start.x.col(vertex);
+  std::vector<inextensible::State> starts(moved_starts, scene.start);
+  for (inextensible::State& moved : starts) {
+    for (Eigen::Index i = 0; i < moved.x.size(); ++i)
+      moved.x.data()[i] += perturbation * scene.size * gsl_ran_flat(random.get(), -1, 1);
+    for (const int vertex : scene.problem->pinned())
+      moved.x.col(vertex) = scene.start.x.col(vertex);
+  }
+  return starts;
+}
 
-  const Route first = first_contact_route(scene, finest);
-  const Route other_route = second_contact_route(first);
-  const Path fine = follow(scene, scene.start, first, finest, r.times, tell);
-  const Path disturbed = follow(scene, moved, first, finest, r.times, tell);
-  const Path second_coarse = follow_to_the_end(scene, other_route, 4 * finest, r.times, tell);
-  const Path second_fine = follow_to_the_end(scene, other_route, 2 * finest, r.times, tell);
-  const Path second = extrapolated(second_coarse, second_fine, other_route.order);
-  add_gaps(r, scene, fine, second, disturbed);
-  r.observed_order = order_towards(r, scene, fine, other_route, finest, tell);
-  r.method = first.solver + ", strain limit " + number_text(first.limit) + ", step " +
-             number_text(finest) + " s";
-  r.second_method = other_route.solver + ", strain limit " + number_text(other_route.limit) +
-                    ", steps " + number_text(4 * finest) + " and " + number_text(2 * finest) +
-                    " s, Richardson extrapolated with order " + std::to_string(other_route.order);
-  if (fine.size() < r.times.size())
-    r.method +=
-        ", until it fails after t = " + number_text(fine.empty() ? 0.0 : r.times[fine.size() - 1]) +
-        " s; shape statistics from there on by " + other_route.solver + " alone";
+// After the gap's samples, where a route has ended, shapes are the second route's alone.
+void add_shapes(Reference& r, const Scene& scene, const Path& fine, const Path& second,
+                const Path& second_fine, const Path& second_coarse) {
   for (std::size_t i = 0; i < r.times.size(); ++i) {
     const bool both = i < fine.size();
     const Positions& one = both ? fine[i] : second_fine[i];
     const Positions& other = both ? second[i] : second_coarse[i];
-    if (i >= r.gap.size()) {  // where a run has ended
+    if (i >= r.gap.size()) {
       r.gap.push_back(rms_distance(scene, one, other));
       r.gap_max.push_back(max_distance(scene, one, other));
     }
@@ -254,13 +187,48 @@ void compute_contact(Reference& r, const Scene& scene, double finest, const Tell
                            std::abs(a.corner_height - b.corner_height),
                            std::abs(a.shadow - b.shadow)});
   }
+}
+
+// Where a collider makes kinks neither route is better than first order.
+void compute_contact(const Task& task) {
+  Reference& r = task.r;
+  const double h = task.finest;
+  const Route first = first_contact_route(task.scene, h);
+  const Route other = second_contact_route(first);
+  const Path& fine = path_of(task, first, h);
+  const Path& half = path_of(task, first, 2 * h);
+  const Path& second_coarsest = path_to_the_end(task, other, 8 * h);
+  const Path& second_coarse = path_to_the_end(task, other, 4 * h);
+  const Path& second_fine = path_to_the_end(task, other, 2 * h);
+  const Path second = extrapolated(second_coarse, second_fine, other.order);
+  const Path second_half = extrapolated(second_coarsest, second_coarse, other.order);
+  std::vector<GapPart> parts{{between_routes, &fine, &second},
+                             {of_first_step, &fine, &half},
+                             {of_second_step, &second, &second_half}};
+  const auto starts = starts_beside(task.scene);
+  for (int k = 0; k < moved_starts; ++k)
+    parts.push_back(
+        {of_starts, &fine,
+         &kept_path(task, starts[static_cast<std::size_t>(k)], k + 1, first, h, r.times.size())});
+  add_gaps(r, task.scene, parts);
+  r.observed_order = order_towards(task, fine, other);
+  r.method = first.solver + ", strain limit " + number_text(first.limit) + ", step " +
+             number_text(h) + " s";
+  r.second_method = other.solver + ", strain limit " + number_text(other.limit) + ", steps " +
+                    number_text(4 * h) + " and " + number_text(2 * h) +
+                    " s, Richardson extrapolated with order " + std::to_string(other.order);
+  if (fine.size() < r.times.size())
+    r.method +=
+        ", until it fails after t = " + number_text(fine.empty() ? 0.0 : r.times[fine.size() - 1]) +
+        " s; shape statistics from there on by " + other.solver + " alone";
+  add_shapes(r, task.scene, fine, second, second_fine, second_coarse);
   r.positions = fine;
 }
 
 }  // namespace
 
 Reference compute_reference(const std::string& scene_name, const SceneParameters& complete,
-                            double finest, const Tell& tell) {
+                            double finest, const Tell& tell, const KeepRun& keep) {
   const auto found_type = find_scene(scene_name);
   const SceneType& type = *found_type;
   const Scene scene = type.build(complete);
@@ -272,10 +240,23 @@ Reference compute_reference(const std::string& scene_name, const SceneParameters
   if (r.times.empty())
     throw UsageError("a reference needs a duration of at least " + number_text(sample_interval) +
                      " s");
+  std::map<std::string, RouteRun> known;
+  const KeepRun in_memory = [&known](const std::string& name, const auto& compute) -> const auto& {
+    const auto place = known.find(name);
+    return place != known.end() ? place->second : known.emplace(name, compute()).first->second;
+  };
+  if (!(finest > 0)) finest = sample_interval / (type.pendulum ? 1024 : 640);
+  // The coarsest run of each route must meet the sample times.
+  const double coarsest = (type.pendulum ? 4 : 8) * finest, steps = sample_interval / coarsest;
+  if (!(steps >= 1) || std::abs(steps - std::round(steps)) > 1e-6)
+    throw UsageError(
+        "--finest is " + number_text(finest) + " s: " + number_text(coarsest / finest) +
+        " of such steps must divide the sample interval, " + number_text(sample_interval) + " s");
+  const Task task{r, scene, finest, tell, keep ? keep : in_memory};
   if (type.pendulum) {
-    compute_chain(r, scene, finest > 0 ? finest : sample_interval / 1024, tell);
+    compute_chain(task);
   } else {
-    compute_contact(r, scene, finest > 0 ? finest : sample_interval / 640, tell);
+    compute_contact(task);
   }
   r.positions.resize(valid_samples(r));
   return r;

@@ -5,13 +5,16 @@
 #include <string>
 
 #include "harness/judge/reference.h"
+#include "harness/judge/reference_pieces.h"
 
 namespace harness {
 
 // Computes the reference of a scene by both routes. finest: the smallest step of step halving, s; 0
-// chooses by the scene. tell is called with a line now and then. Throws UsageError if a
-// route fails too early.
+// chooses by the scene. tell is called with a line now and then. keep: where runs are kept so that
+// the computation can be made in pieces; null: in memory. Throws UsageError if a route fails too
+// early.
 Reference compute_reference(const std::string& scene, const SceneParameters& complete,
-                            double finest, const std::function<void(const std::string&)>& tell);
+                            double finest, const std::function<void(const std::string&)>& tell,
+                            const KeepRun& keep = nullptr);
 
 }  // namespace harness

@@ -1,6 +1,7 @@
 // The judge's figures of a run, from positions alone, off the clock.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <map>
 #include <string>
@@ -14,6 +15,12 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();  // written
 
 // A distance to the reference is an error, and not the reference's own, above so many gaps.
 constexpr double sure_gaps = 3;
+
+// Levels of error over the scene's size that an answer may be asked for at, loose to tight, and the
+// one of headlines. Without a level any motion will do.
+inline constexpr std::array answer_levels{0.1, 0.05, 0.02, 0.01, 0.005};
+inline constexpr double headline_error = 0.02;
+inline constexpr double any_motion = std::numeric_limits<double>::infinity();
 
 struct ResidualSample {
   double time, first, last;  // s, m, m
@@ -44,6 +51,7 @@ struct Measures {
   double gap = unknown;
   int error_samples = 0;
   double error_until = unknown;
+  std::string unknown_because;
   std::vector<ErrorSample> error_series;
   double moved = unknown;
   double valid_until = unknown;
@@ -94,19 +102,20 @@ inline constexpr std::tuple measure_fields{
           "largest distance to the mirror image", error_or_null),
     field("reference", &Measures::reference, "",
           "name of the reference in results/references; null: there is none", error_or_null),
-    field("trajectory", &Measures::trajectory, "scene's size",
-          "distance to the reference, root mean square over vertices (by mass) and usable samples: "
-          "those at which it is above 3 gap; without any, over all samples, and below 3 gap",
-          error_or_null),
+    field(
+        "trajectory", &Measures::trajectory, "scene's size",
+        "distance to the reference, root mean square over vertices (by mass) and the sample times "
+        "at which 3 gap is at most 0.02, the same for all runs; null: see unknown_because",
+        error_or_null),
     field("trajectory_max", &Measures::trajectory_max, "scene's size",
-          "largest distance of a vertex to the reference, over samples at which it is above 3 gap "
-          "in this norm",
-          error_or_null),
+          "largest distance of a vertex to the reference, over the same samples", error_or_null),
     field("gap", &Measures::gap, "scene's size",
-          "the reference's own uncertainty, over the same samples as trajectory", error_or_null),
-    field("error_samples", &Measures::error_samples, "samples", "usable ones",
+          "the reference's own uncertainty, over the same samples", error_or_null),
+    field("error_samples", &Measures::error_samples, "samples", "how many these are",
           {.inside = "error", .later = true}),
-    field("error_until", &Measures::error_until, "s", "time of the last usable sample",
+    field("error_until", &Measures::error_until, "s", "time of the last of them",
+          later_error_or_null),
+    field("unknown_because", &Measures::unknown_because, "", "why there is no trajectory error",
           later_error_or_null),
     field("error_series", &Measures::error_series, "s, then scene's size",
           "at each sample: time, distance to the reference as root mean square and as maximum, gap "
@@ -145,11 +154,18 @@ inline constexpr std::tuple measure_fields{
           "mark vertices: 0 at rest",
           {.later = true, .nullable = true})};
 
-// Root mean square distance to the reference over the samples at which 3 gap is below `target`; for
-// all runs the same, so that "within an error of 1 %" means one thing. Unknown if there is none. A
-// file without a series has one figure for all targets.
-double trajectory_within(const Measures& measures, double target);
-// The last of these samples, s; 0: none.
-double error_known_until(const Measures& measures, double target);
+// The distance to the reference at a level: over the sample times at which 3 gap is at most the
+// level. These are the same for all runs, so that "within an error of 1 %" means one thing.
+struct ErrorAtLevel {
+  double distance = unknown;  // root mean square; unknown without a sample
+  double largest = unknown;   // of any vertex
+  double gap = unknown;       // root mean square
+  int samples = 0;
+  double until = 0;  // s, the last sample
+};
+// Older files without a series have one figure for all levels.
+ErrorAtLevel error_at(const Measures& measures, double level);
+// Whether it is known to be at most the level; any_motion: always.
+bool within_error(const Measures& measures, double level);
 
 }  // namespace harness

@@ -33,27 +33,29 @@ double median_uncertainty(std::vector<double> samples) {
   return 0.5 * (samples[n - k] - samples[k - 1]) / quantile(samples, 0.5);
 }
 
-double trajectory_within(const Measures& measures, double target) {
-  if (measures.error_series.empty())
-    return sure_gaps * measures.gap > target ? unknown : measures.trajectory;
-  double squares = 0;
-  int count = 0;
-  for (const ErrorSample& at : measures.error_series) {
-    if (!(sure_gaps * at.gap <= target)) continue;
-    squares += at.error * at.error;
-    ++count;
+ErrorAtLevel error_at(const Measures& measures, double level) {
+  ErrorAtLevel at;
+  if (measures.error_series.empty()) {
+    if (!(measures.trajectory >= 0) || sure_gaps * measures.gap > level) return at;
+    return {measures.trajectory, measures.trajectory_max, measures.gap, 1, measures.valid_until};
   }
-  return count > 0 ? std::sqrt(squares / count) : unknown;
+  double squares = 0, gap_squares = 0;
+  for (const ErrorSample& sample : measures.error_series) {
+    if (!(sure_gaps * sample.gap <= level)) continue;
+    squares += sample.error * sample.error;
+    gap_squares += sample.gap * sample.gap;
+    if (!(sample.worst <= at.largest)) at.largest = sample.worst;
+    ++at.samples;
+    at.until = std::max(at.until, sample.time);
+  }
+  if (at.samples == 0) return at;
+  at.distance = std::sqrt(squares / at.samples);
+  at.gap = std::sqrt(gap_squares / at.samples);
+  return at;
 }
 
-double error_known_until(const Measures& measures, double target) {
-  if (measures.error_series.empty())
-    return measures.trajectory >= 0 && sure_gaps * measures.gap <= target ? measures.valid_until
-                                                                          : 0;
-  double until = 0;
-  for (const ErrorSample& at : measures.error_series)
-    if (sure_gaps * at.gap <= target) until = std::max(until, at.time);
-  return until;
+bool within_error(const Measures& measures, double level) {
+  return level == any_motion || error_at(measures, level).distance <= level;
 }
 
 double PointResult::median_seconds() const { return quantile(samples, 0.5); }

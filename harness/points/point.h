@@ -57,8 +57,8 @@ struct PointResult {
   int steps_planned = 0;
   std::string linear_solver;
   double peak_rss_bytes = 0;
-  bool best = false;           // the fastest of its search
-  bool best_at_error = false;  // the fastest of those within the suite's error limit
+  bool best = false;                   // the fastest of its search, whatever its motion
+  std::vector<double> best_at_errors;  // levels of error that it is the fastest within
   // Of a best point: "coarsest" or "finest" where a step beyond the ladder might be better still.
   std::string at_ladder_end;
 

@@ -35,6 +35,13 @@ struct FieldCodec<std::vector<ErrorSample>> {
 };
 
 template <>
+struct FieldCodec<std::vector<double>> {
+  static nlohmann::json write(const std::vector<double>& numbers, bool nullable);
+  static void read(const nlohmann::json& from, std::vector<double>& numbers, bool nullable);
+  static nlohmann::ordered_json schema(const FieldTraits& traits);
+};
+
+template <>
 struct FieldCodec<std::vector<FrameTime>> {
   static nlohmann::json write(const std::vector<FrameTime>& rates, bool nullable);
   static void read(const nlohmann::json& from, std::vector<FrameTime>& rates, bool nullable);
@@ -87,9 +94,10 @@ inline constexpr std::tuple result_fields{
           "that the duration takes at this step; older files: to be computed", {.later = true}),
     field("peak_rss_bytes", &PointResult::peak_rss_bytes, "bytes", "largest resident memory"),
     field("best", &PointResult::best, "",
-          "the fastest step of its contestant at its place on the axis"),
-    field("best_at_error", &PointResult::best_at_error, "",
-          "the fastest step within the suite's error limit", {.later = true}),
+          "the fastest step of its contestant at its place on the axis, whatever its motion"),
+    field("best_at_errors", &PointResult::best_at_errors, "scene's size",
+          "levels of error within which it is the fastest step of its contestant at its place",
+          {.later = true}),
     field("at_ladder_end", &PointResult::at_ladder_end, "",
           "of a best point: 'coarsest' or 'finest' where its step is that end of the ladder",
           {.later = true})};

@@ -117,6 +117,18 @@ ordered_json FieldCodec<std::vector<ErrorSample>>::schema(const FieldTraits&) {
   return rows_schema(5);
 }
 
+json FieldCodec<std::vector<double>>::write(const std::vector<double>& numbers, bool) {
+  return numbers;
+}
+
+void FieldCodec<std::vector<double>>::read(const json& from, std::vector<double>& numbers, bool) {
+  from.get_to(numbers);
+}
+
+ordered_json FieldCodec<std::vector<double>>::schema(const FieldTraits&) {
+  return {{"type", "array"}, {"items", {{"type", "number"}, {"exclusiveMinimum", 0}}}};
+}
+
 json FieldCodec<std::vector<FrameTime>>::write(const std::vector<FrameTime>& rates, bool) {
   json list = json::array();
   for (const FrameTime& f : rates) list.push_back({f.rate, f.median, f.slow, f.worst});

@@ -92,6 +92,9 @@ ordered_json point_schema() {
   point["properties"]["options"]["properties"] = {{"linear_solver", {{"type", "string"}}},
                                                   {"stiffness", {{"type", "number"}}}};
   add_fields(point, result_fields);
+  add(point, "best_at_error",
+      {{"type", "boolean"}, {"description", "older files: the fastest step within max_error"}},
+      true);
   add(point, "seconds_per_simulated_second", reference_to("seconds"), false);
   add(point, "filter_seconds_per_simulated_second", reference_to("seconds"), true);
   add_fields(point, phase_fields);

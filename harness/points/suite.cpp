@@ -148,6 +148,14 @@ void check_contestants(const Suite& suite, const JsonReader& reader) {
 
 std::vector<std::string> sweep_kinds() { return {"strain", "resolution", "step"}; }
 
+std::vector<double> levels_of(const Suite& suite) {
+  std::vector<double> levels;
+  for (const double level : answer_levels) {
+    if (level >= suite.finest_error) levels.push_back(level);
+  }
+  return levels;
+}
+
 Contestants contestants_of(const Suite& suite) {
   Contestants all;
   for (const SweepSpec& sweep : suite.sweeps) {
@@ -175,7 +183,8 @@ Suite parse_suite(const std::string& text, const std::string& path) {
   suite.most_reps = static_cast<int>(reader.number("most_reps", 0, Bounds::whole_number(0)));
   suite.rel_ci = reader.number("rel_ci", suite.rel_ci, Bounds::positive());
   suite.timeout = reader.number("timeout", 60, Bounds::positive());
-  suite.max_error = reader.number("max_error", 0, Bounds::positive());
+  const double older_name = reader.number("max_error", suite.finest_error, Bounds::positive());
+  suite.finest_error = reader.number("finest_error", older_name, Bounds::positive());
   const Everywhere all = read_everywhere(reader);
   suite.same = all.same;
   if (all.tuned)
@@ -212,12 +221,16 @@ json to_json(const Suite& suite) {
                       {"scene_parameters", s.scene_parameters},
                       {"solver_options", options}});
   }
-  json document = {{"name", suite.name},       {"description", suite.description},
-                   {"profile", suite.profile}, {"seed", suite.seed},
-                   {"reps", suite.reps},       {"most_reps", suite.most_reps},
-                   {"rel_ci", suite.rel_ci},   {"timeout", suite.timeout},
+  json document = {{"name", suite.name},
+                   {"description", suite.description},
+                   {"profile", suite.profile},
+                   {"seed", suite.seed},
+                   {"reps", suite.reps},
+                   {"most_reps", suite.most_reps},
+                   {"rel_ci", suite.rel_ci},
+                   {"timeout", suite.timeout},
+                   {"finest_error", suite.finest_error},
                    {"sweeps", sweeps}};
-  if (suite.max_error > 0) document["max_error"] = suite.max_error;
   if (!suite.same.empty()) document["same"] = suite.same;
   return document;
 }

@@ -14,6 +14,9 @@ namespace harness {
 // Of a run; more is a mistake in the step.
 constexpr double most_steps = 1e8;
 
+// A frame of film: no simulation makes longer steps, s.
+constexpr double longest_step = 1.0 / 24;
+
 struct SweepSpec {
   std::string sweep;  // "strain", "resolution" or "step"
   std::string scene;
@@ -35,14 +38,17 @@ struct Suite {
   int most_reps = 0;     // above reps: more of them until the median is known to rel_ci
   double rel_ci = 0.02;  // half width of the median's 95 % confidence interval over the median
   double timeout = 60;   // s a point
-  double max_error = 0;  // trajectory error that `best_at_error` points respect; 0: none is sought
-  std::string same;      // the contestant that stands in every sweep twice; "": none
+  // The tightest of answer_levels that the search for steps goes on for; above all of them: none.
+  double finest_error = answer_levels.back();
+  std::string same;  // the contestant that stands in every sweep twice; "": none
   // The file that the contestants' tuned settings are from, and a hash of what it says; "": none.
   std::string tuned_file, tuned_hash;
   std::vector<SweepSpec> sweeps;
 };
 
 std::vector<std::string> sweep_kinds();
+// Levels of error that best steps are sought for, loose to tight.
+std::vector<double> levels_of(const Suite& suite);
 // Of all sweeps, each name once.
 Contestants contestants_of(const Suite& suite);
 

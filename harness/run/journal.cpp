@@ -39,7 +39,8 @@ void Memory::learn(const json& result) {
   for (const json& entry : result.at("points")) {
     PointResult point = point_of(entry);
     if (point.status == PointStatus::skipped) continue;
-    point.best = point.best_at_error = false;  // to be decided again
+    point.best = false;  // to be decided again
+    point.best_at_errors.clear();
     point.at_ladder_end.clear();
     Known known;
     for (std::size_t i = 1; i < point.samples.size(); ++i)

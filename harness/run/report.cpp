@@ -32,7 +32,7 @@ std::string failure_text(const std::vector<const PointResult*>& tried) {
   return to_string((*finest)->status);
 }
 
-constexpr int name_width = 30;
+constexpr int name_width = 32, table_width = 120;
 
 template <class Text>  // Text(const Points&): what stands in a cell
 void print_best(std::ostream& out, const std::vector<const PointResult*>& points,
@@ -45,16 +45,23 @@ void print_best(std::ostream& out, const std::vector<const PointResult*>& points
   for (const auto& cell : cells) longest = std::max(longest, cell_text(cell.second).size());
   const int cell_width = static_cast<int>(longest) + 2;
   const auto columns = in_order(points, place_of);
-  out << std::left << std::setw(name_width) << "";
-  for (const auto& column : columns) out << std::setw(cell_width) << column;
-  out << '\n';
-  for (const auto& solver : in_order(points, name_of)) {
-    out << std::setw(name_width) << solver;
-    for (const auto& column : columns) {
-      const auto cell = cells.find({solver, column});
-      out << std::setw(cell_width) << (cell == cells.end() ? "-" : cell_text(cell->second));
-    }
-    out << '\n';
+  // As many columns at a time as a line has room for.
+  const auto room =
+      static_cast<std::size_t>(std::max(1, (table_width - name_width) / std::max(1, cell_width)));
+  for (std::size_t from = 0; from < columns.size(); from += room) {
+    const auto to = std::min(columns.size(), from + room);
+    const auto row = [&](const std::string& name, const auto& text_of) {
+      out << std::left << std::setw(name_width) << name;
+      for (std::size_t i = from; i < to; ++i)
+        out << (i + 1 < to ? std::setw(cell_width) : std::setw(0)) << text_of(columns[i]);
+      out << '\n';
+    };
+    row("", [](const std::string& column) { return column; });
+    for (const auto& solver : in_order(points, name_of))
+      row(solver, [&](const std::string& column) {
+        const auto cell = cells.find({solver, column});
+        return cell == cells.end() ? "-" : cell_text(cell->second);
+      });
   }
 }
 
@@ -72,10 +79,13 @@ Unit unit_of(const std::vector<const PointResult*>& points) {
   return most >= 20 ? Unit{"s", 1} : Unit{"ms", 1e3};
 }
 
+// With its error, where that is known.
 std::string time_and_step(const PointResult& point, const Unit& unit) {
   const std::string step = (point.spec.adaptive ? "~" : "") + step_text(point.mean_step());
   const std::string end = point.at_ladder_end.empty() ? "" : ", " + point.at_ladder_end;
-  return number_text(unit.per_second * point.median_seconds(), 3) + " (" + step + end + ")";
+  const double error = point.measures.trajectory;
+  return number_text(unit.per_second * point.median_seconds(), 3) + " (" + step + end +
+         (std::isnan(error) ? "" : ", " + number_text(100 * error, 2) + " %") + ")";
 }
 
 // Who is fastest at each place of the axis, with tuned or untuned settings, and whether that is
@@ -122,7 +132,7 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
   constexpr std::array targets{1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4};
   const auto sure = [&](double target) {
     return std::any_of(points.begin(), points.end(), [&](const PointResult* point) {
-      return error_known_until(point->measures, target) > 0;
+      return error_at(point->measures, target).samples > 0;
     });
   };
   out << '\n'
@@ -137,8 +147,7 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
     for (const double target : targets) {
       const PointResult* fastest = nullptr;
       for (const PointResult* point : points) {
-        if (point->spec.name() != solver || !point->ok() ||
-            !(trajectory_within(point->measures, target) <= target))
+        if (point->spec.name() != solver || !point->ok() || !within_error(point->measures, target))
           continue;
         if (!fastest || point->median_seconds() < fastest->median_seconds()) fastest = point;
       }
@@ -160,8 +169,6 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
 void print_table(std::ostream& out, const Suite& suite, const std::vector<PointResult>& points) {
   const auto pair = pair_noise(points, suite.same);
   const double noise = pair ? pair->q95 : unknown;
-  const bool within_error = std::any_of(points.begin(), points.end(),
-                                        [](const PointResult& p) { return p.best_at_error; });
   const auto tables =
       in_order(points, [](const PointResult& p) { return std::pair(p.spec.scene, p.spec.sweep); });
   for (const auto& [scene, sweep] : tables) {
@@ -177,21 +184,14 @@ void print_table(std::ostream& out, const Suite& suite, const std::vector<PointR
     const Unit unit = unit_of(chosen);
     const std::string title = scene + ", " + axis + " sweep: least time, " + unit.name +
                               " of computation for a simulated second";
-    print_best(out, chosen, title + " (its step in s)", [&unit](const auto& cell) {
-      const auto best =
-          std::find_if(cell.begin(), cell.end(), [](const PointResult* p) { return p->best; });
-      return best == cell.end() ? failure_text(cell) : time_and_step(**best, unit);
-    });
+    print_best(
+        out, chosen, title + ", any motion (its step in s, error)", [&unit](const auto& cell) {
+          const auto best =
+              std::find_if(cell.begin(), cell.end(), [](const PointResult* p) { return p->best; });
+          return best == cell.end() ? failure_text(cell) : time_and_step(**best, unit);
+        });
     print_fastest(out, suite, chosen, noise);
     if (sweep == "resolution") print_growth(out, chosen);
-    if (!within_error) continue;
-    print_best(out, chosen, title + " within the error limit (its step in s)",
-               [&unit](const auto& cell) -> std::string {
-                 const auto best = std::find_if(cell.begin(), cell.end(), [](const PointResult* p) {
-                   return p->best_at_error;
-                 });
-                 return best == cell.end() ? "error missed" : time_and_step(**best, unit);
-               });
   }
   std::map<std::string, int> failures;
   for (const PointResult& point : points) {

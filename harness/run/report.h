@@ -8,9 +8,9 @@
 
 namespace harness {
 
-// Per scene and sweep: solvers by limit or resolution, best seconds per simulated second and its
-// step, a second time within the suite's error limit if there was one; of a step sweep, the time to
-// reach each of some errors; failures by name.
+// Per scene and sweep: solvers by limit or resolution, best seconds per simulated second whatever
+// the motion, its step and its error; of a step sweep, the time to reach each of some errors;
+// failures by name. What counts within errors: plane_table.h.
 // Below each table of best points stands who is fastest at each place, how many times as long the
 // next one of another family takes, and whether that is more than noise.
 void print_table(std::ostream& out, const Suite& suite, const std::vector<PointResult>& points);

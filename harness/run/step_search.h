@@ -1,8 +1,7 @@
-// The search for a solver's best step.
+// The search for a solver's best steps.
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -11,45 +10,57 @@
 
 namespace harness {
 
-// The step search of docs/measuring.md: from coarse to fine until the time has risen twice in a
-// row; with a neighbour's best step, from there in both directions. A failure counts as a rise, and
-// before the first success as a reason to go finer. Points that miss max_error count as failures;
-// once that error has grown twice in a row towards finer steps (slack within the limit then
-// dominates it), finer ones are hopeless.
+// The step search of docs/measuring.md, for the fastest step of any motion and for those within
+// levels of error. From coarse to fine until the time has risen twice in a row, and on until
+//  - the finest level is met and the next step takes longer, or
+//  - time has risen tenfold above the fastest within the tightest level met so far (a fast run with
+//    a wrong motion ends no search), or
+//  - the error has fallen by less than 15 % twice in a row: slack within the strain limit then
+//    dominates it, or
+//  - two steps in a row have failed.
+// With a neighbour's best step, from there in both directions. A failure counts as a rise, and
+// before the first success as a reason to go finer.
 class StepSearch {
  public:
   using Run = std::function<const PointResult&(std::size_t rung)>;
-  StepSearch(std::size_t rungs, Run run, double max_error = std::numeric_limits<double>::infinity())
-      : rungs_(rungs), run_(std::move(run)), max_error_(max_error) {}
+  // levels: of error, loose to tight; none: any motion alone.
+  StepSearch(std::size_t rungs, Run run, std::vector<double> levels = {})
+      : rungs_(rungs), run_(std::move(run)), levels_(std::move(levels)) {}
 
-  // The best rung; none if every step failed.
+  // The best rung of any motion; none if every step failed.
   // start: the rung to begin from.
   std::optional<std::size_t> find(std::optional<std::size_t> start);
 
   // Every rung from coarse to fine, until two in a row have timed out; the fastest.
   std::optional<std::size_t> find_among_all();
 
-  // Permissible rungs whose one time is within this factor of the best one's: which of them is the
-  // best, more runs must say.
-  std::vector<std::size_t> near_best(double factor) const;
+  // Rungs within a level (any_motion: all that ran to the end) whose one time is within this factor
+  // of the best one's: which of them is the best, more runs must say.
+  std::vector<std::size_t> near_best(double level, double factor) const;
 
   bool timed_out() const { return timed_out_; }
+  // Seconds per simulated second: a run that takes longer is of no use to the search.
+  double longest_useful() const;
 
  private:
-  double error(const PointResult& point) const;
-  bool permissible(const PointResult& point) const;
   static bool gave_up(const PointResult& point);  // for want of time
   bool consider(std::size_t rung, const PointResult& point);
+  bool wants_less_error() const { return goal_ && !best_seconds(*goal_) && error_stays_ < 2; }
+  double tenfold() const;
+  bool done(const PointResult& point) const;
   void walk(std::size_t from, int direction);
+  std::optional<double> best_seconds(double level) const;
 
   std::size_t rungs_;
   Run run_;
-  double max_error_;
+  std::vector<double> levels_;
+  // The finest level that errors can be told at; none before the first error, or without one.
+  std::optional<double> goal_;
   std::optional<std::size_t> best_;
-  double best_seconds_ = 0;
-  std::map<std::size_t, double> seconds_;  // of permissible rungs
+  std::map<double, std::map<std::size_t, double>> seconds_;  // by level and rung
   bool timed_out_ = false;
-  bool unsupported_ = false;  // the solver does not take the problem, whatever the step
+  bool unsupported_ = false;            // the solver does not take the problem, whatever the step
+  int error_stays_ = 0, failures_ = 0;  // of the current walk, in a row
 };
 
 }  // namespace harness

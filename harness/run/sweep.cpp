@@ -14,9 +14,6 @@
 namespace harness {
 namespace {
 
-// A run that has stepped for this many times the best one's time cannot be the best; its time has
-// risen.
-constexpr double hopeless_factor = 3;
 constexpr double hopeless_least = 0.2;  // s; shorter runs are always finished
 // Steps whose one time is within this factor of the best are repeated before one is called best.
 constexpr double candidate_factor = 1.2;
@@ -24,8 +21,8 @@ constexpr double candidate_factor = 1.2;
 // What may be the best point of one search, by rung; the points' place in the outcome.
 struct Choice {
   std::map<std::size_t, std::size_t> candidates;
-  std::size_t rungs = 0;  // of the whole ladder
-  bool PointResult::*mark = &PointResult::best;
+  std::size_t rungs = 0;      // of the whole ladder
+  double level = any_motion;  // of error
 };
 
 const char* ladder_end(std::size_t rung, std::size_t rungs) {
@@ -41,8 +38,13 @@ void choose(const std::vector<Choice>& choices, std::vector<PointResult>& points
           return points[a.second].median_seconds() < points[b.second].median_seconds();
         });
     if (best == choice.candidates.end()) continue;
-    points[best->second].*choice.mark = true;
-    points[best->second].at_ladder_end = ladder_end(best->first, choice.rungs);
+    PointResult& point = points[best->second];
+    if (choice.level == any_motion) {
+      point.best = true;
+    } else {
+      point.best_at_errors.push_back(choice.level);
+    }
+    point.at_ladder_end = ladder_end(best->first, choice.rungs);
   }
 }
 
@@ -131,24 +133,21 @@ class LadderRun {
         number_(number),
         search_(sweep.searches[number]),
         neighbour_(neighbour),
-        finish_slow_(search_.every_step || sweep.suite.max_error > 0) {}
+        steps_(
+            search_.ladder.size(),
+            [this](std::size_t rung) -> const PointResult& { return point(rung); },
+            levels_of(sweep.suite)) {}
 
   void find_best() {
-    const auto run = [this](std::size_t rung) -> const PointResult& { return point(rung); };
-    const std::size_t rungs = search_.ladder.size();
-    StepSearch steps(rungs, run);
-    const auto best = search_.every_step ? steps.find_among_all()
-                                         : steps.find(neighbour_.rung_in(search_.ladder));
-    if (sweep_.suite.max_error > 0 && !search_.every_step) {
-      StepSearch within(rungs, run, sweep_.suite.max_error);
-      if (within.find(best)) add_choice(within, &PointResult::best_at_error);
+    const auto best = search_.every_step ? steps_.find_among_all()
+                                         : steps_.find(neighbour_.rung_in(search_.ladder));
+    if (!best) {
+      neighbour_.hopeless = steps_.timed_out();
+      return;
     }
-    if (best) {
-      add_choice(steps, &PointResult::best);
-      neighbour_.best_step = search_.ladder[*best];
-    } else {
-      neighbour_.hopeless = steps.timed_out();
-    }
+    neighbour_.best_step = search_.ladder[*best];
+    add_choice(any_motion);
+    for (const double level : levels_of(sweep_.suite)) add_choice(level);
   }
 
  private:
@@ -157,34 +156,32 @@ class LadderRun {
       return sweep_.points[known->second];
     PointSpec spec = search_.base;
     spec.step = search_.ladder[rung];
-    // A slower run may still be the best one of those within an error limit.
+    const double useful = steps_.longest_useful() * spec.scene_parameters.at("duration");
     const double hopeless =
-        finish_slow_ ? 1e300 : std::max(hopeless_least, hopeless_factor * best_run_);
+        search_.every_step || std::isinf(useful) ? 1e300 : std::max(hopeless_least, useful);
     PointResult point = sweep_.runners.run(
         spec,
         {sweep_.suite.timeout, hopeless, sweep_.events.interrupted, sweep_.runners.references},
         neighbour_.guess_of_stiffness(spec));
     if (point.stiffness)
       neighbour_.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
-    if (point.ok()) best_run_ = std::min(best_run_, point.median_run());
     point_of_rung_[rung] = sweep_.points.size();
     return sweep_.add(std::move(point), number_);
   }
 
-  void add_choice(const StepSearch& among, bool PointResult::*mark) {
+  void add_choice(double level) {
     Choice& choice = sweep_.choices.emplace_back();
-    for (const std::size_t rung : among.near_best(candidate_factor))
+    for (const std::size_t rung : steps_.near_best(level, candidate_factor))
       choice.candidates[rung] = point_of_rung_.at(rung);
     choice.rungs = search_.ladder.size();
-    choice.mark = mark;
+    choice.level = level;
   }
 
   Sweep& sweep_;
   std::size_t number_;
   const Search& search_;
   Neighbour& neighbour_;
-  bool finish_slow_;
-  double best_run_ = 1e300;  // s
+  StepSearch steps_;
   std::map<std::size_t, std::size_t> point_of_rung_;
 };
 

@@ -1,7 +1,8 @@
 // Runs a suite's sweeps: for each (scene, size, limit, solver) the best step is searched on the
-// ladder coarsest, coarsest / 2, ... (a step sweep runs the whole ladder), then the points that may
-// be best (of a step sweep: all that ran to the end) are repeated, interleaved in a shuffled order,
-// and the best ones chosen by the medians of all their runs.
+// ladder coarsest, coarsest / 2, ... (a step sweep runs the whole ladder), for any motion and for
+// each level of error. Then the points that may be best at one of them (of a step sweep: all that
+// ran to the end) are repeated, interleaved in a shuffled order, and the best ones chosen by the
+// medians of all their runs.
 #pragma once
 
 #include <functional>

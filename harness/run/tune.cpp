@@ -243,7 +243,7 @@ SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarses
 
 std::vector<SweepSpec> tuning_scenes() {
   // The drape is hardest from 0.3 s on, where it has sheared.
-  return {tuning_scene("chain", {50, 200}, 0.2, 1), tuning_scene("drape", {17, 35}, 0.02, 0.6),
+  return {tuning_scene("chain", {50, 200}, 0.04, 1), tuning_scene("drape", {17, 35}, 0.02, 0.6),
           tuning_scene("patch", {13, 23}, 0.02, 1)};
 }
 

@@ -36,14 +36,12 @@ def _contests(document: Json, legend: Legend) -> list[Finding]:
     factor = noise_factor(document) or 1
     found = []
     for data in sweeps_in(document, legend, "strain"):
-        if data.max_error is not None:
-            continue
         parts = tuple(text for limit in LIMITS if (text := _fastest(data, limit, factor, legend)))
         if parts:
             how = ", steps chosen by a controller" if data.adaptive else ""
             found.append(Finding(f"{_scene(data)} of {data.fixed:g} vertices{how}:", parts))
     for data in sweeps_in(document, legend, "resolution"):
-        if data.max_error is None and (text := _growth(data, legend)):
+        if text := _growth(data, legend):
             found.append(Finding(text))
     return found
 

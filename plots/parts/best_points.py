@@ -8,10 +8,11 @@ from typing import Callable
 
 from parts.legend import TOO_STRAINED, TOO_WRONG, Legend
 from parts.result_file import (OK, Json, contestant_of, is_number, median_in, median_interval, median_of, object_in, points_of,
-                               positive, suite_of)
+                               positive)
 from parts.words import file_part
 
 NUMBERS_OF_THE_PAPER = {"chain": "4", "drape": "5"}
+HEADLINE = 0.02  # of the scene's size: the level of error of headlines (docs/measuring.md)
 AXES = {"strain": "strain_limit", "resolution": "vertices"}
 
 
@@ -52,8 +53,9 @@ class Curve:
 
 @dataclass
 class FigureData:
-    """What one figure of cost shows. `fixed` is the axis that is not swept: vertices or strain limit. `max_error`: only
-    runs within this trajectory error count. `delivered`: instead of the strain limit, the strain after collisions counts."""
+    """What one panel of a figure of cost shows. `fixed` is the axis that is not swept: vertices or strain limit. `level`: only
+    runs within this error count; None: whatever their motion. `within`: the panel beside it, of the headline's error.
+    `delivered`: instead of the strain limit, the strain after collisions counts."""
 
     scene: str
     sweep: str
@@ -61,8 +63,9 @@ class FigureData:
     points: list[Json]
     curves: dict[str, Curve]
     name: str = ""
-    max_error: float | None = None
+    level: float | None = None
     delivered: bool = False
+    within: FigureData | None = None
 
     @property
     def has_filter(self) -> bool:
@@ -79,24 +82,24 @@ class FigureData:
 
 
 def sweeps_in(document: Json, legend: Legend, sweep: str) -> list[FigureData]:
-    """One entry per scene and value of the axis that stays fixed, in a fixed order; with an error limit another one of the
-    points that respect it."""
+    """One entry per scene and value of the axis that stays fixed, in a fixed order; where errors are known it has a second
+    panel of the runs that are right to the headline's level."""
     groups: dict[tuple[str, float], list[Json]] = {}
     for point in points_of(document):
         if point["sweep"] == sweep:
             fixed = point["vertices"] if sweep == "strain" else point["strain_limit"]
             groups.setdefault((point["scene"], fixed), []).append(point)
-    max_error = error_limit_of(document)
+    chosen = Chosen(document)
     figures = []
     for scene, fixed in sorted(groups):
         points = groups[scene, fixed]
         alone = sum(key[0] == scene for key in groups) == 1
-        data = FigureData(scene, sweep, fixed, points, _curves(points, AXES[sweep], None, legend))
+        data = FigureData(scene, sweep, fixed, points, _curves(points, AXES[sweep], None, legend, chosen))
         data.name = _file_part(scene, sweep, fixed, alone) + ("-adaptive" if data.adaptive else "")
+        if any(chosen.has(point, HEADLINE) for point in points):
+            curves = _curves(points, AXES[sweep], HEADLINE, legend, chosen)
+            data.within = FigureData(scene, sweep, fixed, points, curves, data.name, HEADLINE)
         figures.append(data)
-        if max_error is not None:
-            curves = _curves(points, AXES[sweep], max_error, legend)
-            figures.append(FigureData(scene, sweep, fixed, points, curves, f"{data.name}-equal-error", max_error))
     return figures
 
 
@@ -105,7 +108,7 @@ def delivered_in(document: Json, legend: Legend, sweep: str) -> list[FigureData]
     vertices at one of them. Scenes without a collider have no such figure."""
     figures = []
     for data in sweeps_in(document, legend, sweep):
-        if data.max_error is not None or data.adaptive or not any(with_collider(point) for point in data.points):
+        if data.adaptive or not any(with_collider(point) for point in data.points):
             continue
         if sweep == "strain":
             levels = _levels_reached(data.points)
@@ -183,11 +186,6 @@ def _delivered_curves(points_at: dict[float, list[Json]], level_at: Callable[[fl
     return curves
 
 
-def error_limit_of(document: Json) -> float | None:
-    limit = suite_of(document).get("max_error")
-    return float(limit) if positive(limit) else None
-
-
 def number_in_paper(scene: str, sweep: str) -> str:
     """"4a" for the chain over strain; "" for scenes that the paper does not have."""
     number = NUMBERS_OF_THE_PAPER.get(scene, "")
@@ -203,18 +201,38 @@ def _file_part(scene: str, sweep: str, fixed: float, alone: bool) -> str:
     return f"{name}-n{fixed:g}" if sweep == "strain" else f"{name}-strain{fixed:g}"
 
 
-def _curves(points: list[Json], axis: str, max_error: float | None, legend: Legend) -> dict[str, Curve]:
+class Chosen:
+    """Which runs stand for their contestants at a level of error: as the program's analysis says, where the document has it,
+    else as the sweep marked them."""
+
+    def __init__(self, document: Json) -> None:
+        analysis = document.get("analysis")
+        self._ids: set[tuple[float | None, str, str]] | None = None
+        if isinstance(analysis, dict):
+            self._ids = {(cell["error_level"], plane["sweep"], entry["id"]) for plane in analysis["planes"]
+                         for cell in plane["cells"] for entry in cell["entries"]}
+
+    def has(self, point: Json, level: float | None) -> bool:
+        if self._ids is not None and point.get("adaptive") is not True:
+            return (level, point["sweep"], point.get("id")) in self._ids
+        if level is None:
+            return point.get("best") is True
+        marks = point.get("best_at_errors")
+        return isinstance(marks, list) and level in marks
+
+
+def _curves(points: list[Json], axis: str, level: float | None, legend: Legend, chosen: Chosen) -> dict[str, Curve]:
     tried: dict[tuple[str, float], list[Json]] = {}
     for point in points:
         tried.setdefault((contestant_of(point), float(point[axis])), []).append(point)
     curves: dict[str, Curve] = {}
     for (solver, x), runs in sorted(tried.items(), key=lambda item: item[0]):
         curve = curves.setdefault(solver, Curve())
-        best = best_of(runs, legend.competes(solver)) if max_error is None else best_at_error(runs)
+        best = best_of(runs, level, legend.competes(solver), chosen)
         if best:
             _add_best(curve, x, best)
         else:
-            curve.failures.append(Failure(x, failure_letters(runs, legend, max_error)))
+            curve.failures.append(Failure(x, failure_letters(runs, legend, level)))
     return curves
 
 
@@ -224,16 +242,11 @@ def _add_best(curve: Curve, x: float, point: Json) -> None:
         curve.filter.append(_as_best(x, point, FILTER_TIME))
 
 
-def best_of(runs: list[Json], competes: bool) -> Json | None:
-    """The point that the harness marked. Who does not compete keeps no strain limit, so the fastest run will do."""
-    marked = [run for run in runs if run.get("best") is True]
+def best_of(runs: list[Json], level: float | None, competes: bool, chosen: Chosen) -> Json | None:
+    """The point that the program chose. Who does not compete keeps no strain limit, so the fastest run will do."""
+    marked = [run for run in runs if chosen.has(run, level)]
     if not marked and not competes:
         marked = [run for run in runs if median_of(run) is not None]
-    return min(marked, key=lambda run: median_of(run) or math.inf, default=None)
-
-
-def best_at_error(runs: list[Json]) -> Json | None:
-    marked = [run for run in runs if run.get("best_at_error") is True and median_of(run) is not None]
     return min(marked, key=lambda run: median_of(run) or math.inf, default=None)
 
 
@@ -252,11 +265,11 @@ def _step_of(point: Json) -> float | None:
     return float(point["step"]) if positive(point.get("step")) else None
 
 
-def failure_letters(runs: list[Json], legend: Legend, max_error: float | None = None) -> str:
+def failure_letters(runs: list[Json], legend: Legend, level: float | None = None) -> str:
     """"D" if every step diverged, "DT" if the coarse ones diverged and the fine ones took too long."""
     def letter_of(run: Json) -> str:
         error = object_in(run, "error").get("trajectory")
-        if max_error is not None and run["status"] == OK and is_number(error) and error > max_error:
+        if level is not None and run["status"] == OK and is_number(error) and error > level:
             return TOO_WRONG
         return legend.letter(run["status"])
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from parts.best_points import FigureData, number_in_paper
+from parts.best_points import Best, FigureData, number_in_paper
 from parts.legend import Legend, legend_of
 from parts.result_file import OK, Json, is_number, noise_factor, object_in, positive, suite_of
 from parts.step_runs import RunsData
@@ -23,7 +23,7 @@ def title_of(figure: FigureData) -> str:
     if figure.delivered:
         return (title.replace(axis, "strain after collisions") if figure.sweep == "strain" else
                 f"{title}, strain after collisions at most {percent(figure.fixed)}")
-    return title if figure.max_error is None else f"{title}, at a trajectory error of at most {percent(figure.max_error)}"
+    return title
 
 
 def warnings_of(document: Json) -> list[str]:
@@ -82,9 +82,9 @@ def _method_sentence(figure: FigureData, document: Json) -> str:
     text = "Each solver at its own best time step (panel of best steps); "
     if figure.adaptive:
         text = "Adaptive steps: from the coarsest one on, halved where the solver refuses it (panel of mean steps); "
-    if figure.max_error is not None:
-        text = (f"Each solver at its fastest time step whose trajectory error is at most {percent(figure.max_error)} of the "
-                "scene's size; ")
+    if figure.within:
+        text = (f"Each solver at its fastest time step, of any motion on the left, and on the right of those whose error is at most "
+                f"{percent(figure.within.level or 0)} of the scene's size (panels of best steps); ")
     if figure.delivered:
         text = ("Each solver's least time, at any permitted strain and step that was tried, whose largest strain after the "
                 "collision filter is within the axis' value; " if figure.sweep == "strain" else
@@ -95,7 +95,7 @@ def _method_sentence(figure: FigureData, document: Json) -> str:
         text += "one run a point"
     else:
         text += f"median of {plain(reps)} repetitions" if is_number(reps) else "median"
-    best = [best for curve in figure.curves.values() for best in curve.best]
+    best = _best_in(figure)
     if any(b.high > b.low for b in best):
         text += ", bars: its 95 % interval"
     settings = [f"timeout {suite['timeout']:g} s" if is_number(suite.get("timeout")) else "",
@@ -107,7 +107,7 @@ def _method_sentence(figure: FigureData, document: Json) -> str:
 def _marks(figure: FigureData, document: Json) -> list[str]:
     """Sentences on marks that the figure has."""
     legend, sentences = legend_of(document), []
-    best = [best for curve in figure.curves.values() for best in curve.best]
+    best = _best_in(figure)
     if noise_factor(document) is not None:
         sentences.append("Bar in the corner: how far apart one solver is from itself under another name (A/A pair, 95 %); "
                          "points closer than that do not differ.")
@@ -121,8 +121,16 @@ def _marks(figure: FigureData, document: Json) -> list[str]:
     return sentences
 
 
+def _panels(figure: FigureData) -> list[FigureData]:
+    return [figure, figure.within] if figure.within else [figure]
+
+
+def _best_in(figure: FigureData) -> list[Best]:
+    return [best for panel in _panels(figure) for curve in panel.curves.values() for best in curve.best]
+
+
 def _failure_key(figure: FigureData, legend: Legend) -> str:
-    letters = {letter for name, curve in figure.curves.items() if legend.competes(name)
+    letters = {letter for panel in _panels(figure) for name, curve in panel.curves.items() if legend.competes(name)
                for failure in curve.failures for letter in failure.letters}
     if not letters:
         return ""

@@ -1,4 +1,4 @@
-"""The strip above the axes: a row for each solver that failed somewhere or lies above the axes, and what its marks say."""
+"""The strip above the axes: a row for each solver that failed somewhere, and what its marks say."""
 
 from __future__ import annotations
 
@@ -14,15 +14,13 @@ from parts.sheet import LEFT, ROW_HEIGHT, Sheet
 from parts.style import LIGHT_GREY
 from parts.words import clean, shorten
 
-CLIP_RATIO = 20.0  # a solver this many times slower than the fastest one leaves the linear panel at its top
-ARROW = "\u2191"   # "this point lies above the axes"
 NAME_SIZE = 6.5
 FAILED, NOT_REACHED = "failed at every step", "not reached at any step"
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A sign in the strip above the axes: a failure's letters, or an arrow for a point off the scale."""
+    """A sign in the strip above the axes: a failure's letters."""
 
     x: float
     text: str
@@ -35,37 +33,11 @@ def letters_in(rows: Rows) -> set[str]:
     return {letter for marks in rows.values() for mark in marks for letter in mark.text}
 
 
-def linear_top(figure: FigureData, styles: Styles) -> float:
-    """Upper limit of the linear panel: fits all solvers within CLIP_RATIO of the fastest, and two in any case."""
-    def slowest(solver: str) -> float:
-        return max(b.high for b in figure.curves[solver].best)
-
-    peaks = sorted(slowest(s) for s, style in styles.items() if style.contestant and figure.curves[s].best)
-    if not peaks:
-        peaks = sorted(slowest(s) for s in styles if figure.curves[s].best) or [1.0]
-    shown = [peak for peak in peaks if peak <= CLIP_RATIO * peaks[0]]
-    return 1.15 * max(shown + peaks[:2])
-
-
 def failed_rows(figure: FigureData, styles: Styles, x_factor: float = 1.0) -> Rows:
     """Marks for each contestant that failed at some x. Backends out of competition are not held to the limit."""
     contestants = [solver for solver in styles if styles[solver].contestant]
     rows = {s: [Mark(f.x * x_factor, f.letters) for f in figure.curves[s].failures] for s in contestants}
     return {solver: marks for solver, marks in rows.items() if marks}
-
-
-def clipped_rows(figure: FigureData, styles: Styles, top: float) -> Rows:
-    """Failures, and an arrow for each point above `top`; the highest point of a solver has its value beside it."""
-    failed = failed_rows(figure, styles)
-    rows: Rows = {}
-    for solver in styles:
-        above = [b for b in figure.curves[solver].best if b.seconds > top]
-        peak = max(above, key=lambda b: b.seconds, default=None)
-        arrows = [Mark(b.x, f"{ARROW} {b.seconds:.3g} s" if b is peak else ARROW) for b in above]
-        marks = sorted(arrows + failed.get(solver, []), key=lambda mark: mark.x)
-        if marks:
-            rows[solver] = marks
-    return rows
 
 
 def add_strip(sheet: Sheet, main: Axes, rows: Rows, styles: Styles, title: str, names: bool = True) -> None:

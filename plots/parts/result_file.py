@@ -10,6 +10,7 @@ from typing import Any
 SCHEMA = "inextensible-bench/1"
 STABILITY_SCHEMA = "inextensible-stability/1"
 ANSWERS_SCHEMA = "inextensible-answers/1"
+ANALYSIS_SCHEMA = "inextensible-analysis/1"
 SWEEPS = ("strain", "resolution", "step")
 OK = "ok"  # the status of a run that has times to show; all others are failures, whatever their names
 
@@ -20,17 +21,29 @@ class ResultError(Exception):
     """The file cannot be drawn; the message is one line for the user."""
 
 
-def load(path: Path) -> Json:
-    """The parsed file, with every point that a figure needs checked."""
+def _parsed(path: Path) -> Any:
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "not a text file"
         raise ResultError(f"cannot read {path}: {reason}") from error
     try:
-        document = json.loads(text, parse_constant=_refuse_constant)
+        return json.loads(text, parse_constant=_refuse_constant)
     except (ValueError, RecursionError) as error:
         raise ResultError(f"{path} is not valid JSON: {error}") from error
+
+
+def load_analysis(path: Path) -> Json:
+    """What `bench show --json` wrote."""
+    document = _parsed(path)
+    if not isinstance(document, dict) or document.get("schema") != ANALYSIS_SCHEMA or not isinstance(document.get("planes"), list):
+        raise ResultError(f"{path} is not an analysis, \"{ANALYSIS_SCHEMA}\" (bench show RESULT.json --json)")
+    return document
+
+
+def load(path: Path) -> Json:
+    """The parsed file, with every point that a figure needs checked."""
+    document = _parsed(path)
     if isinstance(document, dict) and document.get("schema") == STABILITY_SCHEMA:
         _check_stability(document, path)
         return document

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from matplotlib.axes import Axes
-from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 from parts.best_points import FigureData
 
@@ -45,14 +45,6 @@ def log_y(axes: Axes, figure: FigureData) -> None:
     axes.yaxis.set_minor_locator(LogLocator(subs=range(2, 10)))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{y:g}"))
     axes.yaxis.set_minor_formatter(NullFormatter())
-
-
-def linear_scales(axes: Axes, figure: FigureData, xs: list[float], top: float) -> None:
-    axes.set_xlim(0, 1.06 * max(xs))
-    axes.set_ylim(0, top)
-    axes.xaxis.set_major_locator(MaxNLocator(6))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{y:g}"))
 
 
 def log_log(axes: Axes, xs: list[float], ys: list[float]) -> None:

@@ -22,6 +22,8 @@ A ratio may say more:
     = 3.5 within interval     the number need only lie in the interval; --fix leaves it alone while it does
     = 3.5 above 1             the whole interval must lie there (or below), as it must where words say faster or slower
 
+A table of the committed references stands between <!-- references --> and <!-- end of references -->, and follows from their files.
+
 Links between documents and
 paths in backticks must exist, Markdown files that comments name too, and docs/measuring.md must name every field of a point, every
 counter and every status.
@@ -45,6 +47,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
 NAMED_DOCUMENT = re.compile(r"[\w/.-]*\w\.md\b")
+REFERENCES = re.compile(r"(<!-- references -->\n).*?(<!-- end of references -->)", re.DOTALL)
 SOURCES = ("solvers", "harness", "tests", "plots", "cmake", "configs")
 SOURCE_SUFFIXES = {".cpp", ".h", ".py", ".sh", ".cmake", ".txt", ".json"}
 
@@ -83,6 +86,29 @@ def found_again(path: str, line: int, text: str) -> tuple[str, int] | None:
     return str(file.relative_to(ROOT)), lines[0]
 
 
+def references() -> str:
+    """Which routes made each committed reference, and until when it can be trusted at some levels of error."""
+    levels = (0.02, 0.01, 0.005)
+    rows = ["| reference | first route | second route | order seen | " + " | ".join(
+        f"trusted at {100 * level:g} % until, s" for level in levels) + " |\n|" + "---|" * (4 + len(levels)) + "\n"]
+
+    def number_of(path: Path) -> int:
+        return int(re.findall(r"-n(\d+)", path.name)[0])
+
+    for path in sorted((ROOT / "results/references").glob("*.json"), key=lambda p: (p.name.split("-n")[0], number_of(p), p.name)):
+        file = json.loads(path.read_text(encoding="utf-8"))
+        known = list(zip(file["times"], file["gap"]))[:len(file["positions"])]
+        until = (max((t for t, gap in known if measured_numbers.SURE * gap <= level), default=0) for level in levels)
+        order = file["observed_order"]
+        rows.append(f"| `{path.stem}` | {file['method']} | {file['second_method']} | {'-' if order is None else format(order, '.2g')} | "
+                    + " | ".join(f"{t:g}" for t in until) + " |\n")
+    return "".join(rows)
+
+
+def with_references(text: str) -> str:
+    return REFERENCES.sub(lambda match: match[1] + references() + match[2], text)
+
+
 def fix() -> None:
     for document in documents():
         text = document.read_text(encoding="utf-8")
@@ -91,7 +117,7 @@ def fix() -> None:
             place = found_again(match[1], int(match[2]), match[3])
             return f"`{place[0]}:{place[1]}`: `{match[3]}`" if place else match[0]
 
-        new = "".join(map(measured_numbers.renewed_paragraph, measured_numbers.paragraphs(QUOTE.sub(renewed, text))))
+        new = "".join(map(measured_numbers.renewed_paragraph, measured_numbers.paragraphs(QUOTE.sub(renewed, with_references(text)))))
         if new != text:
             document.write_text(new, encoding="utf-8")
             print(f"{document.relative_to(ROOT)}: brought up to date")
@@ -108,6 +134,11 @@ def quotes(document: Path) -> list[str]:
         elif int(line) not in here:
             errors.append(f"{path}: '{text}' is in line {here[0]}, not {line} (run tests/docs/check_docs.py --fix)")
     return errors
+
+
+def tables(document: Path) -> list[str]:
+    text = document.read_text(encoding="utf-8")
+    return [] if with_references(text) == text else ["the table of references is not that of the files (run tests/docs/check_docs.py --fix)"]
 
 
 def numbers(document: Path) -> list[str]:
@@ -178,6 +209,7 @@ def measured() -> list[str]:
     counters = (ROOT / "solvers/problem/work_counters.h").read_text(encoding="utf-8")
     fields |= set(re.findall(r"^  (?:std::int64_t|double) (\w+) = 0;", counters, re.MULTILINE))
     schema = json.loads((ROOT / "configs/result.schema.json").read_text(encoding="utf-8"))
+    fields = (fields | set(schema["definitions"]["point"]["properties"])) - {"best_at_error"}  # of older files
     statuses = set(schema["definitions"]["status"]["enum"])
     explained = set(BACKTICKS.findall((ROOT / "docs/measuring.md").read_text(encoding="utf-8")))
     return [f"docs/measuring.md does not explain `{name}`" for name in sorted((fields | statuses) - explained - {"error", "work"})]
@@ -187,7 +219,7 @@ def main() -> int:
     if "--fix" in sys.argv[1:]:
         fix()
     errors = [f"{document.relative_to(ROOT)}: {error}" for document in documents()
-              for check in (quotes, numbers, links, paths) for error in check(document)]
+              for check in (quotes, numbers, tables, links, paths) for error in check(document)]
     errors += named_documents() + measured()
     for error in errors:
         print(error)

@@ -20,6 +20,7 @@ NUMBER = re.compile(
 COMMENTED = re.compile(r"<!--.*?-->", re.DOTALL)
 UNITS = {"": 1, "s": 1, "ms": 1e-3, "%": 0.01}
 SURE = 3  # gaps of a reference
+LONGEST_STEP = 1 / 24  # s, a frame
 
 
 @dataclass(frozen=True)
@@ -81,12 +82,14 @@ def point_of(file: str, quantity: str, scene: str, place: float, contestant: str
         return min(found, key=seconds)
     sweep = "resolution" if quantity == "resolution" else "strain"
     axis = "vertices" if sweep == "resolution" else "strain_limit"
-    points = [p for p in points if p["sweep"] == sweep and p["best"] and math.isclose(p[axis], place)]
+    points = [p for p in points if p["sweep"] == sweep and math.isclose(p[axis], place) and p["step"] <= LONGEST_STEP * (1 + 1e-9)]
     if sweep == "strain":  # the largest size, as in figures
         points = [p for p in points if p["vertices"] == max(q["vertices"] for q in points)]
-    if not points or len(points) != len({p.get("contestant", p["solver"]) for p in points}):
-        raise LookupError(f"{len(points)} such points")
-    return min(points, key=seconds)
+    if not points:
+        raise LookupError("no such point")
+    of = {name: [p for p in points if p.get("contestant", p["solver"]) == name] for name in names}
+    # As analysis does: the point that the sweep marked, without a mark the fastest.
+    return min((min([p for p in own if p["best"]] or own, key=seconds) for own in of.values() if own), key=seconds)
 
 
 def measured(match: re.Match[str]) -> Value:

@@ -56,7 +56,7 @@ def point(solver: str, sweep: str = "strain", scene: str = "chain", vertices: in
           step: float = 0.01, seconds: float | None = 0.5, status: str = "ok", **more: Any) -> Json:
     timing = {"median": seconds, "q1": 0.9 * seconds, "q3": 1.2 * seconds} if seconds else None
     return {"sweep": sweep, "scene": scene, "solver": solver, "vertices": vertices, "strain_limit": limit, "step": step,
-            "status": status, "status_detail": "", "duration": 1.0, "adaptive": False, "best": False, "best_at_error": False,
+            "status": status, "status_detail": "", "duration": 1.0, "adaptive": False, "best": False,
             "scene_parameters": {"n": vertices, "gravity": 9.81, "duration": 1.0}, "work": {"steps": 100},
             "seconds_per_simulated_second": timing, "error": {"trajectory": 0.02, "gap": 1e-6, "valid_until": 1.0}, **more}
 
@@ -73,6 +73,34 @@ def strain_sweep(scene: str = "chain", solvers: tuple[str, ...] = ("fast_project
                 seconds = (place + 1) * 0.01 / limit**0.5
                 points.append(point(solver, scene=scene, limit=limit, seconds=seconds, best=True))
     return document(points, **suite)
+
+
+def two_questions() -> Json:
+    """SHAKE is fast and wrong at the coarse step, right at the fine one; Jacobi is never right. The analysis has a cell of any
+    motion and one of 2 %, and is what figures are drawn from."""
+    points = [point("shake", step=0.04, seconds=0.1, id="shake coarse", error={"trajectory": 0.2}),
+              point("shake", step=0.01, seconds=0.4, id="shake fine", error={"trajectory": 0.01}),
+              point("jacobi", step=0.04, seconds=0.2, id="jacobi coarse", error={"trajectory": 0.5}, best=True),
+              point("fast_projection", step=0.02, seconds=0.3, id="fast", error={"trajectory": 0.015})]
+
+    def entry(name: str, which: str, seconds: float, error: float) -> Json:
+        return {"contestant": name, "row": name, "hollow": False, "counts": True, "id": which, "seconds": seconds, "step": 0.01,
+                "error": error}
+
+    def cell(limit: float, level: float | None, entries: list[Json], lead: float | None) -> Json:
+        paper = next((e["row"] for e in entries if e["row"] != "icd"), None)
+        return {"strain_limit": limit, "error_level": level, "known_until": 1.0, "entries": entries, "clear": bool(lead),
+                "empty_because": "" if entries else "no run that was tried is right to 2 %", "first": entries[0]["row"] if entries else None,
+                "paper_best": paper, "lead_over_paper_best": {"value": lead, "low": None, "high": None} if lead else None}
+
+    cells = [cell(0.01, None, [entry("shake", "shake coarse", 0.1, 0.2), entry("jacobi", "jacobi coarse", 0.2, 0.5),
+                               entry("fast_projection", "fast", 0.3, 0.015)], None),
+             cell(0.01, 0.02, [entry("icd", "icd", 0.2, 0.012), entry("fast_projection", "fast", 0.3, 0.015),
+                               entry("shake", "shake fine", 0.4, 0.01)], 1.5),
+             cell(0.001, None, [], None), cell(0.001, 0.02, [], None)]
+    plane = {"scene": "chain", "sweep": "strain", "scene_parameters": {}, "resolution": 80, "vertices": 80,
+             "strain_limits": [0.01, 0.001], "error_levels": [None, 0.02], "cells": cells}
+    return {**document(points), "analysis": {"schema": "inextensible-analysis/1", "planes": [plane]}}
 
 
 def resolution_sweep(scene: str = "drape", solvers: tuple[str, ...] = ("fast_projection", "shake", "icd")) -> Json:

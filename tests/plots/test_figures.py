@@ -9,10 +9,10 @@ from matplotlib.patches import Rectangle
 
 import figures
 from documents import (STEPS, axes_with, curves, document, drawn, known_answers, legend_labels, marks, point, resolution_sweep, stability,
-                       step_sweep, strain_sweep, strips, texts_outside, words_of)
+                       step_sweep, strain_sweep, strips, texts_outside, two_questions, words_of)
 
 DOCUMENTS = {"strain": strain_sweep(), "resolution": resolution_sweep(), "step": step_sweep(), "stability": stability(),
-             "answers": known_answers()}
+             "answers": known_answers(), "two questions": two_questions()}
 
 
 def test_each_registered_figure_is_drawn_by_one_of_these_documents() -> None:
@@ -96,16 +96,42 @@ def test_warnings() -> None:
     assert "INCOMPLETE" in words_of(drawn({**strain_sweep(), "complete": False})["figure4a"])
 
 
-def test_equal_error_shows_only_runs_within_the_limit() -> None:
-    result = document([point("shake", limit=limit, best=True, best_at_error=True) for limit in (0.1, 0.01)] +
-                      [point("jacobi", limit=limit, best=True, error={"trajectory": 0.5}) for limit in (0.1, 0.01)],
-                      max_error=0.03)
+def test_the_two_questions_stand_side_by_side_with_one_legend() -> None:
+    pictures = drawn(two_questions())
+    assert list(pictures) == ["figure4a", "plane-chain"]
+    figure = pictures["figure4a"]
+    paper, ours = [axes for axes in figure.axes if axes.get_yscale() == "log" and not axes.get_xlabel()]
+    assert paper.get_ylim() == ours.get_ylim() and paper.get_position().x0 < ours.get_position().x0
+    chosen = [{line.get_color(): list(line.get_ydata()) for line in axes.lines} for axes in (paper, ours)]
+    assert chosen[0] == {"#009E73": [0.1], "#E69F00": [0.2], "#0072B2": [0.3]}, "the analysis chose, whatever the marks say"
+    assert chosen[1] == {"#009E73": [0.4], "#0072B2": [0.3]}
+    assert marks(strips(figure)[0]) == ["X"] and "X = trajectory error above the limit" in words_of(figure)
+    assert "any motion: the paper's question" in words_of(figure) and "error at most 2 % of the scene's size" in words_of(figure)
+    assert legend_labels(figure) == ["Jacobi strain limiting", "SHAKE", "fast projection"]
+    assert sum(axes.get_legend() is not None for axes in figure.axes) == 1
+
+
+def test_without_an_analysis_the_sweeps_own_marks_count() -> None:
+    result = document([point("shake", limit=limit, best=True, best_at_errors=[0.05, 0.02]) for limit in (0.1, 0.01)] +
+                      [point("icd", limit=limit, best=True, best_at_errors=[0.05]) for limit in (0.1, 0.01)])
     pictures = drawn(result)
-    assert list(pictures) == ["figure4a", "figure4a-equal-error"]
-    figure = pictures["figure4a-equal-error"]
-    assert "at a trajectory error of at most 3 %" in words_of(figure)
-    assert marks(strips(figure)[0]) == ["X", "X"] and "X = trajectory error above the limit" in words_of(figure)
-    assert strips(pictures["figure4a"]) == []
+    assert list(pictures) == ["figure4a"]
+    paper, ours = [axes for axes in pictures["figure4a"].axes if axes.get_yscale() == "log" and not axes.get_xlabel()]
+    assert (len(curves(paper)), len(curves(ours))) == (2, 1)
+
+
+def test_the_plane_has_the_fastest_and_its_lead_in_each_cell() -> None:
+    figure = drawn(two_questions())["plane-chain"]
+    words = words_of(figure)
+    assert "80 vertices: who is fastest within a strain and an error" in words
+    (axes,) = figure.axes
+    assert [label.get_text() for label in axes.get_xticklabels()] == ["any motion", "at most 2 %"]
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["1 %", "0.1 %"]
+    texts = [" ".join(text.get_text().split()) for text in axes.texts]
+    assert texts[:2] == ["SHAKE", "100 ms, off by 20 % one of the paper's six"]
+    assert texts[2:4] == ["ICD (implicit constraint direction)", "200 ms, off by 1.2 % 1.5 x: fast projection"]
+    assert texts[4:] == ["no run that was tried is right to 2 %"] * 2
+    assert [text.get_fontweight() for text in axes.texts[:4:2]] == ["normal", "bold"]
 
 
 def test_adaptive_steps_are_means() -> None:
@@ -129,25 +155,15 @@ def test_who_does_not_compete_needs_no_best_and_has_no_failures() -> None:
 
 # ---- cost over resolution, growth -----------------------------------------------------------------------------------
 
-def test_cost_over_resolution_is_drawn_on_linear_and_on_log_axes() -> None:
+def test_cost_over_resolution() -> None:
     figure = drawn(resolution_sweep())["figure5b"]
-    linear, steps = axes_with(figure, "vertices (linear axes)"), axes_with(figure, "vertices (log axes")
-    assert (linear.get_xscale(), linear.get_yscale()) == ("linear", "linear")
-    (log,) = [axes for axes in figure.axes if axes.get_shared_x_axes().joined(axes, steps) and axes is not steps
-              and axes.get_yscale() == "log"]
-    assert log.get_xscale() == "log"
-    assert len(curves(linear)) == len(curves(log)) == 3
+    steps = axes_with(figure, "vertices (dotted: slopes 1 and 2)")
+    (main,) = [axes for axes in figure.axes if axes.get_shared_x_axes().joined(axes, steps) and axes is not steps]
+    assert (main.get_xscale(), main.get_yscale()) == ("log", "log")
+    assert len(curves(main)) == 3
     assert legend_labels(figure) == ["SHAKE", "ICD (implicit constraint direction)", "fast projection"]
-    assert [marks(strip) for strip in strips(figure)][1] == ["N"]
+    assert [marks(strip) for strip in strips(figure)] == [["N"]]
     assert "permissible strain 1 %" in words_of(figure) and "100 to 1,600 vertices" in words_of(figure)
-
-
-def test_a_point_above_the_linear_axes_has_an_arrow_with_its_value() -> None:
-    result = resolution_sweep(solvers=("fast_projection", "shake"))
-    result["points"] += [point("jacobi", "resolution", "drape", vertices, seconds=9000.0, best=True) for vertices in (100, 400)]
-    (strip,) = strips(drawn(result)["figure5b"])  # of the linear panel; the log one holds all points
-    assert marks(strip) == ["\u2191 9e+03 s", "\u2191"]
-    assert strip.get_title(loc="right").endswith("(\u2191)")
 
 
 def test_growth_has_slopes_in_its_legend() -> None:

@@ -176,6 +176,7 @@ TEST(Claims, C15AsksForSmallerAndCheaperStepsOfRunsThatHoldTheirEnergy) {
 TEST(Claims, FailuresAndPointsThatAreNotBestDoNotCount) {
   json slow = point("chain", "strain", "implicit_springs", 0.01, 80, 0.02, 0.001);
   slow["best"] = false;
+  slow["best_at_errors"] = json::array();
   json failed = point("chain", "strain", "fast_projection", 0.01, 80, 0.02, 0.1);
   failed["status"] = "not_converged";
   const ClaimVerdict c3 = verdict(

@@ -90,8 +90,8 @@ TEST(ResultsPage, ASolverStandsThereWithTheFasterOfItsTunedAndUntunedSettings) {
 
 TEST(ResultsPage, StepsAtTheLaddersEndSaySo) {
   const std::string text = page(sweep(0.01));
-  has(text, "| `icd` | 1/100 (coarsest) |");
-  has(text, "| `fast_projection` | 1/100 |");
+  has(text, "| `icd` | 1/100 (coarsest), 1 % |");
+  has(text, "| `fast_projection` | 1/100, 1 % |");
 }
 
 TEST(ResultsPage, StrainsFilterEnergyAndFailuresStandBesideTheRanking) {

@@ -51,9 +51,9 @@ refused "is not JSON" --sweep strain --config suite.json --out out.json
 echo 'a file' >blocked
 refused "cannot make the folder" --sweep strain --profile quick --out blocked/result.json
 refused "did you mean 'solvers'" list solver
-refused "--max-error needs references, missing: chain-n7" --sweep strain --profile quick --scene chain --out out.json --max-error 0.02 \
+refused "--finest-error needs references, missing: chain-n7" --sweep strain --profile quick --scene chain --out out.json --finest-error 0.02 \
   --config <(echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1], "scene_parameters": {"n": 7}}]}')
-refused "--max-error" "${sweep[@]}" --max-error -1
+refused "--finest-error" "${sweep[@]}" --finest-error -1
 refused "cannot read the result file" claims missing.json
 echo '{"schema": "another"}' >other.json
 refused "is not a result file" claims other.json
@@ -194,7 +194,7 @@ refused "no solver 'fast'" "${sweep[@]}" --solver 'fast|shake|icd'
 for number in nan inf -1 0 x 1e999; do
   refused "must be a number" "${sweep[@]}" --timeout $number
   refused "must be a number" "${sweep[@]}" --rel-ci $number
-  refused "must be a number" "${sweep[@]}" --max-error $number
+  refused "must be a number" "${sweep[@]}" --finest-error $number
 done
 refused "--memory" "${sweep[@]}" --memory -1
 long=$(head -c 100000 /dev/zero | tr '\0' '(')

@@ -42,7 +42,7 @@ refused "not a regular expression" slurm --shards 2 "${sweep[@]}" --filter '('
 refused "cannot read the suite" slurm --shards 2 --sweep strain --config missing.json
 refused "--reps" slurm --shards 2 "${sweep[@]}" --reps 0
 echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1], "scene_parameters": {"n": 7}}]}' >suite.json
-refused "--max-error needs references" slurm --shards 1 --sweep strain --max-error 0.02 --config suite.json
+refused "--finest-error needs references" slurm --shards 1 --sweep strain --finest-error 0.02 --config suite.json
 refused "will not be there" slurm --shards 1 --sweep strain --config <(cat suite.json)
 refused "--jobs goes with emit parallel" slurm --shards 2 "${sweep[@]}" --jobs 2
 refused "go with emit slurm" parallel --shards 2 "${sweep[@]}" --time 01:00:00

@@ -54,36 +54,59 @@ Measures judged(const Scene& scene, std::shared_ptr<const Reference> reference, 
   return judge.finish();
 }
 
-TEST(Judge, CountsSamplesAtWhichTheReferenceIsSureEnough) {
+// However far off a run is, its error is over the sample times at which 3 gap is at most the level.
+TEST(Judge, CountsTheSameSampleTimesForAllRuns) {
   const Scene scene = small_chain();
   const auto reference = falling(scene);
-  // 0.01 m is above three gaps at the first two samples only.
-  const Measures found = judged(scene, reference, 1, 0.01);
-  EXPECT_EQ(found.error_samples, 2);
-  EXPECT_DOUBLE_EQ(found.error_until, 0.08);
-  EXPECT_NEAR(found.trajectory, 0.01, 1e-12);
-  EXPECT_NEAR(found.trajectory_max, 0.01, 1e-12);
-  EXPECT_NEAR(found.gap, 0.001, 1e-12);
-  ASSERT_EQ(found.error_series.size(), 5u);
-  EXPECT_NEAR(trajectory_within(found, 0.02), 0.01, 1e-12);
-  EXPECT_TRUE(std::isnan(trajectory_within(found, 0.002))) << "no sample is that sure";
-  // 0.4 m is above three gaps at all.
-  EXPECT_EQ(judged(scene, reference, 1, 0.4).error_samples, 5);
-  // 0.002 m at none: all that is known is that it is below.
-  const Measures accurate = judged(scene, reference, 1, 0.002);
-  EXPECT_EQ(accurate.error_samples, 0);
-  EXPECT_LT(accurate.trajectory, 3 * accurate.gap);
+  for (const double off : {0.4, 0.01, 0.002, 1e-5}) {
+    const Measures found = judged(scene, reference, 1, off);
+    EXPECT_EQ(found.error_samples, 2) << off;
+    EXPECT_EQ(found.error_samples, reference->samples_at(headline_error));
+    EXPECT_DOUBLE_EQ(found.error_until, 0.08);
+    EXPECT_NEAR(found.trajectory, off, 1e-12);
+    EXPECT_NEAR(found.trajectory_max, off, 1e-12);
+    EXPECT_NEAR(found.gap, 0.001, 1e-12);
+    EXPECT_EQ(found.unknown_because, "");
+    ASSERT_EQ(found.error_series.size(), 5u);
+    EXPECT_NEAR(error_at(found, 0.003).distance, off, 1e-12);
+    EXPECT_EQ(error_at(found, 0.31).samples, 5) << "a looser level has more samples";
+    EXPECT_NEAR(error_at(found, 0.31).distance, off, 1e-12);
+    EXPECT_TRUE(std::isnan(error_at(found, 0.002).distance)) << "no sample is that sure";
+    EXPECT_FALSE(within_error(found, 0.002));
+    EXPECT_EQ(within_error(found, 0.02), off <= 0.02);
+    EXPECT_TRUE(within_error(found, any_motion));
+  }
 }
 
-TEST(Judge, ReportsNoErrorAgainstAReferenceThatHasNotConverged) {
+TEST(Judge, SaysWhyThereIsNoError) {
   const Scene scene = small_chain();
   const auto reference = falling(scene);
-  reference->observed_order = 0.9;  // of 2
-  const Measures found = judged(scene, reference, 1, 0.4);
-  EXPECT_TRUE(std::isnan(found.trajectory));
-  EXPECT_EQ(found.error_samples, 0);
-  EXPECT_NEAR(found.moved, std::sqrt(0.04 * 0.04 * 11 + 0.4 * 0.4) / std::sqrt(0.04 * 0.04 * 11),
-              1e-12);  // mean of k^2 over 1 ... 5 is 11
+  reference->gap.assign(5, 0.01);
+  EXPECT_EQ(judged(scene, reference, 1, 0.4).unknown_because,
+            "the reference is not sure to 2 % at any sample time");
+  EXPECT_TRUE(std::isnan(judged(scene, reference, 1, 0.4).trajectory));
+  EXPECT_EQ(judged(scene, nullptr, 1, 0.4).unknown_because,
+            "no reference of this scene, size and parameters");
+  reference->gap.assign(5, 0.001);
+  Judge::Options options;
+  options.reference = reference;
+  Judge judge(scene, options);
+  State state = scene.start;
+  judge.before(state, 0.04);
+  state.time = 0.04;
+  judge.after(state.x, state, 0.04);
+  const Measures cut = judge.finish();  // after one of five samples
+  EXPECT_TRUE(std::isnan(cut.trajectory));
+  EXPECT_EQ(cut.unknown_because,
+            "the run ended after 1 of 5 samples at which the reference is sure to 2 %");
+}
+
+// What an observed order tells is no verdict on the reference.
+TEST(Judge, AnObservedOrderDoesNotSwitchErrorsOff) {
+  const Scene scene = small_chain();
+  const auto reference = falling(scene);
+  reference->observed_order = 0.5;  // of 2
+  EXPECT_NEAR(judged(scene, reference, 1, 0.4).trajectory, 0.4, 1e-12);
 }
 
 TEST(Judge, MeasuresHowFarARunHasMoved) {

@@ -43,6 +43,10 @@ class Random {
     fill(number, false);
     value["a number"] = number;
   }
+  void fill(std::vector<double>& numbers, bool) {
+    numbers.resize(generator_() % 4);
+    for (double& value : numbers) fill(value, false);
+  }
   void fill(std::vector<FrameTime>& rates, bool) {
     rates.resize(1 + generator_() % 3);
     for (FrameTime& at : rates)

@@ -211,41 +211,128 @@ TEST(StepSweep, RunsTheWholeLadderAndRepeatsEveryPointThatWorks) {
   }
 }
 
-// The trajectory error of the fake solver is its step times `slope`; 1 % is 10 times as wrong.
-SweepRunners erring(SweepRunners runners, double slope) {
-  runners.run = [slope, run = runners.run](const PointSpec& spec, const RunLimits& limits,
-                                           std::optional<double> guess) {
+// The error of the fake solver is its step times `slope`; 1 % is 10 times as wrong. The reference
+// is exact, or sure to a third of `sure_to`.
+SweepRunners erring(SweepRunners runners, double slope, double sure_to = 0) {
+  runners.run = [=, run = runners.run](const PointSpec& spec, const RunLimits& limits,
+                                       std::optional<double> guess) {
     PointResult point = run(spec, limits, guess);
-    point.measures.trajectory = slope * spec.step * (spec.strain_limit < 0.05 ? 10 : 1);
+    const double error = slope * spec.step * (spec.strain_limit < 0.05 ? 10 : 1);
+    point.measures.error_series = {{0.5, error, error, sure_to / sure_gaps, 0}};
     return point;
   };
   return runners;
 }
 
-TEST(ErrorLimit, IsRespectedByASecondBestPointBesideTheFirst) {
-  Suite suite = one_family();
-  suite.max_error = 1.0 / 1000;
+bool has_level(const PointResult& point, double level) {
+  const auto& levels = point.best_at_errors;
+  return std::find(levels.begin(), levels.end(), level) != levels.end();
+}
+
+TEST(ErrorLevels, EachHasItsFastestStepBesideTheOneOfAnyMotion) {
+  const Suite suite = one_family();
   std::vector<double> steps;
-  const auto outcome = run_sweep(suite, plan(suite, {}), {}, erring(fake(1.0 / 200, 1, &steps), 1));
-  // Fastest within 1/1000: 1/1600 at 10 % (the first of the ladder that is), none at 1 % whose
-  // error at the finest step, 10/6400, is still too large.
-  for (const auto& point : outcome.points) {
-    EXPECT_EQ(point.best, std::abs(point.spec.step - 1.0 / 200) < 1e-9) << point.spec.id();
-    EXPECT_EQ(point.best_at_error,
-              point.spec.strain_limit > 0.05 && std::abs(point.spec.step - 1.0 / 1600) < 1e-9)
+  const auto outcome = run_sweep(suite, plan(suite, {}), {}, erring(fake(1.0 / 100, 1, &steps), 1));
+  // At 10 % the error is the step: 1/100 s is right to 1 % and fastest, 1/200 s the coarsest that
+  // is to 0.5 %. At 1 % it is ten steps: 1/100 s is right to 10 %, 1/200 s to 5 %, 1/800 s to 2 %,
+  // 1/1600 s to 1 %, and 1/3200 s to 0.5 %.
+  const std::map<double, double> wanted{
+      {0.1, 100}, {0.05, 200}, {0.02, 800}, {0.01, 1600}, {0.005, 3200}};
+  for (const PointResult& point : outcome.points) {
+    const auto at = [&](double n) { return std::abs(point.spec.step * n - 1) < 1e-9; };
+    EXPECT_EQ(point.best, at(100)) << point.spec.id();
+    for (const auto& [level, n] : wanted) {
+      const double tenth = point.spec.strain_limit > 0.05 ? (level < 0.01 ? 200 : 100) : n;
+      EXPECT_EQ(has_level(point, level), at(tenth)) << point.spec.id() << " at " << level;
+    }
+    EXPECT_EQ(point.samples.size(), point.best || !point.best_at_errors.empty() ? 3u : 1u)
         << point.spec.id();
-    EXPECT_EQ(point.samples.size(), point.best || point.best_at_error ? 3u : 1u);
   }
-  // No step is run twice for the second search.
+  // No step is run twice for several levels.
   EXPECT_EQ(steps.size(), outcome.points.size());
 }
 
-TEST(ErrorLimit, AnErrorThatIsNotKnownIsNoErrorBelowTheLimit) {
-  Suite suite = one_family();
-  suite.max_error = 1;
+// The steps that a search of one limit runs, as 1/n s.
+std::vector<int> steps_run(Suite suite, const SweepRunners& runners) {
+  suite.sweeps[0].limits = {0.1};
+  std::vector<int> steps;
+  for (const PointResult& point : run_sweep(suite, plan(suite, {}), {}, runners).points)
+    steps.push_back(static_cast<int>(std::lround(1 / point.spec.step)));
+  return steps;
+}
+
+// With a clock by which each halving takes `factor` times as long.
+SweepRunners slowing(double factor) {
+  SweepRunners runners = fake(1, 1, nullptr);
+  runners.run = [=, run = runners.run](const PointSpec& spec, const RunLimits& limits,
+                                       std::optional<double> guess) {
+    PointResult point = run(spec, limits, guess);
+    point.samples = {std::pow(factor, std::log2(0.04 / spec.step))};
+    if (point.samples[0] > limits.hopeless) {
+      point.status = PointStatus::timeout;
+      point.samples.clear();
+    }
+    return point;
+  };
+  return runners;
+}
+
+TEST(ErrorLevels, TheSearchGoesOnUntilTheFinestIsMet) {
+  const Suite suite = one_family();
+  // Time rises from the first step on. 0.5 % is reached at 1/800 s: one more step shows that it
+  // does not get faster.
+  EXPECT_EQ(steps_run(suite, erring(slowing(1.3), 4)),
+            (std::vector<int>{25, 50, 100, 200, 400, 800, 1600}));
+  // A suite that asks for 2 % alone ends there; without an error to be told, after two rises.
+  Suite coarse = suite;
+  coarse.finest_error = 0.02;
+  EXPECT_EQ(steps_run(coarse, erring(slowing(1.3), 4)), (std::vector<int>{25, 50, 100, 200, 400}));
+  EXPECT_EQ(steps_run(suite, slowing(1.3)), (std::vector<int>{25, 50, 100}));
+  coarse.finest_error = 1;
+  EXPECT_EQ(steps_run(coarse, erring(slowing(1.3), 4)), (std::vector<int>{25, 50, 100}));
+  // A reference that is sure to 2 % only has no finer level to be met.
+  EXPECT_EQ(steps_run(suite, erring(slowing(1.3), 4, 0.02)),
+            (std::vector<int>{25, 50, 100, 200, 400}));
+}
+
+TEST(ErrorLevels, TheSearchEndsWhereTimeHasRisenTenfold) {
+  const Suite suite = one_family();
+  // 1, 1.5, 2.25, 3.4, 5.1, 7.6, 11.4 s: the last is stopped.
+  EXPECT_EQ(steps_run(suite, erring(slowing(1.5), 1000)),
+            (std::vector<int>{25, 50, 100, 200, 400, 800, 1600}));
+  EXPECT_EQ(steps_run(suite, erring(slowing(4), 1000)), (std::vector<int>{25, 50, 100}));
+  // A step that meets the next level is not compared with a fast one of a wrong motion: 16 % at 1
+  // s, 0.5 % at 243 s.
+  EXPECT_EQ(steps_run(suite, erring(slowing(3), 4)),
+            (std::vector<int>{25, 50, 100, 200, 400, 800, 1600}));
+}
+
+TEST(ErrorLevels, TheSearchEndsWhereTheErrorStaysOrRunsFail) {
+  const Suite suite = one_family();
+  SweepRunners staying = slowing(1.1);
+  staying.run = [run = staying.run](const PointSpec& spec, const RunLimits& limits,
+                                    std::optional<double> guess) {
+    PointResult point = run(spec, limits, guess);
+    const double error = 0.2 + 0.01 * spec.step;  // falls, to what slack leaves
+    point.measures.error_series = {{0.5, error, error, 0, 0}};
+    return point;
+  };
+  EXPECT_EQ(steps_run(suite, staying), (std::vector<int>{25, 50, 100}));
+  SweepRunners failing = erring(slowing(1.1), 1000);
+  failing.run = [run = failing.run](const PointSpec& spec, const RunLimits& limits,
+                                    std::optional<double> guess) {
+    PointResult point = run(spec, limits, guess);
+    if (spec.step < 0.015) point.status = PointStatus::energy_gained;
+    return point;
+  };
+  EXPECT_EQ(steps_run(suite, failing), (std::vector<int>{25, 50, 100, 200}));
+}
+
+TEST(ErrorLevels, AnErrorThatIsNotKnownIsNoErrorWithinALevel) {
+  const Suite suite = one_family();
   const auto outcome =
       run_sweep(suite, plan(suite, {}), {}, erring(fake(1.0 / 200, 1, nullptr), std::nan("")));
-  for (const auto& point : outcome.points) EXPECT_FALSE(point.best_at_error);
+  for (const auto& point : outcome.points) EXPECT_TRUE(point.best_at_errors.empty());
 }
 
 TEST(Plan, RefusesFiltersThatLeaveNothing) {

@@ -189,7 +189,7 @@ TEST(Tune, FindsBestStepsThatLieFarApart) {
   runners.run = [](const PointSpec& spec, const RunLimits& limits, std::optional<double>) {
     const bool tuned = spec.settings.contains("relaxation") &&
                        std::get<double>(spec.settings.at("relaxation")) > 1.5;
-    const double off = std::log2(spec.step * (tuned ? 10 : 200));
+    const double off = std::log2(spec.step * (tuned ? 25 : 250));
     PointResult point;
     point.spec = spec;
     const double seconds = (tuned ? 0.1 : 1) * (1 + off * off);
@@ -204,7 +204,7 @@ TEST(Tune, FindsBestStepsThatLieFarApart) {
       tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 60}}, runners);
   ASSERT_TRUE(entry.settings.contains("relaxation"));
   EXPECT_GT(std::get<double>(entry.settings.at("relaxation")), 1.5);
-  const double off = std::log2(200.0 / 160);  // of the ladder's step next to 1/200 s
+  const double off = std::log2(250.0 / 200);  // of the ladder's step next to 1/250 s
   EXPECT_NEAR(entry.gain, 10 * (1 + off * off), 1e-6);
 }
 

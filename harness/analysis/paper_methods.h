@@ -1,10 +1,10 @@
-// The paper's methods, by the names that they have here: the one place of the claims that knows
-// solvers by name.
+// The paper's methods, by the names that they have here: the one place of analysis and claims that
+// knows solvers by name.
 #pragma once
 
 #include <array>
 
-namespace harness::claims {
+namespace harness::analysis {
 
 struct PaperMethod {
   const char* name;  // of the contestant in result files, and of the solver
@@ -18,4 +18,4 @@ inline constexpr PaperMethod implicit_springs{"implicit_springs", "implicit spri
 inline constexpr std::array all_paper_methods{implicit_springs, jacobi, gauss_seidel, shake, icd,
                                               fast_projection};
 
-}  // namespace harness::claims
+}  // namespace harness::analysis

@@ -1,0 +1,195 @@
+#include "harness/analysis/plane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "harness/analysis/paper_methods.h"
+#include "harness/base/in_order.h"
+#include "harness/base/text.h"
+#include "harness/points/suite.h"
+
+namespace harness::analysis {
+
+using nlohmann::json;
+
+namespace {
+
+bool may_answer(const Point& p) {
+  return p.ok() && p.timed() && p.number("step") <= longest_step * (1 + 1e-9);
+}
+
+std::string level_text(double level) { return number_text(100 * level) + " %"; }
+
+// Why nobody entries: the first of the reasons that holds of all.
+std::string why_empty(const std::vector<const Point*>& here, double level, double known_until) {
+  const auto any = [&](auto has) { return std::any_of(here.begin(), here.end(), has); };
+  if (!any([](const Point* p) { return may_answer(*p); })) return "no run keeps the strain limit";
+  if (known_until > 0) return "no run that was tried is right to " + level_text(level);
+  const auto has = [&](const char* key) {
+    return any([key](const Point* p) {
+      const auto place = p->document().at("error").find(key);
+      return place != p->document().at("error").end() && !place->empty();  // null is empty
+    });
+  };
+  if (!has("reference")) return "there is no reference";
+  return has("error_series") ? "the reference is not sure to " + level_text(level)
+                             : "the file has no errors";
+}
+
+// A hollow contestant and its solver are one row, of which the fastest counts.
+void rank(std::vector<Entry>& entries) {
+  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.point.seconds() < b.point.seconds();
+  });
+  std::vector<std::string> rows;
+  for (Entry& entry : entries) {
+    if (entry.role.again || !entry.role.competes) continue;
+    entry.counts = std::find(rows.begin(), rows.end(), entry.row) == rows.end();
+    rows.push_back(entry.row);
+  }
+}
+
+Cell cell_of(const std::vector<const Point*>& here, double limit, double level, const Cast& cast) {
+  Cell cell;
+  cell.strain_limit = limit;
+  cell.level = level;
+  for (const Point* p : here) {
+    const ErrorAtLevel error = p->error_at(level);
+    if (error.samples > 0 && std::isfinite(error.until))
+      cell.known_until = std::max(cell.known_until, error.until);
+  }
+  for (const std::string& name : in_order(here, [](const Point* p) { return p->contestant(); })) {
+    std::vector<const Point*> own;
+    for (const Point* p : here) {
+      if (p->contestant() == name) own.push_back(p);
+    }
+    const Point* entry = fastest_of(own, level);
+    if (!entry) continue;
+    cell.entries.push_back({cast.of(name), cast.at_any_settings(name), false, *entry,
+                            entry->error_at(level).distance});
+  }
+  rank(cell.entries);
+  if (!cell.first()) cell.empty_because = why_empty(here, level, cell.known_until);
+  return cell;
+}
+
+// Down to the finest one that the file's sweep went on for.
+std::vector<double> levels_in(const json& document) {
+  const json suite = document.value("context", json::object()).value("suite", json::object());
+  const double finest = suite.value("finest_error", answer_levels.back());
+  std::vector<double> levels{any_motion};
+  for (const double level : answer_levels) {
+    if (level >= finest) levels.push_back(level);
+  }
+  return levels;
+}
+
+Plane plane_of(const std::vector<const Point*>& points, const json& document, const Cast& cast) {
+  const Point& one = *points.front();
+  Plane plane;
+  plane.scene = one.text("scene");
+  plane.sweep = one.text("sweep");
+  plane.scene_parameters = one.document().value("scene_parameters", json::object());
+  plane.resolution = static_cast<int>(one.number("resolution"));
+  plane.vertices = static_cast<int>(one.number("vertices"));
+  plane.limits = in_order(points, [](const Point* p) { return p->number("strain_limit"); });
+  std::sort(plane.limits.rbegin(), plane.limits.rend());
+  plane.levels = levels_in(document);
+  for (const double limit : plane.limits) {
+    std::vector<const Point*> here;
+    for (const Point* p : points) {
+      if (p->number("strain_limit") == limit) here.push_back(p);
+    }
+    for (const double level : plane.levels)
+      plane.cells.push_back(cell_of(here, limit, level, cast));
+  }
+  return plane;
+}
+
+}  // namespace
+
+const Point* fastest_of(const std::vector<const Point*>& points, double level) {
+  const Point* best = nullptr;
+  for (const bool marked : {true, false}) {
+    for (const Point* p : points) {
+      if (!may_answer(*p) || (marked && !p->marked_best(level))) continue;
+      if (best && p->seconds() >= best->seconds()) continue;
+      if (p->within_error(level)) best = p;
+    }
+    if (best) return best;
+  }
+  return nullptr;
+}
+
+const Entry* Cell::counting(std::size_t place) const {
+  for (const Entry& entry : entries) {
+    if (entry.counts && place-- == 0) return &entry;
+  }
+  return nullptr;
+}
+
+const Entry* Cell::next_family() const {
+  const Entry* best = first();
+  for (const Entry& entry : entries) {
+    if (entry.counts && entry.role.family != best->role.family) return &entry;
+  }
+  return nullptr;
+}
+
+const Entry* Cell::paper_best() const {
+  for (const Entry& entry : entries) {
+    const bool of_paper =
+        std::any_of(all_paper_methods.begin(), all_paper_methods.end(),
+                    [&](const PaperMethod& method) { return entry.row == method.name; });
+    if (entry.counts && of_paper) return &entry;
+  }
+  return nullptr;
+}
+
+bool Cell::clear() const {
+  const Entry* best = first();
+  if (!best || !counting(1)) return false;
+  return std::all_of(entries.begin(), entries.end(), [&](const Entry& other) {
+    return &other == best || !other.counts || ratio(other.point, best->point).above(1);
+  });
+}
+
+std::optional<Ratio> Cell::lead_over(const Entry* other) const {
+  const Entry* best = first();
+  if (!best || !other || other == best) return std::nullopt;
+  return ratio(other->point, best->point);
+}
+
+const Cell& Plane::cell(double limit, double level) const {
+  for (const Cell& cell : cells) {
+    if (cell.strain_limit == limit && cell.level == level) return cell;
+  }
+  throw std::out_of_range("no such cell");
+}
+
+std::vector<Plane> planes_of(const json& document) {
+  const Cast cast(document);
+  const double noise = pair_noise_of(document);
+  std::vector<Point> points;
+  for (const json& p : document.at("points")) {
+    if (!p.value("adaptive", false)) points.emplace_back(p, noise);
+  }
+  const auto place_of = [](const Point& p) {
+    return std::tuple(p.text("scene"), p.text("sweep"),
+                      p.document().value("scene_parameters", json::object()).dump(),
+                      p.number("vertices"));
+  };
+  std::vector<Plane> planes;
+  for (const auto& place : in_order(points, place_of)) {
+    std::vector<const Point*> here;
+    for (const Point& p : points) {
+      if (place_of(p) == place) here.push_back(&p);
+    }
+    planes.push_back(plane_of(here, document, cast));
+  }
+  return planes;
+}
+
+}  // namespace harness::analysis

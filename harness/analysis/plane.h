@@ -1,0 +1,63 @@
+// The question of docs/measuring.md, answered from a result file: who is fastest such that no edge
+// is strained by more than a limit and the motion is right to within a level of error. Computed
+// here once; tables, figures and pages print it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/analysis/measured_point.h"
+
+namespace harness::analysis {
+
+// The run that stands for a contestant at a strain limit and a level of error (any_motion:
+// whatever its error): the one that its sweep marked, in files without such marks the fastest. Only
+// runs that kept their limit count, with steps of a frame at most. points: of one contestant,
+// scene, size and limit. Null: none.
+const Point* fastest_of(const std::vector<const Point*>& points, double level);
+
+// What stands for one contestant in a cell.
+struct Entry {
+  Role role;
+  std::string row;      // whose row it stands in: a hollow contestant's is its solver's
+  bool counts = false;  // the fastest of its row; not of the second of an A/A pair
+  Point point;
+  double error = unknown;  // at the cell's level; of any motion at the headline's
+};
+
+// Of a strain limit and a level of error.
+struct Cell {
+  double strain_limit = 0, level = any_motion;
+  std::vector<Entry> entries;  // fastest first
+  double known_until = 0;      // s: the last sample time of the level; 0: errors are not known
+  std::string empty_because;   // why there is no entry; "" if there is one
+
+  // Below, null: there is none.
+  const Entry* first() const { return counting(0); }
+  const Entry* counting(std::size_t place) const;  // 0: the fastest of those that count
+  const Entry* next_family() const;                // the fastest of another family than the first
+  const Entry* paper_best() const;                 // the fastest of the paper's six methods
+  // Whether the first is faster than every other one that counts, beyond the noise.
+  bool clear() const;
+  // Times over the first's.
+  std::optional<Ratio> lead_over(const Entry* other) const;
+};
+
+// Of a scene and size in one kind of sweep.
+struct Plane {
+  std::string scene, sweep;
+  nlohmann::json scene_parameters;
+  int resolution = 0, vertices = 0;
+  std::vector<double> limits;  // loose to tight
+  std::vector<double> levels;  // any_motion, then loose to tight
+  std::vector<Cell> cells;     // by limit, then by level
+
+  const Cell& cell(double limit, double level) const;
+};
+
+// In the document's order. The document must outlive them. Runs with a step controller do not take
+// part.
+std::vector<Plane> planes_of(const nlohmann::json& document);
+
+}  // namespace harness::analysis

@@ -1,0 +1,12 @@
+// The analysis of a result file as JSON, schema inextensible-analysis/1: `bench show --json`, and
+// what figures are drawn from.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+namespace harness::analysis {
+
+// document: of schema inextensible-bench/1.
+nlohmann::json analysis_of(const nlohmann::json& document);
+
+}  // namespace harness::analysis

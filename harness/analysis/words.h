@@ -1,0 +1,14 @@
+// Numbers as tables and pages say them.
+#pragma once
+
+#include <string>
+
+#include "harness/base/statistics.h"
+
+namespace harness::analysis {
+
+std::string percent(double fraction);  // "1.2 %"
+// "3.5 (3.3-3.8)" with its 95 % interval; "3.5 (?)": it is not known.
+std::string text(const Ratio& ratio);
+
+}  // namespace harness::analysis

@@ -1,0 +1,43 @@
+// A reference is made in pieces: each run of a route is kept as soon as it is done, in a journal
+// beside the reference's file, so that a computation that was stopped goes on with the next run.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "harness/base/line_journal.h"
+#include "harness/scenes/scene.h"
+
+namespace harness {
+
+// Of one route at one step from one start.
+struct RouteRun {
+  std::vector<inextensible::Positions> path;  // at the sample times, up to where it fails
+  double energy_drift = 0;  // over weight times size, where the scene conserves energy
+};
+
+// Gives the run of a name: a kept one, or what `compute` returns.
+using KeepRun = std::function<const RouteRun&(const std::string& name,
+                                              const std::function<RouteRun()>& compute)>;
+
+class ReferencePieces {
+ public:
+  // out: the reference's file. header: what the runs depend on; kept runs of another one are
+  // dropped. Throws UsageError if another process computes this reference.
+  ReferencePieces(const std::string& out, nlohmann::json header);
+
+  const RouteRun& run(const std::string& name, const std::function<RouteRun()>& compute);
+  std::size_t taken_up() const { return taken_up_; }  // runs of an earlier process
+  bool dropped() const { return dropped_; }           // there were some, of another header
+  void remove() { journal_.remove(); }                // the reference is written
+
+ private:
+  LineJournal journal_;
+  std::map<std::string, RouteRun> known_;  // references to its entries stay valid
+  std::size_t taken_up_ = 0;
+  bool dropped_ = false;
+};
+
+}  // namespace harness

@@ -1,0 +1,110 @@
+#include "harness/judge/route_runs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "harness/base/errors.h"
+#include "harness/base/text.h"
+#include "inextensible/registry.h"
+#include "inextensible/systems/constrained_acceleration.h"
+
+namespace harness {
+
+using inextensible::Positions;
+
+namespace {
+
+constexpr double parted = 1e-2;  // gap at which a reference ends, over the scene's size
+
+// A backend's path at the sample times, up to where it fails; h divides the sample interval.
+Path follow(const Scene& scene, const inextensible::State& start, const Route& route, double h,
+            const std::vector<double>& times, const Tell& tell) {
+  const std::string& solver = route.solver;
+  const auto stepper = inextensible::make_stepper(solver, scene.problem, {route.limit, 1, {}});
+  const bool half =
+      inextensible::find_backend(solver)->velocities == inextensible::Velocities::half_step;
+  inextensible::State state =
+      half ? inextensible::start_half_step_back(*scene.problem, start, h) : start;
+  const auto per_sample = std::lround(sample_interval / h);
+  Path path;
+  tell(solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ...");
+  for (const double time : times) {
+    for (long i = 0; i < per_sample; ++i) {
+      const auto result = stepper->advance(state, h);
+      if (!result) {
+        tell(solver + ", h = 1/" + number_text(std::round(1 / h)) +
+             " s stopped before t = " + number_text(time) +
+             " s: " + inextensible::to_string(result.status) + ", " + result.detail);
+        return path;
+      }
+    }
+    path.push_back(state.x);
+  }
+  return path;
+}
+
+}  // namespace
+
+const Path& kept_path(const Task& task, const inextensible::State& from, int start,
+                      const Route& route, double h, std::size_t samples) {
+  const std::string name = route.solver + ", strain limit " + number_text(route.limit) + ", step " +
+                           number_text(h, 17) + " s, start " + std::to_string(start) + ", " +
+                           std::to_string(samples) + " samples";
+  const std::vector<double> times(task.r.times.begin(),
+                                  task.r.times.begin() + static_cast<std::ptrdiff_t>(samples));
+  return task
+      .keep(name,
+            [&] {
+              return RouteRun{follow(task.scene, from, route, h, times, task.tell), 0};
+            })
+      .path;
+}
+
+const Path& path_of(const Task& task, const Route& route, double h) {
+  return kept_path(task, task.scene.start, 0, route, h, task.r.times.size());
+}
+
+const Path& path_to_the_end(const Task& task, const Route& route, double h) {
+  const Path& path = path_of(task, route, h);
+  if (path.size() < task.r.times.size())
+    throw UsageError("no reference: " + route.solver + " with h = " + number_text(h) +
+                     " s fails before t = " + number_text(task.r.times[path.size()]) +
+                     " s (a smaller --finest may help)");
+  return path;
+}
+
+Path extrapolated(const Path& coarse, const Path& fine, int order) {
+  Path path;
+  const double factor = 1 / (std::pow(2.0, order) - 1);
+  for (std::size_t i = 0; i < fine.size(); ++i)
+    path.push_back(fine[i] + factor * (fine[i] - coarse[i]));
+  return path;
+}
+
+double mean_distance(const Scene& scene, const Path& a, const Path& b, std::size_t count) {
+  double squares = 0;
+  for (std::size_t i = 0; i < count; ++i) squares += std::pow(rms_distance(scene, a[i], b[i]), 2);
+  return std::sqrt(squares / static_cast<double>(count));
+}
+
+void add_gaps(Reference& r, const Scene& scene, const std::vector<GapPart>& parts) {
+  std::size_t samples = r.times.size();
+  for (const GapPart& part : parts)
+    samples = std::min({samples, part.one->size(), part.other->size()});
+  r.gap.assign(samples, 0);
+  r.gap_max.assign(samples, 0);
+  for (const GapPart& part : parts) {
+    std::vector<double>& own = r.gap_parts[part.name];
+    own.resize(samples, 0);
+    for (std::size_t i = 0; i < samples; ++i) {
+      const Positions &x = (*part.one)[i], &y = (*part.other)[i];
+      own[i] = std::max(own[i], rms_distance(scene, x, y));
+      r.gap[i] = std::max(r.gap[i], own[i]);
+      r.gap_max[i] = std::max(r.gap_max[i], max_distance(scene, x, y));
+    }
+  }
+  r.valid_until = 0;
+  for (std::size_t i = 0; i < r.gap.size() && r.gap[i] < parted; ++i) r.valid_until = r.times[i];
+}
+
+}  // namespace harness
