@@ -105,6 +105,8 @@ void print_times(const Recording& recording) {
                                3)
                 << " %";
     }
+    if (take.smallest_step < recording.step)
+      std::cout << "; steps down to 1/" << number_text(1 / take.smallest_step, 6) << " s";
     std::cout << (take.detail.empty() ? "" : "; " + take.detail) << '\n';
   }
 }

@@ -14,6 +14,7 @@
 #include "harness/run/runner.h"
 #include "inextensible/problem/triangle_collider.h"
 #include "inextensible/registry.h"
+#include "inextensible/stepping/step_controller.h"
 #include "inextensible/systems/constrained_acceleration.h"
 
 namespace harness {
@@ -67,13 +68,18 @@ Take take_of(const Scene& scene, const Stage& stage, const Contestant& contestan
              const inextensible::Settings& settings, const Pace& pace,
              const std::function<bool()>& interrupted,
              const std::function<void(const Take&)>& told) {
-  Take take{contestant.name, label_of(contestant), limit, "", {}, {}, {}};
+  Take take;
+  take.solver = contestant.name;
+  take.label = label_of(contestant);
+  take.strain_limit = limit;
+  take.smallest_step = pace.step;
   State state = scene.start;
   if (scene.staggered && inextensible::find_backend(contestant.solver)->velocities ==
                              inextensible::Velocities::half_step)
     state = inextensible::start_half_step_back(*scene.problem, state, pace.step);
   const auto stepper =
       inextensible::make_stepper(contestant.solver, scene.problem, {limit, 1, settings, &state});
+  inextensible::StepController controller(*stepper, {.largest = pace.step});
   const auto keep = [&] {
     take.frames.push_back(state.x);
     const std::vector<double> all = strains(stage, state.x);
@@ -83,14 +89,16 @@ Take take_of(const Scene& scene, const Stage& stage, const Contestant& contestan
   keep();
   while (take.frames.size() < pace.frames) {
     const auto begin = Clock::now();
-    for (int i = 0; i < pace.steps_per_frame; ++i) {
+    for (int i = 0; i < pace.steps_per_frame;) {
       if (interrupted()) throw Interrupted();
-      const auto result = stepper->advance(state, pace.step);
+      const auto result = controller.advance(state);
       if (!result) {
         take.detail = "gave up at t = " + number_text(state.time, 3) + " s: " + result.detail;
         return take;
       }
+      if (controller.aligned()) ++i;
     }
+    take.smallest_step = controller.smallest();
     take.seconds.push_back(since(begin));
     keep();
   }

@@ -13,8 +13,8 @@ constexpr double invisible = 1e-5, invisible_point = 1e-9;
 constexpr double margin = 0.5;
 // Of the same, for every vertex: what edges within their limits may be away from the closest point.
 constexpr double room = 0.1;
-// Of what edges did in the last step, in what they are expected to press with. More of it lets
-// friction and edges drive each other at steps that take vertices past several edges.
+// Of what edges did in the last step, in what they are expected to press with; of a vertex that
+// goes past several edges in a step, less: more of it lets friction and edges drive each other.
 constexpr double newest = 0.1;
 
 }  // namespace
@@ -132,15 +132,15 @@ void Contacts::rub(Positions& x0, WorkCounters& work) {
   candidate_ = x0;
 }
 
-// What edges did in one step alone, as in an impact, is not expected of them again: of the last two
-// steps the lesser counts, and none where they contradict each other.
 void Contacts::accept(const Positions& x) {
   if (candidate_.size() == 0) return;
-  const double scale = 1 / (h_ * h_);
+  const double scale = 1 / (h_ * h_), edge = margin_ / margin;
   expected_ = scale * (x - candidate_);
   for (int c = 0; c < count_; ++c) expected_.col(vertex_[c]) -= scale * push_[c] * normal(c);
   for (Eigen::Index v = 0; v < x.cols(); ++v) {
     const auto now = expected_.col(v), before = before_.col(v);
+    const double way = (x.col(v) - start_->col(v)).norm();
+    pressing_.col(v) += newest * std::min(1.0, edge / way) * (now - pressing_.col(v));
     if (now.dot(before) <= 0) {
       pulling_.col(v).setZero();
     } else {
@@ -148,7 +148,6 @@ void Contacts::accept(const Positions& x) {
     }
   }
   before_.swap(expected_);
-  pressing_ += newest * (pulling_ - pressing_);
 }
 
 void Contacts::keep_in_planes(Positions& d) const {

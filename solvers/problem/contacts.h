@@ -8,13 +8,16 @@
 //
 // Friction is lagged: it is found before edges and planes are solved, and held fixed while they
 // are. Coulomb's cone with the push of the same step couples all three, and a tight ring then locks
-// itself: no positions satisfy them together. Planes and edges alone always have a solution where
-// the geometry has one. What the edges will do to a vertex is expected to be what they did in the
-// last steps (Kaufman et al. 2008 and Li et al. 2020 lag the push in this way). With it, a vertex
-// whose expected way leads `depth` into the obstacle is pushed back by as much, and friction takes
-// off at most mu depth of its expected way along the surface: all of it, and it sticks, or so much
-// that it slides. On an obstacle that moves, the way is counted from where the obstacle carries the
-// vertex.
+// itself: no positions satisfy them together. Planes and edges alone have a solution wherever the
+// geometry has one. What edges will do to a vertex is expected to be what they have done (Kaufman
+// et al. 2008 and Li et al. 2020 lag the push in this way):
+// * They press with a mean over some ten steps. A vertex that is `depth` inside with it is pushed
+//   by as much, and friction takes at most mu depth off its way along the surface.
+// * They pull along the surface by what they did in each of the last two steps, the lesser of the
+//   two, and by nothing where these contradict each other. Friction takes this off beforehand, so
+//   that a vertex sticks under a steady pull: from rest on it creeps by that pull's way in one or
+//   two steps, which falls with the square of the step.
+// On an obstacle that moves, the way is counted from where the obstacle carries the vertex.
 #pragma once
 
 #include <algorithm>
@@ -124,8 +127,7 @@ class Contacts {
   Obstacle obstacle_;
   std::vector<ContactPlane> found_;
   // With friction only: the candidate after it, where edges are expected to take it, and what they
-  // have done to vertices, m/s^2: in the last step; in the last two, the lesser; and its mean over
-  // some steps.
+  // have done to vertices, m/s^2: in the last step; along surfaces; towards them.
   Positions candidate_, expected_, before_, pulling_, pressing_;
 };
 

@@ -1,0 +1,162 @@
+// Friction of every kind of method against what statics and dynamics say of it: a rope on a slope,
+// and a rope round a post.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "inextensible/problem/triangle_collider.h"
+#include "inextensible/registry.h"
+#include "support/contact.h"
+
+namespace inextensible {
+namespace {
+
+using Eigen::Vector3d;
+using std::numbers::pi;
+
+constexpr double gravity = 9.81, short_step = 1.0 / 400;
+
+Settings stiff_enough(const char* solver) {
+  Settings settings;
+  if (find_backend(solver)->knob == Knob::stiffness) settings["stiffness"] = 1e6;
+  return settings;
+}
+
+class Friction : public ::testing::TestWithParam<const char*> {};
+
+// Three links of a rope, down a slope of 20 degrees, at rest.
+struct OnSlope {
+  OnSlope(const char* solver, double friction) {
+    const Vector3d normal(std::sin(angle), std::cos(angle), 0);
+    ProblemParts parts;
+    parts.mass = {0.1, 0.3, 0.2, 0.1};
+    parts.edges = {{0, 1}, {1, 2}, {2, 3}};
+    parts.rest_length = {0.1, 0.1, 0.1};
+    parts.gravity = {0, -gravity, 0};
+    parts.collider = std::make_shared<const testing::Ground>(normal, 0, friction);
+    state.x.resize(3, 4);
+    for (int i = 0; i < 4; ++i) state.x.col(i) = 0.1 * i * down;
+    state.v.setZero(3, 4);
+    stepper = make_stepper(solver, std::make_shared<const Problem>(std::move(parts)),
+                           {1e-3, 1, stiff_enough(solver), &state});
+  }
+  static constexpr double angle = pi / 9;
+  const Vector3d down{std::cos(angle), -std::sin(angle), 0};
+  State state;
+  std::unique_ptr<Stepper> stepper;
+};
+
+TEST_P(Friction, HoldsARopeOnASlopeBelowItsAngleAndSlowsItAbove) {
+  const double critical = std::tan(OnSlope::angle);
+  OnSlope held(GetParam(), 1.02 * critical), slides(GetParam(), 0.5 * critical);
+  const Positions start = held.state.x;
+  for (int step = 0; step < 200; ++step) {
+    ASSERT_TRUE(held.stepper->advance(held.state, short_step));
+    ASSERT_TRUE(slides.stepper->advance(slides.state, short_step));
+  }
+  EXPECT_LT((held.state.x - start).cwiseAbs().maxCoeff(), 1e-6);
+  const double a = gravity * std::sin(OnSlope::angle) * 0.5;  // half of it is friction's
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(slides.state.v.col(i).dot(slides.down), a * slides.state.time, 1e-3);
+  }
+}
+
+// A post of `sides` facets each way round, along z, with the radius R to the middles of its facets.
+TriangleMesh post(int sides, double radius) {
+  TriangleMesh mesh;
+  const double corner = radius / std::cos(pi / sides);
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2 * pi * i / sides;
+    for (const double z : {-1.0, 1.0})
+      mesh.vertices.emplace_back(corner * std::cos(angle), corner * std::sin(angle), z);
+  }
+  for (int i = 0; i < sides; ++i) {
+    const int a = 2 * i, b = a + 1, c = 2 * ((i + 1) % sides), d = c + 1;
+    mesh.triangles.insert(mesh.triangles.end(), {{a, c, b}, {b, c, d}});
+    if (i == 0) continue;
+    if (c != 0) mesh.triangles.insert(mesh.triangles.end(), {{0, c, a}, {1, b, d}});
+  }
+  return mesh;
+}
+
+// A rope over half of a post: a vertex on the middle of each upper facet, a load on either end.
+struct OnPost {
+  static constexpr int vertices = 32;
+  static constexpr double radius = 0.1, mass = 0.01, light = 0.5, friction = 0.3;
+  static constexpr double turn = pi / vertices;  // of the rope, at each vertex
+
+  OnPost(const char* solver, double heavy) {
+    ProblemParts parts;
+    parts.gravity = {0, -gravity, 0};
+    parts.collider = std::make_shared<const TriangleCollider>(post(2 * vertices, radius), friction);
+    const double link = 2 * radius * std::sin(turn / 2), fall = 0.25;
+    state.x.resize(3, vertices + 2);
+    for (int i = 0; i < vertices + 2; ++i) {
+      const bool first = i == 0, last = i == vertices + 1;
+      const double angle = (std::clamp(i, 1, vertices) - 0.5) * turn;
+      state.x.col(i) << radius * std::cos(angle),
+          first || last ? radius * std::sin(angle) - fall : radius * std::sin(angle), 0;
+      parts.mass.push_back(first ? light : last ? heavy : mass);
+      if (first) continue;
+      parts.edges.push_back({i - 1, i});
+      parts.rest_length.push_back(i == 1 || last ? fall : link);
+    }
+    state.v.setZero(3, vertices + 2);
+    stepper = make_stepper(solver, std::make_shared<const Problem>(std::move(parts)),
+                           {1e-3, 1, stiff_enough(solver), &state});
+  }
+
+  // The load that just does not slip: each vertex turns the tension and bears its own weight,
+  // n N = what tensions and weight press with, friction = mu N.
+  static double heaviest() {
+    double tension = light * gravity;
+    for (int i = 0; i < vertices; ++i) {
+      const double angle = (i + 0.5) * turn, weight = mass * gravity;
+      const double c = std::cos(turn / 2), s = std::sin(turn / 2);
+      // Along the tangent, towards the heavy side: (T' - T) c - weight cos(angle) = mu N; along the
+      // normal: N = (T + T') s + weight sin(angle).
+      tension =
+          (tension * (c + friction * s) + weight * (std::cos(angle) + friction * std::sin(angle))) /
+          (c - friction * s);
+    }
+    return tension / gravity;
+  }
+
+  State state;
+  std::unique_ptr<Stepper> stepper;
+};
+
+// Euler (1769), Eytelwein (1808): the tensions on both sides differ by e^(mu theta) at most.
+// Friction learns the tension in the first steps, in which the rope slips a little; then it brings
+// the rope to rest, or lets it slide on.
+TEST_P(Friction, OfARopeRoundAPostGrowsAsTheCapstanEquationSays) {
+  OnPost held(GetParam(), 0.8 * OnPost::heaviest()), slips(GetParam(), 1.2 * OnPost::heaviest());
+  const auto fall = [](OnPost& rope, int steps) {
+    for (int step = 0; step < steps; ++step) {
+      const StepResult result = rope.stepper->advance(rope.state, short_step);
+      EXPECT_TRUE(result) << result.detail << " at t = " << rope.state.time;
+      if (!result) break;
+    }
+    return rope.state.x(1, rope.state.x.cols() - 1);
+  };
+  const double slipped = fall(held, 80), later = fall(held, 40);
+  EXPECT_GT(slipped, -0.25 - 0.015);
+  EXPECT_NEAR(later, slipped, 2e-3);  // 9 cm if nothing held it
+  // 0.2 of the load pulls the whole.
+  const double mass = 1.2 * OnPost::heaviest() + OnPost::light + OnPost::vertices * OnPost::mass;
+  const double acceleration = 0.2 * OnPost::heaviest() * gravity / mass;
+  (void)fall(slips, 20);
+  const auto speed = [&slips] { return -slips.state.v(1, slips.state.v.cols() - 1); };
+  const double before = speed();
+  (void)fall(slips, 40);
+  EXPECT_NEAR(speed() - before, acceleration * 40 * short_step,
+              0.35 * acceleration * 40 * short_step);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Friction,
+                         ::testing::Values("implicit_springs", "gauss_seidel_colored", "shake",
+                                           "icd", "fast_projection", "strips"));
+
+}  // namespace
+}  // namespace inextensible
