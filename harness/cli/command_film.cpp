@@ -32,7 +32,7 @@ struct FilmOptions {
 
 constexpr int default_width = 480;
 // Rays a pixel, each way: a still can take its time, a film has hundreds of pictures.
-constexpr int still_samples = 4, film_samples = 3;
+constexpr int still_samples = 6, film_samples = 3;
 
 double number_in(const std::string& text, const std::string& option) {
   std::size_t read = 0;

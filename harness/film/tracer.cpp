@@ -74,14 +74,12 @@ struct Packet {
     rays.tfar[i] = far_away;
     rays.mask[i] = 0xFFFFFFFFU;
   }
-  // The part of the rays that meets nothing.
-  double free(RTCScene scene) {
+  void test(RTCScene scene) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded4(valid, scene, &context, &rays);
-    return 0.25 * static_cast<double>(
-                      std::count_if(rays.tfar, rays.tfar + 4, [](float far) { return far > 0; }));
   }
+  double free(int i) const { return rays.tfar[i] > 0 ? 1 : 0; }  // whether it meets nothing
 };
 
 class Tracer {
@@ -104,7 +102,8 @@ class Tracer {
   Owned<RTCDevice> device_;
   Owned<RTCScene> cloth_, body_, all_;
   Matrix3Xd normals_, body_normals_;
-  Vector3d light_, light_x_, light_y_;  // towards the light, and across it
+  Vector3d light_;                           // towards the middle of the light
+  std::vector<Vector3d> to_light_, to_sky_;  // of all samples; to_sky_ about the normal, as z
 };
 
 Tracer::Tracer(const Shot& shot, const View& view, int samples)
@@ -125,8 +124,13 @@ Tracer::Tracer(const Shot& shot, const View& view, int samples)
     all_ = scene_of(device_.get(), {cloth.get(), body.get()});
   }
   light_ = (-0.5 * view.right + 1.1 * Vector3d::UnitY() + 0.75 * view.towards).normalized();
-  light_x_ = light_.cross(view.towards).normalized();
-  light_y_ = light_.cross(light_x_);
+  const Vector3d across = light_.cross(view.towards).normalized(), along = light_.cross(across);
+  constexpr double light_radius = 0.22;  // over its distance
+  for (int i = 0; i < 2 * count_; ++i) {
+    const Vector3d d = in_disk(i, 2 * count_);
+    to_light_.push_back((light_ + light_radius * (d.x() * across + d.y() * along)).normalized());
+    to_sky_.emplace_back(d.x(), d.y(), std::sqrt(std::max(0.0, 1 - d.squaredNorm())));
+  }
 }
 
 Hit Tracer::first(RTCScene scene, const Vector3d& from, const Vector3d& to) {
@@ -217,22 +221,21 @@ Surface Tracer::on_rope(const Hit& hit, const Vector3d& direction) const {
 // One light, the sky, and a little from the camera.
 Vector3d Tracer::lit(const Surface& surface, const Vector3d& direction, int sample,
                      double begin) const {
-  constexpr double light_radius = 0.22, key = 0.72, sky = 0.36, camera = 0.12;
+  constexpr double key = 0.72, sky = 0.36, camera = 0.12;
   const Vector3d& n = surface.normal;
   const Vector3d across = n.unitOrthogonal(), along = n.cross(across);
   const Vector3d from = surface.point + 0.02 * begin * n;
-  Packet to_light, to_sky;
-  for (int i = 0; i < 4; ++i) {
-    const int number = sample + count_ * i;
-    const Vector3d d = light_radius * in_disk(number, 4 * count_);
-    to_light.set(i, from, (light_ + d.x() * light_x_ + d.y() * light_y_).normalized(), begin);
-    const Vector3d s = in_disk(number, 4 * count_);
-    const double height = std::sqrt(std::max(0.0, 1 - s.squaredNorm()));
-    to_sky.set(i, from, s.x() * across + s.y() * along + height * n, begin);
-  }
   const double direct = std::max(0.0, n.dot(light_));
-  const double open = to_sky.free(all_.get());
-  const double sun = direct > 0 ? direct * to_light.free(all_.get()) : 0;
+  Packet rays;
+  for (int i = 0; i < 2; ++i) {
+    const auto number = static_cast<std::size_t>(sample + count_ * i);
+    rays.set(i, from, to_light_[number], begin);
+    const Vector3d& s = to_sky_[number];
+    rays.set(2 + i, from, s.x() * across + s.y() * along + s.z() * n, begin);
+  }
+  rays.test(all_.get());
+  const double sun = direct * 0.5 * (rays.free(0) + rays.free(1));
+  const double open = 0.5 * (rays.free(2) + rays.free(3));
   const double above = 0.75 + 0.25 * n.y();  // the sky is brighter than the ground
   const Vector3d half = (light_ - direction).normalized();
   const double gleam = direct > 0 ? std::pow(std::max(0.0, n.dot(half)), 24) * sun : 0;
