@@ -10,7 +10,6 @@
 #include "harness/points/noise.h"
 #include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
-#include "harness/points/suite.h"
 #include "harness/run/plane_table.h"
 #include "harness/run/report.h"
 
@@ -50,7 +49,7 @@ int show(const std::string& file) {
   const json& context = document.at("context");
   std::vector<PointResult> points;
   for (const json& point : document.at("points")) points.push_back(point_of(point));
-  print_table(std::cout, parse_suite(context.at("suite").dump(), file), points);
+  print_table(std::cout, points);
   print_planes(std::cout, document);
   if (const auto pair = noise_of(context))
     std::cout << "\ndifferences below " << number_text(100 * std::expm1(pair->q95), 2)

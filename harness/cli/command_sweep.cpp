@@ -239,7 +239,7 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   const nlohmann::json document = result_document(context, suite, command, outcome.complete,
                                                   outcome.points, shelf->summaries());
   write_atomically(out, result_text(document));
-  print_table(std::cout, suite, outcome.points);
+  print_table(std::cout, outcome.points);
   print_planes(std::cout, document);
   tell_overhead(context["harness_overhead"]);
   tell_noise(document.at("context"));

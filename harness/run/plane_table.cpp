@@ -60,36 +60,56 @@ void print_cells(std::ostream& out, const std::string& limit, const Cell& looses
       << lead_text(tightest) << '\n';
 }
 
-void print_plane(std::ostream& out, const Plane& plane) {
-  double most = 0;
-  for (const Cell& cell : plane.cells) {
-    if (const Entry* first = cell.first()) most = std::max(most, first->point.seconds());
-  }
-  const bool seconds = most >= 20;
-  out << '\n'
-      << plane.scene << " of " << plane.vertices << " vertices, " << plane.sweep
-      << " sweep: the fastest within a strain limit and an error\n"
-      << std::left << std::setw(limit_width) << "strain" << std::setw(level_width) << "error within"
-      << std::setw(winner_width) << "fastest" << std::setw(time_width) << (seconds ? "s" : "ms")
-      << std::setw(step_width) << "step, s" << std::setw(error_width) << "error"
+void print_head(std::ostream& out, const Plane& plane, bool sizes, bool seconds) {
+  out << '\n' << plane.scene;
+  if (!sizes) out << " of " << plane.vertices << " vertices";
+  out << ", " << plane.sweep << " sweep";
+  if (sizes && plane.limits.size() == 1) out << " at " << percent(plane.limits[0]) << " strain";
+  out << ": the fastest within a strain limit and an error\n"
+      << std::left << std::setw(limit_width) << (sizes ? "vertices" : "strain")
+      << std::setw(level_width) << "error within" << std::setw(winner_width) << "fastest"
+      << std::setw(time_width) << (seconds ? "s" : "ms") << std::setw(step_width) << "step, s"
+      << std::setw(error_width) << "error"
       << "times as long: best of the paper\n";
+}
+
+void print_rows(std::ostream& out, const Plane& plane, bool sizes, bool seconds) {
   const std::size_t levels = plane.levels.size();
   for (std::size_t row = 0; row < plane.cells.size(); row += levels) {
-    std::string limit = percent(plane.cells[row].strain_limit);
+    std::string place =
+        sizes ? std::to_string(plane.vertices) : percent(plane.cells[row].strain_limit);
     for (std::size_t i = row, from = row; i < row + levels; ++i) {
       if (i + 1 < row + levels && same_answer(plane.cells[i], plane.cells[i + 1])) continue;
-      print_cells(out, limit, plane.cells[from], plane.cells[i], seconds ? 1 : 1e3);
-      limit.clear();
+      print_cells(out, place, plane.cells[from], plane.cells[i], seconds ? 1 : 1e3);
+      place.clear();
       from = i + 1;
     }
   }
+}
+
+// Times of a table of 20 s or more are in seconds.
+bool in_seconds(const std::vector<Plane>& planes) {
+  double most = 0;
+  for (const Plane& plane : planes) {
+    for (const Cell& cell : plane.cells) {
+      if (const Entry* first = cell.first()) most = std::max(most, first->point.seconds());
+    }
+  }
+  return most >= 20;
 }
 
 }  // namespace
 
 void print_planes(std::ostream& out, const nlohmann::json& document) {
   const auto planes = analysis::planes_of(document);
-  for (const Plane& plane : planes) print_plane(out, plane);
+  const bool seconds = in_seconds(planes);
+  std::string last;
+  for (const Plane& plane : planes) {
+    const bool sizes = plane.sweep == "resolution";  // rows of one table
+    if (!sizes || plane.scene != last) print_head(out, plane, sizes, seconds);
+    last = sizes ? plane.scene : "";
+    print_rows(out, plane, sizes, seconds);
+  }
   if (!planes.empty())
     out << "(~: too close to the next to tell; u: with untuned settings; errors are over the "
            "scene's size)\n";

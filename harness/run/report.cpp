@@ -7,9 +7,7 @@
 #include <sstream>
 
 #include "harness/base/in_order.h"
-#include "harness/base/statistics.h"
 #include "harness/base/text.h"
-#include "harness/points/noise.h"
 #include "harness/run/growth.h"
 
 namespace harness {
@@ -34,6 +32,30 @@ std::string failure_text(const std::vector<const PointResult*>& tried) {
 
 constexpr int name_width = 32, table_width = 120;
 
+// As many columns at a time as a line has room for. text(row, column): what stands in a cell.
+template <class Text>
+void print_grid(std::ostream& out, const std::vector<std::string>& rows,
+                const std::vector<std::string>& columns, const Text& text) {
+  std::size_t longest = 10;
+  for (const auto& row : rows) {
+    for (const auto& column : columns) longest = std::max(longest, text(row, column).size());
+  }
+  const int cell_width = static_cast<int>(longest) + 2;
+  const auto room = static_cast<std::size_t>(std::max(1, (table_width - name_width) / cell_width));
+  for (std::size_t from = 0; from < columns.size(); from += room) {
+    const auto to = std::min(columns.size(), from + room);
+    const auto line = [&](const std::string& name, const auto& cell) {
+      out << std::left << std::setw(name_width) << name;
+      for (std::size_t i = from; i < to; ++i)
+        out << std::setw(i + 1 < to ? cell_width : 0) << cell(columns[i]);
+      out << '\n';
+    };
+    line("", [](const std::string& column) { return column; });
+    for (const auto& row : rows)
+      line(row, [&](const std::string& column) { return text(row, column); });
+  }
+}
+
 template <class Text>  // Text(const Points&): what stands in a cell
 void print_best(std::ostream& out, const std::vector<const PointResult*>& points,
                 const std::string& title, const Text& cell_text) {
@@ -41,28 +63,11 @@ void print_best(std::ostream& out, const std::vector<const PointResult*>& points
   for (const PointResult* point : points)
     cells[{point->spec.name(), axis_text(point->spec)}].push_back(point);
   out << '\n' << title << '\n';
-  std::size_t longest = 15;
-  for (const auto& cell : cells) longest = std::max(longest, cell_text(cell.second).size());
-  const int cell_width = static_cast<int>(longest) + 2;
-  const auto columns = in_order(points, place_of);
-  // As many columns at a time as a line has room for.
-  const auto room =
-      static_cast<std::size_t>(std::max(1, (table_width - name_width) / std::max(1, cell_width)));
-  for (std::size_t from = 0; from < columns.size(); from += room) {
-    const auto to = std::min(columns.size(), from + room);
-    const auto row = [&](const std::string& name, const auto& text_of) {
-      out << std::left << std::setw(name_width) << name;
-      for (std::size_t i = from; i < to; ++i)
-        out << (i + 1 < to ? std::setw(cell_width) : std::setw(0)) << text_of(columns[i]);
-      out << '\n';
-    };
-    row("", [](const std::string& column) { return column; });
-    for (const auto& solver : in_order(points, name_of))
-      row(solver, [&](const std::string& column) {
-        const auto cell = cells.find({solver, column});
-        return cell == cells.end() ? "-" : cell_text(cell->second);
-      });
-  }
+  print_grid(out, in_order(points, name_of), in_order(points, place_of),
+             [&](const std::string& solver, const std::string& column) {
+               const auto cell = cells.find({solver, column});
+               return cell == cells.end() ? "-" : cell_text(cell->second);
+             });
 }
 
 // Of all times of one table.
@@ -88,44 +93,6 @@ std::string time_and_step(const PointResult& point, const Unit& unit) {
          (std::isnan(error) ? "" : ", " + number_text(100 * error, 2) + " %") + ")";
 }
 
-// Who is fastest at each place of the axis, with tuned or untuned settings, and whether that is
-// more than noise.
-void print_fastest(std::ostream& out, const Suite& suite,
-                   const std::vector<const PointResult*>& points, double noise) {
-  const auto ranked = [&](const PointResult& p) {
-    return p.best && (suite.same.empty() || p.spec.name() != double_of(suite.same));
-  };
-  const auto family = [](const PointResult& p) {
-    const auto* backend = inextensible::find_backend(p.spec.solver);
-    return std::string(backend ? backend->family : p.spec.solver.c_str());
-  };
-  out << "fastest:\n";
-  for (const std::string& place : in_order(points, place_of)) {
-    std::vector<const PointResult*> here;
-    for (const PointResult* p : points) {
-      if (axis_text(p->spec) == place && ranked(*p)) here.push_back(p);
-    }
-    if (here.empty()) continue;
-    std::sort(here.begin(), here.end(), [](const PointResult* a, const PointResult* b) {
-      return a->median_seconds() < b->median_seconds();
-    });
-    const PointResult& first = *here.front();
-    const auto other = std::find_if(here.begin(), here.end(), [&](const PointResult* p) {
-      return family(*p) != family(first);
-    });
-    out << "  " << std::left << std::setw(8) << place << first.spec.name();
-    if (other != here.end()) {
-      const Ratio slower = ratio_of_medians((*other)->samples, first.samples, noise);
-      out << "; " << (*other)->spec.name() << " takes " << number_text(slower.value, 3)
-          << " times as long";
-      if (slower.known())
-        out << " (" << number_text(slower.low, 3) << " to " << number_text(slower.high, 3) << ")";
-      if (!slower.above(1)) out << ", too close to tell";
-    }
-    out << '\n';
-  }
-}
-
 // The fastest point of each solver within each of some errors: step and strain limit are free.
 void print_time_to_error(std::ostream& out, const std::vector<const PointResult*>& points,
                          const std::string& scene) {
@@ -138,37 +105,27 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
   out << '\n'
       << scene << ", step sweep: seconds per simulated second to reach a trajectory error "
       << "(step in s, strain limit)\n";
-  constexpr int cell_width = 25;
-  out << std::left << std::setw(name_width) << "";
-  for (const double target : targets) out << std::setw(cell_width) << number_text(target, 1);
-  out << '\n';
-  for (const auto& solver : in_order(points, name_of)) {
-    out << std::setw(name_width) << solver;
-    for (const double target : targets) {
-      const PointResult* fastest = nullptr;
-      for (const PointResult* point : points) {
-        if (point->spec.name() != solver || !point->ok() || !within_error(point->measures, target))
-          continue;
-        if (!fastest || point->median_seconds() < fastest->median_seconds()) fastest = point;
-      }
-      std::string text = "-";
-      if (!sure(target)) {
-        text = "< 3 gap";
-      } else if (fastest) {
-        text = number_text(fastest->median_seconds(), 3) + " (" + step_text(fastest->spec.step) +
-               ", " + number_text(100 * fastest->spec.strain_limit, 3) + " %)";
-      }
-      out << std::setw(cell_width) << text;
+  std::vector<std::string> columns;
+  for (const double target : targets) columns.push_back(number_text(target, 1));
+  const auto cell = [&](const std::string& solver, const std::string& column) -> std::string {
+    const double target = std::stod(column);
+    if (!sure(target)) return "< 3 gap";
+    const PointResult* fastest = nullptr;
+    for (const PointResult* point : points) {
+      if (point->spec.name() != solver || !point->ok() || !within_error(point->measures, target))
+        continue;
+      if (!fastest || point->median_seconds() < fastest->median_seconds()) fastest = point;
     }
-    out << '\n';
-  }
+    if (!fastest) return "-";
+    return number_text(fastest->median_seconds(), 3) + " (" + step_text(fastest->spec.step) + ", " +
+           number_text(100 * fastest->spec.strain_limit, 3) + " %)";
+  };
+  print_grid(out, in_order(points, name_of), columns, cell);
 }
 
 }  // namespace
 
-void print_table(std::ostream& out, const Suite& suite, const std::vector<PointResult>& points) {
-  const auto pair = pair_noise(points, suite.same);
-  const double noise = pair ? pair->q95 : unknown;
+void print_table(std::ostream& out, const std::vector<PointResult>& points) {
   const auto tables =
       in_order(points, [](const PointResult& p) { return std::pair(p.spec.scene, p.spec.sweep); });
   for (const auto& [scene, sweep] : tables) {
@@ -190,7 +147,6 @@ void print_table(std::ostream& out, const Suite& suite, const std::vector<PointR
               std::find_if(cell.begin(), cell.end(), [](const PointResult* p) { return p->best; });
           return best == cell.end() ? failure_text(cell) : time_and_step(**best, unit);
         });
-    print_fastest(out, suite, chosen, noise);
     if (sweep == "resolution") print_growth(out, chosen);
   }
   std::map<std::string, int> failures;

@@ -11,8 +11,7 @@ namespace harness {
 // Per scene and sweep: solvers by limit or resolution, best seconds per simulated second whatever
 // the motion, its step and its error; of a step sweep, the time to reach each of some errors;
 // failures by name. What counts within errors: plane_table.h.
-// Below each table of best points stands who is fastest at each place, how many times as long the
-// next one of another family takes, and whether that is more than noise.
-void print_table(std::ostream& out, const Suite& suite, const std::vector<PointResult>& points);
+// At most 120 columns wide. Who is fastest: plane_table.h.
+void print_table(std::ostream& out, const std::vector<PointResult>& points);
 
 }  // namespace harness

@@ -119,6 +119,10 @@ struct Sweep {
   std::vector<Choice> choices = {};
 
   const PointResult& add(PointResult point, std::size_t search) {
+    // Of what no judge has seen: it was skipped, or its process ended early.
+    Measures& measures = point.measures;
+    if (std::isnan(measures.trajectory) && measures.unknown_because.empty())
+      measures.unknown_because = "no run came to an end that could be judged";
     points.push_back(std::move(point));
     events.point(points.back(), search, searches.size());
     return points.back();

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "harness/analysis/plane_json.h"
+#include "harness/points/result_file.h"
+#include "harness/points/schema_check.h"
 #include "harness/run/plane_table.h"
 
 namespace harness::analysis {
@@ -121,6 +123,18 @@ TEST(Plane, SaysWhyACellIsEmpty) {
   EXPECT_EQ(winner(planes.at(0).cell(0.001, 0.05)), "none: there is no reference");
 }
 
+// As large as files come: all committed sweeps, which were made before there were levels of error.
+TEST(Plane, ReadsOlderFiles) {
+  for (const char* name : {"default-strain", "default-resolution", "default-step"}) {
+    const json result = read_result(std::string(SOURCE_DIR) + "/results/" + name + ".json");
+    const json analysis = analysis_of(result);
+    EXPECT_NO_THROW(check_schema(analysis, "analysis", name));
+    EXPECT_GE(analysis.at("planes").size(), 2u);
+    for (const json& plane : analysis.at("planes"))
+      EXPECT_TRUE(plane.at("cells").at(0).at("first").is_string()) << name;
+  }
+}
+
 // What is printed, and what programs read, is what was analysed.
 TEST(Plane, IsPrintedAndWrittenAsItIs) {
   const json result =
@@ -134,7 +148,7 @@ TEST(Plane, IsPrintedAndWrittenAsItIs) {
   std::istringstream lines(out.str());
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
   const json analysis = analysis_of(result);
-  EXPECT_EQ(analysis.at("schema"), "inextensible-analysis/1");
+  EXPECT_NO_THROW(check_schema(analysis, "analysis", "analysis"));
   const json& cell = analysis.at("planes").at(0).at("cells").at(3);
   EXPECT_EQ(cell.at("error_level"), 0.02);
   EXPECT_EQ(cell.at("first"), "strips");

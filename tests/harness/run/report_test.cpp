@@ -73,7 +73,7 @@ TEST(Growth, LeavesOutFailuresAndSolversWithOneSize) {
   EXPECT_EQ(found[0].exponent.points, 3);
   EXPECT_NEAR(found[0].exponent.value, 1, 1e-12);
   std::ostringstream out;
-  print_table(out, Suite{}, points);
+  print_table(out, points);
   EXPECT_NE(out.str().find("exponent"), std::string::npos);
   EXPECT_NE(out.str().find("10201..100489"), std::string::npos);
 }

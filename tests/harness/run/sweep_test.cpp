@@ -181,6 +181,8 @@ TEST(StepSearch, ASolverThatNeverWorksHasNoBestPoint) {
   const Suite suite = one_family();
   const auto outcome = run_sweep(suite, plan(suite, {}), {}, fake(1.0 / 200, 1e-9, nullptr));
   EXPECT_EQ(outcome.points.size(), 2 * 9u);  // the whole ladder, twice
+  for (const auto& point : outcome.points)
+    EXPECT_EQ(point.measures.unknown_because, "no run came to an end that could be judged");
   for (const auto& point : outcome.points) EXPECT_FALSE(point.best);
 }
 
