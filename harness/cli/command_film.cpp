@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iostream>
 #include <sstream>
+#include <stdexcept>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
@@ -180,6 +181,15 @@ std::string default_output(const FilmOptions& given) {
   return numbered(free);
 }
 
+// A scene of impossible measures, or a method that cannot run it, is the user's mistake.
+Recording recorded(const FilmSpec& spec) {
+  try {
+    return record(spec, interrupted, tell);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+}
+
 int film(FilmOptions given) {
   const FilmSpec spec = film_spec(given);
   if (given.out.empty()) given.out = default_output(given);
@@ -188,7 +198,7 @@ int film(FilmOptions given) {
   (void)shown_frames(given, spec, extension == ".png");  // refused before anything runs
   check_writable(given.out);
   catch_interrupts();
-  const Recording recording = record(spec, interrupted, tell);
+  const Recording recording = recorded(spec);
   print_times(recording);
   if (!writer) return draw_pictures(given, recording, extension == ".png");
   const std::filesystem::path out(given.out);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "harness/scenes/cloth_draft.h"
+#include "harness/scenes/turned_body.h"
 #include "inextensible/problem/triangle_collider.h"
 
 namespace harness {
@@ -15,10 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 using std::numbers::pi;
-
-struct Ring {
-  double y, radius;  // m
-};
 
 // Of the body, from the lower end to the upper: half an ellipsoid, a cosine from the hips to the
 // waist and one on to the chest, half an ellipsoid. The waist is at y = 0.
@@ -40,38 +37,6 @@ std::vector<Ring> profile(const SceneParameters& p) {
     rings.push_back({drop + above * drop * std::cos(angle), hips * std::sin(angle)});
   }
   return rings;
-}
-
-// Polygons of the profile's rings, the first and the last of which are points.
-inextensible::TriangleMesh turned(const std::vector<Ring>& rings, int segments) {
-  inextensible::TriangleMesh mesh;
-  const auto last = static_cast<int>(rings.size()) - 1;
-  const auto vertex = [&](int ring, int segment) {
-    if (ring == 0) return 0;
-    if (ring == last) return 1;
-    return 2 + (ring - 1) * segments + segment % segments;
-  };
-  mesh.vertices = {{0, rings.front().y, 0}, {0, rings.back().y, 0}};
-  for (int r = 1; r < last; ++r) {
-    for (int s = 0; s < segments; ++s) {
-      const double angle = 2 * pi * s / segments;
-      mesh.vertices.emplace_back(rings[r].radius * std::cos(angle), rings[r].y,
-                                 rings[r].radius * std::sin(angle));
-    }
-  }
-  for (int r = 0; r < last; ++r) {
-    for (int s = 0; s < segments; ++s) {
-      const int a = vertex(r, s), b = vertex(r, s + 1), c = vertex(r + 1, s + 1),
-                d = vertex(r + 1, s);
-      if (r == 0) {
-        mesh.triangles.push_back({a, d, c});
-        continue;
-      }
-      mesh.triangles.push_back({a, d, b});
-      if (r + 1 < last) mesh.triangles.push_back({b, d, c});
-    }
-  }
-  return mesh;
 }
 
 // To and fro along x and about y, from rest on.

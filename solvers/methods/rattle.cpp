@@ -29,7 +29,8 @@ StepResult Rattle::end_velocities(const State& start, double h, const Positions&
     add_drag(*problem_, v_half_, 0.5 * h, v);
   }
   add_acceleration(*problem_, x, 0.5 * h, v, work_);
-  for (const int vertex : problem_->pinned()) v.col(vertex).setZero();
+  for (const int vertex : problem_->pinned())  // 0 unless pins follow a body
+    v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
   if (const Contacts* contacts = contacts_inside()) {  // which bear what presses on them
     for (int c = 0; c < contacts->count(); ++c) {
       const int vertex = contacts->vertex(c);

@@ -101,6 +101,8 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   }
   if (parts_.body_motion && !parts_.collider)
     throw std::invalid_argument("a body's motion without a collider");
+  if (parts_.pins_follow_body && !parts_.body_motion)
+    throw std::invalid_argument("pins that follow a body that does not move");
   total_mass_ = std::accumulate(parts_.mass.begin(), parts_.mass.end(), 0.0);
   if (!parts_.rest_length.empty()) {
     const auto [shortest, longest] =

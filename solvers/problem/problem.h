@@ -36,7 +36,7 @@ struct Springs {
 // What a problem is made from; see Problem for the conditions.
 struct ProblemParts {
   std::vector<double> mass;              // kg, one a vertex
-  std::vector<int> pinned;               // vertices that never move
+  std::vector<int> pinned;               // vertices that no force moves
   std::vector<Edge> edges;               // constrained (warp and weft) edges
   std::vector<double> rest_length;       // m, one a constrained edge
   Eigen::Vector3d gravity{0, -9.81, 0};  // m/s^2
@@ -48,6 +48,7 @@ struct ProblemParts {
   bool implicit_forces = false;
   std::shared_ptr<const Collider> collider;  // null: nothing to collide with
   BodyMotion body_motion;                    // of the collider; empty: it stays
+  bool pins_follow_body = false;             // pinned vertices move as if fixed to the body
   // Methods keep vertices out of the obstacle while they keep edges to their lengths. false: a step
   // ends with a pass that moves vertices out, after which nobody looks at edges again (the paper's
   // pipeline, section 4.4).
@@ -82,6 +83,7 @@ class Problem {
   }
   const Collider* collider() const { return parts_.collider.get(); }
   const BodyMotion& body_motion() const { return parts_.body_motion; }
+  bool pins_follow_body() const { return parts_.pins_follow_body; }
   // Whether there is a collider that methods are to heed.
   bool contact_inside() const { return parts_.collider && parts_.contact_inside; }
 

@@ -52,6 +52,8 @@ void Bdf2Stepper::restart(const State& state, double h) {
 
 StepResult Bdf2Stepper::solve(const State& state, double h, Positions& x) {
   Lap lap(phases_wanted_);
+  if (problem_->pins_follow_body())  // they have moved since
+    for (const int vertex : problem_->pinned()) x_known_.col(vertex) = state.x.col(vertex);
   const bool known = h_before_ > 0 && h <= largest_growth * h_before_ && state.x == x_known_ &&
                      state.v == v_known_;
   if (implicit_) {
@@ -61,7 +63,8 @@ StepResult Bdf2Stepper::solve(const State& state, double h, Positions& x) {
   }
   for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
   phases_.unconstrained += lap();
-  const StepResult result = apply_until_clear(*filter_, contacts_inside(), state.x, h, x, work_);
+  const StepResult result =
+      apply_until_clear(*filter_, contacts_inside(), start_positions(), h, x, work_);
   phases_.filter += lap();
   return result;
 }
@@ -96,6 +99,8 @@ bool Bdf2Stepper::implicit_solve(const State& state, double h, bool known, Posit
     x_ahead_ += c.earlier * x_earlier_;
   }
   x_ahead_ += c.beta_h * flight_velocity_;
+  if (problem_->pins_follow_body())
+    for (const int vertex : problem_->pinned()) x_ahead_.col(vertex) = state.x.col(vertex);
   x = x_ahead_;
   if (!implicit_->advance(c.beta_h, flight_velocity_, x, work_)) return false;
   acceleration_ = (x - x_ahead_) / (c.beta_h * c.beta_h);

@@ -22,7 +22,8 @@ StepResult Stepper::advance(State& state, double h) {
     return {Status::not_finite, 0, -1, 0, "the step must be a positive, finite time"};
   }
   if (contacts_) contacts_->begin(state.x, state.time, h);
-  StepResult result = solve(state, h, next_);
+  start_ = &state.x;
+  StepResult result = solve(with_pins_at_end(state, h), h, next_);
   work_.iterations += result.iterations;
   if (!result) {
     ++work_.rejected_steps;
@@ -54,6 +55,18 @@ StepResult Stepper::advance(State& state, double h) {
   state.time += h;
   ++work_.steps;
   return result;
+}
+
+const State& Stepper::with_pins_at_end(const State& state, double h) {
+  if (!problem_->pins_follow_body()) return state;
+  const BodyMotion& motion = problem_->body_motion();
+  const Pose carry = motion(state.time + h) * motion(state.time).inverse();
+  moved_ = state;
+  for (const int vertex : problem_->pinned()) {
+    moved_.x.col(vertex) = carry(state.x.col(vertex));
+    moved_.v.col(vertex).setZero();
+  }
+  return moved_;
 }
 
 StepResult Stepper::end_velocities(const State& start, double h, const Positions& /*filtered*/,

@@ -63,7 +63,9 @@ class Stepper {
   virtual void observe(IterateObserver* /*observer*/) {}
 
  protected:
-  // Writes the inextensible positions at the end of the step to x; adds to work_ and phases_.
+  // Writes the inextensible positions at the end of the step to x; adds to work_ and phases_. Pins
+  // that follow the body are, in `state`, where they end the step, without velocity: methods treat
+  // them as if they never moved.
   virtual StepResult solve(const State& state, double h, Positions& x) = 0;
 
   // Writes the velocities at the end of the step to v, from the positions x after the collision
@@ -72,6 +74,9 @@ class Stepper {
   // still refuse.
   virtual StepResult end_velocities(const State& start, double h, const Positions& filtered,
                                     const Positions& x, Positions& v);
+
+  // Where all vertices, pins that follow the body as well, are at the start of the step.
+  const Positions& start_positions() const { return *start_; }
 
   std::shared_ptr<const Problem> problem_;
   WorkCounters work_;
@@ -85,7 +90,11 @@ class Stepper {
   }
 
  private:
+  const State& with_pins_at_end(const State& state, double h);
+
   Positions next_, filtered_, velocity_;
+  const Positions* start_ = nullptr;  // of the present step
+  State moved_;                       // what with_pins_at_end returns where pins follow the body
 };
 
 }  // namespace inextensible

@@ -55,7 +55,8 @@ StepResult FilterStepper::solve(const State& state, double h, Positions& x) {
     unconstrained_step(*problem_, state, h, x, work_);
   }
   phases_.unconstrained += lap();
-  const StepResult result = apply_until_clear(*filter_, contacts_inside(), state.x, h, x, work_);
+  const StepResult result =
+      apply_until_clear(*filter_, contacts_inside(), start_positions(), h, x, work_);
   phases_.filter += lap();
   return result;
 }

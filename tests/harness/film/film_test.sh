@@ -35,6 +35,8 @@ done
 
 refused "must end in" --out it.avi
 refused "did you mean" --scene garmnet --out it.obj
+refused "must be wider than the waist" --scene garment --set rim=0.1 --out it.png
+refused "takes no implicit forces" --scene garment --set n=12 --solver rattle --out it.png
 refused "must end in .png" --stills 0.1 --out it.webp
 refused "has no pictures" --width 100 --out it.obj
 refused "not within the film" --stills 0.5,7 --out it.png
