@@ -100,7 +100,7 @@ void add_selection(const Command& to, SweepOptions& options) {
   to.option("--filter", options.filter, "only points in whose id this is found", "REGEX");
   to.option("--exclude", options.exclude, "without points in whose id this is found", "REGEX");
   to.option("--profile", options.profile,
-            "quick (< 1 min), default (about 5 min) or paper (an hour and a half)", "NAME");
+            "quick (< 1 min), default (eight minutes) or paper (an hour and a half)", "NAME");
   to.option("--config", options.config, "a suite of your own instead of a profile", "FILE");
 }
 

@@ -13,7 +13,7 @@ namespace harness {
 namespace {
 
 constexpr double look = 0.1;            // s, at a contestant and size
-constexpr double runs_of_a_search = 4;  // full ones: steps that are too slow or fail end early
+constexpr double runs_of_a_search = 6;  // as measured, with levels of error down to 1 %
 constexpr double runs_of_a_calibration = 6;
 
 // Of simulating a second; the time-out where no step is taken.

@@ -17,8 +17,8 @@ using analysis::Plane;
 
 namespace {
 
-constexpr int limit_width = 10, level_width = 14, winner_width = 30, time_width = 10,
-              step_width = 10, error_width = 10;
+constexpr int limit_width = 9, level_width = 13, winner_width = 34, time_width = 9, step_width = 9,
+              error_width = 9;
 
 std::string level_text(double level) { return level == any_motion ? "any" : percent(level); }
 

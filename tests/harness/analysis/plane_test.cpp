@@ -143,7 +143,7 @@ TEST(Plane, IsPrintedAndWrittenAsItIs) {
   std::ostringstream out;
   print_planes(out, result);
   EXPECT_NE(out.str().find("chain of 80 vertices"), std::string::npos);
-  EXPECT_NE(out.str().find("10 %      any           strips"), std::string::npos) << out.str();
+  EXPECT_NE(out.str().find("10 %     any          strips"), std::string::npos) << out.str();
   EXPECT_NE(out.str().find("2.00 (1.99-2.01) by shake"), std::string::npos) << out.str();
   std::istringstream lines(out.str());
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
