@@ -5,6 +5,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/json_reader.h"
 #include "harness/base/json_text.h"
+#include "harness/base/paths.h"
 #include "harness/cli/commands.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
