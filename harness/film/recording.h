@@ -28,7 +28,7 @@ struct Take {
   std::string detail;                           // why it ended early; empty: it did not
   std::vector<inextensible::Positions> frames;  // from the start on
   std::vector<double> largest_strain;           // of each frame, as delivered
-  double smallest_step = 0;  // s; a step that is refused is halved
+  double smallest_step = 0;                     // s; a step that is refused is halved
   std::vector<double> seconds;                  // of wall time, each frame but the first took
 };
 

@@ -20,7 +20,7 @@ namespace {
 constexpr double most_overshoot = 100;
 constexpr double memory = 0.6;                           // of a mean, a step
 constexpr int first_holiday = 4, longest_holiday = 128;  // steps
-constexpr int most_rounds_in_contact = 100, most_sweeps = 100'000;
+constexpr int most_rounds_in_contact = 100;
 constexpr int first_rounds = 8;  // until a projection of the whole is tried for the first time
 
 // In visits of an edge by a sweep, 1.3 ns, as kernels measures them: a link in a pass over threads;
@@ -67,7 +67,7 @@ StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*
     if (touches() && rounds == most_rounds_in_contact) {
       contacts_->restore(start_record_);
       seen_ = {};
-      return sweep_.limit(StrainSweep::Order::in_turn, most_sweeps, edges, x, work);
+      return sweep_.limit(StrainSweep::Order::in_turn, StrainSweep::far_too_many, edges, x, work);
     }
     const bool gives_up =
         rounds == settings_.max_iterations || (rounds % 64 == 63 && !sweep_.finite());

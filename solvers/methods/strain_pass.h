@@ -52,6 +52,7 @@ class StrainSweep {
   // test of convergence, is not counted. Refuses x if an edge (of `edges`, in any order) is still
   // beyond its limit.
   enum class Order { in_turn, at_once };
+  static constexpr int far_too_many = 100'000;  // sweeps, for steps that sweeps alone are to end
   StepResult limit(Order order, int most_sweeps, const EdgeConstraints& edges, Positions& x,
                    WorkCounters& work);
 

@@ -5,7 +5,7 @@
 namespace inextensible {
 namespace {
 
-constexpr int most_passes_in_contact = 100, most_sweeps = 100'000;
+constexpr int most_passes_in_contact = 100;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Positions& 
     // Newton's method overshoots where a step takes vertices far round an obstacle; sweeps do not.
     if (touches() && passes == most_passes_in_contact) {
       contacts_->restore(record_);
-      return sweep_.limit(StrainSweep::Order::in_turn, most_sweeps, edges_, x, work);
+      return sweep_.limit(StrainSweep::Order::in_turn, StrainSweep::far_too_many, edges_, x, work);
     }
     const bool gives_up = passes == max_iterations_ || (passes % 64 == 63 && !sweep_.finite());
     sweep_.settle_contacts();

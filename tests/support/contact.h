@@ -39,8 +39,8 @@ class Ground final : public Collider {
 };
 
 // Points without edges, of mass 1, beside an obstacle.
-inline Problem points(int n, std::shared_ptr<const Collider> collider,
-                      std::vector<int> pinned = {}, bool contact_inside = true) {
+inline Problem points(int n, std::shared_ptr<const Collider> collider, std::vector<int> pinned = {},
+                      bool contact_inside = true) {
   ProblemParts parts;
   parts.contact_inside = contact_inside;
   parts.mass.assign(static_cast<std::size_t>(n), 1.0);

@@ -54,9 +54,8 @@ TEST(Drape, HasThePapersSizes) {
 // What fast projection does for singular matrices costs nothing where they are regular: one
 // assembly, one factorization and one solve an iteration, nothing taken back.
 TEST(FastProjection, DampsNothingWhereTheMatrixIsRegular) {
-  const Scene chain = build("chain", {{"n", 80}}),
-              drape = build("drape", {{"n", 15}, {"radius", 0}});
-  for (const Scene* scene : {&chain, &drape}) {
+  const Scene chain = build("chain", {{"n", 80}}), net = build("spinning_net", {{"n", 15}});
+  for (const Scene* scene : {&chain, &net}) {
     State state = scene->start;
     const auto stepper =
         inextensible::make_stepper("fast_projection", scene->problem, {0.001, 1, {}});
