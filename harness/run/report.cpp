@@ -106,6 +106,7 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
       << scene << ", step sweep: seconds per simulated second to reach a trajectory error "
       << "(step in s, strain limit)\n";
   std::vector<std::string> columns;
+  columns.reserve(targets.size());
   for (const double target : targets) columns.push_back(number_text(target, 1));
   const auto cell = [&](const std::string& solver, const std::string& column) -> std::string {
     const double target = std::stod(column);
