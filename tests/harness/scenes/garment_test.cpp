@@ -6,6 +6,7 @@
 
 #include "harness/scenes/scene.h"
 #include "inextensible/registry.h"
+#include "inextensible/stepping/step_controller.h"
 
 namespace harness {
 namespace {
@@ -20,13 +21,18 @@ Scene garment(const SceneParameters& given) {
   return type->build(complete_parameters(*type, given));
 }
 
+// A step that a tight rim refuses is halved.
 State after(const Scene& scene, double limit, double seconds) {
-  const double h = 1.0 / 200;
+  const double h = 1.0 / 400;
   State state = scene.start;
   const auto stepper =
       inextensible::make_stepper("fast_projection", scene.problem, {limit, 1, {}, &state});
-  while (state.time < seconds - 0.5 * h) {
-    if (!stepper->advance(state, h)) ADD_FAILURE() << "gave up at t = " << state.time;
+  inextensible::StepController controller(*stepper, {.largest = h});
+  while (state.time < seconds - 1e-9) {
+    const auto result = controller.advance(state);
+    if (result) continue;
+    ADD_FAILURE() << "gave up at t = " << state.time << ": " << result.detail;
+    break;
   }
   return state;
 }
