@@ -116,18 +116,20 @@ StepResult Icd::apply(const Positions& /*x_start*/, double h, Positions& x, Work
     free_.col(contacts_->vertex(c)) -= contacts_->push(c) * contacts_->normal(c);
   for (int round = 0, iterations = 0;; ++round) {
     x0_ = free_;
-    for (int c = 0; c < contacts_->count(); ++c) {
-      auto at = x0_.col(contacts_->vertex(c));
-      if (contacts_->holds(c)) at -= contacts_->gap(c, at) * contacts_->normal(c);
-    }
+    put_on_planes(x0_);
     if (round == 0) x = x0_;
     StepResult result = closest(h, x, work);
     result.iterations = iterations += result.iterations;
     if (!result || !planes_change(x) || round == most_rounds) return result;
-    for (int c = 0; c < contacts_->count(); ++c) {
-      auto at = x.col(contacts_->vertex(c));
-      if (contacts_->holds(c)) at -= contacts_->gap(c, at) * contacts_->normal(c);
-    }
+    put_on_planes(x);
+  }
+}
+
+// Vertices that planes hold.
+void Icd::put_on_planes(Positions& x) const {
+  for (int c = 0; c < contacts_->count(); ++c) {
+    auto at = x.col(contacts_->vertex(c));
+    if (contacts_->holds(c)) at -= contacts_->gap(c, at) * contacts_->normal(c);
   }
 }
 

@@ -31,6 +31,7 @@ class Icd final : public VelocityFilter {
 
  private:
   void evaluate(const Positions& dx);
+  void put_on_planes(Positions& x) const;
   bool planes_change(const Positions& x);
   StepResult closest(double h, Positions& x, WorkCounters& work);
   bool direction(bool convex, WorkCounters& work);

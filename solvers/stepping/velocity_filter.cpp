@@ -9,8 +9,9 @@ namespace {
 // Of a convex obstacle every vertex is found once at most.
 constexpr int most_rounds = 30;
 // The start is permissible and outside, but for what the obstacle moves: the closest point that is
-// so too lies no farther from the candidate than the start, and twice as far from the start as the
-// candidate. An iteration that wandered off ends elsewhere, and gives energy.
+// so too lies no farther from the candidate than the start, and so at most twice as far from the
+// start as the candidate; methods that are not exact get twice that. An iteration that wandered off
+// ends elsewhere, and gives energy.
 constexpr double farthest = 4;
 
 }  // namespace
