@@ -153,9 +153,11 @@ TEST(View, SeesTheBodyInAllItsPoses) {
   }
   recording.takes[0].frames.pop_back();
   const View view = view_of_all(recording);
-  for (std::size_t frame = 0; frame < 3; ++frame)
-    for (const auto& corner : body_at(recording.stage, frame).colwise())
+  for (std::size_t frame = 0; frame < 3; ++frame) {
+    const auto body = body_at(recording.stage, frame);
+    for (const auto& corner : body.colwise())
       EXPECT_LE(view.seen(corner).cwiseAbs().maxCoeff(), 1) << "frame " << frame;
+  }
 }
 
 TEST(View, SeesAllTakes) {
