@@ -15,6 +15,8 @@
 namespace harness {
 namespace {
 
+using SceneOfReference = std::pair<std::string, SceneParameters>;
+
 // How good it is, and where the scene's last vertex is.
 void print_reference(std::ostream& out, const Reference& reference) {
   out << reference.scene << ": " << reference.method << "\n  against " << reference.second_method
@@ -38,19 +40,45 @@ void print_reference(std::ostream& out, const Reference& reference) {
   }
 }
 
-// Computes the references of a profile's sweeps that are missing, or all of them. One that was
-// stopped goes on after the runs that were done.
-int make_references(const SweepOptions& options, bool again, double finest) {
+// Of one scene, at the sizes that were given.
+std::vector<SceneOfReference> given_scenes(const SweepOptions& options) {
+  if (options.scene.empty())
+    throw UsageError("--n and --set go with --scene: of which scene is the reference to be?");
+  const std::string scene = scene_of(options.scene, options.scene_words);
+  const auto type = find_scene(scene);
+  if (!type) throw UsageError("there is no scene '" + scene + "'; `bench list scenes` names them");
+  SceneParameters given = parameters_of(options.scene_words);
+  std::vector<SceneOfReference> scenes;
+  if (options.n.empty()) scenes.emplace_back(scene, complete_parameters(*type, given));
+  for (const double n : sizes_of(options.n)) {
+    given[type->resolution] = n;
+    scenes.emplace_back(scene, complete_parameters(*type, given));
+  }
+  return scenes;
+}
+
+// Those of a profile's sweeps.
+std::vector<SceneOfReference> scenes_of_suite(const SweepOptions& options) {
   Suite suite = read_suite(suite_path(options));
   std::erase_if(suite.sweeps, [&](const SweepSpec& s) {
     return (!options.sweep.empty() && s.sweep != options.sweep) ||
            (!options.scene.empty() && s.scene != options.scene);
   });
   if (suite.sweeps.empty()) throw UsageError("no sweep of the suite has such a scene");
-  const auto searches = plan(suite, {});
+  ReferenceShelf nothing("");
+  return without_reference(plan(suite, {}), nothing);
+}
+
+// Computes the references that are missing, or all of them. One that was stopped goes on after the
+// runs that were done.
+int make_references(const SweepOptions& options, bool again, double finest) {
+  const bool given = !options.n.empty() || !parameters_of(options.scene_words).empty();
+  auto missing = given ? given_scenes(options) : scenes_of_suite(options);
   const std::string folder = source_path("results/references");
   ReferenceShelf shelf(again ? "" : folder);
-  const auto missing = without_reference(searches, shelf);
+  std::erase_if(missing, [&shelf](const SceneOfReference& s) {
+    return shelf.find(s.first, s.second) != nullptr;
+  });
   const nlohmann::json build = machine_context().at("fingerprint");
   if (missing.empty()) std::cout << "nothing is missing (--again computes them anew)\n";
   for (const auto& [scene, parameters] : missing) {
@@ -93,7 +121,7 @@ void add_reference_command(const Command& program) {
   const Command command = program.subcommand(
       "reference",
       "compute the reference trajectories that a profile's sweeps are measured against");
-  add_selection(command, given->options);
+  add_scene_selection(command, given->options);
   command.flag("--again", given->again, "those that are there already, too");
   command.option("--finest", given->finest, "smallest step of step halving, s", "S").positive();
   command.does([given] { return make_references(given->options, given->again, given->finest); });

@@ -169,13 +169,12 @@ std::vector<inextensible::State> starts_beside(const Scene& scene) {
   return starts;
 }
 
-// After the gap's samples, where a route has ended, shapes are the second route's alone.
-void add_shapes(Reference& r, const Scene& scene, const Path& fine, const Path& second,
-                const Path& second_fine, const Path& second_coarse) {
+// After the gap's samples, where a route has ended, shapes are the first route's alone.
+void add_shapes(Reference& r, const Scene& scene, const Path& fine, const Path& half,
+                const Path& second) {
   for (std::size_t i = 0; i < r.times.size(); ++i) {
-    const bool both = i < fine.size();
-    const Positions& one = both ? fine[i] : second_fine[i];
-    const Positions& other = both ? second[i] : second_coarse[i];
+    const Positions& one = fine[i];
+    const Positions& other = i < second.size() ? second[i] : half[i];
     if (i >= r.gap.size()) {
       r.gap.push_back(rms_distance(scene, one, other));
       r.gap_max.push_back(max_distance(scene, one, other));
@@ -195,11 +194,11 @@ void compute_contact(const Task& task) {
   const double h = task.finest;
   const Route first = first_contact_route(task.scene, h);
   const Route other = second_contact_route(first);
-  const Path& fine = path_of(task, first, h);
-  const Path& half = path_of(task, first, 2 * h);
-  const Path& second_coarsest = path_to_the_end(task, other, 8 * h);
-  const Path& second_coarse = path_to_the_end(task, other, 4 * h);
-  const Path& second_fine = path_to_the_end(task, other, 2 * h);
+  const Path& fine = path_to_the_end(task, first, h);
+  const Path& half = path_to_the_end(task, first, 2 * h);
+  const Path& second_coarsest = path_of(task, other, 8 * h);
+  const Path& second_coarse = path_of(task, other, 4 * h);
+  const Path& second_fine = path_of(task, other, 2 * h);
   const Path second = extrapolated(second_coarse, second_fine, other.order);
   const Path second_half = extrapolated(second_coarsest, second_coarse, other.order);
   std::vector<GapPart> parts{{between_routes, &fine, &second},
@@ -217,11 +216,11 @@ void compute_contact(const Task& task) {
   r.second_method = other.solver + ", strain limit " + number_text(other.limit) + ", steps " +
                     number_text(4 * h) + " and " + number_text(2 * h) +
                     " s, Richardson extrapolated with order " + std::to_string(other.order);
-  if (fine.size() < r.times.size())
-    r.method +=
-        ", until it fails after t = " + number_text(fine.empty() ? 0.0 : r.times[fine.size() - 1]) +
-        " s; shape statistics from there on by " + other.solver + " alone";
-  add_shapes(r, task.scene, fine, second, second_fine, second_coarse);
+  if (second.size() < r.times.size())
+    r.second_method += ", until it fails after t = " +
+                       number_text(second.empty() ? 0.0 : r.times[second.size() - 1]) +
+                       " s; shape statistics from there on by " + first.solver + " alone";
+  add_shapes(r, task.scene, fine, half, second);
   r.positions = fine;
 }
 
