@@ -87,7 +87,7 @@ TEST(Claims, C8ComparesFramesBeforeContactAndAgainstTheEnsembleAfterIt) {
                 {"stopped", stopped}};
   };
   const auto with = [&](double before, double after, double deviation, const char* stopped = "") {
-    return verdict_in("C8", stability({}, {entry(before, after, deviation, stopped)}));
+    return verdict_in("C8", stability({}, json::array({entry(before, after, deviation, stopped)})));
   };
   const double apart = 3 * std::sqrt(2) * 0.05;  // that two runs may be
   EXPECT_EQ(with(0.001, 0.005, 0).verdict, "reproduced");
@@ -100,10 +100,10 @@ TEST(Claims, C8ComparesFramesBeforeContactAndAgainstTheEnsembleAfterIt) {
   EXPECT_TRUE(says(with(0.001, 0.2, 0), "corner_height at 0.2 s by 20 % beyond"));
   json other = entry(0.001, 0.2, 0);
   other["scene"] = "patch";
-  EXPECT_EQ(verdict_in("C8", stability({}, {other})).verdict, "not yet measured");
+  EXPECT_EQ(verdict_in("C8", stability({}, json::array({other}))).verdict, "not yet measured");
   json older = entry(0.001, 0.005, 0);
   older.erase("ensemble_deviation");
-  EXPECT_EQ(verdict_in("C8", stability({}, {older})).verdict, "not yet measured");
+  EXPECT_EQ(verdict_in("C8", stability({}, json::array({older}))).verdict, "not yet measured");
 }
 
 TEST(Claims, C10HoldsTheLastSecondAgainstTheFirst) {
