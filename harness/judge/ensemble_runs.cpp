@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "harness/base/text.h"
+#include "harness/judge/energy.h"
+#include "harness/judge/measures.h"
 #include "harness/judge/reference_routes.h"
 #include "inextensible/registry.h"
 
@@ -10,19 +12,32 @@ namespace harness {
 
 namespace {
 
+// Empty where energy is made out of nothing, by the rule that runs of a sweep fail by.
 ShapeSeries shapes_along(const Scene& scene, const inextensible::State& start, const Route& route,
                          double h, const std::vector<double>& times, const Tell& tell) {
-  ShapeRecord record(scene, times, inextensible::find_backend(route.solver)->velocities);
+  const auto velocities = inextensible::find_backend(route.solver)->velocities;
+  ShapeRecord record(scene, times, velocities);
+  EnergyRecord energy(*scene.problem, energy_scale(scene), velocities);
+  energy.begin(scene.start);
   follow(scene, start, route, h, times, tell, [&](const inextensible::State& state, bool sampled) {
     if (sampled) record.sample(state.x);
     record.step(state, h);
+    energy.after(state, h);
   });
+  energy.finish();
+  if (energy.gain() > scene.energy_bound) {
+    tell(route.solver + " is left out: its energy rises " + number_text(energy.gain(), 2) +
+         " of weight times size above the start's at t = " + number_text(energy.gain_time(), 3) +
+         " s");
+    return {};
+  }
   return record.finish();
 }
 
 std::string too_few(int came, int started) {
   return "only " + std::to_string(came) + " of " + std::to_string(started) +
-         " reference runs came to the end, an ensemble needs " + std::to_string(fewest_runs);
+         " reference runs came to the end without fault, an ensemble needs " +
+         std::to_string(fewest_runs);
 }
 
 }  // namespace
@@ -58,7 +73,7 @@ Ensemble compute_ensemble(const Scene& scene, const std::vector<double>& times,
       ++came;
     }
     methods.push_back(method + ", " + std::to_string(came) + " of " + std::to_string(count) +
-                      " runs to the end");
+                      " runs");
   }
   const int all = static_cast<int>(runs.size());
   Ensemble ensemble;
