@@ -79,6 +79,7 @@ void print_beside(std::ostream& out, const ScenePoints& scene, const PlaceTable&
                   const PlaceTable& own, const std::function<std::string(double)>& place);
 void print_delivered(std::ostream& out, const NamedResult& result);
 void print_sag(std::ostream& out, const NamedResult& result);
+void print_survival(std::ostream& out, const std::vector<NamedResult>& results);
 void print_slip(std::ostream& out, const NamedResult& result);
 void print_time_to_error(std::ostream& out, const NamedResult& result);
 void print_growth(std::ostream& out, const NamedResult& result);

@@ -27,6 +27,7 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
   for (const NamedResult& result : results) claims::print_time_to_error(out, result);
   for (const NamedResult& result : results) claims::print_sag(out, result);
   for (const NamedResult& result : results) claims::print_slip(out, result);
+  claims::print_survival(out, results);
   out << "## Growth\n\nThe time of a step grows as the number of vertices to this exponent.\n\n";
   for (const auto* files : {&results, &growth}) {
     for (const NamedResult& result : *files) claims::print_growth(out, result);

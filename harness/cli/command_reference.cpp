@@ -18,6 +18,8 @@
 namespace harness {
 namespace {
 
+using SceneOfReference = std::pair<std::string, SceneParameters>;
+
 // How good it is, and where the scene's last vertex is.
 void print_reference(std::ostream& out, const Reference& reference) {
   out << reference.scene << ": " << reference.method << "\n  against " << reference.second_method
@@ -129,29 +131,52 @@ bool wants_ensemble(const Reference& reference, bool again) {
          is_cloth(find_scene(reference.scene)->build(reference.parameters));
 }
 
-struct ReferenceOptions {
-  SweepOptions options;
-  bool again = false, ensemble = false;
-  double finest = 0;
-};
+// Of one scene, at the sizes that were given.
+std::vector<SceneOfReference> given_scenes(const SweepOptions& options) {
+  if (options.scene.empty())
+    throw UsageError("--n and --set go with --scene: of which scene is the reference to be?");
+  const std::string scene = scene_of(options.scene, options.scene_words);
+  const auto type = find_scene(scene);
+  if (!type) throw UsageError("there is no scene '" + scene + "'; `bench list scenes` names them");
+  SceneParameters given = parameters_of(options.scene_words);
+  std::vector<SceneOfReference> scenes;
+  if (options.n.empty()) scenes.emplace_back(scene, complete_parameters(*type, given));
+  for (const double n : sizes_of(options.n)) {
+    given[type->resolution] = n;
+    scenes.emplace_back(scene, complete_parameters(*type, given));
+  }
+  return scenes;
+}
 
-// Makes what is missing of a profile's sweeps, or all of it: references, and ensembles of those
-// that are there.
-int make_references(const ReferenceOptions& given) {
-  const SweepOptions& options = given.options;
-  if (given.ensemble && given.finest > 0)
-    throw UsageError("--finest does not go with --ensemble, whose runs have a step of their own");
+// Those of a profile's sweeps.
+std::vector<SceneOfReference> scenes_of_suite(const SweepOptions& options) {
   Suite suite = read_suite(suite_path(options));
   std::erase_if(suite.sweeps, [&](const SweepSpec& s) {
     return (!options.sweep.empty() && s.sweep != options.sweep) ||
            (!options.scene.empty() && s.scene != options.scene);
   });
   if (suite.sweeps.empty()) throw UsageError("no sweep of the suite has such a scene");
-  const auto searches = plan(suite, make_filters(options));
+  ReferenceShelf nothing("");
+  return without_reference(plan(suite, {}), nothing);
+}
+
+struct ReferenceOptions {
+  SweepOptions options;
+  bool again = false, ensemble = false;
+  double finest = 0;
+};
+
+// Makes what is missing, or all of it: references, and ensembles of those that are there.
+int make_references(const ReferenceOptions& given) {
+  const SweepOptions& options = given.options;
+  if (given.ensemble && given.finest > 0)
+    throw UsageError("--finest does not go with --ensemble, whose runs have a step of their own");
+  const bool one_scene = !options.n.empty() || !parameters_of(options.scene_words).empty();
   const std::string folder = source_path("results/references");
-  ReferenceShelf none(""), shelf(folder);
+  ReferenceShelf shelf(folder);
   bool nothing = true;
-  for (const auto& [scene, parameters] : without_reference(searches, none)) {
+  for (const auto& [scene, parameters] :
+       one_scene ? given_scenes(options) : scenes_of_suite(options)) {
     const std::string path = folder + "/" + reference_name(scene, parameters);
     const auto stored = shelf.find(scene, parameters);
     if (!given.ensemble && (!stored || given.again)) {
@@ -176,7 +201,7 @@ void add_reference_command(const Command& program) {
       "reference",
       "compute what a profile's sweeps are measured against: reference trajectories, and of cloth "
       "ensembles of runs");
-  add_selection(command, given->options);
+  add_scene_selection(command, given->options);
   command.flag("--again", given->again, "those that are there already, too");
   command.flag("--ensemble", given->ensemble,
                "only ensembles, of references that are there; their paths stay as they are");

@@ -84,7 +84,7 @@ SceneParameters parameters_of(const SceneWords& words) {
   return parameters;
 }
 
-void add_selection(const Command& to, SweepOptions& options) {
+void add_scene_selection(const Command& to, SweepOptions& options) {
   to.option("--sweep", options.sweep, "axis: strain (limit), resolution, step or stability",
             "AXIS");
   to.option("--scene", options.scene,
@@ -93,15 +93,19 @@ void add_selection(const Command& to, SweepOptions& options) {
             "NAME");
   add_scene_words(to, options.scene_words);
   to.option("--n", options.n, "sizes instead of the suite's, e.g. 41 or 20,40,80", "N,...");
+  to.option("--profile", options.profile,
+            "quick (< 1 min), default (eight minutes) or paper (an hour and a half)", "NAME");
+  to.option("--config", options.config, "a suite of your own instead of a profile", "FILE");
+}
+
+void add_selection(const Command& to, SweepOptions& options) {
+  add_scene_selection(to, options);
   to.option("--limit", options.limits, "strain limits instead of the suite's, e.g. 0.01,0.001",
             "STRAIN,...");
   to.alternatives("--solver", options.solver,
                   "only contestants whose name matches, e.g. 'shake|icd'; repeatable");
   to.option("--filter", options.filter, "only points in whose id this is found", "REGEX");
   to.option("--exclude", options.exclude, "without points in whose id this is found", "REGEX");
-  to.option("--profile", options.profile,
-            "quick (< 1 min), default (eight minutes) or paper (an hour and a half)", "NAME");
-  to.option("--config", options.config, "a suite of your own instead of a profile", "FILE");
 }
 
 void add_measurement(const Command& to, SweepOptions& options) {
@@ -282,6 +286,10 @@ Suite load_suite(const SweepOptions& given) {
   Contestants left = contestants_of(suite);
   if (find_contestant(left, suite.same) == left.end()) suite.same.clear();
   return suite;
+}
+
+std::vector<double> sizes_of(const std::string& text) {
+  return numbers_of("--n", text, Bounds::whole_number(2));
 }
 
 SweepFilters make_filters(const SweepOptions& options) {

@@ -29,8 +29,9 @@ struct SweepOptions {
   bool untimed = false;  // nobody will read the times: no turn to be waited for
 };
 
-// --sweep, --scene with its words, --n, --limit, --solver, --filter, --exclude, --profile and
-// --config.
+// --sweep, --scene with its words, --n, --profile and --config.
+void add_scene_selection(const Command& to, SweepOptions& options);
+// These, --limit, --solver, --filter and --exclude.
 void add_selection(const Command& to, SweepOptions& options);
 
 // --reps, --rel-ci, --timeout, --step, --finest-error, --seed and --untimed.
@@ -42,6 +43,7 @@ void check_profile(const std::string& name);
 // A regular expression, each of whose alternatives must match the name of some solver, or of some
 // contestant.
 void check_solver_pattern(const std::string& text, const Contestants& contestants = {});
+std::vector<double> sizes_of(const std::string& text);  // what --n says
 std::string suite_path(const SweepOptions& options);
 Suite load_suite(const SweepOptions& options);
 SweepFilters make_filters(const SweepOptions& options);

@@ -25,10 +25,11 @@ ShapeSeries shapes_along(const Scene& scene, const inextensible::State& start, c
     energy.after(state, h);
   });
   energy.finish();
-  if (energy.gain() > scene.energy_bound) {
+  const double rise = energy_can_only_fall(*scene.problem) ? energy.rise() : 0;
+  if (std::max(energy.gain(), rise) > scene.energy_bound) {
     tell(route.solver + " is left out: its energy rises " + number_text(energy.gain(), 2) +
          " of weight times size above the start's at t = " + number_text(energy.gain_time(), 3) +
-         " s");
+         " s, and " + number_text(rise, 2) + " in all where it can only fall");
     return {};
   }
   return record.finish();

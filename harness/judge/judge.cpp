@@ -182,7 +182,7 @@ Measures Judge::measures() const {
   measures.energy_gain = energy_.gain();
   measures.energy_gain_time = energy_.gain_time();
   if (scene_.conserves_energy) measures.energy_drift = energy_.drift();
-  if (!scene_.problem->body_motion()) measures.energy_rise = energy_.rise();
+  if (energy_can_only_fall(*scene_.problem)) measures.energy_rise = energy_.rise();
   if (samples_ > 0) {
     measures.kinetic_energy_mean = kinetic_sum_ / samples_;
     measures.rms_strain = root_mean_square(strains_);

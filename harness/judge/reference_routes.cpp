@@ -148,15 +148,13 @@ double order_towards(const Task& task, const Path& fine, const Route& second) {
   return (logarithms.back() - logarithms.front()) / (halvings.back() - halvings.front());
 }
 
-// After the gap's samples, where a route has ended, distances are the second route's alone.
-void add_later_gaps(Reference& r, const Scene& scene, const Path& fine, const Path& second,
-                    const Path& second_fine, const Path& second_coarse) {
+// After the gap's samples, where a route has ended, distances are the first route's alone.
+void add_later_gaps(Reference& r, const Scene& scene, const Path& fine, const Path& half,
+                    const Path& second) {
   for (std::size_t i = r.gap.size(); i < r.times.size(); ++i) {
-    const bool both = i < fine.size();
-    const Positions& one = both ? fine[i] : second_fine[i];
-    const Positions& other = both ? second[i] : second_coarse[i];
-    r.gap.push_back(rms_distance(scene, one, other));
-    r.gap_max.push_back(max_distance(scene, one, other));
+    const Positions& other = i < second.size() ? second[i] : half[i];
+    r.gap.push_back(rms_distance(scene, fine[i], other));
+    r.gap_max.push_back(max_distance(scene, fine[i], other));
   }
 }
 
@@ -165,11 +163,11 @@ void compute_contact(const Task& task) {
   Reference& r = task.r;
   const double h = task.finest;
   const auto [first, other] = contact_routes(task.scene, h);
-  const Path& fine = path_of(task, first, h);
-  const Path& half = path_of(task, first, 2 * h);
-  const Path& second_coarsest = path_to_the_end(task, other, 8 * h);
-  const Path& second_coarse = path_to_the_end(task, other, 4 * h);
-  const Path& second_fine = path_to_the_end(task, other, 2 * h);
+  const Path& fine = path_to_the_end(task, first, h);
+  const Path& half = path_to_the_end(task, first, 2 * h);
+  const Path& second_coarsest = path_of(task, other, 8 * h);
+  const Path& second_coarse = path_of(task, other, 4 * h);
+  const Path& second_fine = path_of(task, other, 2 * h);
   const Path second = extrapolated(second_coarse, second_fine, other.order);
   const Path second_half = extrapolated(second_coarsest, second_coarse, other.order);
   std::vector<GapPart> parts{{between_routes, &fine, &second},
@@ -187,11 +185,10 @@ void compute_contact(const Task& task) {
   r.second_method = other.solver + ", strain limit " + number_text(other.limit) + ", steps " +
                     number_text(4 * h) + " and " + number_text(2 * h) +
                     " s, Richardson extrapolated with order " + std::to_string(other.order);
-  if (fine.size() < r.times.size())
-    r.method +=
-        ", until it fails after t = " + number_text(fine.empty() ? 0.0 : r.times[fine.size() - 1]) +
-        " s";
-  add_later_gaps(r, task.scene, fine, second, second_fine, second_coarse);
+  if (second.size() < r.times.size())
+    r.second_method += ", until it fails after t = " +
+                       number_text(second.empty() ? 0.0 : r.times[second.size() - 1]) + " s";
+  add_later_gaps(r, task.scene, fine, half, second);
   r.positions = fine;
 }
 

@@ -95,7 +95,7 @@ const Path& path_to_the_end(const Task& task, const Route& route, double h) {
 Path extrapolated(const Path& coarse, const Path& fine, int order) {
   Path path;
   const double factor = 1 / (std::pow(2.0, order) - 1);
-  for (std::size_t i = 0; i < fine.size(); ++i)
+  for (std::size_t i = 0; i < std::min(fine.size(), coarse.size()); ++i)
     path.push_back(fine[i] + factor * (fine[i] - coarse[i]));
   return path;
 }

@@ -109,6 +109,9 @@ inline constexpr std::tuple phase_fields{
     field("filter", &inextensible::PhaseSeconds::filter, "s",
           "wall time of the same run in the velocity filter", in_phases),
     field("collision", &inextensible::PhaseSeconds::collision, "s",
-          "wall time of the same run in the collision filter", in_phases)};
+          "wall time of the same run in the collision filter", in_phases),
+    field("contact", &inextensible::PhaseSeconds::contact, "s",
+          "what of these three goes to friction, to finding contacts and to planes",
+          {.inside = "phases", .later = true})};
 
 }  // namespace harness

@@ -127,6 +127,7 @@ StepResult Icd::apply(const Positions& /*x_start*/, double h, Positions& x, Work
 
 // Vertices that planes hold.
 void Icd::put_on_planes(Positions& x) const {
+  const Contacts::Timing measured = contacts_->timing();
   for (int c = 0; c < contacts_->count(); ++c) {
     auto at = x.col(contacts_->vertex(c));
     if (contacts_->holds(c)) at -= contacts_->gap(c, at) * contacts_->normal(c);
@@ -135,6 +136,7 @@ void Icd::put_on_planes(Positions& x) const {
 
 // Whether a plane pulls at x and so releases its vertex, or a released one has gone through.
 bool Icd::planes_change(const Positions& x) {
+  const Contacts::Timing measured = contacts_->timing();
   bool changed = false;
   for (int c = 0; c < contacts_->count(); ++c) {
     const int vertex = contacts_->vertex(c);

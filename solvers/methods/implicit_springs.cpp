@@ -231,6 +231,7 @@ void ImplicitSprings::assemble(const Positions& x, double h, bool matrix) {
 // gradient loses what leads along n, and so does the step, by a stiffness along n that leaves next
 // to nothing of it.
 void ImplicitSprings::hold_in_planes(bool matrix) {
+  const Contacts::Timing measured = contacts_->timing();
   double* value = solver_->values();
   for (int c = 0; c < contacts_->count(); ++c) {
     if (!contacts_->holds(c)) continue;

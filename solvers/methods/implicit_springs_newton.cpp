@@ -82,6 +82,7 @@ ImplicitSprings::Search ImplicitSprings::search(const Positions& x, double h, do
 }
 
 StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
+  Lap lap(phases_wanted_);
   if (problem().has_drag()) before_ = state.x;
   const Eigen::Vector3d fall = h * h * problem().gravity();
   inertial_ = state.x + h * state.v;
@@ -95,11 +96,14 @@ StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
     for (int c = 0; c < contacts_->count(); ++c) contacts_->set_push(c, held);
   }
   const double lowest = start(state, h, x);
-  return newton(h, lowest, x);
+  const StepResult result = newton(h, lowest, x);
+  phases_.unconstrained += lap();
+  return result;
 }
 
 // Vertices that went through planes, and those that are held: onto them. Whether that moved any.
 bool ImplicitSprings::put_on_planes(Positions& x) {
+  const Contacts::Timing measured = contacts_->timing();
   contacts_->find(x, work_);
   bool moved = false;
   for (int c = 0; c < contacts_->count(); ++c) {
@@ -119,6 +123,7 @@ bool ImplicitSprings::put_on_planes(Positions& x) {
 // One that comes back stays for the rest of the step, so that this ends. The others push by what
 // moves a free mass as far.
 bool ImplicitSprings::release_pulled() {
+  const Contacts::Timing measured = contacts_->timing();
   bool released = false;
   for (int c = 0; c < contacts_->count(); ++c) {
     if (!contacts_->holds(c)) continue;

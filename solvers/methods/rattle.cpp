@@ -1,7 +1,7 @@
 #include "inextensible/methods/rattle.h"
 
 #include "inextensible/problem/forces.h"
-#include "inextensible/stepping/lap.h"
+#include "inextensible/problem/lap.h"
 
 namespace inextensible {
 

@@ -70,6 +70,7 @@ void ThreadPass::heed(const Contacts* contacts) {
 }
 
 void ThreadPass::show_normals(bool shown) {
+  const Contacts::Timing measured = contacts_->timing();
   for (int c = 0; c < contacts_->count(); ++c) {
     const int place = places_.place(contacts_->vertex(c));
     if (!shown) {

@@ -40,6 +40,7 @@ Contacts::Contacts(const Problem& problem)
 }
 
 void Contacts::begin(const Positions& x_start, double time, double h) {
+  const Timing measured = timing();
   for (int c = 0; c < count_; ++c) place_[vertex_[c]] = -1;
   count_ = 0;
   start_ = &x_start;
@@ -76,12 +77,14 @@ void Contacts::put(const ContactPlane& plane, WorkCounters& work) {
 }
 
 int Contacts::find(const Positions& x, WorkCounters& work) {
+  const Timing measured = timing();
   obstacle_.find(x, tolerance_, found_, work);
   for (const ContactPlane& plane : found_) put(plane, work);
   return static_cast<int>(found_.size());
 }
 
 int Contacts::update(Positions& x, WorkCounters& work) {
+  const Timing measured = timing();
   int changed = 0;
   ContactPlane plane{};
   for (int c = 0; c < count_; ++c) {
@@ -120,6 +123,7 @@ void Contacts::take_friction(const ContactPlane& plane, double push, const Eigen
 
 void Contacts::rub(Positions& x0, WorkCounters& work) {
   if (candidate_.size() == 0) return;
+  const Timing measured = timing();
   const double scale = h_ * h_;
   expected_ = x0 + scale * pressing_;
   obstacle_.find(expected_, 0, found_, work);
@@ -134,6 +138,7 @@ void Contacts::rub(Positions& x0, WorkCounters& work) {
 
 void Contacts::accept(const Positions& x) {
   if (candidate_.size() == 0) return;
+  const Timing measured = timing();
   const double scale = 1 / (h_ * h_), edge = margin_ / margin;
   expected_ = scale * (x - candidate_);
   for (int c = 0; c < count_; ++c) expected_.col(vertex_[c]) -= scale * push_[c] * normal(c);
@@ -151,6 +156,7 @@ void Contacts::accept(const Positions& x) {
 }
 
 void Contacts::keep_in_planes(Positions& d) const {
+  const Timing measured = timing();
   for (int c = 0; c < count_; ++c) {
     auto at = d.col(vertex_[c]);
     if (holds(c)) at -= normal(c).dot(at) * normal(c);

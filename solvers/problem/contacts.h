@@ -22,8 +22,10 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
+#include "inextensible/problem/lap.h"
 #include "inextensible/problem/obstacle.h"
 
 namespace inextensible {
@@ -78,6 +80,28 @@ class Contacts {
   double way(const Positions& x) const;
   double slack() const { return slack_; }
 
+  // Adds the seconds until it goes out of scope to measure()'s sum; one inside another adds nothing.
+  class Timing {
+   public:
+    explicit Timing(double*& sum)
+        : place_(sum), sum_(std::exchange(sum, nullptr)), lap_(sum_ != nullptr) {}
+    ~Timing() {
+      if (!sum_) return;
+      *sum_ += lap_();
+      place_ = sum_;
+    }
+    Timing(const Timing&) = delete;
+    Timing& operator=(const Timing&) = delete;
+
+   private:
+    double*& place_;
+    double* sum_;
+    Lap lap_;
+  };
+  Timing timing() const { return Timing(seconds_); }
+  // sum: s, outlives this; null: no clock is read, as at first.
+  void measure(double* sum) { seconds_ = sum; }
+
   int count() const { return count_; }
   int vertex(int contact) const { return vertex_[contact]; }
   Eigen::Vector3d normal(int contact) const { return vector(normal_x, contact); }
@@ -114,6 +138,7 @@ class Contacts {
   void visit(int first, double (&x)[3][lanes]);
 
   const Problem& problem_;
+  mutable double* seconds_ = nullptr;
   double tolerance_ = 0, margin_ = 0, slack_ = 0, friction_;
   const Positions* start_ = nullptr;
   // Of an obstacle that moves: what it does during the step, and how long that is, s.
@@ -150,6 +175,7 @@ inline void Contacts::visit(int first, double (&x)[3][lanes]) {
 
 template <class Access>
 void Contacts::settle(const Access& at) {
+  const Timing measured = timing();
   double x[3][lanes] = {};
   for (int first = 0; first < count_; first += lanes) {
     const int here = std::min(lanes, count_ - first);

@@ -268,10 +268,8 @@ bool TriangleCollider::touches(const List& list, const Vector3d& p, double depth
       nearest = i;
     }
   }
-  if (!(largest < -depth)) {
-    witness = listed_[list.first + nearest];
-    return false;
-  }
+  witness = listed_[list.first + nearest];
+  if (!(largest < -depth)) return false;
   plane.normal = {planes[nearest].x, planes[nearest].y, planes[nearest].z};
   plane.offset = planes[nearest].offset;
   return true;

@@ -67,8 +67,8 @@ class TriangleCollider final : public Collider {
     double x, y, z, offset;
   };
   // Whether p, of a cell that is not outside, is deeper than `depth` inside the mesh; if so,
-  // `plane` keeps it out, else `witness` is a triangle whose plane shows that it is not, if there
-  // is one.
+  // `plane` keeps it out. Of a convex mesh `witness` is the triangle whose plane shows that it is
+  // not, or will once that plane has pushed it out.
   bool touches(const List& list, const Eigen::Vector3d& p, double depth, ContactPlane& plane,
                int& witness) const;
   List add_list(const std::vector<int>& triangles);

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "inextensible/problem/forces.h"
-#include "inextensible/stepping/lap.h"
+#include "inextensible/problem/lap.h"
 
 namespace inextensible {
 
@@ -14,6 +14,11 @@ Stepper::Stepper(std::shared_ptr<const Problem> problem)
   if (!problem_->collider()) return;
   contacts_ = std::make_unique<Contacts>(*problem_);
   filtered_.resize(3, problem_->vertices());
+}
+
+void Stepper::measure_phases(bool wanted) {
+  phases_wanted_ = wanted;
+  if (contacts_) contacts_->measure(wanted ? &phases_.contact : nullptr);
 }
 
 StepResult Stepper::advance(State& state, double h) {
@@ -32,6 +37,7 @@ StepResult Stepper::advance(State& state, double h) {
   if (contacts_) {
     Lap lap(phases_wanted_);
     filtered_ = next_;
+    const Contacts::Timing measured = contacts_->timing();
     contacts_->push_out(next_, work_);
     phases_.collision += lap();
   }

@@ -18,8 +18,10 @@ namespace inextensible {
 
 class EdgeConstraints;
 
+// contact: what of the other three goes to friction, to finding contacts and to planes. Iterations
+// that a step needs more for them are the method's.
 struct PhaseSeconds {
-  double unconstrained = 0, filter = 0, collision = 0;
+  double unconstrained = 0, filter = 0, collision = 0, contact = 0;
 };
 
 // Sees the iterates of a step, where a method shows them: for measurements, not for the method.
@@ -52,7 +54,7 @@ class Stepper {
   const WorkCounters& work() const { return work_; }
   // Seconds spent in each phase of the steps since measure_phases(true); it is off at first.
   const PhaseSeconds& phases() const { return phases_; }
-  void measure_phases(bool wanted) { phases_wanted_ = wanted; }
+  void measure_phases(bool wanted);
   // The linear solver in use, "" for methods without one.
   virtual const char* linear_solver() const { return ""; }
   // Of the last linear system that was factored, an estimate from its pivots; 1 for methods without
