@@ -89,7 +89,7 @@ void print_rows(std::ostream& out, const Plane& plane, bool sizes, bool seconds)
 
 // Of the fastest runs in the column "any", where their shape errors are known.
 void print_shapes(std::ostream& out, const Plane& plane) {
-  constexpr std::size_t width = 120;
+  constexpr std::size_t width = 119;  // and a comma
   std::string line = "shape errors of the fastest, whatever their motion:";
   bool any = false;
   for (const Cell& cell : plane.cells) {
