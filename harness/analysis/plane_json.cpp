@@ -29,7 +29,8 @@ json entry_json(const Entry& entry) {
           {"id", entry.point.id()},
           {"seconds", number(entry.point.seconds())},
           {"step", number(entry.point.number("step"))},
-          {"error", number(entry.error)}};
+          {"error", number(entry.error)},
+          {"shape_error", number(entry.point.error("shape"))}};
 }
 
 json name_of(const Entry* entry) { return entry ? json(entry->row) : json(nullptr); }

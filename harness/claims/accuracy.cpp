@@ -105,73 +105,79 @@ namespace {
 
 constexpr double alike = 0.01;  // of the cloth's size: a viewer sees no difference
 
+// A run of an ensemble may be three standard deviations off its mean, and the difference of two
+// runs has sqrt(2) times the deviation of one.
+const double deviations_of_a_difference = 3 * std::sqrt(2);
+
 // Of one scene of the stability sweep's direct comparison.
 struct Frames {
-  bool touched = false;           // there is a contact; else all of the run is after it
-  double before = 0;              // largest distance of a vertex up to first contact
-  Answer together = Answer::yes;  // after it
-  double rms = 0, spread = 0;     // the largest RMS distance above `alike`, and how far equal runs
-                                  // are apart then
+  double before = 0;  // largest distance of a vertex up to first contact
+  double beyond = 0;  // after it: difference of a shape statistic beyond the ensemble's, largest
+  std::string which;  // statistic and time of that
+  Answer together() const {
+    return beyond < alike ? Answer::yes : beyond > 2 * alike ? Answer::no : Answer::open;
+  }
 };
 
+// None where a run stopped, without contact, and without an ensemble to tell how far runs come
+// apart that are all right.
 std::optional<Frames> frames_of(const nlohmann::json& entry) {
-  const auto numbers = [](const nlohmann::json& list) { return list.get<std::vector<double>>(); };
-  if (!entry.value("stopped", "").empty()) return {};
-  const bool touched = entry.at("first_contact").is_number();
-  const double contact = touched ? entry.at("first_contact").get<double>() : 0;
-  const auto times = numbers(entry.at("times"));
-  const auto rms = numbers(entry.at("icd").at("rms")),
-             largest = numbers(entry.at("icd").at("largest")),
-             moved = numbers(entry.at("moved_start").at("rms"));
-  for (const auto* list : {&rms, &largest, &moved}) {
-    if (list->size() != times.size())
+  if (!entry.value("stopped", "").empty() || !entry.at("first_contact").is_number()) return {};
+  const nlohmann::json deviations = entry.value("ensemble_deviation", nlohmann::json::object());
+  const nlohmann::json& differences = entry.at("icd");
+  const double contact = entry.at("first_contact");
+  const auto times = entry.at("times").get<std::vector<double>>();
+  const auto check_length = [&times](const nlohmann::json& list) {
+    if (list.size() != times.size())
       throw UsageError("same_frame: " + std::to_string(times.size()) + " times, but " +
-                       std::to_string(list->size()) + " distances");
-  }
+                       std::to_string(list.size()) + " distances");
+  };
   Frames frames;
-  frames.touched = touched;
-  double spread = 0;  // paths that have parted do not find together again: the largest so far
+  check_length(differences.at("largest"));
   for (std::size_t i = 0; i < times.size(); ++i) {
-    spread = std::max(spread, moved[i]);
-    if (times[i] < contact) {
-      frames.before = std::max(frames.before, largest[i]);
-    } else if (rms[i] > alike && rms[i] > 2 * spread) {
-      const bool far = rms[i] > 2 * alike && rms[i] > 4 * spread;
-      if (far || frames.together == Answer::yes) frames.together = far ? Answer::no : Answer::open;
-      if (rms[i] > frames.rms) {
-        frames.rms = rms[i];
-        frames.spread = spread;
-      }
+    if (times[i] < contact)
+      frames.before = std::max(frames.before, differences.at("largest")[i].get<double>());
+  }
+  bool known = false;
+  for (const auto& [statistic, list] : deviations.items()) {
+    check_length(list);
+    check_length(differences.at(statistic));
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      if (times[i] < contact || !list[i].is_number()) continue;
+      known = true;
+      const double beyond = differences.at(statistic)[i].get<double>() -
+                            deviations_of_a_difference * list[i].get<double>();
+      if (beyond <= frames.beyond) continue;
+      frames.beyond = beyond;
+      frames.which = statistic + " at " + text(times[i], 3) + " s";
     }
   }
-  return frames;
+  return known ? std::optional(frames) : std::nullopt;
 }
 
 }  // namespace
 
 void same_frame(const Points& points, ClaimVerdict& c) {
   c.rule =
-      "fast projection and ICD side by side at one step and limit (stability sweep); (a) before "
-      "the cloth touches the sphere no vertex is 1 % of the cloth's size or more apart, (b) "
-      "afterwards the RMS distance stays below 1 %, or below twice what fast projection is away "
-      "from itself after its start was moved by 1e-10 (not so: above 2 % and four times; between: "
-      "open); the drape alone: both reproduced, one changed, none not reproduced; undecided if "
-      "open";
+      "fast projection and ICD side by side at one step and limit (stability sweep), the drape "
+      "alone; (a) before the cloth touches the sphere no vertex is 1 % of the cloth's size or more "
+      "apart, (b) afterwards potential energy, kinetic energy, corner height and shadow differ by "
+      "less than 1 % beyond what two runs of the reference's ensemble may (three standard "
+      "deviations of a difference; not so: by more than 2 %; between: open); both: reproduced, "
+      "one: changed, none: not reproduced, undecided if open";
   std::vector<Answer> before, after;
   for (const nlohmann::json* entry : points.same_frame()) {
-    const auto frames = frames_of(*entry);
-    if (!frames || !entry->at("scene").get<std::string>().starts_with("drape")) continue;
-    if (frames->touched) before.push_back(frames->before < alike ? Answer::yes : Answer::no);
-    after.push_back(frames->together);
     const std::string scene = entry->at("scene");
-    c.measured +=
-        (c.measured.empty() ? "" : "; ") + scene + ": " +
-        (frames->touched ? "before contact at most " + percent(frames->before) + " apart, after it "
-                         : "without contact ") +
-        (frames->together == Answer::yes
-             ? "as close as the rule asks"
-             : "RMS up to " + percent(frames->rms) + ", where equal runs are " +
-                   percent(frames->spread) + " apart");
+    if (!scene.starts_with("drape")) continue;
+    const auto frames = frames_of(*entry);
+    if (!frames) continue;
+    before.push_back(frames->before < alike ? Answer::yes : Answer::no);
+    after.push_back(frames->together());
+    c.measured += (c.measured.empty() ? "" : "; ") + scene + ": before contact at most " +
+                  percent(frames->before) + " apart, after it " +
+                  (frames->which.empty() ? "nowhere beyond the ensemble's spread"
+                                         : frames->which + " by " + percent(frames->beyond) +
+                                               " beyond the ensemble's spread");
     c.points.push_back("same_frame/" + scene);
   }
   if (!before.empty()) c.verdict = verdict_of(all_of(before), all_of(after));

@@ -1,4 +1,7 @@
 // The plane strain x error: who is fastest within each limit and level of error.
+#include <algorithm>
+#include <cmath>
+
 #include "harness/analysis/plane.h"
 #include "harness/base/text.h"
 #include "harness/claims/page.h"
@@ -16,9 +19,18 @@ std::string cell_text(const Cell& cell) {
                      step_text(first->point.number("step"));
   if (cell.level == any_motion && std::isfinite(first->error))
     text += ", off by " + number_text(100 * first->error, 2) + " %";
+  const double shape = first->point.error("shape");
+  if (cell.level == any_motion && std::isfinite(shape))
+    text += ", shape by " + number_text(100 * shape, 2) + " %";
   if (const Entry* paper = cell.paper_best(); paper && paper != first)
     text += "; " + analysis::text(*cell.lead_over(paper)) + " " + quoted(paper->row);
   return text;
+}
+
+bool has_shapes(const Plane& plane) {
+  return std::any_of(plane.cells.begin(), plane.cells.end(), [](const Cell& cell) {
+    return cell.first() && std::isfinite(cell.first()->point.error("shape"));
+  });
 }
 
 }  // namespace
@@ -30,7 +42,9 @@ void print_planes(std::ostream& out, const NamedResult& result) {
     out << "### " << plane.scene << ", " << plane.vertices << " vertices (`" << result.name
         << "`)\n\nThe fastest within a strain limit and an error: its time for one simulated "
            "second, its step in s, and how many times as long the best of the paper's six takes, "
-           "if it is not of them. Errors are over the scene's size.\n\n";
+           "if it is not of them. Errors are over the scene's size."
+        << (has_shapes(plane) ? " Shape errors are deviations beyond the ensemble's spread." : "")
+        << "\n\n";
     std::vector<std::string> row{"strain"};
     for (const double level : plane.levels)
       row.push_back(level == any_motion ? "any motion" : "error <= " + percent(level));

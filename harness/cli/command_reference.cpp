@@ -1,13 +1,16 @@
-// bench reference: the trajectories that errors are measured against.
+// bench reference: the trajectories and ensembles that errors are measured against.
+#include <filesystem>
 #include <iomanip>
 #include <iostream>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
+#include "harness/base/json_reader.h"
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/cli/commands.h"
 #include "harness/cli/sweep_options.h"
+#include "harness/judge/ensemble_runs.h"
 #include "harness/judge/reference_file.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/points/context.h"
@@ -40,6 +43,94 @@ void print_reference(std::ostream& out, const Reference& reference) {
   }
 }
 
+void print_ensemble(std::ostream& out, const Ensemble& ensemble) {
+  for (const std::string& method : ensemble.methods) out << "  ensemble: " << method << '\n';
+  if (!ensemble.known()) {
+    if (!ensemble.unknown_because.empty()) out << "  " << ensemble.unknown_because << '\n';
+    return;
+  }
+  out << "  at its end, mean and standard deviation:";
+  for (const auto& [name, member] : shape_statistic_infos)
+    out << "  " << name << ' ' << number_text(ensemble.mean.back().*member, 3) << ' '
+        << number_text(ensemble.deviation.back().*member, 2);
+  out << '\n';
+}
+
+// A reference's file, and where what belongs to it is kept while it is made.
+class PendingReference {
+ public:
+  PendingReference(const std::string& path, const std::string& scene,
+                   const SceneParameters& parameters, double finest)
+      : name_(std::filesystem::path(path).filename().string()),
+        pieces_(path, {{"schema", "inextensible-reference-pieces/1"},
+                       {"scene", scene},
+                       {"scene_parameters", parameters},
+                       {"finest", finest},
+                       {"build", machine_context().at("fingerprint")}}) {
+    if (pieces_.dropped()) tell("runs of another build or --finest are dropped");
+    if (pieces_.taken_up() > 0)
+      tell("goes on after " + std::to_string(pieces_.taken_up()) + " runs that are done");
+  }
+
+  void tell(const std::string& line) const { std::cerr << name_ << ": " << line << '\n'; }
+  Tell teller() const {
+    return [this](const std::string& line) { tell(line); };
+  }
+  KeepRun keeper() {
+    return [this](const auto& run, const auto& compute) -> const RouteRun& {
+      return pieces_.run(run, compute);
+    };
+  }
+  void done() { pieces_.remove(); }
+
+ private:
+  std::string name_;
+  ReferencePieces pieces_;
+};
+
+Ensemble ensemble_for(const Scene& scene, const std::vector<double>& times,
+                      PendingReference& making) {
+  return is_cloth(scene) ? compute_ensemble(scene, times, {}, making.teller(), making.keeper())
+                         : Ensemble();
+}
+
+// By both routes, and of cloth an ensemble. One that was stopped goes on after the runs that were
+// done.
+void make_reference(const std::string& path, const std::string& scene,
+                    const SceneParameters& parameters, double finest) {
+  check_writable(path);
+  PendingReference making(path, scene, parameters, finest);
+  Reference reference =
+      compute_reference(scene, parameters, finest, making.teller(), making.keeper());
+  reference.ensemble = ensemble_for(find_scene(scene)->build(parameters), reference.times, making);
+  write_atomically(path, to_json(reference).dump() + "\n");
+  making.done();
+  print_reference(std::cout, reference);
+  print_ensemble(std::cout, reference.ensemble);
+  std::cout << path << std::endl;
+}
+
+// Makes the ensemble of a reference that is there. Its path stays as it is.
+void add_ensemble(const std::string& path, const Reference& reference) {
+  check_writable(path);
+  PendingReference making(path, reference.scene, reference.parameters, 0);
+  const Scene scene = find_scene(reference.scene)->build(reference.parameters);
+  const Ensemble ensemble = ensemble_for(scene, reference.times, making);
+  const nlohmann::json document = parse_document(read_file(path, "reference"), path);
+  write_atomically(path, with_ensemble(document, ensemble).dump() + "\n");
+  making.done();
+  std::cout << reference.scene << ":\n";
+  print_ensemble(std::cout, ensemble);
+  std::cout << path << std::endl;
+}
+
+bool wants_ensemble(const Reference& reference, bool again) {
+  const Ensemble& ensemble = reference.ensemble;
+  const bool there = ensemble.known() || !ensemble.unknown_because.empty();
+  return !reference.exact && (again || !there) &&
+         is_cloth(find_scene(reference.scene)->build(reference.parameters));
+}
+
 // Of one scene, at the sizes that were given.
 std::vector<SceneOfReference> given_scenes(const SweepOptions& options) {
   if (options.scene.empty())
@@ -69,62 +160,53 @@ std::vector<SceneOfReference> scenes_of_suite(const SweepOptions& options) {
   return without_reference(plan(suite, {}), nothing);
 }
 
-// Computes the references that are missing, or all of them. One that was stopped goes on after the
-// runs that were done.
-int make_references(const SweepOptions& options, bool again, double finest) {
-  const bool given = !options.n.empty() || !parameters_of(options.scene_words).empty();
-  auto missing = given ? given_scenes(options) : scenes_of_suite(options);
+struct ReferenceOptions {
+  SweepOptions options;
+  bool again = false, ensemble = false;
+  double finest = 0;
+};
+
+// Makes what is missing, or all of it: references, and ensembles of those that are there.
+int make_references(const ReferenceOptions& given) {
+  const SweepOptions& options = given.options;
+  if (given.ensemble && given.finest > 0)
+    throw UsageError("--finest does not go with --ensemble, whose runs have a step of their own");
+  const bool one_scene = !options.n.empty() || !parameters_of(options.scene_words).empty();
   const std::string folder = source_path("results/references");
-  ReferenceShelf shelf(again ? "" : folder);
-  std::erase_if(missing, [&shelf](const SceneOfReference& s) {
-    return shelf.find(s.first, s.second) != nullptr;
-  });
-  const nlohmann::json build = machine_context().at("fingerprint");
-  if (missing.empty()) std::cout << "nothing is missing (--again computes them anew)\n";
-  for (const auto& [scene, parameters] : missing) {
-    const std::string name = reference_name(scene, parameters);
-    const std::string path = folder + "/" + name;
-    check_writable(path);
-    const auto tell = [&name](const std::string& line) {
-      std::cerr << name << ": " << line << '\n';
-    };
-    ReferencePieces pieces(path, {{"schema", "inextensible-reference-pieces/1"},
-                                  {"scene", scene},
-                                  {"scene_parameters", parameters},
-                                  {"finest", finest},
-                                  {"build", build}});
-    if (pieces.dropped()) tell("runs of another build or --finest are dropped");
-    if (pieces.taken_up() > 0)
-      tell("goes on after " + std::to_string(pieces.taken_up()) + " runs that are done");
-    const Reference reference =
-        compute_reference(scene, parameters, finest, tell,
-                          [&pieces](const auto& run, const auto& compute) -> const RouteRun& {
-                            return pieces.run(run, compute);
-                          });
-    write_atomically(path, to_json(reference).dump() + "\n");
-    pieces.remove();
-    print_reference(std::cout, reference);
-    std::cout << path << std::endl;
+  ReferenceShelf shelf(folder);
+  bool nothing = true;
+  for (const auto& [scene, parameters] :
+       one_scene ? given_scenes(options) : scenes_of_suite(options)) {
+    const std::string path = folder + "/" + reference_name(scene, parameters);
+    const auto stored = shelf.find(scene, parameters);
+    if (!given.ensemble && (!stored || given.again)) {
+      make_reference(path, scene, parameters, given.finest);
+    } else if (stored && wants_ensemble(*stored, given.again)) {
+      add_ensemble(path, *stored);
+    } else {
+      if (!stored) std::cerr << path << " is not there: bench reference makes it\n";
+      continue;
+    }
+    nothing = false;
   }
+  if (nothing) std::cout << "nothing is missing (--again computes them anew)\n";
   return success;
 }
 
 }  // namespace
 
 void add_reference_command(const Command& program) {
-  struct Given {
-    SweepOptions options;
-    bool again = false;
-    double finest = 0;
-  };
-  const auto given = std::make_shared<Given>();
+  const auto given = std::make_shared<ReferenceOptions>();
   const Command command = program.subcommand(
       "reference",
-      "compute the reference trajectories that a profile's sweeps are measured against");
+      "compute what a profile's sweeps are measured against: reference trajectories, and of cloth "
+      "ensembles of runs");
   add_scene_selection(command, given->options);
   command.flag("--again", given->again, "those that are there already, too");
+  command.flag("--ensemble", given->ensemble,
+               "only ensembles, of references that are there; their paths stay as they are");
   command.option("--finest", given->finest, "smallest step of step halving, s", "S").positive();
-  command.does([given] { return make_references(given->options, given->again, given->finest); });
+  command.does([given] { return make_references(*given); });
 }
 
 }  // namespace harness

@@ -14,6 +14,10 @@ constexpr double window_length = 0.01;  // s
 
 }  // namespace
 
+bool energy_can_only_fall(const inextensible::Problem& problem) {
+  return (problem.collider() || problem.has_drag()) && !problem.body_motion();
+}
+
 EnergyRecord::EnergyRecord(const inextensible::Problem& problem, double scale,
                            inextensible::Velocities velocities)
     : problem_(problem), scale_(scale), velocities_(velocities) {}

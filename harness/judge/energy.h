@@ -16,6 +16,9 @@
 
 namespace harness {
 
+// Something dissipates, and nothing that moves does work.
+bool energy_can_only_fall(const inextensible::Problem& problem);
+
 class EnergyRecord {
  public:
   // scale: J, what gains are divided by. The problem must outlive this.

@@ -35,6 +35,8 @@ Judge::Judge(const Scene& scene, const Options& options)
   options_.sample_every = std::max(1, options_.sample_every);
   if (options_.residual) probe_.emplace();
   energy_.begin(scene.start);
+  if (options_.reference && options_.reference->ensemble.known())
+    shape_.emplace(scene, options_.reference->times, options.velocities);
 }
 
 void Judge::before(const State& state, double h) {
@@ -55,17 +57,8 @@ void Judge::compare(const State& state) {
     const bool inside = time < state.time - time_tolerance;
     const double part = inside ? (time - start_.time) / (state.time - start_.time) : 1;
     const Positions x = inside ? Positions((1 - part) * start_.x + part * state.x) : state.x;
-    if (next_ < reference.positions.size()) {
-      compare_positions(x);
-    } else {
-      const ShapeStatistics shape = shape_statistics(scene_, x);
-      const ShapeStatistics& wanted = reference.shape[next_];
-      shape_squares_.potential_energy +=
-          std::pow(shape.potential_energy - wanted.potential_energy, 2);
-      shape_squares_.corner_height += std::pow(shape.corner_height - wanted.corner_height, 2);
-      shape_squares_.shadow += std::pow(shape.shadow - wanted.shadow, 2);
-      ++shapes_;
-    }
+    if (next_ < reference.positions.size()) compare_positions(x);
+    if (shape_) shape_->sample(x);
   }
 }
 
@@ -101,6 +94,37 @@ void Judge::add_errors(Measures& measures) const {
   measures.gap = at.gap;
 }
 
+// "": there is one.
+std::string Judge::why_no_shape() const {
+  if (!is_cloth(scene_)) return "the scene is no cloth";
+  if (!options_.reference) return "no reference of this scene, size and parameters";
+  const Reference& reference = *options_.reference;
+  if (!reference.ensemble.known()) {
+    const std::string& why = reference.ensemble.unknown_because;
+    return why.empty() ? "the reference has no ensemble" : "no ensemble: " + why;
+  }
+  std::size_t wanted = 0;
+  for (const double time : reference.times) wanted += time <= scene_.duration + time_tolerance;
+  if (wanted == 0) return "the run is shorter than the first sample time";
+  if (next_ >= wanted) return "";
+  return "the run ended after " + std::to_string(next_) + " of " + std::to_string(wanted) +
+         " sample times";
+}
+
+void Judge::add_shape(Measures& measures) const {
+  measures.shape_unknown_because = why_no_shape();
+  if (!measures.shape_unknown_because.empty()) return;
+  ShapeRecord record = *shape_;
+  const Reference& reference = *options_.reference;
+  const ShapeError found = shape_error(reference.ensemble, reference.times, record.finish());
+  measures.shape = found.error;
+  measures.shape_statistic = found.statistic;
+  measures.shape_time = found.time;
+  measures.kinetic_ratio = found.kinetic_ratio;
+  measures.kinetic_spread = found.kinetic_spread;
+  if (std::isnan(found.error)) measures.shape_unknown_because = "positions are not finite";
+}
+
 double Judge::after(const Positions& filtered, const State& state, double h, bool counts) {
   const StrainRange range = strain_range(*scene_.problem, filtered);
   running_.max_strain = std::max(running_.max_strain, range.most);
@@ -116,6 +140,7 @@ double Judge::after(const Positions& filtered, const State& state, double h, boo
       running_.residuals.push_back({state.time, residuals->first, residuals->last});
   }
   if (options_.reference) compare(state);
+  if (shape_) shape_->step(state, h);
   return range.most;
 }
 
@@ -157,9 +182,7 @@ Measures Judge::measures() const {
   measures.energy_gain = energy_.gain();
   measures.energy_gain_time = energy_.gain_time();
   if (scene_.conserves_energy) measures.energy_drift = energy_.drift();
-  const inextensible::Problem& problem = *scene_.problem;
-  const bool can_only_fall = (problem.collider() || problem.has_drag()) && !problem.body_motion();
-  if (can_only_fall) measures.energy_rise = energy_.rise();
+  if (energy_can_only_fall(*scene_.problem)) measures.energy_rise = energy_.rise();
   if (samples_ > 0) {
     measures.kinetic_energy_mean = kinetic_sum_ / samples_;
     measures.rms_strain = root_mean_square(strains_);
@@ -181,6 +204,7 @@ Measures Judge::measures() const {
     }
     if (!options_.residual_series) measures.residuals.clear();
   }
+  add_shape(measures);
   if (!options_.reference) {
     measures.unknown_because = "no reference of this scene, size and parameters";
     return measures;
@@ -193,11 +217,6 @@ Measures Judge::measures() const {
           six_digits(at.worst_gap)};
   if (reference_moved_squares_ > 0)
     measures.moved = std::sqrt(moved_squares_ / reference_moved_squares_);
-  if (shapes_ > 0) {
-    measures.shape_potential_energy = std::sqrt(shape_squares_.potential_energy / shapes_);
-    measures.shape_corner_height = std::sqrt(shape_squares_.corner_height / shapes_);
-    measures.shape_shadow = std::sqrt(shape_squares_.shadow / shapes_);
-  }
   return measures;
 }
 

@@ -43,7 +43,9 @@ class Judge {
   void compare(const inextensible::State& state);
   void compare_positions(const inextensible::Positions& x);
   void add_errors(Measures& measures) const;
+  void add_shape(Measures& measures) const;
   std::string why_no_error(const ErrorAtLevel& at) const;
+  std::string why_no_shape() const;
   Measures measures() const;
 
   const Scene& scene_;
@@ -61,8 +63,7 @@ class Judge {
   inextensible::State start_;  // of the step, where a sample lies inside it
   std::size_t next_ = 0;       // of the reference's samples
   double moved_squares_ = 0, reference_moved_squares_ = 0;  // distances from the start
-  int shapes_ = 0;
-  ShapeStatistics shape_squares_;
+  std::optional<ShapeRecord> shape_;                        // where the reference has an ensemble
 };
 
 }  // namespace harness

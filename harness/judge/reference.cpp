@@ -1,62 +1,16 @@
 #include "harness/judge/reference.h"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "harness/base/text.h"
-#include "harness/judge/measures.h"
 #include "harness/judge/reference_file.h"
 #include "harness/points/measures.h"
-#include "inextensible/problem/forces.h"
 
 namespace harness {
 
 using inextensible::Positions;
 using nlohmann::json;
-
-namespace {
-
-// Area covered by triangles seen from above: pixel centres of a raster, over size^2.
-double shadow_area(const Scene& scene, const Positions& x) {
-  constexpr int pixels = 512;
-  const double reach = 0.75 * scene.size;  // a square cloth of side 1 reaches 0.71 from its middle
-  const double pixel = 2 * reach / pixels;
-  std::vector<char> dark(pixels * pixels, 0);
-  const auto index = [&](double coordinate) {
-    return std::clamp(static_cast<int>((coordinate + reach) / pixel), 0, pixels - 1);
-  };
-  for (const auto& [a, b, c] : scene.triangles) {
-    const Eigen::Vector2d p(x(0, a), x(2, a)), q(x(0, b), x(2, b)), r(x(0, c), x(2, c));
-    const auto cross = [](const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
-      return u.x() * v.y() - u.y() * v.x();
-    };
-    const double area = cross(q - p, r - p);
-    if (area == 0) continue;
-    const Eigen::Vector2d low = p.cwiseMin(q).cwiseMin(r), high = p.cwiseMax(q).cwiseMax(r);
-    for (int j = index(low.y()); j <= index(high.y()); ++j) {
-      for (int i = index(low.x()); i <= index(high.x()); ++i) {
-        const Eigen::Vector2d s((i + 0.5) * pixel - reach, (j + 0.5) * pixel - reach);
-        if (cross(q - p, s - p) / area >= 0 && cross(r - q, s - q) / area >= 0 &&
-            cross(p - r, s - r) / area >= 0)
-          dark[j * pixels + i] = 1;
-      }
-    }
-  }
-  const auto count = std::count(dark.begin(), dark.end(), 1);
-  return static_cast<double>(count) * pixel * pixel / (scene.size * scene.size);
-}
-
-}  // namespace
-
-ShapeStatistics shape_statistics(const Scene& scene, const Positions& x) {
-  ShapeStatistics shape;
-  shape.potential_energy = inextensible::potential_energy(*scene.problem, x) / energy_scale(scene);
-  for (const int corner : scene.corners)
-    shape.corner_height += x(1, corner) / scene.size / static_cast<double>(scene.corners.size());
-  if (!scene.triangles.empty()) shape.shadow = shadow_area(scene, x);
-  return shape;
-}
 
 double rms_distance(const Scene& scene, const Positions& x, const Positions& y) {
   double sum = 0;  // term by term, so that equal runs have equal errors to the last digit

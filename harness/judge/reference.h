@@ -1,6 +1,6 @@
 // References: trajectories that errors are measured against. A reference comes from two unlike
 // routes and carries their distance as its own uncertainty; it is computed by `bench reference`,
-// stored as JSON (schema inextensible-reference/1) and is never a contestant.
+// stored as JSON (schema inextensible-reference/2) and is never a contestant.
 #pragma once
 
 #include <map>
@@ -9,17 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "harness/judge/ensemble.h"
 #include "harness/scenes/scene.h"
 
 namespace harness {
-
-// What can still be compared where paths are chaotic.
-struct ShapeStatistics {
-  double potential_energy = 0;  // over weight times size
-  double corner_height = 0;     // mean over the cloth's corners, over size
-  double shadow = 0;            // area of the shadow on a horizontal plane, over size^2
-};
-ShapeStatistics shape_statistics(const Scene& scene, const inextensible::Positions& x);
 
 struct Reference {
   std::string scene;
@@ -33,7 +26,6 @@ struct Reference {
   std::vector<double> gap_max;  // the same in the maximum norm
   // What the gap is the largest of; empty in older files.
   std::map<std::string, std::vector<double>> gap_parts;
-  std::vector<ShapeStatistics> shape, shape_gap;  // at all times; gap: |difference| of both routes
   double valid_until = 0;   // s: the last sample before the gap exceeds 1 % of the scene's size
   double energy_drift = 0;  // of the first route, where the scene conserves energy
   // Of the route that steps, under step halving, and what theory expects of smooth motion. They
@@ -41,6 +33,7 @@ struct Reference {
   double observed_order = 0;
   double expected_order = 1;
   bool exact = false;  // no route: the scene's motion is known
+  Ensemble ensemble;   // of cloth, up to the last of the times; older files have none
 
   double duration() const { return times.empty() ? 0 : times.back(); }
   // How many sample times count at a level of error: those at which 3 gap is at most the level.

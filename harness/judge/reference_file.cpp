@@ -18,22 +18,45 @@ using nlohmann::json;
 
 namespace {
 
-constexpr const char* reference_schema = "inextensible-reference/1";
+constexpr const char* reference_schema = "inextensible-reference/2";
+// Without an ensemble, and with shape statistics of the routes, which are passed over.
+constexpr const char* older_schema = "inextensible-reference/1";
 
 double rounded(double value, double scale = 1e12) { return std::round(value * scale) / scale; }
 
-json shape_json(const std::vector<ShapeStatistics>& list) {
-  json rows = json::array();
-  for (const auto& s : list)
-    rows.push_back({rounded(s.potential_energy), rounded(s.corner_height), rounded(s.shadow)});
-  return rows;
+json ensemble_json(const Ensemble& e) {
+  json statistics = json::array();
+  for (const auto& info : shape_statistic_infos) statistics.push_back(info.name);
+  return {{"methods", e.methods},
+          {"moved", e.moved},
+          {"runs", e.runs},
+          {"statistics", std::move(statistics)},
+          {"mean", to_json(e.mean)},
+          {"deviation", to_json(e.deviation)},
+          {"kinetic_deviation", e.kinetic_deviation},
+          {"unknown_because", e.unknown_because}};
 }
 
-std::vector<ShapeStatistics> shape_of(const json& rows) {
-  std::vector<ShapeStatistics> list;
-  for (const json& row : rows)
-    list.push_back({row.at(0).get<double>(), row.at(1).get<double>(), row.at(2).get<double>()});
-  return list;
+Ensemble read_ensemble(const json& object) {
+  Ensemble e;
+  object.at("methods").get_to(e.methods);
+  object.at("moved").get_to(e.moved);
+  object.at("runs").get_to(e.runs);
+  e.mean = shape_series_of(object.at("mean"));
+  e.deviation = shape_series_of(object.at("deviation"));
+  object.at("kinetic_deviation").get_to(e.kinetic_deviation);
+  object.at("unknown_because").get_to(e.unknown_because);
+  return e;
+}
+
+// Lists of the file that belong to its times.
+bool lengths_agree(const Reference& r) {
+  const std::size_t times = r.times.size();
+  const Ensemble& e = r.ensemble;
+  const bool ensemble = !e.known() || (e.mean.size() == times && e.deviation.size() == times &&
+                                       e.kinetic_deviation.size() == times);
+  return ensemble && r.gap.size() == times && r.gap_max.size() == times &&
+         r.positions.size() <= times;
 }
 
 // That it is of a scene of ours, with as many vertices.
@@ -51,6 +74,27 @@ void check_mesh(const Reference& r, const std::string& path) {
 }
 
 }  // namespace
+
+json to_json(const ShapeSeries& series) {
+  json rows = json::array();
+  for (const ShapeStatistics& at : series) {
+    json row = json::array();
+    for (const auto& info : shape_statistic_infos) row.push_back(at.*info.member);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+ShapeSeries shape_series_of(const json& rows) {
+  ShapeSeries series;
+  for (const json& row : rows) {
+    ShapeStatistics at;
+    for (std::size_t k = 0; k < shape_statistic_infos.size(); ++k)
+      at.*shape_statistic_infos[k].member = row.at(k).get<double>();
+    series.push_back(at);
+  }
+  return series;
+}
 
 std::string reference_name(const std::string& scene, const SceneParameters& complete) {
   const auto found_type = find_scene(scene);
@@ -76,22 +120,31 @@ json to_json(const Reference& r) {
     for (Eigen::Index i = 0; i < x.size(); ++i) row.push_back(rounded(x.data()[i], scale));
     positions.push_back(std::move(row));
   }
-  return {{"schema", reference_schema},
-          {"scene", r.scene},
-          {"scene_parameters", r.parameters},
-          {"method", r.method},
-          {"second_method", r.second_method},
-          {"valid_until", r.valid_until},
-          {"energy_drift", r.energy_drift},
-          {"observed_order", number(r.observed_order)},
-          {"expected_order", r.expected_order},
-          {"times", r.times},
-          {"gap", r.gap},
-          {"gap_max", r.gap_max},
-          {"gap_parts", r.gap_parts},
-          {"shape", shape_json(r.shape)},
-          {"shape_gap", shape_json(r.shape_gap)},
-          {"positions", std::move(positions)}};
+  json object = {{"schema", reference_schema},
+                 {"scene", r.scene},
+                 {"scene_parameters", r.parameters},
+                 {"method", r.method},
+                 {"second_method", r.second_method},
+                 {"valid_until", r.valid_until},
+                 {"energy_drift", r.energy_drift},
+                 {"observed_order", number(r.observed_order)},
+                 {"expected_order", r.expected_order},
+                 {"times", r.times},
+                 {"gap", r.gap},
+                 {"gap_max", r.gap_max},
+                 {"gap_parts", r.gap_parts},
+                 {"positions", std::move(positions)}};
+  if (r.ensemble.known() || !r.ensemble.unknown_because.empty())
+    object["ensemble"] = ensemble_json(r.ensemble);
+  return object;
+}
+
+json with_ensemble(json document, const Ensemble& ensemble) {
+  document["schema"] = reference_schema;
+  document.erase("shape");
+  document.erase("shape_gap");
+  document["ensemble"] = ensemble_json(ensemble);
+  return document;
 }
 
 json summary_of(const Reference& r) {
@@ -110,7 +163,7 @@ json summary_of(const Reference& r) {
 Reference read_reference(const std::string& path) {
   const json document = parse_document(read_file(path, "reference"), path);
   try {
-    if (document.at("schema") != reference_schema)
+    if (document.at("schema") != reference_schema && document.at("schema") != older_schema)
       throw UsageError("'" + path + "': schema is " + value_text(document.at("schema")) +
                        ", must be \"" + reference_schema + "\"");
     Reference r;
@@ -127,18 +180,14 @@ Reference read_reference(const std::string& path) {
     // Older files know one norm: nothing in the other one is sure then.
     r.gap_max = document.value("gap_max", std::vector<double>(r.gap.size(), unknown));
     r.gap_parts = document.value("gap_parts", r.gap_parts);
-    r.shape = shape_of(document.at("shape"));
-    r.shape_gap = shape_of(document.at("shape_gap"));
+    if (document.contains("ensemble")) r.ensemble = read_ensemble(document.at("ensemble"));
     for (const json& row : document.at("positions")) {
       const auto numbers = row.get<std::vector<double>>();
       r.positions.emplace_back(Eigen::Map<const Positions>(
           numbers.data(), 3, static_cast<Eigen::Index>(numbers.size() / 3)));
     }
     check_mesh(r, path);
-    if (r.gap.size() != r.times.size() || r.gap_max.size() != r.times.size() ||
-        r.shape.size() != r.times.size() || r.shape_gap.size() != r.times.size() ||
-        r.positions.size() > r.times.size())
-      throw UsageError("'" + path + "': lists of different lengths");
+    if (!lengths_agree(r)) throw UsageError("'" + path + "': lists of different lengths");
     return r;
   } catch (const json::exception& error) {
     throw UsageError("'" + path + "' is not a reference: " + error.what());

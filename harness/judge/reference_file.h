@@ -13,6 +13,11 @@ namespace harness {
 std::string reference_name(const std::string& scene, const SceneParameters& complete);
 
 nlohmann::json to_json(const Reference& reference);
+// A reference's document with this ensemble in place of its own, all else as it is.
+nlohmann::json with_ensemble(nlohmann::json document, const Ensemble& ensemble);
+// A row for each time, a number for each statistic.
+nlohmann::json to_json(const ShapeSeries& series);
+ShapeSeries shape_series_of(const nlohmann::json& rows);
 // What a result file says of a reference that its errors were measured against.
 nlohmann::json summary_of(const Reference& reference);
 // Throws UsageError, naming the file, for anything that is not a reference.

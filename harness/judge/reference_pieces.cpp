@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "harness/judge/reference_file.h"
+
 namespace harness {
 
 using inextensible::Positions;
@@ -24,6 +26,7 @@ RouteRun run_of(const json& line) {
     run.path.emplace_back(Eigen::Map<const Positions>(
         numbers.data(), 3, static_cast<Eigen::Index>(numbers.size() / 3)));
   }
+  if (line.contains("shape")) run.shape = shape_series_of(line.at("shape"));
   return run;
 }
 
@@ -48,7 +51,9 @@ const RouteRun& ReferencePieces::run(const std::string& name,
                                      const std::function<RouteRun()>& compute) {
   if (const auto known = known_.find(name); known != known_.end()) return known->second;
   const RouteRun& run = known_.emplace(name, compute()).first->second;
-  journal_.append({{"run", name}, {"energy_drift", run.energy_drift}, {"path", path_json(run)}});
+  json line = {{"run", name}, {"energy_drift", run.energy_drift}, {"path", path_json(run)}};
+  if (!run.shape.empty()) line["shape"] = to_json(run.shape);
+  journal_.append(line);
   return run;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/base/line_journal.h"
+#include "harness/judge/shape.h"
 #include "harness/scenes/scene.h"
 
 namespace harness {
@@ -16,6 +17,7 @@ namespace harness {
 struct RouteRun {
   std::vector<inextensible::Positions> path;  // at the sample times, up to where it fails
   double energy_drift = 0;  // over weight times size, where the scene conserves energy
+  ShapeSeries shape;        // of an ensemble's runs, which have no path
 };
 
 // Gives the run of a name: a kept one, or what `compute` returns.

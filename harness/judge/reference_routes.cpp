@@ -1,8 +1,5 @@
 #include "harness/judge/reference_routes.h"
 
-#include <gsl/gsl_randist.h>
-#include <gsl/gsl_rng.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +19,7 @@ using inextensible::Positions;
 namespace {
 
 constexpr double perturbation = 1e-10;             // of a start, over the scene's size
-constexpr int moved_starts = 2;                    // how many disturbed starts a route is run from
+constexpr int moved_start_count = 2;               // how many disturbed starts a route is run from
 constexpr double surely_known = 0.01 / sure_gaps;  // gap up to which an order is looked for
 constexpr double pendulum_tolerance = 1e-13;
 
@@ -107,14 +104,10 @@ void compute_chain(const Task& task) {
   std::vector<GapPart> parts{{between_routes, &path, &second},
                              {of_first_step, &path, &swing(task, 0, 10 * pendulum_tolerance).path},
                              {of_second_step, &second, &second_half}};
-  for (int k = 0; k < moved_starts; ++k)
+  for (int k = 0; k < moved_start_count; ++k)
     parts.push_back({of_starts, &path,
                      &swing(task, (k % 2 == 0 ? 1 : -1) * perturbation, pendulum_tolerance).path});
   add_gaps(r, task.scene, parts);
-  for (std::size_t i = 0; i < all; ++i) {
-    r.shape.push_back(shape_statistics(task.scene, path[i]));
-    r.shape_gap.push_back({});
-  }
   r.positions = path;
 }
 
@@ -155,36 +148,13 @@ double order_towards(const Task& task, const Path& fine, const Route& second) {
   return (logarithms.back() - logarithms.front()) / (halvings.back() - halvings.front());
 }
 
-// Starts off the scene's by at most the perturbation, at random; pinned vertices stay.
-std::vector<inextensible::State> starts_beside(const Scene& scene) {
-  const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
-                                                                 gsl_rng_free);
-  std::vector<inextensible::State> starts(moved_starts, scene.start);
-  for (inextensible::State& moved : starts) {
-    for (Eigen::Index i = 0; i < moved.x.size(); ++i)
-      moved.x.data()[i] += perturbation * scene.size * gsl_ran_flat(random.get(), -1, 1);
-    for (const int vertex : scene.problem->pinned())
-      moved.x.col(vertex) = scene.start.x.col(vertex);
-  }
-  return starts;
-}
-
-// After the gap's samples, where a route has ended, shapes are the first route's alone.
-void add_shapes(Reference& r, const Scene& scene, const Path& fine, const Path& half,
-                const Path& second) {
-  for (std::size_t i = 0; i < r.times.size(); ++i) {
-    const Positions& one = fine[i];
+// After the gap's samples, where a route has ended, distances are the first route's alone.
+void add_later_gaps(Reference& r, const Scene& scene, const Path& fine, const Path& half,
+                    const Path& second) {
+  for (std::size_t i = r.gap.size(); i < r.times.size(); ++i) {
     const Positions& other = i < second.size() ? second[i] : half[i];
-    if (i >= r.gap.size()) {
-      r.gap.push_back(rms_distance(scene, one, other));
-      r.gap_max.push_back(max_distance(scene, one, other));
-    }
-    const ShapeStatistics a = shape_statistics(scene, one);
-    const ShapeStatistics b = shape_statistics(scene, other);
-    r.shape.push_back(a);
-    r.shape_gap.push_back({std::abs(a.potential_energy - b.potential_energy),
-                           std::abs(a.corner_height - b.corner_height),
-                           std::abs(a.shadow - b.shadow)});
+    r.gap.push_back(rms_distance(scene, fine[i], other));
+    r.gap_max.push_back(max_distance(scene, fine[i], other));
   }
 }
 
@@ -192,8 +162,7 @@ void add_shapes(Reference& r, const Scene& scene, const Path& fine, const Path& 
 void compute_contact(const Task& task) {
   Reference& r = task.r;
   const double h = task.finest;
-  const Route first = first_contact_route(task.scene, h);
-  const Route other = second_contact_route(first);
+  const auto [first, other] = contact_routes(task.scene, h);
   const Path& fine = path_to_the_end(task, first, h);
   const Path& half = path_to_the_end(task, first, 2 * h);
   const Path& second_coarsest = path_of(task, other, 8 * h);
@@ -204,8 +173,8 @@ void compute_contact(const Task& task) {
   std::vector<GapPart> parts{{between_routes, &fine, &second},
                              {of_first_step, &fine, &half},
                              {of_second_step, &second, &second_half}};
-  const auto starts = starts_beside(task.scene);
-  for (int k = 0; k < moved_starts; ++k)
+  const auto starts = moved_starts(task.scene, perturbation * task.scene.size, moved_start_count);
+  for (int k = 0; k < moved_start_count; ++k)
     parts.push_back(
         {of_starts, &fine,
          &kept_path(task, starts[static_cast<std::size_t>(k)], k + 1, first, h, r.times.size())});
@@ -218,13 +187,17 @@ void compute_contact(const Task& task) {
                     " s, Richardson extrapolated with order " + std::to_string(other.order);
   if (second.size() < r.times.size())
     r.second_method += ", until it fails after t = " +
-                       number_text(second.empty() ? 0.0 : r.times[second.size() - 1]) +
-                       " s; shape statistics from there on by " + first.solver + " alone";
-  add_shapes(r, task.scene, fine, half, second);
+                       number_text(second.empty() ? 0.0 : r.times[second.size() - 1]) + " s";
+  add_later_gaps(r, task.scene, fine, half, second);
   r.positions = fine;
 }
 
 }  // namespace
+
+std::pair<Route, Route> contact_routes(const Scene& scene, double h) {
+  const Route first = first_contact_route(scene, h);
+  return {first, second_contact_route(first)};
+}
 
 Reference compute_reference(const std::string& scene_name, const SceneParameters& complete,
                             double finest, const Tell& tell, const KeepRun& keep) {

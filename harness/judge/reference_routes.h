@@ -3,11 +3,16 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "harness/judge/reference.h"
 #include "harness/judge/reference_pieces.h"
+#include "harness/judge/route_runs.h"
 
 namespace harness {
+
+// Of a scene that is no pendulum, in steps of h seconds.
+std::pair<Route, Route> contact_routes(const Scene& scene, double h);
 
 // Computes the reference of a scene by both routes. finest: the smallest step of step halving, s; 0
 // chooses by the scene. tell is called with a line now and then. keep: where runs are kept so that

@@ -1,7 +1,11 @@
 #include "harness/judge/route_runs.h"
 
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
+
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
@@ -16,9 +20,10 @@ namespace {
 
 constexpr double parted = 1e-2;  // gap at which a reference ends, over the scene's size
 
-// A backend's path at the sample times, up to where it fails; h divides the sample interval.
-Path follow(const Scene& scene, const inextensible::State& start, const Route& route, double h,
-            const std::vector<double>& times, const Tell& tell) {
+}  // namespace
+
+void follow(const Scene& scene, const inextensible::State& start, const Route& route, double h,
+            const std::vector<double>& times, const Tell& tell, const Look& look) {
   const std::string& solver = route.solver;
   const auto stepper = inextensible::make_stepper(solver, scene.problem, {route.limit, 1, {}});
   const bool half =
@@ -26,24 +31,33 @@ Path follow(const Scene& scene, const inextensible::State& start, const Route& r
   inextensible::State state =
       half ? inextensible::start_half_step_back(*scene.problem, start, h) : start;
   const auto per_sample = std::lround(sample_interval / h);
-  Path path;
   tell(solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ...");
   for (const double time : times) {
-    for (long i = 0; i < per_sample; ++i) {
+    for (long i = 1; i <= per_sample; ++i) {
       const auto result = stepper->advance(state, h);
       if (!result) {
         tell(solver + ", h = 1/" + number_text(std::round(1 / h)) +
              " s stopped before t = " + number_text(time) +
              " s: " + inextensible::to_string(result.status) + ", " + result.detail);
-        return path;
+        return;
       }
+      look(state, i == per_sample);
     }
-    path.push_back(state.x);
   }
-  return path;
 }
 
-}  // namespace
+std::vector<inextensible::State> moved_starts(const Scene& scene, double by, int count) {
+  const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
+                                                                 gsl_rng_free);
+  std::vector<inextensible::State> starts(static_cast<std::size_t>(count), scene.start);
+  for (inextensible::State& moved : starts) {
+    for (Eigen::Index i = 0; i < moved.x.size(); ++i)
+      moved.x.data()[i] += by * gsl_ran_flat(random.get(), -1, 1);
+    for (const int vertex : scene.problem->pinned())
+      moved.x.col(vertex) = scene.start.x.col(vertex);
+  }
+  return starts;
+}
 
 const Path& kept_path(const Task& task, const inextensible::State& from, int start,
                       const Route& route, double h, std::size_t samples) {
@@ -55,7 +69,12 @@ const Path& kept_path(const Task& task, const inextensible::State& from, int sta
   return task
       .keep(name,
             [&] {
-              return RouteRun{follow(task.scene, from, route, h, times, task.tell), 0};
+              RouteRun run;
+              follow(task.scene, from, route, h, times, task.tell,
+                     [&run](const inextensible::State& state, bool sampled) {
+                       if (sampled) run.path.push_back(state.x);
+                     });
+              return run;
             })
       .path;
 }

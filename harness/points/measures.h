@@ -55,7 +55,9 @@ struct Measures {
   std::vector<ErrorSample> error_series;
   double moved = unknown;
   double valid_until = unknown;
-  double shape_potential_energy = unknown, shape_corner_height = unknown, shape_shadow = unknown;
+  double shape = unknown, shape_time = unknown;
+  std::string shape_statistic, shape_unknown_because;
+  double kinetic_ratio = unknown, kinetic_spread = unknown;
   double residual_first = unknown, residual_last = unknown;
   std::vector<ResidualSample> residuals;
   std::map<std::string, double> sag;
@@ -127,15 +129,20 @@ inline constexpr std::tuple measure_fields{
           later_error_or_null),
     field("valid_until", &Measures::valid_until, "s",
           "up to here the reference is known to 1 % of the scene's size", error_or_null),
-    field("shape_potential_energy", &Measures::shape_potential_energy, "weight times size",
-          "potential energy against the reference's, root mean square after valid_until",
-          error_or_null),
-    field("shape_corner_height", &Measures::shape_corner_height, "scene's size",
-          "height of the corners against the reference's, root mean square after valid_until",
-          error_or_null),
-    field("shape_shadow", &Measures::shape_shadow, "scene's size squared",
-          "area of the shadow against the reference's, root mean square after valid_until",
-          error_or_null),
+    field("shape", &Measures::shape, "",
+          "shape error: the most by which potential energy or kinetic energy (over weight times "
+          "size), corner height (over size) or shadow (over size squared) deviates from the "
+          "ensemble's mean, beyond three standard deviations; null: see shape_unknown_because",
+          later_error_or_null),
+    field("shape_statistic", &Measures::shape_statistic, "", "which of these deviates so",
+          later_error_or_null),
+    field("shape_time", &Measures::shape_time, "s", "at which sample time", later_error_or_null),
+    field("shape_unknown_because", &Measures::shape_unknown_because, "",
+          "why there is no shape error", later_error_or_null),
+    field("kinetic_ratio", &Measures::kinetic_ratio, "",
+          "kinetic energy over the ensemble's, means over sample times", later_error_or_null),
+    field("kinetic_spread", &Measures::kinetic_spread, "",
+          "three standard deviations of that ratio in the ensemble", later_error_or_null),
     field("residual_first", &Measures::residual_first, "m",
           "fast projection's mean |F| over vertices and sampled steps, after the first iteration",
           error_or_null),

@@ -66,6 +66,15 @@ ordered_json work_schema() {
   return work;
 }
 
+// What older files have instead of a shape error: differences from one reference.
+void add_older_shapes(ordered_json& error) {
+  for (const char* name : {"shape_potential_energy", "shape_corner_height", "shape_shadow"})
+    add(error, name,
+        {{"type", {"number", "null"}},
+         {"description", "older files: against one reference, root mean square after valid_until"}},
+        true);
+}
+
 ordered_json point_schema() {
   ordered_json point = closed_object();
   add(point, "id",
@@ -99,6 +108,7 @@ ordered_json point_schema() {
   add(point, "filter_seconds_per_simulated_second", reference_to("seconds"), true);
   add_fields(point, phase_fields);
   add_fields(point, measure_fields);
+  add_older_shapes(point["properties"]["error"]);
   add(point, "work", reference_to("work"), false);
   return point;
 }

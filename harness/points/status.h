@@ -34,8 +34,9 @@ inline constexpr std::array point_statuses{
                     "ran to the end, strained beyond its limit"},
     PointStatusInfo{PointStatus::energy_gained, "energy_gained", "E",
                     "ran to the end, and made energy out of nothing"},
-    PointStatusInfo{PointStatus::motion_lost, "motion_lost", "M",
-                    "ran to the end, and hardly moved where the reference does"},
+    PointStatusInfo{
+        PointStatus::motion_lost, "motion_lost", "M",
+        "ran to the end, and hardly moved, or hung or shook, where the reference does not"},
     PointStatusInfo{PointStatus::not_converged, "not_converged", "N",
                     "the solver gave up on a step and said so"},
     PointStatusInfo{PointStatus::diverged, "diverged", "D",

@@ -87,6 +87,29 @@ void print_rows(std::ostream& out, const Plane& plane, bool sizes, bool seconds)
   }
 }
 
+// Of the fastest runs in the column "any", where their shape errors are known.
+void print_shapes(std::ostream& out, const Plane& plane) {
+  constexpr std::size_t width = 119;  // and a comma
+  std::string line = "shape errors of the fastest, whatever their motion:";
+  bool any = false;
+  for (const Cell& cell : plane.cells) {
+    const Entry* first = cell.level == any_motion ? cell.first() : nullptr;
+    const double shape = first ? first->point.error("shape") : unknown;
+    if (std::isnan(shape)) continue;
+    const std::string word =
+        " " + percent(cell.strain_limit) + ": " + number_text(100 * shape, 2) + " %";
+    const std::string comma = any ? "," : "";
+    if (line.size() + comma.size() + word.size() > width) {
+      out << line << comma << '\n';
+      line = " " + word;
+    } else {
+      line += comma + word;
+    }
+    any = true;
+  }
+  if (any) out << line << '\n';
+}
+
 // Times of a table of 20 s or more are in seconds.
 bool in_seconds(const std::vector<Plane>& planes) {
   double most = 0;
@@ -109,6 +132,7 @@ void print_planes(std::ostream& out, const nlohmann::json& document) {
     if (!sizes || plane.scene != last) print_head(out, plane, sizes, seconds);
     last = sizes ? plane.scene : "";
     print_rows(out, plane, sizes, seconds);
+    if (!sizes) print_shapes(out, plane);
   }
   if (!planes.empty())
     out << "(~: too close to the next to tell; u: with untuned settings; errors are over the "

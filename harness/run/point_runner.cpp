@@ -170,6 +170,11 @@ void PointRunner::decide(const Judge& judge, Run& run) const {
     run.status = PointStatus::motion_lost;
     run.detail = "its vertices moved " + number_text(found.moved, 3) +
                  " times as far as the reference's, " + number_text(least_motion) + " are needed";
+  } else if (kinetic_energy_lost(found.kinetic_ratio, found.kinetic_spread)) {
+    run.status = PointStatus::motion_lost;
+    run.detail = "its mean kinetic energy is " + number_text(found.kinetic_ratio, 3) +
+                 " times that of the ensemble, permitted are " + number_text(least_kinetic_ratio) +
+                 " to " + number_text(largest_kinetic_ratio) + " and what the ensemble's runs have";
   }
 }
 

@@ -123,6 +123,8 @@ struct Sweep {
     Measures& measures = point.measures;
     if (std::isnan(measures.trajectory) && measures.unknown_because.empty())
       measures.unknown_because = "no run came to an end that could be judged";
+    if (std::isnan(measures.shape) && measures.shape_unknown_because.empty())
+      measures.shape_unknown_because = "no run came to an end that could be judged";
     points.push_back(std::move(point));
     events.point(points.back(), search, searches.size());
     return points.back();

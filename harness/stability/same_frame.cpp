@@ -5,7 +5,9 @@
 #include <random>
 
 #include "harness/base/text.h"
+#include "harness/judge/measures.h"
 #include "harness/stability/case_parts.h"
+#include "inextensible/problem/forces.h"
 #include "inextensible/registry.h"
 
 namespace harness {
@@ -14,18 +16,41 @@ namespace {
 using inextensible::State;
 using inextensible::Stepper;
 
-// Every step until shortly after first contact, which is early, then every tenth.
+// Every step until shortly after first contact, which is early, then at the sample times of
+// references.
 constexpr double densely_until = 0.05;  // s
-constexpr int sample_every = 10;
+constexpr double at_sample = 1e-9;      // s
 
 ShapeStatistics apart(const ShapeStatistics& a, const ShapeStatistics& b) {
-  return {std::abs(a.potential_energy - b.potential_energy),
-          std::abs(a.corner_height - b.corner_height), std::abs(a.shadow - b.shadow)};
+  ShapeStatistics difference;
+  for (const auto& [name, member] : shape_statistic_infos)
+    difference.*member = std::abs(a.*member - b.*member);
+  return difference;
+}
+
+// Velocities of both belong to one instant: the methods that are compared share that.
+ShapeStatistics shape_of(const Scene& scene, const State& state) {
+  ShapeStatistics shape = shape_statistics(scene, state.x);
+  shape.kinetic_energy =
+      inextensible::kinetic_energy(*scene.problem, state.v) / energy_scale(scene);
+  return shape;
+}
+
+// The ensemble's standard deviations at a time; unknown between its sample times.
+ShapeStatistics deviation_at(const Reference* reference, double time) {
+  for (std::size_t i = 0; reference && i < reference->ensemble.deviation.size(); ++i) {
+    if (std::abs(reference->times[i] - time) < at_sample) return reference->ensemble.deviation[i];
+  }
+  return {unknown, unknown, unknown, unknown};
+}
+
+bool at_sample_time(double time) {
+  return std::abs(time - std::round(time / sample_interval) * sample_interval) < at_sample;
 }
 
 FrameDistance distance(const Scene& scene, const State& a, const State& b) {
   return {rms_distance(scene, a.x, b.x), max_distance(scene, a.x, b.x),
-          apart(shape_statistics(scene, a.x), shape_statistics(scene, b.x))};
+          apart(shape_of(scene, a), shape_of(scene, b))};
 }
 
 }  // namespace
@@ -44,8 +69,11 @@ std::vector<SameFrameScene> same_frame_scenes() {
   return scenes;
 }
 
-SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
+SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed, ReferenceShelf& references) {
   const Scene scene = case_parts::scene_of(wanted.scene.c_str(), {{"n", wanted.side}});
+  const auto reference = references.find(
+      wanted.scene,
+      complete_parameters(*find_scene(wanted.scene), {{"n", static_cast<double>(wanted.side)}}));
   SameFrame found;
   found.scene = wanted;
   struct Run {
@@ -76,10 +104,11 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
     const double time = static_cast<double>(i) * wanted.step;
     if (std::isnan(found.first_contact) && runs[0].stepper->work().contacts > 0)
       found.first_contact = time;
-    if (time > densely_until && i % sample_every != 0) continue;
+    if (time > densely_until && !at_sample_time(time)) continue;
     found.times.push_back(time);
     found.icd.push_back(distance(scene, runs[0].state, runs[1].state));
     found.moved.push_back(distance(scene, runs[0].state, runs[2].state));
+    found.deviation.push_back(deviation_at(reference.get(), time));
   }
   return found;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "harness/base/errors.h"
+#include "harness/base/paths.h"
 #include "harness/stability/trial_isolation.h"
 #include "inextensible/registry.h"
 
@@ -148,12 +149,13 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
       for (const Freedom& f : degrees_of_freedom(n)) outcome.freedom.push_back(f);
     }
   }
+  ReferenceShelf references(source_path("results/references"));
   for (const SameFrameScene& scene : plan.frames) {
     if (events.interrupted()) {
       outcome.complete = false;
       return outcome;
     }
-    outcome.same_frames.push_back(same_frame(scene, seed));
+    outcome.same_frames.push_back(same_frame(scene, seed, references));
     events.same_frame(outcome.same_frames.back());
   }
   return outcome;

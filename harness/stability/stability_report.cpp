@@ -120,21 +120,28 @@ json known_json(const StabilityOutcome& outcome) {
   return list;
 }
 
+// Null for unknown numbers.
+json by_statistic(const ShapeSeries& series) {
+  json lists;
+  for (const auto& [name, member] : shape_statistic_infos) {
+    json& list = lists[name] = json::array();
+    for (const ShapeStatistics& at : series) list.push_back(number(at.*member));
+  }
+  return lists;
+}
+
 json distances_json(const std::vector<FrameDistance>& list) {
-  json rms = json::array(), largest = json::array(), energy = json::array(), height = json::array(),
-       shadow = json::array();
+  json rms = json::array(), largest = json::array();
+  ShapeSeries shapes;
   for (const FrameDistance& d : list) {
     rms.push_back(d.rms);
     largest.push_back(d.largest);
-    energy.push_back(d.shape.potential_energy);
-    height.push_back(d.shape.corner_height);
-    shadow.push_back(d.shape.shadow);
+    shapes.push_back(d.shape);
   }
-  return {{"rms", rms},
-          {"largest", largest},
-          {"potential_energy", energy},
-          {"corner_height", height},
-          {"shadow", shadow}};
+  json lists = by_statistic(shapes);
+  lists["rms"] = std::move(rms);
+  lists["largest"] = std::move(largest);
+  return lists;
 }
 
 json same_frames_json(const std::vector<SameFrame>& frames) {
@@ -149,6 +156,7 @@ json same_frames_json(const std::vector<SameFrame>& frames) {
                     {"times", f.times},
                     {"icd", distances_json(f.icd)},
                     {"moved_start", distances_json(f.moved)},
+                    {"ensemble_deviation", by_statistic(f.deviation)},
                     {"stopped", f.stopped}});
   }
   return list;

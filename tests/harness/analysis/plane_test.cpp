@@ -158,5 +158,23 @@ TEST(Plane, IsPrintedAndWrittenAsItIs) {
   EXPECT_EQ(cell.at("entries").size(), 2u);
 }
 
+TEST(Plane, TellsTheShapeErrorsOfTheFastest) {
+  std::vector<json> runs;
+  for (const double limit : {0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0002, 0.0001}) {
+    runs.push_back(run("strips", limit, 0.04, 1e-3, 0.008));
+    runs.back()["error"]["shape"] = limit;
+  }
+  const json result = document(runs);
+  std::ostringstream out;
+  print_planes(out, result);
+  EXPECT_NE(out.str().find("shape errors of the fastest, whatever their motion: 10 %: 10 %, 5 %"),
+            std::string::npos)
+      << out.str();
+  std::istringstream lines(out.str());
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
+  const json cell = analysis_of(result).at("planes").at(0).at("cells").at(0);
+  EXPECT_EQ(cell.at("entries").at(0).at("shape_error"), 0.1);
+}
+
 }  // namespace
 }  // namespace harness::analysis

@@ -65,27 +65,45 @@ json stability(const std::vector<json>& matrix, const json& same_frame = json::a
           {"same_frame", same_frame}};
 }
 
-TEST(Claims, C8ComparesFramesBeforeContactAndAgainstEqualRunsAfterIt) {
-  const auto with = [](double before, double after, double spread, const char* stopped = "") {
-    const auto distances = [](double first, double second) {
-      return json{{"rms", {0, first, second, second}}, {"largest", {0, first, second, second}}};
-    };
-    return verdict_in("C8", stability({}, {{{"scene", "drape"},
-                                            {"first_contact", 0.15},
-                                            {"times", {0.05, 0.1, 0.15, 0.2}},
-                                            {"icd", distances(before, after)},
-                                            {"moved_start", distances(1e-9, spread)},
-                                            {"stopped", stopped}}}));
+TEST(Claims, C8ComparesFramesBeforeContactAndAgainstTheEnsembleAfterIt) {
+  // The corners are `after` apart; of an ensemble with this standard deviation.
+  const auto entry = [](double before, double after, const json& deviation,
+                        const char* stopped = "") {
+    const json none = {0, 0, 0, 0}, unknown = {nullptr, nullptr, 0.0, 0.0};
+    return json{{"scene", "drape"},
+                {"first_contact", 0.15},
+                {"times", {0.05, 0.1, 0.15, 0.2}},
+                {"icd",
+                 {{"largest", {0, before, 0.5, 0.5}},
+                  {"potential_energy", none},
+                  {"kinetic_energy", none},
+                  {"corner_height", {0, 0.5, 0, after}},
+                  {"shadow", none}}},
+                {"ensemble_deviation",
+                 {{"potential_energy", unknown},
+                  {"kinetic_energy", unknown},
+                  {"corner_height", {nullptr, nullptr, deviation, deviation}},
+                  {"shadow", unknown}}},
+                {"stopped", stopped}};
   };
-  EXPECT_EQ(with(0.001, 0.005, 1e-6).verdict, "reproduced");
-  EXPECT_EQ(with(0.001, 0.2, 0.15).verdict, "reproduced");
-  EXPECT_EQ(with(0.001, 0.2, 0.07).verdict, "undecided");
-  EXPECT_EQ(with(0.001, 0.2, 1e-6).verdict, "changed");
-  EXPECT_EQ(with(0.001, 0.015, 1e-6).verdict, "undecided");
-  EXPECT_EQ(with(0.02, 0.005, 1e-6).verdict, "changed");
-  EXPECT_EQ(with(0.02, 0.2, 1e-6).verdict, "not reproduced");
-  EXPECT_EQ(with(0.001, 0.005, 1e-6, "icd at step 7").verdict, "not yet measured");
-  EXPECT_TRUE(says(with(0.001, 0.2, 0.07), "RMS up to 20 %, where equal runs are 7 % apart"));
+  const auto with = [&](double before, double after, double deviation, const char* stopped = "") {
+    return verdict_in("C8", stability({}, json::array({entry(before, after, deviation, stopped)})));
+  };
+  const double apart = 3 * std::sqrt(2) * 0.05;  // that two runs may be
+  EXPECT_EQ(with(0.001, 0.005, 0).verdict, "reproduced");
+  EXPECT_EQ(with(0.001, apart + 0.009, 0.05).verdict, "reproduced");
+  EXPECT_EQ(with(0.001, apart + 0.015, 0.05).verdict, "undecided");
+  EXPECT_EQ(with(0.001, apart + 0.021, 0.05).verdict, "changed");
+  EXPECT_EQ(with(0.02, 0.005, 0).verdict, "changed");
+  EXPECT_EQ(with(0.02, 0.2, 0).verdict, "not reproduced");
+  EXPECT_EQ(with(0.001, 0.005, 0, "icd at step 7").verdict, "not yet measured");
+  EXPECT_TRUE(says(with(0.001, 0.2, 0), "corner_height at 0.2 s by 20 % beyond"));
+  json other = entry(0.001, 0.2, 0);
+  other["scene"] = "patch";
+  EXPECT_EQ(verdict_in("C8", stability({}, json::array({other}))).verdict, "not yet measured");
+  json older = entry(0.001, 0.005, 0);
+  older.erase("ensemble_deviation");
+  EXPECT_EQ(verdict_in("C8", stability({}, json::array({older}))).verdict, "not yet measured");
 }
 
 TEST(Claims, C10HoldsTheLastSecondAgainstTheFirst) {

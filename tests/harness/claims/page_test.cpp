@@ -157,5 +157,17 @@ TEST(ResultsPage, ErrorsSayUntilWhenTheyCount) {
   has(text, "| `icd` | 1000, 1/100 | 1000, 1/100 |");
 }
 
+TEST(ResultsPage, ThePlaneHasShapeErrorsWhereTheyAreKnown) {
+  json result = sweep(0.01);
+  json p = point("drape", "strain", "icd", 0.01, 441, 0.01, 1);
+  p["error"] = {{"trajectory", 0.05}};
+  result["points"] = {p};
+  EXPECT_EQ(page(result).find("hape"), std::string::npos);
+  p["error"]["shape"] = 0.031;
+  result["points"] = {p};
+  has(page(result), "shape by 3.1 %");
+  has(page(result), "Shape errors are deviations beyond the ensemble's spread.");
+}
+
 }  // namespace
 }  // namespace harness

@@ -28,8 +28,6 @@ std::shared_ptr<Reference> falling(const Scene& scene) {
     r->positions.back().row(1).array() -= 0.04 * k;
     r->gap.push_back(k < 3 ? 0.001 : 0.1);
     r->gap_max.push_back(r->gap.back());
-    r->shape.push_back({});
-    r->shape_gap.push_back({});
   }
   r->valid_until = 0.2;
   r->observed_order = r->expected_order = 2;

@@ -240,19 +240,5 @@ TEST(Reference, ThatIsCommittedIsTheOneThisProgramComputes) {
   }
 }
 
-TEST(ShapeStatistics, OfAFlatSquareAreItsHeightAndItsArea) {
-  const auto found_type = find_scene("drape");
-  const SceneType& type = *found_type;
-  const auto parameters = complete_parameters(type, {{"n", 9}, {"subdivisions", 0}});
-  const Scene scene = type.build(parameters);
-  const ShapeStatistics shape = shape_statistics(scene, scene.start.x);
-  EXPECT_NEAR(shape.corner_height, 0.251, 1e-12);
-  EXPECT_NEAR(shape.potential_energy, 0.251, 1e-12);
-  EXPECT_NEAR(shape.shadow, 1, 0.01);  // pixels
-  Positions folded = scene.start.x;
-  folded.row(0) = folded.row(0).cwiseAbs();
-  EXPECT_NEAR(shape_statistics(scene, folded).shadow, 0.5, 0.01);
-}
-
 }  // namespace
 }  // namespace harness

@@ -183,6 +183,8 @@ TEST(StepSearch, ASolverThatNeverWorksHasNoBestPoint) {
   EXPECT_EQ(outcome.points.size(), 2 * 9u);  // the whole ladder, twice
   for (const auto& point : outcome.points)
     EXPECT_EQ(point.measures.unknown_because, "no run came to an end that could be judged");
+  for (const auto& point : outcome.points)
+    EXPECT_EQ(point.measures.shape_unknown_because, "no run came to an end that could be judged");
   for (const auto& point : outcome.points) EXPECT_FALSE(point.best);
 }
 

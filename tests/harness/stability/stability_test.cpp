@@ -285,7 +285,8 @@ TEST(Stability, StrainIsKeptOfTheFirstAndTheLastSecond) {
 // ICD is within the slack of the limit.
 TEST(SameFrame, RunsAgreeBeforeContactAndAreComparedAfterIt) {
   const harness::SameFrameScene scene{"drape", 9, 0.01, 1.0 / 200, 1e-10};
-  const auto found = harness::same_frame(scene, 1);
+  harness::ReferenceShelf none("no folder");
+  const auto found = harness::same_frame(scene, 1, none);
   EXPECT_EQ(found.stopped, "");
   EXPECT_GT(found.first_contact, 0.01);  // 1 mm above the sphere
   EXPECT_LT(found.first_contact, 0.03);
@@ -300,6 +301,9 @@ TEST(SameFrame, RunsAgreeBeforeContactAndAreComparedAfterIt) {
     EXPECT_LT(found.icd[i].rms, 0.01);
   }
   EXPECT_GT(found.icd.back().rms, 0);
+  EXPECT_GT(found.icd.back().shape.kinetic_energy, 0);
+  ASSERT_EQ(found.deviation.size(), found.times.size());
+  EXPECT_TRUE(std::isnan(found.deviation.back().shadow));
 }
 
 }  // namespace

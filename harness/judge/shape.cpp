@@ -1,0 +1,95 @@
+#include "harness/judge/shape.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "harness/judge/measures.h"
+#include "inextensible/problem/forces.h"
+
+namespace harness {
+
+using inextensible::Positions;
+using inextensible::State;
+
+namespace {
+
+constexpr double same_time = 1e-9;  // s; states add up their steps
+
+// Area covered by triangles seen from above: pixel centres of a raster, over size^2.
+double shadow_area(const Scene& scene, const Positions& x) {
+  constexpr int pixels = 512;
+  const double reach = 0.75 * scene.size;  // a square cloth of side 1 reaches 0.71 from its middle
+  const double pixel = 2 * reach / pixels;
+  std::vector<char> dark(pixels * pixels, 0);
+  const auto index = [&](double coordinate) {
+    return std::clamp(static_cast<int>((coordinate + reach) / pixel), 0, pixels - 1);
+  };
+  for (const auto& [a, b, c] : scene.triangles) {
+    const Eigen::Vector2d p(x(0, a), x(2, a)), q(x(0, b), x(2, b)), r(x(0, c), x(2, c));
+    const auto cross = [](const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
+      return u.x() * v.y() - u.y() * v.x();
+    };
+    const double area = cross(q - p, r - p);
+    if (area == 0) continue;
+    const Eigen::Vector2d low = p.cwiseMin(q).cwiseMin(r), high = p.cwiseMax(q).cwiseMax(r);
+    for (int j = index(low.y()); j <= index(high.y()); ++j) {
+      for (int i = index(low.x()); i <= index(high.x()); ++i) {
+        const Eigen::Vector2d s((i + 0.5) * pixel - reach, (j + 0.5) * pixel - reach);
+        if (cross(q - p, s - p) / area >= 0 && cross(r - q, s - q) / area >= 0 &&
+            cross(p - r, s - r) / area >= 0)
+          dark[j * pixels + i] = 1;
+      }
+    }
+  }
+  const auto count = std::count(dark.begin(), dark.end(), 1);
+  return static_cast<double>(count) * pixel * pixel / (scene.size * scene.size);
+}
+
+}  // namespace
+
+bool is_cloth(const Scene& scene) { return !scene.triangles.empty(); }
+
+ShapeStatistics shape_statistics(const Scene& scene, const Positions& x) {
+  ShapeStatistics shape;
+  shape.potential_energy = inextensible::potential_energy(*scene.problem, x) / energy_scale(scene);
+  for (const int corner : scene.corners)
+    shape.corner_height += x(1, corner) / scene.size / static_cast<double>(scene.corners.size());
+  if (is_cloth(scene)) shape.shadow = shadow_area(scene, x);
+  return shape;
+}
+
+ShapeRecord::ShapeRecord(const Scene& scene, std::vector<double> times,
+                         inextensible::Velocities velocities)
+    : scene_(scene), times_(std::move(times)), velocities_(velocities) {}
+
+void ShapeRecord::sample(const Positions& x) { series_.push_back(shape_statistics(scene_, x)); }
+
+// Linear through both, and no less than nothing beyond them.
+double ShapeRecord::kinetic_at(double time, const Instant& from, const Instant& to) const {
+  const double slope = (to.kinetic - from.kinetic) / (to.time - from.time);
+  return std::max(0.0, to.kinetic + slope * (time - to.time));
+}
+
+void ShapeRecord::step(const State& state, double h) {
+  const bool whole = velocities_ == inextensible::Velocities::whole_step;
+  before_ = last_;
+  last_ = {whole ? state.time : state.time - h / 2,
+           inextensible::kinetic_energy(*scene_.problem, state.v) / energy_scale(scene_)};
+  ++steps_;
+  for (; settled_ < series_.size() && times_[settled_] <= last_.time + same_time; ++settled_) {
+    series_[settled_].kinetic_energy =
+        steps_ == 1 ? last_.kinetic : kinetic_at(times_[settled_], before_, last_);
+  }
+}
+
+// No velocity follows the last step: its own, or what the last two foretell if that is less.
+const ShapeSeries& ShapeRecord::finish() {
+  for (; settled_ < series_.size(); ++settled_) {
+    double kinetic = last_.kinetic;
+    if (steps_ > 1) kinetic = std::min(kinetic, kinetic_at(times_[settled_], before_, last_));
+    series_[settled_].kinetic_energy = kinetic;
+  }
+  return series_;
+}
+
+}  // namespace harness
