@@ -183,8 +183,9 @@ int make_references(const ReferenceOptions& given) {
       make_reference(path, scene, parameters, given.finest);
     } else if (stored && wants_ensemble(*stored, given.again)) {
       add_ensemble(path, *stored);
+    } else if (!stored) {
+      std::cerr << path << " is not there: bench reference makes it\n";
     } else {
-      if (!stored) std::cerr << path << " is not there: bench reference makes it\n";
       continue;
     }
     nothing = false;
