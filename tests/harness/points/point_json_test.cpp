@@ -47,6 +47,10 @@ class Random {
     numbers.resize(generator_() % 4);
     for (double& value : numbers) fill(value, false);
   }
+  void fill(std::vector<int>& counts, bool) {
+    counts.resize(generator_() % 4);
+    for (int& value : counts) fill(value, false);
+  }
   void fill(std::vector<FrameTime>& rates, bool) {
     rates.resize(1 + generator_() % 3);
     for (FrameTime& at : rates)
