@@ -112,7 +112,7 @@ void StepSearch::look_around_best() {
       last = best;
       for (const std::size_t rung : {*best - 1, *best + 1}) {  // below 0: none that was tried
         const auto place = all.find(rung);
-        if (place == all.end() || place->second > clearly_slower * all.at(*best)) continue;
+        if (place == all.end() || place->second >= close_neighbor * all.at(*best)) continue;
         sample_again(*best);
         sample_again(rung);
       }

@@ -25,13 +25,14 @@ namespace harness {
 //
 // A time has risen only if it is more than clearly_slower times the best one's, or if both have
 // three samples and it is still more than noise above. At the end the steps next to the best ones
-// get three samples, too, where they are as close; and where a best step is an end of what was
-// tried, though the ladder goes on, the search goes on from there.
+// get three samples, too, unless they are close_neighbor times slower; and where a best step is an
+// end of what was tried, though the ladder goes on, the search goes on from there.
 class StepSearch {
  public:
   using Run = std::function<const PointResult&(std::size_t rung)>;
   static constexpr double clearly_slower = 1.5;
-  static constexpr double noise = 1.03;  // a ratio of times up to this is none
+  static constexpr double close_neighbor = 2;  // less than that many times slower than the best
+  static constexpr double noise = 1.03;        // a ratio of times up to this is none
   static constexpr std::size_t samples_when_close = 3;
 
   // run: the rung's point, which is run when it is first asked for. again: the same with one sample

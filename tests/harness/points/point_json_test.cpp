@@ -130,6 +130,16 @@ TEST(PointJson, LosesNothing) {
   }
 }
 
+TEST(PointJson, RepetitionsComeBackAndOlderJournalsHaveSecondsAlone) {
+  PointResult point = Random(1).point();
+  const Repetition before = samples_of(point), more{{1, 2}, {0.5, 0.75}, {0.1}, {7, 8}, 3};
+  append(repetition_of(to_json(more)), point);
+  EXPECT_EQ(to_json(added_since(before, point)), to_json(more));
+  const Repetition older = repetition_of(json::parse(R"({"seconds": [1.5]})"));
+  EXPECT_EQ(older.samples, std::vector<double>{1.5});
+  EXPECT_TRUE(older.sample_runs.empty());
+}
+
 // Every key but those made for readers has been read: one that is changed is seen.
 TEST(PointJson, ReadsWhatItWrites) {
   const json written = to_json(Random(1).point());
