@@ -150,7 +150,7 @@ TimeChange compare_times(const std::vector<double>& base, const std::vector<doub
                          const Gate& gate, double noise) {
   if (base.empty() || next.empty()) return {};
   const double base_median = quantile(base, 0.5), next_median = quantile(next, 0.5);
-  const bool slower = time_of(next) > time_of(base);
+  const bool slower = next_median > base_median;
   const auto& [slow, fast] = slower ? std::tie(next, base) : std::tie(base, next);
   const double fast_median = quantile(fast, 0.5), fast_minimum = time_of(fast);
   if (!(fast_minimum > 0)) return {};
