@@ -4,7 +4,7 @@ dates: one panel a scene, one line a solver.
 
     plots/history.py results/nightly [--out history.svg]
 
-A solver's figure changes from one result to the next by the geometric mean of the ratios of median times, over the points
+A solver's figure changes from one result to the next by the geometric mean of the ratios of times, over the points
 that both have: points of a millisecond and of a second count alike, and a result that ran fewer points does not look faster.
 A dashed line: another machine or build from here on, so that a jump says nothing.
 """

@@ -7,17 +7,15 @@ namespace harness::analysis {
 using nlohmann::json;
 
 double Point::filter_seconds() const {
-  const auto given = p_->find("filter_seconds_per_simulated_second");
-  return timed() && given != p_->end() && given->is_object() ? figure(*given, "median")
-                                                             : std::nan("");
+  return timed() ? time_of(samples_of("filter_seconds_per_simulated_second")) : std::nan("");
 }
 
-std::vector<double> Point::samples() const {
-  if (!timed()) return {};
-  const json& seconds = p_->at("seconds_per_simulated_second");
-  if (const auto samples = seconds.find("samples"); samples != seconds.end())
+std::vector<double> Point::samples_of(const char* key) const {
+  const auto seconds = p_->find(key);
+  if (seconds == p_->end() || !seconds->is_object()) return {};
+  if (const auto samples = seconds->find("samples"); samples != seconds->end())
     return samples->get<std::vector<double>>();
-  return {seconds.at("median").get<double>()};
+  return {seconds->at("median").get<double>()};
 }
 
 double Point::delivered_strain() const {
@@ -66,7 +64,7 @@ Ratio times(Ratio ratio, double factor) {
 }  // namespace
 
 Ratio ratio(const Point& a, const Point& b) {
-  return ratio_of_medians(a.samples(), b.samples(), std::fmax(a.noise(), b.noise()));
+  return ratio_of_times(a.samples(), b.samples(), std::fmax(a.noise(), b.noise()));
 }
 
 Ratio ratio_of_steps(const Point& a, const Point& b) {

@@ -16,7 +16,7 @@ namespace harness::analysis {
 // The document must outlive it.
 class Point {
  public:
-  // noise: of the file's A/A pair, see ratio_of_medians.
+  // noise: of the file's A/A pair, see ratio_of_times.
   explicit Point(const nlohmann::json& document, double noise = std::nan(""))
       : p_(&document), noise_(noise) {}
 
@@ -38,13 +38,11 @@ class Point {
   }
   const nlohmann::json& document() const { return *p_; }
 
-  double seconds() const {  // not-a-number where nothing was timed
-    return timed() ? p_->at("seconds_per_simulated_second").at("median").get<double>()
-                   : std::nan("");
-  }
+  double seconds() const { return time_of(samples()); }  // not-a-number where nothing was timed
   // Of the inextensibility filter alone; not-a-number in older files.
   double filter_seconds() const;
-  std::vector<double> samples() const;
+  // Of older files without samples the median, for one.
+  std::vector<double> samples() const { return samples_of("seconds_per_simulated_second"); }
   double noise() const { return noise_; }
   double steps() const { return number("duration") / number("step"); }
   // The largest strain after the collision filter, which is what a user gets.
@@ -57,6 +55,7 @@ class Point {
   bool marked_best(double level) const;
 
  private:
+  std::vector<double> samples_of(const char* key) const;
   static double figure(const nlohmann::json& object, const char* key) {
     const auto place = object.find(key);
     return place == object.end() || !place->is_number() ? std::nan("") : place->get<double>();

@@ -111,10 +111,12 @@ double quantile(std::vector<double> samples, double fraction) {
   return gsl_stats_quantile_from_sorted_data(samples.data(), 1, samples.size(), fraction);
 }
 
-Ratio ratio_of_medians(const std::vector<double>& a, const std::vector<double>& b, double noise) {
+double time_of(const std::vector<double>& samples) { return quantile(samples, 0); }
+
+Ratio ratio_of_times(const std::vector<double>& a, const std::vector<double>& b, double noise) {
   if (a.empty() || b.empty()) return {};
   Ratio ratio;
-  ratio.value = quantile(a, 0.5) / quantile(b, 0.5);
+  ratio.value = time_of(a) / time_of(b);
   if (const std::size_t c = critical_count(a.size(), b.size()); c > 0) {
     std::vector<double> quotients;
     quotients.reserve(a.size() * b.size());
@@ -122,7 +124,7 @@ Ratio ratio_of_medians(const std::vector<double>& a, const std::vector<double>& 
       for (const double y : b) quotients.push_back(x / y);
     }
     std::sort(quotients.begin(), quotients.end());
-    // Of skewed samples the quotient of medians may lie outside of what the test keeps.
+    // Of skewed samples the quotient of minima may lie outside of what the test keeps.
     ratio.low = std::min(quotients[c - 1], ratio.value);
     ratio.high = std::max(quotients[quotients.size() - c], ratio.value);
   }

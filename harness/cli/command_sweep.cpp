@@ -109,20 +109,25 @@ void begin_journal(Journal& journal, const Past& past, const Memory& memory,
       if (!memory.points.contains(key)) journal.forget(key);
     } else if (memory.points.contains(key)) {
       journal.add(known.point);
-      for (const auto& seconds : known.repetitions) journal.add_repetition(key, seconds);
+      for (const Repetition& more : known.repetitions) journal.add_repetition(key, more);
     }
   }
 }
 
-SweepRunners watched(const SweepRunners& inner, NoiseProbe& noise_probe) {
+SweepRunners watched(const SweepRunners& inner, NoiseProbe& noise_probe, bool timed) {
   SweepRunners runners = inner;
-  runners.run = [run = inner.run, &noise_probe](const auto& spec, const auto& limits, auto guess) {
-    noise_probe.sample_if_due();
-    return run(spec, limits, guess);
+  const auto own = [timed](RunLimits limits) {
+    limits.timed = timed;
+    return limits;
   };
-  runners.repeat = [repeat = inner.repeat, &noise_probe](auto& point, const auto& limits) {
+  runners.run = [own, run = inner.run, &noise_probe](const auto& spec, const auto& limits,
+                                                     auto guess) {
     noise_probe.sample_if_due();
-    repeat(point, limits);
+    return run(spec, own(limits), guess);
+  };
+  runners.repeat = [own, repeat = inner.repeat, &noise_probe](auto& point, const auto& limits) {
+    noise_probe.sample_if_due();
+    repeat(point, own(limits));
   };
   return runners;
 }
@@ -151,7 +156,7 @@ void tell_noise(const nlohmann::json& context) {
 nlohmann::json harness_overhead(const std::vector<PointResult>& points) {
   nlohmann::json overhead = {{"seconds_per_step", harness_seconds_per_step()}};
   const PointResult* shortest = nullptr;
-  const auto step_seconds = [](const PointResult& p) { return p.median_seconds() * p.spec.step; };
+  const auto step_seconds = [](const PointResult& p) { return p.seconds() * p.spec.step; };
   for (const PointResult& point : points) {
     if (point.ok() && !point.samples.empty() &&
         (!shortest || step_seconds(point) < step_seconds(*shortest)))
@@ -227,9 +232,9 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   noise_probe.sample();
   const ProcessorTicks ticks = processor_ticks();
   if (!options.in_process) runners = isolated(runners, options.memory);
-  const SweepOutcome outcome =
-      run_sweep(suite, searches, events,
-                journaled(watched(runners, noise_probe), journal, std::move(memory)));
+  const SweepOutcome outcome = run_sweep(
+      suite, searches, events,
+      journaled(watched(runners, noise_probe, !options.untimed), journal, std::move(memory)));
   progress.finish();
   noise_probe.sample();
   context["sentinel"] = noise_probe.to_json();

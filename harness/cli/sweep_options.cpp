@@ -109,8 +109,10 @@ void add_selection(const Command& to, SweepOptions& options) {
 }
 
 void add_measurement(const Command& to, SweepOptions& options) {
-  to.option("--reps", options.reps,
-            "runs of each best point; 5..40: more until the median is known to --rel-ci", "N");
+  to.option(
+      "--reps", options.reps,
+      "samples of each point that may be best; 7..40: more until the median is known to --rel-ci",
+      "N");
   to.option("--rel-ci", options.rel_ci,
             "half width of the median's 95 % confidence interval over the median, default 0.02",
             "R")

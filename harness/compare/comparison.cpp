@@ -152,16 +152,16 @@ TimeChange compare_times(const std::vector<double>& base, const std::vector<doub
   const double base_median = quantile(base, 0.5), next_median = quantile(next, 0.5);
   const bool slower = next_median > base_median;
   const auto& [slow, fast] = slower ? std::tie(next, base) : std::tie(base, next);
-  const double fast_median = quantile(fast, 0.5), fast_minimum = quantile(fast, 0);
+  const double fast_median = quantile(fast, 0.5), fast_minimum = time_of(fast);
   if (!(fast_minimum > 0)) return {};
   const bool median =
       quantile(slow, 0.5) / fast_median > std::max(gate.median_ratio, std::exp(noise));
-  const bool minimum = quantile(slow, 0) / fast_minimum > gate.minimum_ratio;
+  const bool minimum = time_of(slow) / fast_minimum > gate.minimum_ratio;
   if (!median && !minimum) return {};  // however sure: too small to matter
   const double p = mann_whitney_greater(slow, fast);
-  const std::string measured = "time " + per_cent(next_median / base_median) + " (minimum " +
-                               per_cent(quantile(next, 0) / quantile(base, 0)) +
-                               ", p = " + number_text(p, 2) + ")";
+  const std::string measured = "time " + per_cent(time_of(next) / time_of(base)) + " (median " +
+                               per_cent(next_median / base_median) + ", p = " + number_text(p, 2) +
+                               ")";
   if (p < gate.significance) {
     if (median && minimum) return {slower ? Change::slower : Change::faster, measured};
     return {Change::ambiguous, measured + ": only the " + (median ? "median" : "minimum") +

@@ -43,7 +43,7 @@ struct TimeChange {
 };
 
 // Samples of the same unit. Faster and slower are judged alike, from the faster side.
-// noise: |log(ratio of medians)| up to which a difference is none.
+// noise: |log(ratio of times)| up to which a difference is none.
 TimeChange compare_times(const std::vector<double>& base, const std::vector<double>& next,
                          const Gate& gate, double noise = 0);
 

@@ -87,7 +87,7 @@ json joined_context(const std::vector<NamedResult>& results) {
     const json& c = document.at("context");
     json part = {{"file", name}, {entries, document.at(entries).size()}};
     for (const char* key : {"date", "host_name", "fingerprint", "command", "load_avg", "sentinel",
-                            "stolen", "harness_overhead"})
+                            "stolen", "harness_overhead", "retaken_samples"})
       if (c.contains(key)) part[key] = c.at(key);
     timed = timed && is_timed(document);
     noisy = noisy || (c.contains("sentinel") && c.at("sentinel").at("noisy").get<bool>());
@@ -98,6 +98,7 @@ json joined_context(const std::vector<NamedResult>& results) {
   context["sentinel"] = {{"noisy", noisy}};  // each part has its own figures
   context.erase("stolen");
   context.erase("harness_overhead");
+  context.erase("retaken_samples");
   return context;
 }
 

@@ -34,13 +34,13 @@ std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
   std::map<std::string, double> first;
   for (const PointResult& point : points) {
     if (counts(point) && point.spec.name() == noise.one)
-      first[place_of(point.spec)] = point.median_seconds();
+      first[place_of(point.spec)] = point.seconds();
   }
   std::vector<double> distances;
   for (const PointResult& point : points) {
     if (!counts(point) || point.spec.name() != noise.other) continue;
     if (const auto twin = first.find(place_of(point.spec)); twin != first.end())
-      distances.push_back(std::abs(std::log(point.median_seconds() / twin->second)));
+      distances.push_back(std::abs(std::log(point.seconds() / twin->second)));
   }
   if (distances.empty()) return {};
   noise.places = static_cast<int>(distances.size());

@@ -10,7 +10,7 @@
 
 namespace harness {
 
-// Over all places where both stand: |log(time of one / time of the other)|, of the medians of
+// Over all places where both stand: |log(time of one / time of the other)|, of the times of
 // their best points, in a step sweep of all points that ran to the end. A difference below q95 is
 // none.
 struct PairNoise {

@@ -58,12 +58,50 @@ bool within_error(const Measures& measures, double level) {
   return level == any_motion || error_at(measures, level).distance <= level;
 }
 
-double PointResult::median_seconds() const { return quantile(samples, 0.5); }
-double PointResult::median_run() const { return median_seconds() * spec.step * steps_planned; }
-double PointResult::median_filter_seconds() const { return quantile(filter_samples, 0.5); }
+double PointResult::seconds() const { return time_of(samples); }
+double PointResult::run_seconds() const { return seconds() * spec.step * steps_planned; }
+double PointResult::measured_seconds() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    sum += samples[i] * (i < sample_runs.size() ? sample_runs[i] : 1);
+  return sum * spec.step * steps_planned;
+}
+double PointResult::filter_seconds() const { return time_of(filter_samples); }
 double PointResult::mean_step() const {
   if (!spec.adaptive || work.steps == 0) return spec.step;
   return spec.step * steps_planned / static_cast<double>(work.steps);
+}
+
+namespace {
+
+template <class List>
+List rest_of(const List& list, const List& before) {
+  return List(list.begin() + static_cast<std::ptrdiff_t>(before.size()), list.end());
+}
+
+template <class List>
+void add_all(const List& more, List& list) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+Repetition samples_of(const PointResult& point) {
+  return {point.samples, point.cpu_samples, point.filter_samples, point.sample_runs, point.retaken};
+}
+
+Repetition added_since(const Repetition& before, const PointResult& point) {
+  return {rest_of(point.samples, before.samples), rest_of(point.cpu_samples, before.cpu_samples),
+          rest_of(point.filter_samples, before.filter_samples),
+          rest_of(point.sample_runs, before.sample_runs), point.retaken - before.retaken};
+}
+
+void append(const Repetition& repetition, PointResult& point) {
+  add_all(repetition.samples, point.samples);
+  add_all(repetition.cpu_samples, point.cpu_samples);
+  add_all(repetition.filter_samples, point.filter_samples);
+  add_all(repetition.sample_runs, point.sample_runs);
+  point.retaken += repetition.retaken;
 }
 
 }  // namespace harness

@@ -43,7 +43,11 @@ struct PointResult {
   PointSpec spec;
   PointStatus status = PointStatus::skipped;
   std::string detail;
-  std::vector<double> samples;         // wall seconds per simulated second, one a run
+  // Wall seconds per simulated second. A sample is one run, or of a short run the mean of several.
+  std::vector<double> samples;
+  std::vector<double> cpu_samples;  // processor time of the thread in the same runs; may be empty
+  std::vector<int> sample_runs;     // how many runs each sample is the mean of; may be empty
+  int retaken = 0;                  // samples taken again because something disturbed them
   std::vector<double> filter_samples;  // the same, spent in the inextensibility filter
   double setup_seconds = 0, calibration_seconds = 0;
   int calibration_runs = 0;
@@ -63,11 +67,23 @@ struct PointResult {
   std::string at_ladder_end;
 
   bool ok() const { return status == PointStatus::ok; }
-  double median_seconds() const;         // of the samples
-  double median_run() const;             // s that a run takes
-  double median_filter_seconds() const;  // of the filter's
-  double mean_step() const;              // s; the spec's, but for adaptive steps
+  double seconds() const;           // the point's time: of its samples, by time_of()
+  double run_seconds() const;       // s that a run takes
+  double measured_seconds() const;  // s that the runs of all samples took together
+  double filter_seconds() const;    // of the filter's samples, by time_of()
+  double mean_step() const;         // s; the spec's, but for adaptive steps
 };
+
+// What one more look at a point adds to it: mostly one sample, none where the run failed.
+struct Repetition {
+  std::vector<double> samples, cpu_samples, filter_samples;
+  std::vector<int> sample_runs;
+  int retaken = 0;
+};
+// What `point` has that `before` has not.
+Repetition added_since(const Repetition& before, const PointResult& point);
+Repetition samples_of(const PointResult& point);
+void append(const Repetition& repetition, PointResult& point);
 
 // Half the width of the median's 95 % confidence interval over the median, from order statistics
 // (no assumption on the distribution); infinite below six samples, which cannot tell.

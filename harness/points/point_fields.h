@@ -42,6 +42,13 @@ struct FieldCodec<std::vector<double>> {
 };
 
 template <>
+struct FieldCodec<std::vector<int>> {
+  static nlohmann::json write(const std::vector<int>& counts, bool nullable);
+  static void read(const nlohmann::json& from, std::vector<int>& counts, bool nullable);
+  static nlohmann::ordered_json schema(const FieldTraits& traits);
+};
+
+template <>
 struct FieldCodec<std::vector<FrameTime>> {
   static nlohmann::json write(const std::vector<FrameTime>& rates, bool nullable);
   static void read(const nlohmann::json& from, std::vector<FrameTime>& rates, bool nullable);
@@ -76,6 +83,14 @@ inline constexpr std::tuple size_fields{
 inline constexpr std::tuple result_fields{
     field("status", &PointResult::status, "", "how the run ended, see `bench list statuses`"),
     field("status_detail", &PointResult::detail, "", "of a failure: step, time, reason"),
+    field("cpu_seconds_per_simulated_second", &PointResult::cpu_samples, "",
+          "processor time of the thread in the runs of each sample of "
+          "seconds_per_simulated_second",
+          {.later = true}),
+    field("runs_per_sample", &PointResult::sample_runs, "runs",
+          "that each of these samples is the mean of; older files: one", {.later = true}),
+    field("retaken", &PointResult::retaken, "samples",
+          "taken again because a fixed piece of work beside them took too long", {.later = true}),
     field("setup_seconds", &PointResult::setup_seconds, "s", "wall time before the first step"),
     field("calibration_seconds", &PointResult::calibration_seconds, "s",
           "wall time of the search for a stiffness"),

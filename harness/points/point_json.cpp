@@ -129,6 +129,16 @@ ordered_json FieldCodec<std::vector<double>>::schema(const FieldTraits&) {
   return {{"type", "array"}, {"items", {{"type", "number"}, {"exclusiveMinimum", 0}}}};
 }
 
+json FieldCodec<std::vector<int>>::write(const std::vector<int>& counts, bool) { return counts; }
+
+void FieldCodec<std::vector<int>>::read(const json& from, std::vector<int>& counts, bool) {
+  from.get_to(counts);
+}
+
+ordered_json FieldCodec<std::vector<int>>::schema(const FieldTraits&) {
+  return {{"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 1}}}};
+}
+
 json FieldCodec<std::vector<FrameTime>>::write(const std::vector<FrameTime>& rates, bool) {
   json list = json::array();
   for (const FrameTime& f : rates) list.push_back({f.rate, f.median, f.slow, f.worst});
@@ -184,6 +194,22 @@ json to_json(const PointResult& point) {
   object["seconds_per_simulated_second"] = seconds_json(point.samples);
   object["filter_seconds_per_simulated_second"] = seconds_json(point.filter_samples);
   return object;
+}
+
+json to_json(const Repetition& repetition) {
+  return {{"seconds", repetition.samples},
+          {"cpu", repetition.cpu_samples},
+          {"filter", repetition.filter_samples},
+          {"runs", repetition.sample_runs},
+          {"retaken", repetition.retaken}};
+}
+
+Repetition repetition_of(const json& object) {
+  const auto numbers = [&object](const char* key) {
+    return object.value(key, std::vector<double>());
+  };
+  return {object.at("seconds").get<std::vector<double>>(), numbers("cpu"), numbers("filter"),
+          object.value("runs", std::vector<int>()), object.value("retaken", 0)};
 }
 
 PointSpec spec_of(const json& object) {

@@ -18,19 +18,31 @@ using nlohmann::json;
 void add_benchmarks(json& list, const PointResult& point, int family) {
   for (std::size_t i = 0; i < point.samples.size(); ++i) {
     const double microseconds = point.samples[i] * 1e6;
-    list.push_back({{"name", point.spec.id()},
-                    {"run_name", point.spec.id()},
-                    {"run_type", "iteration"},
-                    {"family_index", family},
-                    {"per_family_instance_index", 0},
-                    {"repetitions", point.samples.size()},
-                    {"repetition_index", i},
-                    {"threads", 1},
-                    {"iterations", 1},
-                    {"real_time", microseconds},
-                    {"cpu_time", microseconds},
-                    {"time_unit", "us"}});
+    list.push_back(
+        {{"name", point.spec.id()},
+         {"run_name", point.spec.id()},
+         {"run_type", "iteration"},
+         {"family_index", family},
+         {"per_family_instance_index", 0},
+         {"repetitions", point.samples.size()},
+         {"repetition_index", i},
+         {"threads", 1},
+         {"iterations", i < point.sample_runs.size() ? point.sample_runs[i] : 1},
+         {"real_time", microseconds},
+         {"cpu_time", i < point.cpu_samples.size() ? point.cpu_samples[i] * 1e6 : microseconds},
+         {"time_unit", "us"}});
   }
+}
+
+// How many samples were taken, and how many of them again.
+json retaken_samples(const std::vector<PointResult>& points) {
+  std::size_t samples = 0;
+  int retaken = 0;
+  for (const PointResult& point : points) {
+    samples += point.samples.size();
+    retaken += point.retaken;
+  }
+  return {{"samples", samples}, {"retaken", retaken}};
 }
 
 }  // namespace
@@ -43,6 +55,7 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
   if (!suite.tuned_file.empty())
     context["tuned"] = {{"file", suite.tuned_file}, {"hash", suite.tuned_hash}};
   if (const auto noise = pair_noise(points, suite.same)) context["noise"] = to_json(*noise);
+  context["retaken_samples"] = retaken_samples(points);
   json list = json::array(), benchmarks = json::array();
   int family = 0;
   for (const PointResult& point : points) {

@@ -15,6 +15,10 @@ namespace {
 constexpr double look = 0.1;            // s, at a contestant and size
 constexpr double runs_of_a_search = 6;  // as measured, with levels of error down to 1 %
 constexpr double runs_of_a_calibration = 6;
+// Steps whose samples tell which is best, of a search, at any motion and at levels of error.
+constexpr double repeated_of_a_search = 2;
+// Over the timed part of a short run: making the solver, and looks at the machine.
+constexpr double around_a_run = 1.3;
 
 // Of simulating a second; the time-out where no step is taken.
 double seconds_per_second(const Search& search, double step, double timeout) {
@@ -53,9 +57,11 @@ Estimate estimate(const Suite& suite, const std::vector<Search>& searches) {
       const double tried = search->every_step ? static_cast<double>(search->ladder.size())
                                               : std::min(static_cast<double>(search->ladder.size()),
                                                          runs_of_a_search);
-      const double repeated = search->base.sweep == "step" ? tried : 1;
+      const double repeated = search->base.sweep == "step" ? tried : repeated_of_a_search;
+      const double sample = std::max(run, around_a_run * least_sample);
       result.seconds += run * tried * (calibrated ? runs_of_a_calibration : 1) +
-                        repeated * std::min(run * (suite.reps - 1), repeat_for);
+                        (run < least_sample ? tried * sample : 0) +
+                        repeated * std::min(sample * (suite.reps - 1), repeat_for);
     }
     ++result.timed;
   }

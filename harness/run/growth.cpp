@@ -44,7 +44,7 @@ std::vector<Growth> growths(const std::vector<const PointResult*>& points) {
     std::vector<double> vertices, seconds;
     for (const auto& [size, p] : curve->second) {
       vertices.push_back(size);
-      seconds.push_back(p->median_seconds() * p->mean_step());
+      seconds.push_back(p->seconds() * p->mean_step());
     }
     all.push_back({curve->first, log_log_slope(vertices, seconds), curve->second.begin()->second,
                    curve->second.rbegin()->second});
@@ -57,7 +57,7 @@ std::vector<Growth> growths(const std::vector<const PointResult*>& points) {
 void print_growth(std::ostream& out, const std::vector<const PointResult*>& points) {
   constexpr std::array<Column, 5> columns{{
       {"seconds a step",
-       [](const PointResult& p) { return number_text(p.median_seconds() * p.mean_step(), 3); }},
+       [](const PointResult& p) { return number_text(p.seconds() * p.mean_step(), 3); }},
       {"iterations a step",
        [](const PointResult& p) { return number_text(per_step(p, p.work.iterations), 3); }},
       {"linear iterations",

@@ -44,10 +44,6 @@ void explain(const ChildOutcome& outcome, const RunLimits& limits, PointResult& 
   point.peak_rss_bytes = outcome.peak_rss_bytes;
 }
 
-std::vector<double> later_ones(const std::vector<double>& samples, std::size_t from) {
-  return {samples.begin() + static_cast<std::ptrdiff_t>(from), samples.end()};
-}
-
 }  // namespace
 
 SweepRunners isolated(const SweepRunners& inner, double memory) {
@@ -70,24 +66,15 @@ SweepRunners isolated(const SweepRunners& inner, double memory) {
     return point;
   };
   runners.repeat = [repeat = inner.repeat, memory](PointResult& point, const RunLimits& limits) {
-    const std::size_t before = point.samples.size(), filtered = point.filter_samples.size();
     ChildOutcome outcome = run_in_child(
         [&](Heartbeat& heartbeat) {
           PointResult again = point;
           repeat(again, inside(limits, heartbeat));
-          return compact(
-              {later_ones(again.samples, before), later_ones(again.filter_samples, filtered)});
+          return compact(to_json(added_since(samples_of(point), again)));
         },
         child_limits(limits, memory));
     if (outcome.end == End::interrupted) throw Interrupted();
-    using Samples = std::vector<double>;
-    const auto added = answer(outcome, [](const json& lists) {
-      return std::pair(lists.at(0).get<Samples>(), lists.at(1).get<Samples>());
-    });
-    if (!added) return;  // no sample more
-    point.samples.insert(point.samples.end(), added->first.begin(), added->first.end());
-    point.filter_samples.insert(point.filter_samples.end(), added->second.begin(),
-                                added->second.end());
+    if (const auto added = answer(outcome, repetition_of)) append(*added, point);
   };
   return runners;
 }

@@ -27,10 +27,27 @@ void learn_line(const json& line, Memory& memory) {
     memory.points[key_of(point.spec)] = {point, {}};
   } else if (line.contains("repeat")) {
     memory.points.at(line.at("repeat").get<std::string>())
-        .repetitions.push_back(line.at("seconds").get<std::vector<double>>());
+        .repetitions.push_back(repetition_of(line));
   } else {
     memory.points.erase(line.at("forget").get<std::string>());
   }
+}
+
+// Leaves a point of a result file its first sample. Lists that have not an entry for each sample,
+// as in older files, stay whole.
+std::deque<Repetition> cut_off_repetitions(PointResult& point) {
+  const std::size_t samples = point.samples.size();
+  std::deque<Repetition> repetitions(samples > 1 ? samples - 1 : 0);
+  const auto cut = [&](auto& list, auto Repetition::*member) {
+    if (samples < 2 || list.size() != samples) return;
+    for (std::size_t i = 1; i < samples; ++i) (repetitions[i - 1].*member).push_back(list[i]);
+    list.resize(1);
+  };
+  cut(point.cpu_samples, &Repetition::cpu_samples);
+  cut(point.filter_samples, &Repetition::filter_samples);
+  cut(point.sample_runs, &Repetition::sample_runs);
+  cut(point.samples, &Repetition::samples);
+  return repetitions;
 }
 
 }  // namespace
@@ -43,9 +60,7 @@ void Memory::learn(const json& result) {
     point.best_at_errors.clear();
     point.at_ladder_end.clear();
     Known known;
-    for (std::size_t i = 1; i < point.samples.size(); ++i)
-      known.repetitions.push_back({point.samples[i]});
-    if (!point.samples.empty()) point.samples.resize(1);
+    known.repetitions = cut_off_repetitions(point);
     known.point = std::move(point);
     points[key_of(known.point.spec)] = std::move(known);
   }
@@ -75,8 +90,10 @@ void Journal::start(const json& header) {
 
 void Journal::add(const PointResult& point) { lines_.append({{"point", to_json(point)}}); }
 
-void Journal::add_repetition(const std::string& key, const std::vector<double>& seconds) {
-  lines_.append({{"repeat", key}, {"seconds", seconds}});
+void Journal::add_repetition(const std::string& key, const Repetition& repetition) {
+  json line = to_json(repetition);
+  line["repeat"] = key;
+  lines_.append(line);
 }
 
 void Journal::forget(const std::string& key) { lines_.append({{"forget", key}}); }
@@ -113,14 +130,13 @@ SweepRunners journaled(const SweepRunners& inner, Journal& journal, Memory memor
     const std::string key = key_of(point.spec);
     if (const auto place = known->points.find(key);
         place != known->points.end() && !place->second.repetitions.empty()) {
-      const auto& seconds = place->second.repetitions.front();
-      point.samples.insert(point.samples.end(), seconds.begin(), seconds.end());
+      append(place->second.repetitions.front(), point);
       place->second.repetitions.pop_front();
       return;
     }
-    const auto before = static_cast<std::ptrdiff_t>(point.samples.size());
+    const Repetition before = samples_of(point);
     repeat(point, limits);
-    journal.add_repetition(key, {point.samples.begin() + before, point.samples.end()});
+    journal.add_repetition(key, added_since(before, point));
   };
   return runners;
 }

@@ -4,7 +4,8 @@
 // it fell before, and the rest follows.
 //
 // Lines are JSON: the header {"schema", "pid", "identity", "context"}, then {"point": {...}} for a
-// run, {"repeat": key, "seconds": [...]} for a repetition (empty: it failed) and {"forget": key}.
+// run, {"repeat": key, "seconds": [...], ...} for a repetition (empty: it failed; the rest as
+// to_json(Repetition) says) and {"forget": key}.
 #pragma once
 
 #include <deque>
@@ -20,8 +21,8 @@ namespace harness {
 // What has been run already, by what was run.
 struct Memory {
   struct Known {
-    PointResult point;                            // with its first sample alone
-    std::deque<std::vector<double>> repetitions;  // in the order in which they were run
+    PointResult point;                   // with its first sample alone
+    std::deque<Repetition> repetitions;  // in the order in which they were run
   };
   std::map<std::string, Known> points;
 
@@ -45,7 +46,7 @@ class Journal {
   // All of these sync, and throw FileError where the disk is full or the file has been removed
   // meanwhile; what was written before is then still whole.
   void add(const PointResult& point);
-  void add_repetition(const std::string& key, const std::vector<double>& seconds);
+  void add_repetition(const std::string& key, const Repetition& repetition);
   void forget(const std::string& key);
 
   void remove() { lines_.remove(); }  // the result file is written: nothing to take up

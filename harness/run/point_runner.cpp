@@ -80,6 +80,20 @@ bool PointRunner::timed_out(double time, Run& run) const {
   return true;
 }
 
+void PointRunner::refuse(const inextensible::StepResult& result, double time, Run& run) {
+  run.status =
+      result.status == Status::not_finite ? PointStatus::diverged : PointStatus::not_converged;
+  run.detail = refusal(result, run.stepper->work().steps, time);
+}
+
+bool PointRunner::overstrained(double strain, double stop_at, Run& run) const {
+  if (backend_.knob == inextensible::Knob::none || strain <= stop_at) return false;
+  run.status = !(strain <= diverged_strain) ? PointStatus::diverged : PointStatus::strain_missed;
+  run.detail = "strain " + std::to_string(strain) + " at step " +
+               std::to_string(run.stepper->work().steps - 1);
+  return true;
+}
+
 Run PointRunner::run(const inextensible::Settings& settings, bool judged, double stop_at,
                      bool phases) const {
   Run run;
@@ -88,9 +102,12 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
       spec_.solver, scene_.problem, {spec_.strain_limit, spec_.seed, settings, &first_state_});
   run.setup_seconds = since(setup);
   run.stepper->measure_phases(phases);
-  Judge judge(scene_, judging(judged && stop_at == diverged_strain));
-  run.stepper->observe(judge.observer());
-  run.observed = judge.observer() != nullptr;
+  std::optional<Judge> judge;
+  if (judged) {
+    judge.emplace(scene_, judging(stop_at == diverged_strain));
+    run.stepper->observe(judge->observer());
+    run.observed = judge->observer() != nullptr;
+  }
   inextensible::State state = first_state_;
   std::optional<inextensible::StepController> controller;
   if (spec_.adaptive)
@@ -98,11 +115,14 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
   beat(0, 0);
   FrameTimes frames(spec_.step);
   int block = 1;  // steps that are timed as one
+  // Between blocks there is little but reads of the clock; the judge takes longer than steps do.
+  const double cpu_begin = thread_seconds();
   for (int i = 0; i < steps_;) {
-    if (judged) judge.before(state, spec_.step);
+    if (judge) judge->before(state, spec_.step);
     inextensible::StepResult result;
     bool whole = true;
     int taken = 0;
+    const double cpu_before = judged ? thread_seconds() : cpu_begin;
     const auto before = Clock::now();
     for (int k = 0; k < block && i < steps_; ++k, ++taken) {
       result = controller ? controller->advance(state) : run.stepper->advance(state, spec_.step);
@@ -113,36 +133,32 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
     }
     const double seconds = since(before);
     run.seconds += seconds;
+    if (judged) run.cpu_seconds += thread_seconds() - cpu_before;
     if (taken > 0)
       frames.add(controller ? 1 : taken, spec_.step, state.time - first_state_.time, seconds);
     if (!judged && seconds < shortest_block) block *= 2;
     if (!result) {
-      run.status =
-          result.status == Status::not_finite ? PointStatus::diverged : PointStatus::not_converged;
-      run.detail = refusal(result, run.stepper->work().steps, state.time);
+      refuse(result, state.time, run);
       if (controller)
         run.detail += "; at the smallest step, " + number_text(controller->next()) + " s";
       break;
     }
     if (controller) run.smallest_step = controller->smallest();
-    if (judged) {
-      const double strain = judge.after(run.stepper->filtered_positions(), state,
-                                        controller ? controller->last() : spec_.step, whole);
-      if (backend_.knob != inextensible::Knob::none && !(strain <= stop_at)) {
-        run.status =
-            !(strain <= diverged_strain) ? PointStatus::diverged : PointStatus::strain_missed;
-        run.detail = "strain " + std::to_string(strain) + " at step " +
-                     std::to_string(run.stepper->work().steps - 1);
-        break;
-      }
+    if (judge) {
+      const double strain = judge->after(run.stepper->filtered_positions(), state,
+                                         controller ? controller->last() : spec_.step, whole);
+      if (overstrained(strain, stop_at, run)) break;
     }
     if (limits_.interrupted && limits_.interrupted()) throw Interrupted();
     if (i < steps_ && timed_out(state.time, run)) break;
   }
-  run.stepper->observe(nullptr);
-  run.measures = judge.finish();
+  if (!judged) run.cpu_seconds = thread_seconds() - cpu_begin;
   run.frame_times = frames.summary();
-  if (judged && run.status == PointStatus::ok) decide(judge, run);
+  if (judge) {
+    run.stepper->observe(nullptr);
+    run.measures = judge->finish();
+    if (run.status == PointStatus::ok) decide(*judge, run);
+  }
   return run;
 }
 

@@ -14,7 +14,8 @@ namespace harness {
 struct Run {
   PointStatus status = PointStatus::ok;
   std::string detail;
-  double seconds = 0;  // of stepping alone
+  double seconds = 0;      // of stepping alone
+  double cpu_seconds = 0;  // of the thread, the same
   Measures measures;
   std::unique_ptr<inextensible::Stepper> stepper;
   bool observed = false;  // the judge was shown the iterates of its steps
@@ -56,6 +57,10 @@ class PointRunner {
   Judge::Options judging(bool errors) const;  // errors: and what is measured beside them
   // Whether the run has taken too long by now; if so, says it in its status.
   bool timed_out(double time, Run& run) const;
+  // Of a step that was refused.
+  static void refuse(const inextensible::StepResult& result, double time, Run& run);
+  // Whether the strain of a step ends the run; if so, says it in its status.
+  bool overstrained(double strain, double stop_at, Run& run) const;
   void beat(int step, double time) const;
 
   const PointSpec& spec_;

@@ -25,7 +25,7 @@ Progress::Progress(std::ostream& out, bool terminal) : out_(out), terminal_(term
 void Progress::point(const PointResult& point, std::size_t search, std::size_t searches) {
   ++points_;
   std::string text = point.spec.id() + " ";
-  text += point.ok() ? duration_text(point.median_seconds()) + "/s" : to_string(point.status);
+  text += point.ok() ? duration_text(point.seconds()) + "/s" : to_string(point.status);
   if (!terminal_) {
     out_ << "[" << search + 1 << "/" << searches << "] " << text;
     if (!point.ok()) out_ << " (" << point.detail << ")";

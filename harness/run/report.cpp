@@ -79,7 +79,7 @@ struct Unit {
 Unit unit_of(const std::vector<const PointResult*>& points) {
   double most = 0;
   for (const PointResult* p : points) {
-    if (p->best) most = std::max(most, p->median_seconds());
+    if (p->best) most = std::max(most, p->seconds());
   }
   return most >= 20 ? Unit{"s", 1} : Unit{"ms", 1e3};
 }
@@ -89,7 +89,7 @@ std::string time_and_step(const PointResult& point, const Unit& unit) {
   const std::string step = (point.spec.adaptive ? "~" : "") + step_text(point.mean_step());
   const std::string end = point.at_ladder_end.empty() ? "" : ", " + point.at_ladder_end;
   const double error = point.measures.trajectory;
-  return number_text(unit.per_second * point.median_seconds(), 3) + " (" + step + end +
+  return number_text(unit.per_second * point.seconds(), 3) + " (" + step + end +
          (std::isnan(error) ? "" : ", " + number_text(100 * error, 2) + " %") + ")";
 }
 
@@ -115,10 +115,10 @@ void print_time_to_error(std::ostream& out, const std::vector<const PointResult*
     for (const PointResult* point : points) {
       if (point->spec.name() != solver || !point->ok() || !within_error(point->measures, target))
         continue;
-      if (!fastest || point->median_seconds() < fastest->median_seconds()) fastest = point;
+      if (!fastest || point->seconds() < fastest->seconds()) fastest = point;
     }
     if (!fastest) return "-";
-    return number_text(fastest->median_seconds(), 3) + " (" + step_text(fastest->spec.step) + ", " +
+    return number_text(fastest->seconds(), 3) + " (" + step_text(fastest->spec.step) + ", " +
            number_text(100 * fastest->spec.strain_limit, 3) + " %)";
   };
   print_grid(out, in_order(points, name_of), columns, cell);

@@ -1,5 +1,6 @@
 #include "harness/run/runner.h"
 
+#include <algorithm>
 #include <fstream>
 #include <new>
 #include <stdexcept>
@@ -9,12 +10,14 @@
 #include "harness/judge/measures.h"
 #include "harness/run/calibration.h"
 #include "harness/run/point_runner.h"
+#include "harness/run/quiet_samples.h"
 
 namespace harness {
 namespace {
 
 // A shorter judged step is timed again without the judge.
 constexpr double shortest_judged_step = 5e-5;  // s: four phases and the step itself are timed
+constexpr double least_filter_sample = 0.005;  // s, of a run with short steps
 
 // What a strand of springs bears, in what falls to it of the forces of the scene: strain = tension
 // / EA. On a falling chain the tension is a few times its weight.
@@ -41,23 +44,137 @@ void fill(PointResult& point, Run& run) {
   point.linear_solver = run.stepper->linear_solver();
 }
 
-void add_filter_sample(PointResult& point, const PointRunner& runner, const Run& run) {
-  if (run.status != PointStatus::ok) return;
-  if (point.filter_samples.empty()) point.phases = run.stepper->phases();
-  point.filter_samples.push_back(run.stepper->phases().filter / (runner.steps() * point.spec.step));
+// Runs without the judge that make one sample; or up to the one that failed.
+struct Batch {
+  Run last;
+  double seconds = 0, cpu_seconds = 0, filter_seconds = 0;  // of all runs
+  int runs = 0;
+
+  bool ok() const { return last.status == PointStatus::ok; }
+  void add(Run run) {
+    last = std::move(run);
+    seconds += last.seconds;
+    cpu_seconds += last.cpu_seconds;
+    filter_seconds += last.stepper->phases().filter;
+    ++runs;
+  }
+};
+
+bool may_be_retaken(const Batch& batch) { return batch.ok() && batch.seconds < longest_retaken; }
+
+// Takes the samples of one point.
+class Sampler {
+ public:
+  // short_steps: reads of the clock between phases are part of the time of a short step, so that it
+  // is timed without them, and the phases in runs of their own.
+  Sampler(PointResult& point, PointRunner& runner, const inextensible::Settings& settings,
+          bool short_steps, bool timed)
+      : point_(point),
+        runner_(runner),
+        settings_(settings),
+        short_steps_(short_steps),
+        timed_(timed) {}
+
+  // Appends a sample; the run that failed, if one did. retaken: tries that were dropped before.
+  std::optional<Run> add(int retaken) {
+    if (short_steps_) {
+      Batch phases = batch(least_filter_sample, true);
+      if (!phases.ok()) return std::move(phases.last);
+      record_filter(phases);
+    }
+    const auto take = [this] { return batch(least_sample, !short_steps_); };
+    auto taken = timed_ ? take_quietly(quiet_probe(), take, may_be_retaken, retaken)
+                        : QuietSample<Batch>{take()};
+    point_.retaken += taken.retaken;
+    return record(std::move(taken.sample));
+  }
+
+  std::optional<Run> record(Batch sample) {
+    if (!sample.ok()) return std::move(sample.last);
+    if (!short_steps_) record_filter(sample);
+    if (point_.samples.empty()) point_.frame_times = sample.last.frame_times;
+    point_.samples.push_back(of_a_second(sample.seconds, sample));
+    point_.cpu_samples.push_back(of_a_second(sample.cpu_seconds, sample));
+    point_.sample_runs.push_back(sample.runs);
+    return std::nullopt;
+  }
+
+ private:
+  // As many runs as take at least that long together, s; each has the whole time-out to itself.
+  Batch batch(double at_least, bool phases) {
+    Batch batch;
+    do {
+      runner_.restart_clock(RunPart::measured);
+      batch.add(runner_.run(settings_, false, diverged_strain, phases));
+    } while (timed_ && batch.ok() && batch.seconds < at_least);
+    return batch;
+  }
+
+  void record_filter(const Batch& batch) {
+    if (point_.filter_samples.empty()) point_.phases = batch.last.stepper->phases();
+    point_.filter_samples.push_back(of_a_second(batch.filter_seconds, batch));
+  }
+
+  double of_a_second(double seconds, const Batch& batch) const {
+    return seconds / batch.runs / (runner_.steps() * point_.spec.step);
+  }
+
+  PointResult& point_;
+  PointRunner& runner_;
+  const inextensible::Settings& settings_;
+  bool short_steps_, timed_;
+};
+
+// The stiffness that a point's springs need, in its settings too. False: there is none, and the
+// point says why.
+bool calibrate(PointResult& point, PointRunner& runner, inextensible::Settings& settings,
+               std::optional<double> guess) {
+  const PointSpec& spec = point.spec;
+  const auto begin = Clock::now();
+  point.calibration_guess = guess.value_or(unknown);
+  Calibration calibration(spec.strain_limit, [&](double stiffness) -> Calibration::Trial {
+    settings["stiffness"] = stiffness;
+    runner.restart_clock(RunPart::calibration);  // every run has the whole time-out to itself
+    const Run run = runner.run(settings, true, Calibration::cut_short * spec.strain_limit);
+    return {run.status, run.measures.max_strain, run.seconds, run.detail};
+  });
+  point.stiffness = calibration.find(
+      guess.value_or(tension_over_force * runner.force_of_a_strand() / spec.strain_limit));
+  point.calibration_seconds = since(begin);
+  point.calibration_runs = calibration.runs();
+  if (!point.stiffness) {
+    point.status = calibration.status();
+    point.detail = calibration.detail();
+    return false;
+  }
+  settings["stiffness"] = *point.stiffness;
+  return true;
 }
 
-// One sample of the point's time and one of its filter's. `run`: with its phases timed. Reads of
-// the clock between phases are part of the time of a short step: that is timed again without them.
-// Returns the run that gave no sample, if one did not.
-std::optional<Run> add_samples(PointResult& point, const PointRunner& runner,
-                               const inextensible::Settings& settings, bool short_steps, Run run) {
-  add_filter_sample(point, runner, run);
-  if (short_steps) run = runner.run(settings, false, diverged_strain, false);
-  if (run.status != PointStatus::ok) return run;
-  if (point.samples.empty()) point.frame_times = run.frame_times;
-  point.samples.push_back(runner.seconds_per_step(run) / point.spec.step);
-  return std::nullopt;
+// The judged run, and a first sample: that run itself if it is long enough, and nothing disturbed
+// it. Iterates are kept while the solver's clock runs, so that an observed run's time is not its
+// own.
+void measure(PointResult& point, PointRunner& runner, const inextensible::Settings& settings,
+             bool timed) {
+  const double before = timed ? quiet_probe().look() : 0;
+  runner.restart_clock(RunPart::measured);
+  Batch judged;
+  judged.add(runner.run(settings, true, diverged_strain));
+  const double after = timed ? quiet_probe().look() : 0;
+  fill(point, judged.last);
+  if (!point.ok()) return;
+  const bool short_steps = runner.seconds_per_step(judged.last) < shortest_judged_step;
+  Sampler sampler(point, runner, settings, short_steps, timed);
+  const bool a_sample =
+      !judged.last.observed && !short_steps && (!timed || judged.seconds >= least_sample);
+  const bool disturbed =
+      timed && may_be_retaken(judged) && quiet_probe().disturbed(std::max(before, after));
+  const auto failed =
+      a_sample && !disturbed ? sampler.record(std::move(judged)) : sampler.add(a_sample ? 1 : 0);
+  if (failed) {
+    point.status = failed->status;  // without a time it is no result
+    point.detail = failed->detail;
+  }
 }
 
 }  // namespace
@@ -70,42 +187,10 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
     PointRunner runner(spec, limits);
     point.steps_planned = runner.steps();
     inextensible::Settings settings = spec.settings;
-    if (runner.backend().knob == inextensible::Knob::stiffness && !settings.contains("stiffness")) {
-      const auto begin = Clock::now();
-      point.calibration_guess = guess.value_or(unknown);
-      Calibration calibration(spec.strain_limit, [&](double stiffness) -> Calibration::Trial {
-        settings["stiffness"] = stiffness;
-        runner.restart_clock(RunPart::calibration);  // every run has the whole time-out to itself
-        const Run run = runner.run(settings, true, Calibration::cut_short * spec.strain_limit);
-        return {run.status, run.measures.max_strain, run.seconds, run.detail};
-      });
-      point.stiffness = calibration.find(
-          guess.value_or(tension_over_force * runner.force_of_a_strand() / spec.strain_limit));
-      point.calibration_seconds = since(begin);
-      point.calibration_runs = calibration.runs();
-      if (!point.stiffness) {
-        point.status = calibration.status();
-        point.detail = calibration.detail();
-        return point;
-      }
-      settings["stiffness"] = *point.stiffness;
-    }
-    runner.restart_clock(RunPart::measured);
-    Run run = runner.run(settings, true, diverged_strain);
-    fill(point, run);
-    // Iterates are kept while the solver's clock runs, so that an observed run's time is not its
-    // own.
-    if (point.ok()) {
-      const bool short_steps = runner.seconds_per_step(run) < shortest_judged_step;
-      if (run.observed || short_steps) {
-        runner.restart_clock(RunPart::measured);  // this run has the whole time-out to itself, too
-        run = runner.run(settings, false, diverged_strain);
-      }
-      if (auto failed = add_samples(point, runner, settings, short_steps, std::move(run))) {
-        point.status = failed->status;  // without a time it is no result
-        point.detail = failed->detail;
-      }
-    }
+    const bool needs_stiffness =
+        runner.backend().knob == inextensible::Knob::stiffness && !settings.contains("stiffness");
+    if (needs_stiffness && !calibrate(point, runner, settings, guess)) return point;
+    measure(point, runner, settings, limits.timed);
   } catch (const std::bad_alloc&) {
     point.status = PointStatus::out_of_memory;
     point.detail = "an allocation failed";
@@ -120,9 +205,9 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
 void repeat_point(PointResult& point, const RunLimits& limits) {
   inextensible::Settings settings = point.spec.settings;
   if (point.stiffness) settings["stiffness"] = *point.stiffness;
-  const PointRunner runner(point.spec, limits);
-  const bool short_steps = point.median_seconds() * point.spec.step < shortest_judged_step;
-  add_samples(point, runner, settings, short_steps, runner.run(settings, false, diverged_strain));
+  PointRunner runner(point.spec, limits);
+  const bool short_steps = point.seconds() * point.spec.step < shortest_judged_step;
+  Sampler(point, runner, settings, short_steps, limits.timed).add(0);
 }
 
 }  // namespace harness

@@ -12,6 +12,11 @@ namespace harness {
 
 struct Heartbeat;
 
+inline constexpr double least_sample = 0.02;  // s: a thousand times a block of steps
+// s. Two looks of a millisecond say little of what happens in between; and what happens for
+// milliseconds hardly shows.
+inline constexpr double longest_retaken = 0.25;
+
 // What a point is at; a heartbeat's part.
 enum class RunPart { measured, calibration };
 
@@ -21,15 +26,18 @@ struct RunLimits {
   std::function<bool()> interrupted = nullptr;           // asked after every step
   std::shared_ptr<ReferenceShelf> references = nullptr;  // null: no errors against references
   Heartbeat* heartbeat = nullptr;                        // told of every step; see child_process.h
+  bool timed = true;  // false: nobody will read the times, and one run is a sample
 };
 
-// One measured run; its time is the first sample. guess: a stiffness to begin calibration from,
+// One judged run, and a first sample of its time. guess: a stiffness to begin calibration from,
 // where one is needed. Throws Interrupted, and nothing else: whatever goes wrong is the point's
 // status.
 PointResult run_point(const PointSpec& spec, const RunLimits& limits,
                       std::optional<double> guess = {});
 
-// Once more, for time alone: the judge stays out. Appends a sample.
+// For time alone: the judge stays out. Appends a sample. That is the mean time of as many runs as
+// take least_sample together; it is taken again where the machine was disturbed
+// (quiet_samples.h), unless it takes longer than longest_retaken.
 void repeat_point(PointResult& point, const RunLimits& limits);
 
 }  // namespace harness

@@ -17,9 +17,15 @@ constexpr double stays = 0.85;
 
 std::optional<std::size_t> StepSearch::find(std::optional<std::size_t> start) {
   const std::size_t first = std::min(start.value_or(0), rungs_ - 1);
+  lowest_ = highest_ = first;
   walk(first, +1);
   if (first > 0 && !unsupported_) walk(first - 1, -1);
-  return best_;
+  look_around_best();
+  for (auto next = beyond_best(); next && !unsupported_; next = beyond_best()) {
+    walk(next->first, next->second);
+    look_around_best();
+  }
+  return best_rung(any_motion);
 }
 
 std::optional<std::size_t> StepSearch::find_among_all() {
@@ -30,7 +36,8 @@ std::optional<std::size_t> StepSearch::find_among_all() {
     consider(rung, point);
     timeouts = gave_up(point) ? timeouts + 1 : 0;
   }
-  return best_;
+  look_around_best();
+  return best_rung(any_motion);
 }
 
 std::vector<std::size_t> StepSearch::near_best(double level, double factor) const {
@@ -43,13 +50,17 @@ std::vector<std::size_t> StepSearch::near_best(double level, double factor) cons
   return rungs;
 }
 
-std::optional<double> StepSearch::best_seconds(double level) const {
+std::optional<std::size_t> StepSearch::best_rung(double level) const {
   const auto within = seconds_.find(level);
   if (within == seconds_.end()) return std::nullopt;
-  const auto best =
-      std::min_element(within->second.begin(), within->second.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  return best->second;
+  return std::min_element(within->second.begin(), within->second.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
+}
+
+std::optional<double> StepSearch::best_seconds(double level) const {
+  const auto best = best_rung(level);
+  return best ? std::optional(seconds_.at(level).at(*best)) : std::nullopt;
 }
 
 // A point is skipped where its calibration timed out.
@@ -57,19 +68,65 @@ bool StepSearch::gave_up(const PointResult& point) {
   return point.status == PointStatus::timeout || point.status == PointStatus::skipped;
 }
 
-// Whether it is the fastest so far.
-bool StepSearch::consider(std::size_t rung, const PointResult& point) {
-  if (!point.ok()) return false;
-  const double seconds = point.median_seconds();
-  const auto fastest = best_seconds(any_motion);
+void StepSearch::consider(std::size_t rung, const PointResult& point) {
+  lowest_ = std::min(lowest_, rung);
+  highest_ = std::max(highest_, rung);
+  if (!point.ok()) return;
+  const double seconds = point.seconds();
   seconds_[any_motion][rung] = seconds;
   for (const double level : levels_) {
     if (error_at(point.measures, level).samples > 0) goal_ = level;
     if (within_error(point.measures, level)) seconds_[level][rung] = seconds;
   }
-  if (fastest && seconds >= *fastest) return false;
-  best_ = rung;
-  return true;
+}
+
+void StepSearch::sample_again(std::size_t rung) {
+  if (!sampled_.insert(rung).second) return;
+  const std::size_t samples = run_(rung).samples.size();
+  for (std::size_t i = samples; i < samples_when_close; ++i) again_(rung);
+  consider(rung, run_(rung));
+}
+
+// Whether a rung that ran to the end is slower than the best one within a level, beyond noise.
+bool StepSearch::slower(std::size_t rung, double level) {
+  const auto& all = seconds_.at(any_motion);
+  for (auto best = best_rung(level); best && *best != rung; best = best_rung(level)) {
+    if (all.at(rung) > clearly_slower * all.at(*best)) return true;
+    if (sampled_.contains(rung) && sampled_.contains(*best))
+      return all.at(rung) > noise * all.at(*best);
+    sample_again(rung);
+    sample_again(*best);
+  }
+  return false;
+}
+
+// Where a first sample was disturbed, the best step may look like its neighbour's rise.
+void StepSearch::look_around_best() {
+  if (!best_rung(any_motion)) return;
+  const auto& all = seconds_.at(any_motion);
+  std::vector<double> levels = levels_;
+  levels.push_back(any_motion);
+  for (const double level : levels) {
+    for (std::optional<std::size_t> last, best = best_rung(level); best && best != last;
+         best = best_rung(level)) {
+      last = best;
+      for (const std::size_t rung : {*best - 1, *best + 1}) {  // below 0: none that was tried
+        const auto place = all.find(rung);
+        if (place == all.end() || place->second >= close_neighbor * all.at(*best)) continue;
+        sample_again(*best);
+        sample_again(rung);
+      }
+    }
+  }
+}
+
+std::optional<std::pair<std::size_t, int>> StepSearch::beyond_best() const {
+  for (const auto& [level, times] : seconds_) {
+    const auto best = best_rung(level);
+    if (best == highest_ && highest_ + 1 < rungs_) return std::pair(highest_ + 1, +1);
+    if (best == lowest_ && lowest_ > 0) return std::pair(lowest_ - 1, -1);
+  }
+  return std::nullopt;
 }
 
 double StepSearch::tenfold() const {
@@ -87,12 +144,10 @@ double StepSearch::longest_useful() const {
 }
 
 // Of a walk to finer steps whose time has risen twice in a row.
-bool StepSearch::done(const PointResult& point) const {
+bool StepSearch::done(std::size_t rung, const PointResult& point) {
   if (!goal_ || error_stays_ >= 2 || gave_up(point)) return true;
   if (!point.ok()) return failures_ >= 2;
-  if (point.median_seconds() > tenfold()) return true;
-  const auto met = best_seconds(*goal_);
-  return met && point.median_seconds() > *met;
+  return point.seconds() > tenfold() || slower(rung, *goal_);
 }
 
 void StepSearch::walk(std::size_t from, int direction) {
@@ -104,10 +159,13 @@ void StepSearch::walk(std::size_t from, int direction) {
     const PointResult& point = run_(rung);
     unsupported_ = point.status == PointStatus::unsupported;
     if (unsupported_) return;
-    if (consider(rung, point)) {
-      rises = 0;
-    } else if (best_ || direction < 0) {
+    consider(rung, point);
+    const bool rose =
+        point.ok() ? slower(rung, any_motion) : best_rung(any_motion).has_value() || direction < 0;
+    if (rose) {
       ++rises;
+    } else if (best_rung(any_motion) == rung) {
+      rises = 0;
     }
     failures_ = point.ok() ? 0 : failures_ + 1;
     if (gave_up(point)) {
@@ -119,7 +177,7 @@ void StepSearch::walk(std::size_t from, int direction) {
       error_stays_ = error > stays * last_error && error > *goal_ ? error_stays_ + 1 : 0;
       last_error = error;
     }
-    if (timeouts == 2 || (rises >= 2 && (direction < 0 || done(point)))) return;
+    if (timeouts == 2 || (rises >= 2 && (direction < 0 || done(rung, point)))) return;
   }
 }
 

@@ -15,8 +15,13 @@ namespace harness {
 namespace {
 
 constexpr double hopeless_least = 0.2;  // s; shorter runs are always finished
-// Steps whose one time is within this factor of the best are repeated before one is called best.
+// Steps whose time is within this factor of the best are repeated before one is called best.
 constexpr double candidate_factor = 1.2;
+// What may be best, in suites that ask for as many samples as this, is run for at least 0.2 s. That
+// many samples can tell two points apart in spite of one that was disturbed.
+constexpr int full_reps = 7;
+constexpr double least_measured = 0.2;  // s
+constexpr int other_reps = 5;           // at most, of the other points of a step sweep
 
 // What may be the best point of one search, by rung; the points' place in the outcome.
 struct Choice {
@@ -30,12 +35,12 @@ const char* ladder_end(std::size_t rung, std::size_t rungs) {
   return rung == 0 ? "coarsest" : rung + 1 == rungs ? "finest" : "";
 }
 
-// By the medians of all runs so far.
+// By the times of all samples so far.
 void choose(const std::vector<Choice>& choices, std::vector<PointResult>& points) {
   for (const Choice& choice : choices) {
     const auto best = std::min_element(
         choice.candidates.begin(), choice.candidates.end(), [&](const auto& a, const auto& b) {
-          return points[a.second].median_seconds() < points[b.second].median_seconds();
+          return points[a.second].seconds() < points[b.second].seconds();
         });
     if (best == choice.candidates.end()) continue;
     PointResult& point = points[best->second];
@@ -48,39 +53,73 @@ void choose(const std::vector<Choice>& choices, std::vector<PointResult>& points
   }
 }
 
+// The points that are to have more samples, and when they have enough.
+class Repetitions {
+ public:
+  Repetitions(const Suite& suite, const std::vector<Choice>& choices,
+              std::vector<PointResult>& points)
+      : suite_(suite), points_(points) {
+    for (const Choice& choice : choices) {
+      for (const auto& candidate : choice.candidates) candidates_.insert(candidate.second);
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      tries_.push_back(static_cast<int>(points[i].samples.size()));
+      const bool wanted = points[i].spec.sweep == "step" ? points[i].ok() : candidates_.contains(i);
+      if (wanted) order_.push_back(i);
+    }
+  }
+
+  // Points that lack samples, in the order in which they were run; may be empty.
+  std::vector<std::size_t>& next_round() {
+    std::erase_if(order_, [this](std::size_t i) { return enough(i); });
+    return order_;
+  }
+  void tried(std::size_t i) { ++tries_[i]; }
+  // About how many samples are still to be taken.
+  std::size_t left() const {
+    int sum = 0;
+    for (const std::size_t i : order_) sum += std::max(1, least(i) - tries_[i]);
+    return static_cast<std::size_t>(sum);
+  }
+
+ private:
+  int least(std::size_t i) const {
+    return candidates_.contains(i) ? suite_.reps : std::min(suite_.reps, other_reps);
+  }
+
+  bool enough(std::size_t i) const {
+    const double seconds = points_[i].measured_seconds();
+    if (seconds >= repeat_for) return true;
+    if (tries_[i] < least(i)) return false;
+    if (tries_[i] < suite_.most_reps && median_uncertainty(points_[i].samples) > suite_.rel_ci)
+      return false;
+    const bool full = candidates_.contains(i) && suite_.reps >= full_reps;
+    return !full || seconds >= least_measured || tries_[i] >= 2 * suite_.reps;
+  }
+
+  const Suite& suite_;
+  const std::vector<PointResult>& points_;
+  std::set<std::size_t> candidates_;
+  std::vector<std::size_t> order_;
+  std::vector<int> tries_;  // of each point
+};
+
 void repeat_candidates(const Suite& suite, const std::vector<Choice>& choices,
                        std::vector<PointResult>& points, const SweepEvents& events,
                        const SweepRunners& runners) {
-  std::set<std::size_t> candidates;
-  for (const Choice& choice : choices) {
-    for (const auto& candidate : choice.candidates) candidates.insert(candidate.second);
-  }
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const bool wanted = points[i].spec.sweep == "step" ? points[i].ok() : candidates.contains(i);
-    if (wanted) order.push_back(i);
-  }
   const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
                                                                  gsl_rng_free);
   gsl_rng_set(random.get(), suite.seed);
-  const int most = std::max(suite.reps, suite.most_reps);
+  Repetitions repetitions(suite, choices, points);
   std::size_t done = 0;
-  const auto long_enough = [&](std::size_t i) {
-    return static_cast<double>(points[i].samples.size()) * points[i].median_run() >= repeat_for;
-  };
-  for (int rep = 1; rep < most; ++rep) {
-    std::erase_if(order, long_enough);
-    if (rep >= suite.reps) {
-      std::erase_if(order, [&](std::size_t i) {
-        return median_uncertainty(points[i].samples) <= suite.rel_ci;
-      });
-    }
-    if (order.empty()) return;  // GSL's shuffle does not take nothing
-    const std::size_t all = done + order.size() * static_cast<std::size_t>(
-                                                      (rep < suite.reps ? suite.reps : most) - rep);
-    gsl_ran_shuffle(random.get(), order.data(), order.size(), sizeof(std::size_t));
-    for (const std::size_t i : order) {
+  for (;;) {
+    std::vector<std::size_t>& round = repetitions.next_round();
+    if (round.empty()) return;  // GSL's shuffle does not take nothing
+    const std::size_t all = done + repetitions.left();
+    gsl_ran_shuffle(random.get(), round.data(), round.size(), sizeof(std::size_t));
+    for (const std::size_t i : round) {
       runners.repeat(points[i], {suite.timeout, 1e300, events.interrupted, nullptr});
+      repetitions.tried(i);
       events.repetition(++done, all);
     }
   }
@@ -142,6 +181,7 @@ class LadderRun {
         steps_(
             search_.ladder.size(),
             [this](std::size_t rung) -> const PointResult& { return point(rung); },
+            [this](std::size_t rung) -> const PointResult& { return again(rung); },
             levels_of(sweep.suite)) {}
 
   void find_best() {
@@ -173,6 +213,15 @@ class LadderRun {
       neighbour_.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
     point_of_rung_[rung] = sweep_.points.size();
     return sweep_.add(std::move(point), number_);
+  }
+
+  // With one sample more, unless its runs have taken long already.
+  const PointResult& again(std::size_t rung) {
+    PointResult& point = sweep_.points[point_of_rung_.at(rung)];
+    if (point.measured_seconds() < repeat_for)
+      sweep_.runners.repeat(point,
+                            {sweep_.suite.timeout, 1e300, sweep_.events.interrupted, nullptr});
+    return point;
   }
 
   void add_choice(double level) {

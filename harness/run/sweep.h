@@ -2,7 +2,7 @@
 // ladder coarsest, coarsest / 2, ... (a step sweep runs the whole ladder), for any motion and for
 // each level of error. Then the points that may be best at one of them (of a step sweep: all that
 // ran to the end) are repeated, interleaved in a shuffled order, and the best ones chosen by the
-// medians of all their runs.
+// times of all their samples.
 #pragma once
 
 #include <functional>
@@ -14,8 +14,8 @@
 
 namespace harness {
 
-// A point is repeated until all its runs have taken so long together: what disturbs a machine
-// averages out within long runs. s.
+// A point is not repeated any more when its runs have taken so long together: what disturbs a
+// machine averages out within long runs. s.
 inline constexpr double repeat_for = 10;
 
 // What a sweep tells while it runs.

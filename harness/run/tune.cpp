@@ -13,7 +13,7 @@ namespace {
 
 constexpr double give_up_at = 2.5;    // times the time that is known at a place
 constexpr double no_use_above = 1.2;  // times the time without settings: that would count instead
-constexpr int samples = 3;            // of the best steps, whose medians count
+constexpr int samples = 3;            // of the best steps
 
 // One size and strain limit of the scene, and what is known there.
 struct Place {
@@ -105,16 +105,21 @@ class Tuner {
     for (Place& place : places_) {
       std::map<std::size_t, PointResult> known;
       double best = 1e300;
-      StepSearch steps(place.search.ladder.size(), [&](std::size_t rung) -> const PointResult& {
+      const auto run = [&](std::size_t rung) -> const PointResult& {
         const auto [at, fresh] = known.try_emplace(rung);
         if (fresh) at->second = run_once(place, rung, {}, give_up_at * best);
-        if (at->second.ok()) best = std::min(best, at->second.median_seconds());
+        if (at->second.ok()) best = std::min(best, at->second.seconds());
         return at->second;
-      });
+      };
+      const auto again = [&](std::size_t rung) -> const PointResult& {
+        runners_.repeat(known.at(rung), {options_.timeout, 1e300, options_.interrupted, nullptr});
+        return known.at(rung);
+      };
+      StepSearch steps(place.search.ladder.size(), run, again);
       const auto rung = steps.find(std::nullopt);
       if (!rung) continue;
       place.best_rung = *rung;
-      place.best_seconds = known.at(*rung).median_seconds();
+      place.best_seconds = known.at(*rung).seconds();
     }
     std::erase_if(places_, [](const Place& place) { return place.best_seconds >= 1e300; });
   }
@@ -146,7 +151,7 @@ class Tuner {
                                     : own->second[i].rung.value_or(places_[i].best_rung);
       const auto rung = best_step(places_[i], settings, start, in_race ? 1 : 2, without(i), point);
       if (!rung && settings.empty()) break;
-      found.push_back({rung, rung ? point.median_seconds() : 1e300});
+      found.push_back({rung, rung ? point.seconds() : 1e300});
       points.push_back(std::move(point));
       log_rest -= std::log(0.5 * places_[i].best_seconds);
       if (in_race && (log_sum() + log_rest) / count > std::log(hopeless)) break;
@@ -171,7 +176,7 @@ class Tuner {
       for (std::size_t p = 0; p < points.size(); ++p) {
         if (!found[p].rung) continue;
         runners_.repeat(points[p], {options_.timeout, 1e300, options_.interrupted, nullptr});
-        found[p].seconds = points[p].median_seconds();
+        found[p].seconds = points[p].seconds();
       }
     }
   }
@@ -192,9 +197,9 @@ class Tuner {
                                        PointResult& fastest) {
     std::optional<std::size_t> best;
     const auto faster = [&](std::size_t rung) {
-      const double most = best ? fastest.median_seconds() : no_use_above * enough;
+      const double most = best ? fastest.seconds() : no_use_above * enough;
       PointResult point = run_once(place, rung, settings, most);
-      if (!point.ok() || (best && point.median_seconds() >= fastest.median_seconds())) return false;
+      if (!point.ok() || (best && point.seconds() >= fastest.seconds())) return false;
       best = rung;
       fastest = std::move(point);
       return true;

@@ -14,7 +14,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullForma
 
 from parts.curves import line_of
 from parts.legend import Legend, legend_of, merged
-from parts.result_file import SCHEMA, Json, ResultError, contestant_of, load, median_of, object_in, points_of
+from parts.result_file import SCHEMA, Json, ResultError, contestant_of, load, time_of, object_in, points_of
 from parts.sheet import GAP, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, add_legend, grid, legend_height, make_sheet
 from parts.style import GREY, styles_for
 from parts.words import clean, shorten
@@ -26,7 +26,7 @@ Place = tuple[str, str, int, float]  # sweep, scene, vertices, strain limit: whe
 
 @dataclass(frozen=True)
 class Entry:
-    """One result file: when, with what, and the median seconds of each solver's best points."""
+    """One result file: when, with what, and the time of each solver's best points."""
 
     date: datetime
     commit: str
@@ -44,10 +44,10 @@ def entry_of(document: Json, path: Path) -> Entry:
         raise ResultError(f"{path}: context.date is {clean(context.get('date'))!r}, no date") from error
     times: dict[str, dict[Place, float]] = {}
     for point in points_of(document):
-        median = median_of(point)
-        if point.get("best") is True and median is not None:
+        time = time_of(point)
+        if point.get("best") is True and time is not None:
             place = (point["sweep"], point["scene"], point["vertices"], float(point["strain_limit"]))
-            times.setdefault(contestant_of(point), {})[place] = median
+            times.setdefault(contestant_of(point), {})[place] = time
     machine = (str(context.get("cpu_model")), f"{build.get('compiler')} {build.get('flags')}")
     return Entry(date, clean(build.get("git", ""))[:7], machine, times, legend_of(document))
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from parts.best_points import FILTER_TIME, TIME, delivered_strain
 from parts.legend import Legend
-from parts.result_file import Json, contestant_of, is_number, median_in, median_interval, object_in, points_of
+from parts.result_file import Json, contestant_of, is_number, time_in, spread_in, object_in, points_of
 from parts.style import styles_for
 
 # Of a point, in this order; the scripts know them by these names.
@@ -34,7 +34,7 @@ def document_data(documents: dict[Path, Json], legend: Legend) -> Json:
 
 
 def _row(file: int, point: Json, order: list[str]) -> list[Any]:
-    interval = median_interval(point, TIME) or (None, None)
+    interval = spread_in(point, TIME) or (None, None)
     error, work = object_in(point, "error"), object_in(point, "work")
 
     def number(parent: Json, key: str) -> float | None:
@@ -43,7 +43,7 @@ def _row(file: int, point: Json, order: list[str]) -> list[Any]:
     samples = object_in(point, TIME).get("samples")
     return [file, str(point.get("id", "")), point["scene"], point["sweep"], point["vertices"], point["strain_limit"],
             number(point, "step"), order.index(contestant_of(point)), point["status"], str(point.get("status_detail", "")),
-            median_in(point, TIME), *interval, median_in(point, FILTER_TIME), number(point, "max_strain"),
+            time_in(point, TIME), *interval, time_in(point, FILTER_TIME), number(point, "max_strain"),
             delivered_strain(point), number(error, "trajectory"), number(error, "energy_gain"), number(work, "iterations"),
             number(work, "factorizations"), number(work, "edge_projections"), len(samples) if isinstance(samples, list) else 0,
             point.get("best") is True, point.get("adaptive") is True]

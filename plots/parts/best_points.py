@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Callable
 
 from parts.legend import TOO_STRAINED, TOO_WRONG, Legend
-from parts.result_file import (OK, Json, contestant_of, is_number, median_in, median_interval, median_of, object_in, points_of,
+from parts.result_file import (OK, Json, contestant_of, is_number, time_in, spread_in, time_of, object_in, points_of,
                                positive)
 from parts.words import file_part
 
@@ -23,8 +23,8 @@ TIME, FILTER_TIME = "seconds_per_simulated_second", "filter_seconds_per_simulate
 
 @dataclass(frozen=True)
 class Best:
-    """The best run of one solver at one x. `low` to `high` is the median's 95 % interval, the median itself where it is not
-    known. `ladder_end`: 1 if the step is the coarsest of those tried, -1 if the finest, else 0."""
+    """The best run of one solver at one x, its least sample. `low` to `high` is from there to the median of the samples, where
+    there are three. `ladder_end`: 1 if the step is the coarsest of those tried, -1 if the finest, else 0."""
 
     x: float
     seconds: float
@@ -140,7 +140,7 @@ def delivered_strain(point: Json) -> float | None:
 
 
 def _within(points: list[Json], level: float) -> list[Json]:
-    return [point for point in points if point["status"] == OK and median_of(point) is not None
+    return [point for point in points if point["status"] == OK and time_of(point) is not None
             and (strain := delivered_strain(point)) is not None and strain <= level]
 
 
@@ -175,7 +175,7 @@ def _delivered_curves(points_at: dict[float, list[Json]], level_at: Callable[[fl
                 runs.setdefault(contestant_of(point), []).append(point)
         for solver, tried in sorted(runs.items()):
             curve = curves.setdefault(solver, Curve())
-            best = min(_within(tried, level_at(x)), key=lambda run: median_of(run) or math.inf, default=None)
+            best = min(_within(tried, level_at(x)), key=lambda run: time_of(run) or math.inf, default=None)
             if best:
                 _add_best(curve, x, best)
             else:
@@ -238,7 +238,7 @@ def _curves(points: list[Json], axis: str, level: float | None, legend: Legend, 
 
 def _add_best(curve: Curve, x: float, point: Json) -> None:
     curve.best.append(_as_best(x, point, TIME))
-    if median_in(point, FILTER_TIME) is not None:
+    if time_in(point, FILTER_TIME) is not None:
         curve.filter.append(_as_best(x, point, FILTER_TIME))
 
 
@@ -246,15 +246,15 @@ def best_of(runs: list[Json], level: float | None, competes: bool, chosen: Chose
     """The point that the program chose. Who does not compete keeps no strain limit, so the fastest run will do."""
     marked = [run for run in runs if chosen.has(run, level)]
     if not marked and not competes:
-        marked = [run for run in runs if median_of(run) is not None]
-    return min(marked, key=lambda run: median_of(run) or math.inf, default=None)
+        marked = [run for run in runs if time_of(run) is not None]
+    return min(marked, key=lambda run: time_of(run) or math.inf, default=None)
 
 
 def _as_best(x: float, point: Json, key: str) -> Best:
-    median = float(object_in(point, key)["median"])
-    low, high = median_interval(point, key) or (median, median)
+    time = time_in(point, key) or math.nan
+    low, high = spread_in(point, key) or (time, time)
     end = {"coarsest": 1, "finest": -1}.get(point.get("at_ladder_end"), 0)
-    return Best(x, median, min(low, median), max(high, median), _step_of(point), end)
+    return Best(x, time, low, high, _step_of(point), end)
 
 
 def _step_of(point: Json) -> float | None:

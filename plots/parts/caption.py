@@ -94,10 +94,10 @@ def _method_sentence(figure: FigureData, document: Json) -> str:
     if reps == 1:
         text += "one run a point"
     else:
-        text += f"median of {plain(reps)} repetitions" if is_number(reps) else "median"
+        text += f"least of {plain(reps)} samples or more" if is_number(reps) else "least sample"
     best = _best_in(figure)
     if any(b.high > b.low for b in best):
-        text += ", bars: its 95 % interval"
+        text += ", bars: up to their median"
     settings = [f"timeout {suite['timeout']:g} s" if is_number(suite.get("timeout")) else "",
                 f"profile {plain(suite['profile'])}" if suite.get("profile") else "",
                 f"seed {plain(_seed(document))}" if _seed(document) is not None else ""]
@@ -112,7 +112,7 @@ def _marks(figure: FigureData, document: Json) -> list[str]:
         sentences.append("Bar in the corner: how far apart one solver is from itself under another name (A/A pair, 95 %); "
                          "points closer than that do not differ.")
     elif not any(b.high > b.low for b in best):
-        sentences.append("Neither an interval (six runs or more) nor an A/A pair: small differences mean nothing.")
+        sentences.append("No A/A pair: small differences mean nothing.")
     if any(legend.competes(name) and not legend.ranked(name) for name in figure.curves):
         sentences.append("Hollow marks: untuned settings, not ranked.")
     if any(b.ladder_end for b in best):

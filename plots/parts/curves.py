@@ -12,7 +12,7 @@ Styles = dict[str, SolverStyle]
 
 
 def draw_curves(axes: Axes, figure: FigureData, styles: Styles, x_factor: float = 1.0) -> None:
-    """Median over x with thin bars of its 95 % interval."""
+    """Time over x with thin bars up to the median of the samples."""
     for order, (solver, style) in enumerate(styles.items()):
         best = figure.curves[solver].best
         if not best:

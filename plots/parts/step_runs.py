@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from parts.legend import Legend
-from parts.result_file import OK, Json, contestant_of, is_number, median_of, object_in, points_of, positive
+from parts.result_file import OK, Json, contestant_of, is_number, time_of, object_in, points_of, positive
 from parts.style import SolverStyle, styles_for
 from parts.words import file_part
 
@@ -66,7 +66,7 @@ def step_sweeps_in(document: Json, legend: Legend) -> list[RunsData]:
 
 
 def _add(data: RunsData, point: Json, legend: Legend) -> None:
-    solver, seconds = legend.at_any_settings(contestant_of(point)), median_of(point)
+    solver, seconds = legend.at_any_settings(contestant_of(point)), time_of(point)
     step, limit = float(point["step"]), float(point["strain_limit"])
     runs = data.runs.setdefault(solver, [])
     error = object_in(point, "error")

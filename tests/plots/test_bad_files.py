@@ -105,7 +105,7 @@ BAD: dict[str, tuple[Any, str]] = {
     "no status": (good(status=3), "points[0] has no status"),
     "vertices": (good(vertices=0), "positive number as vertices"),
     "endless": (good(strain_limit=1e300), "positive number as strain_limit"),
-    "best without time": (good(seconds_per_simulated_second=None), "no positive median"),
+    "best without time": (good(seconds_per_simulated_second=None), "no positive time"),
     "legend": ({**good(), "legend": 3}, "legend is not an object"),
     "untimed": ({**good(), "context": {"timed": False}}, "made with --untimed"),
     "legend of words": ({**good(), "legend": {"solvers": ["shake"]}}, "legend.solvers is not a list of objects"),

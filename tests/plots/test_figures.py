@@ -85,7 +85,7 @@ def test_a_failure_has_its_letters_above_the_axes_and_in_the_caption() -> None:
 def test_what_was_measured_where_and_how_stands_beneath() -> None:
     words = words_of(drawn(strain_sweep())["figure4a"])
     assert "Scene chain: 80 vertices, gravity 9.81, 1 s simulated." in words
-    assert "median of 3 repetitions; timeout 5 s; profile default; seed 1." in words
+    assert "least of 3 samples or more; timeout 5 s; profile default; seed 1." in words
     assert "Measured on Model 7; 2 CPUs; build release; 2026-11-21 22:39; commit a2e87d4fef63." in words
     assert "box" not in words, "the host's name tells nothing of a method"
 

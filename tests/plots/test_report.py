@@ -30,13 +30,14 @@ SCRIPT = ROOT / "plots" / "report.py"
 
 
 def interval(seconds: float) -> Json:
-    return {"median": seconds, "samples": [seconds * factor for factor in (0.98, 0.99, 1, 1, 1, 1, 1.01, 1.02, 1.02)]}
+    return {"min": seconds, "median": 1.02 * seconds,
+            "samples": [seconds * factor for factor in (1, 1.01, 1.02, 1.02, 1.02, 1.02, 1.03, 1.04, 1.04)]}
 
 
 def sampled(made: Json) -> Json:
     for entry in made["points"]:
         if entry["seconds_per_simulated_second"]:
-            entry["seconds_per_simulated_second"] |= interval(entry["seconds_per_simulated_second"]["median"])
+            entry["seconds_per_simulated_second"] |= interval(entry["seconds_per_simulated_second"]["min"])
         entry["id"] = f"{entry['scene']}/{entry['solver']}/n:{entry['vertices']}/strain:{entry['strain_limit']:g}/h:{entry['step']:g}"
     made["context"]["command"] = ["bench", "--sweep", "strain", "--force", "--out", "results/it.json", "--reps", "9"]
     return made
@@ -104,7 +105,7 @@ def test_a_figures_numbers_are_what_it_draws() -> None:
     drawn = {(round(float(row["x"]), 9), round(float(row["y"]), 9)) for row in rows}
     for entry in made["points"]:
         if entry["best"]:
-            assert (round(100 * entry["strain_limit"], 9), round(entry["seconds_per_simulated_second"]["median"], 9)) in drawn
+            assert (round(100 * entry["strain_limit"], 9), round(entry["seconds_per_simulated_second"]["min"], 9)) in drawn
 
 
 def test_motion_is_kept_to_a_part_in_65535(tmp_path: Path) -> None:

@@ -13,15 +13,16 @@ from matplotlib.figure import Figure
 
 from documents import (Json, axes_with, curves, document, drawn, legend_labels, marks, point, step_sweep, strain_sweep, strips,
                        texts_outside, words_of)
-from parts.result_file import median_interval
+from parts.result_file import spread_in, time_in
 
 FILTER = "filter_seconds_per_simulated_second"
 BLUE, GREEN = "#0072B2", "#009E73"
 
 
 def timed(made: Json, seconds: float, spread: float = 0.01, runs: int = 9) -> Json:
-    samples = [seconds * (1 + spread * (place - (runs - 1) / 2)) for place in range(runs)]
-    return {**made, "seconds_per_simulated_second": {"median": seconds, "samples": samples}}
+    """The least sample takes `seconds`."""
+    samples = [seconds * (1 + spread * place) for place in range(runs)]
+    return {**made, "seconds_per_simulated_second": {"median": float(np.median(samples)), "samples": samples[::-1]}}
 
 
 def with_pair(result: Json, q95: float = 0.2) -> Json:
@@ -50,25 +51,31 @@ def steps_arrows(figure: Figure) -> list[str]:
 
 # ---- intervals ------------------------------------------------------------------------------------------------------
 
-@pytest.mark.parametrize("runs, places", [(5, None), (6, (0, 5)), (8, (0, 7)), (9, (1, 7)), (20, (5, 14))])
-def test_the_medians_interval_is_that_of_tables(runs: int, places: tuple[int, int] | None) -> None:
-    """Conover, Practical Nonparametric Statistics: the sign test's two-sided 5 % limits."""
-    found = median_interval(timed({}, 1.0, runs=runs), "seconds_per_simulated_second")
-    samples = timed({}, 1.0, runs=runs)["seconds_per_simulated_second"]["samples"]
-    assert found == (places and (pytest.approx(samples[places[0]]), pytest.approx(samples[places[1]])))
+@pytest.mark.parametrize("runs, places", [(1, None), (2, None), (3, 1), (8, 3.5), (9, 4)])
+def test_the_time_is_the_least_sample_and_the_spread_goes_to_the_median(runs: int, places: float | None) -> None:
+    made = timed({}, 2.0, runs=runs)
+    assert time_in(made, "seconds_per_simulated_second") == 2.0
+    found = spread_in(made, "seconds_per_simulated_second")
+    assert found == (None if places is None else (pytest.approx(2.0), pytest.approx(2.0 * (1 + 0.01 * places))))
 
 
-def test_bars_are_intervals_of_the_median() -> None:
+def test_files_without_samples_are_read() -> None:
+    assert time_in({"t": {"min": 1.0, "median": 2.0}}, "t") == 1.0
+    assert time_in({"t": {"median": 2.0}}, "t") == 2.0
+    assert time_in({"t": None}, "t") is None
+
+
+def test_bars_go_from_the_least_sample_to_the_median() -> None:
     figure = drawn(document([timed(point("shake", limit=limit, best=True), 2.0) for limit in (0.1, 0.01)]))["figure4a"]
     main = axes_with(figure, ylabel="wall seconds")
     (segments,) = [collection.get_segments() for collection in main.collections]
-    assert [[y for _, y in segment] for segment in segments] == [[pytest.approx(1.94), pytest.approx(2.06)]] * 2
-    assert "bars: its 95 % interval" in words_of(figure)
+    assert [[y for _, y in segment] for segment in segments] == [[pytest.approx(2.0), pytest.approx(2.08)]] * 2
+    assert "bars: up to their median" in words_of(figure)
 
 
-def test_three_runs_have_no_bars_and_the_caption_says_so() -> None:
+def test_without_samples_there_are_no_bars_and_the_caption_says_what_is_missing() -> None:
     words = words_of(drawn(strain_sweep())["figure4a"])
-    assert "95 % interval" not in words and "Neither an interval (six runs or more) nor an A/A pair" in words
+    assert "bars" not in words and "No A/A pair" in words
 
 
 # ---- the A/A pair ---------------------------------------------------------------------------------------------------

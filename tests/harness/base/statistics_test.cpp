@@ -1,4 +1,4 @@
-// Ratios of medians: the interval has the coverage that it claims, and says nothing where nothing
+// Ratios of times: the interval has the coverage that it claims, and says nothing where nothing
 // can be known.
 #include "harness/base/statistics.h"
 
@@ -54,12 +54,12 @@ TEST(Ratio, IntervalHasItsCoverageWhateverTheDistribution) {
     const unsigned n = sizes.first;
     const int trials = inextensible::testing::trials(sizes.second);
     const double plain = coverage(trials, 1.3, [&] {
-      return ratio_of_medians(draw(n, [&] { return 1.3 * log_normal(random); }),
-                              draw(n, [&] { return log_normal(random); }));
+      return ratio_of_times(draw(n, [&] { return 1.3 * log_normal(random); }),
+                            draw(n, [&] { return log_normal(random); }));
     });
     const double tailed = coverage(trials, 1.3, [&] {
-      return ratio_of_medians(draw(n, [&] { return 1.3 * skewed(random); }),
-                              draw(n, [&] { return skewed(random); }));
+      return ratio_of_times(draw(n, [&] { return 1.3 * skewed(random); }),
+                            draw(n, [&] { return skewed(random); }));
     });
     std::cout << n << " samples: log-normal " << plain << ", skewed " << tailed << '\n';
     const double doubt = 3 * std::sqrt(0.95 * 0.05 / trials);
@@ -83,7 +83,7 @@ TEST(Ratio, IntervalMatchesTheTablesOfTheTest) {
       for (const double y : b) quotients.push_back(x / y);
     }
     std::sort(quotients.begin(), quotients.end());
-    const Ratio ratio = ratio_of_medians(a, b);
+    const Ratio ratio = ratio_of_times(a, b);
     const auto place = std::lower_bound(quotients.begin(), quotients.end(), ratio.low * 0.999999);
     return place - quotients.begin() + 1;
   };
@@ -96,30 +96,30 @@ TEST(Ratio, SamplesOfOtherSpreadsHardlyLoseCoverage) {
   std::mt19937 random = seeded();
   std::lognormal_distribution<double> narrow(0, 0.01), wide(0, 0.1);
   const double covered = coverage(20000, 1.0, [&] {
-    return ratio_of_medians(draw(9, [&] { return narrow(random); }),
-                            draw(9, [&] { return wide(random); }));
+    return ratio_of_times(draw(9, [&] { return narrow(random); }),
+                          draw(9, [&] { return wide(random); }));
   });
   std::cout << "spreads of 1 % and 10 %: " << covered << '\n';
   EXPECT_GE(covered, 0.90);
 }
 
 TEST(Ratio, WithoutSamplesAndWithoutAPairNothingIsKnown) {
-  const Ratio three = ratio_of_medians({1.0, 1.01, 1.02}, {50.0, 51.0, 52.0});
+  const Ratio three = ratio_of_times({1.0, 1.01, 1.02}, {50.0, 51.0, 52.0});
   EXPECT_FALSE(three.known());
   EXPECT_FALSE(three.below(1) || three.above(0.001));
-  EXPECT_NEAR(three.value, 1.01 / 51, 1e-12);
-  EXPECT_TRUE(ratio_of_medians({1.0, 1.01, 1.02, 1.03}, {50.0, 51.0, 52.0, 53.0}).below(1));
-  EXPECT_FALSE(ratio_of_medians({}, {1.0}).known());
-  EXPECT_TRUE(std::isnan(ratio_of_medians({}, {1.0}, 0.1).value));
-  const Ratio paired = ratio_of_medians({1.0}, {2.0}, std::log(1.5));
+  EXPECT_NEAR(three.value, 1.0 / 50, 1e-12);
+  EXPECT_TRUE(ratio_of_times({1.0, 1.01, 1.02, 1.03}, {50.0, 51.0, 52.0, 53.0}).below(1));
+  EXPECT_FALSE(ratio_of_times({}, {1.0}).known());
+  EXPECT_TRUE(std::isnan(ratio_of_times({}, {1.0}, 0.1).value));
+  const Ratio paired = ratio_of_times({1.0}, {2.0}, std::log(1.5));
   EXPECT_NEAR(paired.low, 0.5 / 1.5, 1e-12);
   EXPECT_NEAR(paired.high, 0.5 * 1.5, 1e-12);
 }
 
 TEST(Ratio, TheWiderOfSamplesAndPairCounts) {
   const Samples a{1.00, 1.01, 1.02, 1.03, 1.04, 1.05}, b{2.0, 2.01, 2.02, 2.03, 2.04, 2.05};
-  const Ratio samples = ratio_of_medians(a, b), quiet = ratio_of_medians(a, b, 1e-6),
-              noisy = ratio_of_medians(a, b, 0.2);
+  const Ratio samples = ratio_of_times(a, b), quiet = ratio_of_times(a, b, 1e-6),
+              noisy = ratio_of_times(a, b, 0.2);
   EXPECT_DOUBLE_EQ(quiet.low, samples.low);
   EXPECT_DOUBLE_EQ(quiet.high, samples.high);
   EXPECT_NEAR(noisy.low, noisy.value * std::exp(-0.2), 1e-12);
@@ -138,12 +138,12 @@ TEST(Ratio, AProgramAgainstItselfShowsNoDifference) {
   };
   Samples log_ratios;
   for (int i = 0; i < 2000; ++i)
-    log_ratios.push_back(std::abs(std::log(quantile(sample(), 0.5) / quantile(sample(), 0.5))));
+    log_ratios.push_back(std::abs(std::log(time_of(sample()) / time_of(sample()))));
   std::sort(log_ratios.begin(), log_ratios.end());
   const double noise = log_ratios[log_ratios.size() * 95 / 100];
-  const double alone = coverage(5000, 1, [&] { return ratio_of_medians(sample(), sample()); });
+  const double alone = coverage(5000, 1, [&] { return ratio_of_times(sample(), sample()); });
   const double paired =
-      coverage(5000, 1, [&] { return ratio_of_medians(sample(), sample(), noise); });
+      coverage(5000, 1, [&] { return ratio_of_times(sample(), sample(), noise); });
   std::cout << "no difference: by samples alone " << alone << ", with the pair " << paired << '\n';
   EXPECT_LT(alone, 0.6);
   EXPECT_NEAR(paired, 0.95, 0.02);

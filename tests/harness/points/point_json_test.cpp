@@ -47,6 +47,10 @@ class Random {
     numbers.resize(generator_() % 4);
     for (double& value : numbers) fill(value, false);
   }
+  void fill(std::vector<int>& counts, bool) {
+    counts.resize(generator_() % 4);
+    for (int& value : counts) fill(value, false);
+  }
   void fill(std::vector<FrameTime>& rates, bool) {
     rates.resize(1 + generator_() % 3);
     for (FrameTime& at : rates)
@@ -124,6 +128,16 @@ TEST(PointJson, LosesNothing) {
     EXPECT_EQ(point.linear_solver, read.linear_solver);
     EXPECT_EQ(key_of(point.spec), key_of(read.spec));
   }
+}
+
+TEST(PointJson, RepetitionsComeBackAndOlderJournalsHaveSecondsAlone) {
+  PointResult point = Random(1).point();
+  const Repetition before = samples_of(point), more{{1, 2}, {0.5, 0.75}, {0.1}, {7, 8}, 3};
+  append(repetition_of(to_json(more)), point);
+  EXPECT_EQ(to_json(added_since(before, point)), to_json(more));
+  const Repetition older = repetition_of(json::parse(R"({"seconds": [1.5]})"));
+  EXPECT_EQ(older.samples, std::vector<double>{1.5});
+  EXPECT_TRUE(older.sample_runs.empty());
 }
 
 // Every key but those made for readers has been read: one that is changed is seen.

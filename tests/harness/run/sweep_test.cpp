@@ -139,7 +139,7 @@ TEST(StepSearch, EveryTriedStepStaysInTheOutcomeAndOnlyBestOnesAreRepeated) {
 }
 
 // First runs say 1/200 s is best; the next ones show that it was luck, and 1/400 s that was not.
-TEST(StepSearch, TheBestStepIsChosenByTheMediansOfAllRunsOfThoseThatAreClose) {
+TEST(StepSearch, TheBestStepIsChosenByAllSamplesOfThoseThatAreClose) {
   Suite suite = one_family();
   suite.sweeps[0].limits = {0.01};
   suite.reps = 5;
@@ -149,7 +149,7 @@ TEST(StepSearch, TheBestStepIsChosenByTheMediansOfAllRunsOfThoseThatAreClose) {
                                        std::optional<double> guess) {
     PointResult point = run(spec, limits, guess);
     if (at(spec, 400)) point.samples = {0.115};
-    if (at(spec, 100)) point.samples = {0.13};  // too far to be looked at again
+    if (at(spec, 100)) point.samples = {0.2};  // too far to be looked at again
     return point;
   };
   runners.repeat = [&](PointResult& point, const RunLimits&) {
@@ -249,7 +249,9 @@ TEST(ErrorLevels, EachHasItsFastestStepBesideTheOneOfAnyMotion) {
       const double tenth = point.spec.strain_limit > 0.05 ? (level < 0.01 ? 200 : 100) : n;
       EXPECT_EQ(has_level(point, level), at(tenth)) << point.spec.id() << " at " << level;
     }
-    EXPECT_EQ(point.samples.size(), point.best || !point.best_at_errors.empty() ? 3u : 1u)
+    // What is near to a best step is looked at again before the search ends.
+    const bool best = point.best || !point.best_at_errors.empty();
+    EXPECT_TRUE(point.samples.size() == 3u || (!best && point.samples.size() == 1u))
         << point.spec.id();
   }
   // No step is run twice for several levels.

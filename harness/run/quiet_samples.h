@@ -1,0 +1,69 @@
+// Samples of times that are taken again where something else was running beside them.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace harness {
+
+// Looks at the machine by the time of a fixed piece of work, about a millisecond.
+class QuietProbe {
+ public:
+  // A look that took more than this many times the least one seen was disturbed.
+  static constexpr double disturbed_from = 1.05;
+  static constexpr int most_retaken = 3;  // times that one sample is taken again
+
+  using Work = std::function<double()>;  // does the work; s that it took
+  QuietProbe();                          // the noise probe's work
+  explicit QuietProbe(Work work) : work_(std::move(work)) {}
+
+  // Works once; s. The first look of all works several times, to know what is usual.
+  double look();
+  // What a long look around took at least, s. It replaces what was seen before the last of these: a
+  // processor changes its clock rate for good, too.
+  void renew(double least);
+  bool disturbed(double seconds) const { return seconds > disturbed_from * least_; }
+  double least() const { return least_; }
+
+ private:
+  Work work_;
+  double least_ = std::numeric_limits<double>::infinity();    // s
+  double renewed_ = std::numeric_limits<double>::infinity();  // s, by renew()
+};
+
+// That of this process and of those that it forks.
+QuietProbe& quiet_probe();
+
+template <class Sample>
+struct QuietSample {
+  Sample sample;
+  int retaken = 0;
+};
+
+// The first of take()'s samples whose neighbouring looks are both undisturbed; after most_retaken
+// tries more the one whose worse look was the least. again(sample): whether another one may be
+// taken instead. retaken: how many were dropped before.
+template <class Take, class Again>
+auto take_quietly(QuietProbe& probe, Take take, Again again, int retaken = 0) {
+  using Sample = decltype(take());
+  std::optional<Sample> calmest;
+  double calm = std::numeric_limits<double>::infinity();
+  for (double before = probe.look();;) {
+    Sample sample = take();
+    const double after = probe.look(), worse = std::max(before, after);
+    const bool last =
+        !again(sample) || !probe.disturbed(worse) || retaken >= QuietProbe::most_retaken;
+    if (!calmest || worse < calm || !again(sample)) {
+      calmest = std::move(sample);
+      calm = worse;
+    }
+    if (last) return QuietSample<Sample>{std::move(*calmest), retaken};
+    ++retaken;
+    before = after;
+  }
+}
+
+}  // namespace harness
