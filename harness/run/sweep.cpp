@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <set>
+#include <tuple>
 
 #include "harness/run/step_search.h"
 
@@ -15,6 +17,8 @@ namespace harness {
 namespace {
 
 constexpr double hopeless_least = 0.2;  // s; shorter runs are always finished
+// Times the fastest run of a place: who takes longer is stopped there.
+constexpr double far_behind_factor = 30;
 // Steps whose time is within this factor of the best are repeated before one is called best.
 constexpr double candidate_factor = 1.2;
 // What may be best, in suites that ask for as many samples as this, is run for at least 0.2 s. That
@@ -148,6 +152,9 @@ struct Neighbour {
   }
 };
 
+// Where contestants meet: scene, parameters, limit, and the step where all run at every step.
+using MeetingPlace = std::tuple<std::string, SceneParameters, double, double>;
+
 // What all searches of a sweep share.
 struct Sweep {
   const Suite& suite;
@@ -156,6 +163,23 @@ struct Sweep {
   const SweepRunners& runners;
   std::vector<PointResult>& points;
   std::vector<Choice> choices = {};
+  // The fastest run at each place so far whose motion is right to the headline's error, as far as
+  // errors are known.
+  std::map<MeetingPlace, double> fastest = {};
+
+  void remember(const MeetingPlace& place, const PointResult& point) {
+    if (!point.ok()) return;
+    const bool known = error_at(point.measures, headline_error).samples > 0;
+    if (known && !within_error(point.measures, headline_error)) return;
+    double& least = fastest.try_emplace(place, point.seconds()).first->second;
+    least = std::min(least, point.seconds());
+  }
+  // Seconds per simulated second from which a run is far behind what is known of its place.
+  double far_behind(const MeetingPlace& place) const {
+    const auto known = fastest.find(place);
+    return known == fastest.end() ? std::numeric_limits<double>::infinity()
+                                  : far_behind_factor * known->second;
+  }
 
   const PointResult& add(PointResult point, std::size_t search) {
     // Of what no judge has seen: it was skipped, or its process ended early.
@@ -188,7 +212,7 @@ class LadderRun {
     const auto best = search_.every_step ? steps_.find_among_all()
                                          : steps_.find(neighbour_.rung_in(search_.ladder));
     if (!best) {
-      neighbour_.hopeless = steps_.timed_out();
+      neighbour_.hopeless = steps_.timed_out() && !was_far_behind_;
       return;
     }
     neighbour_.best_step = search_.ladder[*best];
@@ -202,15 +226,24 @@ class LadderRun {
       return sweep_.points[known->second];
     PointSpec spec = search_.base;
     spec.step = search_.ladder[rung];
-    const double useful = steps_.longest_useful() * spec.scene_parameters.at("duration");
+    const MeetingPlace place{spec.scene, spec.scene_parameters, spec.strain_limit,
+                             search_.every_step ? spec.step : 0};
+    const double behind = sweep_.far_behind(place);
+    const double useful = std::min(
+        search_.every_step ? std::numeric_limits<double>::infinity() : steps_.longest_useful(),
+        behind);
     const double hopeless =
-        search_.every_step || std::isinf(useful) ? 1e300 : std::max(hopeless_least, useful);
+        std::isinf(useful)
+            ? 1e300
+            : std::max(hopeless_least, useful * spec.scene_parameters.at("duration"));
     PointResult point = sweep_.runners.run(
         spec,
         {sweep_.suite.timeout, hopeless, sweep_.events.interrupted, sweep_.runners.references},
         neighbour_.guess_of_stiffness(spec));
     if (point.stiffness)
       neighbour_.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
+    was_far_behind_ = was_far_behind_ || (point.status == PointStatus::timeout && useful == behind);
+    sweep_.remember(place, point);
     point_of_rung_[rung] = sweep_.points.size();
     return sweep_.add(std::move(point), number_);
   }
@@ -238,6 +271,8 @@ class LadderRun {
   Neighbour& neighbour_;
   StepSearch steps_;
   std::map<std::size_t, std::size_t> point_of_rung_;
+  // Stopped for others' sake: at a neighbouring limit it may be nearer to them.
+  bool was_far_behind_ = false;
 };
 
 PointResult skipped_point(const Search& search) {

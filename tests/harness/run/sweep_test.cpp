@@ -108,6 +108,30 @@ TEST(Repetitions, GoOnUntilTheMedianIsKnown) {
   }
 }
 
+// Two contestants, one 100 times as fast as the other one: that one is stopped at 30 times, at each
+// limit anew, and none is called hopeless for it.
+TEST(StepSearch, StopsWhoIsFarBehindTheFastestOfAPlace) {
+  Suite suite = one_family();
+  suite.sweeps[0].contestants = {{"fast_projection", "fast_projection"}, {"jacobi", "jacobi"}};
+  SweepRunners runners = fake(1.0 / 200, 1, nullptr);
+  std::vector<double> cutoffs;
+  runners.run = [inner = runners.run, &cutoffs](const PointSpec& spec, const RunLimits& limits,
+                                                std::optional<double> guess) {
+    PointResult point = inner(spec, limits, guess);
+    if (spec.solver != "jacobi") return point;
+    cutoffs.push_back(limits.hopeless);
+    point.samples.front() *= 100;
+    if (point.samples.front() <= limits.hopeless) return point;
+    point.status = PointStatus::timeout;
+    point.samples.clear();
+    return point;
+  };
+  const auto outcome = run_sweep(suite, plan(suite, {}), {}, runners);
+  ASSERT_EQ(cutoffs.size(), 4u);  // two time-outs end each walk
+  for (const double cutoff : cutoffs) EXPECT_NEAR(cutoff, 30 * 0.1, 1e-9);
+  for (const auto& point : outcome.points) EXPECT_NE(point.status, PointStatus::skipped);
+}
+
 TEST(StepSearch, GoesFinerThroughFailuresUntilAStepWorks) {
   Suite suite = one_family();
   suite.sweeps[0].limits = {0.01};
