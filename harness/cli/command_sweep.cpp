@@ -25,6 +25,7 @@
 #include "harness/run/overhead.h"
 #include "harness/run/plane_table.h"
 #include "harness/run/progress.h"
+#include "harness/run/quiet_samples.h"
 #include "harness/run/report.h"
 #include "harness/run/runner.h"
 #include "inextensible/registry.h"
@@ -116,18 +117,26 @@ void begin_journal(Journal& journal, const Past& past, const Memory& memory,
 
 SweepRunners watched(const SweepRunners& inner, NoiseProbe& noise_probe, bool timed) {
   SweepRunners runners = inner;
-  const auto own = [timed](RunLimits limits) {
+  const auto budget = std::make_shared<RetakeBudget>();
+  const auto own = [timed, budget](RunLimits limits) {
     limits.timed = timed;
+    limits.most_retaken = budget->most();
     return limits;
   };
-  runners.run = [own, run = inner.run, &noise_probe](const auto& spec, const auto& limits,
-                                                     auto guess) {
+  runners.run = [own, budget, run = inner.run, &noise_probe](const auto& spec, const auto& limits,
+                                                             auto guess) {
     noise_probe.sample_if_due();
-    return run(spec, own(limits), guess);
+    PointResult point = run(spec, own(limits), guess);
+    budget->add(point.samples.size(), point.retaken);
+    return point;
   };
-  runners.repeat = [own, repeat = inner.repeat, &noise_probe](auto& point, const auto& limits) {
+  runners.repeat = [own, budget, repeat = inner.repeat, &noise_probe](auto& point,
+                                                                      const auto& limits) {
     noise_probe.sample_if_due();
+    const std::size_t samples = point.samples.size();
+    const int retaken = point.retaken;
     repeat(point, own(limits));
+    budget->add(point.samples.size() - samples, point.retaken - retaken);
   };
   return runners;
 }

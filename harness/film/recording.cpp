@@ -52,6 +52,7 @@ inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contes
   point.strain_limit = limit;
   point.step = step;
   RunLimits limits;
+  limits.timed = false;
   limits.interrupted = interrupted;
   const PointResult found = run_point(point, limits);
   if (found.stiffness) settings["stiffness"] = *found.stiffness;

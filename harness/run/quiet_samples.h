@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -34,6 +35,21 @@ class QuietProbe {
   double renewed_ = std::numeric_limits<double>::infinity();  // s, by renew()
 };
 
+// How often samples of a sweep may still be taken again. On a machine that is never quiet it would
+// only take time: so not any more when more than a quarter of all samples were.
+class RetakeBudget {
+ public:
+  int most() const { return 4 * retaken_ > samples_ + granted ? 0 : QuietProbe::most_retaken; }
+  void add(std::size_t samples, int retaken) {
+    samples_ += static_cast<double>(samples);
+    retaken_ += retaken;
+  }
+
+ private:
+  static constexpr double granted = 80;  // samples, before any was taken
+  double samples_ = 0, retaken_ = 0;
+};
+
 // That of this process and of those that it forks.
 QuietProbe& quiet_probe();
 
@@ -43,19 +59,19 @@ struct QuietSample {
   int retaken = 0;
 };
 
-// The first of take()'s samples whose neighbouring looks are both undisturbed; after most_retaken
+// The first of take()'s samples whose neighbouring looks are both undisturbed; after `most`
 // tries more the one whose worse look was the least. again(sample): whether another one may be
 // taken instead. retaken: how many were dropped before.
 template <class Take, class Again>
-auto take_quietly(QuietProbe& probe, Take take, Again again, int retaken = 0) {
+auto take_quietly(QuietProbe& probe, Take take, Again again, int retaken = 0,
+                  int most = QuietProbe::most_retaken) {
   using Sample = decltype(take());
   std::optional<Sample> calmest;
   double calm = std::numeric_limits<double>::infinity();
   for (double before = probe.look();;) {
     Sample sample = take();
     const double after = probe.look(), worse = std::max(before, after);
-    const bool last =
-        !again(sample) || !probe.disturbed(worse) || retaken >= QuietProbe::most_retaken;
+    const bool last = !again(sample) || !probe.disturbed(worse) || retaken >= most;
     if (!calmest || worse < calm || !again(sample)) {
       calmest = std::move(sample);
       calm = worse;

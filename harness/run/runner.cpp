@@ -68,12 +68,12 @@ class Sampler {
   // short_steps: reads of the clock between phases are part of the time of a short step, so that it
   // is timed without them, and the phases in runs of their own.
   Sampler(PointResult& point, PointRunner& runner, const inextensible::Settings& settings,
-          bool short_steps, bool timed)
+          bool short_steps, const RunLimits& limits)
       : point_(point),
         runner_(runner),
         settings_(settings),
         short_steps_(short_steps),
-        timed_(timed) {}
+        limits_(limits) {}
 
   // Appends a sample; the run that failed, if one did. retaken: tries that were dropped before.
   std::optional<Run> add(int retaken) {
@@ -83,8 +83,9 @@ class Sampler {
       record_filter(phases);
     }
     const auto take = [this] { return batch(least_sample, !short_steps_); };
-    auto taken = timed_ ? take_quietly(quiet_probe(), take, may_be_retaken, retaken)
-                        : QuietSample<Batch>{take()};
+    auto taken = limits_.timed ? take_quietly(quiet_probe(), take, may_be_retaken, retaken,
+                                              limits_.most_retaken)
+                               : QuietSample<Batch>{take()};
     point_.retaken += taken.retaken;
     return record(std::move(taken.sample));
   }
@@ -106,7 +107,7 @@ class Sampler {
     do {
       runner_.restart_clock(RunPart::measured);
       batch.add(runner_.run(settings_, false, diverged_strain, phases));
-    } while (timed_ && batch.ok() && batch.seconds < at_least);
+    } while (limits_.timed && batch.ok() && batch.seconds < at_least);
     return batch;
   }
 
@@ -122,7 +123,8 @@ class Sampler {
   PointResult& point_;
   PointRunner& runner_;
   const inextensible::Settings& settings_;
-  bool short_steps_, timed_;
+  bool short_steps_;
+  const RunLimits& limits_;
 };
 
 // The stiffness that a point's springs need, in its settings too. False: there is none, and the
@@ -155,7 +157,8 @@ bool calibrate(PointResult& point, PointRunner& runner, inextensible::Settings& 
 // it. Iterates are kept while the solver's clock runs, so that an observed run's time is not its
 // own.
 void measure(PointResult& point, PointRunner& runner, const inextensible::Settings& settings,
-             bool timed) {
+             const RunLimits& limits) {
+  const bool timed = limits.timed;
   const double before = timed ? quiet_probe().look() : 0;
   runner.restart_clock(RunPart::measured);
   Batch judged;
@@ -164,7 +167,7 @@ void measure(PointResult& point, PointRunner& runner, const inextensible::Settin
   fill(point, judged.last);
   if (!point.ok()) return;
   const bool short_steps = runner.seconds_per_step(judged.last) < shortest_judged_step;
-  Sampler sampler(point, runner, settings, short_steps, timed);
+  Sampler sampler(point, runner, settings, short_steps, limits);
   const bool a_sample =
       !judged.last.observed && !short_steps && (!timed || judged.seconds >= least_sample);
   const bool disturbed =
@@ -190,7 +193,7 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
     const bool needs_stiffness =
         runner.backend().knob == inextensible::Knob::stiffness && !settings.contains("stiffness");
     if (needs_stiffness && !calibrate(point, runner, settings, guess)) return point;
-    measure(point, runner, settings, limits.timed);
+    measure(point, runner, settings, limits);
   } catch (const std::bad_alloc&) {
     point.status = PointStatus::out_of_memory;
     point.detail = "an allocation failed";
@@ -207,7 +210,7 @@ void repeat_point(PointResult& point, const RunLimits& limits) {
   if (point.stiffness) settings["stiffness"] = *point.stiffness;
   PointRunner runner(point.spec, limits);
   const bool short_steps = point.seconds() * point.spec.step < shortest_judged_step;
-  Sampler(point, runner, settings, short_steps, limits.timed).add(0);
+  Sampler(point, runner, settings, short_steps, limits).add(0);
 }
 
 }  // namespace harness

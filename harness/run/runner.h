@@ -26,6 +26,7 @@ struct RunLimits {
   std::function<bool()> interrupted = nullptr;           // asked after every step
   std::shared_ptr<ReferenceShelf> references = nullptr;  // null: no errors against references
   Heartbeat* heartbeat = nullptr;                        // told of every step; see child_process.h
+  int most_retaken = 3;                                  // times that a sample may be taken again
   bool timed = true;  // false: nobody will read the times, and one run is a sample
 };
 

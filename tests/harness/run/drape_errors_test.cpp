@@ -21,6 +21,7 @@ PointResult drape(const std::string& solver, double limit, double h,
   spec.strain_limit = limit;
   spec.step = h;
   RunLimits limits;
+  limits.timed = false;
   limits.references = std::move(references);
   return run_point(spec, limits, {});
 }

@@ -68,6 +68,17 @@ TEST(QuietSamples, WhatMayNotBeTakenAgainStands) {
   EXPECT_EQ(take({2.0, 3.0, 4.0}, 1).sample, 2) << "a failure after a disturbed success";
 }
 
+TEST(QuietSamples, NoMoreThanAQuarterOfAllAreTakenAgain) {
+  RetakeBudget budget;
+  EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
+  budget.add(100, 45);
+  EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
+  budget.add(1, 3);
+  EXPECT_EQ(budget.most(), 0);
+  budget.add(100, 0);
+  EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
+}
+
 TEST(QuietSamples, WhatIsUsualIsLearntAnew) {
   double now = 1;
   QuietProbe probe([&now] { return now; });
