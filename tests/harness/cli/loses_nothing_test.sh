@@ -31,7 +31,8 @@ def points(path):
     assert document["complete"], path
     for point in document["points"]:
         for key in ("seconds_per_simulated_second", "filter_seconds_per_simulated_second", "setup_seconds", "calibration_seconds", "phases",
-                    "peak_rss_bytes", "frame_times", "best", "best_at_errors", "at_ladder_end"):
+                    "peak_rss_bytes", "frame_times", "cpu_seconds_per_simulated_second", "runs_per_sample", "retaken",
+                    "best", "best_at_errors", "at_ladder_end"):
             del point[key]
     return document["points"]
 
