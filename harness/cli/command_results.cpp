@@ -33,7 +33,8 @@ std::string page(const ResultsOptions& given) {
   if (!given.answers.empty()) out << " \\\n  --answers";
   for (const std::string& file : given.answers) out << ' ' << file;
   if (!given.out.empty()) out << " \\\n  --out " << given.out;
-  out << "\n```\n\nTimes are the least of several samples. [measuring.md](measuring.md) says what they mean, and how "
+  out << "\n```\n\nTimes are the least of several samples. [measuring.md](measuring.md) says what "
+         "they mean, and how "
          "far they can be trusted. A dash: no step of that solver met the limit. Ratios have their "
          "95 % interval, `3.5 (3.3-3.8)`; `3.5 (?)`: it is not known, for too few runs and no A/A "
          "pair. Bold: the fastest, if its interval against each other lies on one side. "

@@ -73,8 +73,7 @@ bool PointRunner::timed_out(double time, Run& run) const {
   if (!slow && !(since(start_) > limits_.timeout)) return false;
   std::ostringstream text;
   text << "longer than " << (slow ? limits_.hopeless : limits_.timeout) << " s"
-       << (slow ? ", far above the best time so far" : "") << "; stopped at t = " << time
-       << " s";
+       << (slow ? ", far above the best time so far" : "") << "; stopped at t = " << time << " s";
   run.status = PointStatus::timeout;
   run.detail = text.str();
   return true;
