@@ -104,7 +104,7 @@ hostile=$'a|b $(touch pwned) `touch pwned` a{1} [{}] \' " \\\\ ; @N@ # * ~'
 "$BENCH_BINARY" emit parallel --shards 3 "${sweep[@]}" --filter "$hostile" --exclude=-x --seed 7 --timeout 0.30 --reps 2 \
   --out "it's \$HOME; @SWEEP@.json" >job.sh || fail "hostile options"
 bash job.sh 2 || fail "one shard"
-printf '%s\n' --sweep=resolution --scene=chain "--filter=$hostile" --exclude=-x --profile=quick --reps=2 --timeout=0.30 --seed=7 \
+printf '%s\n' --sweep=resolution --scene=chain --profile=quick "--filter=$hostile" --exclude=-x --reps=2 --timeout=0.30 --seed=7 \
   --no-plots --shard 2/3 --resume --out "it's \$HOME; @SWEEP@-shards/shard-2-of-3.json" | diff - calls.2 || fail "options changed"
 [[ ! -e pwned ]] || fail "a regular expression was run"
 
