@@ -80,7 +80,8 @@ class Contacts {
   double way(const Positions& x) const;
   double slack() const { return slack_; }
 
-  // Adds the seconds until it goes out of scope to measure()'s sum; one inside another adds nothing.
+  // Adds the seconds until it goes out of scope to measure()'s sum; one inside another adds
+  // nothing.
   class Timing {
    public:
     explicit Timing(double*& sum)

@@ -10,7 +10,7 @@
 namespace harness {
 namespace {
 
-PointResult drape(const std::string& solver, double limit, double h,
+PointResult drape(const std::string& solver, double permitted, double h,
                   std::shared_ptr<ReferenceShelf> references) {
   const auto found_type = find_scene("drape");
   PointSpec spec;
@@ -18,7 +18,7 @@ PointResult drape(const std::string& solver, double limit, double h,
   spec.scene = "drape";
   spec.scene_parameters = complete_parameters(*found_type, {{"n", 15}});
   spec.solver = spec.contestant = solver;
-  spec.strain_limit = limit;
+  spec.strain_limit = permitted;
   spec.step = h;
   RunLimits limits;
   limits.timed = false;
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(ContactMethods, DrapeErrors,
                          ::testing::Values("fast_projection", "icd", "strips", "strips_bdf2",
                                            "fast_projection_adaptive_bdf2", "gauss_seidel_colored",
                                            "jacobi", "implicit_springs"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& method) { return std::string(method.param); });
 
 // Edges that shake between limits of 10 % bring energy back step by step.
 TEST(EnergyRise, OfAShakingClothFailsIt) {
