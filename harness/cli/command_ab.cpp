@@ -1,6 +1,7 @@
 // bench ab: two builds of this program timed against each other.
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -122,7 +123,7 @@ std::vector<PairedPoint> best_points(const json& result, double least_measured) 
     PairedPoint paired;
     paired.spec = spec_json(point);
     paired.id = point.at("id");
-    paired.samples = samples_for(seconds, least_measured);
+    paired.samples = samples_for(std::max(seconds, least_sample), least_measured);
     points.push_back(std::move(paired));
   }
   return points;
