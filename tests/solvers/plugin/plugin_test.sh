@@ -42,7 +42,7 @@ example/rope >rope.txt || fail "the program of one's own: $(cat rope.txt)"
 "$bench" list solvers | grep -q symmetric && fail "a solver that was not loaded"
 
 tiny() {
-  "$bench" --plugin "$plugin" --sweep strain --profile quick --scene chain --reps 1 --filter 'strain:0.01/' "$@"
+  "$bench" --plugin "$plugin" --sweep strain --profile quick --scene chain --n 20 --reps 1 --filter 'strain:0.01/' "$@"
 }
 refused "did you mean 'symmetric_sweeps'" --plugin "$plugin" --sweep strain --solver symetric_sweeps --out out.json
 refused "no solver 'symmetric_sweeps'" --sweep strain --solver symmetric_sweeps --out out.json
