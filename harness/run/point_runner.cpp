@@ -176,11 +176,12 @@ void PointRunner::decide(const Judge& judge, Run& run) const {
                  std::to_string(energy.gain_step()) +
                  " (t = " + number_text(energy.gain_time(), 4) + " s), permitted are " +
                  number_text(scene_.energy_bound);
-  } else if (found.energy_rise > scene_.energy_bound) {
+  } else if (const double seconds = std::max(1.0, scene_.duration);
+             found.energy_rise > scene_.energy_bound * seconds) {
     run.status = PointStatus::energy_gained;
     run.detail = "energy rose by " + number_text(found.energy_rise, 3) +
                  " of weight times size in all, where it can only fall; permitted are " +
-                 number_text(scene_.energy_bound);
+                 number_text(scene_.energy_bound * seconds);
   } else if (found.moved < least_motion) {
     run.status = PointStatus::motion_lost;
     run.detail = "its vertices moved " + number_text(found.moved, 3) +
