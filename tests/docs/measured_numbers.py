@@ -21,6 +21,7 @@ COMMENTED = re.compile(r"<!--.*?-->", re.DOTALL)
 UNITS = {"": 1, "s": 1, "ms": 1e-3, "%": 0.01}
 SURE = 3  # gaps of a reference
 LONGEST_STEP = 1 / 24  # s, a frame
+HEADLINE = 0.02  # error, over the scene's size
 
 
 @dataclass(frozen=True)
@@ -74,8 +75,10 @@ def point_of(file: str, quantity: str, scene: str, place: float, contestant: str
     names = at_any_settings(file, contestant)
     points = [p for p in points_of(file) if p["scene"] == scene and p.get("contestant", p["solver"]) in names
               and p["status"] == "ok" and p["seconds_per_simulated_second"]]
-    if quantity in ("error", "delivered"):
-        fits = {"error": lambda p: p["sweep"] == "step" and within_error(p, place),
+    if quantity in ("error", "delivered", "right motion"):
+        fits = {"right motion": lambda p: p["sweep"] == "strain" and math.isclose(p["strain_limit"], place)
+                and within_error(p, HEADLINE),
+                "error": lambda p: p["sweep"] == "step" and within_error(p, place),
                 "delivered": lambda p: p["sweep"] == "strain" and delivered_strain(p) <= place}[quantity]
         found = [p for p in points if fits(p)]
         if not found:
