@@ -44,7 +44,7 @@ Survival survival_of(const ScenePoints& scene, const std::string& contestant, do
     ++found.tried;
     if (!p.ok()) continue;
     ++found.finished;
-    found.rise = std::fmax(found.rise, p.number("energy_rise"));
+    found.rise = std::fmax(found.rise, p.error("energy_rise"));
     if (const double part = contact_part(p); part > 0) found.contact_parts.push_back(part);
   }
   return found;
@@ -61,7 +61,7 @@ std::string told(const Survival& s) {
 
 bool energy_can_only_fall(const ScenePoints& scene) {
   return std::any_of(scene.points.begin(), scene.points.end(),
-                     [](const Point& p) { return std::isfinite(p.number("energy_rise")); });
+                     [](const Point& p) { return std::isfinite(p.error("energy_rise")); });
 }
 
 bool contact_was_timed(const ScenePoints& scene) {
