@@ -32,6 +32,14 @@ std::string plain(double value, int digits) {
   return number_text(value, std::max(digits, whole));
 }
 
+double part_of_time(const Point& p, const char* phase) {
+  const auto phases = p.document().find("phases");
+  if (phases == p.document().end() || !phases->contains(phase)) return std::nan("");
+  double all = 0;  // contact is within these
+  for (const char* key : {"unconstrained", "filter", "collision"}) all += phases->value(key, 0.0);
+  return phases->value(phase, 0.0) / all;
+}
+
 bool is_stability(const json& document) { return document.contains("matrix"); }
 
 bool ScenePoints::has_collider() const {

@@ -19,6 +19,9 @@ std::string quoted(const std::string& name);
 std::string bold(const std::string& text);
 // As number_text(), but never with a power of ten where the number has more digits.
 std::string plain(double value, int digits);
+// What a phase, or contact within the phases, takes of one run's time; not-a-number: it was not
+// measured.
+double part_of_time(const Point& p, const char* phase);
 bool is_stability(const nlohmann::json& document);
 
 // Points of one scene and kind of sweep of one file, in the file's order; of strain and step sweeps

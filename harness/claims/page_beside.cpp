@@ -45,12 +45,8 @@ void print_strains(std::ostream& out, const ScenePoints& scene, const PlaceTable
 
 // Of one run's time; not-a-number for methods without a filter.
 double filter_part(const Point& p) {
-  const auto phases = p.document().find("phases");
-  if (phases == p.document().end()) return std::nan("");
-  double all = 0;
-  for (const auto& phase : *phases) all += phase.is_number() ? phase.get<double>() : 0;
-  const double filter = phases->value("filter", 0.0);
-  return filter > 0 ? filter / all : std::nan("");
+  const double part = part_of_time(p, "filter");
+  return part > 0 ? part : std::nan("");
 }
 
 void print_filter_time(std::ostream& out, const ScenePoints& scene, const PlaceTable& best,

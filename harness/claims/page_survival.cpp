@@ -23,13 +23,7 @@ struct Survival {
   std::vector<double> contact_parts;  // of their time
 };
 
-double contact_part(const Point& p) {
-  const auto phases = p.document().find("phases");
-  if (phases == p.document().end() || !phases->contains("contact")) return std::nan("");
-  const double all = phases->value("unconstrained", 0.0) + phases->value("filter", 0.0) +
-                     phases->value("collision", 0.0);
-  return phases->value("contact", 0.0) / all;
-}
+double contact_part(const Point& p) { return part_of_time(p, "contact"); }
 
 // A run that is slower than others by far was stopped, and says nothing of survival.
 bool says_something(const Point& p) {
