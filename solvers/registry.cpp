@@ -33,7 +33,6 @@ std::vector<Backend> built_in() {
       shake_row(),
       icd_row(),
       fast_projection_row(),
-      fast_projection_smoothed_row(),
       fast_projection_bdf2_row(),
       rattle_row(),
       strips_row(),

@@ -18,7 +18,7 @@
 #include "harness/film/exports.h"
 #include "harness/film/pictures.h"
 #include "harness/points/suite.h"
-#include "harness/points/tuned.h"
+#include "harness/points/tuning_rule.h"
 
 namespace harness {
 namespace {
@@ -67,7 +67,7 @@ FilmSpec film_spec(const FilmOptions& given) {
     spec.solvers.push_back({name, name});
   }
   if (spec.solvers.empty()) throw UsageError("--solver names none");
-  tune(spec.solvers, read_tuned("tuned.json"), type->kind(), {}, Untuned::none);
+  tune(spec.solvers, read_tuned_up_to_date("tuned.json"), type->kind(), {}, Untuned::none);
   spec.strain_limits = numbers_in(given.limits, "--strain");
   for (const double limit : spec.strain_limits) {
     if (!(limit > 0)) throw UsageError("--strain: a limit must be above 0");

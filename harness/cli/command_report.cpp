@@ -9,7 +9,7 @@
 #include "harness/cli/commands.h"
 #include "harness/film/recording.h"
 #include "harness/points/result_file.h"
-#include "harness/points/tuned.h"
+#include "harness/points/tuning_rule.h"
 
 namespace harness {
 namespace {
@@ -33,7 +33,7 @@ FilmSpec motion(const std::string& scene, const SceneParameters& given) {
   spec.parameters = complete_parameters(*type, given);
   for (const char* solver : {"gauss_seidel_colored", "fast_projection", "fast_projection_bdf2"})
     spec.solvers.push_back({solver, solver});
-  tune(spec.solvers, read_tuned("tuned.json"), type->kind(), {}, Untuned::none);
+  tune(spec.solvers, read_tuned_up_to_date("tuned.json"), type->kind(), {}, Untuned::none);
   spec.strain_limits = {0.01};
   return spec;
 }

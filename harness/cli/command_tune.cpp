@@ -27,9 +27,7 @@ struct TuneCommand {
   std::string solver, scene, out;
   int budget = TuneRules{}.budget;
   double timeout = TuneOptions{}.timeout;
-  bool no_wait = false, quiet = false;
-
-  bool part() const { return !solver.empty() || !scene.empty(); }
+  bool no_wait = false, quiet = false, again = false;
 };
 
 std::vector<SweepSpec> chosen_scenes(const std::string& name) {
@@ -57,6 +55,14 @@ std::vector<std::string> chosen_solvers(const std::string& text) {
   return solvers;
 }
 
+// Whether settings by today's rule are there already.
+bool stands(const std::vector<TunedEntry>& entries, const std::string& kind,
+            const std::string& solver) {
+  return std::any_of(entries.begin(), entries.end(), [&](const TunedEntry& e) {
+    return e.kind == kind && e.solver == solver && up_to_date(e);
+  });
+}
+
 // In the order of scenes and solvers, whatever was tuned first.
 void put_in(std::vector<TunedEntry>& entries, TunedEntry entry) {
   std::erase_if(entries, [&entry](const TunedEntry& e) {
@@ -72,19 +78,25 @@ void put_in(std::vector<TunedEntry>& entries, TunedEntry entry) {
                    [&rank](const auto& a, const auto& b) { return rank(a) < rank(b); });
 }
 
-json context_of(const SweepSpec& scene, const TuneCommand& options) {
+json context_of(const TuneCommand& options) {
   const json machine = machine_context();
-  const auto found_type = find_scene(scene.scene);
-  const SceneType& type = *found_type;
-  SceneParameters given = scene.scene_parameters;
-  given[type.resolution] = scene.resolutions.front();  // the others stand with their places
   return {{"date", machine.at("date")},
           {"cpu_model", machine.at("cpu_model")},
           {"commit", machine.at("build").at("git")},
           {"dirty", machine.at("build").at("dirty")},
-          {"scene", scene.scene},
-          {"scene_parameters", complete_parameters(type, given)},
           {"timeout", options.timeout}};
+}
+
+// The settings of an entry that are an end of their range: beyond it there may be better ones.
+std::string at_ends(const TunedEntry& entry) {
+  std::string names;
+  for (const TunedNumber& n : tunable_numbers(*inextensible::find_backend(entry.solver))) {
+    const auto found = entry.settings.find(n.name);
+    if (found == entry.settings.end()) continue;
+    const double at = position_of(n, std::get<double>(found->second));
+    if (at <= 0 || at >= 1) names += (names.empty() ? "  ends of ranges: " : ", ") + n.name;
+  }
+  return names;
 }
 
 void print(const std::vector<TunedEntry>& entries) {
@@ -92,7 +104,7 @@ void print(const std::vector<TunedEntry>& entries) {
     std::cout << std::left << std::setw(10) << e.kind << std::setw(28) << e.solver << std::setw(8)
               << (e.places.empty() ? "-" : number_text(e.gain, 3)) << std::setw(10)
               << std::to_string(e.evaluations) + "/" + std::to_string(e.budget)
-              << to_json(e.settings).dump() << '\n';
+              << to_json(e.settings).dump() << at_ends(e) << '\n';
   }
 }
 
@@ -101,7 +113,7 @@ int run_tune(const TuneCommand& options) {
   const auto solvers = chosen_solvers(options.solver);
   const std::string out = options.out.empty() ? source_path("configs/tuned.json") : options.out;
   std::vector<TunedEntry> entries;
-  if (options.part() && std::filesystem::exists(out))
+  if (std::filesystem::exists(out))
     entries = parse_tuned(read_file(out, "file of tuned settings"), out).entries;
   check_writable(out);
   catch_interrupts();
@@ -111,12 +123,15 @@ int run_tune(const TuneCommand& options) {
   tuning.timeout = options.timeout;
   tuning.interrupted = interrupted;
   if (!options.quiet) tuning.tell = [](const std::string& line) { std::cerr << line << '\n'; };
-  const SweepRunners runners = isolated({}, 0);
+  SweepRunners runners;
+  runners.references = std::make_shared<ReferenceShelf>(source_path("results/references"));
+  runners = isolated(runners, 0);
   std::vector<TunedEntry> found;
   for (const SweepSpec& scene : scenes) {
     for (const std::string& solver : solvers) {
+      if (!options.again && stands(entries, find_scene(scene.scene)->kind(), solver)) continue;
       TunedEntry entry = tune_solver(solver, scene, tuning, runners);
-      entry.context = context_of(scene, options);
+      entry.context = context_of(options);
       found.push_back(entry);
       put_in(entries, std::move(entry));
       write_atomically(out, document_text(tuned_document(entries)));
@@ -136,15 +151,16 @@ void add_tune_command(const Command& program) {
   const Command command = program.subcommand(
       "tune",
       "search the settings of each solver, with one budget and one rule, on scenes that no result "
-      "reports; an hour for all");
-  command.alternatives("--solver", options.solver, "only solvers whose name matches; others stay");
-  command.option("--scene", options.scene, "chain, drape or patch only; others stay", "NAME");
+      "reports; what is not up to date, an hour for all");
+  command.alternatives("--solver", options.solver, "only solvers whose name matches");
+  command.option("--scene", options.scene, "chain, drape or patch only", "NAME");
   command
       .option("--budget", options.budget,
-              "sets of settings to try, for each solver and scene; default 32", "N")
+              "sets of settings to try, for each solver and scene; default 40", "N")
       .within(4, 10000);
   command.option("--timeout", options.timeout, "seconds a run may take; default 10", "S")
       .positive();
+  command.flag("--again", options.again, "also what was found by today's rule already");
   command.option("--out", options.out, "default configs/tuned.json", "FILE");
   command.flag("--quiet", options.quiet, "no line for each set of settings");
   add_no_wait(command, options.no_wait);

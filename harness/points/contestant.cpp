@@ -123,12 +123,14 @@ Contestant read_contestant(const json& entry, const std::string& where) {
   return contestant;
 }
 
-Contestants read_contestants(const json* solvers, const json* also, const std::string& where) {
+Contestants read_contestants(const json* solvers, const json* also, bool chain,
+                             const std::string& where) {
   Contestants all;
   if (solvers) append(all, *solvers, where + ": 'solvers'", true);
   if (all.empty()) {
     for (const auto& backend : inextensible::backends()) {
-      if (backend.contestant) all.push_back({backend.name, backend.name});
+      if (backend.contestant && !(chain && *backend.same_on_chains))
+        all.push_back({backend.name, backend.name});
     }
   }
   if (also) append(all, *also, where + ": 'also'", false);

@@ -11,6 +11,7 @@
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 #include "harness/points/tuned.h"
+#include "harness/points/tuning_rule.h"
 
 namespace harness {
 namespace {
@@ -37,7 +38,7 @@ Untuned read_untuned(JsonReader& reader, bool tuned, Untuned otherwise) {
 Everywhere read_everywhere(JsonReader& reader) {
   Everywhere all;
   if (const std::string file = reader.text("tuned", ""); !file.empty())
-    all.tuned = read_tuned(file);
+    all.tuned = read_tuned_up_to_date(file);
   all.untuned = read_untuned(reader, all.tuned.has_value(), Untuned::none);
   all.same = reader.text("same", "");
   return all;
@@ -56,7 +57,7 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
     throw UsageError(where + ": " +
                      unknown_name("scene", spec.scene, names_of(scene_types())).what());
   const json* solvers = reader.find("solvers");
-  spec.contestants = read_contestants(solvers, reader.find("also"), where);
+  spec.contestants = read_contestants(solvers, reader.find("also"), type->kind() == "chain", where);
   spec.limits = reader.numbers("limits", Bounds::positive());
   if (const double limit = reader.number("limit", 0, Bounds::positive()); limit > 0) {
     if (!spec.limits.empty()) throw UsageError(where + ": give 'limit' or 'limits', not both");

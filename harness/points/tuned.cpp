@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr const char* schema = "inextensible-tuned/1";
+constexpr const char* schema = "inextensible-tuned/2";
 
 const json& list_in(JsonReader& reader, const char* key) {
   const json* list = reader.find(key);
@@ -64,6 +64,7 @@ TunedEntry read_entry(const json& object, const std::string& where) {
       static_cast<int>(reader.number("budget", 0, {.least = 0, .most = 1e9, .whole = true}));
   for (const json& place : list_in(reader, "places"))
     entry.places.push_back(read_place(place, where + ": 'places'"));
+  if (const json* rule = reader.find("rule")) entry.rule = *rule;
   if (const json* context = reader.find("context")) entry.context = *context;
   reader.finish();
   return entry;
@@ -131,6 +132,7 @@ ordered_json tuned_document(const std::vector<TunedEntry>& entries) {
                     {"evaluations", entry.evaluations},
                     {"budget", entry.budget},
                     {"places", places},
+                    {"rule", entry.rule},
                     {"context", entry.context}});
   }
   return {{"schema", schema}, {"tuned", list}};

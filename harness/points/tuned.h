@@ -27,6 +27,7 @@ struct TunedEntry {
   double gain = 1;
   int evaluations = 0, budget = 0;  // sets of settings that were tried, and that might have been
   std::vector<TunedPlace> places;
+  nlohmann::json rule;     // tuning_rule() of when it was found
   nlohmann::json context;  // date, commit and machine
 };
 

@@ -15,6 +15,14 @@ constexpr double give_up_at = 2.5;    // times the time that is known at a place
 constexpr double no_use_above = 1.2;  // times the time without settings: that would count instead
 constexpr int samples = 3;            // of the best steps
 
+// Whether a run ran to the end with a motion that is right to the headline's error, or of which
+// nothing is known.
+bool counts(const PointResult& point) {
+  if (!point.ok()) return false;
+  const bool known = error_at(point.measures, headline_error).samples > 0;
+  return !known || within_error(point.measures, headline_error);
+}
+
 // One size and strain limit of the scene, and what is known there.
 struct Place {
   Search search;
@@ -41,6 +49,7 @@ class Tuner {
     entry_.kind = find_scene(scene.scene)->kind();
     entry_.solver = solver;
     entry_.budget = options.rules.budget;
+    entry_.rule = tuning_rule(scene, *inextensible::find_backend(solver));
   }
 
   TunedEntry run() {
@@ -65,6 +74,9 @@ class Tuner {
       entry_.places.push_back({base.resolution, base.strain_limit, before.seconds, step(before),
                                now.rung ? now.seconds : unknown, step(now)});
     }
+    std::sort(entry_.places.begin(), entry_.places.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.resolution, -a.limit) < std::pair(b.resolution, -b.limit);
+    });
     return entry_;
   }
 
@@ -92,36 +104,51 @@ class Tuner {
   PointResult run_once(Place& place, std::size_t rung, const inextensible::Settings& settings,
                        double most_seconds) {
     const PointSpec what = spec(place, rung, settings);
-    const double hopeless = std::max(0.05, most_seconds * what.scene_parameters.at("duration"));
-    PointResult point = runners_.run(
-        what, {options_.timeout, hopeless, options_.interrupted, nullptr}, place.stiffness);
+    const double hopeless = std::max(0.05, most_seconds * duration(place));
+    PointResult point =
+        runners_.run(what, {options_.timeout, hopeless, options_.interrupted, runners_.references},
+                     place.stiffness);
     if (point.stiffness) place.stiffness = point.stiffness;
     return point;
   }
 
-  // The whole ladder's best step with the settings that the solver has by itself; limits at which
-  // it has none say nothing about others.
+  // The ladder's best step with the settings that the solver has by itself. Places where none
+  // counts say nothing about settings; those where it takes long are left out but for the fastest.
   void begin() {
-    for (Place& place : places_) {
-      std::map<std::size_t, PointResult> known;
-      double best = 1e300;
-      const auto run = [&](std::size_t rung) -> const PointResult& {
-        const auto [at, fresh] = known.try_emplace(rung);
-        if (fresh) at->second = run_once(place, rung, {}, give_up_at * best);
-        if (at->second.ok()) best = std::min(best, at->second.seconds());
-        return at->second;
-      };
-      const auto again = [&](std::size_t rung) -> const PointResult& {
-        runners_.repeat(known.at(rung), {options_.timeout, 1e300, options_.interrupted, nullptr});
-        return known.at(rung);
-      };
-      StepSearch steps(place.search.ladder.size(), run, again);
-      const auto rung = steps.find(std::nullopt);
-      if (!rung) continue;
-      place.best_rung = *rung;
-      place.best_seconds = known.at(*rung).seconds();
-    }
+    for (Place& place : places_) find_best(place);
     std::erase_if(places_, [](const Place& place) { return place.best_seconds >= 1e300; });
+    std::stable_sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) {
+      return a.best_seconds < b.best_seconds;
+    });
+    const auto long_one = std::find_if(places_.begin(), places_.end(), [this](const Place& place) {
+      return place.best_seconds * duration(place) > options_.longest_run;
+    });
+    places_.erase(std::max(long_one, std::min(places_.begin() + 1, places_.end())), places_.end());
+  }
+
+  static double duration(const Place& place) {
+    return place.search.base.scene_parameters.at("duration");
+  }
+
+  void find_best(Place& place) {
+    std::map<std::size_t, PointResult> known;
+    double best = 1e300;
+    const auto run = [&](std::size_t rung) -> const PointResult& {
+      const auto [at, fresh] = known.try_emplace(rung);
+      if (fresh) at->second = run_once(place, rung, {}, give_up_at * best);
+      if (counts(at->second)) best = std::min(best, at->second.seconds());
+      return at->second;
+    };
+    const auto again = [&](std::size_t rung) -> const PointResult& {
+      runners_.repeat(known.at(rung), {options_.timeout, 1e300, options_.interrupted, nullptr});
+      return known.at(rung);
+    };
+    StepSearch(place.search.ladder.size(), run, again, {headline_error}).find(std::nullopt);
+    for (const auto& [rung, point] : known) {
+      if (!counts(point) || point.seconds() >= place.best_seconds) continue;
+      place.best_rung = rung;
+      place.best_seconds = point.seconds();
+    }
   }
 
   // Geometric mean, over the places, of the faster of these settings and none; none if that is
@@ -199,7 +226,7 @@ class Tuner {
     const auto faster = [&](std::size_t rung) {
       const double most = best ? fastest.seconds() : no_use_above * enough;
       PointResult point = run_once(place, rung, settings, most);
-      if (!point.ok() || (best && point.seconds() >= fastest.seconds())) return false;
+      if (!counts(point) || (best && point.seconds() >= fastest.seconds())) return false;
       best = rung;
       fastest = std::move(point);
       return true;
@@ -231,26 +258,7 @@ class Tuner {
   TunedEntry entry_;
 };
 
-SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarsest,
-                       double duration) {
-  SweepSpec spec;
-  spec.sweep = "strain";
-  spec.scene = scene;
-  spec.limits = {0.1, 0.01, 0.001, 0.0001};
-  spec.resolutions = std::move(sizes);
-  spec.coarsest = coarsest;
-  spec.finest = 1.0 / 6400;
-  spec.scene_parameters = {{"duration", duration}};
-  return spec;
-}
-
 }  // namespace
-
-std::vector<SweepSpec> tuning_scenes() {
-  // The drape is hardest from 0.3 s on, where it has sheared.
-  return {tuning_scene("chain", {50, 200}, 0.04, 1), tuning_scene("drape", {17, 35}, 0.02, 0.6),
-          tuning_scene("patch", {13, 23}, 0.02, 1)};
-}
 
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene,
                        const TuneOptions& options, const SweepRunners& runners) {

@@ -1,9 +1,12 @@
 #include "harness/run/tune_search.h"
 
+#include <gsl/gsl_qrng.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 
 namespace harness {
 namespace {
@@ -33,15 +36,16 @@ class CoordinateSearch {
     if (numbers_.empty() || rules_.budget < 2) return outcome_;
     best_ = evaluate(initial, none);
     if (best_ == none) return outcome_;
+    spread();
     const int count = static_cast<int>(numbers_.size());
-    // What is left for the last comparison: two evaluations.
-    const int visits = std::max(3, (rules_.budget - 3) / (rules_.rounds * count));
+    const int visits = std::max(3, left() / (rules_.rounds * count));
     double half_width = 1;
     for (int round = 0; round < rules_.rounds; ++round) {
       const Values before = outcome_.values;
       for (std::size_t i = 0; i < numbers_.size(); ++i) visit(i, half_width, visits);
       // Nothing has moved: a narrower look at the same place is what the refinement was.
       if (outcome_.values == before) break;
+      go_on_from(before);
       half_width = 1.0 / std::max(2, visits / 2);
     }
     if (outcome_.values == initial) return outcome_;
@@ -61,7 +65,47 @@ class CoordinateSearch {
     return seconds && std::isfinite(*seconds) ? *seconds : none;
   }
   double evaluate_anew(const Values& values) { return evaluate(values, none); }
+  // But for the last comparison, two evaluations.
   int left() const { return rules_.budget - 2 - outcome_.evaluations; }
+
+  // Sets of a low-discrepancy sequence (Niederreiter 1988) over the ranges of all settings.
+  void spread() {
+    const auto count = static_cast<unsigned>(numbers_.size());
+    const int sets = std::min(rules_.spread * static_cast<int>(count),
+                              static_cast<int>(rules_.most_spread * rules_.budget));
+    const std::unique_ptr<gsl_qrng, decltype(&gsl_qrng_free)> sequence(
+        gsl_qrng_alloc(gsl_qrng_niederreiter_2, count), gsl_qrng_free);
+    std::vector<double> positions(count);
+    Values best = outcome_.values;
+    double least = best_;
+    for (int k = 0; k < sets && left() > 0; ++k) {
+      gsl_qrng_get(sequence.get(), positions.data());
+      Values values;
+      for (std::size_t i = 0; i < count; ++i) values.push_back(value_at(numbers_[i], positions[i]));
+      const double seconds = evaluate(values, give_up_trial_at * least);
+      if (seconds >= least) continue;
+      least = seconds;
+      best = std::move(values);
+    }
+    take_if_better(best, least);
+  }
+
+  // Further along what a round has changed, as long as that helps.
+  void go_on_from(const Values& before) {
+    Values from = before;
+    for (Values now = outcome_.values; now != from && left() > 0;) {
+      Values further;
+      for (std::size_t i = 0; i < numbers_.size(); ++i) {
+        const double at = position_of(numbers_[i], now[i]);
+        further.push_back(value_at(
+            numbers_[i], std::clamp(2 * at - position_of(numbers_[i], from[i]), 0.0, 1.0)));
+      }
+      if (further == now) return;
+      take_if_better(further, evaluate(further, give_up_trial_at * best_));
+      from = now;
+      now = outcome_.values;
+    }
+  }
 
   // One setting, the others as they are: points evenly over what is within half_width of the
   // present one, then golden sections of the wider side beside the best.
@@ -104,14 +148,18 @@ class CoordinateSearch {
     return look(up ? above : below) || look(up ? below : above);
   }
 
-  // The best of many looks is partly luck, so it is compared once more, in turn with the present.
   void take_best(std::size_t i, const std::map<double, double>& known) {
     const auto best =
         std::min_element(known.begin(), known.end(),
                          [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (!(best_ / best->second > 1 + rules_.least_gain) || left() < 2) return;
     Values values = outcome_.values;
     values[i] = value_at(numbers_[i], best->first);
+    take_if_better(values, best->second);
+  }
+
+  // The best of many looks is partly luck, so it is compared once more, in turn with the present.
+  void take_if_better(const Values& values, double seconds) {
+    if (!(best_ / seconds > 1 + rules_.least_gain) || left() < 2) return;
     const double now = evaluate_anew(values), was = evaluate_anew(outcome_.values);
     if (now == none || was == none || !(was / now > 1 + rules_.least_gain)) return;
     outcome_.values = values;

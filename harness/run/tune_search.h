@@ -1,5 +1,7 @@
-// The search for a method's best settings: coordinate descent by rule, the same for everybody.
-// Knows no solver: what a set of settings costs, a function says.
+// The search for a method's best settings by one rule for all: sets spread over all ranges at once,
+// since settings interact (a relaxation and a target), then coordinate descent from the best of
+// them, with a step along what a round has changed. Knows no solver: what a set of settings costs,
+// a function says.
 #pragma once
 
 #include <functional>
@@ -29,7 +31,9 @@ using Values = std::vector<double>;  // one of each setting
 using TuneObjective = std::function<std::optional<double>(const Values&, double hopeless)>;
 
 struct TuneRules {
-  int budget = 32;           // evaluations at most, of all settings together
+  int budget = 40;           // evaluations at most, of all settings together
+  int spread = 4;            // sets for each setting that are spread over all ranges, ...
+  double most_spread = 0.4;  // ... but at most this part of the budget
   int rounds = 2;            // over all settings
   double least_gain = 0.05;  // a change must make it faster by more than this, twice
 };

@@ -71,9 +71,12 @@ struct Backend {
   std::vector<SettingInfo> settings;
   std::unique_ptr<Stepper> (*make)(std::shared_ptr<const Problem>, const BackendOptions&);
   Direction direction = Direction::none;
-  const char* citation = "";    // author and year
-  const char* label = "";       // in figures; empty: the name
-  const char* family = "";      // the method whose colour it shares in figures; empty: its own
+  const char* citation = "";  // author and year
+  const char* label = "";     // in figures; empty: the name
+  const char* family = "";    // the method whose colour it shares in figures; empty: its own
+  // Another method that this one is on a chain, step for step; empty: none. Suites leave it out
+  // there.
+  const char* same_on_chains = "";
   bool shows_iterates = false;  // Stepper::observe sees the iterates and multipliers of each step
   // What the method can do with a problem; make_stepper refuses those that have more.
   bool takes_shear = true, takes_collider = true;

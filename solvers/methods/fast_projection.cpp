@@ -201,7 +201,7 @@ SettingFields<FastProjection::Settings> FastProjection::fields() {
        tunable_least_iterations},
       {"target", &S::target, projection_target, below_limit, tunable_below_limit},
       {"inner_band", &S::inner_band, "target of damped projections, where J W J^T is singular",
-       below_limit, tunable_below_limit},
+       below_limit},
       {"sweeps_before", &S::sweeps_before,
        "colored Gauss-Seidel sweeps before the first projection, at most; none on chains, where "
        "a projection costs no more than some sweeps",
@@ -212,7 +212,7 @@ SettingFields<FastProjection::Settings> FastProjection::fields() {
        "an edge that a sweep corrects is brought to this fraction of the strain limit", fraction,
        fraction},
       {"smoothing_relaxation", &S::smoothing_relaxation, "times a sweep's correction",
-       relaxation_range, tunable_relaxation},
+       relaxation_range},
       {"first_forcing", &S::first_forcing,
        "residual of a step's first linear solve by conjugate gradients or in mixed precision, of "
        "the right-hand side; those of later ones are smaller",
@@ -233,19 +233,6 @@ Backend fast_projection_row() {
           .shows_iterates = true};
 }
 
-Backend fast_projection_smoothed_row() {
-  Backend row = fast_projection_row();
-  row.name = "fast_projection_smoothed";
-  row.summary = "the same, each projection followed by some colored Gauss-Seidel sweeps";
-  FastProjection::Settings defaults;
-  defaults.smoothing_sweeps = 30;
-  row.settings = setting_infos(FastProjection::fields(), defaults);
-  row.label = "fast projection, smoothed";
-  row.family = "fast_projection";
-  row.shows_iterates = false;  // sweeps have no multipliers to show
-  return row;
-}
-
 namespace {
 
 // Of the time stepper, not of the filter.
@@ -259,7 +246,7 @@ SettingInfo blend() {
 }  // namespace
 
 Backend fast_projection_bdf2_row() {
-  Backend row = inside_bdf2<FastProjection>(fast_projection_smoothed_row());
+  Backend row = inside_bdf2<FastProjection>(fast_projection_row());
   row.name = "fast_projection_bdf2";
   row.summary = "fast projection inside the two-step formula BDF2: second order";
   FastProjection::Settings defaults;
@@ -268,6 +255,7 @@ Backend fast_projection_bdf2_row() {
   row.settings = setting_infos(FastProjection::fields(), defaults);
   row.citation = "Goldenthal et al. 2007; English and Bridson 2008";
   row.label = "fast projection in BDF2";
+  row.shows_iterates = false;  // sweeps have no multipliers to show
   return row;
 }
 

@@ -65,9 +65,8 @@ class FastProjection final : public VelocityFilter {
 };
 
 Backend fast_projection_row();
-// Each projection followed by some colored Gauss-Seidel sweeps.
-Backend fast_projection_smoothed_row();
-// The same inside BDF2, and BDF2 blended with BDF3 (bdf2_stepper.h).
+// Inside BDF2 (each projection followed by some colored Gauss-Seidel sweeps), and BDF2 blended with
+// BDF3 (bdf2_stepper.h).
 Backend fast_projection_bdf2_row();
 Backend fast_projection_bdf2opt_row();
 

@@ -233,22 +233,24 @@ StepResult Icd::newton(double h, Positions& x, WorkCounters& work) {
 
 SettingFields<Icd::Settings> Icd::fields() {
   using S = Settings;
-  return {{"max_iterations", &S::max_iterations, "iterations a step before it is refused",
-           at_least_one},
-          {"min_iterations", &S::min_iterations, least_iterations, count_from_zero,
-           tunable_least_iterations},
-          {"target", &S::target, projection_target, below_limit, tunable_below_limit},
-          {"direction_tolerance", &S::direction_tolerance,
-           "largest |F| of a vertex, in strain limit times shortest rest length", positive,
-           Range{0.01, 1}},
-          {"cg_tolerance", &S::cg_tolerance, "accuracy of a Newton step by projected_cg",
-           Range{0, 1, true}, Range{0.001, 0.5}},
-          {"linear_solver",
-           &S::linear_solver,
-           "of the KKT system",
-           {},
-           {},
-           {"auto", "projected_cg", "quasi_definite", "block_tridiagonal", "umfpack"}}};
+  return {
+      {"max_iterations", &S::max_iterations, "iterations a step before it is refused",
+       at_least_one},
+      {"min_iterations", &S::min_iterations, least_iterations, count_from_zero,
+       tunable_least_iterations},
+      {"target", &S::target, projection_target, below_limit, tunable_below_limit},
+      {"direction_tolerance", &S::direction_tolerance,
+       "largest |F| of a vertex, in strain limit times shortest rest length; above 1 the direction "
+       "may be that of an iterate short of the end",
+       positive, Range{0.01, 100}},
+      {"cg_tolerance", &S::cg_tolerance, "accuracy of a Newton step by projected_cg",
+       Range{0, 1, true}, Range{0.001, 0.95}},
+      {"linear_solver",
+       &S::linear_solver,
+       "of the KKT system",
+       {},
+       {},
+       {"auto", "projected_cg", "quasi_definite", "block_tridiagonal", "umfpack"}}};
 }
 
 Backend icd_row() {

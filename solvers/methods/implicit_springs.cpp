@@ -288,7 +288,7 @@ SettingFields<ImplicitSprings::Settings> ImplicitSprings::fields() {
       {"max_iterations", &S::max_iterations, "Newton iterations a step before it is refused",
        at_least_one},
       {"newton_tolerance", &S::newton_tolerance,
-       "last Newton step, in strain limit times shortest rest length", positive, Range{0.01, 1}},
+       "last Newton step, in strain limit times shortest rest length", positive, Range{0.01, 10}},
       {"start",
        &S::start,
        "where Newton starts: at the lowest of free flight, last positions and their extrapolation "

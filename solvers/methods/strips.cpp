@@ -65,7 +65,8 @@ Backend strips_row() {
           .make = make_filter_stepper<Strips>,
           .direction = Direction::current,
           .citation = "Bender and Bayer 2008",
-          .label = "strips"};
+          .label = "strips",
+          .same_on_chains = "fast_projection_adaptive"};
 }
 
 Backend strips_bdf2_row() {
@@ -74,6 +75,7 @@ Backend strips_bdf2_row() {
   row.summary = "strips inside the two-step formula BDF2: second order";
   row.citation = "Bender and Bayer 2008; English and Bridson 2008";
   row.label = "strips in BDF2";
+  row.same_on_chains = "fast_projection_adaptive_bdf2";
   return row;
 }
 

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "harness/base/errors.h"
 #include "harness/points/noise.h"
 #include "harness/points/suite.h"
-#include "harness/points/tuned.h"
+#include "harness/points/tuning_rule.h"
 #include "harness/run/plan.h"
 
 namespace harness {
@@ -16,17 +18,17 @@ namespace {
 
 using nlohmann::json;
 
-std::string write_tuned(const std::string& entries) {
+std::string write_tuned(const std::vector<TunedEntry>& entries) {
   const std::string path = ::testing::TempDir() + "tuned_of_test.json";
-  FILE* file = std::fopen(path.c_str(), "w");
-  std::fputs((R"({"schema": "inextensible-tuned/1", "tuned": [)" + entries + "]}").c_str(), file);
-  std::fclose(file);
+  std::ofstream(path) << tuned_document(entries);
   return path;
 }
 
-std::string entry(const std::string& kind, const std::string& solver, const std::string& settings) {
-  return R"({"kind": ")" + kind + R"(", "solver": ")" + solver + R"(", "settings": )" + settings +
-         R"(, "gain": 1.5, "evaluations": 3, "budget": 4, "places": [], "context": {}})";
+TunedEntry of_the_drape(const std::string& solver, const inextensible::Settings& settings) {
+  const SweepSpec& scene = tuning_scenes().at(1);
+  return {scene.scene, solver, settings, 1.5,
+          3,           4,      {},       tuning_rule(scene, *inextensible::find_backend(solver)),
+          {}};
 }
 
 Suite suite_with(const std::string& everywhere, const std::string& of_sweep,
@@ -72,6 +74,23 @@ TEST(Contestants, HaveTheirOwnNamesAndSettings) {
   EXPECT_EQ(again.sweeps[0].contestants, suite.sweeps[0].contestants);
 }
 
+TEST(Contestants, ThatAreAnotherOneOnAChainAreLeftOutThereUnlessTheyAreNamed) {
+  const auto stands = [](const std::string& solvers, const char* scene, const std::string& name) {
+    const auto all = names(suite_with("", solvers + R"("steps": {"finest": 0.001})", scene));
+    return std::find(all.begin(), all.end(), name) != all.end();
+  };
+  EXPECT_FALSE(stands("", "chain", "strips"));
+  EXPECT_FALSE(stands("", "whip", "strips_bdf2"));
+  EXPECT_TRUE(stands("", "drape", "strips"));
+  EXPECT_TRUE(stands("", "chain", "fast_projection_adaptive"));
+  EXPECT_TRUE(stands(R"("solvers": ["strips"], )", "chain", "strips"));
+  for (const auto& backend : inextensible::backends()) {
+    if (*backend.same_on_chains) {
+      EXPECT_TRUE(inextensible::find_backend(backend.same_on_chains)) << backend.name;
+    }
+  }
+}
+
 TEST(Contestants, ThatAreWrongAreRefusedByName) {
   const auto says = [](const std::string& message, const std::string& part) {
     EXPECT_NE(message.find(part), std::string::npos) << message;
@@ -91,8 +110,8 @@ TEST(Contestants, ThatAreWrongAreRefusedByName) {
 }
 
 TEST(Tuned, SettingsAreUsedForTheirKindOfSceneAndBelowWhatASuiteSays) {
-  const std::string file = write_tuned(entry("drape", "jacobi", R"({"relaxation": 1.6})") + "," +
-                                       entry("drape", "icd", "{}"));
+  const std::string file =
+      write_tuned({of_the_drape("jacobi", {{"relaxation", 1.6}}), of_the_drape("icd", {})});
   const std::string tuned = R"("tuned": ")" + file + R"(", "untuned": true, )";
   const std::string both = R"("solvers": ["jacobi", "icd"])";
   const Suite drape = suite_with(tuned, both, "drape");
@@ -113,12 +132,13 @@ TEST(Tuned, SettingsAreUsedForTheirKindOfSceneAndBelowWhatASuiteSays) {
   EXPECT_EQ(names(given), (std::vector<std::string>{"jacobi", "icd"})) << "nothing of it is tuned";
 
   // What was run is what the result's suite says, whatever becomes of the file.
-  write_tuned("");
+  write_tuned({});
   EXPECT_EQ(to_json(parse_suite(to_json(drape).dump(), "again")), to_json(drape));
 }
 
 TEST(Tuned, AFileIsReadAsItIsWrittenAndItsHashIsThatOfItsSettings) {
-  TunedEntry e{"chain", "jacobi", {{"relaxation", 1.7}}, 1.25, 12, 40, {}, {{"date", "today"}}};
+  TunedEntry e{"chain", "jacobi",          {{"relaxation", 1.7}}, 1.25, 12, 40,
+               {},      {{"error", 0.02}}, {{"date", "today"}}};
   e.places.push_back({50, 0.01, 2, 0.005, 1, 0.01});
   const std::string text = tuned_document({e}).dump();
   const Tuned once = parse_tuned(text, "t");
@@ -130,7 +150,7 @@ TEST(Tuned, AFileIsReadAsItIsWrittenAndItsHashIsThatOfItsSettings) {
   EXPECT_NE(parse_tuned(tuned_document({e}).dump(), "t").hash, once.hash);
   for (const auto& [from, to] :
        {std::pair("1.7", "7.5"), std::pair("relaxation", "relation"), std::pair("jacobi", "jakobi"),
-        std::pair("chain", "train"), std::pair("1.25", "-1"), std::pair("tuned/1", "tuned/9")}) {
+        std::pair("chain", "train"), std::pair("1.25", "-1"), std::pair("tuned/2", "tuned/9")}) {
     std::string wrong = text;
     wrong.replace(wrong.find(from), std::string(from).size(), to);
     EXPECT_THROW(static_cast<void>(parse_tuned(wrong, "t")), UsageError) << to;

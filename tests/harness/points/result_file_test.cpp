@@ -24,7 +24,7 @@
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
 #include "harness/points/schema.h"
-#include "harness/points/tuned.h"
+#include "harness/points/tuning_rule.h"
 #include "harness/run/sweep.h"
 #include "harness/stability/stability.h"
 
@@ -93,6 +93,7 @@ TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchemaAndComesBackAsItWas) {
   for (const auto& backend : inextensible::backends()) {
     if (!backend.contestant) continue;
     for (const char* scene : {"chain", "drape"}) {
+      if (std::string(scene) == "chain" && *backend.same_on_chains) continue;
       EXPECT_TRUE(std::any_of(outcome.points.begin(), outcome.points.end(),
                               [&](const PointResult& p) {
                                 return p.spec.scene == scene && p.spec.solver == backend.name &&
@@ -241,14 +242,11 @@ TEST(Suites, ThatAreCommittedFitTheirSchemaAndAreAccepted) {
 
 TEST(Tuned, SettingsThatAreCommittedFitTheirSchemaAndAreAccepted) {
   EXPECT_EQ(misfits(read(source("configs/tuned.json")), "configs/tuned.schema.json"), "");
-  EXPECT_NO_THROW(static_cast<void>(read_tuned("tuned.json")));
-  TunedEntry entry{"chain", "icd", {{"max_iterations", 3.0}}, 1.5, 2, 3, {}, {}};
+  EXPECT_NO_THROW(static_cast<void>(read_tuned_up_to_date("tuned.json")));
+  TunedEntry entry{"chain", "icd", {{"max_iterations", 3.0}}, 1.5, 2, 3, {}, {}, {}};
   entry.places.push_back({50, 0.01, 2, 0.01, 1, 0.02});
-  entry.context = {{"date", "d"},
-                   {"cpu_model", "c"},
-                   {"commit", "c"},
-                   {"scene", "chain"},
-                   {"scene_parameters", {{"n", 50}}}};
+  entry.rule = tuning_rule(tuning_scenes().front(), *inextensible::find_backend("icd"));
+  entry.context = {{"date", "d"}, {"cpu_model", "c"}, {"commit", "c"}};
   EXPECT_EQ(misfits(json::parse(tuned_document({entry}).dump()), "configs/tuned.schema.json"), "");
   entry.context.erase("date");
   EXPECT_NE(misfits(json::parse(tuned_document({entry}).dump()), "configs/tuned.schema.json"), "");

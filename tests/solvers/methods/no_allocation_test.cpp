@@ -66,7 +66,6 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"chain", 80, "jacobi", 0.001}, Case{"chain", 80, "gauss_seidel", 0.001},
         Case{"chain", 80, "shake", 0.0005}, Case{"chain", 80, "icd", 0.005},
         Case{"chain", 80, "implicit_springs", 0.005}, Case{"drape", 15, "fast_projection", 0.005},
-        Case{"drape", 15, "fast_projection_smoothed", 0.005},
         Case{"drape", 15, "fast_projection", 0.005, "hybrid"}, Case{"drape", 15, "jacobi", 0.005},
         Case{"drape", 15, "gauss_seidel", 0.005}, Case{"drape", 15, "gauss_seidel_colored", 0.005},
         Case{"drape", 15, "strips", 0.005}, Case{"drape", 15, "strips_bdf2", 0.005},
