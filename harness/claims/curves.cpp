@@ -1,6 +1,7 @@
 #include "harness/claims/curves.h"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <set>
 
@@ -61,11 +62,12 @@ void keep_faster(Curve& curve, double x, const Point& point) {
 }  // namespace
 
 Curve Points::best(const std::string& scene, const std::string& sweep,
-                   const std::string& contestant, double level) const {
+                   const std::string& contestant, double level,
+                   std::optional<double> vertices) const {
   const char* axis = sweep == "strain" ? "strain_limit" : "vertices";
   std::map<std::pair<double, std::string>, std::vector<const Point*>> places;
   for (const Point& p : all_) {
-    if (of(p, scene, sweep) && cast_.at_any_settings(p.contestant()) == contestant)
+    if (of(p, scene, sweep, vertices) && cast_.at_any_settings(p.contestant()) == contestant)
       places[{p.number(axis), p.contestant()}].push_back(&p);
   }
   Curve curve;
@@ -98,10 +100,21 @@ std::vector<Role> Points::ranked(const std::string& scene, const std::string& sw
   return all;
 }
 
-// Strain and step sweeps of several sizes may come together: the largest counts.
-bool Points::of(const Point& point, const std::string& scene, const std::string& sweep) const {
+std::vector<double> Points::sizes(const std::string& scene, const std::string& sweep) const {
+  std::set<double, std::greater<>> all;
+  for (const Point& p : all_) {
+    if (p.is("scene", scene) && p.is("sweep", sweep)) all.insert(p.number("vertices"));
+  }
+  return {all.begin(), all.end()};
+}
+
+// Strain and step sweeps of several sizes may come together: unless one is named, the largest
+// counts.
+bool Points::of(const Point& point, const std::string& scene, const std::string& sweep,
+                std::optional<double> vertices) const {
   if (!point.is("scene", scene) || !point.is("sweep", sweep)) return false;
-  return sweep == "resolution" || point.number("vertices") == largest_.at({scene, sweep});
+  return sweep == "resolution" ||
+         point.number("vertices") == vertices.value_or(largest_.at({scene, sweep}));
 }
 
 Slope slope_of(const Curve& curve) {

@@ -43,8 +43,11 @@ class Points {
   // of error (analysis/plane.h), with tuned or untuned settings. One tuned setting serves all
   // places of a scene; where the method's own default is faster, that counts, so that tuning harms
   // nobody.
+  // vertices: of a strain sweep; none: the largest.
   Curve best(const std::string& scene, const std::string& sweep, const std::string& contestant,
-             double level = any_motion) const;
+             double level = any_motion, std::optional<double> vertices = {}) const;
+  // Vertices of a scene's points in a sweep, large to small.
+  std::vector<double> sizes(const std::string& scene, const std::string& sweep) const;
   // Over error levels: the fastest point within each, at any step and limit, with tuned or untuned
   // settings, of the largest size in step sweeps.
   Curve best_at_errors(const std::string& scene, const std::string& contestant) const;
@@ -57,7 +60,8 @@ class Points {
   }
 
  private:
-  bool of(const Point& point, const std::string& scene, const std::string& sweep) const;
+  bool of(const Point& point, const std::string& scene, const std::string& sweep,
+          std::optional<double> vertices = {}) const;
 
   std::vector<Point> all_;
   Cast cast_;

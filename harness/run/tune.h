@@ -16,7 +16,7 @@ struct TuneOptions {
   TuneRules rules;
   double timeout = 10;  // s, of a run
   // Where a solver's best run takes longer than this as it is, the place is left out, but for one.
-  double longest_run = 1.5;  // s
+  double longest_run = 0.4;  // s
   std::function<bool()> interrupted = nullptr;
   std::function<void(const std::string&)> tell = [](const std::string&) {};  // lines of progress
 };
