@@ -171,7 +171,8 @@ int make_references(const ReferenceOptions& given) {
   const SweepOptions& options = given.options;
   if (given.ensemble && given.finest > 0)
     throw UsageError("--finest does not go with --ensemble, whose runs have a step of their own");
-  const bool one_scene = !options.n.empty() || !parameters_of(options.scene_words).empty();
+  const bool one_scene = !options.n.empty() || !parameters_of(options.scene_words).empty() ||
+                         options.scene.starts_with("mesh:");  // of no suite
   const std::string folder = source_path("results/references");
   ReferenceShelf shelf(folder);
   bool nothing = true;

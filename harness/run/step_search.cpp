@@ -32,7 +32,10 @@ std::optional<std::size_t> StepSearch::find_among_all() {
   int timeouts = 0;
   for (std::size_t rung = 0; rung < rungs_ && timeouts < 2; ++rung) {
     const PointResult& point = run_(rung);
-    if (point.status == PointStatus::unsupported) break;
+    if (point.status == PointStatus::unsupported) {
+      timed_out_ = false;
+      break;
+    }
     consider(rung, point);
     timeouts = gave_up(point) ? timeouts + 1 : 0;
   }
@@ -71,6 +74,7 @@ bool StepSearch::gave_up(const PointResult& point) {
 void StepSearch::consider(std::size_t rung, const PointResult& point) {
   lowest_ = std::min(lowest_, rung);
   highest_ = std::max(highest_, rung);
+  timed_out_ = timed_out_ && gave_up(point);
   if (!point.ok()) return;
   const double seconds = point.seconds();
   seconds_[any_motion][rung] = seconds;
@@ -158,7 +162,10 @@ void StepSearch::walk(std::size_t from, int direction) {
        rung += static_cast<std::size_t>(direction)) {  // wraps below 0
     const PointResult& point = run_(rung);
     unsupported_ = point.status == PointStatus::unsupported;
-    if (unsupported_) return;
+    if (unsupported_) {
+      timed_out_ = false;
+      return;
+    }
     consider(rung, point);
     const bool rose =
         point.ok() ? slower(rung, any_motion) : best_rung(any_motion).has_value() || direction < 0;
@@ -168,10 +175,7 @@ void StepSearch::walk(std::size_t from, int direction) {
       rises = 0;
     }
     failures_ = point.ok() ? 0 : failures_ + 1;
-    if (gave_up(point)) {
-      timed_out_ = true;
-      ++timeouts;
-    }
+    if (gave_up(point)) ++timeouts;
     if (point.ok() && goal_) {
       const double error = error_at(point.measures, *goal_).distance;
       error_stays_ = error > stays * last_error && error > *goal_ ? error_stays_ + 1 : 0;

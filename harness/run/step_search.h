@@ -51,6 +51,7 @@ class StepSearch {
   // the best one's: which of them is the best, more samples must say.
   std::vector<std::size_t> near_best(double level, double factor) const;
 
+  // Whether every step that was tried was given up for want of time.
   bool timed_out() const { return timed_out_; }
   // Seconds per simulated second: a run that takes longer is of no use to the search.
   double longest_useful() const;
@@ -78,7 +79,7 @@ class StepSearch {
   std::size_t lowest_ = 0, highest_ = 0;  // of the rungs that were tried
   std::set<std::size_t> sampled_;         // rungs that had their samples_when_close
   std::map<double, std::map<std::size_t, double>> seconds_;  // by level and rung
-  bool timed_out_ = false;
+  bool timed_out_ = true;
   bool unsupported_ = false;            // the solver does not take the problem, whatever the step
   int error_stays_ = 0, failures_ = 0;  // of the current walk, in a row
 };

@@ -242,7 +242,8 @@ class LadderRun {
         neighbour_.guess_of_stiffness(spec));
     if (point.stiffness)
       neighbour_.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
-    was_far_behind_ = was_far_behind_ || (point.status == PointStatus::timeout && useful == behind);
+    was_far_behind_ = was_far_behind_ || (point.status == PointStatus::timeout &&
+                                          useful == behind && std::isfinite(behind));
     sweep_.remember(place, point);
     point_of_rung_[rung] = sweep_.points.size();
     return sweep_.add(std::move(point), number_);

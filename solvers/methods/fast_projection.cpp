@@ -220,12 +220,25 @@ SettingFields<FastProjection::Settings> FastProjection::fields() {
       schur_solver_field<S>()};
 }
 
+namespace {
+
+// Algorithm 1 has no sweeps: where it is the contestant, none are searched for it.
+std::vector<SettingInfo> without_tuned_sweeps(std::vector<SettingInfo> settings) {
+  for (SettingInfo& setting : settings) {
+    const std::string_view name = setting.name;
+    if (name.starts_with("sweeps_") || name.starts_with("smoothing_")) setting.tunable.reset();
+  }
+  return settings;
+}
+
+}  // namespace
+
 Backend fast_projection_row() {
   return {.name = "fast_projection",
           .summary = "Algorithm 1 of Goldenthal et al. 2007",
           .knob = Knob::strain_limit,
           .contestant = true,
-          .settings = setting_infos(FastProjection::fields()),
+          .settings = without_tuned_sweeps(setting_infos(FastProjection::fields())),
           .make = make_filter_stepper<FastProjection>,
           .direction = Direction::current,
           .citation = "Goldenthal et al. 2007",

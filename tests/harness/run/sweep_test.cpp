@@ -132,6 +132,30 @@ TEST(StepSearch, StopsWhoIsFarBehindTheFastestOfAPlace) {
   for (const auto& point : outcome.points) EXPECT_NE(point.status, PointStatus::skipped);
 }
 
+// A solver is skipped at the next limit only where all of its steps timed out: one that was refused
+// at some of them may get through there.
+TEST(StepSearch, SkipsATighterLimitOnlyAfterNothingButTimeouts) {
+  for (const bool all : {true, false}) {
+    const Suite suite = one_family();
+    SweepRunners runners = fake(1.0 / 200, 1, nullptr);
+    runners.run = [inner = runners.run, all](const PointSpec& spec, const RunLimits& limits,
+                                             std::optional<double> guess) {
+      PointResult point = inner(spec, limits, guess);
+      if (spec.strain_limit < 0.05) return point;
+      const bool refused = !all && spec.step > 0.03;
+      point.status = refused ? PointStatus::energy_gained : PointStatus::timeout;
+      point.samples.clear();
+      return point;
+    };
+    const auto outcome = run_sweep(suite, plan(suite, {}), {}, runners);
+    const PointResult& last = outcome.points.back();
+    EXPECT_EQ(last.status == PointStatus::skipped, all);
+    EXPECT_EQ(std::any_of(outcome.points.begin(), outcome.points.end(),
+                          [](const PointResult& p) { return p.ok(); }),
+              !all);
+  }
+}
+
 TEST(StepSearch, GoesFinerThroughFailuresUntilAStepWorks) {
   Suite suite = one_family();
   suite.sweeps[0].limits = {0.01};

@@ -161,7 +161,8 @@ SweepSpec chain() { return tuning_scenes().front(); }
 TEST(Tune, FindsASettingAndSaysWhatItGains) {
   std::vector<PointSpec> specs;
   const TunedEntry entry =
-      tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 60}}, fake(10, &specs));
+      tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 60}, .longest_run = 10},
+                  fake(10, &specs));
   EXPECT_EQ(entry.kind, "chain");
   ASSERT_TRUE(entry.settings.contains("relaxation"));
   const double relaxation = std::get<double>(entry.settings.at("relaxation"));
@@ -177,8 +178,8 @@ TEST(Tune, FindsASettingAndSaysWhatItGains) {
 }
 
 TEST(Tune, WhatFailsSomewhereGainsNothingThere) {
-  const TunedEntry entry =
-      tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 60}}, fake(1.4));
+  const TunedEntry entry = tune_solver("gauss_seidel_colored", chain(),
+                                       {.rules = {.budget = 60}, .longest_run = 10}, fake(1.4));
   ASSERT_TRUE(entry.settings.contains("relaxation"));
   const double relaxation = std::get<double>(entry.settings.at("relaxation"));
   EXPECT_GT(entry.gain, 1.05);
@@ -203,8 +204,8 @@ TEST(Tune, OfTunedAndUntunedTheFasterCountsAtEachSize) {
     if (!point.ok()) point.samples.clear();
     return point;
   };
-  const TunedEntry entry =
-      tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 60}}, runners);
+  const TunedEntry entry = tune_solver("gauss_seidel_colored", chain(),
+                                       {.rules = {.budget = 60}, .longest_run = 10}, runners);
   ASSERT_TRUE(entry.settings.contains("relaxation"));
   const double relaxation = std::get<double>(entry.settings.at("relaxation"));
   EXPECT_NEAR(relaxation, 1.9, 0.05);
@@ -230,8 +231,8 @@ TEST(Tune, FindsBestStepsThatLieFarApart) {
     if (point.ok()) point.samples = {seconds};
     return point;
   };
-  const TunedEntry entry =
-      tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 60}}, runners);
+  const TunedEntry entry = tune_solver("gauss_seidel_colored", chain(),
+                                       {.rules = {.budget = 60}, .longest_run = 10}, runners);
   ASSERT_TRUE(entry.settings.contains("relaxation"));
   EXPECT_GT(std::get<double>(entry.settings.at("relaxation")), 1.5);
   const double off = std::log2(250.0 / 200);  // of the ladder's step next to 1/250 s
@@ -239,8 +240,8 @@ TEST(Tune, FindsBestStepsThatLieFarApart) {
 }
 
 TEST(Tune, ALimitThatTheDefaultMissesCountsForNothing) {
-  const TunedEntry entry =
-      tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 60}}, fake(0.9));
+  const TunedEntry entry = tune_solver("gauss_seidel_colored", chain(),
+                                       {.rules = {.budget = 60}, .longest_run = 10}, fake(0.9));
   EXPECT_EQ(entry.places.size(), 2u);
   EXPECT_NEAR(std::get<double>(entry.settings.at("relaxation")), 1.7, 0.1);
 }
@@ -264,8 +265,8 @@ TEST(Tune, OnlyMotionThatIsRightCounts) {
       }
       return point;
     };
-    const TunedEntry entry =
-        tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 60}}, runners);
+    const TunedEntry entry = tune_solver("gauss_seidel_colored", chain(),
+                                         {.rules = {.budget = 60}, .longest_run = 10}, runners);
     ASSERT_TRUE(entry.settings.contains("relaxation"));
     const double relaxation = std::get<double>(entry.settings.at("relaxation"));
     EXPECT_EQ(relaxation > 0.9, known) << relaxation;
