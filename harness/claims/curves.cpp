@@ -1,7 +1,6 @@
 #include "harness/claims/curves.h"
 
 #include <algorithm>
-#include <functional>
 #include <iterator>
 #include <set>
 
@@ -33,10 +32,8 @@ Points::Points(const std::vector<json>& results) {
     }
     seen.merge(here);
   }
-  for (const Point& p : all_) {
-    double& largest = largest_[{p.text("scene"), p.text("sweep")}];
-    largest = std::max(largest, p.number("vertices"));
-  }
+  for (const Point& p : all_)
+    sizes_[{p.text("scene"), p.text("sweep")}].insert(p.number("vertices"));
 }
 
 std::vector<Point> Points::where(const Filter& wanted) const {
@@ -90,10 +87,11 @@ Curve Points::best_at_errors(const std::string& scene, const std::string& contes
   return curve;
 }
 
-std::vector<Role> Points::ranked(const std::string& scene, const std::string& sweep) const {
+std::vector<Role> Points::ranked(const std::string& scene, const std::string& sweep,
+                                 std::optional<double> vertices) const {
   std::vector<Role> all;
   std::set<std::string> seen;
-  for (const Point& p : where([&](const Point& q) { return of(q, scene, sweep); })) {
+  for (const Point& p : where([&](const Point& q) { return of(q, scene, sweep, vertices); })) {
     if (!seen.insert(p.contestant()).second) continue;
     if (const Role one = about(p.contestant()); one.ranked()) all.push_back(one);
   }
@@ -101,11 +99,9 @@ std::vector<Role> Points::ranked(const std::string& scene, const std::string& sw
 }
 
 std::vector<double> Points::sizes(const std::string& scene, const std::string& sweep) const {
-  std::set<double, std::greater<>> all;
-  for (const Point& p : all_) {
-    if (p.is("scene", scene) && p.is("sweep", sweep)) all.insert(p.number("vertices"));
-  }
-  return {all.begin(), all.end()};
+  const auto known = sizes_.find({scene, sweep});
+  if (known == sizes_.end()) return {};
+  return {known->second.begin(), known->second.end()};
 }
 
 // Strain and step sweeps of several sizes may come together: unless one is named, the largest
@@ -114,7 +110,7 @@ bool Points::of(const Point& point, const std::string& scene, const std::string&
                 std::optional<double> vertices) const {
   if (!point.is("scene", scene) || !point.is("sweep", sweep)) return false;
   return sweep == "resolution" ||
-         point.number("vertices") == vertices.value_or(largest_.at({scene, sweep}));
+         point.number("vertices") == vertices.value_or(*sizes_.at({scene, sweep}).begin());
 }
 
 Slope slope_of(const Curve& curve) {

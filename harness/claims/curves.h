@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,7 +55,8 @@ class Points {
 
   Role about(const std::string& contestant) const { return cast_.of(contestant); }
   // Those with points in a sweep of a scene that are ranked, in the files' order.
-  std::vector<Role> ranked(const std::string& scene, const std::string& sweep) const;
+  std::vector<Role> ranked(const std::string& scene, const std::string& sweep,
+                           std::optional<double> vertices = {}) const;
   bool same_family(const std::string& a, const std::string& b) const {
     return cast_.of(a).family == cast_.of(b).family;
   }
@@ -65,7 +67,8 @@ class Points {
 
   std::vector<Point> all_;
   Cast cast_;
-  std::map<std::pair<std::string, std::string>, double> largest_;  // vertices, by scene and sweep
+  // Vertices, by scene and sweep.
+  std::map<std::pair<std::string, std::string>, std::set<double, std::greater<>>> sizes_;
   std::vector<const nlohmann::json*> matrix_, freedom_, same_frame_;
 };
 

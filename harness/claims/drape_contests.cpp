@@ -62,7 +62,7 @@ std::string first_of_all(const Points& points, const std::string& sweep, const C
                          double level, const std::function<std::string(double)>& words,
                          std::optional<double> vertices = {}) {
   std::vector<std::pair<std::string, Curve>> curves;
-  for (const Role& one : points.ranked("drape", sweep))
+  for (const Role& one : points.ranked("drape", sweep, vertices))
     curves.emplace_back(one.name, points.best("drape", sweep, one.name, level, vertices));
   std::vector<std::pair<std::string, std::string>> told;  // name, places
   for (const auto& entry : fast) {

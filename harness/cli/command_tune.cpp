@@ -42,16 +42,15 @@ std::vector<SweepSpec> chosen_scenes(const std::string& name) {
 }
 
 // All that have something to be tuned; who does not compete, only by name.
-std::vector<std::string> chosen_solvers(const std::string& text) {
+std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec& scene) {
   std::vector<std::string> solvers;
-  if (!text.empty()) check_solver_pattern(text);
+  const bool chain = find_scene(scene.scene)->kind() == "chain";
   const Pattern expression("--solver", text.empty() ? ".*" : text);
   for (const auto& backend : inextensible::backends()) {
-    if ((backend.contestant || backend.name == text) && expression.matches(backend.name) &&
+    if ((competes(backend, chain) || backend.name == text) && expression.matches(backend.name) &&
         !tunable_numbers(backend).empty())
       solvers.emplace_back(backend.name);
   }
-  if (solvers.empty()) throw UsageError("--solver " + text + ": no setting of it is to be tuned");
   return solvers;
 }
 
@@ -101,7 +100,7 @@ std::string at_ends(const TunedEntry& entry) {
 
 void print(const std::vector<TunedEntry>& entries) {
   for (const TunedEntry& e : entries) {
-    std::cout << std::left << std::setw(10) << e.kind << std::setw(28) << e.solver << std::setw(8)
+    std::cout << std::left << std::setw(10) << e.kind << std::setw(30) << e.solver << std::setw(8)
               << (e.places.empty() ? "-" : number_text(e.gain, 3)) << std::setw(10)
               << std::to_string(e.evaluations) + "/" + std::to_string(e.budget)
               << to_json(e.settings).dump() << at_ends(e) << '\n';
@@ -110,7 +109,11 @@ void print(const std::vector<TunedEntry>& entries) {
 
 int run_tune(const TuneCommand& options) {
   const auto scenes = chosen_scenes(options.scene);
-  const auto solvers = chosen_solvers(options.solver);
+  if (!options.solver.empty()) check_solver_pattern(options.solver);
+  if (std::all_of(scenes.begin(), scenes.end(), [&options](const SweepSpec& scene) {
+        return chosen_solvers(options.solver, scene).empty();
+      }))
+    throw UsageError("--solver " + options.solver + ": no setting of it is to be tuned");
   const std::string out = options.out.empty() ? source_path("configs/tuned.json") : options.out;
   std::vector<TunedEntry> entries;
   if (std::filesystem::exists(out))
@@ -128,7 +131,7 @@ int run_tune(const TuneCommand& options) {
   runners = isolated(runners, 0);
   std::vector<TunedEntry> found;
   for (const SweepSpec& scene : scenes) {
-    for (const std::string& solver : solvers) {
+    for (const std::string& solver : chosen_solvers(options.solver, scene)) {
       if (!options.again && stands(entries, find_scene(scene.scene)->kind(), solver)) continue;
       TunedEntry entry = tune_solver(solver, scene, tuning, runners);
       entry.context = context_of(options);
@@ -137,7 +140,7 @@ int run_tune(const TuneCommand& options) {
       write_atomically(out, document_text(tuned_document(entries)));
     }
   }
-  std::cout << "kind      solver                      gain    tried     settings\n";
+  std::cout << "kind      solver                        gain    tried     settings\n";
   print(found);
   std::cout << "\nwritten:\n" << out << std::endl;
   return success;

@@ -123,14 +123,17 @@ Contestant read_contestant(const json& entry, const std::string& where) {
   return contestant;
 }
 
+bool competes(const inextensible::Backend& backend, bool chain) {
+  return backend.contestant && !(chain && *backend.same_on_chains);
+}
+
 Contestants read_contestants(const json* solvers, const json* also, bool chain,
                              const std::string& where) {
   Contestants all;
   if (solvers) append(all, *solvers, where + ": 'solvers'", true);
   if (all.empty()) {
     for (const auto& backend : inextensible::backends()) {
-      if (backend.contestant && !(chain && *backend.same_on_chains))
-        all.push_back({backend.name, backend.name});
+      if (competes(backend, chain)) all.push_back({backend.name, backend.name});
     }
   }
   if (also) append(all, *also, where + ": 'also'", false);

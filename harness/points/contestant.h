@@ -29,8 +29,10 @@ std::string label_of(const Contestant& contestant);
 // "icd", or {"name": "icd_loose", "solver": "icd", "settings": {...}, "label": "...", "hollow":
 // true}. All throw UsageError, naming `where`, key and value.
 Contestant read_contestant(const nlohmann::json& entry, const std::string& where);
-// Lists of them under the keys "solvers" and "also". Where the first is missing: all that compete,
-// on a chain without those that are another one there.
+// Whether a solver stands in suites that name none: all that compete, on a chain without those that
+// are another one there.
+bool competes(const inextensible::Backend& backend, bool chain);
+// Lists of them under the keys "solvers" (all that compete where it is missing) and "also".
 Contestants read_contestants(const nlohmann::json* solvers, const nlohmann::json* also, bool chain,
                              const std::string& where);
 inextensible::Settings read_settings(const nlohmann::json& object, const std::string& where,

@@ -174,5 +174,7 @@ struct ErrorAtLevel {
 ErrorAtLevel error_at(const Measures& measures, double level);
 // Whether it is known to be at most the level; any_motion: always.
 bool within_error(const Measures& measures, double level);
+// The same, or that nothing is known at the level.
+bool within_known_error(const Measures& measures, double level);
 
 }  // namespace harness

@@ -58,6 +58,10 @@ bool within_error(const Measures& measures, double level) {
   return level == any_motion || error_at(measures, level).distance <= level;
 }
 
+bool within_known_error(const Measures& measures, double level) {
+  return error_at(measures, level).samples == 0 || within_error(measures, level);
+}
+
 double PointResult::seconds() const { return time_of(samples); }
 double PointResult::run_seconds() const { return seconds() * spec.step * steps_planned; }
 double PointResult::measured_seconds() const {

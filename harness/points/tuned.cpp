@@ -64,7 +64,9 @@ TunedEntry read_entry(const json& object, const std::string& where) {
       static_cast<int>(reader.number("budget", 0, {.least = 0, .most = 1e9, .whole = true}));
   for (const json& place : list_in(reader, "places"))
     entry.places.push_back(read_place(place, where + ": 'places'"));
-  if (const json* rule = reader.find("rule")) entry.rule = *rule;
+  const json* rule = reader.find("rule");
+  if (!rule || !rule->is_object()) throw UsageError(reader.where("rule") + " must be an object");
+  entry.rule = *rule;
   if (const json* context = reader.find("context")) entry.context = *context;
   reader.finish();
   return entry;

@@ -32,10 +32,8 @@ std::optional<std::size_t> StepSearch::find_among_all() {
   int timeouts = 0;
   for (std::size_t rung = 0; rung < rungs_ && timeouts < 2; ++rung) {
     const PointResult& point = run_(rung);
-    if (point.status == PointStatus::unsupported) {
-      timed_out_ = false;
-      break;
-    }
+    unsupported_ = point.status == PointStatus::unsupported;
+    if (unsupported_) break;
     consider(rung, point);
     timeouts = gave_up(point) ? timeouts + 1 : 0;
   }
@@ -162,10 +160,7 @@ void StepSearch::walk(std::size_t from, int direction) {
        rung += static_cast<std::size_t>(direction)) {  // wraps below 0
     const PointResult& point = run_(rung);
     unsupported_ = point.status == PointStatus::unsupported;
-    if (unsupported_) {
-      timed_out_ = false;
-      return;
-    }
+    if (unsupported_) return;
     consider(rung, point);
     const bool rose =
         point.ok() ? slower(rung, any_motion) : best_rung(any_motion).has_value() || direction < 0;

@@ -52,7 +52,7 @@ class StepSearch {
   std::vector<std::size_t> near_best(double level, double factor) const;
 
   // Whether every step that was tried was given up for want of time.
-  bool timed_out() const { return timed_out_; }
+  bool timed_out() const { return timed_out_ && !unsupported_; }
   // Seconds per simulated second: a run that takes longer is of no use to the search.
   double longest_useful() const;
 

@@ -168,9 +168,7 @@ struct Sweep {
   std::map<MeetingPlace, double> fastest = {};
 
   void remember(const MeetingPlace& place, const PointResult& point) {
-    if (!point.ok()) return;
-    const bool known = error_at(point.measures, headline_error).samples > 0;
-    if (known && !within_error(point.measures, headline_error)) return;
+    if (!point.ok() || !within_known_error(point.measures, headline_error)) return;
     double& least = fastest.try_emplace(place, point.seconds()).first->second;
     least = std::min(least, point.seconds());
   }

@@ -18,9 +18,7 @@ constexpr int samples = 3;            // of the best steps
 // Whether a run ran to the end with a motion that is right to the headline's error, or of which
 // nothing is known.
 bool counts(const PointResult& point) {
-  if (!point.ok()) return false;
-  const bool known = error_at(point.measures, headline_error).samples > 0;
-  return !known || within_error(point.measures, headline_error);
+  return point.ok() && within_known_error(point.measures, headline_error);
 }
 
 // One size and strain limit of the scene, and what is known there.

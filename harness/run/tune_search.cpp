@@ -71,6 +71,7 @@ class CoordinateSearch {
   // Sets of a low-discrepancy sequence (Niederreiter 1988) over the ranges of all settings.
   void spread() {
     const auto count = static_cast<unsigned>(numbers_.size());
+    if (count > gsl_qrng_niederreiter_2->max_dimension) return;  // GSL would end the program
     const int sets = std::min(rules_.spread * static_cast<int>(count),
                               static_cast<int>(rules_.most_spread * rules_.budget));
     const std::unique_ptr<gsl_qrng, decltype(&gsl_qrng_free)> sequence(

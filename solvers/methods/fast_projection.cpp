@@ -192,8 +192,11 @@ double FastProjection::damped_prediction(double damping) const {
   return sum;
 }
 
-SettingFields<FastProjection::Settings> FastProjection::fields() {
+SettingFields<FastProjection::Settings> FastProjection::fields(bool searched_sweeps) {
   using S = Settings;
+  const auto searched = [searched_sweeps](Range range) {
+    return searched_sweeps ? std::optional(range) : std::nullopt;
+  };
   return {
       {"max_iterations", &S::max_iterations, "projections a step before it is refused",
        at_least_one},
@@ -205,12 +208,13 @@ SettingFields<FastProjection::Settings> FastProjection::fields() {
       {"sweeps_before", &S::sweeps_before,
        "colored Gauss-Seidel sweeps before the first projection, at most; none on chains, where "
        "a projection costs no more than some sweeps",
-       count_from_zero, Range{0, 120}},
+       count_from_zero, searched({0, 120})},
       {"smoothing_sweeps", &S::smoothing_sweeps,
-       "the same after each projection, at most; none on chains", count_from_zero, Range{0, 120}},
+       "the same after each projection, at most; none on chains", count_from_zero,
+       searched({0, 120})},
       {"smoothing_target", &S::smoothing_target,
        "an edge that a sweep corrects is brought to this fraction of the strain limit", fraction,
-       fraction},
+       searched(fraction)},
       {"smoothing_relaxation", &S::smoothing_relaxation, "times a sweep's correction",
        relaxation_range},
       {"first_forcing", &S::first_forcing,
@@ -220,25 +224,12 @@ SettingFields<FastProjection::Settings> FastProjection::fields() {
       schur_solver_field<S>()};
 }
 
-namespace {
-
-// Algorithm 1 has no sweeps: where it is the contestant, none are searched for it.
-std::vector<SettingInfo> without_tuned_sweeps(std::vector<SettingInfo> settings) {
-  for (SettingInfo& setting : settings) {
-    const std::string_view name = setting.name;
-    if (name.starts_with("sweeps_") || name.starts_with("smoothing_")) setting.tunable.reset();
-  }
-  return settings;
-}
-
-}  // namespace
-
 Backend fast_projection_row() {
   return {.name = "fast_projection",
           .summary = "Algorithm 1 of Goldenthal et al. 2007",
           .knob = Knob::strain_limit,
           .contestant = true,
-          .settings = without_tuned_sweeps(setting_infos(FastProjection::fields())),
+          .settings = setting_infos(FastProjection::fields()),
           .make = make_filter_stepper<FastProjection>,
           .direction = Direction::current,
           .citation = "Goldenthal et al. 2007",
@@ -265,7 +256,7 @@ Backend fast_projection_bdf2_row() {
   FastProjection::Settings defaults;
   defaults.min_iterations = 1;
   defaults.smoothing_sweeps = 30;
-  row.settings = setting_infos(FastProjection::fields(), defaults);
+  row.settings = setting_infos(FastProjection::fields(true), defaults);
   row.citation = "Goldenthal et al. 2007; English and Bridson 2008";
   row.label = "fast projection in BDF2";
   row.shows_iterates = false;  // sweeps have no multipliers to show

@@ -35,7 +35,8 @@ class FastProjection final : public VelocityFilter {
     double first_forcing = 1e-2;
     std::string_view linear_solver = "auto";
   };
-  static SettingFields<Settings> fields();
+  // searched_sweeps: `bench tune` looks for their number and target, too. Algorithm 1 has none.
+  static SettingFields<Settings> fields(bool searched_sweeps = false);
   FastProjection(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
   void heed(Contacts* contacts) override;

@@ -82,6 +82,12 @@ TEST(TuneSearch, FindsTheLowestPointOfAValleyAcrossTwoSettings) {
   EXPECT_LE(without_spread, valleys * 60 / 100) << "the spread sets are of no use any more";
 }
 
+TEST(TuneSearch, TakesMoreSettingsThanItsSequenceHasDimensions) {
+  const std::vector<TunedNumber> many(20, {"relaxation", 1, {0.5, 1.95}, false});
+  const auto seconds = [](const Values& v, double) { return std::optional(1 + v[0]); };
+  EXPECT_LE(tune_values(many, seconds).evaluations, TuneRules{}.budget);
+}
+
 TEST(TuneSearch, KeepsWhatIsAsGoodAsAnything) {
   const auto flat = [](const Values& v, double) {
     return std::optional(1 + 0.02 * std::sin(50 * v[0] + 9 * v[1]));  // 4 %: below what counts
@@ -298,6 +304,10 @@ TEST(Tune, AnEntryIsRefusedOnceItsRuleHasChanged) {
     return "";
   };
   EXPECT_EQ(message(entry), "");
+  TunedEntry without_rule = entry;
+  without_rule.rule = nullptr;
+  EXPECT_NE(message(without_rule).find("'rule' must be an object"), std::string::npos)
+      << message(without_rule);
   TunedEntry heavier = entry;
   heavier.rule["scene_parameters"]["gravity"] = 1.62;
   EXPECT_FALSE(up_to_date(heavier));
