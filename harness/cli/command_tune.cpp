@@ -25,7 +25,7 @@ using nlohmann::json;
 
 struct TuneCommand {
   std::string solver, scene, out;
-  int budget = TuneRules{}.budget;
+  int budget = 0;  // 0: the rule's
   double timeout = TuneOptions{}.timeout;
   bool no_wait = false, quiet = false, again = false;
 };
@@ -122,7 +122,7 @@ int run_tune(const TuneCommand& options) {
   catch_interrupts();
   const TimingLock lock(!options.no_wait);
   TuneOptions tuning;
-  tuning.rules.budget = options.budget;
+  if (options.budget > 0) tuning.rules.budget = tuning.trials_each = options.budget;
   tuning.timeout = options.timeout;
   tuning.interrupted = interrupted;
   if (!options.quiet) tuning.tell = [](const std::string& line) { std::cerr << line << '\n'; };
@@ -159,7 +159,9 @@ void add_tune_command(const Command& program) {
   command.option("--scene", options.scene, "chain, drape or patch only", "NAME");
   command
       .option("--budget", options.budget,
-              "sets of settings to try, for each solver and scene; default 40", "N")
+              "sets of settings to try, for each solver and scene; default 10 for each setting, 40 "
+              "at most",
+              "N")
       .within(4, 10000);
   command.option("--timeout", options.timeout, "seconds a run may take; default 10", "S")
       .positive();

@@ -41,8 +41,8 @@ json first_difference(const TunedEntry& entry) {
 const std::vector<SweepSpec>& tuning_scenes() {
   // The drape is hardest from 0.3 s on, where it has sheared.
   static const std::vector<SweepSpec> scenes{tuning_scene("chain", {50, 200}, 0.04, 1),
-                                             tuning_scene("drape", {17, 35}, 0.02, 0.6),
-                                             tuning_scene("patch", {13, 23}, 0.02, 1)};
+                                             tuning_scene("drape", {25, 55}, 0.02, 0.6),
+                                             tuning_scene("patch", {13, 19}, 0.02, 0.4)};
   return scenes;
 }
 
@@ -54,7 +54,9 @@ json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver) {
   for (const auto& info : solver.settings) {
     json& setting = settings[info.name];
     std::visit([&setting](const auto& initial) { setting["default"] = initial; }, info.initial);
-    if (info.tunable) setting["range"] = {info.tunable->least, info.tunable->largest};
+    if (!info.tunable) continue;
+    setting["range"] = {info.tunable->least, info.tunable->largest};
+    if (info.tunable->bound) setting["bound"] = *info.tunable->bound;
   }
   return {{"scene", scene.scene},
           {"scene_parameters", parameters},
@@ -62,6 +64,7 @@ json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver) {
           {"limits", scene.limits},
           {"steps", {scene.coarsest, scene.finest}},
           {"error", headline_error},
+          {"search", "dynamically dimensioned search"},
           {"settings", settings}};
 }
 

@@ -44,9 +44,11 @@ class Tuner {
     suite.sweeps[0].contestants = {{solver, solver}};
     for (Search& search : plan(suite, {})) places_.push_back({.search = std::move(search)});
     numbers_ = tunable_numbers(*inextensible::find_backend(solver));
+    options_.rules.budget =
+        std::min(options.rules.budget, options.trials_each * static_cast<int>(numbers_.size()));
     entry_.kind = find_scene(scene.scene)->kind();
     entry_.solver = solver;
-    entry_.budget = options.rules.budget;
+    entry_.budget = options_.rules.budget;
     entry_.rule = tuning_rule(scene, *inextensible::find_backend(solver));
   }
 

@@ -14,7 +14,8 @@ namespace harness {
 
 struct TuneOptions {
   TuneRules rules;
-  double timeout = 10;  // s, of a run
+  int trials_each = 10;  // of rules.budget at most so many for each setting
+  double timeout = 10;   // s, of a run
   // Where a solver's best run takes longer than this as it is, the place is left out, but for one.
   double longest_run = 0.4;  // s
   std::function<bool()> interrupted = nullptr;

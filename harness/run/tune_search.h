@@ -1,7 +1,7 @@
-// The search for a method's best settings by one rule for all: sets spread over all ranges at once,
-// since settings interact (a relaxation and a target), then coordinate descent from the best of
-// them, with a step along what a round has changed. Knows no solver: what a set of settings costs,
-// a function says.
+// The search for a method's best settings by one rule for all, dynamically dimensioned search
+// (Tolson and Shoemaker, Water Resources Research 43, 2007): each trial moves some settings of the
+// best set by a normal distance, all of them at first and one in the end, since settings interact
+// (a relaxation and a target). Knows no solver: what a set of settings costs, a function says.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ namespace harness {
 struct TunedNumber {
   std::string name;
   double initial = 0;
-  inextensible::Range range;
+  inextensible::SearchRange range;
   bool whole = false;
 };
 
@@ -32,10 +32,8 @@ using TuneObjective = std::function<std::optional<double>(const Values&, double 
 
 struct TuneRules {
   int budget = 40;           // evaluations at most, of all settings together
-  int spread = 4;            // sets for each setting that are spread over all ranges, ...
-  double most_spread = 0.4;  // ... but at most this part of the budget
-  int rounds = 2;            // over all settings
-  double least_gain = 0.05;  // a change must make it faster by more than this, twice
+  double reach = 0.2;        // standard deviation of a move, over the range
+  double least_gain = 0.05;  // all of it must be faster than the defaults by more than this
 };
 
 struct TuneOutcome {
@@ -48,8 +46,9 @@ struct TuneOutcome {
 TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
                         const TuneRules& rules = {});
 
-// Where a value lies in its range, from 0 to 1, and back: logarithmic where the range spans a
-// factor of ten, for counts too (of 1 + count).
+// Where a value lies in its range, from 0 to 1, and back: by the logarithm of the distance to its
+// bound where it has one; logarithmic where it spans a factor of ten, for counts too (of 1 +
+// count).
 double position_of(const TunedNumber& number, double value);
 double value_at(const TunedNumber& number, double position);
 

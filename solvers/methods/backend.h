@@ -25,6 +25,14 @@ struct Range {
   bool contains(double number) const;  // false on NaN and infinities
 };
 
+// Where a search for a setting's best value may look. What lies beyond its largest end and must not
+// be reached, if anything: then the distance to that is what matters, as that of a relaxation to 2
+// (Young 1954).
+struct SearchRange {
+  double least = 0, largest = 0;
+  std::optional<double> bound = {};
+};
+
 // A setting of one backend, with its default, what may be chosen (for words), and between which
 // numbers.
 struct SettingInfo {
@@ -33,8 +41,8 @@ struct SettingInfo {
   const char* meaning;
   std::vector<const char*> choices = {};
   Range range = {};
-  bool whole = false;                 // a count: integers only
-  std::optional<Range> tunable = {};  // where a search for the best value may look
+  bool whole = false;  // a count: integers only
+  std::optional<SearchRange> tunable = {};
 };
 
 using Settings = std::map<std::string, std::variant<double, std::string>>;

@@ -194,7 +194,7 @@ double FastProjection::damped_prediction(double damping) const {
 
 SettingFields<FastProjection::Settings> FastProjection::fields(bool searched_sweeps) {
   using S = Settings;
-  const auto searched = [searched_sweeps](Range range) {
+  const auto searched = [searched_sweeps](SearchRange range) {
     return searched_sweeps ? std::optional(range) : std::nullopt;
   };
   return {
@@ -214,7 +214,7 @@ SettingFields<FastProjection::Settings> FastProjection::fields(bool searched_swe
        searched({0, 120})},
       {"smoothing_target", &S::smoothing_target,
        "an edge that a sweep corrects is brought to this fraction of the strain limit", fraction,
-       searched(fraction)},
+       searched(tunable_fraction)},
       {"smoothing_relaxation", &S::smoothing_relaxation, "times a sweep's correction",
        relaxation_range},
       {"first_forcing", &S::first_forcing,

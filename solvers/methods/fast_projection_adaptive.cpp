@@ -158,15 +158,15 @@ SettingFields<FastProjectionAdaptive::Settings> FastProjectionAdaptive::fields()
   return {
       {"max_iterations", &S::max_iterations, "rounds a step before it is refused", at_least_one},
       {"sweeps", &S::sweeps, "colored Gauss-Seidel sweeps of a round, at most", count_from_zero,
-       Range{0, 60}},
+       SearchRange{0, 60}},
       {"relaxation", &S::relaxation, "times a sweep's correction", relaxation_range,
        tunable_relaxation},
       {"target", &S::target,
        "links and the whole cloth are projected to this fraction of the strain limit", fraction,
-       fraction},
+       tunable_fraction},
       {"sweep_target", &S::sweep_target,
        "an edge that a sweep corrects is brought to this fraction of the strain limit", fraction,
-       fraction},
+       tunable_fraction},
       {"forcing", &S::forcing,
        "residual of a linear solve by conjugate gradients or in mixed precision, of the "
        "right-hand side",

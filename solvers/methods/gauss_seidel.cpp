@@ -99,7 +99,7 @@ SettingFields<GaussSeidel::Settings> GaussSeidel::fields() {
   return {
       {"max_iterations", &S::max_iterations, "sweeps a step before it is refused", at_least_one},
       {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit",
-       fraction, fraction},
+       fraction, tunable_fraction},
       {"relaxation", &S::relaxation, "times the correction", relaxation_range, tunable_relaxation}};
 }
 

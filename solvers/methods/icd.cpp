@@ -242,9 +242,9 @@ SettingFields<Icd::Settings> Icd::fields() {
       {"direction_tolerance", &S::direction_tolerance,
        "largest |F| of a vertex, in strain limit times shortest rest length; above 1 the direction "
        "may be that of an iterate short of the end",
-       positive, Range{0.01, 100}},
+       positive, SearchRange{0.01, 100}},
       {"cg_tolerance", &S::cg_tolerance, "accuracy of a Newton step by projected_cg",
-       Range{0, 1, true}, Range{0.001, 0.95}},
+       Range{0, 1, true}, SearchRange{0.001, 0.95}},
       {"linear_solver",
        &S::linear_solver,
        "of the KKT system",

@@ -288,7 +288,8 @@ SettingFields<ImplicitSprings::Settings> ImplicitSprings::fields() {
       {"max_iterations", &S::max_iterations, "Newton iterations a step before it is refused",
        at_least_one},
       {"newton_tolerance", &S::newton_tolerance,
-       "last Newton step, in strain limit times shortest rest length", positive, Range{0.01, 10}},
+       "last Newton step, in strain limit times shortest rest length", positive,
+       SearchRange{0.01, 10}},
       {"start",
        &S::start,
        "where Newton starts: at the lowest of free flight, last positions and their extrapolation "
@@ -306,7 +307,7 @@ SettingFields<ImplicitSprings::Settings> ImplicitSprings::fields() {
        {"linearized", "current"}},
       {"reuse", &S::reuse,
        "a Newton step below this many tolerances keeps its factorization for the next; 0: never",
-       Range{0}, Range{0, 100}},
+       Range{0}, SearchRange{0, 100}},
       {"linear_solver", &S::linear_solver, "factorization of the Hessian", {}, {}, solvers}};
 }
 

@@ -48,7 +48,7 @@ SettingFields<Jacobi::Settings> Jacobi::fields() {
   return {
       {"max_iterations", &S::max_iterations, "sweeps a step before it is refused", at_least_one},
       {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit",
-       fraction, fraction},
+       fraction, tunable_fraction},
       {"relaxation", &S::relaxation, "times the averaged correction", relaxation_range,
        tunable_relaxation}};
 }

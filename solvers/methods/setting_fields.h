@@ -14,6 +14,7 @@ namespace inextensible {
 
 constexpr Range positive{.open = true};
 constexpr Range fraction{0, 1};
+constexpr SearchRange tunable_fraction{0, 1};
 constexpr double most_iterations = 1e9;  // that an int holds
 constexpr Range at_least_one{1, most_iterations};
 constexpr Range count_from_zero{0, most_iterations};
@@ -25,7 +26,7 @@ struct SettingField {
   std::variant<double Struct::*, int Struct::*, std::string_view Struct::*> member;
   const char* meaning;
   Range range = {};
-  std::optional<Range> tunable = {};
+  std::optional<SearchRange> tunable = {};
   std::vector<const char*> choices = {};
 };
 template <class Struct>
@@ -116,19 +117,19 @@ SettingField<Struct> schur_solver_field() {
 
 constexpr const char* least_iterations =
     "projections a step even where the candidate is permissible; 1 keeps slack from building up";
-constexpr Range tunable_least_iterations{0, 2};
+constexpr SearchRange tunable_least_iterations{0, 2};
 
 // Of methods that solve for all edges at once. Below 1, or they would only come closer and closer
 // to the limit.
 constexpr const char* projection_target =
     "strained edges are brought to this fraction of the strain limit, those below it are kept";
 constexpr Range below_limit{0, 0.99};
-constexpr Range tunable_below_limit{0, 0.9};
+constexpr SearchRange tunable_below_limit{0, 0.9};
 // Of linear solvers that iterate.
 constexpr Range forcing_range{0, 1, true};
-constexpr Range tunable_forcing{1e-4, 0.3};
+constexpr SearchRange tunable_forcing{1e-4, 0.3};
 constexpr Range relaxation_range{0, 2, true};
 // A chain of 640 links is relaxed best at 1.99.
-constexpr Range tunable_relaxation{0.5, 1.995};
+constexpr SearchRange tunable_relaxation{0.5, 1.995, 2};
 
 }  // namespace inextensible

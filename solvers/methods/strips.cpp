@@ -43,17 +43,18 @@ StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Positions& 
 
 SettingFields<Strips::Settings> Strips::fields() {
   using S = Settings;
-  return {{"max_iterations", &S::max_iterations,
-           "passes over all threads a step before it is refused", at_least_one},
-          {"sweeps", &S::sweeps, "colored Gauss-Seidel sweeps between two passes, at most",
-           count_from_zero, Range{0, 60}},
-          {"relaxation", &S::relaxation, "times a sweep's correction", relaxation_range,
-           tunable_relaxation},
-          {"target", &S::target,
-           "a thread's links are brought to this fraction of the strain limit", fraction, fraction},
-          {"sweep_target", &S::sweep_target,
-           "an edge that a sweep corrects is brought to this fraction of the strain limit",
-           fraction, fraction}};
+  return {
+      {"max_iterations", &S::max_iterations, "passes over all threads a step before it is refused",
+       at_least_one},
+      {"sweeps", &S::sweeps, "colored Gauss-Seidel sweeps between two passes, at most",
+       count_from_zero, SearchRange{0, 60}},
+      {"relaxation", &S::relaxation, "times a sweep's correction", relaxation_range,
+       tunable_relaxation},
+      {"target", &S::target, "a thread's links are brought to this fraction of the strain limit",
+       fraction, tunable_fraction},
+      {"sweep_target", &S::sweep_target,
+       "an edge that a sweep corrects is brought to this fraction of the strain limit", fraction,
+       tunable_fraction}};
 }
 
 Backend strips_row() {

@@ -108,7 +108,7 @@ StepResult XpbdSmallSteps::apply(const Positions& /*x_start*/, double /*h*/, Pos
 SettingFields<XpbdSmallSteps::Settings> XpbdSmallSteps::fields() {
   using S = Settings;
   return {
-      {"sweeps", &S::sweeps, "colored Gauss-Seidel sweeps a step", at_least_one, Range{1, 8}},
+      {"sweeps", &S::sweeps, "colored Gauss-Seidel sweeps a step", at_least_one, SearchRange{1, 8}},
       {"relaxation", &S::relaxation, "times a correction", relaxation_range, tunable_relaxation},
       {"attachments",
        &S::attachments,
