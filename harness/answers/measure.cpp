@@ -214,6 +214,16 @@ AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
   return outcome;
 }
 
+namespace {
+
+// "" where it is null.
+std::string text_in(const nlohmann::json& object, const char* key) {
+  const nlohmann::json& value = object.at(key);
+  return value.is_string() ? value.get<std::string>() : "";
+}
+
+}  // namespace
+
 nlohmann::json answers_document(nlohmann::json context, const std::vector<AnswerRun>& plan,
                                 const AnswerOutcome& outcome,
                                 const std::vector<std::string>& command) {
@@ -242,23 +252,27 @@ nlohmann::json answers_document(nlohmann::json context, const std::vector<Answer
           {"answers", std::move(answers)},      {"rows", std::move(rows)}};
 }
 
-void print_answers(std::ostream& out, const AnswerOutcome& outcome) {
-  std::string last;
-  for (const AnswerRow& row : outcome.rows) {
-    if (row.answer != std::exchange(last, row.answer)) {
-      const KnownAnswer& answer = *find_answer(row.answer);
-      out << '\n'
-          << answer.name << " (" << answer.scene << "): " << answer.quantity << "\n  exact "
-          << number_text(exact_value(answer), 6) << ", " << answer.source << '\n';
+void print_answers(std::ostream& out, const nlohmann::json& document) {
+  const nlohmann::json& rows = document.at("rows");
+  for (const nlohmann::json& answer : document.at("answers")) {
+    out << '\n'
+        << text_in(answer, "name") << " (" << text_in(answer, "scene")
+        << "): " << text_in(answer, "quantity") << "\n  exact "
+        << number_text(answer.at("exact").get<double>(), 6) << ", " << text_in(answer, "source")
+        << '\n';
+    for (const nlohmann::json& row : rows) {
+      if (row.at("answer") != answer.at("name")) continue;
+      out << "  " << std::left << std::setw(32) << text_in(row, "solver") << "h = " << std::setw(12)
+          << row.at("step").get<double>();
+      if (row.at("value").is_number()) {
+        out << std::setw(14) << number_text(row.at("value").get<double>(), 6);
+        if (row.at("order").is_number())
+          out << "order " << number_text(row.at("order").get<double>(), 2);
+      } else {
+        out << text_in(row, "detail");
+      }
+      out << '\n';
     }
-    out << "  " << std::left << std::setw(26) << row.solver << "h = " << std::setw(12) << row.step;
-    if (std::isfinite(row.value)) {
-      out << std::setw(14) << number_text(row.value, 6);
-      if (std::isfinite(row.order)) out << "order " << number_text(row.order, 2);
-    } else {
-      out << row.detail;
-    }
-    out << '\n';
   }
 }
 

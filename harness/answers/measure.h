@@ -45,6 +45,7 @@ double exact_value(const KnownAnswer& answer);
 nlohmann::json answers_document(nlohmann::json context, const std::vector<AnswerRun>& plan,
                                 const AnswerOutcome& outcome,
                                 const std::vector<std::string>& command);
-void print_answers(std::ostream& out, const AnswerOutcome& outcome);
+// Of such a document.
+void print_answers(std::ostream& out, const nlohmann::json& document);
 
 }  // namespace harness

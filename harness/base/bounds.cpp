@@ -9,13 +9,15 @@ namespace harness {
 std::string Bounds::text() const {
   std::string words = whole ? "a whole number" : "a number";
   if (least > -huge) words += (above ? " above " : " of at least ") + number_text(least);
-  if (most < huge) words += (least > -huge ? " and" : "") + (" at most " + number_text(most));
+  if (most < huge)
+    words +=
+        (least > -huge ? " and" : "") + ((below ? " below " : " at most ") + number_text(most));
   return words;
 }
 
 bool Bounds::hold(double number) const {
-  return std::isfinite(number) && (above ? number > least : number >= least) && number <= most &&
-         (!whole || number == std::floor(number));
+  return std::isfinite(number) && (above ? number > least : number >= least) &&
+         (below ? number < most : number <= most) && (!whole || number == std::floor(number));
 }
 
 }  // namespace harness

@@ -12,9 +12,12 @@ struct Bounds {
   double least = -huge;
   bool above = false;  // least itself is not allowed
   double most = huge;
+  bool below = false;  // most itself is not allowed
   bool whole = false;
 
   static Bounds positive() { return {.least = 0, .above = true}; }
+  // A permissible strain: at 1 an edge may vanish.
+  static Bounds strain() { return {.least = 0, .above = true, .most = 1, .below = true}; }
   static Bounds at_least(double least) { return {.least = least}; }
   // One that fits into an int.
   static Bounds whole_number(double least) {

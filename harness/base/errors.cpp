@@ -32,22 +32,26 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 UsageError::UsageError(const std::string& message)
     : std::runtime_error(shortened(message, longest_message)) {}
 
-UsageError unknown_name(std::string_view kind, std::string_view name,
-                        const std::vector<std::string>& known) {
-  std::string message = "no " + std::string(kind) + " '" + shortened(std::string(name)) + "'";
+std::string closest(std::string_view name, const std::vector<std::string>& known) {
   name = name.substr(0, longest_name);
-  const std::string* best = nullptr;
+  std::string best;
   std::size_t least = std::max<std::size_t>(2, name.size() / 3) + 1;
   for (const std::string& candidate : known) {
     const bool prefix = name.size() >= 2 && candidate.starts_with(name);
     const std::size_t edits = edit_distance(name, candidate);
     const std::size_t distance = prefix ? std::min<std::size_t>(edits, 2) : edits;
-    if (distance < least) {
-      least = distance;
-      best = &candidate;
-    }
+    if (distance >= least) continue;
+    least = distance;
+    best = candidate;
   }
-  if (best) message += "; did you mean '" + *best + "'?";
+  return best;
+}
+
+UsageError unknown_name(std::string_view kind, std::string_view name,
+                        const std::vector<std::string>& known) {
+  std::string message = "no " + std::string(kind) + " '" + shortened(std::string(name)) + "'";
+  const std::string best = closest(name, known);
+  if (!best.empty()) message += "; did you mean '" + best + "'?";
   message += " (known: ";
   for (std::size_t i = 0; i < known.size(); ++i) message += (i ? ", " : "") + known[i];
   return UsageError(message + ")");

@@ -14,6 +14,9 @@ class UsageError : public std::runtime_error {
   explicit UsageError(const std::string& message);
 };
 
+// The known name that a mistyped one is nearest to; empty if none is near.
+std::string closest(std::string_view name, const std::vector<std::string>& known);
+
 // "no solver 'fast'; did you mean 'fast_projection'? (known: a, b, c)"
 [[nodiscard]] UsageError unknown_name(std::string_view kind, std::string_view name,
                                       const std::vector<std::string>& known);

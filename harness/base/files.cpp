@@ -145,9 +145,8 @@ void check_writable(const std::string& path) {
   }
   const fs::path folder = folder_of(place);
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (error)
-    throw UsageError("cannot make the folder '" + folder.string() + "': " + error.message());
+  if (!fs::is_directory(folder, error))
+    throw UsageError("cannot write '" + path + "': there is no folder '" + folder.string() + "'");
   if (Beside(place).file() < 0)
     throw UsageError("cannot write '" + path + "': " + std::strerror(errno));
 }

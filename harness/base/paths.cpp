@@ -27,8 +27,11 @@ std::string source_path(const std::string& relative) {
 }
 
 std::string local_result(const std::string& name) {
-  const std::string path = "results/local/" + name;
-  return share_folder().empty() ? source_path(path) : path;
+  const std::string folder = "results/local";
+  const std::string place = share_folder().empty() ? source_path(folder) : folder;
+  std::error_code error;  // whoever writes there says what is wrong
+  std::filesystem::create_directories(place, error);
+  return place + "/" + name;
 }
 
 }  // namespace harness

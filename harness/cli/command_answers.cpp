@@ -49,8 +49,9 @@ int answers(const AnswersOptions& given, const std::vector<std::string>& command
     }
   };
   const AnswerOutcome outcome = run_answers(plan, given.timeout, events);
-  write_atomically(out, result_text(answers_document(machine_context(), plan, outcome, command)));
-  print_answers(std::cout, outcome);
+  const nlohmann::json document = answers_document(machine_context(), plan, outcome, command);
+  write_atomically(out, result_text(document));
+  print_answers(std::cout, document);
   std::cout << "\nwritten:\n" << out << std::endl;
   if (!outcome.complete) return interrupted_exit;
   if (!given.output.no_plots && draw({out}) != 0)

@@ -1,7 +1,11 @@
 // bench claims: the paper's claims, decided from result files.
+#include <algorithm>
 #include <iostream>
+#include <string_view>
 
+#include "harness/base/errors.h"
 #include "harness/claims/claims.h"
+#include "harness/claims/verdicts.h"
 #include "harness/cli/commands.h"
 #include "harness/points/result_file.h"
 
@@ -21,7 +25,13 @@ void add_claims_command(const Command& program) {
     std::vector<nlohmann::json> results;
     results.reserve(given->files.size());
     for (const std::string& file : given->files) results.push_back(read_result(file));
-    (given->markdown ? print_claims_markdown : print_claims)(std::cout, judge_claims(results));
+    const std::vector<ClaimVerdict> verdicts = judge_claims(results);
+    if (std::all_of(verdicts.begin(), verdicts.end(), [](const ClaimVerdict& claim) {
+          return claim.verdict == std::string_view(claims::not_measured);
+        }))
+      throw UsageError("nothing in '" + given->files.front() +
+                       "' is what a claim is about; results/*.json are");
+    (given->markdown ? print_claims_markdown : print_claims)(std::cout, verdicts);
     return success;
   });
 }

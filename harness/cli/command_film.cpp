@@ -5,12 +5,12 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <sstream>
 #include <stdexcept>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
+#include "harness/base/paths.h"
 #include "harness/base/temporary_folder.h"
 #include "harness/base/text.h"
 #include "harness/cli/commands.h"
@@ -35,44 +35,19 @@ constexpr int default_width = 480;
 // Rays a pixel, each way: a still can take its time, a film has hundreds of pictures.
 constexpr int still_samples = 6, film_samples = 3;
 
-double number_in(const std::string& text, const std::string& option) {
-  std::size_t read = 0;
-  double value = 0;
-  try {
-    value = std::stod(text, &read);
-  } catch (const std::exception&) {
-    read = 0;
-  }
-  if (read == 0 || read != text.size())
-    throw UsageError(option + ": '" + text + "' is not a number");
-  return value;
-}
-
-std::vector<double> numbers_in(const std::string& text, const std::string& option) {
-  std::vector<double> all;
-  std::istringstream list(text);
-  for (std::string item; std::getline(list, item, ',');) all.push_back(number_in(item, option));
-  return all;
-}
-
 FilmSpec film_spec(const FilmOptions& given) {
   FilmSpec spec;
   spec.scene = scene_of(given.scene, given.words);
   const auto type = find_scene(spec.scene);
   if (!type) throw unknown_name("scene", spec.scene, names_of(scene_types()));
   spec.parameters = complete_parameters(*type, parameters_of(given.words));
-  std::istringstream names(given.solver);
-  for (std::string name; std::getline(names, name, ',');) {
-    (void)checked_backend(name, "--solver");
-    spec.solvers.push_back({name, name});
+  check_solver_pattern(given.solver);
+  const Pattern wanted("--solver", given.solver);
+  for (const auto& backend : inextensible::backends()) {
+    if (wanted.matches(backend.name)) spec.solvers.push_back({backend.name, backend.name});
   }
-  if (spec.solvers.empty()) throw UsageError("--solver names none");
   tune(spec.solvers, read_tuned_up_to_date("tuned.json"), type->kind(), {}, Untuned::none);
-  spec.strain_limits = numbers_in(given.limits, "--strain");
-  for (const double limit : spec.strain_limits) {
-    if (!(limit > 0)) throw UsageError("--strain: a limit must be above 0");
-  }
-  if (spec.strain_limits.empty()) throw UsageError("--strain has no limit");
+  spec.strain_limits = numbers_of("--limit", given.limits, Bounds::strain());
   spec.step = given.step;
   spec.frames_per_second = given.frames_per_second;
   return spec;
@@ -122,8 +97,8 @@ std::vector<std::size_t> shown_frames(const FilmOptions& given, const FilmSpec& 
   }
   if (given.stills.empty()) return {0, last / 3, 2 * last / 3, last};
   const double end = static_cast<double>(last) / spec.frames_per_second;
-  for (const double time : numbers_in(given.stills, "--stills")) {
-    if (!(time >= 0) || time > end + 0.5 / spec.frames_per_second)
+  for (const double time : numbers_of("--stills", given.stills, Bounds::at_least(0))) {
+    if (time > end + 0.5 / spec.frames_per_second)
       throw UsageError("--stills: " + number_text(time) + " s is not within the film, 0 to " +
                        number_text(end) + " s (--set duration=SECONDS changes that)");
     frames.push_back(static_cast<std::size_t>(std::lround(time * spec.frames_per_second)));
@@ -173,8 +148,8 @@ Writer writer_of(const FilmOptions& given, const std::string& extension) {
 std::string default_output(const FilmOptions& given) {
   const std::string scene = given.scene.substr(0, given.scene.find(':'));
   const auto numbered = [&](int i) {
-    return "results/local/film-" + scene + (i == 1 ? "" : "-" + std::to_string(i)) +
-           (given.stills.empty() ? ".webp" : ".png");
+    return local_result("film-" + scene + (i == 1 ? "" : "-" + std::to_string(i)) +
+                        (given.stills.empty() ? ".webp" : ".png"));
   };
   int free = 1;
   while (std::filesystem::exists(numbered(free))) ++free;
@@ -220,9 +195,9 @@ void add_film_command(const Command& program) {
       program.subcommand("film", "a scene as stills, a film, or files for ParaView and Blender");
   command.option("--scene", given->scene, "which (bench list scenes), or mesh:FILE.obj", "SCENE");
   add_scene_words(command, given->words);
-  command.option("--solver", given->solver, "one or several between commas, side by side", "NAMES");
-  command.option("--strain", given->limits, "permitted strain, one or several between commas",
-                 "LIMITS");
+  command.alternatives("--solver", given->solver, "all whose name matches, side by side");
+  command.option("--limit,--strain", given->limits,
+                 "permitted strain, one or several between commas", "STRAIN,...");
   command.option("--step", given->step, "s; shortened to a whole part of a frame", "S").positive();
   command.option("--fps", given->frames_per_second, "frames a second", "N").positive();
   command.option("--stills", given->stills,

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/cli/commands.h"
 
@@ -46,7 +47,7 @@ namespace {
 template <class Value>
 Option add(CLI::App* app, const std::string& name, Value& value, const std::string& help,
            const std::string& type) {
-  CLI::Option* option = app->add_option(name, value, help);
+  CLI::Option* option = app->add_option(name == "--out" ? "-o,--out" : name, value, help);
   if (!type.empty()) option->type_name(type);
   return Option(option);
 }
@@ -81,6 +82,10 @@ Option Command::alternatives(const std::string& name, std::string& value,
                              const std::string& help) const {
   return Option(app_->add_option(name, value, help)
                     ->type_name("REGEX")
+                    ->transform([](std::string text) {
+                      std::replace(text.begin(), text.end(), ',', '|');
+                      return text;
+                    })
                     ->delimiter('|')  // they are joined by it again
                     ->multi_option_policy(CLI::MultiOptionPolicy::Join));
 }
@@ -154,13 +159,42 @@ std::vector<std::string> usual_words(int argc, char** argv) {
   return words;
 }
 
+// What is wrong with the first of the typed words that CLI11 had no place for.
+std::string not_understood(const CLI::App& program, const std::vector<std::string>& typed) {
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  const std::vector<std::string> left = program.remaining(true);
+  const auto first = std::find_if(typed.begin(), typed.end(), [&left](const std::string& word) {
+    return std::find(left.begin(), left.end(), word) != left.end();
+  });
+  const std::string word = first == typed.end() ? left.front() : *first;
+  const std::string of = command == &program ? "" : " of bench " + command->get_name();
+  std::vector<std::string> known;
+  std::string message;
+  if (word.starts_with('-')) {
+    for (const CLI::Option* option : command->get_options())
+      for (const std::string& long_name : option->get_lnames()) known.push_back("--" + long_name);
+    message = "no option '" + shortened(word, 40) + "'" + of;
+  } else if (command == &program) {
+    for (const CLI::App* sub : program.get_subcommands([](const CLI::App*) { return true; }))
+      known.push_back(sub->get_name());
+    message = "no command '" + shortened(word, 40) + "'";
+  } else {
+    return "'" + shortened(word, 40) + "' is one word too many" + of;
+  }
+  const std::string meant = closest(word.substr(0, word.find('=')), known);
+  return message + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
+}
+
 }  // namespace
 
 std::optional<int> CommandLine::read(int argc, char** argv) {
+  const std::vector<std::string> words = usual_words(argc, argv);
   try {
-    std::vector<std::string> words = usual_words(argc, argv);
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
-    app_->parse(std::move(words));
+    app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as CLI11 takes them
+  } catch (const CLI::ExtrasError&) {
+    std::cerr << "bench: " << not_understood(*app_, words) << " (see bench --help)\n";
+    return usage_error;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app_->exit(error);  // --help, --version
     std::cerr << "bench: " << error.what() << " (see bench --help)\n";

@@ -56,7 +56,7 @@ class Command {
                 const std::string& type) const;
   Option option(const std::string& name, std::int64_t& value, const std::string& help,
                 const std::string& type) const;
-  // A regular expression; given several times, what matches one of them.
+  // A regular expression; of several, given one by one or between commas, what matches one of them.
   Option alternatives(const std::string& name, std::string& value, const std::string& help) const;
   // "4G" is 4 GiB.
   Option byte_count(const std::string& name, double& value, const std::string& help) const;

@@ -141,7 +141,7 @@ std::vector<SceneOfReference> given_scenes(const SweepOptions& options) {
   SceneParameters given = parameters_of(options.scene_words);
   std::vector<SceneOfReference> scenes;
   if (options.n.empty()) scenes.emplace_back(scene, complete_parameters(*type, given));
-  for (const double n : sizes_of(options.n)) {
+  for (const double n : numbers_of("--n", options.n, Bounds::whole_number(2))) {
     given[type->resolution] = n;
     scenes.emplace_back(scene, complete_parameters(*type, given));
   }

@@ -76,7 +76,7 @@ void add_report_command(const Command& program) {
       program.subcommand("report", "one page, to open offline, that tells what results found");
   command.option("results", given->results, "result files", "RESULT.json ...").required();
   command.option("--answers", given->answers, "results of bench answers", "ANSWERS.json ...");
-  command.option("-o,--out", given->out, "the page", "report.html").required();
+  command.option("--out", given->out, "the page", "report.html").required();
   command.flag("--still", given->still, "no scenes in motion, which take seconds to simulate");
   command.does([given] { return report(*given); });
 }

@@ -1,15 +1,21 @@
 // bench show: what a result file says, as the sweep said it at its end.
 #include <cmath>
+#include <iomanip>
 #include <iostream>
 #include <map>
+#include <set>
 
 #include "harness/analysis/plane_json.h"
+#include "harness/answers/measure.h"
 #include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/json_reader.h"
 #include "harness/base/text.h"
 #include "harness/cli/commands.h"
 #include "harness/points/noise.h"
 #include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
+#include "harness/points/schema_check.h"
 #include "harness/run/plane_table.h"
 #include "harness/run/report.h"
 
@@ -17,6 +23,17 @@ namespace harness {
 namespace {
 
 using nlohmann::json;
+
+// A result file of any kind.
+json read_shown(const std::string& file) {
+  json document = parse_document(read_file(file, "result file"), file);
+  if (document.is_object() && document.value("schema", json()) == "inextensible-answers/1") {
+    check_schema(document, "answers", file);
+  } else {
+    check_result(document, file);
+  }
+  return document;
+}
 
 void print_head(const json& document, const std::string& file) {
   const json& context = document.at("context");
@@ -26,22 +43,46 @@ void print_head(const json& document, const std::string& file) {
             << build.at("git").get<std::string>().substr(0, 12)
             << (build.value("dirty", false) ? " with changes" : "") << ", "
             << build.at("compiler").get<std::string>() << '\n';
+  if (document.contains("warning")) std::cout << document.at("warning").get<std::string>() << '\n';
   if (!document.value("complete", true)) std::cout << "not complete: the run was interrupted\n";
   if (!is_timed(document)) std::cout << "made with --untimed: its times mean nothing\n";
 }
 
-// How many cells ended how.
+// How each solver's hard cases ended, and which did not end as expected.
 void print_outcomes(const json& document) {
-  std::map<std::string, int> counts;
-  for (const json& cell : document.at("matrix")) ++counts[cell.at("outcome").get<std::string>()];
-  std::cout << document.at("matrix").size() << " cells of hard cases and solvers:\n";
-  for (const auto& [outcome, count] : counts)
-    std::cout << "  " << outcome << " x " << count << '\n';
+  std::map<std::string, std::map<std::string, int>> counts;
+  std::set<std::string> outcomes;
+  for (const json& cell : document.at("matrix")) {
+    const std::string outcome = cell.at("outcome");
+    ++counts[cell.at("solver").get<std::string>()][outcome];
+    outcomes.insert(outcome);
+  }
+  constexpr int name_width = 32, width = 18;
+  std::cout << document.at("matrix").size() << " hard cases and solvers; how they ended:\n"
+            << std::left << std::setw(name_width) << "";
+  for (const std::string& outcome : outcomes) std::cout << std::setw(width) << outcome;
+  std::cout << '\n';
+  for (auto& [solver, ended] : counts) {
+    std::cout << std::setw(name_width) << solver;
+    for (const std::string& outcome : outcomes) std::cout << std::setw(width) << ended[outcome];
+    std::cout << '\n';
+  }
+  for (const json& cell : document.at("matrix")) {
+    if (cell.at("as_expected").get<bool>()) continue;
+    std::cout << "not as expected"
+              << (cell.at("known_difference").get<bool>() ? ", but known: " : ": ")
+              << cell.at("case").get<std::string>() << ", " << cell.at("solver").get<std::string>()
+              << ": " << cell.at("outcome").get<std::string>() << '\n';
+  }
 }
 
 int show(const std::string& file) {
-  const json document = read_result(file);
+  const json document = read_shown(file);
   print_head(document, file);
+  if (document.at("schema") == "inextensible-answers/1") {
+    print_answers(std::cout, document);
+    return success;
+  }
   if (document.at("schema") == "inextensible-stability/1") {
     print_outcomes(document);
     return success;
@@ -59,9 +100,11 @@ int show(const std::string& file) {
 
 // The analysis of the sweep's points, for programs.
 int show_json(const std::string& file) {
-  const json document = read_result(file);
+  const json document = read_shown(file);
   if (document.at("schema") != "inextensible-bench/1")
-    throw UsageError("'" + file + "' is the result of a stability sweep; --json is for sweeps");
+    throw UsageError("'" + file +
+                     "' has no strain limits and errors to be analyzed; --json is for "
+                     "sweeps over strain, resolution and step");
   std::cout << analysis::analysis_of(document).dump(1) << '\n';
   return success;
 }

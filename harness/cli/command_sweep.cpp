@@ -149,12 +149,15 @@ void warn_if_busy(const nlohmann::json& context) {
               << processors << " processors): times will be noisy\n";
 }
 
-void tell_noise(const nlohmann::json& context) {
+void tell_noise(const nlohmann::json& document) {
+  const nlohmann::json& context = document.at("context");
   if (const auto pair = noise_of(context))
     std::cout << "\n"
               << pair->one << " stands there twice: in 95 % of " << pair->places
               << " places its two times are within " << number_text(100 * std::expm1(pair->q95), 2)
               << " % of each other; smaller differences between solvers are none\n";
+  if (document.contains("warning"))
+    std::cout << "\n" << document.at("warning").get<std::string>() << '\n';
   if (!context.at("sentinel").at("noisy").get<bool>()) return;
   std::cout << "\nNOISY: a fixed kernel's time varied by "
             << number_text(100 * context.at("sentinel").at("spread").get<double>(), 2)
@@ -256,7 +259,7 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   print_table(std::cout, outcome.points);
   print_planes(std::cout, document);
   tell_overhead(context["harness_overhead"]);
-  tell_noise(document.at("context"));
+  tell_noise(document);
   std::cout << "\nwritten:\n" << out << std::endl;
   if (!outcome.complete) {
     std::cerr << "bench: interrupted; the same command with --resume goes on from here\n";

@@ -34,12 +34,12 @@ void add_show_command(const Command& program);
 void add_plot_command(const Command& program);
 void add_report_command(const Command& program);
 void add_emit_command(const Command& program);
+void add_choose_command(const Command& program);
 void add_check_command(const Command& program);
 void add_compare_command(const Command& program);
 void add_baseline_command(const Command& program);
 void add_point_command(const Command& program);
 void add_ab_command(const Command& program);
-void add_history_command(const Command& program);
 
 // Of commands that take times: do not wait for another that does so on this machine.
 void add_no_wait(const Command& to, bool& no_wait);

@@ -29,11 +29,9 @@ int report_comparison(const Comparison& comparison, const CompareOptions& option
   if (comparison.any(is_failure)) return unexpected_outcome;
   if (comparison.any(is_regression)) return regression;
   if (!comparison.undecided()) return success;
-  std::cerr << (comparison.unquiet
-                    ? "bench: the machine was too unquiet to compare times; bench ab takes them in "
-                      "pairs\n"
-                    : "bench: times differ, and there are too few runs of best points to say "
-                      "whether that is noise: more --reps\n");
+  std::cerr
+      << "bench: times of best points differ, and too few runs or too unquiet a machine leave "
+         "open whether that is noise: more --reps, or bench ab, which takes them in pairs\n";
   return cannot_decide;
 }
 

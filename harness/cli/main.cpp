@@ -63,6 +63,7 @@ int run(int argc, char** argv) {
       "their own\n"
       "  bench ab OLD_BINARY NEW_BINARY           two builds against each other, in interleaved "
       "runs\n"
+      "  bench choose --scene mesh:IT.obj ...     which solver to take for a scene of yours\n"
       "  bench list                               solvers, scenes and suites with their "
       "settings\n",
       version_text);
@@ -83,10 +84,10 @@ int run(int argc, char** argv) {
   add_baseline_command(program);
   add_point_command(program);
   add_ab_command(program);
-  add_history_command(program);
   add_list_command(program);
   add_merge_command(program);
   add_check_command(program);
+  add_choose_command(program);
   const Command manual = program.subcommand("man", "print the manual page: bench man | man -l -");
   manual.does([&line] {
     std::cout << line.manual();

@@ -165,12 +165,10 @@ std::string suite_path(const SweepOptions& options) {
   return source_path("configs/" + options.profile + ".json");
 }
 
-namespace {
-
-// "20,40,80".
-json numbers_of(const std::string& option, const std::string& text, const Bounds& bounds) {
-  json numbers = json::array();
-  std::istringstream list(text);
+std::vector<double> numbers_of(const std::string& option, const std::string& text,
+                               const Bounds& bounds) {
+  std::vector<double> numbers;
+  std::istringstream list(text + ',');  // so that nothing behind the last comma is an item as well
   for (std::string item; std::getline(list, item, ',');) {
     char* end = nullptr;
     const double number = std::strtod(item.c_str(), &end);
@@ -179,9 +177,10 @@ json numbers_of(const std::string& option, const std::string& text, const Bounds
                        "' must be " + bounds.text());
     numbers.push_back(number);
   }
-  if (numbers.empty()) throw UsageError(option + " is '', must be " + bounds.text());
   return numbers;
 }
+
+namespace {
 
 bool is(const json& sweep, const char* key, const std::string& value) {
   return sweep.is_object() && sweep.value(key, json()) == value;
@@ -225,7 +224,7 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
       for (const auto& [name, value] : given) sweep["scene_parameters"][name] = value;
     }
     if (!options.limits.empty()) {
-      const json limits = numbers_of("--limit", options.limits, Bounds::positive());
+      const json limits = numbers_of("--limit", options.limits, Bounds::strain());
       if (options.sweep == "resolution" && limits.size() > 1)
         throw UsageError("--limit: a resolution sweep has one");
       sweep.erase("limit");
@@ -288,10 +287,6 @@ Suite load_suite(const SweepOptions& given) {
   Contestants left = contestants_of(suite);
   if (find_contestant(left, suite.same) == left.end()) suite.same.clear();
   return suite;
-}
-
-std::vector<double> sizes_of(const std::string& text) {
-  return numbers_of("--n", text, Bounds::whole_number(2));
 }
 
 SweepFilters make_filters(const SweepOptions& options) {

@@ -43,7 +43,9 @@ void check_profile(const std::string& name);
 // A regular expression, each of whose alternatives must match the name of some solver, or of some
 // contestant.
 void check_solver_pattern(const std::string& text, const Contestants& contestants = {});
-std::vector<double> sizes_of(const std::string& text);  // what --n says
+// Of a list between commas, "20,40,80". Throws UsageError, naming the option.
+std::vector<double> numbers_of(const std::string& option, const std::string& text,
+                               const Bounds& bounds);
 std::string suite_path(const SweepOptions& options);
 Suite load_suite(const SweepOptions& options);
 SweepFilters make_filters(const SweepOptions& options);

@@ -65,8 +65,13 @@ void note_errors(const ComparedPoint& base, const ComparedPoint& next, const Gat
 }
 
 void note_times(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
-                double noise, PointChange& result) {
-  const TimeChange times = compare_times(base.samples, next.samples, gate, noise);
+                const Comparability& can, PointChange& result) {
+  TimeChange times = compare_times(base.samples, next.samples, gate, can.noise + can.drift);
+  if (times.change == Change::same && can.drift > 0) {
+    times = compare_times(base.samples, next.samples, gate, can.noise);
+    if (times.change == Change::same) return;
+    times = {Change::ambiguous, times.reason + ": the machine's own speed varied by as much", true};
+  }
   if (times.change == Change::same) return;
   result.reasons.push_back(times.reason);
   const bool settled = is_regression(result.change);
@@ -179,7 +184,8 @@ TimeChange compare_times(const std::vector<double>& base, const std::vector<doub
 
 namespace {
 
-constexpr double same_speed = 0.05;  // of two machines: |log(ratio)| of the fixed kernel's times
+constexpr double same_speed = 0.05;     // of two machines: |log(ratio)| of the fixed kernel's times
+constexpr double unknown_spread = 0.5;  // of a noisy file that does not say
 
 // Of the kernel that sweeps time in between; not-a-number in files without it.
 double kernel_seconds(const nlohmann::json& context) {
@@ -188,16 +194,17 @@ double kernel_seconds(const nlohmann::json& context) {
   return quantile(place->at("seconds").get<std::vector<double>>(), 0.5);
 }
 
-// Two sweeps, one after the other, tell builds apart only where the machine was as fast in both.
-std::string unquiet_reason(const nlohmann::json& base, const nlohmann::json& next) {
+// Two sweeps, one after the other, tell builds apart only by more than the machine's own speed
+// varied: within each of them, and from one to the other.
+double drift_between(const nlohmann::json& base, const nlohmann::json& next) {
+  double drift = 0;
   for (const auto* context : {&base, &next}) {
     const auto place = context->find("sentinel");
     if (place != context->end() && place->value("noisy", false))
-      return "the machine was busy, a fixed kernel's time varied";
+      drift = std::max(drift, std::log1p(place->value("spread", unknown_spread)));
   }
-  const double ratio = kernel_seconds(next) / kernel_seconds(base);
-  if (!(std::abs(std::log(ratio)) > same_speed)) return "";
-  return "the machine was not as fast in both, a fixed kernel takes " + per_cent(ratio);
+  const double ratio = std::abs(std::log(kernel_seconds(next) / kernel_seconds(base)));
+  return ratio > same_speed ? std::max(drift, ratio) : drift;
 }
 
 double q95_of(const nlohmann::json& context) {
@@ -225,11 +232,8 @@ Comparability comparability(const ComparedResult& base, const ComparedResult& ne
   } else if (field(base.context, "cpu_model") != field(next.context, "cpu_model") ||
              base.context.value("num_cpus", 0) != next.context.value("num_cpus", 0)) {
     can.no_times = "the machines differ";
-  } else if (const std::string unquiet = unquiet_reason(base.context, next.context);
-             !unquiet.empty()) {
-    can.no_times = unquiet;
-    can.unquiet = true;
   }
+  can.drift = drift_between(base.context, next.context);
   can.noise = std::max(q95_of(base.context), q95_of(next.context));
   return can;
 }
@@ -248,7 +252,7 @@ PointChange compare_point(const ComparedPoint& base, const ComparedPoint& next, 
   } else {
     if (can.counters()) note_counters(base, next, gate, result);
     note_errors(base, next, gate, result);
-    if (can.times()) note_times(base, next, gate, can.noise, result);
+    if (can.times()) note_times(base, next, gate, can, result);
   }
   return result;
 }
@@ -264,8 +268,8 @@ bool Comparison::any(bool (*is)(Change)) const {
 }
 
 bool Comparison::undecided() const {
-  return unquiet || std::any_of(points.begin(), points.end(),
-                                [](const PointChange& point) { return point.undecided; });
+  return std::any_of(points.begin(), points.end(),
+                     [](const PointChange& point) { return point.undecided; });
 }
 
 Comparison compare(const ComparedResult& base, const ComparedResult& next, const Gate& gate) {
@@ -276,7 +280,10 @@ Comparison compare(const ComparedResult& base, const ComparedResult& next, const
   Comparison comparison;
   if (!can.counters()) comparison.notes.push_back("counters not compared: " + can.no_counters);
   if (!can.times()) comparison.notes.push_back("times not compared: " + can.no_times);
-  comparison.unquiet = can.unquiet;
+  if (can.times() && can.drift > 0)
+    comparison.notes.push_back("the machine's own speed varied by " +
+                               per_cent(std::exp(can.drift)) +
+                               ": times that differ by less are undecided");
   if (!next.complete) comparison.notes.push_back("'" + next.path + "' is of an interrupted run");
   auto left = by_key(next);
   const Tried tried_before(base), tried(next);

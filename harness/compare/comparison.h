@@ -31,7 +31,7 @@ struct PointChange {
   std::string sweep, id;
   std::vector<std::string> reasons;  // one line each, for people
   bool too_few = false;              // nothing to say but that times had too few runs
-  bool undecided = false;            // so, of a best point, which is there to be compared
+  bool undecided = false;            // too few runs, or too unquiet a machine, for a best point
 
   std::string text() const;  // the reasons in one line
 };
@@ -50,8 +50,9 @@ TimeChange compare_times(const std::vector<double>& base, const std::vector<doub
 // What of two results can be compared at all.
 struct Comparability {
   std::string no_counters, no_times;  // why not; "" if they can
-  bool unquiet = false;  // no_times because the machine was not quiet or not the same: undecided
-  double noise = 0;      // of A/A pairs: |log(ratio)|s of times below it are none
+  double noise = 0;                   // of A/A pairs: |log(ratio)|s of times below it are none
+  // What the machine's own speed varied by, |log(ratio)|, beyond that: smaller ones are undecided.
+  double drift = 0;
   bool counters() const { return no_counters.empty(); }
   bool times() const { return no_times.empty(); }
 };
@@ -65,11 +66,10 @@ PointChange compare_point(const ComparedPoint& base, const ComparedPoint& next, 
 struct Comparison {
   std::vector<PointChange> points;  // of the base in its order, then new ones
   std::vector<std::string> notes;   // what was not compared, and why
-  bool unquiet = false;             // times were there and could not be compared
 
   std::size_t count(Change change) const;
   bool any(bool (*is)(Change)) const;
-  bool undecided() const;  // of a best point, or of all
+  bool undecided() const;  // of a best point
 };
 
 // Build, machine or scenes differ so much that no comparison would mean anything.

@@ -76,6 +76,12 @@ std::shared_ptr<const Reference> ReferenceShelf::find(const std::string& scene,
   return place->second;
 }
 
+void ReferenceShelf::put(std::shared_ptr<const Reference> reference) {
+  const std::string key = reference_name(reference->scene, reference->parameters) + " " +
+                          number_text(reference->parameters.at("duration"));
+  known_[key] = std::move(reference);
+}
+
 json ReferenceShelf::summaries() const {
   json list = json::array();
   for (const auto& [name, reference] : known_)

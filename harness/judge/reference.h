@@ -66,6 +66,8 @@ class ReferenceShelf {
   explicit ReferenceShelf(std::string folder) : folder_(std::move(folder)) {}
   // Null if there is none. Not thread safe.
   std::shared_ptr<const Reference> find(const std::string& scene, const SceneParameters& complete);
+  // One that has no file.
+  void put(std::shared_ptr<const Reference> reference);
   // All that find() has found so far.
   nlohmann::json summaries() const;
 

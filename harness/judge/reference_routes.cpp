@@ -192,6 +192,26 @@ void compute_contact(const Task& task) {
   r.positions = fine;
 }
 
+// All but paths and gaps.
+Reference begun(const std::string& name, const SceneParameters& complete, const Scene& scene) {
+  Reference r;
+  r.scene = name;
+  r.parameters = complete;
+  r.times = sample_times(scene.duration);
+  r.expected_order = expected_order(&*find_scene(name));
+  if (r.times.empty())
+    throw UsageError("a reference needs a duration of at least " + number_text(sample_interval) +
+                     " s");
+  return r;
+}
+
+KeepRun keep_in(std::map<std::string, RouteRun>& known) {
+  return [&known](const std::string& name, const auto& compute) -> const RouteRun& {
+    const auto place = known.find(name);
+    return place != known.end() ? place->second : known.emplace(name, compute()).first->second;
+  };
+}
+
 }  // namespace
 
 std::pair<Route, Route> contact_routes(const Scene& scene, double h) {
@@ -204,19 +224,9 @@ Reference compute_reference(const std::string& scene_name, const SceneParameters
   const auto found_type = find_scene(scene_name);
   const SceneType& type = *found_type;
   const Scene scene = type.build(complete);
-  Reference r;
-  r.scene = scene_name;
-  r.parameters = complete;
-  r.times = sample_times(scene.duration);
-  r.expected_order = expected_order(&type);
-  if (r.times.empty())
-    throw UsageError("a reference needs a duration of at least " + number_text(sample_interval) +
-                     " s");
+  Reference r = begun(scene_name, complete, scene);
   std::map<std::string, RouteRun> known;
-  const KeepRun in_memory = [&known](const std::string& name, const auto& compute) -> const auto& {
-    const auto place = known.find(name);
-    return place != known.end() ? place->second : known.emplace(name, compute()).first->second;
-  };
+  const KeepRun in_memory = keep_in(known);
   if (!(finest > 0)) finest = sample_interval / (type.pendulum ? 1024 : 640);
   // The coarsest run of each route must meet the sample times.
   const double coarsest = (type.pendulum ? 4 : 8) * finest, steps = sample_interval / coarsest;
@@ -230,6 +240,29 @@ Reference compute_reference(const std::string& scene_name, const SceneParameters
   } else {
     compute_contact(task);
   }
+  r.positions.resize(valid_samples(r));
+  return r;
+}
+
+Reference finer_run(const std::string& scene_name, const SceneParameters& complete,
+                    const Tell& tell) {
+  const Scene scene = find_scene(scene_name)->build(complete);
+  Reference r = begun(scene_name, complete, scene);
+  std::map<std::string, RouteRun> known;
+  const KeepRun in_memory = keep_in(known);
+  constexpr double h = sample_interval / 16;
+  const Task task{r, scene, h, tell, in_memory};
+  const Route route = first_contact_route(scene, h);
+  const Path& fine = path_to_the_end(task, route, h);
+  const Path& half = path_to_the_end(task, route, 2 * h);
+  const auto starts = moved_starts(scene, perturbation * scene.size, 1);
+  const Path& moved = kept_path(task, starts.front(), 1, route, h, r.times.size());
+  add_gaps(r, scene, {{of_first_step, &fine, &half}, {of_starts, &fine, &moved}});
+  r.method = route.solver + ", strain limit " + number_text(route.limit) + ", step " +
+             number_text(h) + " s, alone";
+  r.second_method = "none";
+  r.observed_order = unknown;
+  r.positions = fine;
   r.positions.resize(valid_samples(r));
   return r;
 }

@@ -22,4 +22,10 @@ Reference compute_reference(const std::string& scene, const SceneParameters& com
                             double finest, const std::function<void(const std::string&)>& tell,
                             const KeepRun& keep = nullptr);
 
+// In its place for a scene of one's own: one route alone, in steps of 1/400 s, whose gap is how far
+// it is from itself at 1/200 s and from a start moved a little. Throws UsageError if it fails too
+// early, and what `tell` throws.
+Reference finer_run(const std::string& scene, const SceneParameters& complete,
+                    const std::function<void(const std::string&)>& tell);
+
 }  // namespace harness

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "harness/base/statistics.h"
+#include "harness/base/text.h"
 #include "harness/points/contestant.h"
 #include "harness/points/point_json.h"
 
@@ -47,6 +48,13 @@ std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
   noise.median = quantile(distances, 0.5);
   noise.q95 = quantile(distances, 0.95);
   return noise;
+}
+
+std::string noise_warning(const PairNoise& noise) {
+  constexpr double most = 0.06;
+  if (noise.q95 <= most) return {};
+  return "noisy: equal programs differ by " + number_text(100 * std::expm1(noise.q95), 2) +
+         " % here, more than the 6 % that a result to be quoted may have";
 }
 
 json to_json(const PairNoise& noise) {

@@ -22,6 +22,9 @@ struct PairNoise {
 // None where `one` and double_of(one) have no place in common.
 std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points, const std::string& one);
 
+// In words, where that is more than a result to be quoted may have, 6 %; else empty.
+std::string noise_warning(const PairNoise& noise);
+
 // `context.noise` of a result file; none in files without a pair.
 nlohmann::json to_json(const PairNoise& noise);
 std::optional<PairNoise> noise_of(const nlohmann::json& context);

@@ -54,7 +54,8 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
   context["seed"] = suite.seed;
   if (!suite.tuned_file.empty())
     context["tuned"] = {{"file", suite.tuned_file}, {"hash", suite.tuned_hash}};
-  if (const auto noise = pair_noise(points, suite.same)) context["noise"] = to_json(*noise);
+  const auto noise = pair_noise(points, suite.same);
+  if (noise) context["noise"] = to_json(*noise);
   context["retaken_samples"] = retaken_samples(points);
   json list = json::array(), benchmarks = json::array();
   int family = 0;
@@ -62,18 +63,21 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
     list.push_back(to_json(point));
     if (point.ok()) add_benchmarks(benchmarks, point, family++);
   }
-  return {{"schema", "inextensible-bench/1"},
-          {"complete", complete},
-          {"context", context},
-          {"legend", legend(contestants_of(suite))},
-          {"points", list},
-          {"references", std::move(references)},
-          {"benchmarks", benchmarks}};
+  json document = {{"schema", "inextensible-bench/1"},
+                   {"complete", complete},
+                   {"context", context},
+                   {"legend", legend(contestants_of(suite))},
+                   {"points", list},
+                   {"references", std::move(references)},
+                   {"benchmarks", benchmarks}};
+  if (const std::string warning = noise ? noise_warning(*noise) : ""; !warning.empty())
+    document["warning"] = warning;
+  return document;
 }
 
 std::string result_text(const json& document) {
   nlohmann::ordered_json ordered;
-  for (const char* first : {"schema", "complete", "context", "legend"})
+  for (const char* first : {"warning", "schema", "complete", "context", "legend"})
     if (document.contains(first)) ordered[first] = document.at(first);
   for (const auto& [key, value] : document.items()) ordered[key] = value;
   return document_text(ordered);

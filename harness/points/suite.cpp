@@ -58,8 +58,8 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
                      unknown_name("scene", spec.scene, names_of(scene_types())).what());
   const json* solvers = reader.find("solvers");
   spec.contestants = read_contestants(solvers, reader.find("also"), type->kind() == "chain", where);
-  spec.limits = reader.numbers("limits", Bounds::positive());
-  if (const double limit = reader.number("limit", 0, Bounds::positive()); limit > 0) {
+  spec.limits = reader.numbers("limits", Bounds::strain());
+  if (const double limit = reader.number("limit", 0, Bounds::strain()); limit > 0) {
     if (!spec.limits.empty()) throw UsageError(where + ": give 'limit' or 'limits', not both");
     spec.limits = {limit};
   }

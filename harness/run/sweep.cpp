@@ -17,8 +17,6 @@ namespace harness {
 namespace {
 
 constexpr double hopeless_least = 0.2;  // s; shorter runs are always finished
-// Times the fastest run of a place: who takes longer is stopped there.
-constexpr double far_behind_factor = 30;
 // Steps whose time is within this factor of the best are repeated before one is called best.
 constexpr double candidate_factor = 1.2;
 // What may be best, in suites that ask for as many samples as this, is run for at least 0.2 s. That
@@ -176,7 +174,7 @@ struct Sweep {
   double far_behind(const MeetingPlace& place) const {
     const auto known = fastest.find(place);
     return known == fastest.end() ? std::numeric_limits<double>::infinity()
-                                  : far_behind_factor * known->second;
+                                  : suite.far_behind * known->second;
   }
 
   const PointResult& add(PointResult point, std::size_t search) {

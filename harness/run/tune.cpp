@@ -12,6 +12,7 @@ namespace harness {
 namespace {
 
 constexpr double give_up_at = 2.5;    // times the time that is known at a place
+constexpr double far_too_long = 4;    // times options.longest_run: no step of a short one takes it
 constexpr double no_use_above = 1.2;  // times the time without settings: that would count instead
 constexpr int samples = 3;            // of the best steps
 
@@ -115,7 +116,10 @@ class Tuner {
   // The ladder's best step with the settings that the solver has by itself. Places where none
   // counts say nothing about settings; those where it takes long are left out but for the fastest.
   void begin() {
-    for (Place& place : places_) find_best(place);
+    for (Place& place : places_) find_best(place, far_too_long * options_.longest_run);
+    if (std::all_of(places_.begin(), places_.end(),
+                    [](const Place& place) { return place.best_seconds >= 1e300; }))
+      find_best(places_.front(), 1e300);
     std::erase_if(places_, [](const Place& place) { return place.best_seconds >= 1e300; });
     std::stable_sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) {
       return a.best_seconds < b.best_seconds;
@@ -130,9 +134,9 @@ class Tuner {
     return place.search.base.scene_parameters.at("duration");
   }
 
-  void find_best(Place& place) {
+  void find_best(Place& place, double most_seconds) {
     std::map<std::size_t, PointResult> known;
-    double best = 1e300;
+    double best = most_seconds / duration(place) / give_up_at;
     const auto run = [&](std::size_t rung) -> const PointResult& {
       const auto [at, fresh] = known.try_emplace(rung);
       if (fresh) at->second = run_once(place, rung, {}, give_up_at * best);

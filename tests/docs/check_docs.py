@@ -26,7 +26,7 @@ A table of the committed references stands between <!-- references --> and <!-- 
 
 Links between documents and
 paths in backticks must exist, Markdown files that comments name too, and docs/measuring.md must name every field of a point, every
-counter and every status.
+counter and every status. Pictures of results and docs/results.md must be of the commits that the results in the tree are of.
 """
 
 from __future__ import annotations
@@ -215,12 +215,31 @@ def measured() -> list[str]:
     return [f"docs/measuring.md does not explain `{name}`" for name in sorted((fields | statuses) - explained - {"error", "work"})]
 
 
+def pictures() -> list[str]:
+    """Pictures, and the rows of docs/results.md, are of the commits that their results are of."""
+    files = [*(ROOT / "results").glob("*.json"), *(ROOT / "results/large").glob("*.json")]
+    commits = {file: json.loads(file.read_text(encoding="utf-8"))["context"]["build"]["git"] for file in files}
+    errors = []
+    for picture in sorted((ROOT / "plots/figures").glob("*.svg")):
+        drawn = re.search(r"commit ([0-9a-f]{12})", picture.read_text(encoding="utf-8"))
+        of = [commit for file, commit in commits.items() if picture.stem.startswith(file.stem + "-")]
+        if not of:
+            errors.append(f"plots/figures/{picture.name} is of no result in results/")
+        elif not drawn or not any(commit.startswith(drawn[1]) for commit in of):
+            errors.append(f"plots/figures/{picture.name} is not of the commit that its result is of: results/measure --pages")
+    for name, commit in re.findall(r"^\| `(results/[^`]*\.json)` \|.*?\| ([0-9a-f]{40}) \|", (ROOT / "docs/results.md").read_text(encoding="utf-8"),
+                                   re.MULTILINE):
+        if commits.get(ROOT / name) != commit:
+            errors.append(f"docs/results.md is not of {name} as it is: results/measure --pages")
+    return errors
+
+
 def main() -> int:
     if "--fix" in sys.argv[1:]:
         fix()
     errors = [f"{document.relative_to(ROOT)}: {error}" for document in documents()
               for check in (quotes, numbers, tables, links, paths) for error in check(document)]
-    errors += named_documents() + measured()
+    errors += named_documents() + measured() + pictures()
     for error in errors:
         print(error)
     return 1 if errors else 0

@@ -20,7 +20,6 @@ from parts.result_file import ResultError, load
 from parts.words import inches, shorten, wrap
 
 SCRIPT = ROOT / "plots" / "figures.py"
-HISTORY = ROOT / "plots" / "history.py"
 HOSTILE = {
     "formula": r"$\frac{1}{2$ and $x^$",
     # Escapes, markup, a path, half a character, and what turns the direction of writing.
@@ -182,10 +181,6 @@ def test_the_programs_refuse_what_they_cannot_do(tmp_path: Path) -> None:
     missing = run(SCRIPT, tmp_path / "none.json")
     assert missing.returncode == 2 and missing.stderr.count("\n") == 1 and "cannot read" in missing.stderr
     assert run(SCRIPT, written(strain_sweep(), tmp_path), "--format", "gif").returncode == 2
-    history = run(HISTORY, tmp_path / "none")
-    assert history.returncode == 2 and history.stderr.count("\n") == 1 and "is no folder" in history.stderr
-    drawn_history = run(HISTORY, tmp_path, "--out", tmp_path / "h.svg")
-    assert (drawn_history.returncode, drawn_history.stdout.strip()) == (0, str(tmp_path / "h.svg"))
 
 
 # ---- words ------------------------------------------------------------------------------------------------------------

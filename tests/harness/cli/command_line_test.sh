@@ -49,14 +49,28 @@ refused "'limits' is -1" --sweep strain --config suite.json --out out.json
 echo 'not JSON' >suite.json
 refused "is not JSON" --sweep strain --config suite.json --out out.json
 echo 'a file' >blocked
-refused "cannot make the folder" --sweep strain --profile quick --out blocked/result.json
+refused "there is no folder 'blocked'" --sweep strain --profile quick --out blocked/result.json
+refused "there is no folder 'nowhere'" film --out nowhere/x.png
+[[ ! -e nowhere ]] || fail "a refused --out made its folder"
+refused "no option '--limt'; did you mean '--limit'?" "${sweep[@]}" --limt 0.01
+refused "no option '--still=1' of bench film; did you mean '--stills'?" film --still=1 --out x.png
+refused "no command 'shwo'; did you mean 'show'?" shwo one.json
+refused "'two.json' is one word too many of bench show" show one.json two.json
+refused "'1' must be a number above 0 and below 1" "${sweep[@]}" --limit 1
+refused "'' must be a number above 0 and below 1" "${sweep[@]}" --limit 0.01,
+refused "'-1' must be a number of at least 0" film --stills=-1 --out x.png
+refused "99 s is not within the film" film --stills 99 --out x.png
+refused "did you mean 'shake'" film --solver icd,shakee --out x.png
 refused "did you mean 'solvers'" list solver
 refused "--finest-error needs references, missing: chain-n7" --sweep strain --profile quick --scene chain --out out.json --finest-error 0.02 \
   --config <(echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1], "scene_parameters": {"n": 7}}]}')
 refused "--finest-error" "${sweep[@]}" --finest-error -1
 refused "cannot read the result file" claims missing.json
 echo '{"schema": "another"}' >other.json
+echo '{"schema": "inextensible-bench/1", "complete": true, "context": {"build": {"git": ""}}, "points": [], "references": [],
+  "benchmarks": []}' >nothing.json
 refused "is not a result file" claims other.json
+refused "is what a claim is about" claims nothing.json
 refused "did you mean 'drape'" reference --scene drap
 refused "--finest" reference --finest 0
 
@@ -107,6 +121,15 @@ cells = {c["solver"]: c for c in json.load(open("hard.json"))["matrix"]}
 assert cells["shake"]["at_fixed_step"] == "refused" and "edge 0" in cells["shake"]["detail"], cells["shake"]
 assert cells["fast_projection"]["outcome"] == "survived"
 PYTHON
+
+"$BENCH_BINARY" show hard.json >shown.txt || fail "show of hard cases"
+grep -Eq '^shake +[0-9]+' shown.txt || fail "show of hard cases names no solver"
+
+# Known answers: show says what the program said.
+"$BENCH_BINARY" answers --answer net_place --solver '^fast_projection$' --no-plots --out known.json >known.txt 2>/dev/null ||
+  fail "a known answer"
+"$BENCH_BINARY" show known.json >shown.txt || fail "show of known answers"
+grep -q '^net_place' shown.txt && grep -Eq '^  fast_projection  +h = ' shown.txt || fail "show of known answers names nothing"
 
 # A step controller: one point a search, its rejections counted.
 "$BENCH_BINARY" --sweep strain --profile quick --scene chain --solver '^fast_projection$' --step adaptive --filter "strain:0.0" --reps 1 \

@@ -107,12 +107,17 @@ edit base.json five.json "n = 5; f = lambda x, i: x * (1 + 0.001 * i); $timed"
 edit base.json slow5.json "n = 5; f = lambda x, i: 3 * x * (1 + 0.001 * i); $timed"
 exits 3 'SLOWER' compare five.json slow5.json
 exits 0 'FASTER' compare slow5.json five.json
-# On a machine that was busy, or not as fast in both, nothing is said of times, and that is no pass.
-edit slow5.json busy.json 'd["context"]["sentinel"] = {"noisy": True}'
-exits 6 'too unquiet' compare five.json busy.json
+# On a machine that was busy, or not as fast in both, times must differ by more than its own speed did. What is equal is equal.
+edit five.json little.json "n = 5; f = lambda x, i: 1.2 * x * (1 + 0.001 * i); $timed"
+edit five.json busy.json 'd["context"]["sentinel"] = {"noisy": True, "spread": 0.3}'
+exits 0 'SAME' compare busy.json busy.json
+exits 3 'SLOWER' compare busy.json slow5.json
+edit little.json busy_little.json 'd["context"]["sentinel"] = {"noisy": True, "spread": 0.3}'
+exits 3 'SLOWER' compare five.json little.json
+exits 6 'too unquiet a machine' compare five.json busy_little.json
 edit five.json fast_machine.json 'd["context"]["sentinel"] = {"noisy": False, "seconds": [1e-3, 1.01e-3]}'
-edit slow5.json slow_machine.json 'd["context"]["sentinel"] = {"noisy": False, "seconds": [2e-3, 2.01e-3]}'
-exits 6 'was not as fast in both' compare fast_machine.json slow_machine.json
+edit little.json slow_machine.json 'd["context"]["sentinel"] = {"noisy": False, "seconds": [1.3e-3, 1.31e-3]}'
+exits 6 'own speed varied by as much' compare fast_machine.json slow_machine.json
 
 # Not comparable: another build, other parameters, nothing in common. The way out is printed.
 edit again.json other.json 'd["context"]["counters_fingerprint"] = "another"'
@@ -134,7 +139,7 @@ refused "a stability sweep, which cannot be compared" compare wrong.json base.js
 echo '{"counters": {"rul": "exact"}}' >wrong.json
 refused "gate 'wrong.json': 'counters': no key 'rul'; did you mean 'rule'?" compare base.json again.json --gate wrong.json --junit out.xml
 refused "required" compare base.json
-refused "cannot make the folder" compare base.json again.json --junit base.json/out.xml
+refused "there is no folder 'base.json'" compare base.json again.json --junit base.json/out.xml
 refused "cannot read the result file" baseline missing.json --out out.json
 edit base.json wrong.json 'd["complete"] = False'
 refused "of an interrupted run" baseline wrong.json --out out.json
