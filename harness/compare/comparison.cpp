@@ -66,13 +66,11 @@ void note_errors(const ComparedPoint& base, const ComparedPoint& next, const Gat
 
 void note_times(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
                 const Comparability& can, PointChange& result) {
-  TimeChange times = compare_times(base.samples, next.samples, gate, can.noise + can.drift);
-  if (times.change == Change::same && can.drift > 0) {
-    times = compare_times(base.samples, next.samples, gate, can.noise);
-    if (times.change == Change::same) return;
-    times = {Change::ambiguous, times.reason + ": the machine's own speed varied by as much", true};
-  }
+  TimeChange times = compare_times(base.samples, next.samples, gate, can.noise);
   if (times.change == Change::same) return;
+  const double by = std::abs(std::log(time_of(next.samples) / time_of(base.samples)));
+  if (times.change != Change::ambiguous && can.drift > 0 && by <= can.noise + can.drift)
+    times = {Change::ambiguous, times.reason + ": the machine's own speed varied by as much", true};
   result.reasons.push_back(times.reason);
   const bool settled = is_regression(result.change);
   result.too_few = times.too_few && result.reasons.size() == 1;

@@ -58,6 +58,7 @@ assert {"symmetric_sweeps", "gauss_seidel", "fast_projection"} <= best, best
 mine = [p for p in document["points"] if p["solver"] == "symmetric_sweeps" and p["best"]][0]
 assert 0 < mine["max_strain"] <= 0.01 and mine["work"]["edge_projections"] > 0, mine
 PYTHON
+mkdir figures
 tiny --solver 'symmetric_sweeps|gauss_seidel' --out figures/out.json >sweep.txt 2>&1 || fail "a sweep with figures: $(cat sweep.txt)"
 grep -q 'could not be drawn' sweep.txt && fail "no figures: $(cat sweep.txt)"
 ls figures/*.svg >/dev/null || fail "no figures"
