@@ -112,6 +112,22 @@ PYTHON
 "$BENCH_BINARY" claims steps.json --markdown >claims.txt || fail "claims"
 [[ $(grep -c '^| C' claims.txt) == 16 ]] || fail "claims has no 16 rows"
 
+# Which solver to take: what it says keeps strain and error, and follows from no file.
+refused "must be 1/24, 1/30 or 1/60" choose --frame 1/50
+refused "must be such as 2ms" choose --budget 2
+refused "did you mean 'drape'" choose --scene drap
+"$BENCH_BINARY" choose --scene chain --n 20 --limit 0.01 --error 0.05 --solver 'rattle|fast_projection' --seconds 20 --json \
+  >choice.json 2>/dev/null || fail "choose"
+/usr/bin/python3 - <<'PYTHON' || fail "what choose says"
+import json
+choice = json.load(open("choice.json"))
+take = choice["take"]
+assert take["solver"] in ("rattle", "fast_projection"), take
+assert take["max_strain"] <= 0.01 and take["error"] <= 0.05 and take["step"] <= 1 / 60 + 1e-9, take
+assert 0 < take["frame_seconds"]["median"] <= take["frame_seconds"]["p99"] <= take["frame_seconds"]["worst"], take
+assert choice["runner_up"] is None or choice["runner_up"]["seconds_per_simulated_second"] >= take["seconds_per_simulated_second"]
+PYTHON
+
 # Hard cases: SHAKE refuses Q1, as theory says, so that nothing is unexpected.
 "$BENCH_BINARY" --sweep stability --case '^Q1$' --solver 'shake|^fast_projection$' --no-plots --out hard.json \
   >hard.txt 2>/dev/null || fail "hard cases"
