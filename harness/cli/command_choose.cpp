@@ -221,6 +221,7 @@ json pick_json(const std::optional<Pick>& pick) {
 
 int choose(const ChooseCommand& given) {
   const double rate = rate_of(given.frame);
+  const double wanted_budget = given.budget.empty() ? 0 : duration_of("--budget", given.budget);
   const Suite suite = suite_of(given, rate);
   const SweepSpec& sweep = suite.sweeps.front();
   if (sweep.contestants.empty()) check_solver_pattern(given.solver);
@@ -236,9 +237,7 @@ int choose(const ChooseCommand& given) {
   }
   const Measured measured = measure(given, suite, wish, shelf);
   const auto take = fastest(measured.points, wish);
-  const double budget = !given.budget.empty() ? duration_of("--budget", given.budget)
-                        : take                ? take->frame.slow
-                                              : 0;
+  const double budget = wanted_budget > 0 ? wanted_budget : take ? take->frame.slow : 0;
   const auto next = take ? fastest(measured.points, wish, take->point->spec.name()) : std::nullopt;
   const auto half = most_accurate(measured.points, wish, budget / 2);
   const auto twice = most_accurate(measured.points, wish, budget * 2);
@@ -283,7 +282,7 @@ int choose(const ChooseCommand& given) {
   };
   std::cout << "with  " << number_text(500 * budget, 3) << " ms a frame: " << told(half)
             << "; with " << number_text(2000 * budget, 3) << " ms: " << told(twice) << '\n';
-  if (!given.budget.empty() && take->frame.slow > budget)
+  if (wanted_budget > 0 && take->frame.slow > budget)
     std::cout << "1 % of frames take longer than the budget of " << number_text(1e3 * budget, 3)
               << " ms\n";
   return success;
