@@ -17,6 +17,7 @@
 #include "harness/points/point_json.h"
 #include "harness/points/tuning_rule.h"
 #include "harness/run/choose.h"
+#include "harness/run/frame_times.h"
 #include "harness/run/isolation.h"
 
 namespace harness {
@@ -44,8 +45,7 @@ double fraction_of(const std::string& option, const std::string& text) {
     char* end = nullptr;
     const double value = std::strtod(part.c_str(), &end);
     if (part.empty() || *end != '\0' || !(value > 0))
-      throw UsageError(option + " is '" + shortened(text, 40) +
-                       "', must be seconds, such as 1/60 or 0.04");
+      throw UsageError(option + " is '" + shortened(text, 40) + "', must be seconds, such as 1/60");
     return value;
   };
   if (slash == std::string::npos) return number(text);
@@ -66,7 +66,7 @@ double duration_of(const std::string& option, const std::string& text) {
 
 double rate_of(const std::string& frame) {
   const double rate = 1 / fraction_of("--frame", frame);
-  for (const double known : {24.0, 30.0, 60.0}) {
+  for (const double known : frame_rates) {
     if (std::abs(rate - known) < 1e-3 * known) return known;
   }
   throw UsageError("--frame is '" + shortened(frame, 40) + "', must be 1/24, 1/30 or 1/60");
@@ -127,16 +127,18 @@ Suite suite_of(const ChooseCommand& given, double rate) {
   return suite;
 }
 
-// A kept reference, or a finer run made now.
+// A kept reference, or a finer run made now, which is on the shelf then.
 std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, ReferenceShelf& shelf) {
   if (auto kept = shelf.find(sweep.scene, sweep.scene_parameters)) return kept;
   std::cerr << "no reference of this scene is kept: a finer run takes its place ...\n";
   try {
-    return std::make_shared<Reference>(
+    const auto made = std::make_shared<const Reference>(
         finer_run(sweep.scene, sweep.scene_parameters, [](const std::string& line) {
           if (interrupted()) throw Interrupted();
           std::cerr << line << '\n';
         }));
+    shelf.put(made);
+    return made;
   } catch (const UsageError& reason) {
     std::cerr << "bench: there is none, so nothing is known of errors: " << reason.what() << '\n';
     return nullptr;
@@ -230,11 +232,7 @@ int choose(const ChooseCommand& given) {
   const TimingLock lock(!given.no_wait);
   auto shelf = std::make_shared<ReferenceShelf>(source_path("results/references"));
   const auto reference = reference_for(sweep, *shelf);
-  if (reference) {
-    shelf->put(reference);
-  } else {
-    wish.error = any_motion;
-  }
+  if (!reference) wish.error = any_motion;
   const Measured measured = measure(given, suite, wish, shelf);
   const auto take = fastest(measured.points, wish);
   const double budget = wanted_budget > 0 ? wanted_budget : take ? take->frame.slow : 0;

@@ -69,12 +69,14 @@ void note_times(const ComparedPoint& base, const ComparedPoint& next, const Gate
   TimeChange times = compare_times(base.samples, next.samples, gate, can.noise);
   if (times.change == Change::same) return;
   const double by = std::abs(std::log(time_of(next.samples) / time_of(base.samples)));
-  if (times.change != Change::ambiguous && can.drift > 0 && by <= can.noise + can.drift)
-    times = {Change::ambiguous, times.reason + ": the machine's own speed varied by as much", true};
+  const bool drifted =
+      times.change != Change::ambiguous && can.drift > 0 && by <= can.noise + can.drift;
+  if (drifted)
+    times = {Change::ambiguous, times.reason + ": the machine's own speed varied by as much"};
   result.reasons.push_back(times.reason);
   const bool settled = is_regression(result.change);
   result.too_few = times.too_few && result.reasons.size() == 1;
-  result.undecided = times.too_few && base.best;
+  result.undecided = (times.too_few || drifted) && base.best;
   if (times.change == Change::slower || !settled) result.change = times.change;
 }
 

@@ -59,11 +59,19 @@ std::shared_ptr<const Reference> exact_reference(const std::string& scene_name,
   return r;
 }
 
+namespace {
+
+// Durations differ where names do not.
+std::string shelf_key(const std::string& name, const SceneParameters& complete) {
+  return name + " " + number_text(complete.at("duration"));
+}
+
+}  // namespace
+
 std::shared_ptr<const Reference> ReferenceShelf::find(const std::string& scene,
                                                       const SceneParameters& complete) {
   const std::string name = reference_name(scene, complete);
-  const std::string key = name + " " + number_text(complete.at("duration"));
-  auto [place, fresh] = known_.try_emplace(key, nullptr);
+  auto [place, fresh] = known_.try_emplace(shelf_key(name, complete), nullptr);
   if (fresh) place->second = exact_reference(scene, complete);
   if (fresh && !place->second) {
     const std::filesystem::path path = std::filesystem::path(folder_) / name;
@@ -77,8 +85,7 @@ std::shared_ptr<const Reference> ReferenceShelf::find(const std::string& scene,
 }
 
 void ReferenceShelf::put(std::shared_ptr<const Reference> reference) {
-  const std::string key = reference_name(reference->scene, reference->parameters) + " " +
-                          number_text(reference->parameters.at("duration"));
+  const std::string key = shelf_key(reference->name(), reference->parameters);
   known_[key] = std::move(reference);
 }
 

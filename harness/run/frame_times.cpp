@@ -1,7 +1,6 @@
 #include "harness/run/frame_times.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "harness/base/statistics.h"
@@ -9,13 +8,12 @@
 namespace harness {
 namespace {
 
-constexpr std::array rates{24.0, 30.0, 60.0};  // film, television, games
-constexpr double rounding = 1e-6;              // of a frame: times add up their steps
+constexpr double rounding = 1e-6;  // of a frame: times add up their steps
 
 }  // namespace
 
 FrameTimes::FrameTimes(double step) {
-  for (const double rate : rates) {
+  for (const double rate : frame_rates) {
     if (step * rate <= 1 + rounding) films_.push_back({rate, {}});
   }
 }

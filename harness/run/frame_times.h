@@ -1,11 +1,15 @@
 // What a picture costs: the wall time of a run cut into the frames of a film or a game.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "harness/points/point.h"
 
 namespace harness {
+
+// Of film, television and games, pictures a second.
+inline constexpr std::array frame_rates{24.0, 30.0, 60.0};
 
 class FrameTimes {
  public:

@@ -77,6 +77,12 @@ TEST(TuneSearch, FindsTheLowestPointOfAValleyAcrossTwoSettings) {
   EXPECT_GE(within_10_percent, valleys * 90 / 100);
 }
 
+TEST(TuneSearch, ManySettingsStayWithinTheBudget) {
+  const std::vector<TunedNumber> many(20, {"relaxation", 1, {0.5, 1.95}, false});
+  const auto seconds = [](const Values& v, double) { return std::optional(1 + v[0]); };
+  EXPECT_LE(tune_values(many, seconds).evaluations, TuneRules{}.budget);
+}
+
 TEST(TuneSearch, KeepsWhatIsAsGoodAsAnything) {
   const auto flat = [](const Values& v, double) {
     return std::optional(1 + 0.02 * std::sin(50 * v[0] + 9 * v[1]));  // 4 %: below what counts
@@ -151,13 +157,14 @@ SweepRunners fake(double fails_above, std::vector<PointSpec>* specs = nullptr) {
   return runners;
 }
 
+TuneOptions thorough() { return {.rules = {.budget = 60}, .trials_each = 30, .longest_run = 10}; }
+
 SweepSpec chain() { return tuning_scenes().front(); }
 
 TEST(Tune, FindsASettingAndSaysWhatItGains) {
   std::vector<PointSpec> specs;
-  const TunedEntry entry = tune_solver(
-      "gauss_seidel_colored", chain(),
-      {.rules = {.budget = 60}, .trials_each = 30, .longest_run = 10}, fake(10, &specs));
+  const TunedEntry entry =
+      tune_solver("gauss_seidel_colored", chain(), thorough(), fake(10, &specs));
   EXPECT_EQ(entry.kind, "chain");
   ASSERT_TRUE(entry.settings.contains("relaxation"));
   const double relaxation = std::get<double>(entry.settings.at("relaxation"));
@@ -173,9 +180,7 @@ TEST(Tune, FindsASettingAndSaysWhatItGains) {
 }
 
 TEST(Tune, WhatFailsSomewhereGainsNothingThere) {
-  const TunedEntry entry =
-      tune_solver("gauss_seidel_colored", chain(),
-                  {.rules = {.budget = 60}, .trials_each = 30, .longest_run = 10}, fake(1.4));
+  const TunedEntry entry = tune_solver("gauss_seidel_colored", chain(), thorough(), fake(1.4));
   ASSERT_TRUE(entry.settings.contains("relaxation"));
   const double relaxation = std::get<double>(entry.settings.at("relaxation"));
   EXPECT_GT(entry.gain, 1.05);
@@ -200,9 +205,7 @@ TEST(Tune, OfTunedAndUntunedTheFasterCountsAtEachSize) {
     if (!point.ok()) point.samples.clear();
     return point;
   };
-  const TunedEntry entry =
-      tune_solver("gauss_seidel_colored", chain(),
-                  {.rules = {.budget = 60}, .trials_each = 30, .longest_run = 10}, runners);
+  const TunedEntry entry = tune_solver("gauss_seidel_colored", chain(), thorough(), runners);
   ASSERT_TRUE(entry.settings.contains("relaxation"));
   const double relaxation = std::get<double>(entry.settings.at("relaxation"));
   EXPECT_NEAR(relaxation, 1.9, 0.05);
@@ -228,9 +231,7 @@ TEST(Tune, FindsBestStepsThatLieFarApart) {
     if (point.ok()) point.samples = {seconds};
     return point;
   };
-  const TunedEntry entry =
-      tune_solver("gauss_seidel_colored", chain(),
-                  {.rules = {.budget = 60}, .trials_each = 30, .longest_run = 10}, runners);
+  const TunedEntry entry = tune_solver("gauss_seidel_colored", chain(), thorough(), runners);
   ASSERT_TRUE(entry.settings.contains("relaxation"));
   EXPECT_GT(std::get<double>(entry.settings.at("relaxation")), 1.5);
   const double off = std::log2(250.0 / 200);  // of the ladder's step next to 1/250 s
@@ -238,9 +239,7 @@ TEST(Tune, FindsBestStepsThatLieFarApart) {
 }
 
 TEST(Tune, ALimitThatTheDefaultMissesCountsForNothing) {
-  const TunedEntry entry =
-      tune_solver("gauss_seidel_colored", chain(),
-                  {.rules = {.budget = 60}, .trials_each = 30, .longest_run = 10}, fake(0.9));
+  const TunedEntry entry = tune_solver("gauss_seidel_colored", chain(), thorough(), fake(0.9));
   EXPECT_EQ(entry.places.size(), 2u);
   EXPECT_NEAR(std::get<double>(entry.settings.at("relaxation")), 1.7, 0.1);
 }
@@ -264,9 +263,7 @@ TEST(Tune, OnlyMotionThatIsRightCounts) {
       }
       return point;
     };
-    const TunedEntry entry =
-        tune_solver("gauss_seidel_colored", chain(),
-                    {.rules = {.budget = 60}, .trials_each = 30, .longest_run = 10}, runners);
+    const TunedEntry entry = tune_solver("gauss_seidel_colored", chain(), thorough(), runners);
     ASSERT_TRUE(entry.settings.contains("relaxation"));
     const double relaxation = std::get<double>(entry.settings.at("relaxation"));
     EXPECT_EQ(relaxation > 1.9, !known) << relaxation;
