@@ -132,7 +132,7 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
   if (auto kept = shelf.find(sweep.scene, sweep.scene_parameters)) return kept;
   std::cerr << "no reference of this scene is kept: a finer run takes its place ...\n";
   try {
-    const auto made = std::make_shared<const Reference>(
+    auto made = std::make_shared<const Reference>(
         finer_run(sweep.scene, sweep.scene_parameters, [](const std::string& line) {
           if (interrupted()) throw Interrupted();
           std::cerr << line << '\n';

@@ -120,10 +120,16 @@ TEST_F(Files, PermissionsOfAFileThatIsReplacedAreKept) {
   EXPECT_EQ(fs::status(at("b.json")).permissions(), fs::perms(0644));
 }
 
-TEST_F(Files, ADirectoryThatIsMissingIsMade) {
-  check_writable(at("x/y/a.json"));
-  EXPECT_TRUE(fs::is_directory(at("x/y")));
-  EXPECT_TRUE(fs::is_empty(at("x/y"))) << "nothing is left behind";
+TEST_F(Files, AMissingFolderIsNamedAndNotMade) {
+  try {
+    check_writable(at("x/y/a.json"));
+    FAIL() << "a path in a missing folder was accepted";
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find("there is no folder '" + at("x/y") + "'"),
+              std::string::npos)
+        << error.what();
+  }
+  EXPECT_FALSE(fs::exists(at("x")));
 }
 
 // Two writers of one file at a time: one of the two texts is there in the end, whole.

@@ -40,10 +40,14 @@ refused "takes no implicit forces" --scene garment --set n=12 --solver rattle --
 refused "must end in .png" --stills 0.1 --out it.webp
 refused "has no pictures" --width 100 --out it.obj
 refused "not within the film" --stills 0.5,7 --out it.png
-refused "not a number" --stills 0.1,x --out it.png
+refused "'x' must be a number of at least 0" --stills 0.1,x --out it.png
 [[ -z $(find . -name 'it.*' -newer paths.txt) ]] || fail "something was written"
 
-# Pictures, under a name of their own where none is given.
+# Pictures, under a name of their own where none is given: by an installed program, which writes below the current folder.
+mkdir -p installed/bin installed/share/inextensible
+cp "$BENCH_BINARY" installed/bin/bench
+cp -r "$here"/../../../{configs,plots} installed/share/inextensible
+BENCH_BINARY=installed/bin/bench
 film=(--scene drape --set n=7 --set duration=0.1 --solver fast_projection,jacobi --width 32)
 "$BENCH_BINARY" film "${film[@]}" >stdout.txt 2>stderr.txt || fail "a film: $(tail -1 stderr.txt)"
 grep -qx "results/local/film-drape.webp" stdout.txt && [[ -s results/local/film-drape.webp ]] || fail "no film: $(cat stdout.txt)"
