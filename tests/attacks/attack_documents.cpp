@@ -18,7 +18,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/claims/claims.h"
-#include "harness/claims/results_page.h"
+#include "harness/tables/results_page.h"
 #include "harness/compare/comparison.h"
 #include "harness/judge/reference_file.h"
 #include "harness/points/identity.h"

@@ -1,8 +1,8 @@
 #include <array>
 
-#include "harness/claims/page.h"
+#include "harness/tables/page.h"
 
-namespace harness::claims {
+namespace harness::tables {
 
 using nlohmann::json;
 
@@ -64,4 +64,4 @@ void print_hard_cases(std::ostream& out, const NamedResult& result) {
   print_differences(out, result.document);
 }
 
-}  // namespace harness::claims
+}  // namespace harness::tables

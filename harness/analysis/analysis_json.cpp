@@ -1,8 +1,8 @@
-#include "harness/analysis/plane_json.h"
+#include "harness/analysis/analysis_json.h"
 
 #include <cmath>
 
-#include "harness/analysis/plane.h"
+#include "harness/analysis/findings.h"
 #include "harness/base/fields_json.h"
 
 namespace harness::analysis {
@@ -65,17 +65,51 @@ json plane_json(const Plane& plane) {
           {"vertices", plane.vertices},
           {"strain_limits", plane.limits},
           {"error_levels", std::move(levels)},
+          {"leaders", plane.leaders()},
           {"cells", std::move(cells)}};
+}
+
+json growth_json(const Growth& growth) {
+  json rows = json::array();
+  for (const RowGrowth& row : growth.rows) {
+    const bool sure = std::isfinite(row.exponent.half_width);
+    rows.push_back({{"row", row.row},
+                    {"exponent", number(row.exponent.value)},
+                    {"low", sure ? json(row.exponent.low()) : json(nullptr)},
+                    {"high", sure ? json(row.exponent.high()) : json(nullptr)},
+                    {"sizes", row.exponent.points},
+                    {"smallest", row.smallest.number("vertices")},
+                    {"largest", row.largest.number("vertices")}});
+  }
+  return {{"scene", growth.scene}, {"strain_limit", growth.strain_limit}, {"rows", rows}};
+}
+
+json finding_json(const Finding& finding) {
+  return {{"scene", finding.scene},
+          {"sweep", finding.sweep},
+          {"vertices", finding.vertices},
+          {"subject", finding.subject},
+          {"sentences", finding.sentences}};
 }
 
 }  // namespace
 
+json findings_json(const std::vector<Plane>& planes) {
+  json findings = json::array();
+  for (const Finding& each : findings_of(planes)) findings.push_back(finding_json(each));
+  return findings;
+}
+
 json analysis_of(const json& document) {
-  json planes = json::array();
-  for (const Plane& plane : planes_of(document)) planes.push_back(plane_json(plane));
+  const std::vector<Plane> planes = planes_of(document);
+  json list = json::array(), growth = json::array();
+  for (const Plane& plane : planes) list.push_back(plane_json(plane));
+  for (const Growth& each : growth_in(planes)) growth.push_back(growth_json(each));
   return {{"schema", "inextensible-analysis/1"},
           {"headline_error", headline_error},
-          {"planes", std::move(planes)}};
+          {"findings", findings_json(planes)},
+          {"planes", std::move(list)},
+          {"growth", std::move(growth)}};
 }
 
 }  // namespace harness::analysis
