@@ -102,13 +102,13 @@ std::string sentence_of(const Cell& cell) {
   const Entry* first = cell.first();
   if (!first) return place + ", there is no answer: " + cell.empty_because + ".";
   const auto equals = cell.equals();
-  const std::string who =
-      !cell.counting(1)   ? name_words(*first) + " alone has an answer: "
-      : equals.size() > 1 ? joined(equals) + " are the fastest, too close to tell apart: "
-                          : name_words(*first) + " is the fastest: ";
-  const std::string error =
-      std::isfinite(first->error) ? " and an error of " + number_text(100 * first->error, 2) + " %"
-                                  : "";
+  const std::string who = !cell.counting(1) ? name_words(*first) + " alone has an answer: "
+                          : equals.size() > 1
+                              ? joined(equals) + " are the fastest, too close to tell apart: "
+                              : name_words(*first) + " is the fastest: ";
+  const std::string error = std::isfinite(first->error)
+                                ? " and an error of " + number_text(100 * first->error, 2) + " %"
+                                : "";
   return place + ", " + who + time_words(first->point.seconds()) +
          " a simulated second with steps of " + step_text(first->point.number("step")) + " s" +
          error + rival_words(cell, equals) + ".";
@@ -120,8 +120,8 @@ std::string sentence_of(const Growth& growth) {
   return "From " + number_text(least.smallest.number("vertices"), 7) + " to " +
          number_text(least.largest.number("vertices"), 7) +
          " vertices the time of a step grows least with " + least.row +
-         ", as their number to the power " + exponent_words(least.exponent) +
-         ", and most with " + most.row + ", " + exponent_words(most.exponent) + ".";
+         ", as their number to the power " + exponent_words(least.exponent) + ", and most with " +
+         most.row + ", " + exponent_words(most.exponent) + ".";
 }
 
 std::vector<Finding> findings_of(const std::vector<Plane>& planes) {
@@ -135,7 +135,8 @@ std::vector<Finding> findings_of(const std::vector<Plane>& planes) {
     if (plane.sweep == "resolution" && !largest) continue;
     Finding finding = finding_of(plane);
     for (const Growth& growth : growths) {
-      if (plane.sweep == "resolution" && growth.scene == plane.scene && !sentence_of(growth).empty())
+      if (plane.sweep == "resolution" && growth.scene == plane.scene &&
+          !sentence_of(growth).empty())
         finding.sentences.push_back(sentence_of(growth));
     }
     findings.push_back(std::move(finding));

@@ -77,8 +77,7 @@ std::vector<Growth> growth_in(const std::vector<Plane>& planes) {
 std::string exponent_words(const Slope& exponent) {
   std::string words = number_text(exponent.value, 3);
   if (std::isfinite(exponent.half_width))
-    words +=
-        " (" + number_text(exponent.low(), 3) + " to " + number_text(exponent.high(), 3) + ")";
+    words += " (" + number_text(exponent.low(), 3) + " to " + number_text(exponent.high(), 3) + ")";
   return words;
 }
 

@@ -74,8 +74,8 @@ int report(const ReportOptions& given) {
   const TemporaryFolder folder("report");
   std::vector<std::string> words = given.results;
   words.insert(words.end(), given.answers.begin(), given.answers.end());
-  words.insert(words.end(), {"--out", given.out, "--claims", folder.file("claims.json"), "--analyses",
-                            folder.file("analyses.json")});
+  words.insert(words.end(), {"--out", given.out, "--claims", folder.file("claims.json"),
+                             "--analyses", folder.file("analyses.json")});
   write_atomically(folder.file("claims.json"), compact(claims_json(judge_claims(results))) + "\n");
   write_atomically(folder.file("analyses.json"),
                    compact(analyses_json(given.results, results)) + "\n");

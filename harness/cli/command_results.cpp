@@ -3,9 +3,9 @@
 #include <sstream>
 
 #include "harness/base/files.h"
-#include "harness/tables/results_page.h"
 #include "harness/cli/commands.h"
 #include "harness/points/result_file.h"
+#include "harness/tables/results_page.h"
 
 namespace harness {
 namespace {

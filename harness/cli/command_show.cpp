@@ -91,8 +91,8 @@ int show(const std::string& file, bool all) {
     std::cout << "\ndifferences below " << number_text(100 * std::expm1(pair->q95), 2)
               << " % are noise, by " << pair->one << " against itself\n";
   if (!all)
-    std::cout << "\nall contestants: bench show " << file << " --all; a page with figures: bench report "
-              << file << " --out report.html\n";
+    std::cout << "\nall contestants: bench show " << file
+              << " --all; a page with figures: bench report " << file << " --out report.html\n";
   return success;
 }
 
@@ -121,7 +121,8 @@ void add_show_command(const Command& program) {
                "who is fastest within each strain limit and error, for programs");
   command.flag("--all", given->all, "every contestant, and how runs failed");
   command.does([given] {
-    if (given->as_json && given->all) throw UsageError("--json has all contestants already: leave out --all");
+    if (given->as_json && given->all)
+      throw UsageError("--json has all contestants already: leave out --all");
     return given->as_json ? show_json(given->file) : show(given->file, given->all);
   });
 }

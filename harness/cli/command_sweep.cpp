@@ -25,8 +25,8 @@
 #include "harness/run/overhead.h"
 #include "harness/run/progress.h"
 #include "harness/run/quiet_samples.h"
-#include "harness/tables/terminal.h"
 #include "harness/run/runner.h"
+#include "harness/tables/terminal.h"
 #include "inextensible/registry.h"
 
 namespace harness {

@@ -27,9 +27,8 @@ std::vector<Given> finest_of(const json& document, const std::string& answer) {
     if (row.at("answer") != answer || !std::isfinite(value)) continue;
     const Given given{row.at("solver"), step, value, std::abs(number_of(row.at("deviation"))),
                       number_of(row.at("order"))};
-    const auto same = std::find_if(all.begin(), all.end(), [&](const Given& other) {
-      return other.solver == given.solver;
-    });
+    const auto same = std::find_if(
+        all.begin(), all.end(), [&](const Given& other) { return other.solver == given.solver; });
     if (same == all.end()) {
       all.push_back(given);
     } else if (given.step < same->step) {
@@ -62,8 +61,8 @@ void print_answers(std::ostream& out, const NamedResult& result) {
          "nearest and the farthest of their values. Order: the median of the orders in the step. "
          "`bench list answers` has the sources, `bench show "
       << result.name << "` every solver and step.\n\n";
-  print_head(out, {"answer", "scene, strain limit", "exact", "finished", "nearest", "farthest",
-                   "order"});
+  print_head(
+      out, {"answer", "scene, strain limit", "exact", "finished", "nearest", "farthest", "order"});
   for (const json& answer : result.document.at("answers")) {
     const double exact = answer.at("exact");
     const auto all = finest_of(result.document, answer.at("name"));

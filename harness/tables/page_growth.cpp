@@ -1,6 +1,5 @@
 // How the time of a step grows with the number of vertices: a row a solver, a column a scene.
 #include "harness/analysis/growth.h"
-
 #include "harness/analysis/words.h"
 #include "harness/base/in_order.h"
 #include "harness/base/text.h"

@@ -87,8 +87,7 @@ void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
         if (here) out << sentence << '\n';
       }
     }
-    if (has_shapes(planes))
-      out << "Shape errors are deviations beyond the ensemble's spread.\n";
+    if (has_shapes(planes)) out << "Shape errors are deviations beyond the ensemble's spread.\n";
     out << '\n';
     print_table(out, planes);
   }

@@ -73,7 +73,7 @@ void print_cells(std::ostream& out, const std::string& limit, const Cell& looses
     out << "- " << tightest.empty_because << '\n';
     return;
   }
-  print_entry(out, *first, name_of(*first) + (tightest.clear() ? "" : " ~"), set);
+  print_entry(out, *first, name_of(*first) + (tightest.equals().size() > 1 ? " ~" : ""), set);
   out << lead_text(tightest) << '\n';
 }
 
@@ -130,23 +130,24 @@ void print_shapes(std::ostream& out, const Plane& plane) {
 // Everybody in the cells of any motion and of the headline's error.
 void print_everybody(std::ostream& out, const Plane& plane, const Setting& set) {
   for (const Cell& cell : plane.cells) {
-    if (cell.entries.empty() || (cell.level != any_motion && cell.level != headline_error)) continue;
+    if (cell.entries.empty() || (cell.level != any_motion && cell.level != headline_error))
+      continue;
     out << '\n'
         << plane.scene << " of " << plane.vertices << " vertices at " << percent(cell.strain_limit)
         << " strain, "
         << (cell.level == any_motion ? "any motion" : "right to " + percent(cell.level)) << '\n'
         << std::left << std::setw(set.name_width) << "" << std::setw(time_width)
-        << (set.seconds ? "s" : "ms") << std::setw(step_width) << "step, s" << std::setw(error_width)
-        << "error"
+        << (set.seconds ? "s" : "ms") << std::setw(step_width) << "step, s"
+        << std::setw(error_width) << "error"
         << "times the fastest\n";
     for (const Entry& entry : cell.entries) {
       const bool first = &entry == cell.first();
       print_entry(out, entry, entry.role.name, set);
       out << (first || !cell.first() ? "1" : analysis::text(*cell.lead_over(&entry)))
-          << (entry.counts            ? ""
-              : entry.role.again      ? ", a second time"
-              : !entry.role.competes  ? ", keeps no limit"
-                                      : ", slower settings")
+          << (entry.counts           ? ""
+              : entry.role.again     ? ", a second time"
+              : !entry.role.competes ? ", keeps no limit"
+                                     : ", slower settings")
           << '\n';
     }
   }
@@ -191,9 +192,8 @@ void print_growth(std::ostream& out, const analysis::Growth& growth) {
   out << '\n'
       << growth.scene << " at " << percent(growth.strain_limit)
       << " strain, any motion: the time of a step grows as the number of vertices to a power\n"
-      << std::left << std::setw(name_width) << "" << std::setw(exponent_width)
-      << "power (95 %)" << std::setw(range_width) << "vertices" << std::setw(step_time_width)
-      << "ms a step"
+      << std::left << std::setw(name_width) << "" << std::setw(exponent_width) << "power (95 %)"
+      << std::setw(range_width) << "vertices" << std::setw(step_time_width) << "ms a step"
       << "GiB at the largest\n";
   for (const analysis::RowGrowth& row : growth.rows) {
     const analysis::Point& largest = row.largest;
@@ -243,7 +243,10 @@ void print_sweep(std::ostream& out, const nlohmann::json& document, bool all) {
     print_rows(out, plane, sizes, set);
     if (!sizes) print_shapes(out, plane);
   }
-  if (!planes.empty())
+  if (planes.empty())
+    out << "\nall of these runs chose their steps by a controller, which is not ranked: bench plot "
+           "draws them\n";
+  else
     out << "(~: too close to the next to tell; u: with untuned settings; errors are over the "
            "scene's size)\n";
   for (const Plane& plane : planes) {

@@ -103,7 +103,7 @@ def label_ends(sheet: Sheet, axes: Axes, ends: dict[str, tuple[float, float]], s
     order = sorted(leading, key=lambda name: -wanted[name])
     heights = [LABEL_HEIGHT * len(labels[name]) + 0.05 for name in order]
     tops = _spread([min(wanted[name] + height / 2, tall + 0.1) for name, height in zip(order, heights)], heights, tall)
-    for name, height, top in zip(order, heights, tops):
+    for number, (name, height, top) in enumerate(zip(order, heights, tops)):
         style, middle = styles[name], (top - height / 2) / tall
         if name in ends:
             end = to_axes.transform(ends[name])
@@ -113,7 +113,7 @@ def label_ends(sheet: Sheet, axes: Axes, ends: dict[str, tuple[float, float]], s
         sample.set(transform=axes.transAxes, markevery=[1])
         sheet.figure.add_artist(sample)
         sheet.figure.text(1 + 0.76 / wide, middle, "\n".join(labels[name]), transform=axes.transAxes, va="center",
-                          fontsize=LEGEND_SIZE, linespacing=1.0, gid=f"label-{name}")
+                          fontsize=LEGEND_SIZE, linespacing=1.0, gid=f"label-{number}")
 
 
 def labels_height(styles: Styles) -> float:

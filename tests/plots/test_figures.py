@@ -111,6 +111,19 @@ def test_the_two_questions_stand_side_by_side_with_one_legend() -> None:
     assert len(legend_labels(figure)) == len(set(legend_labels(figure)))
 
 
+def test_a_figure_says_what_it_finds_and_who_does_not_lead_recedes() -> None:
+    result = two_questions()
+    figure = drawn(result)["figure4a"]
+    assert "At 1 % strain, right to 2 %, icd is the fastest." in words_of(figure) and "A second sentence." not in words_of(figure)
+    assert "Grey:" not in words_of(figure)
+    result["analysis"]["planes"][0]["leaders"] = ["shake", "fast_projection"]
+    figure = drawn(result)["figure4a"]
+    paper = next(axes for axes in figure.axes if axes.get_yscale() == "log" and not axes.get_xlabel())
+    assert {line.get_color() for line in paper.lines} == {"#0072B2", "#009E73", "#BDBDBD"}
+    assert sorted(legend_labels(figure)) == ["SHAKE", "fast projection"]
+    assert "Grey: Jacobi strain limiting." in words_of(figure)
+
+
 def test_without_an_analysis_the_sweeps_own_marks_count() -> None:
     result = document([point("shake", limit=limit, best=True, best_at_errors=[0.05, 0.02]) for limit in (0.1, 0.01)] +
                       [point("icd", limit=limit, best=True, best_at_errors=[0.05]) for limit in (0.1, 0.01)])
@@ -167,7 +180,15 @@ def test_cost_over_resolution() -> None:
 
 
 def test_growth_has_slopes_in_its_legend() -> None:
-    figure = drawn(resolution_sweep())["figure5b-growth"]
+    sweep = resolution_sweep()
+    for number, entry in enumerate(sweep["points"]):
+        entry["id"] = str(number)
+    plane = {"scene": "drape", "sweep": "resolution", "leaders": ["shake", "icd", "fast_projection"], "cells": [
+        {"error_level": None, "entries": [{"id": entry["id"]} for entry in sweep["points"] if entry["best"]]}]}
+    sweep["analysis"] = {"planes": [plane], "findings": [], "growth": [{"scene": "drape", "strain_limit": 0.01, "rows": [
+        {"row": "shake", "exponent": 1.5, "sizes": 3}, {"row": "fast_projection", "exponent": 1.0, "sizes": 3},
+        {"row": "icd", "exponent": 9.0, "sizes": 2}]}]}
+    figure = drawn(sweep)["figure5b-growth"]
     axes = axes_with(figure, "vertices (log axes", "wall seconds of a step")
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
     assert sorted(legend_labels(figure)) == sorted(["SHAKE: 1.50", "ICD (implicit constraint direction)", "fast projection: 1.00"])

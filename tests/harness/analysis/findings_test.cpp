@@ -8,6 +8,10 @@
 namespace harness::analysis {
 namespace {
 
+using invented::document;
+using invented::run;
+using nlohmann::json;
+
 std::vector<std::string> told(const std::vector<json>& runs) {
   const json result = document(runs);
   const auto findings = findings_of(planes_of(result));
@@ -27,9 +31,9 @@ TEST(Findings, NameTheFirstItsPriceAndTheBestOfThePaper) {
 }
 
 TEST(Findings, NameNoWinnerWithinTheNoise) {
-  const auto sentences = told({run("strips", 0.01, 0.01, 0.0500, 0.01),
-                               run("icd", 0.01, 0.01, 0.0501, 0.01),
-                               run("shake", 0.01, 0.01, 0.1, 0.01)});
+  const auto sentences =
+      told({run("strips", 0.01, 0.01, 0.0500, 0.01), run("icd", 0.01, 0.01, 0.0501, 0.01),
+            run("shake", 0.01, 0.01, 0.1, 0.01)});
   EXPECT_NE(sentences.at(0).find("strips and icd are the fastest, too close to tell apart: "),
             std::string::npos)
       << sentences[0];
@@ -46,14 +50,15 @@ TEST(Findings, AnswerTheNearestQuestionThatHasAnAnswer) {
             "At 1 % strain, whatever the motion, ");
   json failed = run("strips", 0.01, 0.01, 0.05, 0.3);
   failed["status"] = "diverged";
-  EXPECT_EQ(told({failed}).at(0),
-            "At 1 % strain, whatever the motion, there is no answer: no run keeps the strain limit.");
+  EXPECT_EQ(
+      told({failed}).at(0),
+      "At 1 % strain, whatever the motion, there is no answer: no run keeps the strain limit.");
 }
 
 TEST(Findings, TellWhatATighterLimitOrAnyMotionChanges) {
-  const auto tighter = told({run("strips", 0.01, 0.01, 0.05, 0.01), run("icd", 0.01, 0.01, 0.1, 0.01),
-                             run("strips", 0.001, 0.01, 0.3, 0.01),
-                             run("icd", 0.001, 0.01, 0.2, 0.01)});
+  const auto tighter =
+      told({run("strips", 0.01, 0.01, 0.05, 0.01), run("icd", 0.01, 0.01, 0.1, 0.01),
+            run("strips", 0.001, 0.01, 0.3, 0.01), run("icd", 0.001, 0.01, 0.2, 0.01)});
   ASSERT_EQ(tighter.size(), 2u);
   EXPECT_EQ(tighter[1].substr(0, 54), "At 0.1 % strain, right to 2 %, icd is the fastest: 199");
   const auto any = told({run("strips", 0.01, 0.01, 0.05, 0.01), run("icd", 0.01, 0.04, 0.01, 0.2)});

@@ -12,6 +12,10 @@
 namespace harness::analysis {
 namespace {
 
+using invented::document;
+using invented::run;
+using nlohmann::json;
+
 json resolution_run(const std::string& solver, int n, double seconds_a_step) {
   json p = run(solver, 0.01, 0.001, seconds_a_step / 0.001, 0.3, true);
   p["id"] = solver + std::to_string(n);

@@ -50,8 +50,9 @@ bool has(const std::string& text, const std::string& words) {
 TEST(ResultsPage, OnlyTheClearlyFastestIsBoldAndRatiosHaveIntervals) {
   const std::string quiet = page(sweep(0.01)), noisy = page(sweep(0.8));
   has(quiet, "| 1 % | **`fast_projection`** 1000 ms, 1/100");
-  has(quiet, "fast_projection is the fastest: 1 s a simulated second with steps of 1/100 s and an "
-             "error of 1 %; icd, the next, takes 2.00 (1.98-2.02) times as long.");
+  has(quiet,
+      "fast_projection is the fastest: 1 s a simulated second with steps of 1/100 s and an "
+      "error of 1 %; icd, the next, takes 2.00 (1.98-2.02) times as long.");
   has(noisy, "| 1 % | `fast_projection` 1000 ms, 1/100");
   has(noisy, "fast_projection and icd are the fastest, too close to tell apart");
 }

@@ -1,4 +1,5 @@
-// What a terminal shows of invented results: never wider than it may be, and everybody if asked for.
+// What a terminal shows of invented results: never wider than it may be, and everybody if asked
+// for.
 #include "harness/tables/terminal.h"
 
 #include <gtest/gtest.h>
@@ -44,9 +45,9 @@ TEST(Terminal, TellsTheShapeErrorsOfTheFastest) {
 TEST(Terminal, HasEverybodyIfAskedFor) {
   json failed = run("shake", 0.1, 0.02, 2e-3, 0.01);
   failed["status"] = "diverged";
-  const json result =
-      document({run("strips", 0.1, 0.04, 1e-3, 0.008), run("icd", 0.1, 0.04, 3e-3, 0.03),
-                run("icd_untuned", 0.1, 0.04, 4e-3, 0.03), run("null", 0.1, 0.04, 1e-4, 0), failed});
+  const json result = document(
+      {run("strips", 0.1, 0.04, 1e-3, 0.008), run("icd", 0.1, 0.04, 3e-3, 0.03),
+       run("icd_untuned", 0.1, 0.04, 4e-3, 0.03), run("null", 0.1, 0.04, 1e-4, 0), failed});
   std::ostringstream brief, all;
   print_sweep(brief, result);
   print_sweep(all, result, true);
@@ -54,7 +55,7 @@ TEST(Terminal, HasEverybodyIfAskedFor) {
   EXPECT_NE(brief.str().find("1 of 5 runs did not end well: diverged 1"), std::string::npos)
       << brief.str();
   for (const char* words : {"icd_untuned", "slower settings", "keeps no limit",
-                            "chain, shake: diverged x 1", "3.00 (2.98-3.02)"})
+                            "chain, shake: diverged x 1", "3.00 (2.99-3.01)"})
     EXPECT_NE(all.str().find(words), std::string::npos) << words << "\nin\n" << all.str();
   std::istringstream lines(all.str());
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
