@@ -2,7 +2,7 @@
 """One page that tells what result files found: findings in words, charts to hide solvers in and tables to sort, every figure,
 the paper's claims, and scenes in motion. It needs nothing but a browser, and no network.
 
-    plots/report.py results/*.json --out report.html [--claims claims.json] [--motion FOLDER ...]
+    plots/report.py results/*.json --out report.html [--analyses FILE] [--claims claims.json] [--motion FOLDER ...]
 
 page/ has one file a part: data.py, findings.py, pictures.py and motion.py for what is computed here, .css and .js for the browser.
 `bench report` runs it with the claims decided and scenes recorded. Needs Debian's python3-matplotlib and python3-numpy.
@@ -42,6 +42,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="report.py", description="One page that tells what result files found.")
     parser.add_argument("results", type=Path, nargs="+", metavar="RESULT.json")
     parser.add_argument("--out", type=Path, required=True, metavar="report.html")
+    parser.add_argument("--analyses", type=Path, metavar="FILE", help="what bench found: findings, and the analysis of each result")
     parser.add_argument("--claims", type=Path, metavar="claims.json", help="verdicts on the paper's claims")
     parser.add_argument("--motion", type=Path, nargs="*", default=[], metavar="FOLDER", help="recordings of bench film")
     return parser.parse_args(arguments)
@@ -51,11 +52,18 @@ def section(name: str, title: str, body: str) -> str:
     return f'<section id="{name}" aria-labelledby="{name}-title">\n<h2 id="{name}-title">{title}</h2>\n{body}\n</section>\n' if body else ""
 
 
-def findings_part(documents: list[Json], legend: Legend) -> str:
+def findings_part(told: list[Json], documents: list[Json]) -> str:
+    """The answer that most readers come for is first, and large."""
     def items(texts: list[str]) -> str:
-        return "<ul>\n" + "".join(f"<li>{text}</li>\n" for text in texts) + "</ul>"
-    return items([escape(found.text) + (items([escape(part) for part in found.parts]) if found.parts else "")
-                  for found in findings(documents, legend)])
+        return "<ul>\n" + "".join(f"<li>{text}</li>\n" for text in texts) + "</ul>" if texts else ""
+    found = findings(told, documents)
+    if not found:
+        return ""
+    answer = ""
+    if found[0].parts:
+        answer = f'<p class="answer">{escape(found[0].text)} {escape(" ".join(found[0].parts))}</p>\n'
+        found = found[1:]
+    return answer + items([escape(one.text) + items([escape(part) for part in one.parts]) for one in found])
 
 
 def pictures_of(documents: dict[Path, Json]) -> list[Picture]:
@@ -94,10 +102,10 @@ def machine_part(documents: dict[Path, Json]) -> str:
         + "".join(row(path, document) for path, document in documents.items()) + "</tbody></table></div>")
 
 
-def page(documents: dict[Path, Json], claims: list[Json], motions: list[Json]) -> str:
+def page(documents: dict[Path, Json], told: list[Json], claims: list[Json], motions: list[Json]) -> str:
     legend = merged(legend_of(document) for document in documents.values() if "legend" in document)
     data = document_data(documents, legend)
-    parts = [("findings", "Findings", findings_part(list(documents.values()), legend))]
+    parts = [("findings", "Findings", findings_part(told, list(documents.values())))]
     if data["points"]:
         parts += [("contest", "Who is fastest", (PAGE / "contest.html").read_text(encoding="utf-8")),
                   ("points", "All points", (PAGE / "table.html").read_text(encoding="utf-8"))]
@@ -126,7 +134,11 @@ def run(arguments: list[str]) -> None:
     options = parse(arguments)
     documents = {path: load(path) for path in options.results}
     claims = json.loads(options.claims.read_text(encoding="utf-8")) if options.claims else []
-    text = page(documents, claims, [recorded(folder) for folder in options.motion])
+    analyses = json.loads(options.analyses.read_text(encoding="utf-8")) if options.analyses else {"findings": [], "of": {}}
+    for path, document in documents.items():
+        if str(path) in analyses["of"]:
+            document["analysis"] = analyses["of"][str(path)]
+    text = page(documents, analyses["findings"], claims, [recorded(folder) for folder in options.motion])
     try:
         options.out.write_text(text, encoding="utf-8", errors="replace")
     except OSError as error:

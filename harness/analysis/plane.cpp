@@ -148,13 +148,17 @@ const Entry* Cell::paper_best() const {
   return nullptr;
 }
 
-bool Cell::clear() const {
+std::vector<const Entry*> Cell::equals() const {
+  std::vector<const Entry*> list;
   const Entry* best = first();
-  if (!best || !counting(1)) return false;
-  return std::all_of(entries.begin(), entries.end(), [&](const Entry& other) {
-    return &other == best || !other.counts || ratio(other.point, best->point).above(1);
-  });
+  for (const Entry& entry : entries) {
+    if (entry.counts && (&entry == best || !ratio(entry.point, best->point).above(1)))
+      list.push_back(&entry);
+  }
+  return list;
 }
+
+bool Cell::clear() const { return counting(1) && equals().size() == 1; }
 
 std::optional<Ratio> Cell::lead_over(const Entry* other) const {
   const Entry* best = first();
@@ -167,6 +171,21 @@ const Cell& Plane::cell(double limit, double level) const {
     if (cell.strain_limit == limit && cell.level == level) return cell;
   }
   throw std::out_of_range("no such cell");
+}
+
+std::vector<std::string> Plane::leaders() const {
+  std::vector<std::string> rows;
+  for (const Cell& cell : cells) {
+    if (cell.first()) rows.push_back(cell.first()->row);
+  }
+  for (const PaperMethod& method : all_paper_methods) {
+    for (const Cell& cell : cells) {
+      for (const Entry& entry : cell.entries) {
+        if (entry.row == method.name) rows.push_back(entry.row);
+      }
+    }
+  }
+  return in_order(rows, [](const std::string& row) { return row; });
 }
 
 std::vector<Plane> planes_of(const json& document) {
@@ -190,6 +209,31 @@ std::vector<Plane> planes_of(const json& document) {
     planes.push_back(plane_of(here, document, cast));
   }
   return planes;
+}
+
+std::vector<Plane> merged(const std::vector<Plane>& planes) {
+  std::vector<Plane> all;
+  for (const Plane& plane : planes) {
+    const auto same = std::find_if(all.begin(), all.end(), [&](const Plane& other) {
+      return std::tie(other.scene, other.sweep, other.scene_parameters, other.vertices,
+                      other.levels) == std::tie(plane.scene, plane.sweep, plane.scene_parameters,
+                                                plane.vertices, plane.levels);
+    });
+    if (same == all.end()) {
+      all.push_back(plane);
+      continue;
+    }
+    for (const Cell& cell : plane.cells) {
+      if (std::find(same->limits.begin(), same->limits.end(), cell.strain_limit) ==
+          same->limits.end())
+        same->cells.push_back(cell);
+    }
+    std::stable_sort(same->cells.begin(), same->cells.end(), [](const Cell& a, const Cell& b) {
+      return a.strain_limit > b.strain_limit;  // levels stay in their order
+    });
+    same->limits = in_order(same->cells, [](const Cell& cell) { return cell.strain_limit; });
+  }
+  return all;
 }
 
 }  // namespace harness::analysis

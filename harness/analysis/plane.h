@@ -38,7 +38,9 @@ struct Cell {
   const Entry* counting(std::size_t place) const;  // 0: the fastest of those that count
   const Entry* next_family() const;                // the fastest of another family than the first
   const Entry* paper_best() const;                 // the fastest of the paper's six methods
-  // Whether the first is faster than every other one that counts, beyond the noise.
+  // Those that count and cannot be told apart from the first, which is the first of them.
+  std::vector<const Entry*> equals() const;
+  // Whether the first has rivals, and is faster than each of them beyond the noise.
   bool clear() const;
   // Times over the first's.
   std::optional<Ratio> lead_over(const Entry* other) const;
@@ -54,10 +56,16 @@ struct Plane {
   std::vector<Cell> cells;     // by limit, then by level
 
   const Cell& cell(double limit, double level) const;
+  // Rows that a figure shows before all others: who is first in a cell, then the paper's six.
+  std::vector<std::string> leaders() const;
 };
 
 // In the document's order. The document must outlive them. Runs with a step controller do not take
 // part.
 std::vector<Plane> planes_of(const nlohmann::json& document);
+
+// Planes of several documents: those of one scene and size with limits of their own are one. A
+// limit that two have is the first one's.
+std::vector<Plane> merged(const std::vector<Plane>& planes);
 
 }  // namespace harness::analysis

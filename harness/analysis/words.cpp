@@ -11,6 +11,10 @@ namespace harness::analysis {
 
 std::string percent(double fraction) { return number_text(100 * fraction, 3) + " %"; }
 
+std::string time_words(double seconds) {
+  return seconds >= 1 ? number_text(seconds, 3) + " s" : number_text(1e3 * seconds, 3) + " ms";
+}
+
 std::string text(const Ratio& ratio) {
   if (std::isnan(ratio.value)) return "?";
   if (!ratio.known() || !(ratio.value > 0))

@@ -7,7 +7,8 @@
 
 namespace harness::analysis {
 
-std::string percent(double fraction);  // "1.2 %"
+std::string percent(double fraction);    // "1.2 %"
+std::string time_words(double seconds);  // "1.23 s", "41.3 ms", "0.51 ms"
 // "3.5 (3.3-3.8)" with its 95 % interval; "3.5 (?)": it is not known.
 std::string text(const Ratio& ratio);
 

@@ -1,6 +1,7 @@
 // bench report: one page that tells what result files found.
 #include <filesystem>
 
+#include "harness/analysis/analysis_json.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/json_text.h"
@@ -23,6 +24,21 @@ nlohmann::json claims_json(const std::vector<ClaimVerdict>& claims) {
                     {"measured", claim.measured},
                     {"rule", claim.rule}});
   return rows;
+}
+
+// What the page says and draws: the analysis of each sweep by its file's name, and the findings of
+// all, those of pieces of one sweep taken together.
+nlohmann::json analyses_json(const std::vector<std::string>& files,
+                             const std::vector<nlohmann::json>& results) {
+  nlohmann::json of = nlohmann::json::object();
+  std::vector<analysis::Plane> planes;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!results[i].contains("points")) continue;
+    of[files[i]] = analysis::analysis_of(results[i]);
+    const std::vector<analysis::Plane> own = analysis::planes_of(results[i]);
+    planes.insert(planes.end(), own.begin(), own.end());
+  }
+  return {{"findings", analysis::findings_json(analysis::merged(planes))}, {"of", std::move(of)}};
 }
 
 // By three methods at 1 %, small enough for a page.
@@ -58,8 +74,11 @@ int report(const ReportOptions& given) {
   const TemporaryFolder folder("report");
   std::vector<std::string> words = given.results;
   words.insert(words.end(), given.answers.begin(), given.answers.end());
-  words.insert(words.end(), {"--out", given.out, "--claims", folder.file("claims.json")});
+  words.insert(words.end(), {"--out", given.out, "--claims", folder.file("claims.json"),
+                             "--analyses", folder.file("analyses.json")});
   write_atomically(folder.file("claims.json"), compact(claims_json(judge_claims(results))) + "\n");
+  write_atomically(folder.file("analyses.json"),
+                   compact(analyses_json(given.results, results)) + "\n");
   if (!given.still) {
     words.emplace_back("--motion");
     words.push_back(record_into(folder.file("drape"), motion("drape", {{"n", 31}})));

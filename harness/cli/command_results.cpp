@@ -3,9 +3,9 @@
 #include <sstream>
 
 #include "harness/base/files.h"
-#include "harness/claims/results_page.h"
 #include "harness/cli/commands.h"
 #include "harness/points/result_file.h"
+#include "harness/tables/results_page.h"
 
 namespace harness {
 namespace {
@@ -27,19 +27,17 @@ std::string page(const ResultsOptions& given) {
   std::ostringstream out;
   out << "# Results\n\nThis page is generated; do not edit it. The command, which gives every file "
          "that the numbers come from:\n\n```sh\n./bench results";
-  for (const std::string& file : given.results) out << " \\\n  " << file;
-  if (!given.growth.empty()) out << " \\\n  --growth";
+  for (const std::string& file : given.results) out << ' ' << file;
+  if (!given.growth.empty()) out << " --growth";
   for (const std::string& file : given.growth) out << ' ' << file;
-  if (!given.answers.empty()) out << " \\\n  --answers";
+  if (!given.answers.empty()) out << " --answers";
   for (const std::string& file : given.answers) out << ' ' << file;
-  if (!given.out.empty()) out << " \\\n  --out " << given.out;
+  if (!given.out.empty()) out << " --out " << given.out;
   out << "\n```\n\nTimes are the least of several samples. [measuring.md](measuring.md) says what "
-         "they mean, and how "
-         "far they can be trusted. A dash: no step of that solver met the limit. Ratios have their "
-         "95 % interval, `3.5 (3.3-3.8)`; `3.5 (?)`: it is not known, for too few runs and no A/A "
-         "pair. Bold: the fastest, if its interval against each other lies on one side. "
-         "`(coarsest)`, `(finest)`: a step at the end of what was tried, beyond which a better one "
-         "may lie.\n\n";
+         "they mean, and how far they can be trusted. Ratios have their 95 % interval, "
+         "`3.5 (3.3-3.8)`; `3.5 (?)`: it is not known, for too few runs and no A/A pair. "
+         "`bench show RESULT.json --all` has every contestant of a file, `bench report` every "
+         "run.\n\n";
   std::vector<NamedResult> answers;
   for (const std::string& file : given.answers) answers.push_back({file, read_answers(file)});
   print_results_page(out, read(given.results), read(given.growth), answers);

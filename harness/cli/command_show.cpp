@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "harness/analysis/plane_json.h"
+#include "harness/analysis/analysis_json.h"
 #include "harness/answers/measure.h"
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
@@ -13,11 +13,9 @@
 #include "harness/base/text.h"
 #include "harness/cli/commands.h"
 #include "harness/points/noise.h"
-#include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
 #include "harness/points/schema_check.h"
-#include "harness/run/plane_table.h"
-#include "harness/run/report.h"
+#include "harness/tables/terminal.h"
 
 namespace harness {
 namespace {
@@ -76,7 +74,7 @@ void print_outcomes(const json& document) {
   }
 }
 
-int show(const std::string& file) {
+int show(const std::string& file, bool all) {
   const json document = read_shown(file);
   print_head(document, file);
   if (document.at("schema") == "inextensible-answers/1") {
@@ -88,13 +86,13 @@ int show(const std::string& file) {
     return success;
   }
   const json& context = document.at("context");
-  std::vector<PointResult> points;
-  for (const json& point : document.at("points")) points.push_back(point_of(point));
-  print_table(std::cout, points);
-  print_planes(std::cout, document);
+  print_sweep(std::cout, document, all);
   if (const auto pair = noise_of(context))
     std::cout << "\ndifferences below " << number_text(100 * std::expm1(pair->q95), 2)
               << " % are noise, by " << pair->one << " against itself\n";
+  if (!all)
+    std::cout << "\nall contestants: bench show " << file
+              << " --all; a page with figures: bench report " << file << " --out report.html\n";
   return success;
 }
 
@@ -114,14 +112,19 @@ int show_json(const std::string& file) {
 void add_show_command(const Command& program) {
   struct Given {
     std::string file;
-    bool as_json = false;
+    bool as_json = false, all = false;
   };
   const auto given = std::make_shared<Given>();
   const Command command = program.subcommand("show", "the tables of a result file");
   command.option("result", given->file, "result file", "RESULT.json").required();
   command.flag("--json", given->as_json,
                "who is fastest within each strain limit and error, for programs");
-  command.does([given] { return given->as_json ? show_json(given->file) : show(given->file); });
+  command.flag("--all", given->all, "every contestant, and how runs failed");
+  command.does([given] {
+    if (given->as_json && given->all)
+      throw UsageError("--json has all contestants already: leave out --all");
+    return given->as_json ? show_json(given->file) : show(given->file, given->all);
+  });
 }
 
 }  // namespace harness

@@ -23,11 +23,10 @@
 #include "harness/run/journal.h"
 #include "harness/run/noise_probe.h"
 #include "harness/run/overhead.h"
-#include "harness/run/plane_table.h"
 #include "harness/run/progress.h"
 #include "harness/run/quiet_samples.h"
-#include "harness/run/report.h"
 #include "harness/run/runner.h"
+#include "harness/tables/terminal.h"
 #include "inextensible/registry.h"
 
 namespace harness {
@@ -256,11 +255,10 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   const nlohmann::json document = result_document(context, suite, command, outcome.complete,
                                                   outcome.points, shelf->summaries());
   write_atomically(out, result_text(document));
-  print_table(std::cout, outcome.points);
-  print_planes(std::cout, document);
+  print_sweep(std::cout, document);
   tell_overhead(context["harness_overhead"]);
   tell_noise(document);
-  std::cout << "\nwritten:\n" << out << std::endl;
+  std::cout << "\nall contestants: bench show " << out << " --all\nwritten:\n" << out << std::endl;
   if (!outcome.complete) {
     std::cerr << "bench: interrupted; the same command with --resume goes on from here\n";
     return interrupted_exit;

@@ -5,7 +5,7 @@
 
 #include <iostream>
 
-#include "harness/analysis/plane_json.h"
+#include "harness/analysis/analysis_json.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
 #include "harness/base/paths.h"

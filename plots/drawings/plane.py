@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 
 from parts.caption import SUBJECTS, origin_sentence, percent, warnings_of
 from parts.legend import Legend
-from parts.result_file import Json
+from parts.result_file import Json, finding_in
 from parts.sheet import LEFT, RIGHT, make_sheet
 from parts.style import LIGHT_GREY, SolverStyle, styles_for
 from parts.words import clean, file_part, wrap
@@ -40,7 +40,8 @@ def draw(plane: Json, document: Json, legend: Legend) -> Figure:
     title = f"{scene}, {plane['vertices']:,} vertices: who is fastest within a strain and an error"
     styles = styles_for(dict.fromkeys(cell["first"] for cell in plane["cells"] if cell["first"]), legend)
     width, height = CELL_WIDTH * len(levels), CELL_HEIGHT * len(limits)
-    sheet = make_sheet(title, warnings_of(document), _caption(document), NARROW + LEFT / 2 + width + RIGHT, height + 0.3)
+    sheet = make_sheet(title, warnings_of(document), _caption(document), NARROW + LEFT / 2 + width + RIGHT, height + 0.3,
+                       finding=" ".join(finding_in(document, plane["scene"], plane["sweep"], plane["vertices"])))
     axes = sheet.axes(NARROW, sheet.bottom, width, height)
     axes.set(xlim=(0, len(levels)), ylim=(len(limits), 0))
     for number, cell in enumerate(plane["cells"]):

@@ -13,12 +13,12 @@ from parts.caption import ERROR_LABEL, origin_sentence, scene_sentence, timing, 
 from parts.curves import Styles, draw_noise, line_of
 from parts.failures import Mark, Rows, add_strip, letters_in
 from parts.legend import MEANINGS, Legend
-from parts.result_file import Json, noise_factor
+from parts.result_file import Json, finding_in, leaders_in, noise_factor
 from parts.scales import log_log
-from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, TIME_LABEL, add_legend, grid, legend_height,
-                         make_sheet)
+from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, TIME_LABEL, grid, label_ends, labels_height,
+                         make_sheet, receding_sentence)
 from parts.step_runs import FailedStep, Run, RunsData, cheapest, step_sweeps_in, styles_of
-from parts.style import SolverStyle
+from parts.style import SolverStyle, with_leaders
 from parts.words import clean
 
 TARGETS = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5)
@@ -32,16 +32,17 @@ def figures_of(document: Json, legend: Legend) -> list[tuple[str, Callable[[], F
 
 
 def draw(data: RunsData, document: Json, legend: Legend) -> Figure:
-    styles = styles_of(data, legend)
+    styles = with_leaders(styles_of(data, legend), leaders_in(document, data.scene, "step"))
     rows = _missed_targets(data, styles)
     words = [scene_sentence(data.scene, f"{data.vertices:,.0f} vertices", data.points) + validity(data),
              "Every run that kept its strain limit, at any step and limit, with tuned or untuned settings, is a dot. A curve joins the runs of a solver that "
              "none of its others beats in both time and error; the yellow band is the front of all solvers. Hollow: error "
              "below three times the reference's own uncertainty.",
-             _key_of(rows, legend), timing(document), origin_sentence(document)]
+             receding_sentence(styles), _key_of(rows, legend), timing(document), origin_sentence(document)]
     sheet = make_sheet(f"{clean(data.scene)}: time against error", warnings_of(document), [w for w in words if w],
                        LEFT + 1.25 * MAIN_WIDTH + LEGEND_WIDTH, 1.25 * MAIN_HEIGHT + ROW_HEIGHT * len(rows),
-                       legend_height(styles) - 1.25 * MAIN_HEIGHT)
+                       labels_height(styles) - 1.25 * MAIN_HEIGHT,
+                       " ".join(finding_in(document, data.scene, "step", data.vertices)[:1]))
     axes = sheet.axes(LEFT, sheet.bottom, 1.25 * MAIN_WIDTH, 1.25 * MAIN_HEIGHT)
     runs = data.all_runs()
     log_log(axes, [run.error for run in runs], [run.seconds for run in runs])
@@ -51,11 +52,12 @@ def draw(data: RunsData, document: Json, legend: Legend) -> Figure:
     axes.plot([run.error for run in front], [run.seconds for run in front], color=FRONT, linewidth=9, alpha=0.8,
               solid_capstyle="round", solid_joinstyle="round", zorder=2)
     for order, (solver, style) in enumerate(styles.items()):
-        _draw_solver(axes, data.runs.get(solver, []), style, 10 + len(styles) - order)
+        _draw_solver(axes, data.runs.get(solver, []), style, 10 + len(styles) - order if style.leads else 3)
     draw_noise(axes, noise_factor(document))
     grid(axes)
     add_strip(sheet, axes, rows, styles, "error not reached")
-    add_legend(axes, styles, anchor=(1.03, 1.0))
+    ends = {solver: max(cheapest(own), key=lambda run: run.error) for solver, own in data.runs.items() if own}
+    label_ends(sheet, axes, {solver: (run.error, run.seconds) for solver, run in ends.items()}, styles)
     return sheet.figure
 
 
@@ -77,7 +79,7 @@ def _missed_targets(data: RunsData, styles: Styles) -> Rows:
     errors = [run.error for run in data.all_runs()]
     shown = [target for target in TARGETS if min(errors) <= target <= max(errors)]
     rows: Rows = {}
-    for solver in styles:
+    for solver in (name for name, style in styles.items() if style.leads):
         closest = min(data.runs.get(solver, []), key=lambda run: run.error, default=None)
         letters = _letters([failure for failure in data.failures.get(solver, []) if not closest or failure.step < closest.step])
         marks = [Mark(target, letters) for target in sorted(shown) if not closest or target < closest.error]

@@ -113,5 +113,13 @@
   choice.addEventListener("change", () => { fillPlaces(); draw(); });
   place.addEventListener("change", draw);
   onHide.push(draw);
-  if (contests.size) { fillPlaces(); draw(); }
+  // Opens on the largest drape over strain at 1 %, where there is one.
+  const most = (name) => Math.max(...contests.get(name).map((point) => point.vertices));
+  const drapes = [...contests.keys()].filter((name) => name.startsWith("drape over strain"));
+  if (drapes.length) choice.value = drapes.reduce((a, b) => most(b) > most(a) ? b : a);
+  if (contests.size) {
+    fillPlaces();
+    if ([...place.options].some((option) => option.value === "0.01")) place.value = "0.01";
+    draw();
+  }
 })();

@@ -20,7 +20,7 @@ def steps_label(figure: FigureData) -> str:
 
 def draw_steps(axes: Axes, figure: FigureData, styles: Styles, x_factor: float = 1.0) -> None:
     """The step each best point was run at. Solvers often share one, so equal steps are fanned out sideways."""
-    contestants = {s: style for s, style in styles.items() if style.contestant and not style.hollow}
+    contestants = {s: style for s, style in styles.items() if style.contestant and style.leads and not style.hollow}
     taken: dict[tuple[float, int], list[str]] = {}
     for solver in contestants:
         for best in figure.curves[solver].best:

@@ -11,15 +11,15 @@ from matplotlib.figure import Figure
 from parts.best_points import FigureData
 from parts.best_steps import draw_steps, steps_label
 from parts.caption import caption_of, percent, title_of, warnings_of
-from parts.curves import Styles, draw_curves, draw_noise, draw_slopes
+from parts.curves import Styles, draw_curves, draw_noise, draw_slopes, ends_of
 from parts.failures import FAILED, NOT_REACHED, Rows, add_strip, failed_rows
 from parts.filter_panel import draw_filter
 from parts.legend import Legend
-from parts.result_file import Json, noise_factor
+from parts.result_file import Json, finding_in, leaders_in, noise_factor
 from parts.scales import log_x, log_y
 from parts.sheet import (BETWEEN, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, STEPS_HEIGHT, TIME_LABEL, Sheet,
-                         add_legend, grid, legend_height, make_sheet)
-from parts.style import styles_for
+                         grid, label_ends, labels_height, make_sheet, receding_sentence)
+from parts.style import styles_for, with_leaders
 
 HEADING = 0.22  # inches, above two columns
 
@@ -42,13 +42,16 @@ class Column:
 
 
 def draw(data: FigureData, document: Json, legend: Legend, axis: Axis) -> Figure:
-    styles = styles_for(data.curves, legend)
+    styles = with_leaders(styles_for(data.curves, legend), leaders_in(document, data.scene, data.sweep))
     columns = _columns(data, styles, axis)
     strip = ROW_HEIGHT * max(len(column.rows) for column in columns)
     panels_height = _main_bottom(data) + MAIN_HEIGHT
     right = columns[-1].left + MAIN_WIDTH
-    sheet = make_sheet(title_of(data), warnings_of(document), caption_of(data, document, legend), right + LEGEND_WIDTH,
-                       panels_height + strip + (HEADING if len(columns) > 1 else 0), legend_height(styles) - panels_height)
+    finding = [] if data.delivered else finding_in(document, data.scene, data.sweep, data.fixed if data.sweep == "strain" else None)
+    captions = [receding_sentence(styles), *caption_of(data, document, legend)]
+    sheet = make_sheet(title_of(data), warnings_of(document), [words for words in captions if words], right + LEGEND_WIDTH,
+                       panels_height + strip + (HEADING if len(columns) > 1 else 0), labels_height(styles) - panels_height,
+                       " ".join(finding[:1]))
     mains = [_draw_column(sheet, column, document, styles, axis) for column in columns]
     low, high = min(main.get_ylim()[0] for main in mains), max(main.get_ylim()[1] for main in mains)
     for column, main in zip(columns, mains):
@@ -62,7 +65,7 @@ def draw(data: FigureData, document: Json, legend: Legend, axis: Axis) -> Figure
             sheet.figure.text(box.x0, box.y1 + (strip + 0.17) / sheet.height, column.heading, fontsize=9, fontweight="bold",
                               va="bottom")
     mains[0].set_ylabel(TIME_LABEL)
-    add_legend(mains[-1], styles, anchor=(1.03, 1.0))
+    label_ends(sheet, mains[-1], ends_of(columns[-1].data, axis.factor), styles)
     return sheet.figure
 
 

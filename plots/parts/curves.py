@@ -19,12 +19,18 @@ def draw_curves(axes: Axes, figure: FigureData, styles: Styles, x_factor: float 
             continue
         x = [b.x * x_factor for b in best]
         y = [b.seconds for b in best]
-        z = 10 + len(styles) - order if style.contestant else 2
-        if style.contestant:  # for the others a bar would be heavier than the line
+        z = 10 + len(styles) - order if style.contestant and style.leads else 2
+        if style.contestant and style.leads:  # for the others a bar would be heavier than the line
             bars = [[b.seconds - b.low for b in best], [b.high - b.seconds for b in best]]
             axes.errorbar(x, y, yerr=bars, fmt="none", ecolor=style.color, elinewidth=0.7, capsize=1.8, capthick=0.7,
                           zorder=z)
         axes.add_line(line_of(style, x, y, zorder=z))
+
+
+def ends_of(figure: FigureData, x_factor: float = 1.0) -> dict[str, tuple[float, float]]:
+    """Where each curve ends on the right."""
+    last = {solver: max(curve.best, key=lambda best: best.x) for solver, curve in figure.curves.items() if curve.best}
+    return {solver: (best.x * x_factor, best.seconds) for solver, best in last.items()}
 
 
 def line_of(style: SolverStyle, x: list[float], y: list[float], **more: float) -> Line2D:

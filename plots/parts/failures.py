@@ -35,7 +35,7 @@ def letters_in(rows: Rows) -> set[str]:
 
 def failed_rows(figure: FigureData, styles: Styles, x_factor: float = 1.0) -> Rows:
     """Marks for each contestant that failed at some x. Backends out of competition are not held to the limit."""
-    contestants = [solver for solver in styles if styles[solver].contestant]
+    contestants = [solver for solver in styles if styles[solver].contestant and styles[solver].leads]
     rows = {s: [Mark(f.x * x_factor, f.letters) for f in figure.curves[s].failures] for s in contestants}
     return {solver: marks for solver, marks in rows.items() if marks}
 

@@ -42,6 +42,21 @@ def load_analysis(path: Path) -> Json:
     return document
 
 
+def leaders_in(document: Json, scene: str, sweep: str) -> set[str] | None:
+    """Who is first somewhere or of the paper, by the program's analysis; None: the document has none of this scene."""
+    planes = [plane for plane in object_in(document, "analysis").get("planes", [])
+              if plane["scene"] == scene and plane["sweep"] == sweep]
+    return {name for plane in planes for name in plane["leaders"]} if planes else None
+
+
+def finding_in(document: Json, scene: str, sweep: str, vertices: float | None = None) -> list[str]:
+    """The program's sentences on a scene; vertices: of one size."""
+    for finding in object_in(document, "analysis").get("findings", []):
+        if finding["scene"] == scene and finding["sweep"] == sweep and vertices in (None, finding["vertices"]):
+            return list(finding["sentences"])
+    return []
+
+
 def load(path: Path) -> Json:
     """The parsed file, with every point that a figure needs checked."""
     document = _parsed(path)

@@ -8,6 +8,7 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from parts.curves import Styles, line_of
 from parts.result_file import ResultError
@@ -24,7 +25,8 @@ BETWEEN, X_LABEL, LINE_HEIGHT = 0.14, 0.5, 0.15
 MARGIN = 0.2
 TIME_LABEL = "wall seconds per simulated second"
 
-TITLE_SIZE, WARNING_SIZE, CAPTION_SIZE, LEGEND_SIZE = 11, 9.5, 7.5, 8
+TITLE_SIZE, FINDING_SIZE, WARNING_SIZE, CAPTION_SIZE, LEGEND_SIZE = 11, 9, 9.5, 7.5, 8
+FINDING_HEIGHT, LABEL_HEIGHT = 0.17, 0.145
 LABEL_WIDTHS = {1: 2.05, 2: 1.65}  # of a legend's words, by its number of columns
 LABEL_LINES = 2
 
@@ -48,23 +50,28 @@ class Sheet:
 
 
 def make_sheet(title: str, warnings: list[str], paragraphs: list[str], width: float, panels_height: float,
-               hanging: float = 0) -> Sheet:
-    """An empty sheet with title, warnings and caption on it; `panels_height` is what all panels and strips need, `hanging`
-    how far a legend hangs below them."""
+               hanging: float = 0, finding: str = "") -> Sheet:
+    """An empty sheet with title, what the figure finds, warnings and caption on it; `panels_height` is what all panels and
+    strips need, `hanging` how far a legend hangs below them."""
     room = width - 2 * MARGIN
     lines = [line for paragraph in paragraphs for line in wrap(paragraph, room, CAPTION_SIZE)]
     titles = wrap(title, room, TITLE_SIZE, "bold")
     if len(titles) > 2:
         titles = [titles[0], shorten(" ".join(titles[1:]), room, TITLE_SIZE, "bold")]
+    found = wrap(clean_sentence(finding), room, FINDING_SIZE)
     bottom = 0.15 + LINE_HEIGHT * len(lines) + max(X_LABEL, hanging + 0.1)
-    height = bottom + panels_height + 0.3 + 0.2 * (len(titles) + len(warnings))
+    height = bottom + panels_height + 0.3 + 0.2 * (len(titles) + len(warnings)) + FINDING_HEIGHT * len(found)
     figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
     sheet = Sheet(figure, width, height, bottom)
     for number, line in enumerate(titles):
         sheet.text(MARGIN, height - 0.12 - 0.2 * number, line, fontsize=TITLE_SIZE, fontweight="bold")
-    for number, warning in enumerate(warnings, len(titles) - 1):
-        sheet.text(MARGIN, height - 0.36 - 0.2 * number, warning, fontsize=WARNING_SIZE, fontweight="bold", color=ALARM)
+    below = height - 0.16 - 0.2 * len(titles)
+    for number, line in enumerate(found):
+        sheet.text(MARGIN, below - FINDING_HEIGHT * number, line, fontsize=FINDING_SIZE)
+    below -= FINDING_HEIGHT * len(found)
+    for number, warning in enumerate(warnings):
+        sheet.text(MARGIN, below - 0.2 * number, warning, fontsize=WARNING_SIZE, fontweight="bold", color=ALARM)
     for number, line in enumerate(lines):
         sheet.text(MARGIN, 0.1 + LINE_HEIGHT * (len(lines) - number), line, fontsize=CAPTION_SIZE)
     return sheet
@@ -82,6 +89,57 @@ def add_legend(axes: Axes, styles: Styles, anchor: tuple[float, float], columns:
     axes.legend(handles, labels, loc="upper left", bbox_to_anchor=anchor,
                 borderaxespad=0, frameon=False, fontsize=LEGEND_SIZE, handlelength=4.2, labelspacing=0.55,
                 ncol=columns, columnspacing=1.2)
+
+
+def label_ends(sheet: Sheet, axes: Axes, ends: dict[str, tuple[float, float]], styles: Styles) -> None:
+    """Names of those who lead beside the right edge, each as near to the end of its curve as names above it leave room, joined
+    to it by a thin line. Whoever has no curve here is named below the others."""
+    leading = [name for name, style in styles.items() if style.leads]
+    labels = {name: wrap(styles[name].label, LABEL_WIDTHS[1], LEGEND_SIZE)[:LABEL_LINES] for name in leading}
+    box = axes.get_position()
+    tall, wide = box.height * sheet.height, box.width * sheet.width
+    to_axes = axes.transData + axes.transAxes.inverted()
+    wanted = {name: float(to_axes.transform(ends[name])[1]) * tall if name in ends else -1e9 for name in leading}
+    order = sorted(leading, key=lambda name: -wanted[name])
+    heights = [LABEL_HEIGHT * len(labels[name]) + 0.05 for name in order]
+    tops = _spread([min(wanted[name] + height / 2, tall + 0.1) for name, height in zip(order, heights)], heights, tall)
+    for number, (name, height, top) in enumerate(zip(order, heights, tops)):
+        style, middle = styles[name], (top - height / 2) / tall
+        if name in ends:
+            end = to_axes.transform(ends[name])
+            sheet.figure.add_artist(Line2D([end[0], 1 + 0.1 / wide], [end[1], middle], color=style.color, linewidth=0.6, alpha=0.7,
+                                           transform=axes.transAxes))
+        sample = line_of(style, [1 + 0.12 / wide, 1 + 0.4 / wide, 1 + 0.68 / wide], [middle] * 3, zorder=5)
+        sample.set(transform=axes.transAxes, markevery=[1])
+        sheet.figure.add_artist(sample)
+        sheet.figure.text(1 + 0.76 / wide, middle, "\n".join(labels[name]), transform=axes.transAxes, va="center",
+                          fontsize=LEGEND_SIZE, linespacing=1.0, gid=f"label-{number}")
+
+
+def labels_height(styles: Styles) -> float:
+    return sum(LABEL_HEIGHT * len(wrap(style.label, LABEL_WIDTHS[1], LEGEND_SIZE)[:LABEL_LINES]) + 0.05
+               for style in styles.values() if style.leads)
+
+
+def _spread(tops: list[float], heights: list[float], tall: float) -> list[float]:
+    """Tops of labels, from the upper one down, moved so that none covers another and the last ends at the bottom if it can."""
+    for i in range(1, len(tops)):
+        tops[i] = min(tops[i], tops[i - 1] - heights[i - 1])
+    floor = min(0.0, tall - sum(heights))
+    for i in reversed(range(len(tops))):
+        least = floor + sum(heights[i:])
+        tops[i] = max(tops[i], least)
+    return tops
+
+
+def receding_sentence(styles: Styles) -> str:
+    names = [style.label for style in styles.values() if not style.leads]
+    return f"Grey: {', '.join(names)}." if names else ""
+
+
+def clean_sentence(text: str) -> str:
+    """Of the program's own words, which are longer than a name may be."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
 def legend_height(styles: Styles, columns: int = 1) -> float:

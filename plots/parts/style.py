@@ -17,7 +17,7 @@ from parts.words import FONT, clean
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
 VIOLET, BROWN, TEAL = "#6A3D9A", "#8C6D1F", "#3F7F7F"
-GREY, LIGHT_GREY, ALARM = "#7F7F7F", "#F2F2F2", "#A32D00"
+GREY, LIGHT_GREY, RECEDING, ALARM = "#7F7F7F", "#F2F2F2", "#BDBDBD", "#A32D00"
 
 Dashes = tuple[float, ...]  # on, off, on, off ... in points; () is a solid line
 
@@ -35,6 +35,7 @@ class SolverStyle:
     size: float = 5.5
     contestant: bool = True
     hollow: bool = False
+    leads: bool = True  # else thin and grey: neither first anywhere nor one of the paper's
 
 
 @dataclass(frozen=True)
@@ -93,6 +94,14 @@ def styles_for(solvers: Iterable[str], legend: Legend) -> dict[str, SolverStyle]
         return (not styles[name].contestant, ranks.index(parent) if parent else len(ranks), "" if name in known else name)
 
     return {name: styles[name] for name in sorted(styles, key=rank)}
+
+
+def with_leaders(styles: dict[str, SolverStyle], leaders: set[str] | None) -> dict[str, SolverStyle]:
+    """All but the leaders, and all with untuned settings, recede. None: the file does not say who leads."""
+    if leaders is None:
+        return styles
+    return {name: style if name in leaders or not style.contestant else
+            replace(style, color=RECEDING, marker="", dashes=(), width=0.7, leads=False) for name, style in styles.items()}
 
 
 def parent_of(solver: str, known: Iterable[str]) -> str | None:

@@ -18,7 +18,6 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/claims/claims.h"
-#include "harness/claims/results_page.h"
 #include "harness/compare/comparison.h"
 #include "harness/judge/reference_file.h"
 #include "harness/points/identity.h"
@@ -29,6 +28,7 @@
 #include "harness/run/journal.h"
 #include "harness/run/merge.h"
 #include "harness/run/sweep.h"
+#include "harness/tables/results_page.h"
 #include "support/spoil.h"
 
 namespace {

@@ -10,7 +10,7 @@ A document may quote code as
 
 and the text must then stand in that line of that file. A paragraph may say where its numbers come from,
 
-    <!-- results/default-strain.json strain drape 0.01: jacobi / fast_projection = 3.5 -->
+    <!-- results/paper-strain-chain.json strain chain 0.01: jacobi / fast_projection = 3.5 -->
 
 and the number must then be in the paragraph and follow from the file, to its last digit; --fix brings both up to date where only
 digits change. `jacobi` and `fast_projection` are contestants. `strain` (with a limit) and `resolution` (with a number of vertices)
@@ -205,7 +205,7 @@ def names_in(value: object) -> set[str]:
 
 
 def measured() -> list[str]:
-    fields = set().union(*(names_in(points_of(file)[0]) for file in ("results/default-strain.json", "results/default-step.json")))
+    fields = set().union(*(names_in(points_of(file)[0]) for file in ("results/paper-strain-chain.json", "results/paper-step-chain.json")))
     counters = (ROOT / "solvers/problem/work_counters.h").read_text(encoding="utf-8")
     fields |= set(re.findall(r"^  (?:std::int64_t|double) (\w+) = 0;", counters, re.MULTILINE))
     schema = json.loads((ROOT / "configs/result.schema.json").read_text(encoding="utf-8"))

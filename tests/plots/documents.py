@@ -99,8 +99,12 @@ def two_questions() -> Json:
                                entry("shake", "shake fine", 0.4, 0.01)], 1.5),
              cell(0.001, None, [], None), cell(0.001, 0.02, [], None)]
     plane = {"scene": "chain", "sweep": "strain", "scene_parameters": {}, "resolution": 80, "vertices": 80,
-             "strain_limits": [0.01, 0.001], "error_levels": [None, 0.02], "cells": cells}
-    return {**document(points), "analysis": {"schema": "inextensible-analysis/1", "planes": [plane]}}
+             "strain_limits": [0.01, 0.001], "error_levels": [None, 0.02], "cells": cells,
+             "leaders": ["shake", "icd", "jacobi", "fast_projection"]}
+    finding = {"scene": "chain", "sweep": "strain", "vertices": 80, "subject": "chain of 80 vertices",
+               "sentences": ["At 1 % strain, right to 2 %, icd is the fastest.", "A second sentence."]}
+    return {**document(points), "analysis": {"schema": "inextensible-analysis/1", "findings": [finding], "planes": [plane],
+                                             "growth": []}}
 
 
 def resolution_sweep(scene: str = "drape", solvers: tuple[str, ...] = ("fast_projection", "shake", "icd")) -> Json:
@@ -176,8 +180,10 @@ def axes_with(figure: Figure, xlabel: str = "", ylabel: str = "") -> Axes:
 
 
 def legend_labels(figure: Figure) -> list[str]:
+    """Of legends, and beside the ends of curves."""
     legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
-    return [" ".join(text.get_text().split()) for box in legends for text in box.get_texts()]
+    beside = [text for text in figure.texts if str(text.get_gid()).startswith("label-")]
+    return [" ".join(text.get_text().split()) for text in [*(text for box in legends for text in box.get_texts()), *beside]]
 
 
 def strips(figure: Figure) -> list[Axes]:

@@ -49,34 +49,17 @@ def report(folder: Path, documents: list[Json], *more: object) -> subprocess.Com
                           capture_output=True, text=True, check=False)
 
 
-def test_findings_name_the_first_and_how_far_the_next_is() -> None:
-    made = sampled(strain_sweep())
-    found, = findings([made], legend_of(made))
-    assert found.text == "Chain of 80 vertices:"
-    assert found.parts[1] == ("at 1 % fast projection is the fastest: 100 ms a simulated second (steps of 1/100 s, error 0.02 of its size); "
-                              "then SHAKE, 2 times that (steps of 1/100 s, error 0.02 of its size)")
+TOLD = [{"scene": "chain", "sweep": "step", "vertices": 80, "subject": "chain of 80 vertices", "sentences": ["A is first."]},
+        {"scene": "drape", "sweep": "strain", "vertices": 441, "subject": "drape of 441 vertices", "sentences": ["B is first."]},
+        {"scene": "drape", "sweep": "strain", "vertices": 961, "subject": "drape of 961 vertices", "sentences": ["C is first.", "D."]}]
 
 
-def test_findings_tell_of_strain_that_collisions_leave() -> None:
-    made = sampled(strain_sweep("drape"))
-    for entry in made["points"]:
-        entry["max_strain_after_collision"] = 0.25
-    found, = findings([made], legend_of(made))
-    assert found.parts[1].count("25 % of strain after collisions") == 2
-
-
-def test_findings_name_no_winner_within_the_noise() -> None:
-    made = sampled(document([point("fast_projection", seconds=0.1, best=True), point("shake", seconds=0.101, best=True),
-                             point("jacobi", seconds=0.3, best=True)]))
-    part, = findings([made], legend_of(made))[0].parts
-    assert "fast projection and SHAKE are the fastest, with no difference beyond the noise" in part
-    assert "then Jacobi strain limiting, 3 times that" in part
-
-
-def test_findings_say_how_times_grow() -> None:
-    made = resolution_sweep()
-    assert any("fast projection grows least, with the power 1.00" in found.text and "SHAKE most, with 1.50" in found.text
-               for found in findings([made], legend_of(made)))
+def test_findings_are_the_programs_and_the_largest_drape_comes_first() -> None:
+    found = findings(TOLD, [stability()])
+    assert [one.text for one in found[:3]] == ["Drape of 961 vertices, over strain:", "Drape of 441 vertices, over strain:",
+                                               "Chain of 80 vertices, over step:"]
+    assert found[0].parts == ("C is first.", "D.")
+    assert found[3].text.startswith("Hard cases: ")
 
 
 def test_the_data_are_those_of_the_points() -> None:
@@ -147,7 +130,8 @@ def opened(browser: Any, folder: Path, documents: list[Json]) -> None:
     (folder / "claims.json").write_text(json.dumps(claims))
     motion = folder / "motion"
     motion.mkdir()
-    ran = report(folder, documents, "--claims", folder / "claims.json", "--motion", recorded_film(motion, body=True))
+    (folder / "analyses.json").write_text(json.dumps({"findings": TOLD, "of": {}}))
+    ran = report(folder, documents, "--claims", folder / "claims.json", "--analyses", folder / "analyses.json", "--motion", recorded_film(motion, body=True))
     assert ran.returncode == 0, ran.stderr
     browser.get((folder / "report.html").as_uri())
 
@@ -166,6 +150,7 @@ def test_every_part_is_there_and_nothing_complains(browser: Any, tmp_path: Path)
     assert complaints(browser) == []
     for name in ("findings", "contest", "points", "motion", "figures", "claims", "machine"):
         assert len(find(browser, f"section#{name}")) == 1, name
+    assert find(browser, "p.answer")[0].text == "Drape of 961 vertices, over strain: C is first. D."
     pictures = find(browser, "figure img")
     assert len(pictures) >= 3
     for image in pictures:

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "invented_points.h"
+#include "support/invented_points.h"
 
 namespace harness {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "invented_points.h"
+#include "support/invented_points.h"
 
 namespace harness {
 namespace {

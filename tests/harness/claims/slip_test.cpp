@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "invented_points.h"
+#include "support/invented_points.h"
 
 namespace harness {
 namespace {

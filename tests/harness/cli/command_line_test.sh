@@ -93,10 +93,10 @@ PYTHON
 /usr/bin/python3 -c 'import json; d = json.load(open("run1.json")); d["points"] = []; json.dump(d, open("nothing.json", "w"))'
 refused "is what a claim is about" claims nothing.json
 
-# A step sweep: an error and a sample in every point, a table of time to error; claims are judged from the file.
+# A step sweep: an error and a sample in every point, a plane of its own; claims are judged from the file.
 "$BENCH_BINARY" --sweep step --profile quick --scene chain --solver 'rattle|^fast_projection$' --filter 'strain:0.0001/' \
   --reps 1 --no-plots --out steps.json >steps.txt 2>/dev/null || fail "a step sweep"
-grep -q 'to reach a trajectory error' steps.txt || fail "no table of time to error"
+grep -q 'vertices, step sweep: the fastest within a strain limit and an error' steps.txt || fail "no plane of the step sweep"
 /usr/bin/python3 - <<'PYTHON' || fail "the step sweep's file"
 import json
 document = json.load(open("steps.json"))

@@ -7,10 +7,10 @@
 
 #include "harness/base/errors.h"
 #include "harness/claims/claims.h"
-#include "harness/claims/results_page.h"
 #include "harness/points/result_file.h"
 #include "harness/points/suite.h"
 #include "harness/run/sweep.h"
+#include "harness/tables/results_page.h"
 
 namespace harness::testing {
 

@@ -1,0 +1,17 @@
+// The analysis of a result file as JSON, schema inextensible-analysis/1: `bench show --json`, and
+// what figures are drawn from.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "harness/analysis/plane.h"
+
+namespace harness::analysis {
+
+// document: of schema inextensible-bench/1.
+nlohmann::json analysis_of(const nlohmann::json& document);
+// Its part "findings", of planes that may be of several documents.
+nlohmann::json findings_json(const std::vector<Plane>& planes);
+
+}  // namespace harness::analysis

@@ -1,0 +1,147 @@
+#include "harness/analysis/findings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "harness/analysis/words.h"
+#include "harness/base/text.h"
+
+namespace harness::analysis {
+namespace {
+
+constexpr double headline_limit = 0.01;  // strain
+
+std::string name_words(const Entry& entry) {
+  return entry.row + (entry.role.hollow ? " with untuned settings" : "");
+}
+
+// "a", "a and b", "a, b, c and 2 more".
+std::string joined(const std::vector<const Entry*>& entries) {
+  constexpr std::size_t most = 3;
+  const std::size_t named = std::min(most, entries.size());
+  std::string words;
+  for (std::size_t i = 0; i < named; ++i) {
+    const bool last = i + 1 == entries.size();
+    words += (i == 0 ? "" : last ? " and " : ", ") + name_words(*entries[i]);
+  }
+  const std::size_t rest = entries.size() - named;
+  return words + (rest > 0 ? " and " + std::to_string(rest) + " more" : "");
+}
+
+// What it costs to take another one.
+std::string rival_words(const Cell& cell, const std::vector<const Entry*>& equals) {
+  const auto slower = [&](const Entry* entry) {
+    return entry && std::find(equals.begin(), equals.end(), entry) == equals.end();
+  };
+  const Entry* rival = cell.paper_best();
+  const bool of_paper = slower(rival);
+  for (std::size_t place = 1; !slower(rival); ++place) {
+    rival = cell.counting(place);
+    if (!rival) return "";
+  }
+  return "; " + name_words(*rival) +
+         (of_paper ? ", the best of the paper's six, takes " : ", the next, takes ") +
+         text(*cell.lead_over(rival)) + " times as long";
+}
+
+const Cell* answered(const Plane& plane, double limit, double level) {
+  const Cell& cell = plane.cell(limit, level);
+  return cell.first() ? &cell : nullptr;
+}
+
+// At the headline's level of error; else the tightest looser one that has an answer, any motion
+// last.
+const Cell* headline_of(const Plane& plane, double limit) {
+  const Cell* found = answered(plane, limit, any_motion);
+  for (const double level : plane.levels) {
+    if (level == any_motion || level < headline_error) continue;
+    if (const Cell* cell = answered(plane, limit, level)) found = cell;
+  }
+  return found;
+}
+
+double limit_next_to(const std::vector<double>& limits, double wanted) {
+  return *std::min_element(limits.begin(), limits.end(), [&](double a, double b) {
+    return std::abs(std::log(a / wanted)) < std::abs(std::log(b / wanted));
+  });
+}
+
+// What changes with the question: a tighter limit, else another motion, if someone else wins then.
+const Cell* second_of(const Plane& plane, const Cell& headline) {
+  for (auto limit = plane.limits.rbegin(); limit != plane.limits.rend(); ++limit) {
+    if (*limit >= headline.strain_limit) break;
+    if (const Cell* cell = answered(plane, *limit, headline.level)) return cell;
+  }
+  const Cell* any = answered(plane, headline.strain_limit, any_motion);
+  return any && any->first()->row != headline.first()->row ? any : nullptr;
+}
+
+std::string subject_of(const Plane& plane) {
+  return plane.scene + " of " + std::to_string(plane.vertices) + " vertices";
+}
+
+Finding finding_of(const Plane& plane) {
+  Finding finding{plane.scene, plane.sweep, plane.vertices, subject_of(plane), {}};
+  const double limit = limit_next_to(plane.limits, headline_limit);
+  const Cell* headline = headline_of(plane, limit);
+  finding.sentences.push_back(sentence_of(headline ? *headline : plane.cell(limit, any_motion)));
+  if (headline) {
+    if (const Cell* second = second_of(plane, *headline))
+      finding.sentences.push_back(sentence_of(*second));
+  }
+  return finding;
+}
+
+}  // namespace
+
+std::string sentence_of(const Cell& cell) {
+  const std::string place = "At " + percent(cell.strain_limit) + " strain, " +
+                            (cell.level == any_motion ? std::string("whatever the motion")
+                                                      : "right to " + percent(cell.level));
+  const Entry* first = cell.first();
+  if (!first) return place + ", there is no answer: " + cell.empty_because + ".";
+  const auto equals = cell.equals();
+  const std::string who = !cell.counting(1) ? name_words(*first) + " alone has an answer: "
+                          : equals.size() > 1
+                              ? joined(equals) + " are the fastest, too close to tell apart: "
+                              : name_words(*first) + " is the fastest: ";
+  const std::string error = std::isfinite(first->error)
+                                ? " and an error of " + number_text(100 * first->error, 2) + " %"
+                                : "";
+  return place + ", " + who + time_words(first->point.seconds()) +
+         " a simulated second with steps of " + step_text(first->point.number("step")) + " s" +
+         error + rival_words(cell, equals) + ".";
+}
+
+std::string sentence_of(const Growth& growth) {
+  if (growth.rows.size() < 2) return "";
+  const RowGrowth &least = growth.rows.front(), &most = growth.rows.back();
+  return "From " + number_text(least.smallest.number("vertices"), 7) + " to " +
+         number_text(least.largest.number("vertices"), 7) +
+         " vertices the time of a step grows least with " + least.row +
+         ", as their number to the power " + exponent_words(least.exponent) + ", and most with " +
+         most.row + ", " + exponent_words(most.exponent) + ".";
+}
+
+std::vector<Finding> findings_of(const std::vector<Plane>& planes) {
+  std::vector<Finding> findings;
+  const std::vector<Growth> growths = growth_in(planes);
+  for (const Plane& plane : planes) {
+    const bool largest = std::none_of(planes.begin(), planes.end(), [&](const Plane& other) {
+      return other.scene == plane.scene && other.sweep == plane.sweep &&
+             other.vertices > plane.vertices;
+    });
+    if (plane.sweep == "resolution" && !largest) continue;
+    Finding finding = finding_of(plane);
+    for (const Growth& growth : growths) {
+      if (plane.sweep == "resolution" && growth.scene == plane.scene &&
+          !sentence_of(growth).empty())
+        finding.sentences.push_back(sentence_of(growth));
+    }
+    findings.push_back(std::move(finding));
+  }
+  return findings;
+}
+
+}  // namespace harness::analysis

@@ -1,0 +1,32 @@
+// The answers of result files in plain words. The terminal, the page of results, figures and the
+// report print these sentences; none makes its own.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/analysis/growth.h"
+#include "harness/analysis/plane.h"
+
+namespace harness::analysis {
+
+// About one plane; of a resolution sweep, about that of the most vertices and the growth up to it.
+struct Finding {
+  std::string scene, sweep;
+  int vertices = 0;
+  std::string subject;  // "drape of 5041 vertices"
+  // The answer at the limit next to 1 % and the headline's error, or the nearest question that has
+  // an answer; then what a tighter limit, or a motion of any kind, changes.
+  std::vector<std::string> sentences;
+};
+
+// "At 1 % strain, right to 2 %, x is the fastest: 41.3 ms a simulated second with steps of 1/200 s
+// and an error of 1.4 %; y, the best of the paper's six, takes 2.1 (1.9-2.3) times as long."
+std::string sentence_of(const Cell& cell);
+// "From 441 to 10201 vertices the time of a step grows least with x, as their number to the power
+// 1.1 (1.0 to 1.2), and most with y, 1.6 (1.5 to 1.7)." "" for less than two rows.
+std::string sentence_of(const Growth& growth);
+
+std::vector<Finding> findings_of(const std::vector<Plane>& planes);
+
+}  // namespace harness::analysis

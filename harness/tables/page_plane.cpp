@@ -1,0 +1,96 @@
+// The plane strain x error of each scene: who is fastest within each limit and level of error.
+#include <algorithm>
+#include <cmath>
+
+#include "harness/analysis/findings.h"
+#include "harness/analysis/words.h"
+#include "harness/base/in_order.h"
+#include "harness/base/text.h"
+#include "harness/tables/page.h"
+
+namespace harness::tables {
+namespace {
+
+// "`strips` 8.1 ms, 1/100 s, 1.7 (1.5-1.8) `icd`": bold if it is ahead beyond the noise.
+std::string cell_text(const Cell& cell) {
+  const Entry* first = cell.first();
+  if (!first) return cell.empty_because;
+  const std::string name = quoted(first->row) + (first->role.hollow ? " `u`" : "");
+  std::string text = (cell.clear() ? bold(name) : name) + " " +
+                     plain(1e3 * first->point.seconds(), 3) + " ms, " +
+                     step_text(first->point.number("step"));
+  if (cell.level == any_motion && std::isfinite(first->error))
+    text += ", off by " + number_text(100 * first->error, 2) + " %";
+  const double shape = first->point.error("shape");
+  if (cell.level == any_motion && std::isfinite(shape))
+    text += ", shape by " + number_text(100 * shape, 2) + " %";
+  if (const Entry* paper = cell.paper_best(); paper && paper != first)
+    text += "; " + analysis::text(*cell.lead_over(paper)) + " " + quoted(paper->row);
+  return text;
+}
+
+bool has_shapes(const std::vector<const Plane*>& planes) {
+  return std::any_of(planes.begin(), planes.end(), [](const Plane* plane) {
+    return std::any_of(plane->cells.begin(), plane->cells.end(), [](const Cell& cell) {
+      return cell.first() && std::isfinite(cell.first()->point.error("shape"));
+    });
+  });
+}
+
+// Planes of one table: those of a resolution sweep are its rows.
+std::string title_of(const Plane& plane) {
+  return plane.sweep == "resolution"
+             ? plane.scene + " over resolution, " + percent(plane.limits.front()) + " strain"
+             : plane.scene + ", " + std::to_string(plane.vertices) + " vertices, over " +
+                   plane.sweep;
+}
+
+void print_table(std::ostream& out, const std::vector<const Plane*>& planes) {
+  const bool sizes = planes.front()->sweep == "resolution";
+  std::vector<std::string> row{sizes ? "vertices" : "strain"};
+  for (const double level : planes.front()->levels)
+    row.push_back(level == any_motion ? "any motion" : "error <= " + percent(level));
+  print_head(out, row);
+  for (const Plane* plane : planes) {
+    for (const double limit : plane->limits) {
+      row = {sizes ? std::to_string(plane->vertices) : percent(limit)};
+      for (const double level : plane->levels) row.push_back(cell_text(plane->cell(limit, level)));
+      print_row(out, row);
+    }
+  }
+  out << '\n';
+}
+
+}  // namespace
+
+void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
+  std::vector<Plane> all;
+  for (const NamedResult& result : results) {
+    if (is_stability(result.document)) continue;
+    const std::vector<Plane> own = planes_of(result.document);
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  all = merged(all);
+  const std::vector<Finding> findings = findings_of(all);
+  for (const std::string& title : in_order(all, title_of)) {
+    std::vector<const Plane*> planes;
+    for (const Plane& plane : all) {
+      if (title_of(plane) == title) planes.push_back(&plane);
+    }
+    out << "### " << title << "\n\n";
+    for (const Finding& finding : findings) {
+      const bool here = std::any_of(planes.begin(), planes.end(), [&](const Plane* plane) {
+        return plane->scene == finding.scene && plane->sweep == finding.sweep &&
+               plane->vertices == finding.vertices;
+      });
+      for (const std::string& sentence : finding.sentences) {
+        if (here) out << sentence << '\n';
+      }
+    }
+    if (has_shapes(planes)) out << "Shape errors are deviations beyond the ensemble's spread.\n";
+    out << '\n';
+    print_table(out, planes);
+  }
+}
+
+}  // namespace harness::tables

@@ -1,0 +1,84 @@
+// How times grow with size: exponents that are known beforehand.
+#include "harness/analysis/growth.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "harness/analysis/findings.h"
+#include "support/invented_runs.h"
+
+namespace harness::analysis {
+namespace {
+
+using invented::document;
+using invented::run;
+using nlohmann::json;
+
+json resolution_run(const std::string& solver, int n, double seconds_a_step) {
+  json p = run(solver, 0.01, 0.001, seconds_a_step / 0.001, 0.3, true);
+  p["id"] = solver + std::to_string(n);
+  p["sweep"] = "resolution";
+  p["scene"] = "drape";
+  p["resolution"] = n;
+  p["vertices"] = n * n;
+  p["scene_parameters"]["n"] = n;
+  return p;
+}
+
+TEST(Growth, RecoversAKnownExponent) {
+  std::vector<json> points;
+  for (const int n : {1001, 101, 317}) {
+    points.push_back(resolution_run("strips", n, 3e-7 * std::pow(n * n, 1.25)));
+    points.push_back(resolution_run("icd", n, 3e-9 * std::pow(n * n, 1.5)));
+  }
+  const json result = document(points);
+  const auto found = growth_in(planes_of(result));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].scene, "drape");
+  ASSERT_EQ(found[0].rows.size(), 2u);
+  EXPECT_EQ(found[0].rows[0].row, "strips") << "the slowest growth first";
+  EXPECT_NEAR(found[0].rows[0].exponent.value, 1.25, 1e-9);
+  EXPECT_LT(found[0].rows[0].exponent.half_width, 1e-6);
+  EXPECT_EQ(found[0].rows[0].smallest.number("resolution"), 101);
+  EXPECT_EQ(found[0].rows[0].largest.number("resolution"), 1001);
+  EXPECT_EQ(sentence_of(found[0]),
+            "From 10201 to 1002001 vertices the time of a step grows least with strips, as their "
+            "number to the power 1.25 (1.25 to 1.25), and most with icd, 1.5 (1.5 to 1.5).");
+}
+
+// Of 95 % intervals, some 95 % hold the truth: of 400, fewer than 360 with a chance below 1e-4.
+TEST(Growth, IntervalsHoldTheTruthAsOftenAsTheySay) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0, 0.1);
+  int inside = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    std::vector<json> points;
+    for (const int n : {101, 201, 317, 501, 1001})
+      points.push_back(
+          resolution_run("icd", n, std::exp(noise(random)) * 1e-7 * std::pow(n * n, 1.1)));
+    const json result = document(points);
+    const Slope slope = growth_in(planes_of(result)).at(0).rows.at(0).exponent;
+    inside += slope.low() <= 1.1 && 1.1 <= slope.high();
+  }
+  EXPECT_GE(inside, 360);
+  EXPECT_LT(inside, 400);
+}
+
+TEST(Growth, LeavesOutFailuresAndRowsOfOneSize) {
+  std::vector<json> points;
+  for (const int n : {101, 201, 317}) points.push_back(resolution_run("icd", n, 1e-6 * n * n));
+  points.push_back(resolution_run("icd", 1001, 1));
+  points.back()["status"] = "timeout";
+  points.push_back(resolution_run("strips", 101, 1));
+  const json result = document(points);
+  const auto found = growth_in(planes_of(result));
+  ASSERT_EQ(found.at(0).rows.size(), 1u);
+  EXPECT_EQ(found[0].rows[0].exponent.points, 3);
+  EXPECT_NEAR(found[0].rows[0].exponent.value, 1, 1e-9);
+  EXPECT_EQ(sentence_of(found[0]), "") << "one row is no comparison";
+}
+
+}  // namespace
+}  // namespace harness::analysis

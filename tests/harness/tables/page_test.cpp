@@ -1,0 +1,128 @@
+// The page of results says no more than its files do: bold and intervals only beyond the noise.
+#include "harness/tables/page.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "harness/tables/results_page.h"
+#include "support/invented_points.h"
+
+namespace harness {
+namespace {
+
+json sweep(double noise = 0, double untuned_icd = 4.0) {
+  std::vector<json> points;
+  for (const auto& [contestant, solver, seconds] :
+       {std::tuple("fast_projection", "fast_projection", 1.0),
+        std::tuple("fast_projection_again", "fast_projection", 0.5), std::tuple("icd", "icd", 2.0),
+        std::tuple("icd_untuned", "icd", untuned_icd)}) {
+    json p = point("drape", "strain", solver, 0.01, 441, 0.01, seconds);
+    p["contestant"] = contestant;
+    p["max_strain_after_collision"] = solver == std::string("icd") ? 0.08 : 0.18;
+    points.push_back(p);
+  }
+  points.push_back(point("drape", "strain", "icd", 0.01, 441, 0.02, 1));
+  points.back()["status"] = "diverged";
+  points.back()["best"] = false;
+  json result = document(points, noise);
+  result["legend"]["solvers"] = {
+      {{"name", "fast_projection"}, {"family", "fast_projection"}},
+      {{"name", "icd"}, {"family", "icd"}},
+      {{"name", "icd_untuned"}, {"solver", "icd"}, {"family", "icd"}, {"hollow", true}}};
+  for (const char* key : {"date", "cpu_model"}) result["context"][key] = "x";
+  result["context"]["build"]["git"] = "abc";
+  return result;
+}
+
+std::string page(const json& result) {
+  std::ostringstream out;
+  print_results_page(out, {{"file.json", result}}, {});
+  return out.str();
+}
+
+bool has(const std::string& text, const std::string& words) {
+  const bool found = text.find(words) != std::string::npos;
+  EXPECT_TRUE(found) << words << "\nin\n" << text;
+  return found;
+}
+
+TEST(ResultsPage, OnlyTheClearlyFastestIsBoldAndRatiosHaveIntervals) {
+  const std::string quiet = page(sweep(0.01)), noisy = page(sweep(0.8));
+  has(quiet, "| 1 % | **`fast_projection`** 1000 ms, 1/100");
+  has(quiet,
+      "fast_projection is the fastest: 1 s a simulated second with steps of 1/100 s and an "
+      "error of 1 %; icd, the next, takes 2.00 (1.98-2.02) times as long.");
+  has(noisy, "| 1 % | `fast_projection` 1000 ms, 1/100");
+  has(noisy, "fast_projection and icd are the fastest, too close to tell apart");
+}
+
+TEST(ResultsPage, WithoutIntervalsNothingIsBold) {
+  json result = sweep();
+  for (json& p : result["points"])
+    p["seconds_per_simulated_second"] = timing(p["seconds_per_simulated_second"]["min"], 3);
+  result["context"].erase("noise");
+  EXPECT_EQ(page(result).find("**"), std::string::npos);
+}
+
+TEST(ResultsPage, TheDoubleIsNoContestant) {
+  const std::string text = page(sweep(0.01));
+  EXPECT_EQ(text.find("fast_projection_again"), std::string::npos);
+  EXPECT_EQ(text.find(" 500 ms"), std::string::npos) << "the double's time";
+  has(text, "| `file.json` | x | x | abc | `fast_projection` | 20 | - | 1.01 % |");
+}
+
+TEST(ResultsPage, ASolverStandsThereWithTheFasterOfItsTunedAndUntunedSettings) {
+  const std::string lost = page(sweep(0.01, 0.1));
+  has(lost, "| 1 % | **`icd` `u`** 100 ms");
+  has(lost, "icd with untuned settings is the fastest");
+}
+
+TEST(ResultsPage, PiecesAreOneTable) {
+  json one = sweep(0.01), other = sweep(0.01);
+  for (json& p : other["points"]) p["strain_limit"] = 0.1;
+  std::ostringstream out;
+  print_results_page(out, {{"one.json", one}, {"other.json", other}}, {});
+  const std::string text = out.str(), title = "### drape, 441 vertices, over strain";
+  has(text, title);
+  EXPECT_EQ(text.find(title), text.rfind(title));
+  EXPECT_LT(text.find("| 10 % | "), text.find("| 1 % | "));
+}
+
+TEST(ResultsPage, OlderFilesAreRead) {
+  json result = sweep(0.01);
+  for (json& p : result["points"]) {
+    for (const char* key : {"contestant", "best_at_errors"}) p.erase(key);
+  }
+  result["points"].erase(result["points"].begin() + 1);
+  result["context"].erase("noise");
+  has(page(result), "| 1 % | **`fast_projection`** 1000 ms");
+}
+
+TEST(ResultsPage, ErrorsCountWhereTheReferenceIsSure) {
+  json p = point("chain", "step", "icd", 0.01, 80, 0.01, 1);
+  p["error"] = {{"trajectory", 0.5}, {"gap", 0.2}};
+  EXPECT_FALSE(tables::Point(p).within_error(0.1));
+  // At 0.1 s the error is 0.01 and sure, at 0.2 s the two references have parted.
+  p["error"]["error_series"] = {{0.1, 0.01, 0.02, 1e-6, 1e-6}, {0.2, 0.7, 0.9, 0.5, 0.5}};
+  EXPECT_TRUE(tables::Point(p).within_error(0.1));
+  EXPECT_TRUE(tables::Point(p).within_error(0.01));
+  EXPECT_FALSE(tables::Point(p).within_error(0.009));
+  p["error"]["error_series"] = {{0.1, 0.01, 0.02, 0.05, 0.05}};
+  EXPECT_FALSE(tables::Point(p).within_error(0.1));  // 3 gaps are more
+}
+
+TEST(ResultsPage, ThePlaneHasShapeErrorsWhereTheyAreKnown) {
+  json result = sweep(0.01);
+  json p = point("drape", "strain", "icd", 0.01, 441, 0.01, 1);
+  p["error"] = {{"trajectory", 0.05}};
+  result["points"] = {p};
+  EXPECT_EQ(page(result).find("hape"), std::string::npos);
+  p["error"]["shape"] = 0.031;
+  result["points"] = {p};
+  has(page(result), "shape by 3.1 %");
+  has(page(result), "Shape errors are deviations beyond the ensemble's spread.");
+}
+
+}  // namespace
+}  // namespace harness

@@ -1,0 +1,54 @@
+// Result documents whose times are made up, for tests of what is concluded from them.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace harness::invented {
+
+using nlohmann::json;
+
+// A run of a chain of 80 that takes so many seconds and is off by `error`. The reference is sure to
+// 0.1 % at 0.5 s, and to 6 % at 1 s, where every run is off by 40 %.
+inline json run(const std::string& contestant, double limit, double step, double seconds,
+                double error, bool best = false, const std::vector<double>& best_at_errors = {}) {
+  std::ostringstream id;
+  id << "chain/" << contestant << "/n:80/strain:" << limit << "/h:" << step;
+  json samples = json::array();
+  for (int i = -4; i <= 4; ++i) samples.push_back(seconds * (1 + 0.001 * i));
+  return {{"id", id.str()},
+          {"scene", "chain"},
+          {"sweep", "strain"},
+          {"contestant", contestant},
+          {"solver", contestant.substr(0, contestant.find("_untuned"))},
+          {"status", "ok"},
+          {"best", best},
+          {"best_at_errors", best_at_errors},
+          {"strain_limit", limit},
+          {"vertices", 80},
+          {"resolution", 80},
+          {"step", step},
+          {"scene_parameters", {{"n", 80.0}, {"duration", 1.0}}},
+          {"error",
+           {{"reference", "chain-n80.json"},
+            {"trajectory", error},
+            {"error_series", {{0.5, error, error, 0.0003, 0.0003}, {1.0, 0.4, 0.4, 0.02, 0.02}}}}},
+          {"seconds_per_simulated_second", {{"median", seconds}, {"samples", samples}}}};
+}
+
+inline json document(const std::vector<json>& points) {
+  return {{"schema", "inextensible-bench/1"},
+          {"context", {{"suite", {{"finest_error", 0.01}}}}},
+          {"legend",
+           {{"solvers",
+             {{{"name", "strips"}, {"family", "strips"}},
+              {{"name", "icd"}, {"family", "icd"}},
+              {{"name", "icd_untuned"}, {"solver", "icd"}, {"family", "icd"}, {"hollow", true}},
+              {{"name", "shake"}, {"family", "shake"}},
+              {{"name", "null"}, {"family", "none"}, {"contestant", false}}}}}},
+          {"points", points}};
+}
+
+}  // namespace harness::invented
