@@ -30,7 +30,9 @@ json entry_json(const Entry& entry) {
           {"seconds", number(entry.point.seconds())},
           {"step", number(entry.point.number("step"))},
           {"error", number(entry.error)},
-          {"shape_error", number(entry.point.error("shape"))}};
+          {"shape_error", number(entry.point.error("shape"))},
+          {"delivered_strain", number(entry.point.delivered_strain())},
+          {"frame_times", entry.point.document().value("frame_times", json())}};
 }
 
 json name_of(const Entry* entry) { return entry ? json(entry->row) : json(nullptr); }

@@ -3,9 +3,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <iostream>
 
 #include "harness/analysis/analysis_json.h"
+#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
 #include "harness/base/paths.h"
@@ -17,6 +19,34 @@ namespace harness {
 void add_no_wait(const Command& to, bool& no_wait) {
   to.flag("--no-wait", no_wait,
           "another program is taking times on this machine: stop instead of waiting for it");
+}
+
+namespace {
+
+nlohmann::json read_sweep(const std::string& file) {
+  nlohmann::json document = parse_document(read_file(file, "result file"), file);
+  if (!document.is_object() || document.value("schema", nlohmann::json()) != "inextensible-bench/1")
+    throw UsageError("'" + file + "' is no sweep: pieces of sweeps alone are drawn as one");
+  check_result(document, file);
+  return document;
+}
+
+}  // namespace
+
+int draw_pieces(const std::vector<std::string>& files, const std::string& name,
+                const std::vector<std::string>& more) {
+  nlohmann::json all = read_sweep(files.front());
+  double noise = analysis::pair_noise_of(all);
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    const nlohmann::json piece = read_sweep(files[i]);
+    for (const nlohmann::json& point : piece.at("points")) all["points"].push_back(point);
+    noise = std::fmax(noise, analysis::pair_noise_of(piece));
+  }
+  if (std::isfinite(noise)) all["context"]["noise"]["q95"] = noise;
+  const TemporaryFolder folder("pieces");
+  const std::string whole = folder.file(name + ".json");
+  write_atomically(whole, all.dump());
+  return draw_result(whole, more);
 }
 
 int draw_result(const std::string& file, const std::vector<std::string>& more) {

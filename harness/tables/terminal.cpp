@@ -53,13 +53,17 @@ bool same_answer(const Cell& a, const Cell& b) {
   return a.first()->point.id() == b.first()->point.id();
 }
 
+std::string percent_or_unknown(double fraction) {
+  return std::isnan(fraction) ? "?" : number_text(100 * fraction, 2) + " %";
+}
+
 // Who it is, and what that costs.
 void print_entry(std::ostream& out, const Entry& entry, const std::string& name,
                  const Setting& set) {
   out << std::setw(set.name_width) << name << std::setw(time_width)
       << set.time(entry.point.seconds()) << std::setw(step_width)
       << step_text(entry.point.number("step")) << std::setw(error_width)
-      << (std::isnan(entry.error) ? "?" : number_text(100 * entry.error, 2) + " %");
+      << percent_or_unknown(entry.error);
 }
 
 std::string name_of(const Entry& entry) { return entry.row + (entry.role.hollow ? " u" : ""); }
@@ -138,11 +142,12 @@ void print_everybody(std::ostream& out, const Plane& plane, const Setting& set) 
         << (cell.level == any_motion ? "any motion" : "right to " + percent(cell.level)) << '\n'
         << std::left << std::setw(set.name_width) << "" << std::setw(time_width)
         << (set.seconds ? "s" : "ms") << std::setw(step_width) << "step, s"
-        << std::setw(error_width) << "error"
+        << std::setw(error_width) << "error" << std::setw(error_width) << "strain"
         << "times the fastest\n";
     for (const Entry& entry : cell.entries) {
       const bool first = &entry == cell.first();
       print_entry(out, entry, entry.role.name, set);
+      out << std::setw(error_width) << percent_or_unknown(entry.point.delivered_strain());
       out << (first || !cell.first() ? "1" : analysis::text(*cell.lead_over(&entry)))
           << (entry.counts           ? ""
               : entry.role.again     ? ", a second time"

@@ -8,7 +8,7 @@ from typing import Callable
 
 from matplotlib.figure import Figure
 
-from parts.best_points import delivered_in, sweeps_in
+from parts.best_points import sweeps_in
 from parts.cost_sheet import Axis, draw
 from parts.legend import Legend
 from parts.result_file import Json
@@ -18,4 +18,4 @@ VERTICES = Axis("vertices (dotted: slopes 1 and 2)", slopes=True)
 
 def figures_of(document: Json, legend: Legend) -> list[tuple[str, Callable[[], Figure]]]:
     return [(data.name, partial(draw, data, document, legend, VERTICES))
-            for data in sweeps_in(document, legend, "resolution") + delivered_in(document, legend, "resolution")]
+            for data in sweeps_in(document, legend, "resolution")]

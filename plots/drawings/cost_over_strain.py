@@ -1,5 +1,4 @@
-"""Cost over permissible strain (the paper's Figures 4a and 5a), at any motion and where the motion is right; a second time over the
-strain after collisions."""
+"""Cost over permissible strain (the paper's Figures 4a and 5a), at any motion and where the motion is right."""
 
 from __future__ import annotations
 
@@ -8,14 +7,13 @@ from typing import Callable
 
 from matplotlib.figure import Figure
 
-from parts.best_points import delivered_in, sweeps_in
+from parts.best_points import sweeps_in
 from parts.cost_sheet import Axis, draw
 from parts.legend import Legend
 from parts.result_file import Json
 
-PERMITTED, DELIVERED = Axis("permissible strain (%)", 100), Axis("largest strain after collisions (%)", 100)
+PERMITTED = Axis("permissible strain (%)", 100)
 
 
 def figures_of(document: Json, legend: Legend) -> list[tuple[str, Callable[[], Figure]]]:
-    return [(data.name, partial(draw, data, document, legend, DELIVERED if data.delivered else PERMITTED))
-            for data in sweeps_in(document, legend, "strain") + delivered_in(document, legend, "strain")]
+    return [(data.name, partial(draw, data, document, legend, PERMITTED)) for data in sweeps_in(document, legend, "strain")]

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Callable
 
-from parts.legend import TOO_STRAINED, TOO_WRONG, Legend
+from parts.legend import TOO_WRONG, Legend
 from parts.result_file import (OK, Json, contestant_of, is_number, time_in, spread_in, time_of, object_in, points_of,
                                positive)
 from parts.words import file_part
@@ -15,9 +14,6 @@ NUMBERS_OF_THE_PAPER = {"chain": "4", "drape": "5"}
 HEADLINE = 0.02  # of the scene's size: the level of error of headlines (docs/measuring.md)
 AXES = {"strain": "strain_limit", "resolution": "vertices"}
 
-
-# Strains after collisions that figures hold contestants at (docs/results.md has the same).
-DELIVERED_LEVELS = (1.0, 0.5, 0.3, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0001)
 TIME, FILTER_TIME = "seconds_per_simulated_second", "filter_seconds_per_simulated_second"
 
 
@@ -54,8 +50,7 @@ class Curve:
 @dataclass
 class FigureData:
     """What one panel of a figure of cost shows. `fixed` is the axis that is not swept: vertices or strain limit. `level`: only
-    runs within this error count; None: whatever their motion. `within`: the panel beside it, of the headline's error.
-    `delivered`: instead of the strain limit, the strain after collisions counts."""
+    runs within this error count; None: whatever their motion. `within`: the panel beside it, of the headline's error."""
 
     scene: str
     sweep: str
@@ -64,7 +59,6 @@ class FigureData:
     curves: dict[str, Curve]
     name: str = ""
     level: float | None = None
-    delivered: bool = False
     within: FigureData | None = None
 
     @property
@@ -103,30 +97,6 @@ def sweeps_in(document: Json, legend: Legend, sweep: str) -> list[FigureData]:
     return figures
 
 
-def delivered_in(document: Json, legend: Legend, sweep: str) -> list[FigureData]:
-    """The same by the strain that collisions leave: the least time, at any strain limit and step, over such strains, or over
-    vertices at one of them. Scenes without a collider have no such figure."""
-    figures = []
-    for data in sweeps_in(document, legend, sweep):
-        if data.adaptive or not any(with_collider(point) for point in data.points):
-            continue
-        if sweep == "strain":
-            levels = _levels_reached(data.points)
-            curves = _delivered_curves({level: data.points for level in levels}, lambda level: level, legend)
-            fixed = data.fixed
-        else:
-            by_size: dict[float, list[Json]] = {}
-            for point in data.points:
-                by_size.setdefault(float(point["vertices"]), []).append(point)
-            fixed = _common_level(by_size, legend)
-            if fixed is None:
-                continue
-            curves = _delivered_curves(by_size, lambda _: fixed, legend)
-        if curves:
-            figures.append(FigureData(data.scene, sweep, fixed, data.points, curves, f"{data.name}-delivered", None, True))
-    return figures
-
-
 def with_collider(point: Json) -> bool:
     return is_number(point.get("max_strain_after_collision"))
 
@@ -137,53 +107,6 @@ def delivered_strain(point: Json) -> float | None:
         if is_number(point.get(key)):
             return float(point[key])
     return None
-
-
-def _within(points: list[Json], level: float) -> list[Json]:
-    return [point for point in points if point["status"] == OK and time_of(point) is not None
-            and (strain := delivered_strain(point)) is not None and strain <= level]
-
-
-def _levels_reached(points: list[Json]) -> list[float]:
-    """Those that somebody reaches, from the tightest to the first that changes nothing any more."""
-    levels: list[float] = []
-    for level in sorted(DELIVERED_LEVELS):
-        if within := _within(points, level):
-            if levels and len(within) == len(_within(points, levels[-1])):
-                continue
-            levels.append(level)
-    return levels
-
-
-def _common_level(by_size: dict[float, list[Json]], legend: Legend) -> float | None:
-    """The tightest one that half of the ranked contestants, or more, reach at every size."""
-    names = {contestant_of(point) for points in by_size.values() for point in points}
-    ranked = {name for name in names if legend.ranked(name)}
-    for level in sorted(DELIVERED_LEVELS):
-        reached = [{contestant_of(point) for point in _within(points, level)} & ranked for points in by_size.values()]
-        if ranked and all(2 * len(names) >= len(ranked) for names in reached):
-            return level
-    return None
-
-
-def _delivered_curves(points_at: dict[float, list[Json]], level_at: Callable[[float], float], legend: Legend) -> dict[str, Curve]:
-    curves: dict[str, Curve] = {}
-    for x, points in sorted(points_at.items()):
-        runs: dict[str, list[Json]] = {}
-        for point in points:
-            if legend.competes(contestant_of(point)):
-                runs.setdefault(contestant_of(point), []).append(point)
-        for solver, tried in sorted(runs.items()):
-            curve = curves.setdefault(solver, Curve())
-            best = min(_within(tried, level_at(x)), key=lambda run: time_of(run) or math.inf, default=None)
-            if best:
-                _add_best(curve, x, best)
-            else:
-                failed = [{**run, "status": TOO_STRAINED} if run["status"] == OK else run for run in tried]
-                letters = dict.fromkeys(run["status"] if run["status"] == TOO_STRAINED else legend.letter(run["status"])
-                                        for run in sorted(failed, key=_step_or_zero, reverse=True))
-                curve.failures.append(Failure(x, "".join(letters)))
-    return curves
 
 
 def number_in_paper(scene: str, sweep: str) -> str:

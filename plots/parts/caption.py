@@ -19,11 +19,7 @@ def title_of(figure: FigureData) -> str:
     axis = "permissible strain" if figure.sweep == "strain" else "resolution"
     number = number_in_paper(figure.scene, figure.sweep)
     title = f"{SUBJECTS.get(figure.scene, clean(figure.scene))}: cost over {axis}"
-    title = f"Figure {number} - {title}" if number else title
-    if figure.delivered:
-        return (title.replace(axis, "strain after collisions") if figure.sweep == "strain" else
-                f"{title}, strain after collisions at most {percent(figure.fixed)}")
-    return title
+    return f"Figure {number} - {title}" if number else title
 
 
 def warnings_of(document: Json) -> list[str]:
@@ -52,9 +48,7 @@ def _scene_sentence(figure: FigureData) -> str:
     else:
         sizes = sorted({point["vertices"] for point in figure.points})
         several = f"{sizes[0]:,.0f} to " if len(sizes) > 1 else ""
-        size = f"{several}{sizes[-1]:,.0f} vertices"
-        if not figure.delivered:
-            size += f", permissible strain {percent(figure.fixed)}"
+        size = f"{several}{sizes[-1]:,.0f} vertices, permissible strain {percent(figure.fixed)}"
     return scene_sentence(figure.scene, size, figure.points)
 
 
@@ -85,11 +79,6 @@ def _method_sentence(figure: FigureData, document: Json) -> str:
     if figure.within:
         text = (f"Each solver at its fastest time step, of any motion on the left, and on the right of those whose error is at most "
                 f"{percent(figure.within.level or 0)} of the scene's size (panels of best steps); ")
-    if figure.delivered:
-        text = ("Each solver's least time, at any permitted strain and step that was tried, whose largest strain after the "
-                "collision filter is within the axis' value; " if figure.sweep == "strain" else
-                "Each solver's least time, at any step that was tried, whose largest strain after the collision filter is at "
-                f"most {percent(figure.fixed)}; ")
     reps = suite.get("reps")
     if reps == 1:
         text += "one run a point"

@@ -15,7 +15,7 @@ from parts.style import LIGHT_GREY
 from parts.words import clean, shorten
 
 NAME_SIZE = 6.5
-FAILED, NOT_REACHED = "failed at every step", "not reached at any step"
+FAILED = "failed at every step"
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from parts.words import clean
 
 NOT_CHOSEN = "?"  # ran well, yet no step was marked best: an interrupted search, or an error that is not known
 TOO_WRONG = "X"   # ran well, but its trajectory error is above the limit
-TOO_STRAINED = "A"  # ran well, but the collision filter left more strain than asked for
-MEANINGS = {TOO_WRONG: "trajectory error above the limit", TOO_STRAINED: "more strain after collisions", NOT_CHOSEN: "ran, but no step was chosen as best"}
+MEANINGS = {TOO_WRONG: "trajectory error above the limit", NOT_CHOSEN: "ran, but no step was chosen as best"}
 
 
 @dataclass(frozen=True)
