@@ -25,8 +25,9 @@ void add_plot_command(const Command& program) {
   command.does([given] {
     const bool several = given->files.size() > 1;
     if (several == given->name.empty())
-      throw UsageError(several ? "several result files are drawn as one: give it a --name"
-                               : "--name is for several result files; pictures of one have its name");
+      throw UsageError(several
+                           ? "several result files are drawn as one: give it a --name"
+                           : "--name is for several result files; pictures of one have its name");
     std::string out = given->out;
     if (several && out.empty())
       out = std::filesystem::path(given->files.front()).parent_path().string();

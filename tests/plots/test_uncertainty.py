@@ -136,31 +136,6 @@ def test_runs_that_gain_energy_have_their_letter() -> None:
 
 # ---- colliders ------------------------------------------------------------------------------------------------------
 
-def test_a_second_figure_is_by_the_strain_after_collisions() -> None:
-    pictures = drawn(document(cloth()))
-    assert list(pictures) == ["figure5a", "figure5a-delivered"]
-    figure = pictures["figure5a-delivered"]
-    assert figure.texts[0].get_text() == "Figure 5a - drape over a sphere: cost over strain after collisions"
-    main = axes_with(figure, ylabel="wall seconds")
-    (fast,), (shake,) = curves(main, BLUE), curves(main, GREEN)
-    # After collisions fast projection's cloth is strained by 3.2, 10 and 32 %, SHAKE's by 0.95, 3 and 9.5 %.
-    assert np.allclose(fast.get_xdata(), [5, 10, 50])
-    assert np.allclose(fast.get_ydata(), [0.01 / limit**0.5 for limit in (0.001, 0.01, 0.1)])
-    assert np.allclose(shake.get_xdata(), [1, 5, 10, 50])
-    assert np.allclose(shake.get_ydata(), [0.02 / limit**0.5 for limit in (0.001, 0.01, 0.1, 0.1)])
-    assert marks(strips(figure)[0]) == ["A"] and "A = more strain after collisions" in words_of(figure)
-
-
-def test_the_second_figure_over_resolution_is_at_a_strain_that_half_of_them_keep() -> None:
-    points = [point(solver, "resolution", "drape", vertices, seconds=vertices * 1e-3, best=True,
-                    max_strain_after_collision=strain)
-              for solver, strain in (("fast_projection", 0.15), ("shake", 0.25), ("icd", 0.18)) for vertices in (100, 400)]
-    pictures = drawn(document(points))
-    figure = pictures["figure5b-delivered"]
-    assert figure.texts[0].get_text().endswith("cost over resolution, strain after collisions at most 20 %")
-    assert set(marks(strips(figure)[0])) == {"A"}
-    assert len(curves(axes_with(figure, ylabel="wall seconds"))) == 2
-
 
 def test_chains_have_no_second_figure() -> None:
     assert not any("delivered" in name for name in drawn(strain_sweep()))
