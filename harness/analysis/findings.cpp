@@ -78,7 +78,7 @@ const Cell* second_of(const Plane& plane, const Cell& headline) {
 }
 
 std::string subject_of(const Plane& plane) {
-  return plane.scene + " of " + std::to_string(plane.vertices) + " vertices";
+  return scene_words(plane.scene) + " of " + std::to_string(plane.vertices) + " vertices";
 }
 
 Finding finding_of(const Plane& plane) {

@@ -225,7 +225,7 @@ json to_json(const Answer& answer, const SweepSpec& sweep, const Wish& wish) {
 
 void print_scene(std::ostream& out, const SweepSpec& sweep, const Wish& wish,
                  const Measured& measured) {
-  out << sweep.scene << ", " << measured.points.front().spec.vertices << " vertices, "
+  out << analysis::scene_words(sweep.scene) << ", " << measured.points.front().spec.vertices << " vertices, "
       << analysis::percent(sweep.limits.front()) << " strain, "
       << (std::isfinite(wish.error) ? "right to " + analysis::percent(wish.error)
                                     : std::string("any motion"))
