@@ -78,7 +78,7 @@ const Cell* second_of(const Plane& plane, const Cell& headline) {
 }
 
 std::string subject_of(const Plane& plane) {
-  return plane.scene + " of " + std::to_string(plane.vertices) + " vertices";
+  return scene_words(plane.scene) + " of " + std::to_string(plane.vertices) + " vertices";
 }
 
 Finding finding_of(const Plane& plane) {
@@ -115,8 +115,14 @@ std::string sentence_of(const Cell& cell) {
 }
 
 std::string sentence_of(const Growth& growth) {
-  if (growth.rows.size() < 2) return "";
-  const RowGrowth &least = growth.rows.front(), &most = growth.rows.back();
+  int sizes = 0;
+  for (const RowGrowth& row : growth.rows) sizes = std::max(sizes, row.exponent.points);
+  std::vector<RowGrowth> whole;  // those that ran at all sizes
+  for (const RowGrowth& row : growth.rows) {
+    if (row.exponent.points == sizes) whole.push_back(row);
+  }
+  if (whole.size() < 2) return "";
+  const RowGrowth &least = whole.front(), &most = whole.back();
   return "From " + number_text(least.smallest.number("vertices"), 7) + " to " +
          number_text(least.largest.number("vertices"), 7) +
          " vertices the time of a step grows least with " + least.row +

@@ -24,7 +24,8 @@ struct Finding {
 // and an error of 1.4 %; y, the best of the paper's six, takes 2.1 (1.9-2.3) times as long."
 std::string sentence_of(const Cell& cell);
 // "From 441 to 10201 vertices the time of a step grows least with x, as their number to the power
-// 1.1 (1.0 to 1.2), and most with y, 1.6 (1.5 to 1.7)." "" for less than two rows.
+// 1.1 (1.0 to 1.2), and most with y, 1.6 (1.5 to 1.7)." Of rows that have all sizes; "" for less
+// than two of them.
 std::string sentence_of(const Growth& growth);
 
 std::vector<Finding> findings_of(const std::vector<Plane>& planes);

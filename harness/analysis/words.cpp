@@ -9,6 +9,12 @@
 
 namespace harness::analysis {
 
+std::string scene_words(const std::string& scene) {
+  if (!scene.starts_with("mesh:")) return scene;
+  const std::string file = scene.substr(5, scene.find(',') - 5);
+  return file.substr(file.find_last_of('/') + 1);
+}
+
 std::string percent(double fraction) { return number_text(100 * fraction, 3) + " %"; }
 
 std::string time_words(double seconds) {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <sstream>
 
 #include "harness/base/child_program.h"
 #include "harness/base/errors.h"
@@ -53,6 +54,20 @@ ProgramResult run_or_interrupt(const std::vector<std::string>& words, const std:
   ProgramResult result = run_program(words, input, timeout, interrupted);
   if (interrupted()) throw Interrupted();
   return result;
+}
+
+// A name without a folder is a file here, else a program on the PATH as for a shell, else, if it is
+// its name, this program: an installed `bench ab bench bench` means itself.
+std::string program_named(const std::string& name) {
+  if (name.find('/') != std::string::npos || fs::exists(name)) return name;
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path file = fs::path(folder) / name;
+    if (fs::is_regular_file(file) && access(file.c_str(), X_OK) == 0) return file.string();
+  }
+  const fs::path own = fs::read_symlink("/proc/self/exe");
+  return own.filename() == name ? own.string() : name;
 }
 
 void check_binary(const std::string& path) {
@@ -239,7 +254,11 @@ void add_ab_command(const Command& program) {
   command.option("--exclude", options.exclude, "without points in whose id this is found", "REGEX");
   add_no_wait(command, options.no_wait);
   add_compare_options(command, options);
-  command.does([given] { return run_ab(*given); });
+  command.does([given] {
+    given->old_binary = program_named(given->old_binary);
+    given->new_binary = program_named(given->new_binary);
+    return run_ab(*given);
+  });
 }
 
 }  // namespace harness

@@ -1,7 +1,6 @@
 // bench choose: which solver to take for a scene, at which step, and what a frame costs.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iostream>
 
 #include "harness/analysis/words.h"
@@ -37,32 +36,6 @@ struct ChooseCommand {
   double limit = 0.01, error = headline_error, seconds = 60;
   bool as_json = false, no_wait = false;
 };
-
-// "1/60", or a number.
-double fraction_of(const std::string& option, const std::string& text) {
-  const auto slash = text.find('/');
-  const auto number = [&](const std::string& part) {
-    char* end = nullptr;
-    const double value = std::strtod(part.c_str(), &end);
-    if (part.empty() || *end != '\0' || !(value > 0))
-      throw UsageError(option + " is '" + shortened(text, 40) + "', must be seconds, such as 1/60");
-    return value;
-  };
-  if (slash == std::string::npos) return number(text);
-  return number(text.substr(0, slash)) / number(text.substr(slash + 1));
-}
-
-// "2ms", "500us", "0.002s".
-double duration_of(const std::string& option, const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  const std::string unit = end;
-  const double scale = unit == "ms" ? 1e-3 : unit == "us" ? 1e-6 : unit == "s" ? 1 : 0;
-  if (!(value > 0) || scale == 0)
-    throw UsageError(option + " is '" + shortened(text, 40) +
-                     "', must be such as 2ms, 500us or 0.002s");
-  return value * scale;
-}
 
 double rate_of(const std::string& frame) {
   const double rate = 1 / fraction_of("--frame", frame);
@@ -221,69 +194,93 @@ json pick_json(const std::optional<Pick>& pick) {
       {"error", number(pick->error)}};
 }
 
-int choose(const ChooseCommand& given) {
-  const double rate = rate_of(given.frame);
-  const double wanted_budget = given.budget.empty() ? 0 : duration_of("--budget", given.budget);
-  const Suite suite = suite_of(given, rate);
-  const SweepSpec& sweep = suite.sweeps.front();
-  if (sweep.contestants.empty()) check_solver_pattern(given.solver);
-  Wish wish{given.error, rate};
-  catch_interrupts();
-  const TimingLock lock(!given.no_wait);
-  auto shelf = std::make_shared<ReferenceShelf>(source_path("results/references"));
-  const auto reference = reference_for(sweep, *shelf);
-  if (!reference) wish.error = any_motion;
-  const Measured measured = measure(given, suite, wish, shelf);
-  const auto take = fastest(measured.points, wish);
-  const double budget = wanted_budget > 0 ? wanted_budget : take ? take->frame.slow : 0;
-  const auto next = take ? fastest(measured.points, wish, take->point->spec.name()) : std::nullopt;
-  const auto half = most_accurate(measured.points, wish, budget / 2);
-  const auto twice = most_accurate(measured.points, wish, budget * 2);
-  if (given.as_json) {
-    std::cout << json{{"scene", sweep.scene},
-                      {"scene_parameters", sweep.scene_parameters},
-                      {"strain_limit", given.limit},
-                      {"error", number(wish.error)},
-                      {"frame", 1 / rate},
-                      {"budget", budget},
-                      {"reference", reference ? json(reference->method) : json()},
-                      {"measured_seconds", measured.seconds},
-                      {"take", pick_json(take)},
-                      {"runner_up", pick_json(next)},
-                      {"half_budget", pick_json(half)},
-                      {"double_budget", pick_json(twice)}}
-                     .dump(1)
-              << '\n';
-    return take ? success : cannot_decide;
-  }
-  std::cout << sweep.scene << ", " << measured.points.front().spec.vertices << " vertices, "
-            << analysis::percent(given.limit) << " strain, "
-            << (std::isfinite(wish.error) ? "right to " + analysis::percent(wish.error)
-                                          : std::string("any motion"))
-            << ": " << measured.tried << " of " << measured.all << " solvers tried in "
-            << duration_text(measured.seconds) << '\n';
+// What was found, for one wish.
+struct Answer {
+  std::optional<Pick> take, next, half, twice;
+  double budget = 0;  // s of computation a frame; half and twice are of half of it and twice as much
+};
+
+Answer answer_of(const std::vector<PointResult>& points, const Wish& wish, double wanted_budget) {
+  Answer answer;
+  answer.take = fastest(points, wish);
+  if (answer.take) answer.next = fastest(points, wish, answer.take->point->spec.name());
+  answer.budget = wanted_budget > 0 ? wanted_budget : answer.take ? answer.take->frame.slow : 0;
+  answer.half = most_accurate(points, wish, answer.budget / 2);
+  answer.twice = most_accurate(points, wish, answer.budget * 2);
+  return answer;
+}
+
+json to_json(const Answer& answer, const SweepSpec& sweep, const Wish& wish) {
+  return {{"scene", sweep.scene},
+          {"scene_parameters", sweep.scene_parameters},
+          {"strain_limit", sweep.limits.front()},
+          {"error", number(wish.error)},
+          {"frame", 1 / wish.rate},
+          {"budget", answer.budget},
+          {"take", pick_json(answer.take)},
+          {"runner_up", pick_json(answer.next)},
+          {"half_budget", pick_json(answer.half)},
+          {"double_budget", pick_json(answer.twice)}};
+}
+
+void print_scene(std::ostream& out, const SweepSpec& sweep, const Wish& wish,
+                 const Measured& measured) {
+  out << analysis::scene_words(sweep.scene) << ", " << measured.points.front().spec.vertices << " vertices, "
+      << analysis::percent(sweep.limits.front()) << " strain, "
+      << (std::isfinite(wish.error) ? "right to " + analysis::percent(wish.error)
+                                    : std::string("any motion"))
+      << ": " << measured.tried << " of " << measured.all << " solvers tried in "
+      << duration_text(measured.seconds) << '\n';
+}
+
+void print_answer(std::ostream& out, const Answer& answer, const Wish& wish, bool budget_given) {
+  const auto& [take, next, half, twice, budget] = answer;
   if (!take) {
-    std::cout << "none keeps both in this time; more --seconds, or a larger --error\n";
-    return cannot_decide;
+    out << "none keeps both in this time; more --seconds, or a larger --error\n";
+    return;
   }
-  std::cout << "take  " << pick_text(*take, rate) << '\n';
+  out << "take  " << pick_text(*take, wish.rate) << '\n';
   if (next) {
     const Ratio ratio = ratio_of_times(next->point->samples, take->point->samples);
-    std::cout << "next  " << pick_text(*next, rate) << "; "
-              << (ratio.above(1) ? analysis::text(ratio) + " times as long" : "too close to tell")
-              << '\n';
+    out << "next  " << pick_text(*next, wish.rate) << "; "
+        << (ratio.above(1) ? analysis::text(ratio) + " times as long" : "too close to tell")
+        << '\n';
   }
-  const auto told = [&](const std::optional<Pick>& pick) {
+  const auto told = [](const std::optional<Pick>& pick) {
     return pick ? pick->point->spec.name() + " at " + step_text(pick->point->spec.step) + " s, " +
                       error_text(pick->error)
                 : std::string("nothing that keeps the limit");
   };
-  std::cout << "with  " << number_text(500 * budget, 3) << " ms a frame: " << told(half)
-            << "; with " << number_text(2000 * budget, 3) << " ms: " << told(twice) << '\n';
-  if (wanted_budget > 0 && take->frame.slow > budget)
-    std::cout << "1 % of frames take longer than the budget of " << number_text(1e3 * budget, 3)
-              << " ms\n";
-  return success;
+  out << "with  " << number_text(500 * budget, 3) << " ms a frame: " << told(half) << "; with "
+      << number_text(2000 * budget, 3) << " ms: " << told(twice) << '\n';
+  if (budget_given && take->frame.slow > budget)
+    out << "1 % of frames take longer than the budget of " << number_text(1e3 * budget, 3)
+        << " ms\n";
+}
+
+int choose(const ChooseCommand& given) {
+  Wish wish{given.error, rate_of(given.frame)};
+  const double budget = given.budget.empty() ? 0 : duration_of("--budget", given.budget);
+  const Suite suite = suite_of(given, wish.rate);
+  const SweepSpec& sweep = suite.sweeps.front();
+  if (sweep.contestants.empty()) check_solver_pattern(given.solver);
+  catch_interrupts();
+  const TimingLock lock(!given.no_wait);
+  const auto shelf = std::make_shared<ReferenceShelf>(source_path("results/references"));
+  const auto reference = reference_for(sweep, *shelf);
+  if (!reference) wish.error = any_motion;
+  const Measured measured = measure(given, suite, wish, shelf);
+  const Answer answer = answer_of(measured.points, wish, budget);
+  if (given.as_json) {
+    json document = to_json(answer, sweep, wish);
+    document["reference"] = reference ? json(reference->method) : json();
+    document["measured_seconds"] = measured.seconds;
+    std::cout << document.dump(1) << '\n';
+  } else {
+    print_scene(std::cout, sweep, wish, measured);
+    print_answer(std::cout, answer, wish, budget > 0);
+  }
+  return answer.take ? success : cannot_decide;
 }
 
 }  // namespace

@@ -180,6 +180,30 @@ std::vector<double> numbers_of(const std::string& option, const std::string& tex
   return numbers;
 }
 
+double fraction_of(const std::string& option, const std::string& text) {
+  const auto slash = text.find('/');
+  const auto number = [&](const std::string& part) {
+    char* end = nullptr;
+    const double value = std::strtod(part.c_str(), &end);
+    if (part.empty() || *end != '\0' || !(value > 0))
+      throw UsageError(option + " is '" + shortened(text, 40) + "', must be seconds, such as 1/60");
+    return value;
+  };
+  if (slash == std::string::npos) return number(text);
+  return number(text.substr(0, slash)) / number(text.substr(slash + 1));
+}
+
+double duration_of(const std::string& option, const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const std::string unit = end;
+  const double scale = unit == "ms" ? 1e-3 : unit == "us" ? 1e-6 : unit == "s" ? 1 : 0;
+  if (!(value > 0) || scale == 0)
+    throw UsageError(option + " is '" + shortened(text, 40) +
+                     "', must be such as 2ms, 500us or 0.002s");
+  return value * scale;
+}
+
 namespace {
 
 bool is(const json& sweep, const char* key, const std::string& value) {

@@ -46,6 +46,9 @@ void check_solver_pattern(const std::string& text, const Contestants& contestant
 // Of a list between commas, "20,40,80". Throws UsageError, naming the option.
 std::vector<double> numbers_of(const std::string& option, const std::string& text,
                                const Bounds& bounds);
+// Seconds of "1/60" or "0.0167", and of "2ms", "500us" or "0.002s"; both throw UsageError.
+double fraction_of(const std::string& option, const std::string& text);
+double duration_of(const std::string& option, const std::string& text);
 std::string suite_path(const SweepOptions& options);
 Suite load_suite(const SweepOptions& options);
 SweepFilters make_filters(const SweepOptions& options);

@@ -32,7 +32,7 @@ void print_growth(std::ostream& out, const std::vector<NamedResult>& results) {
          "this power (95 % interval); and what a step takes at the largest size.\n\n";
   std::vector<std::string> row{"solver"}, names;
   for (const Growth& growth : all) {
-    row.push_back(growth.scene + " at " + percent(growth.strain_limit) + ", from " +
+    row.push_back(scene_words(growth.scene) + " at " + percent(growth.strain_limit) + ", from " +
                   number_text(growth.rows.front().smallest.number("vertices"), 7));
     for (const RowGrowth& each : growth.rows) names.push_back(each.row);
   }

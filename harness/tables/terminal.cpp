@@ -82,7 +82,7 @@ void print_cells(std::ostream& out, const std::string& limit, const Cell& looses
 }
 
 void print_head(std::ostream& out, const Plane& plane, bool sizes, const Setting& set) {
-  out << '\n' << plane.scene;
+  out << '\n' << analysis::scene_words(plane.scene);
   if (!sizes) out << " of " << plane.vertices << " vertices";
   out << ", " << plane.sweep << " sweep";
   if (sizes && plane.limits.size() == 1) out << " at " << percent(plane.limits[0]) << " strain";
@@ -137,7 +137,7 @@ void print_everybody(std::ostream& out, const Plane& plane, const Setting& set) 
     if (cell.entries.empty() || (cell.level != any_motion && cell.level != headline_error))
       continue;
     out << '\n'
-        << plane.scene << " of " << plane.vertices << " vertices at " << percent(cell.strain_limit)
+        << analysis::scene_words(plane.scene) << " of " << plane.vertices << " vertices at " << percent(cell.strain_limit)
         << " strain, "
         << (cell.level == any_motion ? "any motion" : "right to " + percent(cell.level)) << '\n'
         << std::left << std::setw(set.name_width) << "" << std::setw(time_width)
@@ -195,7 +195,7 @@ void print_wrapped(std::ostream& out, const std::string& sentence) {
 void print_growth(std::ostream& out, const analysis::Growth& growth) {
   constexpr int name_width = 32, exponent_width = 24, range_width = 20, step_time_width = 14;
   out << '\n'
-      << growth.scene << " at " << percent(growth.strain_limit)
+      << analysis::scene_words(growth.scene) << " at " << percent(growth.strain_limit)
       << " strain, any motion: the time of a step grows as the number of vertices to a power\n"
       << std::left << std::setw(name_width) << "" << std::setw(exponent_width) << "power (95 %)"
       << std::setw(range_width) << "vertices" << std::setw(step_time_width) << "ms a step"

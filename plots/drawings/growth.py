@@ -19,7 +19,7 @@ from parts.scales import log_x, log_y
 from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, grid, label_ends, labels_height, make_sheet,
                          receding_sentence)
 from parts.style import styles_for, with_leaders
-from parts.words import clean
+from parts.words import scene_words
 
 
 def figures_of(document: Json, legend: Legend) -> list[tuple[str, Callable[[], Figure]]]:
@@ -33,7 +33,7 @@ def draw(data: FigureData, document: Json, legend: Legend) -> Figure:
     styles = _with_slopes(with_leaders(styles_for(curves, legend), leaders_in(document, data.scene, data.sweep)), data, document)
     rows = failed_rows(steps, styles)
     captions = [receding_sentence(styles), *caption_of(steps, document, legend)]
-    sheet = make_sheet(f"{clean(data.scene)}: growth of a step's time with vertices", warnings_of(document),
+    sheet = make_sheet(f"{scene_words(data.scene)}: growth of a step's time with vertices", warnings_of(document),
                        [words for words in captions if words], LEFT + MAIN_WIDTH + LEGEND_WIDTH,
                        MAIN_HEIGHT + ROW_HEIGHT * len(rows), labels_height(styles) - MAIN_HEIGHT,
                        " ".join(words for words in finding_in(document, data.scene, data.sweep) if words.startswith("From ")))

@@ -15,7 +15,7 @@ from parts.legend import Legend
 from parts.result_file import Json, finding_in
 from parts.sheet import LEFT, RIGHT, make_sheet
 from parts.style import LIGHT_GREY, SolverStyle, styles_for
-from parts.words import clean, file_part, wrap
+from parts.words import clean, file_part, scene_words, wrap
 
 CELL_WIDTH, CELL_HEIGHT, NAME_SIZE, SMALL = 1.75, 0.72, 7.5, 6.5
 NARROW = 1.0  # the column of limits' words
@@ -26,7 +26,7 @@ def figures_of(document: Json, legend: Legend) -> list[tuple[str, Callable[[], F
     if not isinstance(analysis, dict):
         return []
     planes = [plane for plane in analysis["planes"] if plane["sweep"] == "strain"]
-    return [(f"plane-{file_part(plane['scene'])}" + ("" if _alone(plane, planes) else f"-n{plane['vertices']}"),
+    return [(f"plane-{file_part(scene_words(plane['scene']))}" + ("" if _alone(plane, planes) else f"-n{plane['vertices']}"),
              partial(draw, plane, document, legend)) for plane in planes]
 
 
@@ -36,7 +36,7 @@ def _alone(plane: Json, planes: list[Json]) -> bool:
 
 def draw(plane: Json, document: Json, legend: Legend) -> Figure:
     limits, levels = plane["strain_limits"], plane["error_levels"]
-    scene = SUBJECTS.get(plane["scene"], clean(plane["scene"]))
+    scene = SUBJECTS.get(plane["scene"], scene_words(plane["scene"]))
     title = f"{scene}, {plane['vertices']:,} vertices: who is fastest within a strain and an error"
     styles = styles_for(dict.fromkeys(cell["first"] for cell in plane["cells"] if cell["first"]), legend)
     width, height = CELL_WIDTH * len(levels), CELL_HEIGHT * len(limits)

@@ -19,7 +19,7 @@ from parts.scales import log_log, step_axis, step_name
 from parts.sheet import GAP, LEFT, MAIN_HEIGHT, MAIN_WIDTH, grid, make_sheet
 from parts.step_runs import RunsData, Series, step_sweeps_in, styles_of
 from parts.style import GREY
-from parts.words import clean, file_part
+from parts.words import file_part, scene_words
 
 ByStep = dict[float, Series]
 
@@ -51,7 +51,7 @@ def draw(data: RunsData, document: Json, legend: Legend, solver: str, limit: flo
              "first iteration of a step and after the last, for samples in which a step needed an iteration at all. Right: "
              "mean over those samples; the lines are fitted over all steps shown (bench claims: with confidence interval).",
              origin_sentence(document)]
-    sheet = make_sheet(f"{clean(data.scene)}: residual of {style.label}", warnings_of(document), words,
+    sheet = make_sheet(f"{scene_words(data.scene)}: residual of {style.label}", warnings_of(document), words,
                        LEFT + 2 * MAIN_WIDTH + GAP + 1.6, MAIN_HEIGHT)
     left = sheet.axes(LEFT, sheet.bottom, MAIN_WIDTH, MAIN_HEIGHT)
     right = sheet.axes(LEFT + MAIN_WIDTH + GAP, sheet.bottom, MAIN_WIDTH, MAIN_HEIGHT)

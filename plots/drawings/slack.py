@@ -18,7 +18,7 @@ from parts.scales import log_log, step_axis
 from parts.sheet import LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, add_legend, grid, legend_height, make_sheet
 from parts.step_runs import RunsData, step_sweeps_in, styles_of
 from parts.style import GREY
-from parts.words import clean
+from parts.words import scene_words
 
 LOOSE = 0.01  # strain limit at which slack is shown
 
@@ -39,7 +39,7 @@ def draw(data: RunsData, document: Json, legend: Legend) -> Figure:
              "slack within a loose limit, the limit and not the step decides, and smaller steps do not help or even harm.",
              _key_of_failures(rows, legend), origin_sentence(document)]
     width = LEFT + len(shown) * MAIN_WIDTH + (len(shown) - 1) * 0.4 + LEGEND_WIDTH
-    sheet = make_sheet(f"{clean(data.scene)}: error over step", warnings_of(document), [w for w in words if w], width,
+    sheet = make_sheet(f"{scene_words(data.scene)}: error over step", warnings_of(document), [w for w in words if w], width,
                        MAIN_HEIGHT + ROW_HEIGHT * len(rows[0]) + 0.15, legend_height(styles) - MAIN_HEIGHT)
     runs = data.all_runs()
     tried = [failed.step for steps in data.failures.values() for failed in steps] + [run.step for run in runs]

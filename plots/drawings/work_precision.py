@@ -19,7 +19,7 @@ from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT
                          make_sheet, receding_sentence)
 from parts.step_runs import FailedStep, Run, RunsData, cheapest, step_sweeps_in, styles_of
 from parts.style import SolverStyle, with_leaders
-from parts.words import clean
+from parts.words import scene_words
 
 TARGETS = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5)
 LADDER_ENDED = "L"
@@ -39,7 +39,7 @@ def draw(data: RunsData, document: Json, legend: Legend) -> Figure:
              "none of its others beats in both time and error; the yellow band is the front of all solvers. Hollow: error "
              "below three times the reference's own uncertainty.",
              receding_sentence(styles), _key_of(rows, legend), timing(document), origin_sentence(document)]
-    sheet = make_sheet(f"{clean(data.scene)}: time against error", warnings_of(document), [w for w in words if w],
+    sheet = make_sheet(f"{scene_words(data.scene)}: time against error", warnings_of(document), [w for w in words if w],
                        LEFT + 1.25 * MAIN_WIDTH + LEGEND_WIDTH, 1.25 * MAIN_HEIGHT + ROW_HEIGHT * len(rows),
                        labels_height(styles) - 1.25 * MAIN_HEIGHT,
                        " ".join(finding_in(document, data.scene, "step", data.vertices)[:1]))

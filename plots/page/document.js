@@ -31,7 +31,7 @@ function timeText(seconds) {
 }
 const percent = (part) => part === null ? "" : `${Number((100 * part).toPrecision(3))} %`;
 const stepText = (step) => step === null ? "" : step < 0.5 ? `1/${Number((1 / step).toPrecision(4))} s` : `${step} s`;
-const words = (name) => name.replaceAll("_", " ");
+const words = (name) => (name.startsWith("mesh:") ? name.slice(5).split(",")[0].split("/").pop() : name.replaceAll("_", " "));
 
 // What repeats one point: the run that made it, with a filter that keeps this id alone.
 function commandOf(point) {

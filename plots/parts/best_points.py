@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from parts.legend import TOO_WRONG, Legend
 from parts.result_file import (OK, Json, contestant_of, is_number, time_in, spread_in, time_of, object_in, points_of,
                                positive)
-from parts.words import file_part
+from parts.words import file_part, scene_words
 
 NUMBERS_OF_THE_PAPER = {"chain": "4", "drape": "5"}
 HEADLINE = 0.02  # of the scene's size: the level of error of headlines (docs/measuring.md)
@@ -118,7 +118,7 @@ def number_in_paper(scene: str, sweep: str) -> str:
 def _file_part(scene: str, sweep: str, fixed: float, alone: bool) -> str:
     """"figure4a" for the scenes of the paper, "<scene>-<sweep>" for others; the fixed value only where two would clash."""
     number = number_in_paper(scene, sweep)
-    name = f"figure{number}" if number else f"{file_part(scene)}-{sweep}"
+    name = f"figure{number}" if number else f"{file_part(scene_words(scene))}-{sweep}"
     if alone:
         return name
     return f"{name}-n{fixed:g}" if sweep == "strain" else f"{name}-strain{fixed:g}"

@@ -8,7 +8,7 @@ from parts.best_points import Best, FigureData, number_in_paper
 from parts.legend import Legend, legend_of
 from parts.result_file import OK, Json, is_number, noise_factor, object_in, positive, suite_of
 from parts.step_runs import RunsData
-from parts.words import clean
+from parts.words import clean, scene_words
 
 ERROR_LABEL = "trajectory error over the scene's size"
 SUBJECTS = {"drape": "drape over a sphere"}
@@ -18,7 +18,7 @@ SUBJECTS = {"drape": "drape over a sphere"}
 def title_of(figure: FigureData) -> str:
     axis = "permissible strain" if figure.sweep == "strain" else "resolution"
     number = number_in_paper(figure.scene, figure.sweep)
-    title = f"{SUBJECTS.get(figure.scene, clean(figure.scene))}: cost over {axis}"
+    title = f"{SUBJECTS.get(figure.scene, scene_words(figure.scene))}: cost over {axis}"
     return f"Figure {number} - {title}" if number else title
 
 
@@ -57,7 +57,7 @@ def scene_sentence(scene: str, size: str, points: list[Json]) -> str:
     durations = {point["duration"] for point in points if is_number(point.get("duration"))}
     if durations:
         parts.append(" or ".join(f"{d:g}" for d in sorted(durations)) + " s simulated")
-    return f"Scene {clean(scene)}: " + ", ".join(parts) + "."
+    return f"Scene {scene_words(scene)}: " + ", ".join(parts) + "."
 
 
 def _common_parameters(points: list[Json]) -> list[str]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from parts.legend import Legend
 from parts.result_file import OK, Json, contestant_of, is_number, time_of, object_in, points_of, positive
 from parts.style import SolverStyle, styles_for
-from parts.words import file_part
+from parts.words import file_part, scene_words
 
 Series = list[list[float]]  # rows of time, residual after the first iteration, after the last
 
@@ -56,7 +56,7 @@ def step_sweeps_in(document: Json, legend: Legend) -> list[RunsData]:
     entries = []
     for scene, vertices in sorted(groups):
         alone = sum(key[0] == scene for key in groups) == 1
-        name = file_part(scene) + ("" if alone else f"-n{vertices:g}")
+        name = file_part(scene_words(scene)) + ("" if alone else f"-n{vertices:g}")
         data = RunsData(scene, vertices, groups[scene, vertices], name)
         for point in data.points:
             if positive(point.get("step")):

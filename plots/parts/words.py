@@ -20,6 +20,11 @@ def clean(text: Any) -> str:
     return line if len(line) <= LONGEST else line[:LONGEST - 1] + ELLIPSIS
 
 
+def scene_words(scene: str) -> str:
+    """As people call it: of a mesh its file's name."""
+    return clean(scene[5:].split(",")[0].rsplit("/", 1)[-1] if scene.startswith("mesh:") else scene)
+
+
 def file_part(text: str) -> str:
     """A text as part of a file's name."""
     return "".join(c if c.isascii() and c.isalnum() or c in "-_" else "_" for c in text)[:FILE_NAME]

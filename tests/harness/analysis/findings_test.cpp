@@ -66,5 +66,12 @@ TEST(Findings, TellWhatATighterLimitOrAnyMotionChanges) {
   EXPECT_EQ(any[1].substr(0, 61), "At 1 % strain, whatever the motion, icd is the fastest: 9.96 ");
 }
 
+TEST(Findings, CallAMeshByItsFile) {
+  json one = run("strips", 0.01, 0.01, 0.05, 0.01);
+  one["scene"] = "mesh:clothes/shirt.obj,pins=y>1.2";
+  const json result = document({one});
+  EXPECT_EQ(findings_of(planes_of(result)).at(0).subject, "shirt.obj of 80 vertices");
+}
+
 }  // namespace
 }  // namespace harness::analysis

@@ -110,7 +110,7 @@ grep -q '^sound conforms: ' check.txt && [[ $code == 0 ]] || fail "a sound solve
 
 # ---- Two versions of a plug-in, timed against each other; sanitizers distort times ----
 ab() {
-  "$bench" ab "$bench" "$bench" --old-plugin "$(sound "$1")" --new-plugin "$(sound "$2")" --suite quick --scene drape \
+  "$bench" ab bench bench --old-plugin "$(sound "$1")" --new-plugin "$(sound "$2")" --suite quick --scene drape \
     --solver sound --filter 'strain:0.001/' --pairs 8 --confirm 8 --seconds 0.02 >ab.txt 2>&1
 }
 if ! ((SANITIZED)); then
