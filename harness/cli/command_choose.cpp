@@ -197,7 +197,8 @@ json pick_json(const std::optional<Pick>& pick) {
 // What was found, for one wish.
 struct Answer {
   std::optional<Pick> take, next, half, twice;
-  double budget = 0;  // s of computation a frame; half and twice are of half of it and twice as much
+  double budget =
+      0;  // s of computation a frame; half and twice are of half of it and twice as much
 };
 
 Answer answer_of(const std::vector<PointResult>& points, const Wish& wish, double wanted_budget) {
@@ -210,7 +211,7 @@ Answer answer_of(const std::vector<PointResult>& points, const Wish& wish, doubl
   return answer;
 }
 
-json to_json(const Answer& answer, const SweepSpec& sweep, const Wish& wish) {
+json answer_json(const Answer& answer, const SweepSpec& sweep, const Wish& wish) {
   return {{"scene", sweep.scene},
           {"scene_parameters", sweep.scene_parameters},
           {"strain_limit", sweep.limits.front()},
@@ -225,8 +226,8 @@ json to_json(const Answer& answer, const SweepSpec& sweep, const Wish& wish) {
 
 void print_scene(std::ostream& out, const SweepSpec& sweep, const Wish& wish,
                  const Measured& measured) {
-  out << analysis::scene_words(sweep.scene) << ", " << measured.points.front().spec.vertices << " vertices, "
-      << analysis::percent(sweep.limits.front()) << " strain, "
+  out << analysis::scene_words(sweep.scene) << ", " << measured.points.front().spec.vertices
+      << " vertices, " << analysis::percent(sweep.limits.front()) << " strain, "
       << (std::isfinite(wish.error) ? "right to " + analysis::percent(wish.error)
                                     : std::string("any motion"))
       << ": " << measured.tried << " of " << measured.all << " solvers tried in "
@@ -272,7 +273,7 @@ int choose(const ChooseCommand& given) {
   const Measured measured = measure(given, suite, wish, shelf);
   const Answer answer = answer_of(measured.points, wish, budget);
   if (given.as_json) {
-    json document = to_json(answer, sweep, wish);
+    json document = answer_json(answer, sweep, wish);
     document["reference"] = reference ? json(reference->method) : json();
     document["measured_seconds"] = measured.seconds;
     std::cout << document.dump(1) << '\n';

@@ -40,9 +40,10 @@ bool has_shapes(const std::vector<const Plane*>& planes) {
 // Planes of one table: those of a resolution sweep are its rows.
 std::string title_of(const Plane& plane) {
   return plane.sweep == "resolution"
-             ? scene_words(plane.scene) + " over resolution, " + percent(plane.limits.front()) + " strain"
-             : scene_words(plane.scene) + ", " + std::to_string(plane.vertices) + " vertices, over " +
-                   plane.sweep;
+             ? scene_words(plane.scene) + " over resolution, " + percent(plane.limits.front()) +
+                   " strain"
+             : scene_words(plane.scene) + ", " + std::to_string(plane.vertices) +
+                   " vertices, over " + plane.sweep;
 }
 
 void print_table(std::ostream& out, const std::vector<const Plane*>& planes) {

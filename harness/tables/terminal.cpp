@@ -137,8 +137,8 @@ void print_everybody(std::ostream& out, const Plane& plane, const Setting& set) 
     if (cell.entries.empty() || (cell.level != any_motion && cell.level != headline_error))
       continue;
     out << '\n'
-        << analysis::scene_words(plane.scene) << " of " << plane.vertices << " vertices at " << percent(cell.strain_limit)
-        << " strain, "
+        << analysis::scene_words(plane.scene) << " of " << plane.vertices << " vertices at "
+        << percent(cell.strain_limit) << " strain, "
         << (cell.level == any_motion ? "any motion" : "right to " + percent(cell.level)) << '\n'
         << std::left << std::setw(set.name_width) << "" << std::setw(time_width)
         << (set.seconds ? "s" : "ms") << std::setw(step_width) << "step, s"
