@@ -102,8 +102,9 @@ json findings_json(const std::vector<Plane>& planes) {
   return findings;
 }
 
-json analysis_of(const json& document) {
-  const std::vector<Plane> planes = planes_of(document);
+json analysis_of(const json& document) { return analysis_of(planes_of(document)); }
+
+json analysis_of(const std::vector<Plane>& planes) {
   json list = json::array(), growth = json::array();
   for (const Plane& plane : planes) list.push_back(plane_json(plane));
   for (const Growth& each : growth_in(planes)) growth.push_back(growth_json(each));

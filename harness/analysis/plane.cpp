@@ -178,13 +178,7 @@ std::vector<std::string> Plane::leaders() const {
   for (const Cell& cell : cells) {
     if (cell.first()) rows.push_back(cell.first()->row);
   }
-  for (const PaperMethod& method : all_paper_methods) {
-    for (const Cell& cell : cells) {
-      for (const Entry& entry : cell.entries) {
-        if (entry.row == method.name) rows.push_back(entry.row);
-      }
-    }
-  }
+  for (const PaperMethod& method : all_paper_methods) rows.emplace_back(method.name);
   return in_order(rows, [](const std::string& row) { return row; });
 }
 

@@ -56,7 +56,8 @@ struct Plane {
   std::vector<Cell> cells;     // by limit, then by level
 
   const Cell& cell(double limit, double level) const;
-  // Rows that a figure shows before all others: who is first in a cell, then the paper's six.
+  // Rows that a figure shows before all others: who is first in a cell, then the paper's six,
+  // whether they have an answer or not.
   std::vector<std::string> leaders() const;
 };
 

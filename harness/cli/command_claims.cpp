@@ -23,6 +23,8 @@ void add_claims_command(const Command& program) {
   command.flag("--markdown", given->markdown, "a table for the README");
   command.does([given] {
     std::vector<nlohmann::json> results;
+    take_answers(given->files);  // no claim is about these
+    if (given->files.empty()) throw UsageError("claims are about sweeps; results/*.json has some");
     results.reserve(given->files.size());
     for (const std::string& file : given->files) results.push_back(read_result(file));
     const std::vector<ClaimVerdict> verdicts = judge_claims(results);

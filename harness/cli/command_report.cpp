@@ -97,7 +97,11 @@ void add_report_command(const Command& program) {
   command.option("--answers", given->answers, "results of bench answers", "ANSWERS.json ...");
   command.option("--out", given->out, "the page", "report.html").required();
   command.flag("--still", given->still, "no scenes in motion, which take seconds to simulate");
-  command.does([given] { return report(*given); });
+  command.does([given] {
+    const std::vector<std::string> answers = take_answers(given->results);
+    given->answers.insert(given->answers.end(), answers.begin(), answers.end());
+    return report(*given);
+  });
 }
 
 }  // namespace harness

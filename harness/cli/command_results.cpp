@@ -60,6 +60,8 @@ void add_results_command(const Command& program) {
   command.option("--answers", given->answers, "results of bench answers", "ANSWERS.json ...");
   command.option("--out", given->out, "the page; default: standard output", "FILE");
   command.does([given] {
+    const std::vector<std::string> answers = take_answers(given->results);
+    given->answers.insert(given->answers.end(), answers.begin(), answers.end());
     if (given->out.empty()) {
       std::cout << page(*given);
     } else {

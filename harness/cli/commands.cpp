@@ -31,35 +31,48 @@ nlohmann::json read_sweep(const std::string& file) {
   return document;
 }
 
+int draw_analysed(const std::string& file, const nlohmann::json& analysis,
+                  const std::vector<std::string>& more) {
+  const TemporaryFolder folder("analysis");
+  write_atomically(folder.file("analysis.json"), analysis.dump());
+  std::vector<std::string> arguments{file};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  arguments.insert(arguments.end(), {"--analysis", folder.file("analysis.json")});
+  return draw(arguments);
+}
+
 }  // namespace
 
 int draw_pieces(const std::vector<std::string>& files, const std::string& name,
                 const std::vector<std::string>& more) {
-  nlohmann::json all = read_sweep(files.front());
-  double noise = analysis::pair_noise_of(all);
-  for (std::size_t i = 1; i < files.size(); ++i) {
-    const nlohmann::json piece = read_sweep(files[i]);
+  std::vector<nlohmann::json> pieces;
+  for (const std::string& file : files) pieces.push_back(read_sweep(file));
+  std::vector<analysis::Plane> planes;
+  nlohmann::json all = pieces.front();
+  all["points"].clear();
+  double noise = std::nan("");
+  for (const nlohmann::json& piece : pieces) {
     for (const nlohmann::json& point : piece.at("points")) all["points"].push_back(point);
+    for (analysis::Plane& plane : analysis::planes_of(piece)) planes.push_back(std::move(plane));
     noise = std::fmax(noise, analysis::pair_noise_of(piece));
   }
   if (std::isfinite(noise)) all["context"]["noise"]["q95"] = noise;
   const TemporaryFolder folder("pieces");
-  const std::string whole = folder.file(name + ".json");
-  write_atomically(whole, all.dump());
-  return draw_result(whole, more);
+  write_atomically(folder.file(name + ".json"), all.dump());
+  return draw_analysed(folder.file(name + ".json"), analysis::analysis_of(analysis::merged(planes)),
+                       more);
 }
 
 int draw_result(const std::string& file, const std::vector<std::string>& more) {
-  std::vector<std::string> arguments{file};
-  arguments.insert(arguments.end(), more.begin(), more.end());
   const nlohmann::json document = parse_document(read_file(file, "result file"), file);
-  if (!document.is_object() || document.value("schema", nlohmann::json()) != "inextensible-bench/1")
+  if (!document.is_object() ||
+      document.value("schema", nlohmann::json()) != "inextensible-bench/1") {
+    std::vector<std::string> arguments{file};
+    arguments.insert(arguments.end(), more.begin(), more.end());
     return draw(arguments);
+  }
   check_result(document, file);
-  const TemporaryFolder folder("analysis");
-  write_atomically(folder.file("analysis.json"), analysis::analysis_of(document).dump());
-  arguments.insert(arguments.end(), {"--analysis", folder.file("analysis.json")});
-  return draw(arguments);
+  return draw_analysed(file, analysis::analysis_of(document), more);
 }
 
 int draw(const std::vector<std::string>& arguments, const std::string& script) {

@@ -103,6 +103,18 @@ json read_answers(const std::string& path) {
   return document;
 }
 
+std::vector<std::string> take_answers(std::vector<std::string>& files) {
+  const auto is_answers = [](const std::string& file) {
+    const json document = parse_document(read_file(file, "result file"), file);
+    return document.is_object() && document.value("schema", json()) == "inextensible-answers/1";
+  };
+  const auto answers = std::stable_partition(
+      files.begin(), files.end(), [&](const std::string& file) { return !is_answers(file); });
+  std::vector<std::string> taken(answers, files.end());
+  files.erase(answers, files.end());
+  return taken;
+}
+
 void check_result(const json& document, const std::string& path) {
   const json schema = document.is_object() ? document.value("schema", json()) : json();
   if (schema == "inextensible-bench/1") {
