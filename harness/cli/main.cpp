@@ -41,7 +41,7 @@ int run(int argc, char** argv) {
       "which size.\n"
       "\n"
       "  bench --sweep strain                     Figures 4a and 5a of Goldenthal et al. 2007, in "
-      "thirteen minutes\n"
+      "six minutes\n"
       "  bench --sweep resolution --scene chain   Figure 4b\n"
       "  bench --sweep strain --profile quick     a first look, in under a minute\n"
       "  bench show RESULT.json                   the answer in two sentences, and its table\n"
