@@ -47,48 +47,37 @@ void set_values(HardCaseValues& values, const std::string& given) {
     throw UsageError("--values " + given + ": must be NAME=NUMBER,NUMBER,...");
 }
 
-}  // namespace
-
-int stability_command(const SweepCommand& options, const std::vector<std::string>& command) {
-  check_profile(options.profile);
+// cases must outlive it.
+StabilityPlan plan_of(const SweepCommand& options, const std::vector<HardCase>& cases) {
   StabilityFilters filters;
   if (!options.solver.empty()) {
     check_solver_pattern(options.solver);
     filters.solver = Pattern("--solver", options.solver);
   }
   if (!options.hard_case.empty()) filters.hard_case = Pattern("--case", options.hard_case);
-  HardCaseValues values = hard_case_values(options.profile);
-  for (const std::string& given : options.values) set_values(values, given);
-  const auto cases = hard_cases(values);
   StabilityPlan plan = plan_stability(cases, filters);
   if (!options.shard.empty()) plan.keep(parse_shard(options.shard));
-  if (options.dry_run) {
-    std::cout << plan.cells() << " cells: " << plan.cases.size() << " hard cases by "
-              << plan.solvers.size() << " solvers; " << plan.scenes.size()
-              << " scenes for each solver's largest step, " << plan.frames.size()
-              << " for frames side by side\n";
-    return success;
-  }
-  const std::string out = chosen_output(options, options.profile + "-stability");
-  check_writable(out);
-  nlohmann::json context = machine_context();
-  context["selection"] = {{"solver", options.solver},
-                          {"case", options.hard_case},
-                          {"values", values},
-                          {"seed", options.seed},
-                          {"shard", options.shard}};
-  const nlohmann::json mine = identity(context, {}, context["selection"]);
-  CellJournal journal(out);
+  return plan;
+}
+
+void tell_plan(const StabilityPlan& plan) {
+  std::cout << plan.cells() << " cells: " << plan.cases.size() << " hard cases by "
+            << plan.solvers.size() << " solvers; " << plan.scenes.size()
+            << " scenes for each solver's largest step, " << plan.frames.size()
+            << " for frames side by side\n";
+}
+
+// Takes up what an earlier run left in its journal or, interrupted, in its result, and begins the
+// journal of this one. False: that run was finished, so there is nothing to do.
+bool take_up(const SweepCommand& options, const std::string& out, const nlohmann::json& mine,
+             CellJournal& journal) {
   check_unfinished(options, {journal.path(), journal.damage(), journal.cells(), "cells"});
   nlohmann::json was = journal.identity();
   if (options.resume && journal.cells() == 0 && std::filesystem::exists(out)) {
     const nlohmann::json result = read_result(out);
     if (!result.contains("matrix"))
       throw UsageError("'" + out + "' is no result of a stability sweep: nothing to resume");
-    if (result.at("complete").get<bool>()) {
-      std::cout << out << " is complete already\n";
-      return success;
-    }
+    if (result.at("complete").get<bool>()) return false;
     journal.learn(result);
     const nlohmann::json& c = result.at("context");
     was = identity(c, {}, c.value("selection", nlohmann::json::object()));
@@ -100,19 +89,23 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
     journal.forget();
   }
   journal.start(mine);
-  catch_interrupts();
+  return true;
+}
+
+// Cells go into the journal, and a terminal sees each of them.
+StabilityEvents events_for(CellJournal& journal) {
   StabilityEvents events;
   events.interrupted = interrupted;
-  const bool terminal = isatty(STDERR_FILENO) == 1;
   events.known = [&journal](const HardCase& c, const std::string& solver) {
     return journal.find(c.name, solver);
   };
-  events.cell = [&](const StabilityCell& cell, std::size_t done, std::size_t all) {
+  const bool terminal = isatty(STDERR_FILENO) == 1;
+  events.cell = [&journal, terminal](const StabilityCell& cell, std::size_t done, std::size_t all) {
     const std::string& name = cell.hard_case->name;
     if (!journal.find(name, cell.solver)) journal.add(name, cell.solver, cell.result);
     if (terminal) {
-      std::cerr << "\r\033[K[" << done << '/' << all << "] " << cell.hard_case->name << '/'
-                << cell.solver << (done == all ? "\n" : "");
+      std::cerr << "\r\033[K[" << done << '/' << all << "] " << name << '/' << cell.solver
+                << (done == all ? "\n" : "");
     } else if (done % 100 == 0 || done == all) {
       std::cerr << '[' << done << '/' << all << "]\n";
     }
@@ -123,8 +116,37 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
   events.same_frame = [](const SameFrame& found) {
     std::cerr << "the same frame, " << found.scene.name() << '\n';
   };
+  return events;
+}
+
+}  // namespace
+
+int stability_command(const SweepCommand& options, const std::vector<std::string>& command) {
+  check_profile(options.profile);
+  HardCaseValues values = hard_case_values(options.profile);
+  for (const std::string& given : options.values) set_values(values, given);
+  const std::vector<HardCase> cases = hard_cases(values);
+  const StabilityPlan plan = plan_of(options, cases);
+  if (options.dry_run) {
+    tell_plan(plan);
+    return success;
+  }
+  const std::string out = chosen_output(options, options.profile + "-stability");
+  check_writable(out);
+  nlohmann::json context = machine_context();
+  context["selection"] = {{"solver", options.solver},
+                          {"case", options.hard_case},
+                          {"values", values},
+                          {"seed", options.seed},
+                          {"shard", options.shard}};
+  CellJournal journal(out);
+  if (!take_up(options, out, identity(context, {}, context["selection"]), journal)) {
+    std::cout << out << " is complete already\n";
+    return success;
+  }
+  catch_interrupts();
   const std::uint64_t seed = options.seed < 0 ? 1 : static_cast<std::uint64_t>(options.seed);
-  const StabilityOutcome outcome = run_stability(plan, seed, events);
+  const StabilityOutcome outcome = run_stability(plan, seed, events_for(journal));
   write_atomically(out, result_text(stability_document(context, outcome, seed, command)));
   print_stability(std::cout, outcome);
   std::cout << "\nwritten:\n" << out << std::endl;

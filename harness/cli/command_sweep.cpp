@@ -188,6 +188,32 @@ void tell_overhead(const nlohmann::json& overhead) {
             << ")\n";
 }
 
+// Runs the sweep, with progress on stderr and each run in the journal, and writes into the context
+// how quiet the machine was.
+SweepOutcome measured(const Suite& suite, const std::vector<Search>& searches,
+                      const SweepRunners& runners, Journal& journal, Memory memory, bool timed,
+                      nlohmann::json& context) {
+  Progress progress(std::cerr, isatty(STDERR_FILENO) == 1);
+  SweepEvents events;
+  events.point = [&](const PointResult& p, std::size_t s, std::size_t all) {
+    progress.point(p, s, all);
+  };
+  events.repetition = [&](std::size_t done, std::size_t all) { progress.repetition(done, all); };
+  events.interrupted = interrupted;
+  NoiseProbe noise_probe;
+  noise_probe.sample();
+  const ProcessorTicks ticks = processor_ticks();
+  const SweepOutcome outcome = run_sweep(
+      suite, searches, events,
+      journaled(watched(runners, noise_probe, timed), journal, std::move(memory)));
+  progress.finish();
+  noise_probe.sample();
+  context["sentinel"] = noise_probe.to_json();
+  context["stolen"] = stolen_share(ticks, processor_ticks());
+  context["harness_overhead"] = harness_overhead(outcome.points);
+  return outcome;
+}
+
 }  // namespace
 
 int sweep_command(const SweepCommand& options, const std::vector<std::string>& command) {
@@ -232,26 +258,9 @@ int sweep_command(const SweepCommand& options, const std::vector<std::string>& c
   begin_journal(journal, past, memory,
                 {{"pid", getpid()}, {"identity", mine}, {"context", context}});
 
-  Progress progress(std::cerr, isatty(STDERR_FILENO) == 1);
-  SweepEvents events;
-  events.point = [&](const PointResult& p, std::size_t s, std::size_t all) {
-    progress.point(p, s, all);
-  };
-  events.repetition = [&](std::size_t done, std::size_t all) { progress.repetition(done, all); };
-  events.interrupted = interrupted;
-  NoiseProbe noise_probe;
-  noise_probe.sample();
-  const ProcessorTicks ticks = processor_ticks();
   if (!options.in_process) runners = isolated(runners, options.memory);
-  const SweepOutcome outcome = run_sweep(
-      suite, searches, events,
-      journaled(watched(runners, noise_probe, !options.untimed), journal, std::move(memory)));
-  progress.finish();
-  noise_probe.sample();
-  context["sentinel"] = noise_probe.to_json();
-  context["stolen"] = stolen_share(ticks, processor_ticks());
-  context["harness_overhead"] = harness_overhead(outcome.points);
-
+  const SweepOutcome outcome =
+      measured(suite, searches, runners, journal, std::move(memory), !options.untimed, context);
   const nlohmann::json document = result_document(context, suite, command, outcome.complete,
                                                   outcome.points, shelf->summaries());
   write_atomically(out, result_text(document));

@@ -94,7 +94,7 @@ void add_scene_selection(const Command& to, SweepOptions& options) {
   add_scene_words(to, options.scene_words);
   to.option("--n", options.n, "sizes instead of the suite's, e.g. 41 or 20,40,80", "N,...");
   to.option("--profile", options.profile,
-            "quick (< 1 min), default (thirteen minutes) or paper (an hour and a half)", "NAME");
+            "quick (< 1 min), default (six minutes) or paper (an hour and a half)", "NAME");
   to.option("--config", options.config, "a suite of your own instead of a profile", "FILE");
 }
 
