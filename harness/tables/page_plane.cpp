@@ -37,6 +37,11 @@ bool has_shapes(const std::vector<const Plane*>& planes) {
   });
 }
 
+bool has_rivals(const Plane& plane) {
+  return std::any_of(plane.cells.begin(), plane.cells.end(),
+                     [](const Cell& cell) { return cell.counting(1); });
+}
+
 // Planes of one table: those of a resolution sweep are its rows.
 std::string title_of(const Plane& plane) {
   return plane.sweep == "resolution"
@@ -72,6 +77,7 @@ void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
     all.insert(all.end(), own.begin(), own.end());
   }
   all = merged(all);
+  std::erase_if(all, [](const Plane& plane) { return !has_rivals(plane); });
   const std::vector<Finding> findings = findings_of(all);
   for (const std::string& title : in_order(all, title_of)) {
     std::vector<const Plane*> planes;
@@ -85,11 +91,11 @@ void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
                plane->vertices == finding.vertices;
       });
       for (const std::string& sentence : finding.sentences) {
-        if (here) out << sentence << '\n';
+        if (here) out << sentence << ' ';
       }
     }
-    if (has_shapes(planes)) out << "Shape errors are deviations beyond the ensemble's spread.\n";
-    out << '\n';
+    if (has_shapes(planes)) out << "Shape errors are deviations beyond the ensemble's spread.";
+    out << "\n\n";
     print_table(out, planes);
   }
 }
