@@ -156,7 +156,7 @@ def validity(data: RunsData) -> str:
 def timing(document: Json) -> str:
     suite = suite_of(document)
     limit = f"; timeout {suite['timeout']:g} s" if is_number(suite.get("timeout")) else ""
-    return f"Median of {plain(suite.get('reps', 1))} runs a point; profile {plain(suite.get('profile', '?'))}{limit}."
+    return f"Least of {plain(suite.get('reps', 1))} samples or more a point; profile {plain(suite.get('profile', '?'))}{limit}."
 
 
 def _seed(document: Json) -> Any:
