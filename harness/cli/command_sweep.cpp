@@ -203,7 +203,7 @@ SweepOutcome measured(const Suite& suite, const std::vector<Search>& searches,
   NoiseProbe noise_probe;
   noise_probe.sample();
   const ProcessorTicks ticks = processor_ticks();
-  const SweepOutcome outcome =
+  SweepOutcome outcome =
       run_sweep(suite, searches, events,
                 journaled(watched(runners, noise_probe, timed), journal, std::move(memory)));
   progress.finish();

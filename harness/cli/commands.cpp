@@ -46,6 +46,7 @@ int draw_analysed(const std::string& file, const nlohmann::json& analysis,
 int draw_pieces(const std::vector<std::string>& files, const std::string& name,
                 const std::vector<std::string>& more) {
   std::vector<nlohmann::json> pieces;
+  pieces.reserve(files.size());
   for (const std::string& file : files) pieces.push_back(read_sweep(file));
   std::vector<analysis::Plane> planes;
   nlohmann::json all = pieces.front();
