@@ -116,12 +116,21 @@ TEST(ResultsPage, ThePlaneHasShapeErrorsWhereTheyAreKnown) {
   json result = sweep(0.01);
   json p = point("drape", "strain", "icd", 0.01, 441, 0.01, 1);
   p["error"] = {{"trajectory", 0.05}};
-  result["points"] = {p};
+  json rival = point("drape", "strain", "fast_projection", 0.01, 441, 0.01, 2);
+  rival["error"] = p["error"];
+  result["points"] = {p, rival};
   EXPECT_EQ(page(result).find("hape"), std::string::npos);
   p["error"]["shape"] = 0.031;
-  result["points"] = {p};
+  result["points"] = {p, rival};
   has(page(result), "shape by 3.1 %");
   has(page(result), "Shape errors are deviations beyond the ensemble's spread.");
+}
+
+// What one contestant did alone is no contest.
+TEST(ResultsPage, APlaneWithoutRivalsIsLeftOut) {
+  json result = sweep(0.01);
+  result["points"] = {point("drape", "strain", "icd", 0.01, 441, 0.01, 1)};
+  EXPECT_EQ(page(result).find("### drape"), std::string::npos);
 }
 
 }  // namespace
