@@ -113,7 +113,9 @@ void compute_chain(const Task& task) {
 
 // The first route where there is no smooth motion in angles.
 Route first_contact_route(const Scene& scene, double h) {
-  if (scene.problem->contact_inside()) return contact_inside_route();
+  // The others take no implicit forces either.
+  if (scene.problem->contact_inside() || scene.problem->implicit_forces())
+    return contact_inside_route();
   Route route = contact_route();
   inextensible::State state = scene.start;
   const auto stepper =

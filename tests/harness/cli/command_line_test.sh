@@ -180,6 +180,17 @@ wait $pid
 wait $waiting && [[ -s waited.json ]] || fail "a run that had to wait"
 /usr/bin/python3 -c 'import json; assert json.load(open("interrupted.json"))["complete"] is False' || fail "interrupted.json"
 
+# Cloth of one's own, without a body: there is no reference, so a finer run takes its place.
+/usr/bin/python3 - <<'PYTHON'
+n = 7
+with open("curtain.obj", "w") as file:
+    file.writelines(f"v {i / (n - 1)} {1 - j / (n - 1)} 0\n" for j in range(n) for i in range(n))
+    file.writelines(f"f {a} {a + 1} {a + n + 1} {a + n}\n" for j in range(n - 1) for a in range(j * n + 1, j * n + n))
+PYTHON
+"$BENCH_BINARY" choose --scene mesh:curtain.obj --pins 'y > 0.99 and x < 0.02' --solver 'strips|fast_projection' --seconds 20 \
+  >chosen.txt 2>err.txt || fail "choose for a mesh: exit $?, $(tail -1 err.txt)"
+grep -q '^curtain.obj, 49 vertices' chosen.txt && grep -q '^take  .* error [0-9.e-]* %' chosen.txt || fail "choose for a mesh: $(cat chosen.txt)"
+
 # Settings are searched, written after each solver, and kept where others are searched.
 tune=(tune --scene chain --budget 5 --timeout 2 --out tuned.json --quiet)
 "$BENCH_BINARY" "${tune[@]}" --solver fast_projection >/dev/null && "$BENCH_BINARY" "${tune[@]}" --solver icd >/dev/null ||
