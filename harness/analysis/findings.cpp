@@ -1,7 +1,6 @@
 #include "harness/analysis/findings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "harness/analysis/words.h"
@@ -141,9 +140,9 @@ std::vector<Finding> findings_of(const std::vector<Plane>& planes) {
     if (plane.sweep == "resolution" && !largest) continue;
     Finding finding = finding_of(plane);
     for (const Growth& growth : growths) {
-      if (plane.sweep == "resolution" && growth.scene == plane.scene &&
-          !sentence_of(growth).empty())
-        finding.sentences.push_back(sentence_of(growth));
+      if (plane.sweep != "resolution" || growth.scene != plane.scene) continue;
+      std::string sentence = sentence_of(growth);
+      if (!sentence.empty()) finding.sentences.push_back(std::move(sentence));
     }
     findings.push_back(std::move(finding));
   }

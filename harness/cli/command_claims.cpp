@@ -23,10 +23,12 @@ void add_claims_command(const Command& program) {
   command.flag("--markdown", given->markdown, "a table for the README");
   command.does([given] {
     std::vector<nlohmann::json> results;
-    take_answers(given->files);  // no claim is about these
-    if (given->files.empty()) throw UsageError("claims are about sweeps; results/*.json has some");
     results.reserve(given->files.size());
-    for (const std::string& file : given->files) results.push_back(read_result(file));
+    for (const std::string& file : given->files) {
+      nlohmann::json document = read_result_or_answers(file);
+      if (!is_answers(document)) results.push_back(std::move(document));  // no claim is about those
+    }
+    if (results.empty()) throw UsageError("claims are about sweeps; results/*.json has some");
     const std::vector<ClaimVerdict> verdicts = judge_claims(results);
     if (std::all_of(verdicts.begin(), verdicts.end(), [](const ClaimVerdict& claim) {
           return claim.verdict == std::string_view(claims::not_measured);

@@ -9,6 +9,7 @@
 #include "harness/claims/claims.h"
 #include "harness/cli/commands.h"
 #include "harness/film/recording.h"
+#include "harness/points/named_result.h"
 #include "harness/points/result_file.h"
 #include "harness/points/tuning_rule.h"
 
@@ -28,14 +29,13 @@ nlohmann::json claims_json(const std::vector<ClaimVerdict>& claims) {
 
 // What the page says and draws: the analysis of each sweep by its file's name, and the findings of
 // all, those of pieces of one sweep taken together.
-nlohmann::json analyses_json(const std::vector<std::string>& files,
-                             const std::vector<nlohmann::json>& results) {
+nlohmann::json analyses_json(const std::vector<NamedResult>& results) {
   nlohmann::json of = nlohmann::json::object();
   std::vector<analysis::Plane> planes;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    if (!results[i].contains("points")) continue;
-    of[files[i]] = analysis::analysis_of(results[i]);
-    const std::vector<analysis::Plane> own = analysis::planes_of(results[i]);
+  for (const NamedResult& result : results) {
+    if (!result.document.contains("points")) continue;
+    const std::vector<analysis::Plane> own = analysis::planes_of(result.document);
+    of[result.name] = analysis::analysis_of(own);
     planes.insert(planes.end(), own.begin(), own.end());
   }
   return {{"findings", analysis::findings_json(analysis::merged(planes))}, {"of", std::move(of)}};
@@ -68,17 +68,23 @@ struct ReportOptions {
 
 int report(const ReportOptions& given) {
   check_writable(given.out);
-  std::vector<nlohmann::json> results;
-  for (const std::string& file : given.results) results.push_back(read_result(file));
+  std::vector<NamedResult> results;
+  for (const std::string& file : given.results) {
+    NamedResult result{file, read_result_or_answers(file)};
+    if (!is_answers(result.document)) results.push_back(std::move(result));
+  }
   for (const std::string& file : given.answers) (void)read_answers(file);
+  std::vector<nlohmann::json> documents;
+  documents.reserve(results.size());
+  for (const NamedResult& result : results) documents.push_back(result.document);
   const TemporaryFolder folder("report");
   std::vector<std::string> words = given.results;
   words.insert(words.end(), given.answers.begin(), given.answers.end());
   words.insert(words.end(), {"--out", given.out, "--claims", folder.file("claims.json"),
                              "--analyses", folder.file("analyses.json")});
-  write_atomically(folder.file("claims.json"), compact(claims_json(judge_claims(results))) + "\n");
-  write_atomically(folder.file("analyses.json"),
-                   compact(analyses_json(given.results, results)) + "\n");
+  write_atomically(folder.file("claims.json"),
+                   compact(claims_json(judge_claims(documents))) + "\n");
+  write_atomically(folder.file("analyses.json"), compact(analyses_json(results)) + "\n");
   if (!given.still) {
     words.emplace_back("--motion");
     words.push_back(record_into(folder.file("drape"), motion("drape", {{"n", 31}})));
@@ -97,11 +103,7 @@ void add_report_command(const Command& program) {
   command.option("--answers", given->answers, "results of bench answers", "ANSWERS.json ...");
   command.option("--out", given->out, "the page", "report.html").required();
   command.flag("--still", given->still, "no scenes in motion, which take seconds to simulate");
-  command.does([given] {
-    const std::vector<std::string> answers = take_answers(given->results);
-    given->answers.insert(given->answers.end(), answers.begin(), answers.end());
-    return report(*given);
-  });
+  command.does([given] { return report(*given); });
 }
 
 }  // namespace harness

@@ -38,9 +38,13 @@ std::string page(const ResultsOptions& given) {
          "`3.5 (3.3-3.8)`; `3.5 (?)`: it is not known, for too few runs and no A/A pair. "
          "`bench show RESULT.json --all` has every contestant of a file, `bench report` every "
          "run.\n\n";
-  std::vector<NamedResult> answers;
+  std::vector<NamedResult> results, answers;
+  for (const std::string& file : given.results) {
+    NamedResult result{file, read_result_or_answers(file)};
+    (is_answers(result.document) ? answers : results).push_back(std::move(result));
+  }
   for (const std::string& file : given.answers) answers.push_back({file, read_answers(file)});
-  print_results_page(out, read(given.results), read(given.growth), answers);
+  print_results_page(out, results, read(given.growth), answers);
   return out.str();
 }
 
@@ -60,8 +64,6 @@ void add_results_command(const Command& program) {
   command.option("--answers", given->answers, "results of bench answers", "ANSWERS.json ...");
   command.option("--out", given->out, "the page; default: standard output", "FILE");
   command.does([given] {
-    const std::vector<std::string> answers = take_answers(given->results);
-    given->answers.insert(given->answers.end(), answers.begin(), answers.end());
     if (given->out.empty()) {
       std::cout << page(*given);
     } else {

@@ -8,30 +8,16 @@
 #include "harness/analysis/analysis_json.h"
 #include "harness/answers/measure.h"
 #include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/json_reader.h"
 #include "harness/base/text.h"
 #include "harness/cli/commands.h"
 #include "harness/points/noise.h"
 #include "harness/points/result_file.h"
-#include "harness/points/schema_check.h"
 #include "harness/tables/terminal.h"
 
 namespace harness {
 namespace {
 
 using nlohmann::json;
-
-// A result file of any kind.
-json read_shown(const std::string& file) {
-  json document = parse_document(read_file(file, "result file"), file);
-  if (document.is_object() && document.value("schema", json()) == "inextensible-answers/1") {
-    check_schema(document, "answers", file);
-  } else {
-    check_result(document, file);
-  }
-  return document;
-}
 
 void print_head(const json& document, const std::string& file) {
   const json& context = document.at("context");
@@ -75,9 +61,9 @@ void print_outcomes(const json& document) {
 }
 
 int show(const std::string& file, bool all) {
-  const json document = read_shown(file);
+  const json document = read_result_or_answers(file);
   print_head(document, file);
-  if (document.at("schema") == "inextensible-answers/1") {
+  if (is_answers(document)) {
     print_answers(std::cout, document);
     return success;
   }
@@ -98,7 +84,7 @@ int show(const std::string& file, bool all) {
 
 // The analysis of the sweep's points, for programs.
 int show_json(const std::string& file) {
-  const json document = read_shown(file);
+  const json document = read_result_or_answers(file);
   if (document.at("schema") != "inextensible-bench/1")
     throw UsageError("'" + file +
                      "' has no strain limits and errors to be analyzed; --json is for "

@@ -103,16 +103,18 @@ json read_answers(const std::string& path) {
   return document;
 }
 
-std::vector<std::string> take_answers(std::vector<std::string>& files) {
-  const auto is_answers = [](const std::string& file) {
-    const json document = parse_document(read_file(file, "result file"), file);
-    return document.is_object() && document.value("schema", json()) == "inextensible-answers/1";
-  };
-  const auto answers = std::stable_partition(
-      files.begin(), files.end(), [&](const std::string& file) { return !is_answers(file); });
-  std::vector<std::string> taken(answers, files.end());
-  files.erase(answers, files.end());
-  return taken;
+bool is_answers(const json& document) {
+  return document.is_object() && document.value("schema", json()) == "inextensible-answers/1";
+}
+
+json read_result_or_answers(const std::string& path) {
+  json document = parse_document(read_file(path, "result file"), path);
+  if (is_answers(document)) {
+    check_schema(document, "answers", path);
+  } else {
+    check_result(document, path);
+  }
+  return document;
 }
 
 void check_result(const json& document, const std::string& path) {

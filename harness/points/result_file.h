@@ -31,8 +31,8 @@ nlohmann::json parse_result(const std::string& text, const std::string& path);
 void check_result(const nlohmann::json& document, const std::string& path);
 // Of `bench answers`: schema inextensible-answers/1.
 nlohmann::json read_answers(const std::string& path);
-// Takes results of bench answers out of a list of files, so that results/*.json may be given where
-// sweeps are wanted; in their order.
-std::vector<std::string> take_answers(std::vector<std::string>& files);
+// Either of them, so that results/*.json may be given.
+nlohmann::json read_result_or_answers(const std::string& path);
+bool is_answers(const nlohmann::json& document);
 
 }  // namespace harness
