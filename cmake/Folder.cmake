@@ -1,4 +1,5 @@
-# A folder of sources is a target of its own and sees only the folders that it names: an include of any other does not compile.
+# A folder of sources is a target of its own. It may include headers of the folders that it names, and of those that they name; an
+# include of any other folder of the project stops the build (CheckIncludes.cmake).
 #
 #   add_folder(linear SOURCES spd_solver.cpp tridiagonal.cpp USES problem LINKS SuiteSparse::CHOLMOD)
 #
@@ -7,13 +8,13 @@
 # LINKS    libraries, for this folder's sources alone
 # LIGHT    sources in which nothing is timed and nothing computes for long: compiled with less optimization, in two thirds of the time
 # `folder_common_headers` of the caller are parsed once for all folders.
-# Headers are included as <prefix>/<folder>/<file>, where `folder_prefix` is the caller's ("inextensible" or "harness"); that is
-# how they are installed too. In the build folder a link for each target shows its headers alone under that name.
+# Headers are included by their path from the top of the project: "solvers/linear/lu.h".
 function(add_folder folder)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIGHT;USES;LINKS")
   set(target ${folder_prefix}_${folder})
   list(TRANSFORM arg_SOURCES PREPEND ${folder}/)
   list(TRANSFORM arg_LIGHT PREPEND ${folder}/)
+  folder_uses(${target} ${folder_name}/${folder} ${arg_USES})
   list(TRANSFORM arg_USES PREPEND ${folder_prefix}_)
   set(parts ${target})
   set(group)
@@ -33,7 +34,6 @@ function(add_folder folder)
     target_compile_options(${target}_light PRIVATE ${light_option})
     add_library(${target} ${folder_library_type} ${arg_SOURCES} $<TARGET_OBJECTS:${target}_light>)
   endif()
-  folder_headers("${parts}" ${folder})
   share_headers(${target} ${folder_prefix}${group} ${folder_common_headers})
   foreach(part IN LISTS parts)
     target_link_libraries(${part} PUBLIC ${folder_base} ${arg_USES} PRIVATE ${arg_LINKS} project_warnings)
@@ -54,15 +54,41 @@ function(share_headers target group)
   endif()
 endfunction()
 
-# The include path, for some targets, of a folder's headers, or of some that lie beside the calling CMakeLists.txt.
-function(folder_headers targets)
-  list(GET targets 0 target)
-  set(root ${PROJECT_BINARY_DIR}/include/${target})
-  file(MAKE_DIRECTORY ${root}/${folder_prefix})
-  foreach(name IN LISTS ARGN)
-    file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${name} ${root}/${folder_prefix}/${name} SYMBOLIC)
+# The sources of a target lie in `folder`, and may include headers of it, of those folders beside it that are named, of what these
+# may include, and, in the harness, of all solvers.
+function(folder_uses target folder)
+  cmake_path(GET folder PARENT_PATH parent)
+  set(seen ${folder})
+  if(parent STREQUAL "harness")
+    list(APPEND seen solvers)
+  endif()
+  foreach(other IN LISTS ARGN)
+    get_property(through GLOBAL PROPERTY folders_seen_by_${parent}/${other})
+    if(NOT through)
+      message(FATAL_ERROR "${folder} uses ${parent}/${other}, which is not declared before it")
+    endif()
+    list(APPEND seen ${through})
   endforeach()
+  list(REMOVE_DUPLICATES seen)
+  set_property(GLOBAL PROPERTY folders_seen_by_${folder} ${seen})
+  set_property(GLOBAL APPEND PROPERTY folders ${folder})
+  set_property(GLOBAL APPEND PROPERTY folder_targets ${target})
+endfunction()
+
+# A target that checks the includes of all folders declared so far; every target of theirs depends on it.
+function(check_includes)
+  get_property(folders GLOBAL PROPERTY folders)
+  set(rules)
+  foreach(folder IN LISTS folders)
+    get_property(seen GLOBAL PROPERTY folders_seen_by_${folder})
+    string(APPEND rules "set(seen_by_${folder} ${seen})\n")
+  endforeach()
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/include_rules.cmake CONTENT "set(folders ${folders})\n${rules}" @ONLY)
+  add_custom_target(check_includes ALL COMMENT "Checking the direction of includes"
+    COMMAND ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DRULES=${PROJECT_BINARY_DIR}/include_rules.cmake
+      -P ${PROJECT_SOURCE_DIR}/cmake/CheckIncludes.cmake)
+  get_property(targets GLOBAL PROPERTY folder_targets)
   foreach(target IN LISTS targets)
-    target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${root}>)
+    add_dependencies(${target} check_includes)
   endforeach()
 endfunction()

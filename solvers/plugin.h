@@ -5,7 +5,7 @@
 //   add_library(my_solver MODULE my_solver.cpp)
 //   target_link_libraries(my_solver PRIVATE inextensible::plugin)
 //
-//   #include <inextensible/plugin.h>
+//   #include <solvers/plugin.h>
 //   extern "C" const InextensiblePlugin* inextensible_plugin() {
 //     static const std::vector<inextensible::Backend> rows{{"my_solver", ...}};
 //     static const auto plugin = inextensible_plugin_of("1.0", rows);
@@ -26,9 +26,9 @@
 #include <iterator>
 #include <span>
 
-#include "inextensible/registry.h"
-#include "inextensible/stepping/velocity_filter.h"
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/registry.h"
+#include "solvers/stepping/velocity_filter.h"
+#include "solvers/systems/constraint_system.h"
 
 // Counts up whenever these headers change what a plug-in relies on.
 #define INEXTENSIBLE_PLUGIN_ABI 7

@@ -1,23 +1,23 @@
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "inextensible/methods/dense_oracle.h"
-#include "inextensible/methods/fast_projection.h"
-#include "inextensible/methods/fast_projection_adaptive.h"
-#include "inextensible/methods/gauss_seidel.h"
-#include "inextensible/methods/gauss_seidel_colored.h"
-#include "inextensible/methods/icd.h"
-#include "inextensible/methods/implicit_springs.h"
-#include "inextensible/methods/jacobi.h"
-#include "inextensible/methods/null_filter.h"
-#include "inextensible/methods/rattle.h"
-#include "inextensible/methods/rattle_suzuki.h"
-#include "inextensible/methods/shake.h"
-#include "inextensible/methods/strips.h"
-#include "inextensible/methods/xpbd_small_steps.h"
+#include "solvers/methods/dense_oracle.h"
+#include "solvers/methods/fast_projection.h"
+#include "solvers/methods/fast_projection_adaptive.h"
+#include "solvers/methods/gauss_seidel.h"
+#include "solvers/methods/gauss_seidel_colored.h"
+#include "solvers/methods/icd.h"
+#include "solvers/methods/implicit_springs.h"
+#include "solvers/methods/jacobi.h"
+#include "solvers/methods/null_filter.h"
+#include "solvers/methods/rattle.h"
+#include "solvers/methods/rattle_suzuki.h"
+#include "solvers/methods/shake.h"
+#include "solvers/methods/strips.h"
+#include "solvers/methods/xpbd_small_steps.h"
 
 namespace inextensible {
 namespace {

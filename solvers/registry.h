@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "inextensible/methods/backend.h"
+#include "solvers/methods/backend.h"
 
 namespace inextensible {
 

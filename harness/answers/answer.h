@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "harness/scenes/scene.h"
-#include "inextensible/stepping/stepper.h"
+#include "solvers/stepping/stepper.h"
 
 namespace harness {
 

@@ -1,9 +1,9 @@
-// The fishnet on the sphere: what the drape's threads must do where they lie on the ball.
+// The fishnet on the sphere: what the drape's yarns must do where they lie on the ball.
 //
-// A net of inextensible threads on a sphere of radius R, two of which cross at right angles on
+// A net of inextensible yarns on a sphere of radius R, two of which cross at right angles on
 // great circles (here by the scene's mirror symmetry), is a Chebyshev net (Chebyshev 1878; Mack and
 // Taylor 1956, "The fitting of woven cloth to surfaces"): the angle w between warp and weft has
-// w_uv = -sin(w) / R^2 over the thread lengths u and v from the crossing, hence depends on z = u v
+// w_uv = -sin(w) / R^2 over the yarn lengths u and v from the crossing, hence depends on z = u v
 // / R^2 alone:
 //   z w'' + w' + sin(w) = 0,  w(0) = pi / 2,  w'(0) = -1.
 // Forces, friction and steps have no part in it; strain has.

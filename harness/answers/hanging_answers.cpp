@@ -7,7 +7,7 @@
 #include "harness/answers/readings.h"
 #include "harness/scenes/hanging_scenes.h"
 #include "harness/scenes/meshes.h"
-#include "inextensible/problem/edge_constraints.h"
+#include "solvers/problem/edge_constraints.h"
 
 namespace harness {
 namespace {

@@ -15,8 +15,8 @@
 #include "harness/judge/measures.h"
 #include "harness/points/schema.h"
 #include "harness/run/calibration.h"
-#include "inextensible/registry.h"
-#include "inextensible/systems/constrained_acceleration.h"
+#include "solvers/registry.h"
+#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 namespace {

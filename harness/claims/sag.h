@@ -9,7 +9,7 @@ namespace harness::claims {
 // where measurements are missing.
 void patch_sag(const Points& points, ClaimVerdict& claim);  // C12
 
-// The sag of a thread under a load that is even along the line between its ends, which are `length`
+// The sag of a yarn under a load that is even along the line between its ends, which are `length`
 // (m) apart: a parabola whose arc is longer than that by `strain`.
 double parabola_sag(double length, double strain);
 

@@ -8,7 +8,7 @@
 #include "harness/base/interrupt.h"
 #include "harness/cli/commands.h"
 #include "harness/stability/conformance.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace harness {
 namespace {

@@ -27,7 +27,7 @@
 #include "harness/run/quiet_samples.h"
 #include "harness/run/runner.h"
 #include "harness/tables/terminal.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace harness {
 namespace {

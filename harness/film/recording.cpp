@@ -12,10 +12,10 @@
 #include "harness/base/text.h"
 #include "harness/film/orientation.h"
 #include "harness/run/runner.h"
-#include "inextensible/problem/triangle_collider.h"
-#include "inextensible/registry.h"
-#include "inextensible/stepping/step_controller.h"
-#include "inextensible/systems/constrained_acceleration.h"
+#include "solvers/problem/triangle_collider.h"
+#include "solvers/registry.h"
+#include "solvers/stepping/step_controller.h"
+#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 namespace {

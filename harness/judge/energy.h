@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "harness/points/measures.h"
-#include "inextensible/methods/backend.h"
+#include "solvers/methods/backend.h"
 
 namespace harness {
 

@@ -6,7 +6,7 @@
 #include "harness/judge/energy.h"
 #include "harness/judge/measures.h"
 #include "harness/judge/reference_routes.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace harness {
 

@@ -6,7 +6,7 @@
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
 #include "harness/judge/measures.h"
-#include "inextensible/problem/forces.h"
+#include "solvers/problem/forces.h"
 
 namespace harness {
 

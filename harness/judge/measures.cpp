@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "inextensible/problem/forces.h"
+#include "solvers/problem/forces.h"
 
 namespace harness {
 namespace {

@@ -9,8 +9,8 @@
 #include "harness/judge/route_runs.h"
 #include "harness/points/measures.h"
 #include "harness/scenes/pendulum.h"
-#include "inextensible/registry.h"
-#include "inextensible/systems/constrained_acceleration.h"
+#include "solvers/registry.h"
+#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 

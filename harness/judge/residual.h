@@ -6,8 +6,8 @@
 
 #include <optional>
 
-#include "inextensible/problem/edge_constraints.h"
-#include "inextensible/stepping/stepper.h"
+#include "solvers/problem/edge_constraints.h"
+#include "solvers/stepping/stepper.h"
 
 namespace harness {
 

@@ -9,8 +9,8 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
-#include "inextensible/registry.h"
-#include "inextensible/systems/constrained_acceleration.h"
+#include "solvers/registry.h"
+#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 

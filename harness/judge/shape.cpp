@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "harness/judge/measures.h"
-#include "inextensible/problem/forces.h"
+#include "solvers/problem/forces.h"
 
 namespace harness {
 

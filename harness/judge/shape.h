@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "harness/scenes/scene.h"
-#include "inextensible/methods/backend.h"
+#include "solvers/methods/backend.h"
 
 namespace harness {
 

@@ -5,9 +5,9 @@
 #include <map>
 #include <utility>
 
-#include "inextensible/linear/spd_solvers.h"
-#include "inextensible/problem/forces.h"
-#include "inextensible/registry.h"
+#include "solvers/linear/spd_solvers.h"
+#include "solvers/problem/forces.h"
+#include "solvers/registry.h"
 
 namespace harness::kernels {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "harness/scenes/scene.h"
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace harness::kernels {
 

@@ -3,10 +3,10 @@
 
 #include "harness/kernels/hardware_peak.h"
 #include "harness/kernels/kernel.h"
-#include "inextensible/linear/spd_solvers.h"
-#include "inextensible/methods/icd.h"
-#include "inextensible/systems/kkt_system.h"
-#include "inextensible/systems/projected_cg.h"
+#include "solvers/linear/spd_solvers.h"
+#include "solvers/methods/icd.h"
+#include "solvers/systems/kkt_system.h"
+#include "solvers/systems/projected_cg.h"
 
 namespace harness::kernels {
 namespace {

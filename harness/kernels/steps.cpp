@@ -6,8 +6,8 @@
 
 #include "harness/kernels/hardware_peak.h"
 #include "harness/kernels/kernel.h"
-#include "inextensible/problem/forces.h"
-#include "inextensible/registry.h"
+#include "solvers/problem/forces.h"
+#include "solvers/registry.h"
 
 namespace harness::kernels {
 namespace {

@@ -1,10 +1,10 @@
 // One pass of strain limiting over all edges.
 #include "harness/kernels/hardware_peak.h"
 #include "harness/kernels/kernel.h"
-#include "inextensible/methods/gauss_seidel.h"
-#include "inextensible/methods/gauss_seidel_colored.h"
-#include "inextensible/methods/jacobi.h"
-#include "inextensible/methods/strips.h"
+#include "solvers/methods/gauss_seidel.h"
+#include "solvers/methods/gauss_seidel_colored.h"
+#include "solvers/methods/jacobi.h"
+#include "solvers/methods/strips.h"
 
 namespace harness::kernels {
 namespace {
@@ -19,7 +19,7 @@ void strain_pass(benchmark::State& state, int n) {
   const Moment& m = moment("drape", n);
   typename Filter::Settings settings;
   settings.max_iterations = 1;
-  if constexpr (requires { settings.sweeps; }) settings.sweeps = 0;  // a pass over threads alone
+  if constexpr (requires { settings.sweeps; }) settings.sweeps = 0;  // a pass over yarns alone
   Filter one(m.problem(), settings);
   settings.max_iterations = 0;
   Filter none(m.problem(), settings);

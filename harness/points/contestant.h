@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace harness {
 

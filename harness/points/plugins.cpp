@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "harness/base/errors.h"
-#include "inextensible/plugin.h"
+#include "solvers/plugin.h"
 
 namespace harness {
 namespace {

@@ -9,7 +9,7 @@
 #include "harness/points/measures.h"
 #include "harness/points/status.h"
 #include "harness/scenes/scene.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace harness {
 

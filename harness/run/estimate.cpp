@@ -7,7 +7,7 @@
 #include "harness/base/clock.h"
 #include "harness/run/sweep.h"
 #include "harness/scenes/scene.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace harness {
 namespace {

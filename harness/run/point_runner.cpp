@@ -9,8 +9,8 @@
 #include "harness/judge/judge.h"
 #include "harness/judge/measures.h"
 #include "harness/run/frame_times.h"
-#include "inextensible/stepping/step_controller.h"
-#include "inextensible/systems/constrained_acceleration.h"
+#include "solvers/stepping/step_controller.h"
+#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 

@@ -7,7 +7,7 @@
 #include "harness/base/clock.h"
 #include "harness/judge/judge.h"
 #include "harness/run/runner.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace harness {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "inextensible/methods/backend.h"
+#include "solvers/methods/backend.h"
 
 namespace harness {
 

@@ -9,7 +9,7 @@ double length(const ClothMesh& mesh, int a, int b) {
   return (mesh.vertices[a] - mesh.vertices[b]).norm();
 }
 
-void hold_threads(const PinnedMesh& cloth, inextensible::ProblemParts& parts) {
+void hold_yarns(const PinnedMesh& cloth, inextensible::ProblemParts& parts) {
   const ClothMesh& mesh = cloth.mesh;
   const std::vector<char>& held = cloth.held;
   for (const auto& [a, b] : sides_of_quads(mesh)) {
@@ -42,11 +42,11 @@ void resist_bending(const PinnedMesh& cloth, const std::vector<double>& area, do
                     inextensible::ProblemParts& parts) {
   const ClothMesh& mesh = cloth.mesh;
   const std::vector<char>& held = cloth.held;
-  for (const auto& [a, b, c] : threads_of(mesh)) {
+  for (const auto& [a, b, c] : yarns_of(mesh)) {
     if (held[a] && held[b] && held[c]) continue;
     const double before = length(mesh, a, b), after = length(mesh, b, c);
     const double width = area[b] / (0.5 * (before + after));
-    parts.bending.push_back(inextensible::thread_bending(a, b, c, before, after, rigidity * width));
+    parts.bending.push_back(inextensible::yarn_bending(a, b, c, before, after, rigidity * width));
   }
 }
 
@@ -82,7 +82,7 @@ Draft cloth_draft(const PinnedMesh& cloth, const SceneParameters& p) {
     if (p.at("drag") > 0) parts.drag.push_back(p.at("drag") * area[v]);
   }
   parts.gravity = {0, -p.at("gravity"), 0};
-  hold_threads(cloth, parts);
+  hold_yarns(cloth, parts);
   if (p.at("shear") > 0) resist_shear(cloth, p.at("shear"), parts);
   if (p.at("bending") > 0) resist_bending(cloth, area, p.at("bending"), parts);
   parts.implicit_forces = true;

@@ -21,7 +21,7 @@ std::vector<SceneParameterInfo> with_cloth_parameters(std::vector<SceneParameter
 
 // The cloth is at rest, and unstretched, as the mesh lies. Sides of quads keep their length;
 // diagonals of quads, and the other sides of triangles, are springs of the shear stiffness (each
-// diagonal bears G (l gamma)^2 / 4 of a square sheared by gamma); threads bend, straight at rest;
+// diagonal bears G (l gamma)^2 / 4 of a square sheared by gamma); yarns bend, straight at rest;
 // all forces act as they are at the end of a step. Parameters: density (kg/m^2), gravity, shear
 // (N/m), bending (N m), drag (N s/m^3), duration. Left to the caller: the scene's size, and what is
 // not at rest there.

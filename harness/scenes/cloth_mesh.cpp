@@ -203,7 +203,7 @@ std::vector<Side> sides_of_triangles(const ClothMesh& mesh) {
   return {sides.begin(), sides.end()};
 }
 
-std::vector<std::array<int, 3>> threads_of(const ClothMesh& mesh) {
+std::vector<std::array<int, 3>> yarns_of(const ClothMesh& mesh) {
   std::vector<std::set<int>> ends(mesh.vertices.size());
   for (const auto& [a, b] : sides_of_quads(mesh)) {
     ends[a].insert(b);
@@ -215,7 +215,7 @@ std::vector<std::array<int, 3>> threads_of(const ClothMesh& mesh) {
     for (std::size_t k = 0; k < 4; ++k)
       beside[quad[k]].insert(side(quad[(k + 1) % 4], quad[(k + 3) % 4]));
   }
-  std::vector<std::array<int, 3>> threads;
+  std::vector<std::array<int, 3>> yarns;
   for (std::size_t v = 0; v < ends.size(); ++v) {
     if (ends[v].size() > 4) continue;
     for (const int a : ends[v]) {
@@ -225,11 +225,11 @@ std::vector<std::array<int, 3>> threads_of(const ClothMesh& mesh) {
         const auto others = std::count_if(ends[v].begin(), ends[v].end(), [&](int c) {
           return c != a && !beside[v].contains(side(a, c));
         });
-        if (others == 1 && ends[v].size() >= 3) threads.push_back({a, static_cast<int>(v), b});
+        if (others == 1 && ends[v].size() >= 3) yarns.push_back({a, static_cast<int>(v), b});
       }
     }
   }
-  return threads;
+  return yarns;
 }
 
 std::vector<double> areas(const ClothMesh& mesh) {

@@ -30,9 +30,9 @@ std::vector<Side> sides_of_quads(const ClothMesh& mesh);
 // Sides of triangles that no quad has.
 std::vector<Side> sides_of_triangles(const ClothMesh& mesh);
 
-// Threads: three vertices in a row, the middle one of whose four sides at quads two are opposite
-// each other. Where threads end or five sides meet there are none.
-std::vector<std::array<int, 3>> threads_of(const ClothMesh& mesh);
+// Yarns: three vertices in a row, the middle one of whose four sides at quads two are opposite
+// each other. Where yarns end or five sides meet there are none.
+std::vector<std::array<int, 3>> yarns_of(const ClothMesh& mesh);
 
 // Of each vertex what falls to it of the faces around it.
 std::vector<double> areas(const ClothMesh& mesh);

@@ -6,7 +6,7 @@
 
 #include "harness/scenes/fabrics.h"
 #include "harness/scenes/meshes.h"
-#include "inextensible/problem/triangle_collider.h"
+#include "solvers/problem/triangle_collider.h"
 
 namespace harness {
 namespace {
@@ -69,7 +69,7 @@ Scene build_fabric_drape(const SceneParameters& given) {
   p["mass"] = p.at("density") * p.at("side") * p.at("side");
   const double y = p.at("radius") + p.at("gap");
   Draft cloth = vertex_square(p, y);
-  if (p.at("bending") > 0) bend_threads(cloth, p, p.at("bending"));
+  if (p.at("bending") > 0) bend_yarns(cloth, p, p.at("bending"));
   if (p.at("drag") > 0) {
     const double l = square_link(p);
     cloth.parts.drag.assign(cloth.parts.mass.size(), p.at("drag") * l * l);

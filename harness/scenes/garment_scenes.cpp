@@ -9,7 +9,7 @@
 
 #include "harness/scenes/cloth_draft.h"
 #include "harness/scenes/turned_body.h"
-#include "inextensible/problem/triangle_collider.h"
+#include "solvers/problem/triangle_collider.h"
 
 namespace harness {
 namespace {

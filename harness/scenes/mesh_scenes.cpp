@@ -10,7 +10,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/scenes/cloth_draft.h"
-#include "inextensible/problem/triangle_collider.h"
+#include "solvers/problem/triangle_collider.h"
 
 namespace harness {
 namespace {

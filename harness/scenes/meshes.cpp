@@ -92,16 +92,16 @@ Draft vertex_square(const SceneParameters& p, double y) {
   return square;
 }
 
-void bend_threads(Draft& square, const SceneParameters& p, double rigidity) {
+void bend_yarns(Draft& square, const SceneParameters& p, double rigidity) {
   const int n = whole(p, "n");
   const double l = square_link(p);
   const auto vertex = [n](int i, int j) { return i * n + j; };
   for (int i = 0; i < n; ++i) {
     const double width = i == 0 || i == n - 1 ? 0.5 * l : l;
     for (int j = 0; j + 2 < n; ++j) {
-      square.parts.bending.push_back(inextensible::thread_bending(
+      square.parts.bending.push_back(inextensible::yarn_bending(
           vertex(i, j), vertex(i, j + 1), vertex(i, j + 2), l, l, rigidity * width));
-      square.parts.bending.push_back(inextensible::thread_bending(
+      square.parts.bending.push_back(inextensible::yarn_bending(
           vertex(j, i), vertex(j + 1, i), vertex(j + 2, i), l, l, rigidity * width));
     }
   }

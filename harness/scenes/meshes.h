@@ -23,9 +23,9 @@ Draft vertex_row(const SceneParameters& p);
 // and z reversed. Parameters: n, side, mass, gravity, shear, duration.
 Draft vertex_square(const SceneParameters& p, double y);
 
-// Bends every warp and weft thread of a square: `rigidity` of the cloth, N m, each thread's is that
+// Bends every warp and weft yarn of a square: `rigidity` of the cloth, N m, each yarn's is that
 // times the width that falls to it. Along the edges half a width.
-void bend_threads(Draft& square, const SceneParameters& p, double rigidity);
+void bend_yarns(Draft& square, const SceneParameters& p, double rigidity);
 
 // Edge lengths of rows and squares, m.
 double row_link(const SceneParameters& p);

@@ -10,7 +10,7 @@
 
 #include <vector>
 
-#include "inextensible/problem/problem.h"
+#include "solvers/problem/problem.h"
 
 namespace harness {
 

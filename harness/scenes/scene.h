@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "inextensible/problem/problem.h"
+#include "solvers/problem/problem.h"
 
 namespace harness {
 

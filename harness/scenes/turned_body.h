@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "inextensible/problem/triangle_collider.h"
+#include "solvers/problem/triangle_collider.h"
 
 namespace harness {
 

@@ -50,7 +50,7 @@ std::vector<Expectation> light_between(double ratio) {
              refuses,
              "as for everyone below",
              {{survives,
-               "threads are brought to 0.8 of the limit: whether a wave leaves the room "
+               "yarns are brought to 0.8 of the limit: whether a wave leaves the room "
                "that is left to it is up to rounding"}}},
             {everyone, refuses,
              "transverse waves overshoot more than thousandfold in a step: no direction that is "

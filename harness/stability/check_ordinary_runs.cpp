@@ -4,7 +4,7 @@
 #include "harness/base/text.h"
 #include "harness/judge/measures.h"
 #include "harness/stability/checks.h"
-#include "inextensible/stepping/step_controller.h"
+#include "solvers/stepping/step_controller.h"
 
 namespace harness {
 

@@ -3,7 +3,7 @@
 
 #include "harness/judge/measures.h"
 #include "harness/stability/checks.h"
-#include "inextensible/problem/forces.h"
+#include "solvers/problem/forces.h"
 
 namespace harness {
 

@@ -8,7 +8,7 @@
 
 #include "harness/scenes/scene.h"
 #include "harness/stability/conformance.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace harness {
 

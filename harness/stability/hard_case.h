@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "harness/stability/trial.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace harness {
 

@@ -7,8 +7,8 @@
 #include "harness/base/text.h"
 #include "harness/judge/measures.h"
 #include "harness/stability/case_parts.h"
-#include "inextensible/problem/forces.h"
-#include "inextensible/registry.h"
+#include "solvers/problem/forces.h"
+#include "solvers/registry.h"
 
 namespace harness {
 namespace {

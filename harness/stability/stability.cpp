@@ -6,7 +6,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/paths.h"
 #include "harness/stability/trial_isolation.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace harness {
 namespace {

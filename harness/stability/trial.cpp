@@ -6,8 +6,8 @@
 
 #include "harness/base/clock.h"
 #include "harness/stability/trial_judge.h"
-#include "inextensible/registry.h"
-#include "inextensible/stepping/step_controller.h"
+#include "solvers/registry.h"
+#include "solvers/stepping/step_controller.h"
 
 namespace harness {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "harness/judge/energy.h"
 #include "harness/stability/trial.h"
-#include "inextensible/problem/obstacle.h"
+#include "solvers/problem/obstacle.h"
 
 namespace harness {
 

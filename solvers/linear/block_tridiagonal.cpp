@@ -3,7 +3,7 @@
 // A = L D L^T and Z = D^-1 L^-1 B the next row loses B^T A^-1 B = Z^T D Z. Loops: one over pairs of
 // rows to factor, two to solve. Blocks are spelled out as numbers: as arrays they travel through
 // memory, which takes three times as long (measured).
-#include "inextensible/linear/block_tridiagonal.h"
+#include "solvers/linear/block_tridiagonal.h"
 
 #include <algorithm>
 #include <stdexcept>

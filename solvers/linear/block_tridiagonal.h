@@ -2,7 +2,7 @@
 // a hair), from both ends at once: O(n), no pivoting, no indices.
 #pragma once
 
-#include "inextensible/linear/spd_solver.h"
+#include "solvers/linear/spd_solver.h"
 
 namespace inextensible {
 

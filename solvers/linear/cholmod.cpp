@@ -1,11 +1,11 @@
-#include "inextensible/linear/cholmod.h"
+#include "solvers/linear/cholmod.h"
 
 #include <algorithm>
 #include <cmath>
 #include <new>
 #include <numeric>
 
-#include "inextensible/linear/cholmod_symbolic.h"
+#include "solvers/linear/cholmod_symbolic.h"
 
 namespace inextensible {
 struct CholmodSolver::Library {

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "inextensible/linear/spd_solver.h"
+#include "solvers/linear/spd_solver.h"
 
 namespace inextensible {
 

@@ -3,7 +3,7 @@
 
 #include <cholmod.h>
 
-#include "inextensible/linear/spd_solver.h"
+#include "solvers/linear/spd_solver.h"
 
 namespace inextensible {
 

@@ -1,4 +1,4 @@
-#include "inextensible/linear/eigen_ldlt.h"
+#include "solvers/linear/eigen_ldlt.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include <Eigen/SparseCholesky>
 
-#include "inextensible/linear/spd_solver.h"
+#include "solvers/linear/spd_solver.h"
 
 namespace inextensible {
 

@@ -7,7 +7,7 @@
 // iterations, about what a factorization costs, is finished by one; and CG is tried again after a
 // number of factorizations that doubles each time it was in vain. All by counting, not by clocks,
 // so that runs repeat exactly.
-#include "inextensible/linear/hybrid.h"
+#include "solvers/linear/hybrid.h"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "inextensible/linear/line_cg.h"
-#include "inextensible/linear/multifrontal_cholesky.h"
+#include "solvers/linear/line_cg.h"
+#include "solvers/linear/multifrontal_cholesky.h"
 
 namespace inextensible {
 

@@ -1,13 +1,13 @@
 // Rows of J W J^T are edges, and two edges couple by the cosine between them: strongly along a
-// thread, where they are collinear, weakly across. So the matrix is tridiagonal along each thread,
+// yarn, where they are collinear, weakly across. So the matrix is tridiagonal along each yarn,
 // with the condition of a chain, ~ length^2; and between warp and weft it adds little as long as
-// the cloth is not sheared. With one family of threads (warp, say) called A, the other B,
+// the cloth is not sheared. With one family of yarns (warp, say) called A, the other B,
 //
 //   [ T_A  C^T ] [x_A]   [b_A]      T_A, T_B: tridiagonal line by line,
-//   [ C    T_B ] [x_B] = [b_B],     C: where threads cross.
+//   [ C    T_B ] [x_B] = [b_B],     C: where yarns cross.
 //
-// The block preconditioner diag(T_A, T_B) is exact along threads. At a crossing of the angle g the
-// weighted force of both threads satisfies |a e_1 + b e_2|^2 >= (1 - |cos g|) (a^2 + b^2), so that
+// The block preconditioner diag(T_A, T_B) is exact along yarns. At a crossing of the angle g the
+// weighted force of both yarns satisfies |a e_1 + b e_2|^2 >= (1 - |cos g|) (a^2 + b^2), so that
 // on flat cloth the condition is at most (1 + |cos g|) / (1 - |cos g|), whatever the number of
 // vertices; curvature adds a factor of the same kind. Half of the iterations are saved by
 // eliminating A, which costs no more than preconditioning with it (Reid 1972; Concus, Golub and
@@ -30,7 +30,7 @@
 // (101 x 101): where it gets hard nothing cheap is good, and hybrid_spd_solver.h factors.
 //
 // Loops: an iteration reads C twice, the factors of T_A and T_B twice, and six vectors.
-#include "inextensible/linear/line_cg.h"
+#include "solvers/linear/line_cg.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // Conjugate gradients for J W J^T at sizes where factors grow too large, preconditioned by its
-// lines: the threads of the cloth.
+// lines: the yarns of the cloth.
 #pragma once
 
 #include <cstdint>
 
-#include "inextensible/linear/spd_solver.h"
+#include "solvers/linear/spd_solver.h"
 
 namespace inextensible {
 

@@ -1,4 +1,4 @@
-#include "inextensible/linear/lu.h"
+#include "solvers/linear/lu.h"
 
 #include <umfpack.h>
 

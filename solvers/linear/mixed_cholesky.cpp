@@ -1,4 +1,4 @@
-#include "inextensible/linear/mixed_cholesky.h"
+#include "solvers/linear/mixed_cholesky.h"
 
 #include <algorithm>
 #include <cmath>

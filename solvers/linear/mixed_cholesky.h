@@ -4,7 +4,7 @@
 // refinement (Wilkinson 1963), whose residuals are computed in double precision.
 #pragma once
 
-#include "inextensible/linear/multifrontal_cholesky.h"
+#include "solvers/linear/multifrontal_cholesky.h"
 
 namespace inextensible {
 

@@ -1,4 +1,4 @@
-#include "inextensible/linear/multifrontal_cholesky.h"
+#include "solvers/linear/multifrontal_cholesky.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "inextensible/linear/cholmod_symbolic.h"
+#include "solvers/linear/cholmod_symbolic.h"
 
 namespace inextensible {
 namespace {

@@ -21,7 +21,7 @@
 // remainder would cost more than the loop.
 #pragma once
 
-#include "inextensible/linear/spd_solver.h"
+#include "solvers/linear/spd_solver.h"
 
 namespace inextensible {
 

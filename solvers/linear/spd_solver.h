@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "inextensible/linear/symmetric_pattern.h"
+#include "solvers/linear/symmetric_pattern.h"
 
 namespace inextensible {
 

@@ -1,17 +1,17 @@
-#include "inextensible/linear/spd_solvers.h"
+#include "solvers/linear/spd_solvers.h"
 
 #include <algorithm>
 #include <stdexcept>
 #include <string>
 
-#include "inextensible/linear/block_tridiagonal.h"
-#include "inextensible/linear/cholmod.h"
-#include "inextensible/linear/eigen_ldlt.h"
-#include "inextensible/linear/hybrid.h"
-#include "inextensible/linear/line_cg.h"
-#include "inextensible/linear/mixed_cholesky.h"
-#include "inextensible/linear/multifrontal_cholesky.h"
-#include "inextensible/linear/tridiagonal.h"
+#include "solvers/linear/block_tridiagonal.h"
+#include "solvers/linear/cholmod.h"
+#include "solvers/linear/eigen_ldlt.h"
+#include "solvers/linear/hybrid.h"
+#include "solvers/linear/line_cg.h"
+#include "solvers/linear/mixed_cholesky.h"
+#include "solvers/linear/multifrontal_cholesky.h"
+#include "solvers/linear/tridiagonal.h"
 
 namespace inextensible {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "inextensible/linear/spd_solver.h"
+#include "solvers/linear/spd_solver.h"
 
 namespace inextensible {
 

@@ -1,4 +1,4 @@
-#include "inextensible/linear/symmetric_pattern.h"
+#include "solvers/linear/symmetric_pattern.h"
 
 namespace inextensible {
 namespace {

@@ -2,7 +2,7 @@
 // eliminated from both ends at once, two such chains side by side, and the row in the middle last
 // (the twisted factorization). This is L D L^T of the matrix with its rows in another order, hence
 // as stable. Loops: one over pairs of rows to factor, two to solve.
-#include "inextensible/linear/tridiagonal.h"
+#include "solvers/linear/tridiagonal.h"
 
 #include <algorithm>
 #include <stdexcept>

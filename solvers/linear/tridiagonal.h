@@ -2,7 +2,7 @@
 // section 4.3.6), from both ends at once (twisted: van der Vorst 1987): O(n), no pivoting.
 #pragma once
 
-#include "inextensible/linear/spd_solver.h"
+#include "solvers/linear/spd_solver.h"
 
 namespace inextensible {
 

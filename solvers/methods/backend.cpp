@@ -1,4 +1,4 @@
-#include "inextensible/methods/backend.h"
+#include "solvers/methods/backend.h"
 
 #include <algorithm>
 #include <cmath>

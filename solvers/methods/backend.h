@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "inextensible/stepping/stepper.h"
+#include "solvers/stepping/stepper.h"
 
 namespace inextensible {
 

@@ -10,7 +10,7 @@
 //
 // Blocks. In a kind, runs of consecutive places become blocks, across gaps of up to `bridge`. Edges
 // outside of runs are listed, in one more block of their color.
-#include "inextensible/methods/colored_edges.h"
+#include "solvers/methods/colored_edges.h"
 
 #include <algorithm>
 #include <cstdlib>

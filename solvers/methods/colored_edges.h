@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "inextensible/problem/problem.h"
+#include "solvers/problem/problem.h"
 
 namespace inextensible {
 

@@ -1,4 +1,4 @@
-#include "inextensible/methods/dense_oracle.h"
+#include "solvers/methods/dense_oracle.h"
 
 #include <stdexcept>
 #include <string>

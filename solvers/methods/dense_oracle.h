@@ -5,9 +5,9 @@
 
 #include <Eigen/Dense>
 
-#include "inextensible/methods/backend.h"
-#include "inextensible/stepping/velocity_filter.h"
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/methods/backend.h"
+#include "solvers/stepping/velocity_filter.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 

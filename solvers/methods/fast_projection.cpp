@@ -15,7 +15,7 @@
 // Iterative linear solvers solve (7) to a residual of a fraction of |C(x_j)|, the forcing term of
 // an inexact Newton method: first_forcing, then as |C| has fallen, squared (Eisenstat and Walker
 // 1996, choice 2), which keeps the convergence of order two.
-#include "inextensible/methods/fast_projection.h"
+#include "solvers/methods/fast_projection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,9 +43,9 @@ FastProjection::FastProjection(const Problem& problem, const Settings& settings)
       excess_(problem.constraints()) {
   const bool sweeps = settings.smoothing_sweeps > 0 || settings.sweeps_before > 0;
   if (sweeps && system_.solver_name() != "tridiagonal") {
-    sweep_ = std::make_unique<StrainSweep>(
-        StrainSweep::by_mass(problem, {settings.strain_limit, settings.smoothing_target},
-                             settings.smoothing_relaxation));
+    sweep_ = std::make_unique<StrainPasses>(
+        StrainPasses::by_mass(problem, {settings.strain_limit, settings.smoothing_target},
+                              settings.smoothing_relaxation));
   }
 }
 

@@ -4,9 +4,9 @@
 
 #include <memory>
 
-#include "inextensible/methods/setting_fields.h"
-#include "inextensible/methods/strain_pass.h"
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/methods/strain_passes.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 
@@ -55,11 +55,11 @@ class FastProjection final : public VelocityFilter {
 
   ConstraintSystem system_;
   Settings settings_;
-  std::unique_ptr<StrainSweep> sweep_;  // with sweeps only
-  Positions best_;                      // x_j of least constraint error
-  Eigen::Matrix3Xd u_;                  // gradient of C at x_j
-  Eigen::VectorXd mu_;                  // C~(x_j), then h^2 dlambda
-  Eigen::VectorXd excess_;              // C~ of a damped iteration
+  std::unique_ptr<StrainPasses> sweep_;  // with sweeps only
+  Positions best_;                       // x_j of least constraint error
+  Eigen::Matrix3Xd u_;                   // gradient of C at x_j
+  Eigen::VectorXd mu_;                   // C~(x_j), then h^2 dlambda
+  Eigen::VectorXd excess_;               // C~ of a damped iteration
   // With an observer only: h^2 lambda at x_j and at best_.
   Eigen::VectorXd multipliers_, best_multipliers_;
   Contacts::Record best_contacts_;  // at best_; with contacts only

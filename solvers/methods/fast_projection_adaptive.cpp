@@ -1,4 +1,4 @@
-// A round is a pass over all threads (thread_pass.h), then sweeps until nothing is left to correct
+// A round is a pass over all yarns (yarn_pass.h), then sweeps until nothing is left to correct
 // or their number is up. Rounds alone, or after each of them a projection of the whole cloth
 // (equations 5 and 7 of Goldenthal et al. 2007, with C~ for C): each step goes the way that has
 // cost less in the last ones. The other way is tried again now and then, ever more seldom while it
@@ -6,9 +6,9 @@
 // this is never much dearer than the better of the two. Prices are counted in visits of an edge,
 // not taken from a clock, so that runs repeat exactly.
 //
-// Loops: three passes over links a thread, one over edges a sweep; one assembly, one factorization
+// Loops: three passes over links a yarn, one over edges a sweep; one assembly, one factorization
 // and one solve a projection of the whole.
-#include "inextensible/methods/fast_projection_adaptive.h"
+#include "solvers/methods/fast_projection_adaptive.h"
 
 #include <algorithm>
 
@@ -23,7 +23,7 @@ constexpr int first_holiday = 4, longest_holiday = 128;  // steps
 constexpr int most_rounds_in_contact = 100;
 constexpr int first_rounds = 8;  // until a projection of the whole is tried for the first time
 
-// In visits of an edge by a sweep, 1.3 ns, as kernels measures them: a link in a pass over threads;
+// In visits of an edge by a sweep, 1.3 ns, as kernels measures them: a link in a pass over yarns;
 // a row's assembly, gradient and correction; a number of the factor in a solve; an operation of a
 // factorization; a contact, settled.
 constexpr double link_price = 3, row_price = 12, nonzero_price = 0.3, operation_price = 0.06,
@@ -43,13 +43,13 @@ FastProjectionAdaptive::FastProjectionAdaptive(const Problem& problem, const Set
     : system_(problem, settings.strain_limit, settings.linear_solver,
               ConstraintSystem::Digits::few),
       settings_(settings),
-      sweep_(StrainSweep::by_mass(problem, {settings.strain_limit, settings.sweep_target},
-                                  settings.relaxation)),
-      threads_(problem, settings.strain_limit, settings.target, sweep_.edges()),
+      sweep_(StrainPasses::by_mass(problem, {settings.strain_limit, settings.sweep_target},
+                                   settings.relaxation)),
+      yarns_(problem, settings.strain_limit, settings.target, sweep_.edges()),
       x_(3, problem.vertices()),
       u_(3, problem.constraints()),
       mu_(problem.constraints()) {
-  if (!threads_.crossing()) settings_.sweeps = 0;
+  if (!yarns_.crossing()) settings_.sweeps = 0;
 }
 
 StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
@@ -58,7 +58,7 @@ StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*
   if (edges.permissible(x)) return {Status::ok, 0};
   x_ = x;  // pinned vertices are where they are to be
   sweep_.load(x);
-  bool regular = threads_.crossing();  // else a thread's projection is that of the whole
+  bool regular = yarns_.crossing();  // else a yarn's projection is that of the whole
   Way way = regular ? choose() : rounds_alone;
   double price = 0;
   if (contacts_) contacts_->save(start_record_);
@@ -67,14 +67,14 @@ StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*
     if (touches() && rounds == most_rounds_in_contact) {
       contacts_->restore(start_record_);
       seen_ = {};
-      return sweep_.limit(StrainSweep::Order::in_turn, StrainSweep::far_too_many, edges, x, work);
+      return sweep_.limit(StrainPasses::Order::in_turn, StrainPasses::far_too_many, edges, x, work);
     }
     const bool gives_up =
         rounds == settings_.max_iterations || (rounds % 64 == 63 && !sweep_.finite());
     sweep_.settle_contacts();
-    const std::int64_t corrected = gives_up ? 0 : threads_.project(sweep_.positions(), work);
+    const std::int64_t corrected = gives_up ? 0 : yarns_.project(sweep_.positions(), work);
     work.edge_projections += corrected;
-    StrainSweep::Swept swept{corrected, 0};
+    StrainPasses::Swept swept{corrected, 0};
     if (corrected > 0) swept = sweep_.in_turn(settings_.sweeps, work);
     const int touching = contacts_ ? contacts_->count() : 0;
     const double round =
@@ -177,7 +177,7 @@ SettingFields<FastProjectionAdaptive::Settings> FastProjectionAdaptive::fields()
 Backend fast_projection_adaptive_row() {
   return {.name = "fast_projection_adaptive",
           .summary =
-              "projection of every thread, and of the whole cloth where that converges too "
+              "projection of every yarn, and of the whole cloth where that converges too "
               "slowly",
           .knob = Knob::strain_limit,
           .contestant = true,

@@ -1,13 +1,13 @@
 // Strips while they converge quickly, fast projection's step for the whole cloth where they do not:
-// a thread carries corrections along itself at once, but across threads they travel by sweeps.
+// a yarn carries corrections along itself at once, but across yarns they travel by sweeps.
 #pragma once
 
 #include <memory>
 
-#include "inextensible/methods/setting_fields.h"
-#include "inextensible/methods/strain_pass.h"
-#include "inextensible/methods/thread_pass.h"
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/methods/strain_passes.h"
+#include "solvers/methods/yarn_pass.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 
@@ -15,10 +15,10 @@ class FastProjectionAdaptive final : public VelocityFilter {
  public:
   struct Settings {
     double strain_limit = 0.01;
-    int max_iterations = 5000;  // rounds a step: a pass over all threads, then sweeps
-    int sweeps = 20;            // of a round, at most; none where threads share no vertex
+    int max_iterations = 5000;  // rounds a step: a pass over all yarns, then sweeps
+    int sweeps = 20;            // of a round, at most; none where yarns share no vertex
     double relaxation = 1.8;    // of a sweep's correction
-    double target = 0.8;        // of the strain limit: what threads and the whole are projected to
+    double target = 0.8;        // of the strain limit: what yarns and the whole are projected to
     double sweep_target = 0.8;  // and what a sweep brings an edge to
     double forcing = 1e-2;      // residual of a linear solve, of its right-hand side
     std::string_view linear_solver = "auto";
@@ -29,7 +29,7 @@ class FastProjectionAdaptive final : public VelocityFilter {
   void heed(Contacts* contacts) override {
     VelocityFilter::heed(contacts);
     sweep_.heed(contacts);
-    threads_.heed(contacts);
+    yarns_.heed(contacts);
     system_.heed(contacts);
   }
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
@@ -44,8 +44,8 @@ class FastProjectionAdaptive final : public VelocityFilter {
 
   ConstraintSystem system_;
   Settings settings_;
-  StrainSweep sweep_;
-  ThreadPass threads_;
+  StrainPasses sweep_;
+  YarnPass yarns_;
   Positions x_;
   Eigen::Matrix3Xd u_;                      // gradient of C
   Eigen::VectorXd mu_;                      // C~, then h^2 dlambda

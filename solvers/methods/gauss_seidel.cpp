@@ -2,7 +2,7 @@
 // Edges within the limit are left alone (Provot 1995); others are brought to the target strain.
 // Loops: one pass over edges in random order a sweep, one check in order that stops at the first
 // violation.
-#include "inextensible/methods/gauss_seidel.h"
+#include "solvers/methods/gauss_seidel.h"
 
 #include <cmath>
 #include <numeric>

@@ -3,9 +3,9 @@
 // maximum strain is permissible.
 #pragma once
 
-#include "inextensible/methods/setting_fields.h"
-#include "inextensible/methods/strain_pass.h"
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/methods/strain_passes.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 

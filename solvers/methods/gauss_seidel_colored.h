@@ -3,9 +3,9 @@
 // Pellacini 2016).
 #pragma once
 
-#include "inextensible/methods/setting_fields.h"
-#include "inextensible/methods/strain_pass.h"
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/methods/strain_passes.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 
@@ -28,7 +28,7 @@ class GaussSeidelColored final : public VelocityFilter {
  private:
   EdgeConstraints edges_;
   int max_iterations_;
-  StrainSweep sweep_;
+  StrainPasses sweep_;
 };
 
 Backend gauss_seidel_colored_row();

@@ -11,14 +11,14 @@
 // forces; if that fails, once more from zero, whose first iteration is fast projection's. The
 // linear system is solved to a few percent by projected conjugate gradients, or factored. Loops:
 // one assembly, one factorization, several solves and one or more evaluations an iteration.
-#include "inextensible/methods/icd.h"
+#include "solvers/methods/icd.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "inextensible/systems/chain_kkt.h"
-#include "inextensible/systems/kkt_system.h"
-#include "inextensible/systems/projected_cg.h"
+#include "solvers/systems/chain_kkt.h"
+#include "solvers/systems/kkt_system.h"
+#include "solvers/systems/projected_cg.h"
 
 namespace inextensible {
 namespace {

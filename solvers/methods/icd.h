@@ -2,9 +2,9 @@
 // J at the end of the step.
 #pragma once
 
-#include "inextensible/methods/setting_fields.h"
-#include "inextensible/systems/constraint_system.h"
-#include "inextensible/systems/kkt_solver.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/systems/constraint_system.h"
+#include "solvers/systems/kkt_solver.h"
 
 namespace inextensible {
 

@@ -11,13 +11,13 @@
 // of the motion: their tension at an iterate is far off, that of the linearization is not. It is
 // the Hessian's stiffness across the spring (as primal-dual methods keep a multiplier). (3) Near
 // the end a factorization is kept for further iterations while these shrink.
-#include "inextensible/methods/implicit_springs.h"
+#include "solvers/methods/implicit_springs.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "inextensible/linear/spd_solvers.h"
-#include "inextensible/systems/vertex_blocks.h"
+#include "solvers/linear/spd_solvers.h"
+#include "solvers/systems/vertex_blocks.h"
 
 namespace inextensible {
 namespace {

@@ -9,8 +9,8 @@
 #include <array>
 #include <string>
 
-#include "inextensible/linear/spd_solver.h"
-#include "inextensible/methods/setting_fields.h"
+#include "solvers/linear/spd_solver.h"
+#include "solvers/methods/setting_fields.h"
 
 namespace inextensible {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "inextensible/methods/implicit_springs.h"
+#include "solvers/methods/implicit_springs.h"
 
 namespace inextensible {
 namespace {
@@ -82,7 +82,7 @@ ImplicitSprings::Search ImplicitSprings::search(const Positions& x, double h, do
 }
 
 StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
-  Lap lap(phases_wanted_);
+  Stopwatch stopwatch(phases_wanted_);
   if (problem().has_drag()) before_ = state.x;
   const Eigen::Vector3d fall = h * h * problem().gravity();
   inertial_ = state.x + h * state.v;
@@ -97,7 +97,7 @@ StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
   }
   const double lowest = start(state, h, x);
   const StepResult result = newton(h, lowest, x);
-  phases_.unconstrained += lap();
+  phases_.unconstrained += stopwatch();
   return result;
 }
 

@@ -7,16 +7,16 @@
 // masses, and up to relaxation 2. The default, 1.8, takes about a third fewer sweeps than the plain
 // average on the drape.
 //
-// All edges are independent, so that they are swept in colors (strain_pass.cpp) and summed without
-// conflicts. A sweep that corrects nothing is the test of convergence and is not counted. Loops:
-// one pass over edges, one over vertices.
-#include "inextensible/methods/jacobi.h"
+// All edges are independent, so that they are swept in colors (strain_passes.cpp) and summed
+// without conflicts. A sweep that corrects nothing is the test of convergence and is not counted.
+// Loops: one pass over edges, one over vertices.
+#include "solvers/methods/jacobi.h"
 
 namespace inextensible {
 namespace {
 
-StrainSweep make_sweep(const Problem& problem, const EdgeConstraints& edges,
-                       const Jacobi::Settings& settings) {
+StrainPasses make_sweep(const Problem& problem, const EdgeConstraints& edges,
+                        const Jacobi::Settings& settings) {
   std::vector<int> valence(problem.vertices(), 0);
   for (const Edge& e : problem.edges()) {
     ++valence[e.a];
@@ -40,7 +40,7 @@ Jacobi::Jacobi(const Problem& problem, const Settings& settings)
 
 StepResult Jacobi::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
                          WorkCounters& work) {
-  return sweep_.limit(StrainSweep::Order::at_once, max_iterations_, edges_, x, work);
+  return sweep_.limit(StrainPasses::Order::at_once, max_iterations_, edges_, x, work);
 }
 
 SettingFields<Jacobi::Settings> Jacobi::fields() {

@@ -2,9 +2,9 @@
 // the same state, the corrections averaged, until the maximum strain is permissible.
 #pragma once
 
-#include "inextensible/methods/setting_fields.h"
-#include "inextensible/methods/strain_pass.h"
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/methods/strain_passes.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 
@@ -27,7 +27,7 @@ class Jacobi final : public VelocityFilter {
  private:
   EdgeConstraints edges_;
   int max_iterations_;
-  StrainSweep sweep_;
+  StrainPasses sweep_;
 };
 
 Backend jacobi_row();

@@ -1,4 +1,4 @@
-#include "inextensible/methods/null_filter.h"
+#include "solvers/methods/null_filter.h"
 
 namespace inextensible {
 

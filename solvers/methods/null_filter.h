@@ -2,8 +2,8 @@
 // the harness cost.
 #pragma once
 
-#include "inextensible/methods/backend.h"
-#include "inextensible/stepping/velocity_filter.h"
+#include "solvers/methods/backend.h"
+#include "solvers/stepping/velocity_filter.h"
 
 namespace inextensible {
 

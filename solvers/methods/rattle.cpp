@@ -1,7 +1,7 @@
-#include "inextensible/methods/rattle.h"
+#include "solvers/methods/rattle.h"
 
-#include "inextensible/problem/forces.h"
-#include "inextensible/problem/lap.h"
+#include "solvers/problem/forces.h"
+#include "solvers/problem/stopwatch.h"
 
 namespace inextensible {
 
@@ -9,20 +9,20 @@ Rattle::Rattle(std::shared_ptr<const Problem> problem, const Shake::Settings& se
     : Stepper(std::move(problem)), shake_(*problem_, settings) {}
 
 StepResult Rattle::solve(const State& state, double h, Positions& x) {
-  Lap lap(phases_wanted_);
+  Stopwatch stopwatch(phases_wanted_);
   x = state.x + h * state.v;  // position stage (Andersen 1983)
   add_acceleration(*problem_, state.x, 0.5 * h * h, x, work_);
   if (problem_->has_drag()) add_drag(*problem_, state.v, 0.5 * h * h, x);
   for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
-  phases_.unconstrained += lap();
+  phases_.unconstrained += stopwatch();
   const StepResult result = apply_until_clear(shake_, contacts_inside(), state.x, h, x, work_);
-  phases_.filter += lap();
+  phases_.filter += stopwatch();
   return result;
 }
 
 StepResult Rattle::end_velocities(const State& start, double h, const Positions& /*filtered*/,
                                   const Positions& x, Positions& v) {
-  Lap lap(phases_wanted_);
+  Stopwatch stopwatch(phases_wanted_);
   v = (x - start.x) * (1 / h);  // velocity stage
   if (problem_->has_drag()) {   // of the velocity halfway
     v_half_ = v;
@@ -37,9 +37,9 @@ StepResult Rattle::end_velocities(const State& start, double h, const Positions&
       if (contacts->holds(c)) v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
     }
   }
-  phases_.unconstrained += lap();
+  phases_.unconstrained += stopwatch();
   const StepResult result = shake_.project_velocity(x, v, work_);
-  phases_.filter += lap();
+  phases_.filter += stopwatch();
   return result;
 }
 

@@ -6,7 +6,7 @@
 // two solves a step.
 #pragma once
 
-#include "inextensible/methods/shake.h"
+#include "solvers/methods/shake.h"
 
 namespace inextensible {
 

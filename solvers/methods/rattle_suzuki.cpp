@@ -1,4 +1,4 @@
-#include "inextensible/methods/rattle_suzuki.h"
+#include "solvers/methods/rattle_suzuki.h"
 
 #include <cmath>
 

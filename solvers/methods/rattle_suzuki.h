@@ -5,7 +5,7 @@
 // stops: what cannot be run backwards is not taken.
 #pragma once
 
-#include "inextensible/methods/rattle.h"
+#include "solvers/methods/rattle.h"
 
 namespace inextensible {
 

@@ -1,6 +1,6 @@
-#include "inextensible/methods/setting_fields.h"
+#include "solvers/methods/setting_fields.h"
 
-#include "inextensible/linear/spd_solvers.h"
+#include "solvers/linear/spd_solvers.h"
 
 namespace inextensible {
 

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <utility>
 
-#include "inextensible/methods/backend.h"
-#include "inextensible/stepping/bdf2_stepper.h"
-#include "inextensible/stepping/velocity_filter.h"
+#include "solvers/methods/backend.h"
+#include "solvers/stepping/bdf2_stepper.h"
+#include "solvers/stepping/velocity_filter.h"
 
 namespace inextensible {
 

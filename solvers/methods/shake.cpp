@@ -7,7 +7,7 @@
 // The equations have spurious solutions far away; the closest point of the manifold is at most
 // twice as far from x^n (on it) as x0 is, so what is farther, slack apart, is refused. Loops: one
 // assembly and factorization a step, one solve and two passes over edges an iteration.
-#include "inextensible/methods/shake.h"
+#include "solvers/methods/shake.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 // convergence fails (Barth et al. 1994).
 #pragma once
 
-#include "inextensible/linear/lu.h"
-#include "inextensible/methods/setting_fields.h"
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/linear/lu.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 

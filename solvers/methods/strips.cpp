@@ -1,6 +1,6 @@
-// Loops: two passes over links forwards and one back a thread (thread_pass.cpp), then sweeps
-// (strain_pass.cpp).
-#include "inextensible/methods/strips.h"
+// Loops: two passes over links forwards and one back a yarn (yarn_pass.cpp), then sweeps
+// (strain_passes.cpp).
+#include "solvers/methods/strips.h"
 
 namespace inextensible {
 namespace {
@@ -12,10 +12,10 @@ constexpr int most_passes_in_contact = 100;
 Strips::Strips(const Problem& problem, const Settings& settings)
     : edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
-      sweep_(StrainSweep::by_mass(problem, {settings.strain_limit, settings.sweep_target},
-                                  settings.relaxation)),
-      threads_(problem, settings.strain_limit, settings.target, sweep_.edges()),
-      sweeps_(threads_.crossing() ? settings.sweeps : 0) {}
+      sweep_(StrainPasses::by_mass(problem, {settings.strain_limit, settings.sweep_target},
+                                   settings.relaxation)),
+      yarns_(problem, settings.strain_limit, settings.target, sweep_.edges()),
+      sweeps_(yarns_.crossing() ? settings.sweeps : 0) {}
 
 StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
                          WorkCounters& work) {
@@ -26,11 +26,12 @@ StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Positions& 
     // Newton's method overshoots where a step takes vertices far round an obstacle; sweeps do not.
     if (touches() && passes == most_passes_in_contact) {
       contacts_->restore(record_);
-      return sweep_.limit(StrainSweep::Order::in_turn, StrainSweep::far_too_many, edges_, x, work);
+      return sweep_.limit(StrainPasses::Order::in_turn, StrainPasses::far_too_many, edges_, x,
+                          work);
     }
     const bool gives_up = passes == max_iterations_ || (passes % 64 == 63 && !sweep_.finite());
     sweep_.settle_contacts();
-    std::int64_t corrected = gives_up ? 0 : threads_.project(sweep_.positions(), work);
+    std::int64_t corrected = gives_up ? 0 : yarns_.project(sweep_.positions(), work);
     work.edge_projections += corrected;
     if (corrected > 0) corrected = sweep_.in_turn(sweeps_, work).left;
     if (corrected > 0) continue;
@@ -43,23 +44,22 @@ StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Positions& 
 
 SettingFields<Strips::Settings> Strips::fields() {
   using S = Settings;
-  return {
-      {"max_iterations", &S::max_iterations, "passes over all threads a step before it is refused",
-       at_least_one},
-      {"sweeps", &S::sweeps, "colored Gauss-Seidel sweeps between two passes, at most",
-       count_from_zero, SearchRange{0, 60}},
-      {"relaxation", &S::relaxation, "times a sweep's correction", relaxation_range,
-       tunable_relaxation},
-      {"target", &S::target, "a thread's links are brought to this fraction of the strain limit",
-       fraction, tunable_fraction},
-      {"sweep_target", &S::sweep_target,
-       "an edge that a sweep corrects is brought to this fraction of the strain limit", fraction,
-       tunable_fraction}};
+  return {{"max_iterations", &S::max_iterations,
+           "passes over all yarns a step before it is refused", at_least_one},
+          {"sweeps", &S::sweeps, "colored Gauss-Seidel sweeps between two passes, at most",
+           count_from_zero, SearchRange{0, 60}},
+          {"relaxation", &S::relaxation, "times a sweep's correction", relaxation_range,
+           tunable_relaxation},
+          {"target", &S::target, "a yarn's links are brought to this fraction of the strain limit",
+           fraction, tunable_fraction},
+          {"sweep_target", &S::sweep_target,
+           "an edge that a sweep corrects is brought to this fraction of the strain limit",
+           fraction, tunable_fraction}};
 }
 
 Backend strips_row() {
   return {.name = "strips",
-          .summary = "projection of every thread of the cloth as a whole, with sweeps between",
+          .summary = "projection of every yarn of the cloth as a whole, with sweeps between",
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(Strips::fields()),

@@ -5,7 +5,7 @@
 //
 // At rest under gravity an edge keeps a strain of about g h^2 / l times the edges below it: one
 // sweep carries a load by one edge, or by one color.
-#include "inextensible/methods/xpbd_small_steps.h"
+#include "solvers/methods/xpbd_small_steps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,8 @@ std::vector<double> distances_from(int start, const Problem& problem,
 
 XpbdSmallSteps::XpbdSmallSteps(const Problem& problem, const Settings& settings,
                                const Positions* rest)
-    : sweeps_(settings.sweeps), sweep_(StrainSweep::by_mass(problem, {0, 0}, settings.relaxation)) {
+    : sweeps_(settings.sweeps),
+      sweep_(StrainPasses::by_mass(problem, {0, 0}, settings.relaxation)) {
   if (settings.attachments == "edges") attach_along_edges(problem);
   if (settings.attachments == "straight") {
     if (!rest) throw std::invalid_argument("straight attachments need the positions at rest");

@@ -3,8 +3,8 @@
 // step is what buys it.
 #pragma once
 
-#include "inextensible/methods/setting_fields.h"
-#include "inextensible/methods/strain_pass.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/methods/strain_passes.h"
 
 namespace inextensible {
 
@@ -38,7 +38,7 @@ class XpbdSmallSteps final : public VelocityFilter {
   void keep_nearest(const Problem& problem);
 
   int sweeps_;
-  StrainSweep sweep_;
+  StrainPasses sweep_;
   std::vector<Attachment> attachments_;
 };
 

@@ -1,4 +1,4 @@
-#include "inextensible/problem/bending.h"
+#include "solvers/problem/bending.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -18,7 +18,7 @@ double cotangent(const Vector3d& a, const Vector3d& b) { return a.dot(b) / a.cro
 }  // namespace
 
 // Curvature is the second difference 2 / (l_ab + l_bc) [(x_c - x_b) / l_bc - (x_b - x_a) / l_ab].
-BendingStencil thread_bending(int a, int b, int c, double l_ab, double l_bc, double rigidity) {
+BendingStencil yarn_bending(int a, int b, int c, double l_ab, double l_bc, double rigidity) {
   const double share = 0.5 * (l_ab + l_bc);
   return {{a, b, c, a}, {1 / l_ab, -1 / l_ab - 1 / l_bc, 1 / l_bc, 0}, rigidity / share};
 }

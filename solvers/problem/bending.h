@@ -1,6 +1,6 @@
 // Bending as a quadratic energy,
 //   V(x) = 1/2 sum over stencils s of k_s |sum_i c_i x_i|^2,
-// whose gradient is a constant matrix times x. Where edges keep their length a thread's curvature
+// whose gradient is a constant matrix times x. Where edges keep their length a yarn's curvature
 // and a surface's mean curvature normal are linear in x, so that this is no linearization (Bergou,
 // Wardetzky, Harmon, Zorin and Grinspun 2006, "A Quadratic Bending Model for Inextensible
 // Surfaces").
@@ -19,10 +19,10 @@ struct BendingStencil {
 };
 using Bending = std::vector<BendingStencil>;
 
-// Of a thread that goes through the vertices a, b, c in links of the lengths l_ab and l_bc (m),
+// Of a yarn that goes through the vertices a, b, c in links of the lengths l_ab and l_bc (m),
 // with the flexural rigidity EI (N m^2): energy EI / 2 times squared curvature times the length
 // that falls to b.
-BendingStencil thread_bending(int a, int b, int c, double l_ab, double l_bc, double rigidity);
+BendingStencil yarn_bending(int a, int b, int c, double l_ab, double l_bc, double rigidity);
 
 // Isometric bending of a triangle mesh, flat at rest: one stencil an inner edge (Bergou et al.
 // 2006, eq. 5). x: 3 x n, m, where lengths and angles are those of rest. rigidity: of the plate, N

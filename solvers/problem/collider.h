@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "inextensible/problem/work_counters.h"
+#include "solvers/problem/work_counters.h"
 
 namespace inextensible {
 

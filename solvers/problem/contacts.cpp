@@ -1,4 +1,4 @@
-#include "inextensible/problem/contacts.h"
+#include "solvers/problem/contacts.h"
 
 #include <cmath>
 #include <limits>

@@ -25,8 +25,8 @@
 #include <utility>
 #include <vector>
 
-#include "inextensible/problem/lap.h"
-#include "inextensible/problem/obstacle.h"
+#include "solvers/problem/obstacle.h"
+#include "solvers/problem/stopwatch.h"
 
 namespace inextensible {
 
@@ -85,10 +85,10 @@ class Contacts {
   class Timing {
    public:
     explicit Timing(double*& sum)
-        : place_(sum), sum_(std::exchange(sum, nullptr)), lap_(sum_ != nullptr) {}
+        : place_(sum), sum_(std::exchange(sum, nullptr)), stopwatch_(sum_ != nullptr) {}
     ~Timing() {
       if (!sum_) return;
-      *sum_ += lap_();
+      *sum_ += stopwatch_();
       place_ = sum_;
     }
     Timing(const Timing&) = delete;
@@ -97,7 +97,7 @@ class Contacts {
    private:
     double*& place_;
     double* sum_;
-    Lap lap_;
+    Stopwatch stopwatch_;
   };
   Timing timing() const { return Timing(seconds_); }
   // sum: s, outlives this; null: no clock is read, as at first.

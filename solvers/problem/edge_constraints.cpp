@@ -1,4 +1,4 @@
-#include "inextensible/problem/edge_constraints.h"
+#include "solvers/problem/edge_constraints.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "inextensible/problem/problem.h"
+#include "solvers/problem/problem.h"
 
 namespace inextensible {
 

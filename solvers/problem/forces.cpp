@@ -1,4 +1,4 @@
-#include "inextensible/problem/forces.h"
+#include "solvers/problem/forces.h"
 
 #include <cmath>
 

@@ -1,8 +1,8 @@
 // Forces other than inextensibility, and the unconstrained step.
 #pragma once
 
-#include "inextensible/problem/problem.h"
-#include "inextensible/problem/work_counters.h"
+#include "solvers/problem/problem.h"
+#include "solvers/problem/work_counters.h"
 
 namespace inextensible {
 

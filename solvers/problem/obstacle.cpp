@@ -1,4 +1,4 @@
-#include "inextensible/problem/obstacle.h"
+#include "solvers/problem/obstacle.h"
 
 namespace inextensible {
 

@@ -1,7 +1,7 @@
 // A problem's collider, there where its motion has brought it.
 #pragma once
 
-#include "inextensible/problem/problem.h"
+#include "solvers/problem/problem.h"
 
 namespace inextensible {
 

@@ -1,4 +1,4 @@
-#include "inextensible/problem/problem.h"
+#include "solvers/problem/problem.h"
 
 #include <algorithm>
 #include <cmath>

@@ -13,9 +13,9 @@
 #include <optional>
 #include <vector>
 
-#include "inextensible/problem/bending.h"
-#include "inextensible/problem/collider.h"
-#include "inextensible/problem/pose.h"
+#include "solvers/problem/bending.h"
+#include "solvers/problem/collider.h"
+#include "solvers/problem/pose.h"
 
 namespace inextensible {
 

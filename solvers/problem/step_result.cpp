@@ -1,4 +1,4 @@
-#include "inextensible/problem/step_result.h"
+#include "solvers/problem/step_result.h"
 
 namespace inextensible {
 

@@ -1,4 +1,4 @@
-#include "inextensible/problem/triangle_collider.h"
+#include "solvers/problem/triangle_collider.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

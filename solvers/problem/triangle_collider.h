@@ -13,7 +13,7 @@
 #include <array>
 #include <span>
 
-#include "inextensible/problem/collider.h"
+#include "solvers/problem/collider.h"
 
 namespace inextensible {
 

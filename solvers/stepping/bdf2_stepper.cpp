@@ -1,7 +1,7 @@
-#include "inextensible/stepping/bdf2_stepper.h"
+#include "solvers/stepping/bdf2_stepper.h"
 
-#include "inextensible/problem/forces.h"
-#include "inextensible/problem/lap.h"
+#include "solvers/problem/forces.h"
+#include "solvers/problem/stopwatch.h"
 
 namespace inextensible {
 namespace {
@@ -51,7 +51,7 @@ void Bdf2Stepper::restart(const State& state, double h) {
 }
 
 StepResult Bdf2Stepper::solve(const State& state, double h, Positions& x) {
-  Lap lap(phases_wanted_);
+  Stopwatch stopwatch(phases_wanted_);
   if (problem_->pins_follow_body())  // they have moved since
     for (const int vertex : problem_->pinned()) x_known_.col(vertex) = state.x.col(vertex);
   const bool known = h_before_ > 0 && h <= largest_growth * h_before_ && state.x == x_known_ &&
@@ -62,10 +62,10 @@ StepResult Bdf2Stepper::solve(const State& state, double h, Positions& x) {
     explicit_solve(state, h, known, x);
   }
   for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
-  phases_.unconstrained += lap();
+  phases_.unconstrained += stopwatch();
   const StepResult result =
       apply_until_clear(*filter_, contacts_inside(), start_positions(), h, x, work_);
-  phases_.filter += lap();
+  phases_.filter += stopwatch();
   return result;
 }
 
@@ -109,7 +109,7 @@ bool Bdf2Stepper::implicit_solve(const State& state, double h, bool known, Posit
 
 StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Positions& /*filtered*/,
                                        const Positions& x, Positions& v) {
-  Lap lap(phases_wanted_);
+  Stopwatch stopwatch(phases_wanted_);
   const Coefficients c = coefficients(h);
   v = (x - c.now * start.x - c.before * x_before_) * (1 / c.beta_h);
   if (c.earlier != 0) v -= (c.earlier / c.beta_h) * x_earlier_;
@@ -137,7 +137,7 @@ StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Posit
   x_known_ = x;
   v_known_ = v;
   h_before_ = h;
-  phases_.unconstrained += lap();
+  phases_.unconstrained += stopwatch();
   return {};
 }
 

@@ -21,7 +21,7 @@
 // here under its present acceleration a, x^{n-1} = x^n - h v^n + h^2 a / 2 and v^{n-1} = v^n - h a.
 #pragma once
 
-#include "inextensible/stepping/velocity_filter.h"
+#include "solvers/stepping/velocity_filter.h"
 
 namespace inextensible {
 

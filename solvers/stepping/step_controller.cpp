@@ -1,4 +1,4 @@
-#include "inextensible/stepping/step_controller.h"
+#include "solvers/stepping/step_controller.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "inextensible/stepping/stepper.h"
+#include "solvers/stepping/stepper.h"
 
 namespace inextensible {
 

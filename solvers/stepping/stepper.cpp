@@ -1,9 +1,9 @@
-#include "inextensible/stepping/stepper.h"
+#include "solvers/stepping/stepper.h"
 
 #include <cmath>
 
-#include "inextensible/problem/forces.h"
-#include "inextensible/problem/lap.h"
+#include "solvers/problem/forces.h"
+#include "solvers/problem/stopwatch.h"
 
 namespace inextensible {
 
@@ -35,11 +35,11 @@ StepResult Stepper::advance(State& state, double h) {
     return result;
   }
   if (contacts_) {
-    Lap lap(phases_wanted_);
+    Stopwatch stopwatch(phases_wanted_);
     filtered_ = next_;
     const Contacts::Timing measured = contacts_->timing();
     contacts_->push_out(next_, work_);
-    phases_.collision += lap();
+    phases_.collision += stopwatch();
   }
   // A sum is not finite if any term is not.
   if (!std::isfinite(next_.sum())) {

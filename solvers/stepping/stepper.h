@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "inextensible/problem/contacts.h"
-#include "inextensible/problem/step_result.h"
-#include "inextensible/problem/work_counters.h"
+#include "solvers/problem/contacts.h"
+#include "solvers/problem/step_result.h"
+#include "solvers/problem/work_counters.h"
 
 namespace inextensible {
 
@@ -83,7 +83,7 @@ class Stepper {
   std::shared_ptr<const Problem> problem_;
   WorkCounters work_;
   PhaseSeconds phases_;
-  bool phases_wanted_ = false;  // for Lap
+  bool phases_wanted_ = false;  // for Stopwatch
   // Of the present step; null without a collider.
   std::unique_ptr<Contacts> contacts_;
   // The same where a method is to heed them, else null.

@@ -1,7 +1,7 @@
-#include "inextensible/stepping/velocity_filter.h"
+#include "solvers/stepping/velocity_filter.h"
 
-#include "inextensible/problem/forces.h"
-#include "inextensible/problem/lap.h"
+#include "solvers/problem/forces.h"
+#include "solvers/problem/stopwatch.h"
 
 namespace inextensible {
 namespace {
@@ -47,7 +47,7 @@ StepResult no_forces() {
 }
 
 StepResult FilterStepper::solve(const State& state, double h, Positions& x) {
-  Lap lap(phases_wanted_);
+  Stopwatch stopwatch(phases_wanted_);
   if (implicit_) {
     x = state.x + h * state.v;
     for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
@@ -55,10 +55,10 @@ StepResult FilterStepper::solve(const State& state, double h, Positions& x) {
   } else {
     unconstrained_step(*problem_, state, h, x, work_);
   }
-  phases_.unconstrained += lap();
+  phases_.unconstrained += stopwatch();
   const StepResult result =
       apply_until_clear(*filter_, contacts_inside(), start_positions(), h, x, work_);
-  phases_.filter += lap();
+  phases_.filter += stopwatch();
   return result;
 }
 

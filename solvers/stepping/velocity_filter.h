@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "inextensible/stepping/stepper.h"
-#include "inextensible/systems/implicit_forces.h"
+#include "solvers/stepping/stepper.h"
+#include "solvers/systems/implicit_forces.h"
 
 namespace inextensible {
 

@@ -1,12 +1,12 @@
 // Loops: one over blocks to factor, two to solve.
-#include "inextensible/systems/chain_kkt.h"
+#include "solvers/systems/chain_kkt.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "inextensible/systems/chain_block.h"
+#include "solvers/systems/chain_block.h"
 
 namespace inextensible {
 namespace {

@@ -4,7 +4,7 @@
 // tridiagonal with blocks of 4 x 4, and what a block takes from the next one is 3 x 3.
 #pragma once
 
-#include "inextensible/systems/kkt_system.h"
+#include "solvers/systems/kkt_system.h"
 
 namespace inextensible {
 

@@ -2,14 +2,14 @@
 //   (A + E) mu = J a + J' v,   a -= W J^T mu,
 // which are refinement where A is regular, and where it is not need no decision about its rank: the
 // part of mu in the null space of A moves nothing.
-#include "inextensible/systems/constrained_acceleration.h"
+#include "solvers/systems/constrained_acceleration.h"
 
 #include <Eigen/SparseCholesky>
 #include <cmath>
 #include <limits>
 
-#include "inextensible/problem/edge_constraints.h"
-#include "inextensible/problem/forces.h"
+#include "solvers/problem/edge_constraints.h"
+#include "solvers/problem/forces.h"
 
 namespace inextensible {
 namespace {

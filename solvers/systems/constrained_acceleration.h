@@ -1,7 +1,7 @@
 // How the constrained system accelerates at a state, for what needs it outside the time steps.
 #pragma once
 
-#include "inextensible/problem/problem.h"
+#include "solvers/problem/problem.h"
 
 namespace inextensible {
 

@@ -1,9 +1,9 @@
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/systems/constraint_system.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "inextensible/linear/spd_solvers.h"
+#include "solvers/linear/spd_solvers.h"
 
 namespace inextensible {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
-#include "inextensible/problem/edge_constraints.h"
-#include "inextensible/problem/step_result.h"
-#include "inextensible/systems/contact_terms.h"
-#include "inextensible/systems/schur_complement.h"
+#include "solvers/problem/edge_constraints.h"
+#include "solvers/problem/step_result.h"
+#include "solvers/systems/contact_terms.h"
+#include "solvers/systems/schur_complement.h"
 
 namespace inextensible {
 

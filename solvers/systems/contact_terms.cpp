@@ -1,4 +1,4 @@
-#include "inextensible/systems/contact_terms.h"
+#include "solvers/systems/contact_terms.h"
 
 #include <algorithm>
 

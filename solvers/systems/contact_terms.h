@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "inextensible/problem/contacts.h"
-#include "inextensible/problem/edge_constraints.h"
+#include "solvers/problem/contacts.h"
+#include "solvers/problem/edge_constraints.h"
 
 namespace inextensible {
 

@@ -1,11 +1,11 @@
-#include "inextensible/systems/implicit_forces.h"
+#include "solvers/systems/implicit_forces.h"
 
 #include <algorithm>
 #include <map>
 
-#include "inextensible/linear/spd_solvers.h"
-#include "inextensible/problem/forces.h"
-#include "inextensible/systems/vertex_blocks.h"
+#include "solvers/linear/spd_solvers.h"
+#include "solvers/problem/forces.h"
+#include "solvers/systems/vertex_blocks.h"
 
 namespace inextensible {
 namespace {

@@ -14,9 +14,9 @@
 #include <memory>
 #include <vector>
 
-#include "inextensible/linear/spd_solver.h"
-#include "inextensible/problem/problem.h"
-#include "inextensible/problem/work_counters.h"
+#include "solvers/linear/spd_solver.h"
+#include "solvers/problem/problem.h"
+#include "solvers/problem/work_counters.h"
 
 namespace inextensible {
 

@@ -8,9 +8,9 @@
 #include <memory>
 #include <string_view>
 
-#include "inextensible/problem/contacts.h"
-#include "inextensible/problem/edge_constraints.h"
-#include "inextensible/problem/work_counters.h"
+#include "solvers/problem/contacts.h"
+#include "solvers/problem/edge_constraints.h"
+#include "solvers/problem/work_counters.h"
 
 namespace inextensible {
 

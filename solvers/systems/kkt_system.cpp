@@ -1,4 +1,4 @@
-#include "inextensible/systems/kkt_system.h"
+#include "solvers/systems/kkt_system.h"
 
 #include <algorithm>
 #include <cmath>

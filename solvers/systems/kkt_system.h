@@ -10,9 +10,9 @@
 #include <string>
 #include <string_view>
 
-#include "inextensible/linear/eigen_ldlt.h"
-#include "inextensible/linear/lu.h"
-#include "inextensible/systems/kkt_solver.h"
+#include "solvers/linear/eigen_ldlt.h"
+#include "solvers/linear/lu.h"
+#include "solvers/systems/kkt_solver.h"
 
 namespace inextensible {
 

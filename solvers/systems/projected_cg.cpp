@@ -11,12 +11,12 @@
 // 1983); if there is none yet, the convex H is. Where J D^-1 J^T is singular or conjugate gradients
 // get nowhere, the factored saddle-point matrix takes over. Loops: one assembly and one
 // factorization a Newton iteration; one solve and four passes over edges an iteration here.
-#include "inextensible/systems/projected_cg.h"
+#include "solvers/systems/projected_cg.h"
 
 #include <cmath>
 
-#include "inextensible/linear/spd_solvers.h"
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/linear/spd_solvers.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 

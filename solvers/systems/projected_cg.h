@@ -4,10 +4,10 @@
 #include <string_view>
 #include <vector>
 
-#include "inextensible/systems/contact_terms.h"
-#include "inextensible/systems/kkt_solver.h"
-#include "inextensible/systems/kkt_system.h"
-#include "inextensible/systems/schur_complement.h"
+#include "solvers/systems/contact_terms.h"
+#include "solvers/systems/kkt_solver.h"
+#include "solvers/systems/kkt_system.h"
+#include "solvers/systems/schur_complement.h"
 
 namespace inextensible {
 

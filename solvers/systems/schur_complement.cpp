@@ -1,4 +1,4 @@
-#include "inextensible/systems/schur_complement.h"
+#include "solvers/systems/schur_complement.h"
 
 #include <algorithm>
 

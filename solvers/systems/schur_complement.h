@@ -7,8 +7,8 @@
 // the factorization reads it.
 #pragma once
 
-#include "inextensible/linear/spd_solver.h"
-#include "inextensible/problem/edge_constraints.h"
+#include "solvers/linear/spd_solver.h"
+#include "solvers/problem/edge_constraints.h"
 
 namespace inextensible {
 

@@ -1,4 +1,4 @@
-#include "inextensible/systems/vertex_blocks.h"
+#include "solvers/systems/vertex_blocks.h"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "inextensible/linear/symmetric_pattern.h"
-#include "inextensible/problem/problem.h"
+#include "solvers/linear/symmetric_pattern.h"
+#include "solvers/problem/problem.h"
 
 namespace inextensible {
 

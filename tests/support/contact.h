@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "inextensible/problem/contacts.h"
+#include "solvers/problem/contacts.h"
 
 namespace inextensible::testing {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <random>
 
-#include "inextensible/problem/problem.h"
+#include "solvers/problem/problem.h"
 
 namespace inextensible::testing {
 

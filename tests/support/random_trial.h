@@ -3,8 +3,8 @@
 #pragma once
 
 #include "harness/stability/trial_judge.h"
-#include "inextensible/registry.h"
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/registry.h"
+#include "solvers/systems/constraint_system.h"
 #include "support/random_graph.h"
 
 namespace inextensible::testing {

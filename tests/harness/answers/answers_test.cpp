@@ -9,8 +9,8 @@
 #include "harness/scenes/folded_scenes.h"
 #include "harness/scenes/hanging_scenes.h"
 #include "harness/scenes/meshes.h"
-#include "inextensible/registry.h"
-#include "inextensible/systems/constrained_acceleration.h"
+#include "solvers/registry.h"
+#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 namespace {
@@ -104,7 +104,7 @@ TEST(Readings, OfExactMotionAreTheExactValues) {
 }
 
 // A net that is put on a ball edge by edge: the fourth corner of a cell is where three spheres
-// meet. Its central threads are great circles.
+// meet. Its central yarns are great circles.
 Positions net_on_ball(int n, double link, double radius) {
   Positions x(3, n * n);
   const int c = n / 2;
@@ -152,7 +152,7 @@ TEST(Fishnet, OfADiscreteNetComesCloserToTheAngleAsItIsRefined) {
       EXPECT_LT(deviation, 0.6 * coarse) << coarse;
     }
     coarse = deviation;
-    // Strained by a tenth along one thread's direction, it is a net no more.
+    // Strained by a tenth along one yarn's direction, it is a net no more.
     state.x.row(0) *= 1.1;
     state.x.row(1) *= 0.9;
     state.x.row(2) *= 0.9;

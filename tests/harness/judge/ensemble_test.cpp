@@ -15,9 +15,9 @@
 #include "harness/judge/judge.h"
 #include "harness/judge/measures.h"
 #include "harness/judge/reference_file.h"
-#include "inextensible/problem/forces.h"
-#include "inextensible/registry.h"
-#include "inextensible/systems/constrained_acceleration.h"
+#include "solvers/problem/forces.h"
+#include "solvers/registry.h"
+#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "harness/judge/reference.h"
 #include "harness/run/runner.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace harness {
 namespace {

@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "harness/scenes/scene.h"
-#include "inextensible/problem/triangle_collider.h"
-#include "inextensible/registry.h"
+#include "solvers/problem/triangle_collider.h"
+#include "solvers/registry.h"
 
 namespace harness {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <memory>
 
-#include "inextensible/registry.h"
-#include "inextensible/systems/constrained_acceleration.h"
+#include "solvers/registry.h"
+#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 namespace {

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "harness/scenes/scene.h"
-#include "inextensible/registry.h"
-#include "inextensible/stepping/step_controller.h"
+#include "solvers/registry.h"
+#include "solvers/stepping/step_controller.h"
 
 namespace harness {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/scenes/cloth_mesh.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace harness {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "harness/judge/measures.h"
 #include "harness/scenes/scene.h"
-#include "inextensible/problem/forces.h"
-#include "inextensible/problem/triangle_collider.h"
-#include "inextensible/registry.h"
+#include "solvers/problem/forces.h"
+#include "solvers/problem/triangle_collider.h"
+#include "solvers/registry.h"
 #include "support/scenes.h"
 
 namespace harness {

@@ -9,11 +9,11 @@
 
 #include <cmath>
 
-#include "inextensible/problem/edge_constraints.h"
-#include "inextensible/problem/forces.h"
-#include "inextensible/problem/triangle_collider.h"
-#include "inextensible/registry.h"
-#include "inextensible/systems/schur_complement.h"
+#include "solvers/problem/edge_constraints.h"
+#include "solvers/problem/forces.h"
+#include "solvers/problem/triangle_collider.h"
+#include "solvers/registry.h"
+#include "solvers/systems/schur_complement.h"
 #include "support/contact.h"
 #include "support/effort.h"
 #include "support/scenes.h"

@@ -7,8 +7,8 @@
 
 #include "harness/judge/reference.h"
 #include "harness/scenes/scene.h"
-#include "inextensible/registry.h"
-#include "inextensible/systems/constrained_acceleration.h"
+#include "solvers/registry.h"
+#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 namespace {

@@ -11,8 +11,8 @@
 #include <set>
 
 #include "harness/stability/stability.h"
-#include "inextensible/methods/fast_projection.h"
-#include "inextensible/registry.h"
+#include "solvers/methods/fast_projection.h"
+#include "solvers/registry.h"
 
 namespace inextensible {
 namespace {

@@ -1,15 +1,15 @@
 // Conjugate gradients along lines and the hybrid with a factorization: against dense algebra, their
-// lines against the threads of a cloth, honesty about matrices that are not positive definite, and
+// lines against the yarns of a cloth, honesty about matrices that are not positive definite, and
 // fast projection with them against fast projection with a factorization.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "inextensible/linear/hybrid.h"
-#include "inextensible/linear/spd_solvers.h"
-#include "inextensible/methods/fast_projection.h"
-#include "inextensible/systems/schur_complement.h"
+#include "solvers/linear/hybrid.h"
+#include "solvers/linear/spd_solvers.h"
+#include "solvers/methods/fast_projection.h"
+#include "solvers/systems/schur_complement.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {
@@ -103,7 +103,7 @@ TEST(LineCg, SolvesASystemOfLinesAloneWithoutIterating) {
   EXPECT_EQ(solver.iterations(), 0);
 }
 
-TEST(LineCg, FindsTheThreadsOfACrumpledClothAndAgreesWithDenseAlgebra) {
+TEST(LineCg, FindsTheYarnsOfACrumpledClothAndAgreesWithDenseAlgebra) {
   for (std::uint64_t seed = 0; seed < examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -115,7 +115,7 @@ TEST(LineCg, FindsTheThreadsOfACrumpledClothAndAgreesWithDenseAlgebra) {
     LineCgSolver solver(schur.pattern());
     schur.assemble(u, solver.values());
     ASSERT_TRUE(solver.factor());
-    // Unequal masses and angles break threads now and then, never into single edges.
+    // Unequal masses and angles break yarns now and then, never into single edges.
     EXPECT_GE(solver.lines(), 7 + 9 - 4);
     EXPECT_LE(solver.lines(), 3 * (7 + 9));
 

@@ -7,15 +7,15 @@
 #include <limits>
 #include <utility>
 
-#include "inextensible/linear/lu.h"
-#include "inextensible/linear/mixed_cholesky.h"
-#include "inextensible/linear/multifrontal_cholesky.h"
-#include "inextensible/linear/spd_solvers.h"
-#include "inextensible/problem/edge_constraints.h"
-#include "inextensible/systems/chain_kkt.h"
-#include "inextensible/systems/kkt_system.h"
-#include "inextensible/systems/projected_cg.h"
-#include "inextensible/systems/schur_complement.h"
+#include "solvers/linear/lu.h"
+#include "solvers/linear/mixed_cholesky.h"
+#include "solvers/linear/multifrontal_cholesky.h"
+#include "solvers/linear/spd_solvers.h"
+#include "solvers/problem/edge_constraints.h"
+#include "solvers/systems/chain_kkt.h"
+#include "solvers/systems/kkt_system.h"
+#include "solvers/systems/projected_cg.h"
+#include "solvers/systems/schur_complement.h"
 #include "support/random_graph.h"
 
 namespace inextensible {

@@ -1,6 +1,6 @@
 // Colored edges over grids, chains, random graphs and stars: every edge once, no vertex twice in a
 // color; sweeps over them against loops over the problem's own edges, written out.
-#include "inextensible/methods/colored_edges.h"
+#include "solvers/methods/colored_edges.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <map>
 #include <set>
 
-#include "inextensible/methods/strain_pass.h"
-#include "inextensible/registry.h"
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/methods/strain_passes.h"
+#include "solvers/registry.h"
+#include "solvers/systems/constraint_system.h"
 #include "support/random_graph.h"
 
 namespace inextensible {
@@ -177,7 +177,7 @@ void expect_sweeps_by_the_book(Random& random, const RandomMesh& mesh) {
   const Edge first = problem.edges().front();
   const bool pinned = problem.inverse_mass()[first.a] == 0;
   start.col(pinned ? first.b : first.a) = start.col(pinned ? first.a : first.b);  // no length
-  StrainSweep sweep(problem, band, share_a, share_b);
+  StrainPasses sweep(problem, band, share_a, share_b);
   for (const bool in_turn : {true, false}) {
     const Swept expected =
         by_the_book(problem, band, share_a, share_b, sweep.edges().problem_edge(), start, in_turn);
@@ -190,7 +190,7 @@ void expect_sweeps_by_the_book(Random& random, const RandomMesh& mesh) {
   }
 }
 
-TEST(StrainSweep, EqualsALoopOverEdges) {
+TEST(StrainPasses, EqualsALoopOverEdges) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -201,7 +201,7 @@ TEST(StrainSweep, EqualsALoopOverEdges) {
 
 // A corrected edge then lies on the limit, where a rounding decides: it must not be corrected for
 // ever.
-TEST(StrainSweep, ConvergesWhereTheTargetIsTheLimit) {
+TEST(StrainPasses, ConvergesWhereTheTargetIsTheLimit) {
   for (const char* solver : {"jacobi", "gauss_seidel", "gauss_seidel_colored"}) {
     for (const double limit : {0.01, 1e-6, 1e-10}) {
       SCOPED_TRACE(std::string(solver) + ", limit " + std::to_string(limit));

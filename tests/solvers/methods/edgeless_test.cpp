@@ -2,7 +2,7 @@
 // pinned.
 #include <gtest/gtest.h>
 
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace inextensible {
 namespace {

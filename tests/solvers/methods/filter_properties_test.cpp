@@ -6,9 +6,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "inextensible/methods/fast_projection.h"
-#include "inextensible/problem/edge_constraints.h"
-#include "inextensible/registry.h"
+#include "solvers/methods/fast_projection.h"
+#include "solvers/problem/edge_constraints.h"
+#include "solvers/registry.h"
 #include "support/motion.h"
 #include "support/random_graph.h"
 

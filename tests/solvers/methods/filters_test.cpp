@@ -5,10 +5,10 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "inextensible/methods/dense_oracle.h"
-#include "inextensible/methods/fast_projection.h"
-#include "inextensible/methods/icd.h"
-#include "inextensible/registry.h"
+#include "solvers/methods/dense_oracle.h"
+#include "solvers/methods/fast_projection.h"
+#include "solvers/methods/icd.h"
+#include "solvers/registry.h"
 #include "support/motion.h"
 
 namespace inextensible {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 #include "support/motion.h"
 
 namespace inextensible {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "inextensible/problem/triangle_collider.h"
-#include "inextensible/registry.h"
+#include "solvers/problem/triangle_collider.h"
+#include "solvers/registry.h"
 #include "support/contact.h"
 #include "support/random_mesh.h"
 

@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "harness/scenes/scene.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace {
 std::atomic<long> allocations{0};

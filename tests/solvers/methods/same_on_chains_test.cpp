@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/scenes/scene.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 namespace harness {
 namespace {

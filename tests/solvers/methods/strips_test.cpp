@@ -1,56 +1,55 @@
-// Threads are found whatever the mesh; a thread's projection is fast projection's on a chain.
-#include "inextensible/methods/strips.h"
+// Yarns are found whatever the mesh; a yarn's projection is fast projection's on a chain.
+#include "solvers/methods/strips.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 #include <set>
 
-#include "inextensible/methods/fast_projection.h"
-#include "inextensible/methods/fast_projection_adaptive.h"
+#include "solvers/methods/fast_projection.h"
+#include "solvers/methods/fast_projection_adaptive.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {
 namespace {
 
-void check(const Problem& problem, const std::vector<Thread>& threads) {
+void check(const Problem& problem, const std::vector<Yarn>& yarns) {
   std::multiset<int> edges;
   std::map<int, std::set<int>> vertices_of_color;
-  for (const Thread& thread : threads) {
-    ASSERT_EQ(thread.vertices.size(), thread.edges.size() + 1);
-    for (std::size_t i = 0; i < thread.edges.size(); ++i) {
-      const Edge e = problem.edges()[thread.edges[i]];
-      const std::set<int> ends{e.a, e.b}, here{thread.vertices[i], thread.vertices[i + 1]};
+  for (const Yarn& yarn : yarns) {
+    ASSERT_EQ(yarn.vertices.size(), yarn.edges.size() + 1);
+    for (std::size_t i = 0; i < yarn.edges.size(); ++i) {
+      const Edge e = problem.edges()[yarn.edges[i]];
+      const std::set<int> ends{e.a, e.b}, here{yarn.vertices[i], yarn.vertices[i + 1]};
       ASSERT_EQ(ends, here);
-      edges.insert(thread.edges[i]);
+      edges.insert(yarn.edges[i]);
     }
-    for (const int vertex : thread.vertices)
-      ASSERT_TRUE(vertices_of_color[thread.color].insert(vertex).second)
-          << "color " << thread.color;
+    for (const int vertex : yarn.vertices)
+      ASSERT_TRUE(vertices_of_color[yarn.color].insert(vertex).second) << "color " << yarn.color;
   }
   ASSERT_EQ(edges.size(), static_cast<std::size_t>(problem.constraints()));
   ASSERT_EQ(std::set<int>(edges.begin(), edges.end()).size(), edges.size()) << "an edge twice";
 }
 
-TEST(Threads, OfWovenClothAreItsRowsAndColumns) {
+TEST(Yarns, OfWovenClothAreItsRowsAndColumns) {
   testing::Random random(1);
   for (const auto& [rows, columns] : {std::pair(5, 7), std::pair(2, 9), std::pair(12, 3)}) {
     const auto mesh = testing::random_mesh(random, rows, columns, 1);
-    const auto threads = threads_of(*mesh.problem);
-    check(*mesh.problem, threads);
-    EXPECT_EQ(threads.size(), static_cast<std::size_t>(rows + columns));
+    const auto yarns = yarns_of(*mesh.problem);
+    check(*mesh.problem, yarns);
+    EXPECT_EQ(yarns.size(), static_cast<std::size_t>(rows + columns));
     std::set<int> colors;
-    for (const Thread& thread : threads) colors.insert(thread.color);
+    for (const Yarn& yarn : yarns) colors.insert(yarn.color);
     EXPECT_EQ(colors, (std::set{0, 1})) << "warp and weft";
   }
 }
 
-TEST(Threads, OfAChainAreOne) {
+TEST(Yarns, OfAChainAreOne) {
   testing::Random random(1);
   const auto chain = testing::random_mesh(random, 1, 30, 2);
-  const auto threads = threads_of(*chain.problem);
-  check(*chain.problem, threads);
-  EXPECT_EQ(threads.size(), 1U);
+  const auto yarns = yarns_of(*chain.problem);
+  check(*chain.problem, yarns);
+  EXPECT_EQ(yarns.size(), 1U);
 }
 
 TEST(Strips, OnAChainAreFastProjection) {
@@ -71,7 +70,7 @@ TEST(Strips, OnAChainAreFastProjection) {
   }
 }
 
-// Threads side by side in the lanes of a vector, of unequal lengths, do not feel each other.
+// Yarns side by side in the lanes of a vector, of unequal lengths, do not feel each other.
 TEST(Strips, OnSeveralChainsAreFastProjectionOnEach) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -109,7 +108,7 @@ TEST(Strips, OnSeveralChainsAreFastProjectionOnEach) {
   }
 }
 
-// Where threads do not cross, the projection of the whole has nothing to add.
+// Where yarns do not cross, the projection of the whole has nothing to add.
 TEST(FastProjectionAdaptive, OnAChainIsStrips) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -1,10 +1,10 @@
 // Small steps against an independent sweep over the same colors, the strain that theory gives a
-// loaded thread, and what attachments promise.
-#include "inextensible/methods/xpbd_small_steps.h"
+// loaded yarn, and what attachments promise.
+#include "solvers/methods/xpbd_small_steps.h"
 
 #include <gtest/gtest.h>
 
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {
@@ -44,7 +44,7 @@ TEST(XpbdSmallSteps, AreAGivenNumberOfSweeps) {
   }
 }
 
-// A thread at rest that hangs by one end.
+// A yarn at rest that hangs by one end.
 struct Hanging {
   static constexpr int links = 10;
   static constexpr double length = 0.1, gravity = 9.81;
@@ -73,29 +73,29 @@ struct Hanging {
 
 // Along a vertical line a sweep is linear. With one sweep a step in two colors, here the links 2,
 // 4,
-// ... from the pin before 1, 3, ..., a thread rests where each vertex is lifted by the g h^2 that
+// ... from the pin before 1, 3, ..., a yarn rests where each vertex is lifted by the g h^2 that
 // it falls: the links of the last color have their rest length, and link k of N of the first is
 // longer by 2 (N - k + 1) g h^2. (A sweep from the pin downwards leaves (N - k) g h^2 in link k.)
-TEST(XpbdSmallSteps, LeaveAHangingThreadTheStrainOfTheory) {
+TEST(XpbdSmallSteps, LeaveAHangingYarnTheStrainOfTheory) {
   for (const double step : {0.004, 0.002, 0.001, 0.0005}) {
-    const Hanging thread(step, "none", 20);
+    const Hanging yarn(step, "none", 20);
     const double fall = Hanging::gravity * step * step;
     for (int k = 1; k <= Hanging::links; ++k) {
       const double longer = k % 2 == 0 ? 2 * (Hanging::links - k + 1) * fall : 0;
-      const double length = (thread.state.x.col(k) - thread.state.x.col(k - 1)).norm();
+      const double length = (yarn.state.x.col(k) - yarn.state.x.col(k - 1)).norm();
       EXPECT_NEAR(length - Hanging::length, longer, 1e-3 * fall) << "link " << k << ", " << step;
     }
   }
 }
 
-TEST(XpbdSmallSteps, AttachmentsHoldAHangingThreadAtItsLength) {
+TEST(XpbdSmallSteps, AttachmentsHoldAHangingYarnAtItsLength) {
   for (const char* attachments : {"edges", "straight"}) {
     SCOPED_TRACE(attachments);
-    const Hanging thread(0.002, attachments);
+    const Hanging yarn(0.002, attachments);
     for (int i = 0; i <= Hanging::links; ++i)
-      EXPECT_LE((thread.state.x.col(i) - thread.state.x.col(0)).norm(),
+      EXPECT_LE((yarn.state.x.col(i) - yarn.state.x.col(0)).norm(),
                 i * Hanging::length * (1 + 1e-12));
-    EXPECT_LT(thread.largest_strain(), 0.1 * Hanging(0.002).largest_strain());
+    EXPECT_LT(yarn.largest_strain(), 0.1 * Hanging(0.002).largest_strain());
   }
 }
 

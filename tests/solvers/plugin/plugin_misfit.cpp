@@ -2,8 +2,8 @@
 // loads them.
 #include <stdexcept>
 
-#include "inextensible/methods/null_filter.h"
-#include "inextensible/plugin.h"
+#include "solvers/methods/null_filter.h"
+#include "solvers/plugin.h"
 
 namespace {
 

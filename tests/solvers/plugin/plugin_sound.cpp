@@ -5,8 +5,8 @@
 //   bare   takes neither shear nor a collider
 #include <stdexcept>
 
-#include "inextensible/methods/fast_projection.h"
-#include "inextensible/plugin.h"
+#include "solvers/methods/fast_projection.h"
+#include "solvers/plugin.h"
 
 namespace {
 

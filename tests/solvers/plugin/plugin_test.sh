@@ -124,7 +124,7 @@ seq 100 >text.so
 refused "there is no such file" --plugin missing.so list
 refused "invalid ELF header" --plugin text.so list
 refused "has no function inextensible_plugin" --plugin "$(ldd "$bench" | awk '/libm\.so/ {print $3}')" list
-abi=$(sed -n 's/^#define INEXTENSIBLE_PLUGIN_ABI //p' installed/include/inextensible/plugin.h)
+abi=$(sed -n 's/^#define INEXTENSIBLE_PLUGIN_ABI //p' installed/include/inextensible/solvers/plugin.h)
 refused "version of the plug-in interface is 999 there, $abi here" --plugin "$misfits/libplugin_another_version.so" list
 refused "alignment (EIGEN_MAX_ALIGN_BYTES) is 128 there, 64 here" --plugin "$misfits/libplugin_another_alignment.so" list
 refused "there is a solver 'shake' already" --plugin "$misfits/libplugin_taken_name.so" list

@@ -1,6 +1,6 @@
 // Bending: energies of shapes whose curvature is known, and forces against the energy's
 // differences.
-#include "inextensible/problem/bending.h"
+#include "solvers/problem/bending.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "inextensible/problem/forces.h"
+#include "solvers/problem/forces.h"
 
 namespace inextensible {
 namespace {
@@ -56,7 +56,7 @@ double rolled(int n, bool equilateral, double angle) {
   return bending_energy(bending, x) / (0.5 * rigidity / (radius * radius) * flat.area);
 }
 
-TEST(ThreadBending, OfACircleIsHalfItsRigidityTimesCurvatureSquaredTimesLength) {
+TEST(YarnBending, OfACircleIsHalfItsRigidityTimesCurvatureSquaredTimesLength) {
   constexpr double radius = 0.7, rigidity = 0.3;
   double last = 0;
   for (const int n : {20, 40}) {
@@ -65,7 +65,7 @@ TEST(ThreadBending, OfACircleIsHalfItsRigidityTimesCurvatureSquaredTimesLength) 
     Bending bending;
     for (int i = 0; i < n; ++i) {
       x.col(i) << radius * std::cos(sector * i), radius * std::sin(sector * i), 0.2;
-      bending.push_back(thread_bending(i, (i + 1) % n, (i + 2) % n, link, link, rigidity));
+      bending.push_back(yarn_bending(i, (i + 1) % n, (i + 2) % n, link, link, rigidity));
     }
     const double exact = 0.5 * rigidity / (radius * radius) * 2 * std::numbers::pi * radius;
     const double error = std::abs(bending_energy(bending, x) / exact - 1);
@@ -77,14 +77,14 @@ TEST(ThreadBending, OfACircleIsHalfItsRigidityTimesCurvatureSquaredTimesLength) 
   EXPECT_LT(last, 0.01);
 }
 
-TEST(ThreadBending, TakesLinksOfUnlikeLength) {
+TEST(YarnBending, TakesLinksOfUnlikeLength) {
   // On a parabola y = x^2 / 2, whose curvature at 0 is 1.
   const double a = 1e-3, b = 2e-3;
   Positions x(3, 3);
   x.col(0) << -a, 0.5 * a * a, 0;
   x.col(1).setZero();
   x.col(2) << b, 0.5 * b * b, 0;
-  const Bending bending{thread_bending(0, 1, 2, x.col(0).norm(), x.col(2).norm(), 1)};
+  const Bending bending{yarn_bending(0, 1, 2, x.col(0).norm(), x.col(2).norm(), 1)};
   EXPECT_NEAR(bending_energy(bending, x), 0.5 * 0.5 * (a + b), 1e-3 * (a + b));
 }
 
@@ -120,7 +120,7 @@ TEST(Forces, AreTheEnergysDifferences) {
   const Sheet flat = sheet(4, false);
   ProblemParts parts;
   parts.bending = plate_bending(flat.triangles, flat.x, 0.1);
-  parts.bending.push_back(thread_bending(0, 1, 2, 0.3, 0.35, 0.2));
+  parts.bending.push_back(yarn_bending(0, 1, 2, 0.3, 0.35, 0.2));
   parts.shear = Springs{{{0, 5}, {1, 4}}, {0.4, 0.5}, {3, 2}};
   for (int i = 0; i < 16; ++i) parts.mass.push_back(0.5 + 0.1 * i);
   parts.pinned = {3};
@@ -148,9 +148,9 @@ TEST(Forces, AreTheEnergysDifferences) {
 TEST(Problem, RefusesBendingAndDragThatFitNoVertex) {
   ProblemParts parts;
   parts.mass = {1, 1, 1};
-  parts.bending = {thread_bending(0, 1, 3, 1, 1, 1)};
+  parts.bending = {yarn_bending(0, 1, 3, 1, 1, 1)};
   EXPECT_THROW(Problem{parts}, std::invalid_argument);
-  parts.bending = {thread_bending(0, 1, 2, 1, 1, -1)};
+  parts.bending = {yarn_bending(0, 1, 2, 1, 1, -1)};
   EXPECT_THROW(Problem{parts}, std::invalid_argument);
   parts.bending.clear();
   parts.drag = {1, 1};

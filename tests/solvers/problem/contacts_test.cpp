@@ -1,5 +1,5 @@
 // Contact and friction of single vertices against their definitions.
-#include "inextensible/problem/contacts.h"
+#include "solvers/problem/contacts.h"
 
 #include <gtest/gtest.h>
 

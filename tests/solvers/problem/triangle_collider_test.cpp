@@ -1,6 +1,6 @@
 // The collider on a mesh that is not convex, where the sign of the distance is hard: against
 // closest points by another formula and the winding number.
-#include "inextensible/problem/triangle_collider.h"
+#include "solvers/problem/triangle_collider.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // What rows and their tables promise: of methods, their settings, and linear solvers.
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "inextensible/linear/spd_solvers.h"
-#include "inextensible/methods/fast_projection.h"
+#include "solvers/linear/spd_solvers.h"
+#include "solvers/methods/fast_projection.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {

@@ -9,10 +9,10 @@
 #include "harness/judge/reference.h"
 #include "harness/scenes/pendulum.h"
 #include "harness/scenes/scene.h"
-#include "inextensible/methods/fast_projection.h"
-#include "inextensible/problem/forces.h"
-#include "inextensible/registry.h"
-#include "inextensible/stepping/bdf2_stepper.h"
+#include "solvers/methods/fast_projection.h"
+#include "solvers/problem/forces.h"
+#include "solvers/registry.h"
+#include "solvers/stepping/bdf2_stepper.h"
 
 namespace harness {
 namespace {

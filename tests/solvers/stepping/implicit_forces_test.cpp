@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "inextensible/problem/forces.h"
-#include "inextensible/registry.h"
+#include "solvers/problem/forces.h"
+#include "solvers/registry.h"
 
 namespace inextensible {
 namespace {
@@ -18,7 +18,7 @@ struct Start {
   State state;
 };
 
-// A horizontal thread in n vertices, clamped at the first two, length 1 m from the middle of its
+// A horizontal yarn in n vertices, clamped at the first two, length 1 m from the middle of its
 // first link on; Gamma = rho g L^3 / EI (Romero et al. 2021; Peirce 1930). Its end vertex is half a
 // link's mass, so that every link bears what lies beyond its middle.
 Start cantilever(int n, double gamma, bool implicit) {
@@ -30,7 +30,7 @@ Start cantilever(int n, double gamma, bool implicit) {
   for (int i = 1; i + 1 < n; ++i) {
     parts.edges.push_back({i, i + 1});
     parts.rest_length.push_back(link);
-    parts.bending.push_back(thread_bending(i - 1, i, i + 1, link, link, rigidity));
+    parts.bending.push_back(yarn_bending(i - 1, i, i + 1, link, link, rigidity));
   }
   for (const double m : parts.mass) parts.drag.push_back(6 * m);
   parts.implicit_forces = implicit;
@@ -100,23 +100,22 @@ Start cloth(int n, double shear, bool implicit) {
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       start.state.x.col(at(i, j)) << j * link, 0, i * link;
-      const auto thread = [&](int a, int b) {
+      const auto yarn = [&](int a, int b) {
         parts.edges.push_back({a, b});
         parts.rest_length.push_back(link);
       };
-      if (j + 1 < n && i > 0)
-        thread(at(i, j), at(i, j + 1));  // the pinned row is free: no taut row
-      if (i + 1 < n) thread(at(i, j), at(i + 1, j));
+      if (j + 1 < n && i > 0) yarn(at(i, j), at(i, j + 1));  // the pinned row is free: no taut row
+      if (i + 1 < n) yarn(at(i, j), at(i + 1, j));
       if (i + 1 < n && j + 1 < n) {
         spring(at(i, j), at(i + 1, j + 1));
         spring(at(i, j + 1), at(i + 1, j));
       }
       if (j + 2 < n)
         parts.bending.push_back(
-            thread_bending(at(i, j), at(i, j + 1), at(i, j + 2), link, link, 1e-3 * link));
+            yarn_bending(at(i, j), at(i, j + 1), at(i, j + 2), link, link, 1e-3 * link));
       if (i + 2 < n)
         parts.bending.push_back(
-            thread_bending(at(i, j), at(i + 1, j), at(i + 2, j), link, link, 1e-3 * link));
+            yarn_bending(at(i, j), at(i + 1, j), at(i + 2, j), link, link, 1e-3 * link));
     }
   }
   parts.implicit_forces = implicit;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <memory>
 
-#include "inextensible/problem/triangle_collider.h"
-#include "inextensible/registry.h"
+#include "solvers/problem/triangle_collider.h"
+#include "solvers/registry.h"
 
 namespace inextensible {
 namespace {

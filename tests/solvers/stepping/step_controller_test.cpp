@@ -1,5 +1,5 @@
 // The step controller against steppers whose refusals are known.
-#include "inextensible/stepping/step_controller.h"
+#include "solvers/stepping/step_controller.h"
 
 #include <gtest/gtest.h>
 

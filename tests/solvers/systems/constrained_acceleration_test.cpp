@@ -1,6 +1,6 @@
 // Constrained accelerations against dense algebra and mechanics, and what starting half a step back
 // does for every method.
-#include "inextensible/systems/constrained_acceleration.h"
+#include "solvers/systems/constrained_acceleration.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "harness/base/fit.h"
 #include "harness/scenes/pendulum.h"
-#include "inextensible/registry.h"
+#include "solvers/registry.h"
 #include "support/random_graph.h"
 
 namespace inextensible {

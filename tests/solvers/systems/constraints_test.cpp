@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "inextensible/linear/eigen_ldlt.h"
-#include "inextensible/linear/lu.h"
-#include "inextensible/linear/spd_solvers.h"
-#include "inextensible/problem/edge_constraints.h"
-#include "inextensible/systems/schur_complement.h"
+#include "solvers/linear/eigen_ldlt.h"
+#include "solvers/linear/lu.h"
+#include "solvers/linear/spd_solvers.h"
+#include "solvers/problem/edge_constraints.h"
+#include "solvers/systems/schur_complement.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {

@@ -5,8 +5,8 @@
 
 #include <Eigen/Dense>
 
-#include "inextensible/systems/contact_terms.h"
-#include "inextensible/systems/schur_complement.h"
+#include "solvers/systems/contact_terms.h"
+#include "solvers/systems/schur_complement.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {

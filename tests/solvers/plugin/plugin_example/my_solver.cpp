@@ -3,7 +3,7 @@
 // random permutation each sweep: no random numbers, but a correction travels along a row in one
 // sweep only if the row is numbered along it.
 // Loops: one pass over edges a sweep, one check.
-#include <inextensible/plugin.h>
+#include <solvers/plugin.h>
 
 #include <cmath>
 

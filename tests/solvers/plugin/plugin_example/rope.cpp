@@ -1,5 +1,5 @@
 // The velocity filter in a program of one's own, as one call after the program's own time step.
-#include <inextensible/methods/fast_projection.h>
+#include <solvers/methods/fast_projection.h>
 
 #include <cstdio>
 

@@ -1,14 +1,14 @@
-// With J and W of one thread alone, J W J^T is tridiagonal: a step of Newton's method on it costs
-// little more than a sweep and carries along the thread as far as it is long, for which sweeps need
+// With J and W of one yarn alone, J W J^T is tridiagonal: a step of Newton's method on it costs
+// little more than a sweep and carries along the yarn as far as it is long, for which sweeps need
 // the square of that. With g = d / l of a link and nu = 4 mu,
 //   (w_a + w_b) |g|^2 nu + couplings -w g . g' nu' = C~,   x -= W J^T mu = w g nu / 2 at an end.
-// C~ is what of C lies beyond the target, so that slack within it is not taken back. A thread none
-// of whose links is beyond the limit is left alone. Where a thread lies straight between two pins
+// C~ is what of C lies beyond the target, so that slack within it is not taken back. A yarn none
+// of whose links is beyond the limit is left alone. Where a yarn lies straight between two pins
 // the last pivot vanishes: pivots are kept from falling below a part of the diagonal.
 //
-// Threads of one color are solved side by side, one in each lane of a vector (Thomas's algorithm in
-// step). Loops: two passes over links forwards and one back a thread.
-#include "inextensible/methods/thread_pass.h"
+// Yarns of one color are solved side by side, one in each lane of a vector (Thomas's algorithm in
+// step). Loops: two passes over links forwards and one back a yarn.
+#include "solvers/methods/yarn_pass.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,56 +20,56 @@ constexpr double least_pivot = 1e-3;  // of the diagonal
 
 }  // namespace
 
-ThreadPass::ThreadPass(const Problem& problem, double strain_limit, double target,
-                       const ColoredEdges& places)
+YarnPass::YarnPass(const Problem& problem, double strain_limit, double target,
+                   const ColoredEdges& places)
     : band_(strain_limit, target),
       target_low_(target * (PermissibleSquares(strain_limit).low - 1)),
       target_high_(target * (PermissibleSquares(strain_limit).high - 1)),
       places_(places) {
-  const std::vector<Thread> threads = threads_of(problem);
-  std::vector<const Thread*> side_by_side;
-  for (const Thread& thread : threads) {
+  const std::vector<Yarn> yarns = yarns_of(problem);
+  std::vector<const Yarn*> side_by_side;
+  for (const Yarn& yarn : yarns) {
     if (!side_by_side.empty() &&
-        (side_by_side.size() == lanes || side_by_side.front()->color != thread.color)) {
+        (side_by_side.size() == lanes || side_by_side.front()->color != yarn.color)) {
       add_bundle(problem, side_by_side, places);
       side_by_side.clear();
     }
-    side_by_side.push_back(&thread);
+    side_by_side.push_back(&yarn);
   }
   if (!side_by_side.empty()) add_bundle(problem, side_by_side, places);
-  crossing_ = !threads.empty() && threads.front().color != threads.back().color;
+  crossing_ = !yarns.empty() && yarns.front().color != yarns.back().color;
   int longest = 0;
   for (const Bundle& b : bundles_) longest = std::max(longest, b.links);
   rows_.resize(static_cast<std::size_t>(longest) + 1, Row{});
 }
 
-void ThreadPass::add_bundle(const Problem& problem, const std::vector<const Thread*>& threads,
-                            const ColoredEdges& places) {
-  const std::size_t links = threads.front()->edges.size();  // the longest comes first
+void YarnPass::add_bundle(const Problem& problem, const std::vector<const Yarn*>& yarns,
+                          const ColoredEdges& places) {
+  const std::size_t links = yarns.front()->edges.size();  // the longest comes first
   bundles_.push_back({static_cast<int>(links), static_cast<int>(place_.size()) / lanes,
-                      static_cast<int>(threads.size())});
+                      static_cast<int>(yarns.size())});
   for (std::size_t i = 0; i <= links; ++i) {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      // A lane without a thread stays at the first one's begin, a short thread at its end.
-      const bool taken = lane < threads.size();
-      const Thread& thread = *threads[taken ? lane : 0];
-      const std::size_t count = taken ? thread.edges.size() : 0;
-      const int vertex = thread.vertices[std::min(i, count)];
+      // A lane without a yarn stays at the first one's begin, a short yarn at its end.
+      const bool taken = lane < yarns.size();
+      const Yarn& yarn = *yarns[taken ? lane : 0];
+      const std::size_t count = taken ? yarn.edges.size() : 0;
+      const int vertex = yarn.vertices[std::min(i, count)];
       const bool link = i < count;
       place_.push_back(places.place(vertex));
       inverse_mass_.push_back(taken && i <= count ? problem.inverse_mass()[vertex] : 0);
-      rest_.push_back(link ? problem.rest_length()[thread.edges[i]] : 0);
+      rest_.push_back(link ? problem.rest_length()[yarn.edges[i]] : 0);
       inverse_rest_.push_back(link ? 1 / rest_.back() : 0);
     }
   }
 }
 
-void ThreadPass::heed(const Contacts* contacts) {
+void YarnPass::heed(const Contacts* contacts) {
   contacts_ = contacts;
   if (contacts && normal_.size() == 0) normal_ = places_.make_places();
 }
 
-void ThreadPass::show_normals(bool shown) {
+void YarnPass::show_normals(bool shown) {
   const Contacts::Timing measured = contacts_->timing();
   for (int c = 0; c < contacts_->count(); ++c) {
     const int place = places_.place(contacts_->vertex(c));
@@ -83,8 +83,8 @@ void ThreadPass::show_normals(bool shown) {
 
 // The first `used` lanes.
 template <int used, bool contact>
-std::int64_t ThreadPass::project(const Bundle& bundle, ColoredEdges::Places& positions,
-                                 WorkCounters& work) {
+std::int64_t YarnPass::project(const Bundle& bundle, ColoredEdges::Places& positions,
+                               WorkCounters& work) {
   double* const x[3] = {positions.col(0).data(), positions.col(1).data(), positions.col(2).data()};
   const std::size_t first = static_cast<std::size_t>(bundle.first) * lanes;
   const int* place = place_.data() + first;
@@ -120,16 +120,16 @@ std::int64_t ThreadPass::project(const Bundle& bundle, ColoredEdges::Places& pos
     }
   }
   double all = 0, solved[lanes];
-  int threads = 0;
+  int yarns = 0;
   for (int i = 0; i < used; ++i) {
     all += violated[i];
     solved[i] = violated[i] > 0 ? 1 : 0;
-    threads += static_cast<int>(violated[i] > 0);
+    yarns += static_cast<int>(violated[i] > 0);
   }
-  if (threads == 0) return 0;
-  work.assemblies += threads;
-  work.factorizations += threads;
-  work.back_solves += threads;
+  if (yarns == 0) return 0;
+  work.assemblies += yarns;
+  work.factorizations += yarns;
+  work.back_solves += yarns;
 
   const double* normal[3] = {};
   if constexpr (contact) {
@@ -195,16 +195,16 @@ std::int64_t ThreadPass::project(const Bundle& bundle, ColoredEdges::Places& pos
 }
 
 template <bool contact>
-std::int64_t ThreadPass::project_all(ColoredEdges::Places& x, WorkCounters& work) {
+std::int64_t YarnPass::project_all(ColoredEdges::Places& x, WorkCounters& work) {
   std::int64_t violated = 0;
   for (const Bundle& bundle : bundles_) {
-    violated += bundle.threads == 1 ? project<1, contact>(bundle, x, work)
-                                    : project<lanes, contact>(bundle, x, work);
+    violated += bundle.yarns == 1 ? project<1, contact>(bundle, x, work)
+                                  : project<lanes, contact>(bundle, x, work);
   }
   return violated;
 }
 
-std::int64_t ThreadPass::project(ColoredEdges::Places& x, WorkCounters& work) {
+std::int64_t YarnPass::project(ColoredEdges::Places& x, WorkCounters& work) {
   if (!contacts_ || contacts_->count() == 0) return project_all<false>(x, work);
   show_normals(true);
   const std::int64_t violated = project_all<true>(x, work);

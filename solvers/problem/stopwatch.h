@@ -5,11 +5,11 @@
 
 namespace inextensible {
 
-class Lap {
+class Stopwatch {
  public:
   // wanted = false: reads no clock and answers 0. A read takes tens of nanoseconds, a short step a
   // few hundred.
-  explicit Lap(bool wanted) : wanted_(wanted) {
+  explicit Stopwatch(bool wanted) : wanted_(wanted) {
     if (wanted_) last_ = std::chrono::steady_clock::now();
   }
 

@@ -1,4 +1,4 @@
-#include "inextensible/methods/threads.h"
+#include "solvers/methods/yarns.h"
 
 #include <algorithm>
 #include <array>
@@ -48,23 +48,23 @@ int other_end(const Problem& problem, int edge, int v) {
   return e.a == v ? e.b : e.a;
 }
 
-// The first color that none of a thread's vertices has yet.
-void paint(std::vector<Thread>& threads, int vertices) {
+// The first color that none of a yarn's vertices has yet.
+void paint(std::vector<Yarn>& yarns, int vertices) {
   std::vector<std::set<int>> taken(vertices);
-  for (Thread& thread : threads) {
+  for (Yarn& yarn : yarns) {
     const auto fits = [&](int color) {
-      return std::none_of(thread.vertices.begin(), thread.vertices.end(),
+      return std::none_of(yarn.vertices.begin(), yarn.vertices.end(),
                           [&](int v) { return taken[v].contains(color); });
     };
-    thread.color = 0;
-    while (!fits(thread.color)) ++thread.color;
-    for (const int v : thread.vertices) taken[v].insert(thread.color);
+    yarn.color = 0;
+    while (!fits(yarn.color)) ++yarn.color;
+    for (const int v : yarn.vertices) taken[v].insert(yarn.color);
   }
 }
 
 }  // namespace
 
-std::vector<Thread> threads_of(const Problem& problem) {
+std::vector<Yarn> yarns_of(const Problem& problem) {
   const Neighbours at = neighbours_of(problem);
   const auto next = continuations(problem, at);
   const auto at_end = [&](int edge, int v) {
@@ -72,22 +72,22 @@ std::vector<Thread> threads_of(const Problem& problem) {
   };
   std::vector<bool> used(problem.constraints(), false);
   std::vector<bool> seen(problem.vertices(), false);
-  std::vector<Thread> threads;
-  // From an edge on, beginning at its end v, until the thread ends or meets itself.
+  std::vector<Yarn> yarns;
+  // From an edge on, beginning at its end v, until the yarn ends or meets itself.
   const auto follow = [&](int edge, int v) {
-    Thread thread{{v}, {}, 0};
+    Yarn yarn{{v}, {}, 0};
     seen[v] = true;
     while (edge >= 0 && !used[edge]) {
       const int to = other_end(problem, edge, v);
       if (seen[to]) break;
       used[edge] = seen[to] = true;
-      thread.edges.push_back(edge);
-      thread.vertices.push_back(to);
+      yarn.edges.push_back(edge);
+      yarn.vertices.push_back(to);
       edge = at_end(edge, to);
       v = to;
     }
-    for (const int vertex : thread.vertices) seen[vertex] = false;
-    if (!thread.edges.empty()) threads.push_back(std::move(thread));
+    for (const int vertex : yarn.vertices) seen[vertex] = false;
+    if (!yarn.edges.empty()) yarns.push_back(std::move(yarn));
   };
   for (int k = 0; k < problem.constraints(); ++k) {  // those that have an end
     const Edge e = problem.edges()[k];
@@ -97,15 +97,15 @@ std::vector<Thread> threads_of(const Problem& problem) {
   for (int k = 0; k < problem.constraints(); ++k) {  // rings, and what was cut off
     if (!used[k]) follow(k, problem.edges()[k].a);
   }
-  paint(threads, problem.vertices());
+  paint(yarns, problem.vertices());
   std::map<int, std::size_t> edges_of;
-  for (const Thread& thread : threads) edges_of[thread.color] += thread.edges.size();
-  std::stable_sort(threads.begin(), threads.end(), [&](const Thread& p, const Thread& q) {
+  for (const Yarn& yarn : yarns) edges_of[yarn.color] += yarn.edges.size();
+  std::stable_sort(yarns.begin(), yarns.end(), [&](const Yarn& p, const Yarn& q) {
     if (p.color != q.color)
       return std::pair(edges_of[q.color], p.color) < std::pair(edges_of[p.color], q.color);
     return p.edges.size() > q.edges.size();
   });
-  return threads;
+  return yarns;
 }
 
 }  // namespace inextensible

@@ -1,40 +1,39 @@
-// Threads of the cloth (threads.h), each projected as a whole: what strips and
+// Yarns of the cloth (yarns.h), each projected as a whole: what strips and
 // fast_projection_adaptive share.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "inextensible/methods/strain_pass.h"
-#include "inextensible/methods/threads.h"
-#include "inextensible/problem/work_counters.h"
+#include "solvers/methods/strain_passes.h"
+#include "solvers/methods/yarns.h"
+#include "solvers/problem/work_counters.h"
 
 namespace inextensible {
 
-class ThreadPass {
+class YarnPass {
  public:
-  // Links strained beyond `target` of the limit are brought to it, in a thread that has one beyond
+  // Links strained beyond `target` of the limit are brought to it, in a yarn that has one beyond
   // the limit. `places`: where vertices are in the positions that project() takes; they
   // outlive this.
-  ThreadPass(const Problem& problem, double strain_limit, double target,
-             const ColoredEdges& places);
+  YarnPass(const Problem& problem, double strain_limit, double target, const ColoredEdges& places);
 
-  // One step of Newton's method for every thread, color after color. Returns how many links were
+  // One step of Newton's method for every yarn, color after color. Returns how many links were
   // beyond the limit; one without length counts as none.
   std::int64_t project(ColoredEdges::Places& x, WorkCounters& work);
 
   // Contacts whose vertices move within their planes only, from the next projection on; null: none.
   void heed(const Contacts* contacts);
 
-  bool crossing() const { return crossing_; }  // whether threads share vertices
+  bool crossing() const { return crossing_; }  // whether yarns share vertices
 
  private:
   static constexpr int lanes = 8;
-  // Threads of one color side by side, one a lane; shorter ones end in links that are none.
+  // Yarns of one color side by side, one a lane; shorter ones end in links that are none.
   struct Bundle {
-    int links, first, threads;  // first: row of vertices and links in the arrays below
+    int links, first, yarns;  // first: row of vertices and links in the arrays below
   };
-  void add_bundle(const Problem& problem, const std::vector<const Thread*>& threads,
+  void add_bundle(const Problem& problem, const std::vector<const Yarn*>& yarns,
                   const ColoredEdges& places);
   template <bool contact>
   std::int64_t project_all(ColoredEdges::Places& x, WorkCounters& work);

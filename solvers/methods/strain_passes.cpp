@@ -7,7 +7,7 @@
 // the rest is positions and constants from the second-level cache, 120 bytes an edge, and fillers.
 // Seeds in single precision with a step of Halley's method halve the floor, but not the sweep: GCC
 // 12 spends the gain on conversions.
-#include "inextensible/methods/strain_pass.h"
+#include "solvers/methods/strain_passes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,8 +71,8 @@ StrainBand::StrainBand(double strain_limit, double target)
       target_low(std::max(1 - target * strain_limit, std::sqrt(low) * (1 + 1e-15))),
       target_high(std::min(1 + target * strain_limit, std::sqrt(high) * (1 - 1e-15))) {}
 
-StrainSweep::StrainSweep(const Problem& problem, const StrainBand& band,
-                         const std::vector<double>& share_a, const std::vector<double>& share_b)
+StrainPasses::StrainPasses(const Problem& problem, const StrainBand& band,
+                           const std::vector<double>& share_a, const std::vector<double>& share_b)
     : edges_(problem),
       band_(band),
       inverse_square_(edges_.entries()),
@@ -92,8 +92,8 @@ StrainSweep::StrainSweep(const Problem& problem, const StrainBand& band,
   }
 }
 
-StrainSweep StrainSweep::by_mass(const Problem& problem, const StrainBand& band,
-                                 double relaxation) {
+StrainPasses StrainPasses::by_mass(const Problem& problem, const StrainBand& band,
+                                   double relaxation) {
   std::vector<double> share_a, share_b;
   for (const Edge& edge : problem.edges()) {
     const double wa = problem.inverse_mass()[edge.a];
@@ -104,8 +104,8 @@ StrainSweep StrainSweep::by_mass(const Problem& problem, const StrainBand& band,
   return {problem, band, share_a, share_b};
 }
 
-StepResult StrainSweep::limit(Order order, int most_sweeps, const EdgeConstraints& edges,
-                              Positions& x, WorkCounters& work) {
+StepResult StrainPasses::limit(Order order, int most_sweeps, const EdgeConstraints& edges,
+                               Positions& x, WorkCounters& work) {
   load(x);
   for (int sweeps = 0;; ++sweeps) {
     const bool gives_up = sweeps == most_sweeps || (sweeps % 64 == 63 && !finite());
@@ -123,23 +123,23 @@ StepResult StrainSweep::limit(Order order, int most_sweeps, const EdgeConstraint
 }
 
 // By way of x, where vertices lie as contacts know them.
-void StrainSweep::update_planes(Positions& x, WorkCounters& work) {
+void StrainPasses::update_planes(Positions& x, WorkCounters& work) {
   store(x);
   if (contacts_->update(x, work) > 0) load(x);
 }
 
-void StrainSweep::settle_contacts() {
+void StrainPasses::settle_contacts() {
   if (!contacts_) return;
   contacts_->settle(
       [this](int vertex, int axis) -> double& { return x_(edges_.place(vertex), axis); });
 }
 
-std::int64_t StrainSweep::in_turn() {
+std::int64_t StrainPasses::in_turn() {
   settle_contacts();
   return sweep<true>(x_);
 }
 
-StrainSweep::Swept StrainSweep::in_turn(int most, WorkCounters& work) {
+StrainPasses::Swept StrainPasses::in_turn(int most, WorkCounters& work) {
   Swept swept{1, 0};
   while (swept.sweeps < most && swept.left > 0) {
     swept.left = in_turn();
@@ -149,7 +149,7 @@ StrainSweep::Swept StrainSweep::in_turn(int most, WorkCounters& work) {
   return swept;
 }
 
-std::int64_t StrainSweep::at_once() {
+std::int64_t StrainPasses::at_once() {
   settle_contacts();
   const std::int64_t corrected = sweep<false>(correction_);
   if (corrected == 0) return 0;
@@ -159,7 +159,7 @@ std::int64_t StrainSweep::at_once() {
 }
 
 template <bool in_place>
-std::int64_t StrainSweep::sweep(ColoredEdges::Places& to) {
+std::int64_t StrainPasses::sweep(ColoredEdges::Places& to) {
   const int *a = edges_.a().data(), *b = edges_.b().data();
   const std::ptrdiff_t stride = x_.rows();
   std::int64_t corrected = 0;

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "inextensible/methods/colored_edges.h"
-#include "inextensible/systems/constraint_system.h"
+#include "solvers/methods/colored_edges.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 
@@ -26,15 +26,15 @@ struct StrainBand {
   double target_low, target_high;
 };
 
-class StrainSweep {
+class StrainPasses {
  public:
   // A correction moves the ends of edge k by share_a[k] and share_b[k] of what it takes to bring
   // the edge to the target.
-  StrainSweep(const Problem& problem, const StrainBand& band, const std::vector<double>& share_a,
-              const std::vector<double>& share_b);
+  StrainPasses(const Problem& problem, const StrainBand& band, const std::vector<double>& share_a,
+               const std::vector<double>& share_b);
 
   // The shares of Gauss-Seidel: by inverse mass, times `relaxation`.
-  static StrainSweep by_mass(const Problem& problem, const StrainBand& band, double relaxation);
+  static StrainPasses by_mass(const Problem& problem, const StrainBand& band, double relaxation);
 
   // Positions (3 x n) in and out. store() leaves pinned vertices alone.
   void load(const Positions& x) { edges_.load(x, x_); }
