@@ -29,7 +29,7 @@ from page.data import document_data, embedded
 from page.findings import findings
 from page.motion import recorded
 from page.pictures import Picture, picture
-from parts.legend import Legend, legend_of, merged
+from parts.legend import legend_of, merged
 from parts.program import exit_code
 from parts.result_file import Json, ResultError, load, object_in
 from parts.style import RC

@@ -1,1 +1,4 @@
-import documents  # noqa: F401  puts plots/ on the path, for all tests
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "plots"))  # for all tests

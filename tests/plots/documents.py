@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import Any, Iterator
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "plots"))
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -17,6 +13,8 @@ from matplotlib.text import Text
 
 import figures
 from parts.style import RC
+
+ROOT = Path(__file__).resolve().parents[2]
 
 Json = dict[str, Any]
 

@@ -40,10 +40,6 @@ def recorded(folder: Path, stretched: float = 1.0, chain: bool = False, body: bo
     return folder
 
 
-def run(*arguments: object) -> subprocess.CompletedProcess:
-    return subprocess.run([sys.executable, str(SCRIPT), *map(str, arguments)], capture_output=True, text=True, check=False)
-
-
 def pictured(folder: Path, frames: list[int], ends: int = 3) -> Path:
     """The same with pictures: of take 0 blue, of take 1 orange, which ends after so many frames."""
     recorded(folder)

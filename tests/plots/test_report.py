@@ -15,7 +15,7 @@ from typing import Any, Iterator
 
 import pytest
 
-from documents import ROOT, Json, document, point, resolution_sweep, stability, strain_sweep, written
+from documents import ROOT, Json, resolution_sweep, stability, strain_sweep, written
 from page.data import COLUMNS, document_data, embedded, repeat_command
 from page.findings import findings
 from page.motion import recorded
