@@ -48,7 +48,7 @@ inextensible::BodyMotion swaying(const SceneParameters& p) {
     const double wave = strength * std::sin(phase), angle = turn * wave;
     inextensible::Pose pose;
     pose.turn << std::cos(angle), 0, std::sin(angle), 0, 1, 0, -std::sin(angle), 0, std::cos(angle);
-    pose.way << sway * wave, 0, 0;
+    pose.translation << sway * wave, 0, 0;
     return pose;
   };
 }

@@ -1,12 +1,12 @@
 // The two costs differ by orders of magnitude either way: on cloth that is little sheared, CG needs
 // about ten iterations at any size, a few percent of a factorization; where warp and weft have
-// become parallel it needs hundreds or thousands. Nothing but trying tells which, so this is the
+// become parallel it needs hundreds or thousands. Only trying tells which, so this is the
 // rent-or-buy problem (Karlin et al. 1988): CG iterations are rent. As long as no elimination order
-// has been sought (the price is that of some `price` iterations), long solves are borne until what
-// they have wasted adds up to that price. From then on a solve that is not done after `quick`
-// iterations, about what a factorization costs, is finished by one; and CG is tried again after a
-// number of factorizations that doubles each time it was in vain. All by counting, not by clocks,
-// so that runs repeat exactly.
+// has been computed (which costs about `ordering_cost` iterations), long solves go on until the
+// iterations beyond `quick` add up to that cost. From then on a solve that has not converged after
+// `quick` iterations, about the cost of a factorization, is finished by one. CG is tried again
+// after a retry interval, which doubles each time CG fails. Costs are counted, not timed, so that
+// runs repeat exactly.
 #include "solvers/linear/hybrid.h"
 
 #include <algorithm>
@@ -14,17 +14,17 @@
 namespace inextensible {
 namespace {
 
-constexpr int quick = 40, price = 1000;
-constexpr int first_holiday = 8, longest_holiday = 512;
+constexpr int quick = 40, ordering_cost = 1000;      // iterations
+constexpr int first_retry = 8, longest_retry = 512;  // factorizations
 
 }  // namespace
 
 HybridSpdSolver::HybridSpdSolver(SymmetricPattern pattern)
-    : pattern_(pattern), cg_(std::move(pattern)), rhs_(pattern_.n), next_holiday_(first_holiday) {}
+    : pattern_(pattern), cg_(std::move(pattern)), rhs_(pattern_.n), retry_interval_(first_retry) {}
 
 bool HybridSpdSolver::factor() {
-  if (holiday_ > 0) {
-    --holiday_;
+  if (until_retry_ > 0) {
+    --until_retry_;
     return factor_wholly();
   }
   factored_ = false;
@@ -36,16 +36,16 @@ bool HybridSpdSolver::solve_within(double tolerance, double* rhs) {
   if (!factored_) {
     std::copy_n(rhs, pattern_.n, rhs_.data());
     const auto before = cg_.iterations();
-    cg_.set_most_iterations(direct_ ? quick : price);
+    cg_.set_most_iterations(direct_ ? quick : ordering_cost);
     if (cg_.solve_within(tolerance, rhs)) {
-      next_holiday_ = first_holiday;
+      retry_interval_ = first_retry;
       wasted_ += std::max(0, static_cast<int>(cg_.iterations() - before) - quick);
-      if (!direct_ && wasted_ > price) prepare_factorization();
+      if (!direct_ && wasted_ > ordering_cost) prepare_factorization();
       return true;
     }
     if (!direct_) prepare_factorization();
-    holiday_ = next_holiday_;
-    next_holiday_ = std::min(2 * next_holiday_, longest_holiday);
+    until_retry_ = retry_interval_;
+    retry_interval_ = std::min(2 * retry_interval_, longest_retry);
     std::copy_n(rhs_.data(), pattern_.n, rhs);
     if (!factor_wholly()) return false;
   }

@@ -38,9 +38,9 @@ class HybridSpdSolver final : public SpdSolver {
   LineCgSolver cg_;
   std::vector<double> rhs_;
   bool factored_ = false;
-  int wasted_ = 0;   // CG iterations beyond `quick`, until a factorization is prepared
-  int holiday_ = 0;  // factorizations until CG is tried again
-  int next_holiday_;
+  int wasted_ = 0;       // CG iterations beyond `quick`, until a factorization is prepared
+  int until_retry_ = 0;  // factorizations until CG is tried again
+  int retry_interval_;
 
   // Once prepared: the matrix in elimination order.
   std::vector<int> order_, place_;  // of rows; of entries in direct_->values()

@@ -33,8 +33,9 @@ DenseOracle::DenseOracle(const Problem& problem)
   }
 }
 
-StepResult DenseOracle::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
+StepResult DenseOracle::apply(const Positions& /*x_start*/, double /*h*/, Iterate iterate,
                               WorkCounters& work) {
+  Positions& x = iterate;
   const Eigen::Index n3 = 3 * x.cols(), m = edges_.count();
   if (m == 0) return {};  // no constraint: the candidate it is
   const Positions x0 = x;

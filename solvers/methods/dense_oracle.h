@@ -16,7 +16,8 @@ class DenseOracle final : public VelocityFilter {
   static constexpr int largest_problem = 600;  // vertices
   // Throws std::invalid_argument for more vertices than largest_problem.
   explicit DenseOracle(const Problem& problem);
-  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+  StepResult apply(const Positions& x_start, double h, Iterate iterate,
+                   WorkCounters& work) override;
   // Multipliers h^2 lambda of the last accepted step, one an edge, kg m.
   const Eigen::VectorXd& multipliers() const { return mu_; }
 

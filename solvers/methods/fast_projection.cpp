@@ -37,83 +37,82 @@ FastProjection::FastProjection(const Problem& problem, const Settings& settings)
     : system_(problem, settings.strain_limit, settings.linear_solver,
               ConstraintSystem::Digits::few),
       settings_(settings),
-      best_(3, problem.vertices()),
+      best_{Positions(3, problem.vertices()), {}},
       u_(3, problem.constraints()),
       mu_(problem.constraints()),
       excess_(problem.constraints()) {
-  const bool sweeps = settings.smoothing_sweeps > 0 || settings.sweeps_before > 0;
-  if (sweeps && system_.solver_name() != "tridiagonal") {
-    sweep_ = std::make_unique<StrainPasses>(
+  const bool passes = settings.smoothing_sweeps > 0 || settings.sweeps_before > 0;
+  if (passes && !system_.chain()) {
+    passes_ = std::make_unique<StrainPasses>(
         StrainPasses::by_mass(problem, {settings.strain_limit, settings.smoothing_target},
                               settings.smoothing_relaxation));
   }
 }
 
-// u_, and C~ for this target in mu_. Returns whether x is permissible.
+StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
+                                 WorkCounters& work) {
+  const EdgeConstraints& edges = system_.edges();
+  double least_error = std::numeric_limits<double>::infinity();  // |C~|^2 at best_
+  double last_error = least_error, forcing = settings_.first_forcing;
+  for (int j = 0, best_j = 0;; ++j) {
+    if (observer_) show(j, x);
+    bool permissible = linearize(settings_.target, x);
+    if (j == 0 && !permissible && settings_.sweeps_before > 0) {
+      pass(settings_.sweeps_before, x, work);
+      permissible = linearize(settings_.target, x);
+    }
+    if (permissible && j >= settings_.min_iterations) return {Status::ok, j};
+    if (j == settings_.max_iterations)
+      return refuse(Status::not_converged, j, edges, x, "iteration limit");
+
+    const double error = mu_.squaredNorm();
+    if (error == 0) return {Status::ok, j};  // nothing left to project
+    if (error < least_error) {
+      least_error = error;
+      best_j = j;
+      keep_best(x);
+    } else if (j == 0) {
+      return refuse(Status::not_finite, j, edges, x, "overflow");
+    }
+    if (j > 0)
+      forcing = std::clamp(0.9 * error / last_error, least_forcing, settings_.first_forcing);
+    last_error = error;
+    const double most = (x.touching() > 0 ? overshoot_in_contact : overshoot) * least_error;
+    if (j - best_j == patience || !(error < most)) return damped(j, x, work);
+
+    if (!system_.factor(u_, x.contacts(), work)) return damped(j, x, work);  // J W J^T
+    if (!system_.solve(mu_, work, forcing)) return damped(j, x, work);       // (7)
+    correct(x);                                                              // (5)
+    pass(settings_.smoothing_sweeps, x, work);
+    x.renew_planes(work);
+  }
+}
+
+// C~(x) for this target to mu_, the gradient of C to u_. Returns whether x is permissible.
 bool FastProjection::linearize(double target, const Positions& x) {
   const bool permissible = system_.edges().linearize(x, u_, mu_);
   if (target > 0) system_.edges().excess(target, mu_);
   return permissible;
 }
 
-StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
-                                 WorkCounters& work) {
-  const EdgeConstraints& edges = system_.edges();
-  double error = std::numeric_limits<double>::infinity();  // |C~|^2 at best_
-  double last_error = error, forcing = settings_.first_forcing;
-  for (int j = 0, best_j = 0;; ++j) {
-    if (observer_) show(j, x);
-    bool permissible = linearize(settings_.target, x);
-    if (j == 0 && !permissible && sweep_ && settings_.sweeps_before > 0) {
-      sweep(settings_.sweeps_before, x, work);
-      permissible = linearize(settings_.target, x);
-    }
-    if (permissible && j >= settings_.min_iterations) return {Status::ok, j};
-    if (j == settings_.max_iterations)
-      return refuse(Status::not_converged, j, edges, x, "iteration limit");
-    const double next_error = mu_.squaredNorm();
-    if (next_error == 0) return {Status::ok, j};  // nothing left to project
-    if (next_error < error) {
-      error = next_error;
-      keep_best(x);
-      best_j = j;
-    } else if (j == 0) {
-      return refuse(Status::not_finite, j, edges, x, "overflow");
-    }
-    if (j > 0)
-      forcing = std::clamp(0.9 * next_error / last_error, least_forcing, settings_.first_forcing);
-    last_error = next_error;
-    if (j - best_j == patience ||
-        !(next_error < (touches() ? overshoot_in_contact : overshoot) * error) ||
-        !system_.factor(u_, work) || !system_.solve(mu_, work, forcing))  // (7)
-      return damped(j, x, work);
-    correct(x);
-    smooth(x, work);
-    if (contacts_) contacts_->update(x, work);
-  }
-}
-
-// Contacts are settled where (5) has moved their vertices.
-void FastProjection::correct(Positions& x) {
+void FastProjection::correct(Iterate x) {
   system_.edges().apply(u_, mu_, x);  // (5)
-  if (contacts_) contacts_->settle(x);
+  x.settle();
 }
 
-void FastProjection::keep_best(const Positions& x) {
-  best_ = x;
+void FastProjection::keep_best(Iterate x) {
+  x.save(best_);
   if (observer_) best_multipliers_ = multipliers_;
-  if (contacts_) contacts_->save(best_contacts_);
 }
 
-void FastProjection::heed(Contacts* contacts) {
-  VelocityFilter::heed(contacts);
-  system_.heed(contacts);
-  if (sweep_) sweep_->heed(contacts);
+void FastProjection::take_back(Iterate x) {
+  x.restore(best_);
+  if (observer_) multipliers_ = best_multipliers_;
 }
 
-// Before mu_, the step to x_j, is overwritten. Smoothing moves vertices without multipliers.
+// Before mu_, the step to x_j, is overwritten. Passes move vertices without multipliers.
 void FastProjection::show(int j, const Positions& x) {
-  if (sweep_) return;
+  if (passes_) return;
   if (j == 0) {
     multipliers_.setZero(mu_.size());
   } else {
@@ -122,37 +121,32 @@ void FastProjection::show(int j, const Positions& x) {
   observer_->iterate(system_.edges(), j, x, multipliers_);
 }
 
-// After a projection.
-void FastProjection::smooth(Positions& x, WorkCounters& work) {
-  if (sweep_ && settings_.smoothing_sweeps > 0) sweep(settings_.smoothing_sweeps, x, work);
-}
-
-void FastProjection::sweep(int sweeps, Positions& x, WorkCounters& work) {
-  sweep_->load(x);
-  sweep_->in_turn(sweeps, work);
-  sweep_->settle_contacts();
-  sweep_->store(x);
+// Colored Gauss-Seidel, at most so many passes.
+void FastProjection::pass(int most, Iterate x, WorkCounters& work) {
+  if (!passes_ || most == 0) return;
+  passes_->load(x);
+  passes_->in_turn(most, work);
+  passes_->settle_contacts();
+  passes_->store(x);
 }
 
 // From best_ on; j iterations are done.
-StepResult FastProjection::damped(int j, Positions& x, WorkCounters& work) {
+StepResult FastProjection::damped(int j, Iterate x, WorkCounters& work) {
   const EdgeConstraints& edges = system_.edges();
   double damping = first_damping, growth = 2;
   double error = 0;
   for (bool taken_back = true;; ++j) {
     if (taken_back) {
       ++work.line_search_steps;
-      x = best_;
-      if (observer_) multipliers_ = best_multipliers_;
-      if (contacts_) contacts_->restore(best_contacts_);
+      take_back(x);
       linearize(settings_.inner_band, x);
       error = mu_.squaredNorm();
     }
     if (j >= settings_.max_iterations)
       return refuse(Status::not_converged, j, edges, x, "iteration limit");
     excess_ = mu_;
-    while (damping < largest_damping &&
-           !(system_.factor(u_, work, damping) && system_.solve(mu_, work, damped_forcing))) {
+    while (damping < largest_damping && !(system_.factor(u_, x.contacts(), work, damping) &&
+                                          system_.solve(mu_, work, damped_forcing))) {
       damping *= 10;
       mu_ = excess_;
     }
@@ -192,10 +186,10 @@ double FastProjection::damped_prediction(double damping) const {
   return sum;
 }
 
-SettingFields<FastProjection::Settings> FastProjection::fields(bool searched_sweeps) {
+SettingFields<FastProjection::Settings> FastProjection::fields(bool searched_passes) {
   using S = Settings;
-  const auto searched = [searched_sweeps](SearchRange range) {
-    return searched_sweeps ? std::optional(range) : std::nullopt;
+  const auto searched = [searched_passes](SearchRange range) {
+    return searched_passes ? std::optional(range) : std::nullopt;
   };
   return {
       {"max_iterations", &S::max_iterations, "projections a step before it is refused",
@@ -203,19 +197,22 @@ SettingFields<FastProjection::Settings> FastProjection::fields(bool searched_swe
       {"min_iterations", &S::min_iterations, least_iterations, count_from_zero,
        tunable_least_iterations},
       {"target", &S::target, projection_target, below_limit, tunable_below_limit},
+      // There a straight row at full length has no neighbour with C = 0, but many permissible ones.
       {"inner_band", &S::inner_band, "target of damped projections, where J W J^T is singular",
        below_limit},
+      // A projection sees the whole cloth, but only to first order; most of what it leaves is
+      // local, and cheaper to correct by passes over edges.
       {"sweeps_before", &S::sweeps_before,
-       "colored Gauss-Seidel sweeps before the first projection, at most; none on chains, where "
-       "a projection costs no more than some sweeps",
+       "colored Gauss-Seidel passes before the first projection, at most; none on chains, where "
+       "a projection costs no more than some passes",
        count_from_zero, searched({0, 120})},
       {"smoothing_sweeps", &S::smoothing_sweeps,
        "the same after each projection, at most; none on chains", count_from_zero,
        searched({0, 120})},
       {"smoothing_target", &S::smoothing_target,
-       "an edge that a sweep corrects is brought to this fraction of the strain limit", fraction,
+       "an edge that a pass corrects is brought to this fraction of the strain limit", fraction,
        searched(tunable_fraction)},
-      {"smoothing_relaxation", &S::smoothing_relaxation, "times a sweep's correction",
+      {"smoothing_relaxation", &S::smoothing_relaxation, "times a pass's correction",
        relaxation_range},
       {"first_forcing", &S::first_forcing,
        "residual of a step's first linear solve by conjugate gradients or in mixed precision, of "
@@ -259,7 +256,7 @@ Backend fast_projection_bdf2_row() {
   row.settings = setting_infos(FastProjection::fields(true), defaults);
   row.citation = "Goldenthal et al. 2007; English and Bridson 2008";
   row.label = "fast projection in BDF2";
-  row.shows_iterates = false;  // sweeps have no multipliers to show
+  row.shows_iterates = false;  // passes have no multipliers to show
   return row;
 }
 

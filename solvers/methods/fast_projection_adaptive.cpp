@@ -1,13 +1,12 @@
-// A round is a pass over all yarns (yarn_pass.h), then sweeps until nothing is left to correct
-// or their number is up. Rounds alone, or after each of them a projection of the whole cloth
-// (equations 5 and 7 of Goldenthal et al. 2007, with C~ for C): each step goes the way that has
-// cost less in the last ones. The other way is tried again now and then, ever more seldom while it
-// is in vain, and rounds that cost more than twice what the other way does are broken off: so that
-// this is never much dearer than the better of the two. Prices are counted in visits of an edge,
-// not taken from a clock, so that runs repeat exactly.
+// A round is a pass over all yarns (yarn_pass.h), then passes over edges, until nothing is left to
+// correct or their number is reached. A step takes rounds alone, or a projection of the whole cloth
+// after each round (equations 5 and 7 of Goldenthal et al. 2007, with C~ for C): whichever has cost
+// less in the last steps. The other way is tried again after a retry interval, which doubles while
+// it stays more expensive; rounds that have cost twice as much as the other way are broken off.
+// Costs are counted in visits of an edge, not timed, so that runs repeat exactly.
 //
-// Loops: three passes over links a yarn, one over edges a sweep; one assembly, one factorization
-// and one solve a projection of the whole.
+// Loops: three passes over links a yarn, one pass over edges; one assembly, one factorization and
+// one solve a projection of the whole.
 #include "solvers/methods/fast_projection_adaptive.h"
 
 #include <algorithm>
@@ -15,26 +14,26 @@
 namespace inextensible {
 namespace {
 
-// Of |C~|^2 by a projection of the whole with contacts: what friction makes of it sweeps mend, but
-// not more.
+// Largest growth of |C~|^2 that is accepted of a projection of the whole in contact: passes correct
+// that much.
 constexpr double most_overshoot = 100;
-constexpr double memory = 0.6;                           // of a mean, a step
-constexpr int first_holiday = 4, longest_holiday = 128;  // steps
+constexpr double memory = 0.6;                       // of a mean, a step
+constexpr int first_retry = 4, longest_retry = 128;  // steps
 constexpr int most_rounds_in_contact = 100;
 constexpr int first_rounds = 8;  // until a projection of the whole is tried for the first time
 
-// In visits of an edge by a sweep, 1.3 ns, as kernels measures them: a link in a pass over yarns;
+// In visits of an edge by a pass, 1.3 ns, as kernels measures them: a link in a pass over yarns;
 // a row's assembly, gradient and correction; a number of the factor in a solve; an operation of a
 // factorization; a contact, settled.
-constexpr double link_price = 3, row_price = 12, nonzero_price = 0.3, operation_price = 0.06,
-                 contact_price = 5;
+constexpr double link_cost = 3, row_cost = 12, nonzero_cost = 0.3, operation_cost = 0.06,
+                 contact_cost = 5;
 
-double price_of(const WorkCounters& before, const WorkCounters& after, int rows) {
+double cost_of(const WorkCounters& before, const WorkCounters& after, int rows) {
   const auto factorizations = static_cast<double>(after.factorizations - before.factorizations);
   const auto solves = static_cast<double>(after.back_solves - before.back_solves +
                                           after.linear_iterations - before.linear_iterations);
-  return rows * (row_price + 4 * solves) + solves * nonzero_price * after.factor_nonzeros +
-         factorizations * operation_price * after.factor_flops;
+  return rows * (row_cost + 4 * solves) + solves * nonzero_cost * after.factor_nonzeros +
+         factorizations * operation_cost * after.factor_flops;
 }
 
 }  // namespace
@@ -43,48 +42,48 @@ FastProjectionAdaptive::FastProjectionAdaptive(const Problem& problem, const Set
     : system_(problem, settings.strain_limit, settings.linear_solver,
               ConstraintSystem::Digits::few),
       settings_(settings),
-      sweep_(StrainPasses::by_mass(problem, {settings.strain_limit, settings.sweep_target},
-                                   settings.relaxation)),
-      yarns_(problem, settings.strain_limit, settings.target, sweep_.edges()),
+      passes_(StrainPasses::by_mass(problem, {settings.strain_limit, settings.sweep_target},
+                                    settings.relaxation)),
+      yarns_(problem, settings.strain_limit, settings.target, passes_.edges()),
       x_(3, problem.vertices()),
       u_(3, problem.constraints()),
       mu_(problem.constraints()) {
   if (!yarns_.crossing()) settings_.sweeps = 0;
 }
 
-StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
+StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
                                          WorkCounters& work) {
   const EdgeConstraints& edges = system_.edges();
   if (edges.permissible(x)) return {Status::ok, 0};
   x_ = x;  // pinned vertices are where they are to be
-  sweep_.load(x);
+  passes_.begin(x);
   bool regular = yarns_.crossing();  // else a yarn's projection is that of the whole
   Way way = regular ? choose() : rounds_alone;
-  double price = 0;
-  if (contacts_) contacts_->save(start_record_);
+  double cost = 0;
   for (int rounds = 0;; ++rounds) {
-    // Newton's method overshoots where a step takes vertices far round an obstacle; sweeps do not.
-    if (touches() && rounds == most_rounds_in_contact) {
-      contacts_->restore(start_record_);
+    // Newton's method overshoots where a step takes vertices far round an obstacle; passes do not.
+    if (x.touching() > 0 && rounds == most_rounds_in_contact) {
+      passes_.restart();
       seen_ = {};
-      return sweep_.limit(StrainPasses::Order::in_turn, StrainPasses::far_too_many, edges, x, work);
+      return passes_.limit(StrainPasses::Order::in_turn, StrainPasses::far_too_many, edges, x,
+                           work);
     }
     const bool gives_up =
-        rounds == settings_.max_iterations || (rounds % 64 == 63 && !sweep_.finite());
-    sweep_.settle_contacts();
-    const std::int64_t corrected = gives_up ? 0 : yarns_.project(sweep_.positions(), work);
+        rounds == settings_.max_iterations || (rounds % 64 == 63 && !passes_.finite());
+    passes_.settle_contacts();
+    const std::int64_t corrected =
+        gives_up ? 0 : yarns_.project(passes_.positions(), x.contacts(), work);
     work.edge_projections += corrected;
-    StrainPasses::Swept swept{corrected, 0};
-    if (corrected > 0) swept = sweep_.in_turn(settings_.sweeps, work);
-    const int touching = contacts_ ? contacts_->count() : 0;
+    StrainPasses::Passed done{corrected, 0};
+    if (corrected > 0) done = passes_.in_turn(settings_.sweeps, work);
     const double round =
-        (link_price + swept.sweeps) * edges.count() + contact_price * (1 + swept.sweeps) * touching;
-    price += round;
-    if (swept.left == 0) {
-      sweep_.store(x);
-      if (contacts_ && !gives_up && contacts_->find(x, work) > 0) continue;
+        (link_cost + done.passes) * edges.count() + contact_cost * (1 + done.passes) * x.touching();
+    cost += round;
+    if (done.left == 0) {
+      passes_.store(x);
+      if (!gives_up && x.find_contacts(work) > 0) continue;
       if (edges.permissible(x)) {
-        learn(way, price);
+        learn(way, cost);
         return {Status::ok, rounds};
       }
       seen_ = {};  // a refused step leaves nothing behind
@@ -92,15 +91,15 @@ StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*
                     gives_up ? "round limit" : "an edge has no length");
     }
     if (!regular) continue;
-    if (way == rounds_alone && too_dear(rounds + 1, price)) {
-      learn(rounds_alone, 2 * price);
+    if (way == rounds_alone && too_expensive(rounds + 1, cost)) {
+      learn(rounds_alone, 2 * cost);
       way = with_the_whole;
-      price = round;
+      cost = round;
     }
     if (way == with_the_whole) {
       const WorkCounters before = work;
-      regular = project_the_whole(work);
-      price += price_of(before, work, edges.count());
+      regular = project_the_whole(x.contacts(), work);
+      cost += cost_of(before, work, edges.count());
     }
   }
 }
@@ -111,61 +110,64 @@ FastProjectionAdaptive::Way FastProjectionAdaptive::choose() {
       seen_.mean[rounds_alone] <= seen_.mean[with_the_whole] ? rounds_alone : with_the_whole;
   if (cheaper != seen_.cheaper) {
     seen_.cheaper = cheaper;
-    seen_.until_trial = seen_.holiday = first_holiday;
+    seen_.until_retry = seen_.retry_interval = first_retry;
   }
-  if (--seen_.until_trial > 0) return cheaper;
-  seen_.until_trial = seen_.holiday = std::min(2 * seen_.holiday, longest_holiday);
+  if (--seen_.until_retry > 0) return cheaper;
+  seen_.until_retry = seen_.retry_interval = std::min(2 * seen_.retry_interval, longest_retry);
   return cheaper == rounds_alone ? with_the_whole : rounds_alone;
 }
 
-bool FastProjectionAdaptive::too_dear(int rounds, double price) const {
+bool FastProjectionAdaptive::too_expensive(int rounds, double cost) const {
   const double other = seen_.mean[with_the_whole];
-  return other == 0 ? rounds >= first_rounds : price > 2 * other;
+  return other == 0 ? rounds >= first_rounds : cost > 2 * other;
 }
 
-void FastProjectionAdaptive::learn(Way way, double price) {
+void FastProjectionAdaptive::learn(Way way, double cost) {
   double& mean = seen_.mean[way];
-  mean = mean == 0 ? price : memory * mean + (1 - memory) * price;
+  mean = mean == 0 ? cost : memory * mean + (1 - memory) * cost;
 }
 
 // false: J W J^T is singular, or so nearly that the projection overshoots, as it may happen to
 // cloth that lies on an obstacle; nothing has moved then.
-bool FastProjectionAdaptive::project_the_whole(WorkCounters& work) {
-  sweep_.settle_contacts();
-  sweep_.store(x_);
-  system_.edges().linearize(x_, u_, mu_);
-  system_.edges().excess(settings_.target, mu_);
-  const double error = mu_.squaredNorm();
-  if (!system_.factor(u_, work) || !system_.solve(mu_, work, settings_.forcing))
-    return false;                      // (7)
-  system_.edges().apply(u_, mu_, x_);  // (5)
-  if (contacts_) {
-    contacts_->save(record_);
-    contacts_->settle(x_);
-    system_.edges().linearize(x_, u_, mu_);
-    system_.edges().excess(settings_.target, mu_);
-    if (!(mu_.squaredNorm() < most_overshoot * error)) {
-      contacts_->restore(record_);
+bool FastProjectionAdaptive::project_the_whole(Contacts* contacts, WorkCounters& work) {
+  passes_.settle_contacts();
+  passes_.store(x_);
+  const double error = linearize();
+  if (!system_.factor(u_, contacts, work)) return false;
+  if (!system_.solve(mu_, work, settings_.forcing)) return false;  // (7)
+  system_.edges().apply(u_, mu_, x_);                              // (5)
+  if (contacts) {
+    contacts->save(before_);
+    contacts->settle(x_);
+    if (!(linearize() < most_overshoot * error)) {
+      contacts->restore(before_);
       return false;
     }
   }
-  sweep_.load(x_);
+  passes_.load({x_, contacts});
   return true;
+}
+
+// The gradient to u_, C~ to mu_, both at x_. Returns |C~|^2.
+double FastProjectionAdaptive::linearize() {
+  system_.edges().linearize(x_, u_, mu_);
+  system_.edges().excess(settings_.target, mu_);
+  return mu_.squaredNorm();
 }
 
 SettingFields<FastProjectionAdaptive::Settings> FastProjectionAdaptive::fields() {
   using S = Settings;
   return {
       {"max_iterations", &S::max_iterations, "rounds a step before it is refused", at_least_one},
-      {"sweeps", &S::sweeps, "colored Gauss-Seidel sweeps of a round, at most", count_from_zero,
+      {"sweeps", &S::sweeps, "colored Gauss-Seidel passes of a round, at most", count_from_zero,
        SearchRange{0, 60}},
-      {"relaxation", &S::relaxation, "times a sweep's correction", relaxation_range,
+      {"relaxation", &S::relaxation, "times a pass's correction", relaxation_range,
        tunable_relaxation},
       {"target", &S::target,
        "links and the whole cloth are projected to this fraction of the strain limit", fraction,
        tunable_fraction},
       {"sweep_target", &S::sweep_target,
-       "an edge that a sweep corrects is brought to this fraction of the strain limit", fraction,
+       "an edge that a pass corrects is brought to this fraction of the strain limit", fraction,
        tunable_fraction},
       {"forcing", &S::forcing,
        "residual of a linear solve by conjugate gradients or in mixed precision, of the "

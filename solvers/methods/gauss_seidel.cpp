@@ -1,7 +1,6 @@
 // One visit moves both ends of an edge along it, shared by inverse mass, so that momentum is kept.
 // Edges within the limit are left alone (Provot 1995); others are brought to the target strain.
-// Loops: one pass over edges in random order a sweep, one check in order that stops at the first
-// violation.
+// Loops: one pass over edges in random order, one check in order that stops at the first violation.
 #include "solvers/methods/gauss_seidel.h"
 
 #include <cmath>
@@ -48,7 +47,7 @@ void GaussSeidel::shuffle() {
   }
 }
 
-std::int64_t GaussSeidel::sweep(Positions& x) const {
+std::int64_t GaussSeidel::pass(Positions& x) const {
   double* p = x.data();
   StrainBand band = band_;  // in registers
   const double relaxation = relaxation_;
@@ -77,27 +76,27 @@ std::int64_t GaussSeidel::sweep(Positions& x) const {
   return projections;
 }
 
-StepResult GaussSeidel::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
+StepResult GaussSeidel::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
                               WorkCounters& work) {
-  for (int sweeps = 0;; ++sweeps) {
-    if (edges_.permissible(x)) return {Status::ok, sweeps};
-    if (sweeps == max_iterations_ || (sweeps % 64 == 63 && !x.allFinite())) {
-      return refuse(Status::not_converged, sweeps, edges_, x, "sweep limit");
+  for (int passes = 0;; ++passes) {
+    if (edges_.permissible(x)) return {Status::ok, passes};
+    if (passes == max_iterations_ || (passes % 64 == 63 && !x.positions().allFinite())) {
+      return refuse(Status::not_converged, passes, edges_, x, "pass limit");
     }
     shuffle();
-    const std::int64_t projections = sweep(x);
+    const std::int64_t projections = pass(x);
     work.edge_projections += projections;
-    if (contacts_) contacts_->settle(x);
-    if (contacts_ && sweeps % 1024 == 1023) contacts_->update(x, work);
+    x.settle();
+    if (passes % 1024 == 1023) x.renew_planes(work);
     if (projections == 0)
-      return refuse(Status::not_converged, sweeps, edges_, x, "an edge has no length");
+      return refuse(Status::not_converged, passes, edges_, x, "an edge has no length");
   }
 }
 
 SettingFields<GaussSeidel::Settings> GaussSeidel::fields() {
   using S = Settings;
   return {
-      {"max_iterations", &S::max_iterations, "sweeps a step before it is refused", at_least_one},
+      {"max_iterations", &S::max_iterations, "passes a step before it is refused", at_least_one},
       {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit",
        fraction, tunable_fraction},
       {"relaxation", &S::relaxation, "times the correction", relaxation_range, tunable_relaxation}};

@@ -1,5 +1,5 @@
 // Gauss-Seidel strain limiting (Bridson, Fedkiw and Anderson 2002; Mueller et al. 2006): edge after
-// edge, in a fresh random permutation each sweep (Goldenthal et al. 2007, section 5), until the
+// edge, in a fresh random permutation each pass (Goldenthal et al. 2007, section 5), until the
 // maximum strain is permissible.
 #pragma once
 
@@ -11,16 +11,17 @@ namespace inextensible {
 
 class GaussSeidel final : public VelocityFilter {
  public:
+  // What each is for stands in fields().
   struct Settings {
     double strain_limit = 0.01;
-    int max_iterations = 100000;  // sweeps a step
-    double target = 0;            // a corrected edge is brought to |strain| = target * strain_limit
-    double relaxation = 1;        // of that correction; 1: Gauss-Seidel, above: over-relaxation
+    int max_iterations = 100000;
+    double target = 0;
+    double relaxation = 1;
     std::uint64_t seed = 1;
   };
   static SettingFields<Settings> fields();
   GaussSeidel(const Problem& problem, const Settings& settings);
-  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
 
  private:
   struct EdgeRecord {  // all that a visit needs
@@ -29,7 +30,7 @@ class GaussSeidel final : public VelocityFilter {
     double share_a;         // w_a / (w_a + w_b), of the correction
   };
   void shuffle();
-  std::int64_t sweep(Positions& x) const;
+  std::int64_t pass(Positions& x) const;
 
   EdgeConstraints edges_;
   int max_iterations_;

@@ -1,28 +1,28 @@
-// Within a color no edge sees another's correction, so that a sweep equals one that visits edges
-// one after the other, color after color. The order is the same in every sweep; the random one of
-// gauss_seidel takes about a third more sweeps. What colors win on one processor is vectors, see
+// Within a color no edge sees another's correction, so that a pass equals one that visits edges
+// one after the other, color after color. The order is the same in every pass; the random one of
+// gauss_seidel takes about a third more passes. What colors win on one processor is vectors, see
 // strain_passes.cpp.
 //
-// A sweep that corrects nothing has seen every edge in its final place: it is the test of
-// convergence, and is not counted. Loops: one pass over edges a sweep.
+// A pass that corrects nothing has seen every edge in its final place: it is the test of
+// convergence, and is not counted. Loops: one pass over edges.
 #include "solvers/methods/gauss_seidel_colored.h"
 
 namespace inextensible {
 GaussSeidelColored::GaussSeidelColored(const Problem& problem, const Settings& settings)
     : edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
-      sweep_(StrainPasses::by_mass(problem, {settings.strain_limit, settings.target},
-                                   settings.relaxation)) {}
+      passes_(StrainPasses::by_mass(problem, {settings.strain_limit, settings.target},
+                                    settings.relaxation)) {}
 
-StepResult GaussSeidelColored::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
+StepResult GaussSeidelColored::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
                                      WorkCounters& work) {
-  return sweep_.limit(StrainPasses::Order::in_turn, max_iterations_, edges_, x, work);
+  return passes_.limit(StrainPasses::Order::in_turn, max_iterations_, edges_, x, work);
 }
 
 SettingFields<GaussSeidelColored::Settings> GaussSeidelColored::fields() {
   using S = Settings;
   return {
-      {"max_iterations", &S::max_iterations, "sweeps a step before it is refused", at_least_one},
+      {"max_iterations", &S::max_iterations, "passes a step before it is refused", at_least_one},
       {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit",
        fraction, tunable_fraction},
       {"relaxation", &S::relaxation, "times the correction", relaxation_range, tunable_relaxation}};

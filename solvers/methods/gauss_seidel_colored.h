@@ -11,24 +11,21 @@ namespace inextensible {
 
 class GaussSeidelColored final : public VelocityFilter {
  public:
+  // What each is for stands in fields().
   struct Settings {
     double strain_limit = 0.01;
-    int max_iterations = 100000;  // sweeps a step
-    double target = 0;            // a corrected edge is brought to |strain| = target * strain_limit
-    double relaxation = 1;        // of that correction; 1: Gauss-Seidel, above: over-relaxation
+    int max_iterations = 100000;
+    double target = 0;
+    double relaxation = 1;
   };
   static SettingFields<Settings> fields();
   GaussSeidelColored(const Problem& problem, const Settings& settings);
-  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
-  void heed(Contacts* contacts) override {
-    VelocityFilter::heed(contacts);
-    sweep_.heed(contacts);
-  }
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
 
  private:
   EdgeConstraints edges_;
   int max_iterations_;
-  StrainPasses sweep_;
+  StrainPasses passes_;
 };
 
 Backend gauss_seidel_colored_row();

@@ -26,6 +26,7 @@ namespace {
 constexpr int line_search_limit = 12;
 constexpr int most_rounds = 20;
 constexpr double sufficient_decrease = 1e-4;
+constexpr const char *projected_cg = "projected_cg", *block_tridiagonal = "block_tridiagonal";
 
 // Without fill, as on trees, factoring the saddle-point matrix is cheaper than any iteration; and
 // where it is small it costs little, and a full Newton step leaves less of F than is asked for.
@@ -33,10 +34,18 @@ constexpr double sufficient_decrease = 1e-4;
 constexpr int many_edges = 600;
 std::string choose(std::string_view wanted, const Problem& problem) {
   if (wanted != "auto") return std::string(wanted);
-  if (problem.contact_inside()) return "projected_cg";
-  if (ChainKkt::fits(problem)) return "block_tridiagonal";
+  if (problem.contact_inside()) return projected_cg;
+  if (ChainKkt::fits(problem)) return block_tridiagonal;
   const bool fill = problem.constraints() >= problem.vertices();
-  return fill && problem.constraints() >= many_edges ? "projected_cg" : "quasi_definite";
+  return fill && problem.constraints() >= many_edges ? projected_cg : "quasi_definite";
+}
+
+std::unique_ptr<KktSolver> make_kkt_solver(std::string_view name, const Problem& problem,
+                                           const EdgeConstraints& edges, double cg_tolerance) {
+  if (name == projected_cg)
+    return std::make_unique<ProjectedCg>(problem, edges, ProjectedCg::Settings{cg_tolerance});
+  if (name == block_tridiagonal) return std::make_unique<ChainKkt>(problem, edges);
+  return std::make_unique<KktSystem>(problem, edges, name);
 }
 
 }  // namespace
@@ -45,31 +54,21 @@ Icd::Icd(const Problem& problem, const Settings& settings)
     : problem_(problem),
       linear_solver_(choose(settings.linear_solver, problem)),
       edges_(problem, settings.strain_limit,
-             linear_solver_ == "projected_cg" ? elimination_order(problem) : std::vector<int>{}),
+             linear_solver_ == projected_cg ? elimination_order(problem) : std::vector<int>{}),
+      kkt_(make_kkt_solver(linear_solver_, problem, edges_, settings.cg_tolerance)),
       max_iterations_(settings.max_iterations),
       min_iterations_(settings.min_iterations),
       target_(settings.target),
       direction_tolerance_(settings.direction_tolerance * settings.strain_limit *
                            problem.shortest_rest_length()),
       mass_(Eigen::Map<const Eigen::VectorXd>(problem.mass().data(), problem.vertices()) /
-            problem.total_mass() * problem.vertices()) {
-  if (linear_solver_ == "projected_cg") {
-    kkt_ = std::make_unique<ProjectedCg>(problem, edges_,
-                                         ProjectedCg::Settings{settings.cg_tolerance});
-  } else if (linear_solver_ == "block_tridiagonal") {
-    kkt_ = std::make_unique<ChainKkt>(problem, edges_);
-  } else {
-    kkt_ = std::make_unique<KktSystem>(problem, edges_, linear_solver_);
-  }
+            problem.total_mass() * problem.vertices()),
+      active_(problem) {
   for (Positions* p : {&x0_, &trial_, &dx_, &trial_dx_, &f_, &dp_})
     p->resize(3, problem.vertices());
   u_.resize(3, problem.constraints());
   for (Eigen::VectorXd* v : {&c_, &mu_, &trial_mu_, &dq_}) v->resize(problem.constraints());
   previous_lambda_ = Eigen::VectorXd::Zero(problem.constraints());
-  if (problem.contact_inside()) {
-    free_.resize(3, problem.vertices());
-    reaction_.resize(problem.vertices());
-  }
 }
 
 // u_, c_, f_, largest_f_ and merit_ at x0 + dx (in trial_) with multipliers trial_mu_.
@@ -83,13 +82,7 @@ void Icd::evaluate(const Positions& dx) {
     f_.col(edges_.b[k]) += trial_mu_[e] * u_.col(e);
   }
   for (const int vertex : problem_.pinned()) f_.col(vertex).setZero();
-  for (int c = 0; contacts_ && c < contacts_->count(); ++c) {
-    const Eigen::Vector3d normal = contacts_->normal(c);
-    auto f = f_.col(contacts_->vertex(c));
-    const double reaction = contacts_->holds(c) ? normal.dot(f) : 0;
-    reaction_[c] = reaction / mass_[contacts_->vertex(c)];
-    f -= reaction * normal;
-  }
+  active_.take_reactions(mass_, f_);
   double sum = 0, largest = 0;
   for (Eigen::Index v = 0; v < f_.cols(); ++v) {
     const double squared = f_.col(v).squaredNorm() / (mass_[v] * mass_[v]);
@@ -100,65 +93,32 @@ void Icd::evaluate(const Positions& dx) {
   merit_ = sum + c_.squaredNorm();
 }
 
-StepResult Icd::apply(const Positions& /*x_start*/, double h, Positions& x, WorkCounters& work) {
+StepResult Icd::apply(const Positions& /*x_start*/, double h, Iterate x, WorkCounters& work) {
   // dx = 0 and lambda = 0 solve both equations as far as is asked.
   if (min_iterations_ == 0 && edges_.permissible(x)) return {Status::ok, 0};
-  if (!kkt_->heed(contacts_) && touches()) {
+  if (x.touching() > 0 && !kkt_->takes_contacts()) {
     return refuse(Status::not_converged, 0, edges_, x,
                   "this linear solver cannot hold contacts, projected_cg can");
   }
-  if (!touches()) {
-    x0_ = x;
-    return closest(h, x, work);
-  }
-  free_ = x;
-  for (int c = 0; c < contacts_->count(); ++c)
-    free_.col(contacts_->vertex(c)) -= contacts_->push(c) * contacts_->normal(c);
+  active_.begin(x);
+  active_.candidate(x);
+  x0_ = x;
   for (int round = 0, iterations = 0;; ++round) {
-    x0_ = free_;
-    put_on_planes(x0_);
-    if (round == 0) x = x0_;
     StepResult result = closest(h, x, work);
     result.iterations = iterations += result.iterations;
-    if (!result || !planes_change(x) || round == most_rounds) return result;
-    put_on_planes(x);
+    if (!result || !active_.change(x) || round == most_rounds) return result;
+    active_.candidate(x0_);
+    active_.hold(x);
   }
-}
-
-// Vertices that planes hold.
-void Icd::put_on_planes(Positions& x) const {
-  const Contacts::Timing measured = contacts_->timing();
-  for (int c = 0; c < contacts_->count(); ++c) {
-    auto at = x.col(contacts_->vertex(c));
-    if (contacts_->holds(c)) at -= contacts_->gap(c, at) * contacts_->normal(c);
-  }
-}
-
-// Whether a plane pulls at x and so releases its vertex, or a released one has gone through.
-bool Icd::planes_change(const Positions& x) {
-  const Contacts::Timing measured = contacts_->timing();
-  bool changed = false;
-  for (int c = 0; c < contacts_->count(); ++c) {
-    const int vertex = contacts_->vertex(c);
-    if (contacts_->holds(c)) {
-      const double push = reaction_[c] - contacts_->gap(c, free_.col(vertex));
-      contacts_->set_push(c, std::max(push, 0.0));
-      changed |= push < 0;
-    } else if (const double gap = contacts_->gap(c, x.col(vertex)); gap < -contacts_->tolerance()) {
-      contacts_->set_push(c, -gap);
-      changed = true;
-    }
-  }
-  return changed;
 }
 
 // The point on the manifold that is closest to x0_.
-StepResult Icd::closest(double h, Positions& x, WorkCounters& work) {
+StepResult Icd::closest(double h, Iterate x, WorkCounters& work) {
   mu_ = previous_lambda_ * (h * h);
   StepResult result = newton(h, x, work);
   if (!result && previous_lambda_.squaredNorm() > 0) {
     const int spent = result.iterations;
-    x = x0_;
+    x.positions() = x0_;
     mu_.setZero();
     result = newton(h, x, work);
     result.iterations += spent;
@@ -166,8 +126,8 @@ StepResult Icd::closest(double h, Positions& x, WorkCounters& work) {
   return result;
 }
 
-bool Icd::direction(bool convex, WorkCounters& work) {
-  return kkt_->factor(u_, mu_, convex, work) && kkt_->solve(f_, c_, dp_, dq_, work);
+bool Icd::direction(const Contacts* contacts, bool convex, WorkCounters& work) {
+  return kkt_->factor(u_, mu_, contacts, convex, work) && kkt_->solve(f_, c_, dp_, dq_, work);
 }
 
 // Leaves the accepted step in trial_dx_, trial_mu_ and trial_.
@@ -194,9 +154,9 @@ bool Icd::line_search(WorkCounters& work) {
   return false;
 }
 
-StepResult Icd::newton(double h, Positions& x, WorkCounters& work) {
-  dx_ = x - x0_;
+StepResult Icd::newton(double h, Iterate x, WorkCounters& work) {
   trial_ = x;
+  dx_ = trial_ - x0_;
   trial_mu_ = mu_;
   evaluate(dx_);
   for (int j = 0;; ++j) {
@@ -208,7 +168,7 @@ StepResult Icd::newton(double h, Positions& x, WorkCounters& work) {
     if (solved && (j >= min_iterations_ || merit_ == 0)) return accept();
     if (j == max_iterations_)
       return refuse(Status::not_converged, j, edges_, trial_, "iteration limit");
-    if (!direction(false, work)) {
+    if (!direction(x.contacts(), false, work)) {
       if (solved) return accept();
       return refuse(Status::singular, j, edges_, trial_, "the Newton matrix is singular");
     }
@@ -220,14 +180,14 @@ StepResult Icd::newton(double h, Positions& x, WorkCounters& work) {
       trial_mu_ = mu_;
       evaluate(dx_);
       if (solved) return accept();  // to rounding: iterations that were only asked for
-      if (was_convex || !direction(true, work) || !line_search(work)) {
+      if (was_convex || !direction(x.contacts(), true, work) || !line_search(work)) {
         return refuse(Status::not_converged, j, edges_, trial_,
                       "no step along Newton's direction makes progress");
       }
     }
     dx_.swap(trial_dx_);
     mu_.swap(trial_mu_);
-    x = trial_;
+    x.positions() = trial_;
   }
 }
 

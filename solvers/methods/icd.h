@@ -3,6 +3,7 @@
 #pragma once
 
 #include "solvers/methods/setting_fields.h"
+#include "solvers/systems/active_contacts.h"
 #include "solvers/systems/constraint_system.h"
 #include "solvers/systems/kkt_solver.h"
 
@@ -10,33 +11,28 @@ namespace inextensible {
 
 class Icd final : public VelocityFilter {
  public:
+  // What each is for stands in fields().
   struct Settings {
     double strain_limit = 0.01;
     int max_iterations = 200;
-    int min_iterations = 0;  // even where the candidate is permissible already
-    double target = 0;       // of the strain limit; as FastProjection's
-    // |F| of every vertex must fall below this times strain_limit times the shortest rest length
-    // (m).
+    int min_iterations = 0;
+    double target = 0;
     double direction_tolerance = 0.1;
-    // projected_cg, quasi_definite, umfpack, block_tridiagonal, or "auto": the last on chains, the
-    // second on small cloth (below 600 edges), else the first.
     std::string_view linear_solver = "auto";
-    double cg_tolerance = 0.03;  // of projected_cg
+    double cg_tolerance = 0.03;
   };
   static SettingFields<Settings> fields();
   Icd(const Problem& problem, const Settings& settings);
-  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
   const char* linear_solver() const override { return linear_solver_.c_str(); }
   double reciprocal_condition() const override { return kkt_->reciprocal_condition(); }
 
  private:
   void evaluate(const Positions& dx);
-  void put_on_planes(Positions& x) const;
-  bool planes_change(const Positions& x);
-  StepResult closest(double h, Positions& x, WorkCounters& work);
-  bool direction(bool convex, WorkCounters& work);
+  StepResult closest(double h, Iterate x, WorkCounters& work);
+  bool direction(const Contacts* contacts, bool convex, WorkCounters& work);
   bool line_search(WorkCounters& work);
-  StepResult newton(double h, Positions& x, WorkCounters& work);
+  StepResult newton(double h, Iterate x, WorkCounters& work);
 
   const Problem& problem_;
   std::string linear_solver_;
@@ -46,17 +42,14 @@ class Icd final : public VelocityFilter {
   double target_;
   double direction_tolerance_;  // m
   Eigen::VectorXd mass_;        // scaled by the mean mass, as mu is
+  ActiveContacts active_;
 
   Positions x0_, trial_, dx_, trial_dx_, f_, dp_;  // f_ = M F = M dx + J^T mu
   Eigen::Matrix3Xd u_;
   Eigen::VectorXd c_, mu_, trial_mu_, dq_;  // c_: what of C lies beyond the target
   bool permissible_ = false;
-  double largest_f_ = 0;  // m, over vertices
-  double merit_ = 0;      // sum of |F|^2 and C^2, m^2
-  // With contacts only: the candidate without any push, and n . f_ / m of each contact, which f_
-  // itself has lost.
-  Positions free_;
-  std::vector<double> reaction_;
+  double largest_f_ = 0;             // m, over vertices
+  double merit_ = 0;                 // sum of |F|^2 and C^2, m^2
   Eigen::VectorXd previous_lambda_;  // of the last accepted step, 1/kg-scaled: mu / h^2
 };
 

@@ -9,23 +9,19 @@
 #include <array>
 #include <string>
 
-#include "solvers/linear/spd_solver.h"
 #include "solvers/methods/setting_fields.h"
+#include "solvers/systems/spring_hessian.h"
 
 namespace inextensible {
 
 class ImplicitSprings final : public Stepper {
  public:
+  // What each is for stands in fields().
   struct Settings {
-    double stiffness = 1e4;      // EA, N
+    double stiffness = 1e4;
     double strain_limit = 0.01;  // only sets the accuracy of Newton's iteration
     int max_iterations = 300;
-    // Newton stops when its step moves no vertex by more than this times strain_limit times the
-    // shortest rest length.
     double newton_tolerance = 0.1;
-    // Instructions at 1 % strain and 1/100 s, plain Newton = 1, on the chain of 80 and the drape of
-    // 21 x 21: start and tension take 0.66 and 0.77, with reuse 0.59 and 0.55. A reuse of 30 takes
-    // 0.55 and 0.53 but ends steps less exactly on the chain.
     std::string_view start = "extrapolated";
     std::string_view tension = "linearized";
     double reuse = 10;
@@ -33,8 +29,8 @@ class ImplicitSprings final : public Stepper {
   };
   static SettingFields<Settings> fields();
   ImplicitSprings(std::shared_ptr<const Problem> problem, const Settings& settings);
-  const char* linear_solver() const override { return linear_solver_.c_str(); }
-  double reciprocal_condition() const override { return solver_->reciprocal_condition(); }
+  const char* linear_solver() const override { return hessian_.linear_solver.c_str(); }
+  double reciprocal_condition() const override { return hessian_.solver->reciprocal_condition(); }
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override;
@@ -52,37 +48,20 @@ class ImplicitSprings final : public Stepper {
   StepResult end_velocities(const State& before, double h, const Positions& filtered,
                             const Positions& x, Positions& v) override;
 
-  struct Spring {
-    int a, b;         // vertices
-    int fa, fb;       // their places among the free vertices in elimination order, -1 if pinned
-    double rest, k;   // m, N/m
-    int coupling[3];  // where each column of the coupling block begins among the matrix's values
-  };
-  std::string linear_solver_;
+  using Spring = SpringHessian::Spring;
+  using Hinge = SpringHessian::Hinge;
+  using Places = SpringHessian::Places;
+  void add_block(const Spring& s, const std::array<double, 3>& d, double along, double transverse);
+
+  SpringHessian hessian_;
   int max_iterations_;
   double step_tolerance_;  // m
   double reuse_below_;     // m
   bool extrapolates_, predicts_tension_;
-  std::vector<Spring> springs_;
-  struct Hinge {                                 // a bending stencil's places
-    std::array<int, 4> f;                        // among the free vertices, -1 if pinned
-    std::array<std::array<int, 3>, 6> coupling;  // of the pairs 10, 20, 21, 30, 31, 32
-  };
-  std::vector<Hinge> hinges_;
-  std::vector<int> free_vertex_;  // in elimination order
-  std::vector<double> free_mass_;
-  struct Places {  // of a diagonal block's numbers among the matrix's values
-    int xx, xy, yy, xz, yz, zz;
-  };
-  std::vector<Places> diagonal_;  // one a free vertex
-  std::size_t entries_ = 0;
-  std::unique_ptr<SpdSolver> solver_;
   Positions inertial_, trial_;  // x + h v + h^2 g, and a line search's positions
   Positions ahead_;             // where history leads
   Positions before_;            // x^n, with drag only
-  // With contact inside only: the place of each vertex among the free, and n . gradient of each
-  // contact, J s^2 / m / kg: what its plane bears.
-  std::vector<int> free_place_;
+  // With contact inside only: n . gradient of each contact, J s^2 / m / kg: what its plane bears.
   std::vector<double> reaction_;
   enum class Release : char { never, once };
   std::vector<Release> released_;  // of each contact, in this step

@@ -26,7 +26,7 @@ double ImplicitSprings::start(const State& state, double h, Positions& x) {
     trial_ = candidate;
     if (contacts_inside()) put_on_planes(trial_);
     const double here = energy(trial_, h);
-    work_.spring_evaluations += static_cast<std::int64_t>(springs_.size());
+    work_.spring_evaluations += static_cast<std::int64_t>(hessian_.springs.size());
     if (here < lowest) {
       lowest = here;
       x.swap(trial_);
@@ -45,14 +45,14 @@ double ImplicitSprings::start(const State& state, double h, Positions& x) {
 
 // What the springs, linear at x, pull with at `to`, over their vectors there.
 void ImplicitSprings::predict_tension(const Positions& x, const Positions& to) {
-  for (std::size_t k = 0; k < springs_.size(); ++k) {
-    const Spring& s = springs_[k];
+  for (std::size_t k = 0; k < hessian_.springs.size(); ++k) {
+    const Spring& s = hessian_.springs[k];
     const Eigen::Vector3d from = x.col(s.b) - x.col(s.a), ahead = to.col(s.b) - to.col(s.a);
     const double length = from.norm(), length_ahead = ahead.norm();
     const double elongation = (length > 0 ? from.dot(ahead) / length : length_ahead) - s.rest;
     pull_[k] = length_ahead > 0 ? s.k * elongation / length_ahead : 0;
   }
-  work_.spring_evaluations += static_cast<std::int64_t>(springs_.size());
+  work_.spring_evaluations += static_cast<std::int64_t>(hessian_.springs.size());
 }
 
 // The step along step_ that lowers the energy `current` enough, to trial_, its energy to current.
@@ -62,11 +62,12 @@ ImplicitSprings::Search ImplicitSprings::search(const Positions& x, double h, do
   double scale = 1;
   for (int halvings = 0;; ++halvings) {
     trial_ = x;
-    for (std::size_t f = 0; f < free_vertex_.size(); ++f) {
-      trial_.col(free_vertex_[f]) += scale * step_.segment<3>(static_cast<Eigen::Index>(3 * f));
+    for (std::size_t f = 0; f < hessian_.free_vertex.size(); ++f) {
+      trial_.col(hessian_.free_vertex[f]) +=
+          scale * step_.segment<3>(static_cast<Eigen::Index>(3 * f));
     }
     const double next = energy(trial_, h);
-    work_.spring_evaluations += static_cast<std::int64_t>(springs_.size());
+    work_.spring_evaluations += static_cast<std::int64_t>(hessian_.springs.size());
     // Near the minimum the decrease drowns in rounding: a step below the tolerance is then taken
     // as it is.
     if (next <= current + armijo_fraction * scale * slope || longest <= step_tolerance_) {
@@ -90,7 +91,7 @@ StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
   for (const int vertex : problem().pinned()) inertial_.col(vertex) = state.x.col(vertex);
   pull_ = pull_before_;
   if (contacts_inside()) {
-    contacts_->rub(inertial_, work_);
+    contacts_->apply_friction(inertial_, work_);
     contacts_->find(inertial_, work_);
     std::fill(released_.begin(), released_.end(), Release::never);
     for (int c = 0; c < contacts_->count(); ++c) contacts_->set_push(c, held);
@@ -143,7 +144,7 @@ bool ImplicitSprings::release_pulled() {
 StepResult ImplicitSprings::newton(double h, double current, Positions& x) {
   // Every step would seem to lower it.
   if (!std::isfinite(current)) return {Status::not_finite, 0, -1, 0, "the energy overflows"};
-  if (free_vertex_.empty()) return {};  // all are pinned: x is where they are
+  if (hessian_.free_vertex.empty()) return {};  // all are pinned: x is where they are
 
   bool reuse = false;
   double last_longest = 0;
@@ -151,19 +152,20 @@ StepResult ImplicitSprings::newton(double h, double current, Positions& x) {
     if (j == max_iterations_) return {Status::not_converged, j, -1, 0, "iteration limit"};
     assemble(x, h, !reuse);
     if (reuse) {
-      work_.spring_evaluations += static_cast<std::int64_t>(springs_.size());
+      work_.spring_evaluations += static_cast<std::int64_t>(hessian_.springs.size());
     } else {
       ++work_.assemblies;
       ++work_.factorizations;
-      if (!solver_->factor()) {
+      if (!hessian_.solver->factor()) {
         return {std::isfinite(current) ? Status::singular : Status::not_finite, j, -1, 0,
                 "the Newton matrix is singular"};
       }
-      work_.factor_nonzeros = solver_->factor_nonzeros();
-      work_.factor_flops = solver_->factor_flops();
+      work_.factor_nonzeros = hessian_.solver->factor_nonzeros();
+      work_.factor_flops = hessian_.solver->factor_flops();
     }
     step_ = -gradient_;
-    solver_->solve(step_.data());  // Newton; Baraff and Witkin (1998) take its first step only
+    hessian_.solver->solve(
+        step_.data());  // Newton; Baraff and Witkin (1998) take its first step only
     ++work_.back_solves;
     const double longest = std::sqrt(Eigen::Map<const Positions>(step_.data(), 3, step_.size() / 3)
                                          .colwise()

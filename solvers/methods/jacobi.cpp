@@ -2,21 +2,21 @@
 // inverse masses,
 //   omega_k = (w_a + w_b) / (w_a deg_a + w_b deg_b),
 // the same factor at both ends, so momentum is kept (dividing by each vertex's own valence would
-// not). Linearized, the sweep is x -= W J^T S J x with every row of S J W J^T summing in absolute
+// not). Linearized, the pass is x -= W J^T S J x with every row of S J W J^T summing in absolute
 // value to at most 1, hence all its eigenvalues lie in [0, 1]: it converges at any valence and any
-// masses, and up to relaxation 2. The default, 1.8, takes about a third fewer sweeps than the plain
+// masses, and up to relaxation 2. The default, 1.8, takes about a third fewer passes than the plain
 // average on the drape.
 //
-// All edges are independent, so that they are swept in colors (strain_passes.cpp) and summed
-// without conflicts. A sweep that corrects nothing is the test of convergence and is not counted.
+// All edges are independent, so that they are done in colors (strain_passes.cpp) and summed
+// without conflicts. A pass that corrects nothing is the test of convergence and is not counted.
 // Loops: one pass over edges, one over vertices.
 #include "solvers/methods/jacobi.h"
 
 namespace inextensible {
 namespace {
 
-StrainPasses make_sweep(const Problem& problem, const EdgeConstraints& edges,
-                        const Jacobi::Settings& settings) {
+StrainPasses make_passes(const Problem& problem, const EdgeConstraints& edges,
+                         const Jacobi::Settings& settings) {
   std::vector<int> valence(problem.vertices(), 0);
   for (const Edge& e : problem.edges()) {
     ++valence[e.a];
@@ -36,17 +36,17 @@ StrainPasses make_sweep(const Problem& problem, const EdgeConstraints& edges,
 Jacobi::Jacobi(const Problem& problem, const Settings& settings)
     : edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
-      sweep_(make_sweep(problem, edges_, settings)) {}
+      passes_(make_passes(problem, edges_, settings)) {}
 
-StepResult Jacobi::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
+StepResult Jacobi::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
                          WorkCounters& work) {
-  return sweep_.limit(StrainPasses::Order::at_once, max_iterations_, edges_, x, work);
+  return passes_.limit(StrainPasses::Order::at_once, max_iterations_, edges_, x, work);
 }
 
 SettingFields<Jacobi::Settings> Jacobi::fields() {
   using S = Settings;
   return {
-      {"max_iterations", &S::max_iterations, "sweeps a step before it is refused", at_least_one},
+      {"max_iterations", &S::max_iterations, "passes a step before it is refused", at_least_one},
       {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit",
        fraction, tunable_fraction},
       {"relaxation", &S::relaxation, "times the averaged correction", relaxation_range,

@@ -10,7 +10,7 @@ namespace inextensible {
 class Unconstrained final : public VelocityFilter {
  public:
   explicit Unconstrained(const Problem& /*problem*/) {}
-  StepResult apply(const Positions& /*x_start*/, double /*h*/, Positions& /*x*/,
+  StepResult apply(const Positions& /*x_start*/, double /*h*/, Iterate /*x*/,
                    WorkCounters& /*work*/) override {
     return {};
   }

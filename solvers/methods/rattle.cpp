@@ -38,7 +38,7 @@ StepResult Rattle::end_velocities(const State& start, double h, const Positions&
     }
   }
   phases_.unconstrained += stopwatch();
-  const StepResult result = shake_.project_velocity(x, v, work_);
+  const StepResult result = shake_.project_velocity(x, contacts_inside(), v, work_);
   phases_.filter += stopwatch();
   return result;
 }

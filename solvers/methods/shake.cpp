@@ -35,115 +35,102 @@ Shake::Shake(const Problem& problem, const Settings& settings)
       u_(3, problem.constraints()),
       c_(problem.constraints()),
       mu_(problem.constraints()),
-      best_(3, problem.vertices()) {}
+      best_{Positions(3, problem.vertices()), {}} {}
 
-// u_, and in c_ what of C lies beyond the target. Returns whether x is permissible.
+StepResult Shake::apply(const Positions& x_start, double /*h*/, Iterate x, WorkCounters& work) {
+  const EdgeConstraints& edges = system_.edges();
+  Matrix matrix = Matrix::start;
+  double least_error = 0;  // |C| at best_
+  double full_step = 0;    // |mu_| before halving
+  double reach = 0;        // |x^{n+1} - x^n| of a solution that is near
+  for (int j = 0;; ++j) {
+    const bool permissible = linearize(x);
+    const double error = c_.norm();
+    const bool exact = error == 0 && (target_ > 0 || j > 0);  // nothing is left to project
+    if (permissible && (j >= min_iterations_ || exact)) {
+      if (j > 0 && distance(x_start, x) > reach)
+        return refuse(Status::not_converged, j, edges, x, "a spurious solution, far from x^n");
+      return {Status::ok, j};
+    }
+    if (j == max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
+
+    if (j == 0) {
+      reach = edges.permissible(x_start) ? 2 * distance(x_start, x) + slack_
+                                         : std::numeric_limits<double>::infinity();
+      if (!factor_start(x_start, x.contacts(), work)) {
+        return refuse(Status::singular, j, edges, x,
+                      "J W J^T at the start of the step is not positive definite");
+      }
+    } else if (error < 0.5 * least_error) {
+      if (matrix == Matrix::here) matrix = Matrix::kept;
+    } else if (matrix == Matrix::here && !(error < least_error)) {  // half of Newton's own step
+      if (mu_.norm() < shortest_step * full_step) {
+        return refuse(Status::not_converged, j, edges, x,
+                      "no step along J(x^n) lowers the constraint error");
+      }
+      ++work.line_search_steps;
+      mu_ *= 0.5;
+      x.restore(best_);
+      correct(x);
+      continue;
+    } else {
+      if (!(error < least_error)) {
+        x.restore(best_);
+        linearize(x);
+      }
+      if (!factor_here(x.contacts(), work))
+        return refuse(Status::singular, j, edges, x, "J(x_j) W J(x^n)^T is singular");
+      matrix = Matrix::here;
+    }
+    least_error = c_.norm();
+    x.save(best_);
+    if (!solve(matrix, work)) return refuse(Status::singular, j, edges, x, no_solution);  // (7)
+    full_step = mu_.norm();
+    correct(x);  // (5)
+  }
+}
+
+// The gradient to u_; what of C lies beyond the target to c_. Returns whether x is permissible.
 bool Shake::linearize(const Positions& x) {
   const bool permissible = system_.edges().linearize(x, u_, c_);
   if (target_ > 0) system_.edges().excess(target_, c_);
   return permissible;
 }
 
-StepResult Shake::apply(const Positions& x_start, double /*h*/, Positions& x, WorkCounters& work) {
-  const EdgeConstraints& edges = system_.edges();
-  enum class Matrix {
-    start,
-    kept,
-    here
-  } matrix = Matrix::start;  // kept, here: the true one of an earlier, of this iterate
-  double error = 0;          // |C| at best_
-  double reach = 0;          // |x^{n+1} - x^n| of an honest solution
-  for (int j = 0;; ++j) {
-    const bool permissible = linearize(x);
-    // Within the target nothing is left to project.
-    if (permissible &&
-        (j >= min_iterations_ || ((target_ > 0 || j > 0) && c_.squaredNorm() == 0))) {
-      if (j > 0 && distance(x_start, x) > reach)
-        return refuse(Status::not_converged, j, edges, x, "a spurious solution, far from x^n");
-      return {Status::ok, j};
-    }
-    if (j == max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
-    const double next_error = c_.norm();
-    if (j == 0) {
-      reach = edges.permissible(x_start) ? 2 * distance(x_start, x) + slack_
-                                         : std::numeric_limits<double>::infinity();
-      if (!factor_start(x_start, work)) {
-        return refuse(Status::singular, j, edges, x,
-                      "J W J^T at the start of the step is not positive definite");
-      }
-    } else if (next_error < 0.5 * error) {
-      if (matrix == Matrix::here) matrix = Matrix::kept;
-    } else if (matrix == Matrix::here &&
-               !(next_error < error)) {  // Newton's own direction: a shorter step
-      if (mu_.norm() < shortest_step * full_step_) {
-        return refuse(Status::not_converged, j, edges, x,
-                      "no step along J(x^n) lowers the constraint error");
-      }
-      ++work.line_search_steps;
-      mu_ *= 0.5;
-      take_back(x);
-      correct(x);
-      continue;
-    } else {
-      if (!(next_error < error)) {
-        take_back(x);
-        linearize(x);
-      }
-      if (!rebuild(work))
-        return refuse(Status::singular, j, edges, x, "J(x_j) W J(x^n)^T is singular");
-      matrix = Matrix::here;
-    }
-    error = c_.norm();
-    best_ = x;
-    if (contacts_) contacts_->save(best_contacts_);
-    mu_ = c_;
-    if (matrix == Matrix::start) {
-      if (!system_.solve(mu_, work, forcing_))  // (7) with J(x^n) on both sides
-        return refuse(Status::singular, j, edges, x, no_solution);
-    } else {
-      current_solver_->solve(mu_.data());  // (7) with J(x_j) W J(x^n)^T
-      ++work.back_solves;
-    }
-    full_step_ = mu_.norm();
-    correct(x);
-  }
+bool Shake::solve(Matrix matrix, WorkCounters& work) {
+  mu_ = c_;
+  if (matrix == Matrix::start)
+    return system_.solve(mu_, work, forcing_);  // (7) with J(x^n) on both sides
+  current_solver_->solve(mu_.data());           // (7) with J(x_j) W J(x^n)^T
+  ++work.back_solves;
+  return true;
 }
 
-// Contacts are settled where (5) has moved their vertices.
-void Shake::correct(Positions& x) {
+void Shake::correct(Iterate x) {
   system_.edges().apply(u_start_, mu_, x);  // (5) with J(x^n)
-  if (contacts_) contacts_->settle(x);
+  x.settle();
 }
 
-void Shake::take_back(Positions& x) {
-  x = best_;
-  if (contacts_) contacts_->restore(best_contacts_);
-}
-
-void Shake::heed(Contacts* contacts) {
-  VelocityFilter::heed(contacts);
-  system_.heed(contacts);
-}
-
-bool Shake::factor_start(const Positions& x_start, WorkCounters& work) {
+bool Shake::factor_start(const Positions& x_start, const Contacts* contacts, WorkCounters& work) {
   if (factored_ && x_factored_ == x_start) return true;
   factored_ = false;
   system_.edges().gradient(x_start, u_start_);
-  return system_.factor(u_start_, work);
+  return system_.factor(u_start_, contacts, work);
 }
 
-StepResult Shake::project_velocity(const Positions& x, Positions& v, WorkCounters& work) {
+StepResult Shake::project_velocity(const Positions& x, const Contacts* contacts, Positions& v,
+                                   WorkCounters& work) {
   const EdgeConstraints& edges = system_.edges();
-  if (!factor_start(x, work)) {
+  if (!factor_start(x, contacts, work)) {
     return refuse(Status::singular, 0, edges, x,
                   "J W J^T at the end of the step is not positive definite");
   }
   x_factored_ = x;
-  factored_ = !contacts_;        // which will be others in the next step
+  factored_ = !contacts;         // which will be others in the next step
   edges.rate(u_start_, v, mu_);  // J v
   if (!system_.solve(mu_, work)) return refuse(Status::singular, 0, edges, x, no_solution);
   edges.apply(u_start_, mu_, v);
-  if (contacts_) contacts_->keep_on_planes(x, v);
+  if (contacts) contacts->keep_on_planes(x, v);
   return {};
 }
 
@@ -154,18 +141,18 @@ double Shake::distance(const Positions& x_start, const Positions& x) const {
   return std::sqrt(sum);
 }
 
-bool Shake::rebuild(WorkCounters& work) {
+bool Shake::factor_here(const Contacts* contacts, WorkCounters& work) {
   if (!current_) {
     current_ = std::make_unique<UnsymmetricSchurComplement>(system_.edges(), problem_.vertices());
     current_solver_ = make_unsymmetric_solver(current_->column_start, current_->row_index);
   }
   current_->assemble(u_, u_start_, current_solver_->values());
-  if (contacts_) {
+  if (contacts) {
     if (!current_contact_terms_) {
       current_contact_terms_ = std::make_unique<ContactTerms>(
           system_.edges(), problem_.vertices(), current_->column_start, current_->row_index);
     }
-    current_contact_terms_->subtract(*contacts_, problem_.inverse_mass().data(), u_, u_start_,
+    current_contact_terms_->subtract(*contacts, problem_.inverse_mass().data(), u_, u_start_,
                                      current_solver_->values());
   }
   ++work.assemblies;

@@ -3,9 +3,9 @@
 // a mask keeps the edges within the limit as they are. Each step is a loop of fixed length without
 // branches, which compilers turn into a few vector instructions (GCC 12: two vectors of eight).
 //
-// Square roots and divisions are 60 % of a sweep that corrects every edge (floor_ratio in kernels);
+// Square roots and divisions are 60 % of a pass that corrects every edge (floor_ratio in kernels);
 // the rest is positions and constants from the second-level cache, 120 bytes an edge, and fillers.
-// Seeds in single precision with a step of Halley's method halve the floor, but not the sweep: GCC
+// Seeds in single precision with a step of Halley's method halve the floor, but not the pass: GCC
 // 12 spends the gain on conversions.
 #include "solvers/methods/strain_passes.h"
 
@@ -104,26 +104,35 @@ StrainPasses StrainPasses::by_mass(const Problem& problem, const StrainBand& ban
   return {problem, band, share_a, share_b};
 }
 
-StepResult StrainPasses::limit(Order order, int most_sweeps, const EdgeConstraints& edges,
-                               Positions& x, WorkCounters& work) {
+StepResult StrainPasses::limit(Order order, int most_passes, const EdgeConstraints& edges,
+                               Iterate x, WorkCounters& work) {
   load(x);
-  for (int sweeps = 0;; ++sweeps) {
-    const bool gives_up = sweeps == most_sweeps || (sweeps % 64 == 63 && !finite());
+  for (int passes = 0;; ++passes) {
+    const bool gives_up = passes == most_passes || (passes % 64 == 63 && !finite());
     const std::int64_t corrected = gives_up ? 0 : order == Order::in_turn ? in_turn() : at_once();
     work.edge_projections += corrected;
     if (corrected > 0) {
-      if (contacts_ && sweeps % 1024 == 1023) update_planes(x, work);
+      if (contacts_ && passes % 1024 == 1023) renew_planes(x, work);
       continue;
     }
     store(x);
-    if (edges.permissible(x)) return {Status::ok, sweeps};
-    return refuse(Status::not_converged, sweeps, edges, x,
-                  gives_up ? "sweep limit" : "an edge has no length");
+    if (edges.permissible(x)) return {Status::ok, passes};
+    return refuse(Status::not_converged, passes, edges, x,
+                  gives_up ? "pass limit" : "an edge has no length");
   }
 }
 
+void StrainPasses::begin(Iterate x) {
+  load(x);
+  if (contacts_) contacts_->save(begun_);
+}
+
+void StrainPasses::restart() {
+  if (contacts_) contacts_->restore(begun_);
+}
+
 // By way of x, where vertices lie as contacts know them.
-void StrainPasses::update_planes(Positions& x, WorkCounters& work) {
+void StrainPasses::renew_planes(Iterate x, WorkCounters& work) {
   store(x);
   if (contacts_->update(x, work) > 0) load(x);
 }
@@ -136,22 +145,22 @@ void StrainPasses::settle_contacts() {
 
 std::int64_t StrainPasses::in_turn() {
   settle_contacts();
-  return sweep<true>(x_);
+  return pass<true>(x_);
 }
 
-StrainPasses::Swept StrainPasses::in_turn(int most, WorkCounters& work) {
-  Swept swept{1, 0};
-  while (swept.sweeps < most && swept.left > 0) {
-    swept.left = in_turn();
-    work.edge_projections += swept.left;
-    ++swept.sweeps;
+StrainPasses::Passed StrainPasses::in_turn(int most, WorkCounters& work) {
+  Passed done{1, 0};
+  while (done.passes < most && done.left > 0) {
+    done.left = in_turn();
+    work.edge_projections += done.left;
+    ++done.passes;
   }
-  return swept;
+  return done;
 }
 
 std::int64_t StrainPasses::at_once() {
   settle_contacts();
-  const std::int64_t corrected = sweep<false>(correction_);
+  const std::int64_t corrected = pass<false>(correction_);
   if (corrected == 0) return 0;
   x_ += correction_;
   correction_.setZero();
@@ -159,7 +168,7 @@ std::int64_t StrainPasses::at_once() {
 }
 
 template <bool in_place>
-std::int64_t StrainPasses::sweep(ColoredEdges::Places& to) {
+std::int64_t StrainPasses::pass(ColoredEdges::Places& to) {
   const int *a = edges_.a().data(), *b = edges_.b().data();
   const std::ptrdiff_t stride = x_.rows();
   std::int64_t corrected = 0;

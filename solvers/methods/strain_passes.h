@@ -1,4 +1,4 @@
-// Sweeps of strain corrections over colored edges: what jacobi and gauss_seidel_colored share. They
+// Passes of strain corrections over colored edges: what jacobi and gauss_seidel_colored share. They
 // differ in where corrections go: to the positions themselves, or to a sum that is added at the
 // end.
 #pragma once
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solvers/methods/colored_edges.h"
+#include "solvers/problem/iterate.h"
 #include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
@@ -14,7 +15,7 @@ namespace inextensible {
 // Which edges are corrected, and what to, in q = |d|^2 / l^2 and |d| / l.
 struct StrainBand {
   // target: of the strain limit, 0 to 1. The band is a few roundings narrower than what is
-  // permissible, so that no rounding comes between a sweep that finds nothing to correct and the
+  // permissible, so that no rounding comes between a pass that finds nothing to correct and the
   // check.
   StrainBand(double strain_limit, double target);
 
@@ -36,45 +37,49 @@ class StrainPasses {
   // The shares of Gauss-Seidel: by inverse mass, times `relaxation`.
   static StrainPasses by_mass(const Problem& problem, const StrainBand& band, double relaxation);
 
-  // Positions (3 x n) in and out. store() leaves pinned vertices alone.
-  void load(const Positions& x) { edges_.load(x, x_); }
+  // Positions (3 x n) in and out. store() leaves pinned vertices alone. Contacts of x are settled
+  // before each pass from now on, so that they hold wherever a pass finds nothing to correct.
+  void load(Iterate x) {
+    edges_.load(x, x_);
+    contacts_ = x.contacts();
+  }
+  // load(); restart() takes up the contacts of that time again.
+  void begin(Iterate x);
+  void restart();
   void store(Positions& x) const { edges_.store(x_, x); }
   bool finite() const { return x_.allFinite(); }
   ColoredEdges::Places& positions() { return x_; }
-  void update_planes(Positions& x, WorkCounters& work);  // Contacts::update, at positions()
-
-  // Contacts that are settled before each sweep from now on, so that they hold wherever a sweep
-  // finds nothing to correct; null: none.
-  void heed(Contacts* contacts) { contacts_ = contacts; }
   void settle_contacts();  // at positions()
 
-  // Sweeps until one finds nothing to correct, at most `most_sweeps`; the last one, which is the
+  // Passes until one finds nothing to correct, at most `most_passes`; the last one, which is the
   // test of convergence, is not counted. Refuses x if an edge (of `edges`, in any order) is still
   // beyond its limit.
   enum class Order { in_turn, at_once };
-  static constexpr int far_too_many = 100'000;  // sweeps, for steps that sweeps alone are to end
-  StepResult limit(Order order, int most_sweeps, const EdgeConstraints& edges, Positions& x,
+  static constexpr int far_too_many = 100'000;  // passes, for steps that passes alone are to end
+  StepResult limit(Order order, int most_passes, const EdgeConstraints& edges, Iterate x,
                    WorkCounters& work);
 
-  // One sweep; returns how many edges it corrected. An edge of no length has no direction to be
+  // One pass; returns how many edges it corrected. An edge of no length has no direction to be
   // corrected along and counts as none.
   std::int64_t in_turn();  // in the order of edges(), each from where the last one left its ends
   std::int64_t at_once();  // all from the same positions
-  // Sweeps in turn until one corrects nothing, at most `most` of them, all counted; `left`: what
+  // Passes in turn until one corrects nothing, at most `most` of them, all counted; `left`: what
   // the last one corrected.
-  struct Swept {
+  struct Passed {
     std::int64_t left;
-    int sweeps;
+    int passes;
   };
-  Swept in_turn(int most, WorkCounters& work);
+  Passed in_turn(int most, WorkCounters& work);
 
   const ColoredEdges& edges() const { return edges_; }
 
  private:
+  void renew_planes(Iterate x, WorkCounters& work);
   template <bool in_place>
-  std::int64_t sweep(ColoredEdges::Places& to);
+  std::int64_t pass(ColoredEdges::Places& to);
 
   Contacts* contacts_ = nullptr;
+  Contacts::Record begun_;
   ColoredEdges edges_;
   StrainBand band_;
   Eigen::ArrayXd inverse_square_;  // 1 / l^2, by entry

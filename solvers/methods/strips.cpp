@@ -1,4 +1,4 @@
-// Loops: two passes over links forwards and one back a yarn (yarn_pass.cpp), then sweeps
+// Loops: two passes over links forwards and one back a yarn (yarn_pass.cpp), then passes
 // (strain_passes.cpp).
 #include "solvers/methods/strips.h"
 
@@ -12,30 +12,29 @@ constexpr int most_passes_in_contact = 100;
 Strips::Strips(const Problem& problem, const Settings& settings)
     : edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
-      sweep_(StrainPasses::by_mass(problem, {settings.strain_limit, settings.sweep_target},
-                                   settings.relaxation)),
-      yarns_(problem, settings.strain_limit, settings.target, sweep_.edges()),
-      sweeps_(yarns_.crossing() ? settings.sweeps : 0) {}
+      passes_(StrainPasses::by_mass(problem, {settings.strain_limit, settings.sweep_target},
+                                    settings.relaxation)),
+      yarns_(problem, settings.strain_limit, settings.target, passes_.edges()),
+      passes_between_(yarns_.crossing() ? settings.sweeps : 0) {}
 
-StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
+StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
                          WorkCounters& work) {
   if (edges_.permissible(x)) return {Status::ok, 0};
-  if (contacts_) contacts_->save(record_);
-  sweep_.load(x);
+  passes_.begin(x);
   for (int passes = 0;; ++passes) {
-    // Newton's method overshoots where a step takes vertices far round an obstacle; sweeps do not.
-    if (touches() && passes == most_passes_in_contact) {
-      contacts_->restore(record_);
-      return sweep_.limit(StrainPasses::Order::in_turn, StrainPasses::far_too_many, edges_, x,
-                          work);
+    // Newton's method overshoots where a step takes vertices far round an obstacle; passes do not.
+    if (x.touching() > 0 && passes == most_passes_in_contact) {
+      passes_.restart();
+      return passes_.limit(StrainPasses::Order::in_turn, StrainPasses::far_too_many, edges_, x,
+                           work);
     }
-    const bool gives_up = passes == max_iterations_ || (passes % 64 == 63 && !sweep_.finite());
-    sweep_.settle_contacts();
-    std::int64_t corrected = gives_up ? 0 : yarns_.project(sweep_.positions(), work);
+    const bool gives_up = passes == max_iterations_ || (passes % 64 == 63 && !passes_.finite());
+    passes_.settle_contacts();
+    std::int64_t corrected = gives_up ? 0 : yarns_.project(passes_.positions(), x.contacts(), work);
     work.edge_projections += corrected;
-    if (corrected > 0) corrected = sweep_.in_turn(sweeps_, work).left;
+    if (corrected > 0) corrected = passes_.in_turn(passes_between_, work).left;
     if (corrected > 0) continue;
-    sweep_.store(x);
+    passes_.store(x);
     if (edges_.permissible(x)) return {Status::ok, passes};
     return refuse(Status::not_converged, passes, edges_, x,
                   gives_up ? "pass limit" : "an edge has no length");
@@ -46,20 +45,20 @@ SettingFields<Strips::Settings> Strips::fields() {
   using S = Settings;
   return {{"max_iterations", &S::max_iterations,
            "passes over all yarns a step before it is refused", at_least_one},
-          {"sweeps", &S::sweeps, "colored Gauss-Seidel sweeps between two passes, at most",
+          {"sweeps", &S::sweeps, "colored Gauss-Seidel passes between two passes, at most",
            count_from_zero, SearchRange{0, 60}},
-          {"relaxation", &S::relaxation, "times a sweep's correction", relaxation_range,
+          {"relaxation", &S::relaxation, "times a pass's correction", relaxation_range,
            tunable_relaxation},
           {"target", &S::target, "a yarn's links are brought to this fraction of the strain limit",
            fraction, tunable_fraction},
           {"sweep_target", &S::sweep_target,
-           "an edge that a sweep corrects is brought to this fraction of the strain limit",
-           fraction, tunable_fraction}};
+           "an edge that a pass corrects is brought to this fraction of the strain limit", fraction,
+           tunable_fraction}};
 }
 
 Backend strips_row() {
   return {.name = "strips",
-          .summary = "projection of every yarn of the cloth as a whole, with sweeps between",
+          .summary = "projection of every yarn of the cloth as a whole, with passes between",
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(Strips::fields()),

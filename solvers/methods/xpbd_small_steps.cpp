@@ -1,10 +1,10 @@
-// Compliance is 0, so that with one sweep from lambda = 0 an edge's multiplier is its correction
+// Compliance is 0, so that with one pass from lambda = 0 an edge's multiplier is its correction
 // (Macklin et al. 2016, eq. 18), and no multiplier is read again: every edge is brought to its rest
-// length, warp and weft, one color after the other. Loops: one pass over edges a sweep, one over
-// attachments a step.
+// length, warp and weft, one color after the other. Loops: `sweeps` passes over edges and one
+// over attachments a step.
 //
 // At rest under gravity an edge keeps a strain of about g h^2 / l times the edges below it: one
-// sweep carries a load by one edge, or by one color.
+// pass carries a load by one edge, or by one color.
 #include "solvers/methods/xpbd_small_steps.h"
 
 #include <algorithm>
@@ -45,8 +45,7 @@ std::vector<double> distances_from(int start, const Problem& problem,
 
 XpbdSmallSteps::XpbdSmallSteps(const Problem& problem, const Settings& settings,
                                const Positions* rest)
-    : sweeps_(settings.sweeps),
-      sweep_(StrainPasses::by_mass(problem, {0, 0}, settings.relaxation)) {
+    : most_(settings.sweeps), passes_(StrainPasses::by_mass(problem, {0, 0}, settings.relaxation)) {
   if (settings.attachments == "edges") attach_along_edges(problem);
   if (settings.attachments == "straight") {
     if (!rest) throw std::invalid_argument("straight attachments need the positions at rest");
@@ -90,26 +89,27 @@ void XpbdSmallSteps::keep_nearest(const Problem& problem) {
   });
 }
 
-StepResult XpbdSmallSteps::apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
+StepResult XpbdSmallSteps::apply(const Positions& /*x_start*/, double /*h*/, Iterate iterate,
                                  WorkCounters& work) {
-  sweep_.load(x);
-  for (int i = 0; i < sweeps_; ++i) work.edge_projections += sweep_.in_turn();
-  sweep_.settle_contacts();
-  if (!sweep_.finite()) return {Status::not_finite, sweeps_, -1, 0, "overflow"};
-  sweep_.store(x);
+  passes_.load(iterate);
+  for (int i = 0; i < most_; ++i) work.edge_projections += passes_.in_turn();
+  passes_.settle_contacts();
+  if (!passes_.finite()) return {Status::not_finite, most_, -1, 0, "overflow"};
+  Positions& x = iterate;
+  passes_.store(x);
   for (const Attachment& a : attachments_) {
     const Eigen::Vector3d d = x.col(a.vertex) - x.col(a.pin);
     const double square = d.squaredNorm();
     if (square > a.distance * a.distance)
       x.col(a.vertex) = x.col(a.pin) + a.distance / std::sqrt(square) * d;
   }
-  return {Status::ok, sweeps_};
+  return {Status::ok, most_};
 }
 
 SettingFields<XpbdSmallSteps::Settings> XpbdSmallSteps::fields() {
   using S = Settings;
   return {
-      {"sweeps", &S::sweeps, "colored Gauss-Seidel sweeps a step", at_least_one, SearchRange{1, 8}},
+      {"sweeps", &S::sweeps, "colored Gauss-Seidel passes a step", at_least_one, SearchRange{1, 8}},
       {"relaxation", &S::relaxation, "times a correction", relaxation_range, tunable_relaxation},
       {"attachments",
        &S::attachments,
@@ -121,7 +121,7 @@ SettingFields<XpbdSmallSteps::Settings> XpbdSmallSteps::fields() {
 
 Backend xpbd_small_steps_row() {
   return {.name = "xpbd_small_steps",
-          .summary = "a fixed number of sweeps a step, no test of convergence: small steps do it",
+          .summary = "a fixed number of passes a step, no test of convergence: small steps do it",
           .knob = Knob::time_step,
           .contestant = true,
           .settings = setting_infos(XpbdSmallSteps::fields()),

@@ -1,4 +1,4 @@
-// XPBD with small steps (Macklin et al. 2016, 2019): a fixed number of sweeps a step, one as a
+// XPBD with small steps (Macklin et al. 2016, 2019): a fixed number of passes a step, one as a
 // rule, without a test of convergence. It promises no strain limit: strain falls as h^2, and the
 // step is what buys it.
 #pragma once
@@ -22,11 +22,7 @@ class XpbdSmallSteps final : public VelocityFilter {
   // rest: positions (3 x n) at rest, for straight attachments; null where they are not known.
   // Throws std::invalid_argument if they are needed.
   XpbdSmallSteps(const Problem& problem, const Settings& settings, const Positions* rest);
-  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override;
-  void heed(Contacts* contacts) override {
-    VelocityFilter::heed(contacts);
-    sweep_.heed(contacts);
-  }
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
 
  private:
   struct Attachment {
@@ -37,8 +33,8 @@ class XpbdSmallSteps final : public VelocityFilter {
   void attach_straight(const Problem& problem, const Positions& rest);
   void keep_nearest(const Problem& problem);
 
-  int sweeps_;
-  StrainPasses sweep_;
+  int most_;
+  StrainPasses passes_;
   std::vector<Attachment> attachments_;
 };
 

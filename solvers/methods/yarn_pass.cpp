@@ -1,5 +1,5 @@
 // With J and W of one yarn alone, J W J^T is tridiagonal: a step of Newton's method on it costs
-// little more than a sweep and carries along the yarn as far as it is long, for which sweeps need
+// little more than a pass and carries along the yarn as far as it is long, for which passes need
 // the square of that. With g = d / l of a link and nu = 4 mu,
 //   (w_a + w_b) |g|^2 nu + couplings -w g . g' nu' = C~,   x -= W J^T mu = w g nu / 2 at an end.
 // C~ is what of C lies beyond the target, so that slack within it is not taken back. A yarn none
@@ -41,6 +41,7 @@ YarnPass::YarnPass(const Problem& problem, double strain_limit, double target,
   int longest = 0;
   for (const Bundle& b : bundles_) longest = std::max(longest, b.links);
   rows_.resize(static_cast<std::size_t>(longest) + 1, Row{});
+  if (problem.contact_inside()) normal_ = places.make_places();
 }
 
 void YarnPass::add_bundle(const Problem& problem, const std::vector<const Yarn*>& yarns,
@@ -64,46 +65,42 @@ void YarnPass::add_bundle(const Problem& problem, const std::vector<const Yarn*>
   }
 }
 
-void YarnPass::heed(const Contacts* contacts) {
-  contacts_ = contacts;
-  if (contacts && normal_.size() == 0) normal_ = places_.make_places();
-}
-
-void YarnPass::show_normals(bool shown) {
-  const Contacts::Timing measured = contacts_->timing();
-  for (int c = 0; c < contacts_->count(); ++c) {
-    const int place = places_.place(contacts_->vertex(c));
+void YarnPass::show_normals(const Contacts& contacts, bool shown) {
+  const Contacts::Timing measured = contacts.timing();
+  for (int c = 0; c < contacts.count(); ++c) {
+    const int place = places_.place(contacts.vertex(c));
     if (!shown) {
       normal_.row(place).setZero();
-    } else if (contacts_->holds(c)) {
-      normal_.row(place) = contacts_->normal(c).transpose();
+    } else if (contacts.holds(c)) {
+      normal_.row(place) = contacts.normal(c).transpose();
     }
   }
 }
 
-// The first `used` lanes.
-template <int used, bool contact>
-std::int64_t YarnPass::project(const Bundle& bundle, ColoredEdges::Places& positions,
-                               WorkCounters& work) {
-  double* const x[3] = {positions.col(0).data(), positions.col(1).data(), positions.col(2).data()};
-  const std::size_t first = static_cast<std::size_t>(bundle.first) * lanes;
-  const int* place = place_.data() + first;
-  const double *w = inverse_mass_.data() + first, *l = rest_.data() + first,
-               *il = inverse_rest_.data() + first;
+struct YarnPass::View {
+  int links;
+  const int* place;
+  const double *w, *l, *il;  // inverse masses; rest lengths and their inverses
+  double* x[3];
+};
+
+// g and C~ of every link; how many of each yarn are beyond the limit.
+template <int used>
+void YarnPass::linearize(const View& yarns, double (&violated)[lanes]) {
   const double low = band_.low, high = band_.high, target_low = target_low_,
                target_high = target_high_;
-  alignas(64) double here[3][lanes], next[3][lanes], violated[lanes] = {};
+  alignas(64) double here[3][lanes], next[3][lanes];
   const auto gather = [&](int vertex, double(&to)[3][lanes]) {
-    const int* from = place + vertex * lanes;
+    const int* from = yarns.place + vertex * lanes;
     for (int axis = 0; axis < 3; ++axis) {
-      for (int i = 0; i < used; ++i) to[axis][i] = x[axis][from[i]];
+      for (int i = 0; i < used; ++i) to[axis][i] = yarns.x[axis][from[i]];
     }
   };
   gather(0, here);
-  for (int k = 0; k < bundle.links; ++k) {
+  for (int k = 0; k < yarns.links; ++k) {
     Row& row = rows_[k + 1];
     gather(k + 1, next);
-    const double *lk = l + k * lanes, *ilk = il + k * lanes;
+    const double *lk = yarns.l + k * lanes, *ilk = yarns.il + k * lanes;
     for (int i = 0; i < used; ++i) {
       const double g0 = (next[0][i] - here[0][i]) * ilk[i], g1 = (next[1][i] - here[1][i]) * ilk[i],
                    g2 = (next[2][i] - here[2][i]) * ilk[i];
@@ -119,29 +116,23 @@ std::int64_t YarnPass::project(const Bundle& bundle, ColoredEdges::Places& posit
       here[2][i] = next[2][i];
     }
   }
-  double all = 0, solved[lanes];
-  int yarns = 0;
-  for (int i = 0; i < used; ++i) {
-    all += violated[i];
-    solved[i] = violated[i] > 0 ? 1 : 0;
-    yarns += static_cast<int>(violated[i] > 0);
-  }
-  if (yarns == 0) return 0;
-  work.assemblies += yarns;
-  work.factorizations += yarns;
-  work.back_solves += yarns;
+}
 
+// J W J^T of each yarn, and its elimination from the first link to the last. solved: 1 for yarns
+// that are projected, else 0.
+template <int used, bool contact>
+void YarnPass::eliminate(const View& yarns, const double (&solved)[lanes]) {
   const double* normal[3] = {};
   if constexpr (contact) {
     for (int axis = 0; axis < 3; ++axis) normal[axis] = normal_.col(axis).data();
   }
-  for (int k = 0; k < bundle.links; ++k) {
+  for (int k = 0; k < yarns.links; ++k) {
     Row& row = rows_[k + 1];
     const Row& before = rows_[k];
-    const double *wa = w + k * lanes, *wb = wa + lanes;
+    const double *wa = yarns.w + k * lanes, *wb = wa + lanes;
     alignas(64) double begin_along[lanes];
     if constexpr (contact) {
-      const int *a = place + k * lanes, *b = a + lanes;
+      const int *a = yarns.place + k * lanes, *b = a + lanes;
       for (int i = 0; i < used; ++i) {
         begin_along[i] = row.g[0][i] * normal[0][a[i]] + row.g[1][i] * normal[1][a[i]] +
                          row.g[2][i] * normal[2][a[i]];
@@ -170,10 +161,15 @@ std::int64_t YarnPass::project(const Bundle& bundle, ColoredEdges::Places& posit
       row.inverse_pivot[i] = 1 / pivot;
     }
   }
+}
+
+// Multipliers from the last link to the first, and x -= W J^T mu on the way.
+template <int used>
+void YarnPass::substitute(const View& yarns) const {
   alignas(64) double after[3][lanes] = {}, nu_after[lanes] = {}, off_after[lanes] = {};
-  for (int k = bundle.links; k >= 0; --k) {
+  for (int k = yarns.links; k >= 0; --k) {
     const Row& row = rows_[k];
-    const double* wb = w + k * lanes;
+    const double* wb = yarns.w + k * lanes;
     alignas(64) double move[3][lanes];
     for (int i = 0; i < used; ++i) {
       const double nu = (row.c[i] - off_after[i] * nu_after[i]) * row.inverse_pivot[i];
@@ -186,11 +182,31 @@ std::int64_t YarnPass::project(const Bundle& bundle, ColoredEdges::Places& posit
       nu_after[i] = nu;
       off_after[i] = row.off[i];
     }
-    const int* to = place + k * lanes;
+    const int* to = yarns.place + k * lanes;
     for (int axis = 0; axis < 3; ++axis) {
-      for (int i = 0; i < used; ++i) x[axis][to[i]] += move[axis][i];
+      for (int i = 0; i < used; ++i) yarns.x[axis][to[i]] += move[axis][i];
     }
   }
+}
+
+// The first `used` lanes. A yarn none of whose links is beyond the limit stays as it is.
+template <int used, bool contact>
+std::int64_t YarnPass::project(const View& yarns, WorkCounters& work) {
+  alignas(64) double violated[lanes] = {};
+  linearize<used>(yarns, violated);
+  double all = 0, solved[lanes];
+  int projected = 0;
+  for (int i = 0; i < used; ++i) {
+    all += violated[i];
+    solved[i] = violated[i] > 0 ? 1 : 0;
+    projected += static_cast<int>(violated[i] > 0);
+  }
+  if (projected == 0) return 0;
+  work.assemblies += projected;
+  work.factorizations += projected;
+  work.back_solves += projected;
+  eliminate<used, contact>(yarns, solved);
+  substitute<used>(yarns);
   return static_cast<std::int64_t>(all);
 }
 
@@ -198,17 +214,25 @@ template <bool contact>
 std::int64_t YarnPass::project_all(ColoredEdges::Places& x, WorkCounters& work) {
   std::int64_t violated = 0;
   for (const Bundle& bundle : bundles_) {
-    violated += bundle.yarns == 1 ? project<1, contact>(bundle, x, work)
-                                  : project<lanes, contact>(bundle, x, work);
+    const std::size_t first = static_cast<std::size_t>(bundle.first) * lanes;
+    const View yarns{bundle.links,
+                     place_.data() + first,
+                     inverse_mass_.data() + first,
+                     rest_.data() + first,
+                     inverse_rest_.data() + first,
+                     {x.col(0).data(), x.col(1).data(), x.col(2).data()}};
+    violated +=
+        bundle.yarns == 1 ? project<1, contact>(yarns, work) : project<lanes, contact>(yarns, work);
   }
   return violated;
 }
 
-std::int64_t YarnPass::project(ColoredEdges::Places& x, WorkCounters& work) {
-  if (!contacts_ || contacts_->count() == 0) return project_all<false>(x, work);
-  show_normals(true);
+std::int64_t YarnPass::project(ColoredEdges::Places& x, const Contacts* contacts,
+                               WorkCounters& work) {
+  if (!contacts || contacts->count() == 0) return project_all<false>(x, work);
+  show_normals(*contacts, true);
   const std::int64_t violated = project_all<true>(x, work);
-  show_normals(false);
+  show_normals(*contacts, false);
   return violated;
 }
 

@@ -19,11 +19,9 @@ class YarnPass {
   YarnPass(const Problem& problem, double strain_limit, double target, const ColoredEdges& places);
 
   // One step of Newton's method for every yarn, color after color. Returns how many links were
-  // beyond the limit; one without length counts as none.
-  std::int64_t project(ColoredEdges::Places& x, WorkCounters& work);
-
-  // Contacts whose vertices move within their planes only, from the next projection on; null: none.
-  void heed(const Contacts* contacts);
+  // beyond the limit; one without length counts as none. contacts: their vertices move within their
+  // planes only; null: none.
+  std::int64_t project(ColoredEdges::Places& x, const Contacts* contacts, WorkCounters& work);
 
   bool crossing() const { return crossing_; }  // whether yarns share vertices
 
@@ -37,9 +35,16 @@ class YarnPass {
                   const ColoredEdges& places);
   template <bool contact>
   std::int64_t project_all(ColoredEdges::Places& x, WorkCounters& work);
+  struct View;  // of a bundle and the positions
   template <int used, bool contact>
-  std::int64_t project(const Bundle& bundle, ColoredEdges::Places& x, WorkCounters& work);
-  void show_normals(bool shown);
+  std::int64_t project(const View& yarns, WorkCounters& work);
+  template <int used>
+  void linearize(const View& yarns, double (&violated)[lanes]);
+  template <int used, bool contact>
+  void eliminate(const View& yarns, const double (&solved)[lanes]);
+  template <int used>
+  void substitute(const View& yarns) const;
+  void show_normals(const Contacts& contacts, bool shown);
 
   StrainBand band_;
   double target_low_, target_high_;  // of q - 1 = |d|^2 / l^2 - 1
@@ -59,7 +64,6 @@ class YarnPass {
   std::vector<Row> rows_;  // the first is zero: no link comes before
 
   // With contacts only.
-  const Contacts* contacts_ = nullptr;
   const ColoredEdges& places_;
   ColoredEdges::Places normal_;  // of the plane that holds a place's vertex, or zero
 };

@@ -6,10 +6,11 @@
 namespace inextensible {
 namespace {
 
-// Of the shortest rest length: a depth that nobody sees and no strain notices. Without edges, m.
+// A depth that no picture shows and no strain notices, over the shortest rest length; without
+// edges, m.
 constexpr double invisible = 1e-5, invisible_point = 1e-9;
 // Of the shortest rest length: a vertex on its plane that is so far from the obstacle has left it.
-// With less, planes change to and fro at the corners of a polygonal obstacle.
+// With less, planes keep changing at the corners of a polygonal obstacle.
 constexpr double margin = 0.5;
 // Of the same, for every vertex: what edges within their limits may be away from the closest point.
 constexpr double room = 0.1;
@@ -52,7 +53,7 @@ void Contacts::begin(const Positions& x_start, double time, double h) {
   carry_ = obstacle_.pose() * back;
 }
 
-double Contacts::way(const Positions& x) const {
+double Contacts::distance(const Positions& x) const {
   double sum = 0;
   for (int v = 0; v < problem_.vertices(); ++v) {
     double squared = (x.col(v) - start_->col(v)).squaredNorm();
@@ -113,15 +114,15 @@ Eigen::Vector3d Contacts::carried(int vertex) const {
   return problem_.body_motion() ? carry_(start) : start;
 }
 
-// Coulomb's friction of a push on a vertex that goes this way.
-void Contacts::take_friction(const ContactPlane& plane, double push, const Eigen::Vector3d& way,
-                             Positions& x) const {
-  const Eigen::Vector3d slide = way - plane.normal.dot(way) * plane.normal;
+// Coulomb's friction of a push on a vertex with this displacement.
+void Contacts::take_friction(const ContactPlane& plane, double push,
+                             const Eigen::Vector3d& displacement, Positions& x) const {
+  const Eigen::Vector3d slide = displacement - plane.normal.dot(displacement) * plane.normal;
   const double length = slide.norm(), most = friction_ * push;
   if (length > 0) x.col(plane.vertex) -= std::min(1.0, most / length) * slide;
 }
 
-void Contacts::rub(Positions& x0, WorkCounters& work) {
+void Contacts::apply_friction(Positions& x0, WorkCounters& work) {
   if (candidate_.size() == 0) return;
   const Timing measured = timing();
   const double scale = h_ * h_;
@@ -144,8 +145,8 @@ void Contacts::accept(const Positions& x) {
   for (int c = 0; c < count_; ++c) expected_.col(vertex_[c]) -= scale * push_[c] * normal(c);
   for (Eigen::Index v = 0; v < x.cols(); ++v) {
     const auto now = expected_.col(v), before = before_.col(v);
-    const double way = (x.col(v) - start_->col(v)).norm();
-    pressing_.col(v) += newest * std::min(1.0, edge / way) * (now - pressing_.col(v));
+    const double distance = (x.col(v) - start_->col(v)).norm();
+    pressing_.col(v) += newest * std::min(1.0, edge / distance) * (now - pressing_.col(v));
     if (now.dot(before) <= 0) {
       pulling_.col(v).setZero();
     } else {
@@ -187,7 +188,7 @@ void Contacts::push_out(Positions& x, WorkCounters& work) {
     if (!problem_.contact_inside()) take_friction(plane, depth, at - carried(plane.vertex), x);
   }
   if (problem_.contact_inside() || friction_ == 0) return;
-  // Where the obstacle is not convex, friction's way back may lead into it again.
+  // Where the obstacle is not convex, friction may move vertices into it again.
   obstacle_.find(x, tolerance_, found_, work);
   for (const ContactPlane& plane : found_) {
     auto at = x.col(plane.vertex);

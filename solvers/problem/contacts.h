@@ -12,12 +12,12 @@
 // geometry has one. What edges will do to a vertex is expected to be what they have done (Kaufman
 // et al. 2008 and Li et al. 2020 lag the push in this way):
 // * They press with a mean over some ten steps. A vertex that is `depth` inside with it is pushed
-//   by as much, and friction takes at most mu depth off its way along the surface.
+//   by as much, and friction takes at most mu depth off its displacement along the surface.
 // * They pull along the surface by what they did in each of the last two steps, the lesser of the
 //   two, and by nothing where these contradict each other. Friction takes this off beforehand, so
-//   that a vertex sticks under a steady pull: from rest on it creeps by that pull's way in one or
-//   two steps, which falls with the square of the step.
-// On an obstacle that moves, the way is counted from where the obstacle carries the vertex.
+//   that a vertex sticks under a steady pull: from rest it creeps by what that pull moves it in one
+//   or two steps, which falls with the square of the step.
+// On an obstacle that moves, displacements are counted from where the obstacle carries the vertex.
 #pragma once
 
 #include <algorithm>
@@ -39,10 +39,10 @@ class Contacts {
   // where it will be when the step ends.
   void begin(const Positions& x_start, double time, double h);
 
-  // Friction, once a step: takes from the candidate x0 (3 x n, the end of the step without edges
-  // and planes) what friction takes from its way. Vertices that are expected to touch get a
-  // contact.
-  void rub(Positions& x0, WorkCounters& work);
+  // Friction, once a step, on the candidate x0 (3 x n, the end of the step without edges and
+  // planes): shortens the displacement of vertices along the surface. Vertices that are expected to
+  // touch get a contact.
+  void apply_friction(Positions& x0, WorkCounters& work);
   // The step is accepted, and ended at x before the collision filter: what edges did to the
   // candidate is expected of them in the next step.
   void accept(const Positions& x);
@@ -75,9 +75,9 @@ class Contacts {
   void push_out(Positions& x, WorkCounters& work);
 
   // |x - x_start| in the norm of M, each vertex from where it began or from where the obstacle
-  // would have carried it, whichever is nearer; and what of it is no motion, but the room that
-  // edges have.
-  double way(const Positions& x) const;
+  // would have carried it, whichever is nearer; and how much of it may come from edges that drift
+  // within their limits.
+  double distance(const Positions& x) const;
   double slack() const { return slack_; }
 
   // Adds the seconds until it goes out of scope to measure()'s sum; one inside another adds
@@ -134,7 +134,7 @@ class Contacts {
   }
   void put(const ContactPlane& plane, WorkCounters& work);
   Eigen::Vector3d carried(int vertex) const;
-  void take_friction(const ContactPlane& plane, double push, const Eigen::Vector3d& way,
+  void take_friction(const ContactPlane& plane, double push, const Eigen::Vector3d& displacement,
                      Positions& x) const;
   void visit(int first, double (&x)[3][lanes]);
 

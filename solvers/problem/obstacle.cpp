@@ -33,7 +33,7 @@ bool Obstacle::plane_at(const Eigen::Vector3d& p, ContactPlane& plane, WorkCount
 
 void Obstacle::place_plane(ContactPlane& plane) const {
   plane.normal = pose_.turn * plane.normal;
-  plane.offset += plane.normal.dot(pose_.way);
+  plane.offset += plane.normal.dot(pose_.translation);
 }
 
 }  // namespace inextensible

@@ -40,6 +40,41 @@ void check_edges(const std::vector<Edge>& edges, std::size_t vertices, const cha
   }
 }
 
+void check_shear(const Springs& shear, std::size_t vertices) {
+  if (shear.rest_length.size() != shear.edges.size() ||
+      shear.stiffness.size() != shear.edges.size()) {
+    throw std::invalid_argument(
+        "shear springs: edges, rest lengths and stiffnesses differ in number");
+  }
+  check_edges(shear.edges, vertices, "shear spring");
+  check_positive(shear.rest_length, "shear spring", "rest length");
+  check_positive(shear.stiffness, "shear spring", "stiffness");
+}
+
+void check_bending(const Bending& bending, std::size_t vertices) {
+  for (std::size_t s = 0; s < bending.size(); ++s) {
+    for (const int vertex : bending[s].vertex) {
+      if (vertex < 0 || std::cmp_greater_equal(vertex, vertices))
+        refuse("bending stencil", s, "vertex " + std::to_string(vertex) + " does not exist");
+    }
+    for (const double c : bending[s].coefficient) {
+      if (!std::isfinite(c)) refuse("bending stencil", s, "a coefficient is not finite");
+    }
+    if (!(bending[s].stiffness >= 0) || !std::isfinite(bending[s].stiffness))
+      refuse("bending stencil", s, "its stiffness is negative or not finite");
+  }
+}
+
+void check_drag(const std::vector<double>& drag, std::size_t vertices) {
+  if (!drag.empty() && drag.size() != vertices)
+    throw std::invalid_argument("there are " + std::to_string(vertices) + " vertices but " +
+                                std::to_string(drag.size()) + " drag coefficients");
+  for (std::size_t i = 0; i < drag.size(); ++i) {
+    if (!(drag[i] >= 0) || !std::isfinite(drag[i]))
+      refuse("vertex", i, "its drag is negative or not finite");
+  }
+}
+
 }  // namespace
 
 Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
@@ -69,36 +104,9 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
       refuse("edge", k, "both ends are pinned, so nothing can keep its length; leave it out");
     }
   }
-  if (parts_.shear) {
-    const Springs& shear = *parts_.shear;
-    if (shear.rest_length.size() != shear.edges.size() ||
-        shear.stiffness.size() != shear.edges.size()) {
-      throw std::invalid_argument(
-          "shear springs: edges, rest lengths and stiffnesses differ in number");
-    }
-    check_edges(shear.edges, n, "shear spring");
-    check_positive(shear.rest_length, "shear spring", "rest length");
-    check_positive(shear.stiffness, "shear spring", "stiffness");
-  }
-  for (std::size_t s = 0; s < parts_.bending.size(); ++s) {
-    const BendingStencil& stencil = parts_.bending[s];
-    for (const int vertex : stencil.vertex) {
-      if (vertex < 0 || std::cmp_greater_equal(vertex, n))
-        refuse("bending stencil", s, "vertex " + std::to_string(vertex) + " does not exist");
-    }
-    for (const double c : stencil.coefficient) {
-      if (!std::isfinite(c)) refuse("bending stencil", s, "a coefficient is not finite");
-    }
-    if (!(stencil.stiffness >= 0) || !std::isfinite(stencil.stiffness))
-      refuse("bending stencil", s, "its stiffness is negative or not finite");
-  }
-  if (!parts_.drag.empty() && parts_.drag.size() != n)
-    throw std::invalid_argument("there are " + std::to_string(n) + " vertices but " +
-                                std::to_string(parts_.drag.size()) + " drag coefficients");
-  for (std::size_t i = 0; i < parts_.drag.size(); ++i) {
-    if (!(parts_.drag[i] >= 0) || !std::isfinite(parts_.drag[i]))
-      refuse("vertex", i, "its drag is negative or not finite");
-  }
+  if (parts_.shear) check_shear(*parts_.shear, n);
+  check_bending(parts_.bending, n);
+  check_drag(parts_.drag, n);
   if (parts_.body_motion && !parts_.collider)
     throw std::invalid_argument("a body's motion without a collider");
   if (parts_.pins_follow_body && !parts_.body_motion)

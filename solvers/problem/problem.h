@@ -50,8 +50,8 @@ struct ProblemParts {
   BodyMotion body_motion;                    // of the collider; empty: it stays
   bool pins_follow_body = false;             // pinned vertices move as if fixed to the body
   // Methods keep vertices out of the obstacle while they keep edges to their lengths. false: a step
-  // ends with a pass that moves vertices out, after which nobody looks at edges again (the paper's
-  // pipeline, section 4.4).
+  // ends with a pass that moves vertices out, after which edges are not looked at again (the
+  // paper's pipeline, section 4.4).
   bool contact_inside = true;
 };
 
@@ -84,7 +84,7 @@ class Problem {
   const Collider* collider() const { return parts_.collider.get(); }
   const BodyMotion& body_motion() const { return parts_.body_motion; }
   bool pins_follow_body() const { return parts_.pins_follow_body; }
-  // Whether there is a collider that methods are to heed.
+  // Whether there is a collider that methods take into account.
   bool contact_inside() const { return parts_.collider && parts_.contact_inside; }
 
  private:

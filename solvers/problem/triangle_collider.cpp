@@ -57,25 +57,31 @@ TriangleMesh icosphere(const Vector3d& centre, double radius, int subdivisions) 
 
 TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
     : mesh_(std::move(mesh)), friction_(friction) {
+  find_pseudonormals();
+  check_orientation();
+  lay_out_grid();
+}
+
+// A face's own normal; the sum of both faces' at an edge; the angle-weighted sum at a corner.
+void TriangleCollider::find_pseudonormals() {
   const auto count = mesh_.triangles.size();
-  // Pseudonormals: a face's own normal; the sum of both faces' at an edge; the angle-weighted sum
-  // at a corner.
   std::vector<Vector3d> at_vertex(mesh_.vertices.size(), Vector3d::Zero());
   std::map<std::pair<int, int>, std::pair<Vector3d, int>> at_edge;
-  std::vector<Vector3d> face(count);
+  pseudonormal_.resize(count);
   for (std::size_t f = 0; f < count; ++f) {
     const auto& triangle = mesh_.triangles[f];
     std::array<Vector3d, 3> p;
     for (int i = 0; i < 3; ++i) p[i] = corner(mesh_, static_cast<int>(f), i);
-    face[f] = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+    const Vector3d normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+    pseudonormal_[f][0] = normal;
     for (std::size_t i = 0; i < 3; ++i) {
       const Vector3d next = (p[(i + 1) % 3] - p[i]).normalized(),
                      last = (p[(i + 2) % 3] - p[i]).normalized();
-      at_vertex[triangle[i]] += std::acos(std::clamp(next.dot(last), -1.0, 1.0)) * face[f];
+      at_vertex[triangle[i]] += std::acos(std::clamp(next.dot(last), -1.0, 1.0)) * normal;
       auto& [sum, faces] =
           at_edge.try_emplace(std::minmax(triangle[i], triangle[(i + 1) % 3]), Vector3d::Zero(), 0)
               .first->second;
-      sum += face[f];
+      sum += normal;
       ++faces;
     }
   }
@@ -86,25 +92,25 @@ TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
           ") has " + std::to_string(normal.second) + " triangles, a closed mesh has 2");
     }
   }
-  pseudonormal_.resize(count);
   for (std::size_t f = 0; f < count; ++f) {
     const auto& triangle = mesh_.triangles[f];
-    pseudonormal_[f][0] = face[f];
     for (std::size_t i = 0; i < 3; ++i) {
       pseudonormal_[f][1 + i] =
           at_edge.at(std::minmax(triangle[i], triangle[(i + 1) % 3])).first.normalized();
       pseudonormal_[f][4 + i] = at_vertex[triangle[i]].normalized();
     }
   }
+}
 
+void TriangleCollider::check_orientation() {
   double volume = 0;
   convex_ = true;
-  for (std::size_t f = 0; f < count; ++f) {
+  for (std::size_t f = 0; f < mesh_.triangles.size(); ++f) {
     const Vector3d& p = corner(mesh_, static_cast<int>(f), 0);
     volume += p.dot((corner(mesh_, static_cast<int>(f), 1) - p)
                         .cross(corner(mesh_, static_cast<int>(f), 2) - p));
     for (const Vector3d& v : mesh_.vertices) {
-      convex_ = convex_ && (v - p).dot(face[f]) <= 1e-9 * p.norm();
+      convex_ = convex_ && (v - p).dot(pseudonormal_[f][0]) <= 1e-9 * p.norm();
     }
   }
   if (!(volume > 0)) {
@@ -112,7 +118,10 @@ TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
         "collider: the mesh is inside out; its triangles must be "
         "counter-clockwise seen from outside");
   }
+}
 
+void TriangleCollider::lay_out_grid() {
+  const auto count = mesh_.triangles.size();
   Vector3d high = low_ = mesh_.vertices.front();
   for (const Vector3d& v : mesh_.vertices) {
     low_ = low_.cwiseMin(v);
@@ -123,9 +132,11 @@ TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
   low_ -= margin;
   cell_size_ = (high + margin - low_) / resolution;
   inverse_cell_size_ = cell_size_.cwiseInverse();
-  for (std::size_t f = 0; f < count; ++f)
-    planes_.push_back({face[f].x(), face[f].y(), face[f].z(),
-                       face[f].dot(corner(mesh_, static_cast<int>(f), 0))});
+  for (std::size_t f = 0; f < count; ++f) {
+    const Vector3d& normal = pseudonormal_[f][0];
+    planes_.push_back(
+        {normal.x(), normal.y(), normal.z(), normal.dot(corner(mesh_, static_cast<int>(f), 0))});
+  }
   all_.resize(count);
   std::iota(all_.begin(), all_.end(), 0);
   cell_.assign(resolution * resolution * resolution, outside);

@@ -58,6 +58,9 @@ class TriangleCollider final : public Collider {
   Closest closest(int triangle, const Eigen::Vector3d& p) const;
   template <class Triangles>
   Nearest nearest_among(const Triangles& triangles, const Eigen::Vector3d& p) const;
+  void find_pseudonormals();
+  void check_orientation();
+  void lay_out_grid();
   void refine(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);
   // Of a cell: its triangles.
   struct List {

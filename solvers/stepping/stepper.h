@@ -60,8 +60,8 @@ class Stepper {
   // Of the last linear system that was factored, an estimate from its pivots; 1 for methods without
   // one. Meaningful after a step that counted a factorization and did not end `singular`.
   virtual double reciprocal_condition() const { return 1; }
-  // From the next step on; null: nobody. Methods that show no iterates do nothing. The observer
-  // outlives the stepper, or takes its leave.
+  // From the next step on; null: none. Methods that show no iterates do nothing. The observer
+  // outlives the stepper, or is unregistered first.
   virtual void observe(IterateObserver* /*observer*/) {}
 
  protected:
@@ -86,7 +86,7 @@ class Stepper {
   bool phases_wanted_ = false;  // for Stopwatch
   // Of the present step; null without a collider.
   std::unique_ptr<Contacts> contacts_;
-  // The same where a method is to heed them, else null.
+  // The same where methods take them into account, else null.
   Contacts* contacts_inside() const {
     return problem_->contact_inside() ? contacts_.get() : nullptr;
   }

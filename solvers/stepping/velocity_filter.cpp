@@ -18,17 +18,16 @@ constexpr double farthest = 4;
 
 StepResult apply_until_clear(VelocityFilter& filter, Contacts* contacts, const Positions& x_start,
                              double h, Positions& x, WorkCounters& work) {
-  filter.heed(contacts);
-  if (!contacts) return filter.apply(x_start, h, x, work);
-  contacts->rub(x, work);
+  if (!contacts) return filter.apply(x_start, h, {x, contacts}, work);
+  contacts->apply_friction(x, work);
   contacts->find(x, work);
-  const double reach = farthest * contacts->way(x) + contacts->slack();
+  const double reach = farthest * contacts->distance(x) + contacts->slack();
   for (int round = 0, iterations = 0;; ++round) {
     contacts->settle(x);
-    StepResult result = filter.apply(x_start, h, x, work);
+    StepResult result = filter.apply(x_start, h, {x, contacts}, work);
     result.iterations = iterations += result.iterations;
     if (!result) return result;
-    if (contacts->count() > 0 && !(contacts->way(x) <= reach))
+    if (contacts->count() > 0 && !(contacts->distance(x) <= reach))
       return {Status::not_converged, iterations, -1, 0, "a spurious solution, far from the start"};
     if (contacts->find(x, work) == 0) return result;
     if (round == most_rounds)

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "solvers/problem/iterate.h"
 #include "solvers/stepping/stepper.h"
 #include "solvers/systems/implicit_forces.h"
 
@@ -20,20 +21,14 @@ class VelocityFilter {
   // x_start = x^n and x = x0 (both 3 x n) in, x = x^{n+1} out; the filtered velocity is (x -
   // x_start) / h. On refusal x is unspecified. Pinned vertices keep their place bit for bit, and
   // contacts hold when it ends: another settle() would change nothing.
-  virtual StepResult apply(const Positions& x_start, double h, Positions& x,
-                           WorkCounters& work) = 0;
+  virtual StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) = 0;
 
   virtual const char* linear_solver() const { return ""; }
   virtual double reciprocal_condition() const { return 1; }  // as the stepper's
   void observe(IterateObserver* observer) { observer_ = observer; }
-  // From the next apply() on; null: none.
-  virtual void heed(Contacts* contacts) { contacts_ = contacts; }
 
  protected:
-  bool touches() const { return contacts_ && contacts_->count() > 0; }
-
   IterateObserver* observer_ = nullptr;
-  Contacts* contacts_ = nullptr;
 };
 
 // The filter, as often as it takes until nothing is inside the obstacle: a contact is found when it

@@ -140,8 +140,8 @@ bool ChainKkt::eliminate(const Eigen::Matrix3Xd& u) {
   return true;
 }
 
-bool ChainKkt::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex,
-                      WorkCounters& work) {
+bool ChainKkt::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
+                      const Contacts* /*contacts*/, bool convex, WorkCounters& work) {
   u_ = &u;
   mu_ = &mu;
   left_to_umfpack_ = false;
@@ -164,7 +164,7 @@ bool ChainKkt::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool
 bool ChainKkt::leave_to_umfpack(WorkCounters& work) {
   if (!umfpack_) umfpack_ = std::make_unique<KktSystem>(problem_, edges_, "umfpack");
   left_to_umfpack_ = true;
-  return umfpack_->factor(*u_, *mu_, convexified_, work);
+  return umfpack_->factor(*u_, *mu_, nullptr, convexified_, work);
 }
 
 void ChainKkt::substitute(Positions& p, Eigen::VectorXd& q) const {

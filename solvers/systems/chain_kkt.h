@@ -23,8 +23,8 @@ class ChainKkt final : public KktSolver {
   static bool fits(const Problem& problem);
 
   // A matrix that elimination in this order cannot take is left to UMFPACK.
-  bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex,
-              WorkCounters& work) override;
+  bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, const Contacts* contacts,
+              bool convex, WorkCounters& work) override;
   bool solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
              WorkCounters& work) override;
   double reciprocal_condition() const override;

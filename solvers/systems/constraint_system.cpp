@@ -33,7 +33,7 @@ ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
   }
   solver_ = make_spd_solver(solver_name_, schur_->pattern());
   solver_->set_least_pivot(least_pivot);
-  checked_ = solver_name_ != "tridiagonal";
+  chain_ = spd_solver(solver_name_).takes == Takes::tridiagonal;
   if (problem.contact_inside()) {
     const SymmetricPattern& pattern = schur_->pattern();
     contact_terms_ = std::make_unique<ContactTerms>(*edges_, problem.vertices(),
@@ -41,11 +41,12 @@ ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
   }
 }
 
-bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, WorkCounters& work, double damping) {
+bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, const Contacts* contacts,
+                              WorkCounters& work, double damping) {
   schur_->assemble(u, solver_->values());
   if (damping > 0) schur_->scale_diagonal(1 + damping, solver_->values());
-  if (contacts_) {
-    contact_terms_->subtract(*contacts_, problem_.inverse_mass().data(), u, u, solver_->values());
+  if (contacts) {
+    contact_terms_->subtract(*contacts, problem_.inverse_mass().data(), u, u, solver_->values());
   }
   ++work.assemblies;
   ++work.factorizations;
@@ -62,7 +63,7 @@ bool ConstraintSystem::solve(Eigen::VectorXd& mu, WorkCounters& work, double tol
   const bool solved = solver_->solve_within(tolerance, mu.data());
   ++work.back_solves;
   work.linear_iterations += solver_->iterations() - before;
-  return solved && (!checked_ || moderate(mu, largest));
+  return solved && (chain_ || moderate(mu, largest));
 }
 
 bool ConstraintSystem::moderate(const Eigen::VectorXd& mu, double largest) const {

@@ -40,15 +40,15 @@ class ConstraintSystem {
 
   double reciprocal_condition() const { return solver_->reciprocal_condition(); }
   const std::string& solver_name() const { return solver_name_; }
-
-  // Contacts whose vertices move within their planes only, from the next factorization on; null:
-  // none.
-  void heed(const Contacts* contacts) { contacts_ = contacts; }
-  const Contacts* contacts() const { return contacts_; }
+  // Whether J W J^T is taken as tridiagonal: a projection costs no more than some passes over
+  // edges.
+  bool chain() const { return chain_; }
 
   // Assembles J W J^T at gradients u, its diagonal times 1 + damping, and factors it; false: not
-  // positive definite.
-  bool factor(const Eigen::Matrix3Xd& u, WorkCounters& work, double damping = 0);
+  // positive definite. contacts: their vertices move within their planes only, so that W (I - n
+  // n^T) takes the place of W; null: none.
+  bool factor(const Eigen::Matrix3Xd& u, const Contacts* contacts, WorkCounters& work,
+              double damping = 0);
   // mu = (J W J^T)^-1 mu; iterative solvers to a residual of `tolerance` times the right-hand side.
   // false: one of them did not get there, or the multipliers grew too large; mu is unspecified.
   bool solve(Eigen::VectorXd& mu, WorkCounters& work, double tolerance = SpdSolver::tightest);
@@ -57,10 +57,9 @@ class ConstraintSystem {
   bool moderate(const Eigen::VectorXd& mu, double largest) const;
 
   const Problem& problem_;
-  const Contacts* contacts_ = nullptr;
   std::unique_ptr<ContactTerms> contact_terms_;  // where the problem has contact inside
   std::string solver_name_;
-  bool checked_ = false;  // multipliers are: all but those of a chain
+  bool chain_ = false;
   std::unique_ptr<EdgeConstraints> edges_;
   std::unique_ptr<SchurComplement> schur_;
   std::unique_ptr<SpdSolver> solver_;

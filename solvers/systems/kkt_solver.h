@@ -28,12 +28,11 @@ class KktSolver {
   // Takes gradients u (3 x m) and scaled multipliers mu / mean_mass (m), both of which must stay as
   // they are until the last solve; false: singular. convex: negative multipliers (compressed edges)
   // are left out of H, so that M + H is positive definite. A solver that finds M + H indefinite on
-  // the null space of J does so by itself.
-  virtual bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex,
-                      WorkCounters& work) = 0;
-  // Contacts whose vertices move within their planes only, from the next factorization on; null:
-  // none. False, if there are some: this solver cannot.
-  virtual bool heed(const Contacts* contacts) { return contacts == nullptr; }
+  // the null space of J does so by itself. contacts: their vertices move within their planes only;
+  // null or empty: none, as must be where the solver does not take them.
+  virtual bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
+                      const Contacts* contacts, bool convex, WorkCounters& work) = 0;
+  virtual bool takes_contacts() const { return false; }
 
   // Whether they were left out, of the last solve.
   bool convexified() const { return convexified_; }

@@ -141,8 +141,8 @@ void KktSystem::assemble(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, b
   }
 }
 
-bool KktSystem::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex,
-                       WorkCounters& work) {
+bool KktSystem::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
+                       const Contacts* /*contacts*/, bool convex, WorkCounters& work) {
   for (;; convex = true) {
     assemble(u, mu, convex);
     convexified_ = convex;

@@ -21,8 +21,8 @@ class KktSystem final : public KktSolver {
   // linear_solver: "quasi_definite" or "umfpack".
   KktSystem(const Problem& problem, const EdgeConstraints& edges, std::string_view linear_solver);
 
-  bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex,
-              WorkCounters& work) override;
+  bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, const Contacts* contacts,
+              bool convex, WorkCounters& work) override;
   bool solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
              WorkCounters& work) override;
   double reciprocal_condition() const override {

@@ -79,8 +79,9 @@ void ProjectedCg::set_curvature(bool convex) {
   }
 }
 
-bool ProjectedCg::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex,
-                         WorkCounters& work) {
+bool ProjectedCg::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
+                         const Contacts* contacts, bool convex, WorkCounters& work) {
+  contacts_ = contacts;
   u_ = &u;
   mu_ = &mu;
   convex_ = convex;
@@ -120,7 +121,7 @@ bool ProjectedCg::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, b
 bool ProjectedCg::factor_directly(WorkCounters& work) {
   if (!direct_) direct_ = std::make_unique<KktSystem>(problem_, edges_, "quasi_definite");
   direct_in_use_ = true;
-  const bool factored = direct_->factor(*u_, *mu_, convex_, work);
+  const bool factored = direct_->factor(*u_, *mu_, nullptr, convex_, work);
   convexified_ = direct_->convexified();
   return factored;
 }

@@ -24,14 +24,11 @@ class ProjectedCg final : public KktSolver {
   // edges: best in elimination_order.
   ProjectedCg(const Problem& problem, const EdgeConstraints& edges, const Settings& settings);
 
-  bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex,
-              WorkCounters& work) override;
+  bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, const Contacts* contacts,
+              bool convex, WorkCounters& work) override;
   bool solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
              WorkCounters& work) override;
-  bool heed(const Contacts* contacts) override {
-    contacts_ = contacts;
-    return true;
-  }
+  bool takes_contacts() const override { return true; }
   double reciprocal_condition() const override {
     return direct_in_use_ ? direct_->reciprocal_condition() : solver_->reciprocal_condition();
   }

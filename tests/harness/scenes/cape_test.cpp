@@ -25,7 +25,7 @@ TEST(Cape, HangsFromTheMovingBody) {
       inextensible::make_stepper("fast_projection", scene.problem, {0.01, 1, {}, &state});
   while (state.time < 1.5) ASSERT_TRUE(stepper->advance(state, 1.0 / 120));
   const inextensible::Pose pose = problem.body_motion()(state.time);
-  EXPECT_GT(pose.way.norm(), 0.1);
+  EXPECT_GT(pose.translation.norm(), 0.1);
   for (const int pin : problem.pinned())
     EXPECT_LT((state.x.col(pin) - pose(scene.start.x.col(pin))).norm(), 1e-9);
   for (std::size_t k = 0; k < problem.edges().size(); ++k) {

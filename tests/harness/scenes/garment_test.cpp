@@ -63,10 +63,10 @@ TEST(Garment, IsCarriedAlongByTheBodyThatItIsOn) {
   const Scene scene = garment({{"n", around}, {"sway", 0.1}, {"turn", 0}, {"period", 1}});
   const State state = after(scene, 0.01, 1.25);  // when the body is farthest to one side
   const Pose pose = scene.problem->body_motion()(state.time);
-  ASSERT_NEAR(pose.way.x(), 0.1, 1e-9);
+  ASSERT_NEAR(pose.translation.x(), 0.1, 1e-9);
   double middle = 0;
   for (int v = 0; v < around; ++v) middle += state.x(0, v) / around;
-  EXPECT_NEAR(middle, pose.way.x(), 0.01);
+  EXPECT_NEAR(middle, pose.translation.x(), 0.01);
 }
 
 TEST(Garment, ItsBodyStartsAtRestWhereItIs) {
@@ -74,8 +74,8 @@ TEST(Garment, ItsBodyStartsAtRestWhereItIs) {
   const auto& motion = scene.problem->body_motion();
   const Pose start = motion(0), soon = motion(1e-4);
   EXPECT_EQ(start.turn, Eigen::Matrix3d::Identity());
-  EXPECT_EQ(start.way, Eigen::Vector3d::Zero().eval());
-  EXPECT_LT((soon.turn - start.turn).norm() + (soon.way - start.way).norm(), 1e-9);
+  EXPECT_EQ(start.translation, Eigen::Vector3d::Zero().eval());
+  EXPECT_LT((soon.turn - start.turn).norm() + (soon.translation - start.translation).norm(), 1e-9);
   EXPECT_FALSE(garment({{"sway", 0}, {"turn", 0}}).problem->body_motion());
 }
 

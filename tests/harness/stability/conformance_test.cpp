@@ -90,7 +90,7 @@ class Spoilt final : public VelocityFilter {
  public:
   Spoilt(const Problem& problem, double limit)
       : problem_(problem), filter_(problem, {.strain_limit = Fault::limit_factor * limit}) {}
-  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override {
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override {
     const Step step{problem_, x_start, x, work};
     Fault::before(step);
     const StepResult result = filter_.apply(x_start, h, x, work);

@@ -491,7 +491,7 @@ TEST(KktSystem, SolvesTheDenseSaddlePointSystemAndNoticesTheWrongInertia) {
             m, [&](Eigen::Index) { return size * testing::uniform(random, -1, 1); });
         KktSystem kkt(problem, edges, name);
         WorkCounters work;
-        ASSERT_TRUE(kkt.factor(u, mu, false, work));
+        ASSERT_TRUE(kkt.factor(u, mu, nullptr, false, work));
         const Eigen::MatrixXd full = dense_kkt(problem, graph.x, mu, kkt.mean_mass());
         const Eigen::VectorXd eigenvalues =
             Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full, Eigen::EigenvaluesOnly)
@@ -562,7 +562,7 @@ TEST(ChainKkt, SolvesTheDenseSaddlePointSystemAndNoticesTheWrongInertia) {
           m, [&](Eigen::Index) { return size * testing::uniform(random, -1, 1); });
       ChainKkt kkt(problem, edges);
       WorkCounters work;
-      ASSERT_TRUE(kkt.factor(u, mu, false, work));
+      ASSERT_TRUE(kkt.factor(u, mu, nullptr, false, work));
       const Eigen::MatrixXd full = dense_kkt(problem, mesh.x, mu, kkt.mean_mass());
       const Eigen::VectorXd eigenvalues =
           Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full, Eigen::EigenvaluesOnly)
@@ -634,7 +634,7 @@ TEST(ProjectedCg, SolvesTheSaddlePointSystemAndKeepsTheConstraintsWhereItIsIndef
             m, [&](Eigen::Index) { return size * testing::uniform(random, lowest, 1); });
         ProjectedCg cg(problem, edges, {1e-12, 500, "fixed_pattern"});
         WorkCounters work;
-        ASSERT_TRUE(cg.factor(u, mu, false, work));
+        ASSERT_TRUE(cg.factor(u, mu, nullptr, false, work));
         Positions r(3, n), p(3, n);
         for (Eigen::Index i = 0; i < r.size(); ++i) r.data()[i] = testing::uniform(random, -1, 1);
         for (const int v : problem.pinned()) r.col(v).setZero();

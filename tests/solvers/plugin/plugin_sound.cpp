@@ -23,7 +23,7 @@ class Repeated final : public VelocityFilter {
   Repeated(const Problem& problem, double strain_limit)
       : inner_(problem, {.strain_limit = strain_limit}) {}
 
-  StepResult apply(const Positions& x_start, double h, Positions& x, WorkCounters& work) override {
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override {
     for (int i = 0; i < in_vain; ++i) {
       copy_ = x;
       inner_.apply(x_start, h, copy_, not_counted_);

@@ -88,7 +88,7 @@ TEST(Contacts, FrictionTakesFromTheWayWhatCoulombGrants) {
     Contacts contacts(fallen.problem);
     contacts.begin(fallen.start, 0, 0.01);
     Positions x = fallen.candidate;
-    contacts.rub(x, fallen.work);
+    contacts.apply_friction(x, fallen.work);
     for (int v = 0; v < 20; ++v) {
       const Vector3d n = fallen.ground->normal(),
                      way = fallen.candidate.col(v) - fallen.start.col(v);
@@ -118,7 +118,7 @@ TEST(Contacts, FrictionHoldsWhatEdgesPullSteadily) {
     contacts.begin(start, step * h, h);
     Positions x = start;
     x(1, 0) -= fall;
-    contacts.rub(x, work);
+    contacts.apply_friction(x, work);
     contacts.settle(x);
     x(0, 0) += pull;  // the edges
     slid = x(0, 0);

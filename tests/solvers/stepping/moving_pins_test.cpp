@@ -67,7 +67,7 @@ TEST(MovingPins, AreWhereTheBodyTakesThem) {
   const auto turning = [](double time) {
     Pose pose;
     pose.turn = Eigen::AngleAxisd(2 * time, Eigen::Vector3d::UnitY());
-    pose.way = time * speed;
+    pose.translation = time * speed;
     return pose;
   };
   State state = straight(Eigen::Vector3d::Zero());

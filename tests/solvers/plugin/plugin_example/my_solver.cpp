@@ -19,7 +19,7 @@ class SymmetricSweeps final : public inextensible::VelocityFilter {
   SymmetricSweeps(const Problem& problem, double strain_limit, int max_sweeps)
       : edges_(problem, strain_limit), max_sweeps_(max_sweeps) {}
 
-  StepResult apply(const Positions& /*x_start*/, double /*h*/, Positions& x,
+  StepResult apply(const Positions& /*x_start*/, double /*h*/, inextensible::Iterate x,
                    inextensible::WorkCounters& work) override {
     for (int sweep = 0; sweep < max_sweeps_; ++sweep) {
       if (edges_.permissible(x)) return {Status::ok, sweep};
@@ -27,6 +27,7 @@ class SymmetricSweeps final : public inextensible::VelocityFilter {
         visit(sweep % 2 == 0 ? i : edges_.count() - 1 - i, x);
         ++work.edge_projections;
       }
+      x.settle();  // vertices that went into the obstacle are put back
     }
     return inextensible::refuse(Status::not_converged, max_sweeps_, edges_, x, "sweep limit");
   }
