@@ -187,8 +187,8 @@ nlohmann::json film_header(const Recording& recording) {
   for (const Eigen::Vector3d& v : recording.stage.body) body.push_back({v.x(), v.y(), v.z()});
   for (const inextensible::Pose& pose : recording.stage.body_poses) {
     const auto& r = pose.turn;
-    poses.push_back({r(0, 0), r(0, 1), r(0, 2), pose.translation[0], r(1, 0), r(1, 1), r(1, 2), pose.translation[1],
-                     r(2, 0), r(2, 1), r(2, 2), pose.translation[2]});
+    poses.push_back({r(0, 0), r(0, 1), r(0, 2), pose.translation[0], r(1, 0), r(1, 1), r(1, 2),
+                     pose.translation[1], r(2, 0), r(2, 1), r(2, 2), pose.translation[2]});
   }
   return {{"schema", "inextensible-film/1"},
           {"scene", recording.spec.scene},
