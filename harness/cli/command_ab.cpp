@@ -15,8 +15,10 @@
 #include "harness/base/paths.h"
 #include "harness/base/temporary_folder.h"
 #include "harness/base/timing_lock.h"
-#include "harness/cli/commands.h"
 #include "harness/cli/compare_options.h"
+#include "harness/cli/exit_codes.h"
+#include "harness/cli/shared_options.h"
+#include "harness/cli/verbs.h"
 #include "harness/compare/pairs.h"
 #include "harness/points/result_file.h"
 #include "harness/run/runner.h"
@@ -31,7 +33,7 @@ constexpr double point_timeout = 60;  // s, of one run
 constexpr double sweep_timeout = 3600;
 
 struct AbCommand : CompareOptions {
-  std::string old_binary, new_binary, suite = "quick", solver, scene, filter, exclude;
+  std::string old_binary, new_binary, profile = "quick", config, solver, scene, filter, exclude;
   int pairs = 15, confirming = 25;
   bool no_wait = false;
   // s that a process measures at least, so that runs of a millisecond are seen often enough for one
@@ -99,9 +101,9 @@ json old_result(const AbCommand& options) {
   const std::string out = folder.file("old.json");
   std::vector<std::string> words = options.program(Side::old_one);
   words.insert(words.end(), {"--sweep", "strain"});
-  const bool file = options.suite.find_first_of("/.") != std::string::npos;
   for (const auto& [option, value] :
-       {std::pair(file ? "--config" : "--profile", options.suite),
+       {options.config.empty() ? std::pair("--profile", options.profile)
+                               : std::pair("--config", options.config),
         std::pair("--solver", options.solver), std::pair("--scene", options.scene),
         std::pair("--filter", options.filter), std::pair("--exclude", options.exclude),
         std::pair("--out", out)}) {
@@ -222,43 +224,48 @@ int run_ab(const AbCommand& options) {
 
 }  // namespace
 
-void add_ab_command(const Command& program) {
-  const auto given = std::make_shared<AbCommand>();
-  AbCommand& options = *given;
-  const Command command = program.subcommand(
+Verb ab_verb() {
+  return {
       "ab",
       "two builds of this program against each other, in interleaved pairs of runs; exit 3 if "
-      "a point has become slower, 4 if one fails");
-  command.option("old", options.old_binary, "the program before", "OLD").required();
-  command.option("new", options.new_binary, "the program after", "NEW").required();
-  command
-      .option("--old-plugin", options.old_plugins, "a plug-in of the program before; repeatable",
-              "FILE")
-      .repeatable();
-  command
-      .option("--new-plugin", options.new_plugins, "a plug-in of the program after; repeatable",
-              "FILE")
-      .repeatable();
-  command.option("--suite", options.suite, "profile or suite file; default quick", "NAME");
-  command.option("--pairs", options.pairs, "processes of each a point; default 15", "N")
-      .within(4, 1000);  // fewer are never significant
-  command.option("--confirm", options.confirming, "pairs of the second look; default 25", "N")
-      .within(4, 1000);
-  command
-      .option("--seconds", options.least_measured,
-              "what a process measures at least, in as many runs as it takes; default 0.05", "S")
-      .within(1e-3, 60.0);
-  command.alternatives("--solver", options.solver, "only solvers whose name matches; repeatable");
-  command.option("--scene", options.scene, "chain or drape; both if left out", "NAME");
-  command.option("--filter", options.filter, "only points in whose id this is found", "REGEX");
-  command.option("--exclude", options.exclude, "without points in whose id this is found", "REGEX");
-  add_no_wait(command, options.no_wait);
-  add_compare_options(command, options);
-  command.does([given] {
-    given->old_binary = program_named(given->old_binary);
-    given->new_binary = program_named(given->new_binary);
-    return run_ab(*given);
-  });
+      "a point has become slower, 4 if one fails",
+      [](const Command& command) -> Action {
+        const auto given = std::make_shared<AbCommand>();
+        AbCommand& options = *given;
+        command.option("old", options.old_binary, "the program before", "OLD").required();
+        command.option("new", options.new_binary, "the program after", "NEW").required();
+        command
+            .option("--old-plugin", options.old_plugins,
+                    "a plug-in of the program before; repeatable", "FILE")
+            .repeatable();
+        command
+            .option("--new-plugin", options.new_plugins,
+                    "a plug-in of the program after; repeatable", "FILE")
+            .repeatable();
+        add_suite(command, options.profile, options.config);
+        command
+            .option("--pairs", options.pairs, "processes of each build for a point; default: 15",
+                    "N")
+            .within(4, 1000);  // fewer are never significant
+        command
+            .option("--confirm", options.confirming, "pairs of the second look; default: 25", "N")
+            .within(4, 1000);
+        command
+            .option("--sample-seconds", options.least_measured,
+                    "least time that a process measures, in as many runs as needed; default: 0.05",
+                    "S")
+            .within(1e-3, 60.0);
+        add_solver(command, options.solver);
+        command.option("--scene", options.scene, "one of the suite's; default: all", "SCENE");
+        add_filters(command, options.filter, options.exclude);
+        add_no_wait(command, options.no_wait);
+        add_compare_options(command, options);
+        return [given] {
+          given->old_binary = program_named(given->old_binary);
+          given->new_binary = program_named(given->new_binary);
+          return run_ab(*given);
+        };
+      }};
 }
 
 }  // namespace harness

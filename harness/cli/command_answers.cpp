@@ -8,31 +8,34 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
-#include "harness/cli/commands.h"
-#include "harness/cli/sweep_command.h"
+#include "harness/cli/exit_codes.h"
+#include "harness/cli/figures.h"
+#include "harness/cli/shared_options.h"
+#include "harness/cli/sweep_output.h"
+#include "harness/cli/verbs.h"
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
 
 namespace harness {
 namespace {
 
-struct AnswersOptions {
-  SweepCommand output;  // --out, --force, --solver, --no-plots
-  std::string answer;
+struct AnswersOptions : OutputOptions {
+  std::string solver, answer;
   double timeout = 20;
+  bool no_plots = false;
 };
 
 int answers(const AnswersOptions& given, const std::vector<std::string>& command) {
   AnswerSelection selection;
   selection.timeout = given.timeout;
-  if (!given.output.solver.empty()) {
-    check_solver_pattern(given.output.solver);
-    selection.solver = Pattern("--solver", given.output.solver);
+  if (!given.solver.empty()) {
+    check_solver_pattern(given.solver);
+    selection.solver = Pattern("--solver", given.solver);
   }
   if (!given.answer.empty()) selection.answer = Pattern("--answer", given.answer);
   const auto plan = plan_answers(selection);
-  const std::string out = chosen_output(given.output, "answers");
-  if (!given.output.force && std::filesystem::exists(out))
+  const std::string out = chosen_output(given, "answers");
+  if (!given.force && std::filesystem::exists(out))
     throw UsageError("'" + out +
                      "' is there already: --force replaces it, another --out keeps both");
   check_writable(out);
@@ -54,26 +57,27 @@ int answers(const AnswersOptions& given, const std::vector<std::string>& command
   print_answers(std::cout, document);
   std::cout << "\nwritten:\n" << out << std::endl;
   if (!outcome.complete) return interrupted_exit;
-  if (!given.output.no_plots && draw({out}) != 0)
-    std::cerr << "bench: the figure could not be drawn\n";
+  if (!given.no_plots && draw({out}) != 0) std::cerr << "bench: the figure could not be drawn\n";
   return success;
 }
 
 }  // namespace
 
-void add_answers_command(const Command& program, const std::vector<std::string>& words) {
-  const auto given = std::make_shared<AnswersOptions>();
-  const Command command = program.subcommand(
-      "answers", "figures that theory knows (orbits, oscillations, falls), by each solver");
-  command.alternatives("--solver", given->output.solver, "these only, each by its whole name");
-  command.option("--answer", given->answer, "these only: a regular expression for whole names",
-                 "REGEX");
-  command.option("--timeout", given->timeout, "longest run, s; springs need up to 16 runs", "S")
-      .positive();
-  command.option("--out", given->output.out, "result; default: results/local/answers.json", "FILE");
-  command.flag("--no-plots", given->output.no_plots, "do not draw the figure");
-  command.flag("--force", given->output.force, "even if there is a result already");
-  command.does([given, words] { return answers(*given, words); });
+Verb answers_verb() {
+  return {"answers",
+          "compare each solver with exact answers that theory knows (orbits, oscillations, falls)",
+          [](const Command& command) -> Action {
+            const auto given = std::make_shared<AnswersOptions>();
+            add_solver(command, given->solver);
+            command.alternatives("--answer", given->answer,
+                                 "only answers whose whole name matches (bench list answers)");
+            add_timeout(command, given->timeout, "20");
+            command.option("--out", given->out, "result file; default: results/local/answers.json",
+                           "FILE");
+            add_no_plots(command, given->no_plots);
+            command.flag("--force", given->force, "replace a result that exists");
+            return [given, command] { return answers(*given, command.words()); };
+          }};
 }
 
 }  // namespace harness

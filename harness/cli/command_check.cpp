@@ -6,7 +6,10 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/interrupt.h"
-#include "harness/cli/commands.h"
+#include "harness/base/pattern.h"
+#include "harness/cli/exit_codes.h"
+#include "harness/cli/shared_options.h"
+#include "harness/cli/verbs.h"
 #include "harness/stability/conformance.h"
 #include "solvers/registry.h"
 
@@ -24,13 +27,7 @@ void print(const Finding& finding) {
   std::cout.flush();
 }
 
-int check(const std::string& solver, bool hard_cases, std::int64_t seed) {
-  if (!inextensible::find_backend(solver)) {
-    std::vector<std::string> names;
-    for (const auto& backend : inextensible::backends()) names.emplace_back(backend.name);
-    throw unknown_name("solver", solver, names);
-  }
-  catch_interrupts();
+bool check(const std::string& solver, bool hard_cases, std::int64_t seed) {
   const auto findings =
       examine(solver, {static_cast<std::uint64_t>(seed), hard_cases, print, interrupted});
   const auto count = [&](Finding::Grade grade) {
@@ -41,24 +38,37 @@ int check(const std::string& solver, bool hard_cases, std::int64_t seed) {
             << count(Finding::Grade::pass) << " passed, " << count(Finding::Grade::fail)
             << " failed, " << count(Finding::Grade::not_applicable) << " not applicable"
             << std::endl;
-  return conforms(findings) ? success : unexpected_outcome;
+  return conforms(findings);
+}
+
+int check_all(const std::string& solver, bool hard_cases, std::int64_t seed) {
+  check_solver_pattern(solver);
+  catch_interrupts();
+  const Pattern wanted("--solver", solver);
+  bool conform = true;
+  for (const auto& backend : inextensible::backends()) {
+    if (wanted.matches(backend.name)) conform = check(backend.name, hard_cases, seed) && conform;
+  }
+  return conform ? success : unexpected_outcome;
 }
 
 }  // namespace
 
-void add_check_command(const Command& program) {
-  struct Given {
-    std::string solver;
-    bool quick = false;
-    std::int64_t seed = 1;
-  };
-  const auto given = std::make_shared<Given>();
-  const Command command = program.subcommand(
-      "check", "whether a solver keeps what every solver must, and where to look if not");
-  command.option("--solver", given->solver, "its name", "NAME").required();
-  command.flag("--quick", given->quick, "without the hard cases, which may take minutes");
-  command.option("--seed", given->seed, "of methods that draw random numbers", "N").not_negative();
-  command.does([given] { return check(given->solver, !given->quick, given->seed); });
+Verb check_verb() {
+  return {"check", "whether a solver keeps what every solver must, and where to look if not",
+          [](const Command& command) -> Action {
+            struct Given {
+              std::string solver;
+              bool quick = false;
+              std::int64_t seed = 1;
+            };
+            const auto given = std::make_shared<Given>();
+            add_solver(command, given->solver).required();
+            command.flag("--quick", given->quick, "without the hard cases, which may take minutes");
+            command.option("--seed", given->seed, "of methods that draw random numbers", "N")
+                .not_negative();
+            return [given] { return check_all(given->solver, !given->quick, given->seed); };
+          }};
 }
 
 }  // namespace harness

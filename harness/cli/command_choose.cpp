@@ -10,8 +10,9 @@
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
-#include "harness/cli/commands.h"
-#include "harness/cli/sweep_options.h"
+#include "harness/cli/exit_codes.h"
+#include "harness/cli/shared_options.h"
+#include "harness/cli/verbs.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/points/point_json.h"
 #include "harness/points/tuning_rule.h"
@@ -24,25 +25,27 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double far_behind = 4;       // times the fastest so far: who takes longer is stopped
-constexpr int finest_part = 32;        // of a frame: the smallest step
-constexpr int finalists = 4;           // that are timed again, in turn
-constexpr int final_samples = 7;       // of each
+constexpr double far_behind = 4;  // times the fastest so far: a run that takes longer is stopped
+constexpr int finest_part = 32;   // of a frame: the smallest step
+constexpr int finalists = 4;      // that are timed again, in turn
+constexpr int final_samples = 7;  // of each
 constexpr double search_share = 0.75;  // of the time; the rest is for finalists
 
-struct ChooseCommand {
-  std::string scene = "drape", n, frame = "1/60", budget, solver;
-  SceneWords words;
-  double limit = 0.01, error = headline_error, seconds = 60;
+struct ChooseCommand : SceneOptions {
+  std::string budget, solver, limits = "0.01";
+  double frames_per_second = 60, error = headline_error, seconds = 60;
   bool as_json = false, no_wait = false;
 };
 
-double rate_of(const std::string& frame) {
-  const double rate = 1 / fraction_of("--frame", frame);
-  for (const double known : frame_rates) {
-    if (std::abs(rate - known) < 1e-3 * known) return known;
-  }
-  throw UsageError("--frame is '" + shortened(frame, 40) + "', must be 1/24, 1/30 or 1/60");
+void check_rate(double rate) {
+  if (std::find(std::begin(frame_rates), std::end(frame_rates), rate) == std::end(frame_rates))
+    throw UsageError("--fps is " + number_text(rate) + ", must be 24, 30 or 60");
+}
+
+double limit_of(const ChooseCommand& given) {
+  const std::vector<double> limits = numbers_of("--limit", given.limits, Bounds::strain());
+  if (limits.size() != 1) throw UsageError("--limit is '" + given.limits + "', must be one limit");
+  return limits.front();
 }
 
 // The record of a solver's time on scenes of this kind, at the place nearest to this one; those
@@ -62,15 +65,10 @@ double recorded_seconds(const Tuned& tuned, const std::string& kind, const std::
 }
 
 Suite suite_of(const ChooseCommand& given, double rate) {
-  const std::string scene = scene_of(given.scene, given.words);
+  const SceneParameters parameters = complete_parameters_of(given);
+  const std::string scene = scene_of(given);
   const auto type = find_scene(scene);
-  if (!type) throw unknown_name("scene", scene, names_of(scene_types()));
-  SceneParameters parameters = parameters_of(given.words);
-  if (!given.n.empty()) {
-    const std::vector<double> sizes = numbers_of("--n", given.n, Bounds::whole_number(2));
-    if (sizes.size() != 1) throw UsageError("--n: one size");
-    parameters[type->resolution] = sizes.front();
-  }
+  const double limit = limit_of(given);
   Suite suite;
   suite.name = "choose";
   suite.reps = 1;
@@ -80,8 +78,8 @@ Suite suite_of(const ChooseCommand& given, double rate) {
   SweepSpec& sweep = suite.sweeps.emplace_back();
   sweep.sweep = "strain";
   sweep.scene = scene;
-  sweep.limits = {given.limit};
-  sweep.scene_parameters = complete_parameters(*type, parameters);
+  sweep.limits = {limit};
+  sweep.scene_parameters = parameters;
   sweep.resolutions = {static_cast<int>(sweep.scene_parameters.at(type->resolution))};
   sweep.coarsest = 1 / rate;
   sweep.finest = sweep.coarsest / finest_part;
@@ -94,8 +92,8 @@ Suite suite_of(const ChooseCommand& given, double rate) {
   tune(sweep.contestants, tuned, type->kind(), {}, Untuned::none);
   std::stable_sort(sweep.contestants.begin(), sweep.contestants.end(),
                    [&](const Contestant& a, const Contestant& b) {
-                     return recorded_seconds(tuned, type->kind(), a.solver, given.limit) <
-                            recorded_seconds(tuned, type->kind(), b.solver, given.limit);
+                     return recorded_seconds(tuned, type->kind(), a.solver, limit) <
+                            recorded_seconds(tuned, type->kind(), b.solver, limit);
                    });
   return suite;
 }
@@ -237,7 +235,8 @@ void print_scene(std::ostream& out, const SweepSpec& sweep, const Wish& wish,
 void print_answer(std::ostream& out, const Answer& answer, const Wish& wish, bool budget_given) {
   const auto& [take, next, half, twice, budget] = answer;
   if (!take) {
-    out << "none keeps both in this time; more --seconds, or a larger --error\n";
+    out << "no solver meets limit and error in this time: give more --seconds, or a larger "
+           "--error\n";
     return;
   }
   out << "take  " << pick_text(*take, wish.rate) << '\n';
@@ -250,7 +249,7 @@ void print_answer(std::ostream& out, const Answer& answer, const Wish& wish, boo
   const auto told = [](const std::optional<Pick>& pick) {
     return pick ? pick->point->spec.name() + " at " + step_text(pick->point->spec.step) + " s, " +
                       error_text(pick->error)
-                : std::string("nothing that keeps the limit");
+                : std::string("no solver meets the limit");
   };
   out << "with  " << number_text(500 * budget, 3) << " ms a frame: " << told(half) << "; with "
       << number_text(2000 * budget, 3) << " ms: " << told(twice) << '\n';
@@ -260,7 +259,8 @@ void print_answer(std::ostream& out, const Answer& answer, const Wish& wish, boo
 }
 
 int choose(const ChooseCommand& given) {
-  Wish wish{given.error, rate_of(given.frame)};
+  check_rate(given.frames_per_second);
+  Wish wish{given.error, given.frames_per_second};
   const double budget = given.budget.empty() ? 0 : duration_of("--budget", given.budget);
   const Suite suite = suite_of(given, wish.rate);
   const SweepSpec& sweep = suite.sweeps.front();
@@ -286,28 +286,31 @@ int choose(const ChooseCommand& given) {
 
 }  // namespace
 
-void add_choose_command(const Command& program) {
-  const auto given = std::make_shared<ChooseCommand>();
-  const Command command = program.subcommand(
-      "choose",
-      "which solver to take for a scene: measures for a minute, and says it in three lines");
-  command.option("--scene", given->scene, "which (bench list scenes), or mesh:FILE.obj", "SCENE");
-  add_scene_words(command, given->words);
-  command.option("--n", given->n, "the scene's size", "N");
-  command.option("--limit", given->limit, "permitted strain, default 0.01", "STRAIN")
-      .holds(Bounds::strain());
-  command
-      .option("--error", given->error,
-              "permitted distance from the right motion, over the scene's size, default 0.02", "E")
-      .positive();
-  command.option("--frame", given->frame, "1/24, 1/30 or 1/60 s; no step is longer", "S");
-  command.option("--budget", given->budget, "computation that a frame may take, e.g. 2ms", "TIME");
-  command.alternatives("--solver", given->solver, "only solvers whose name matches");
-  command.option("--seconds", given->seconds, "that measuring may take, default 60", "S")
-      .positive();
-  command.flag("--json", given->as_json, "for programs");
-  add_no_wait(command, given->no_wait);
-  command.does([given] { return choose(*given); });
+Verb choose_verb() {
+  return {
+      "choose", "recommend a solver and a step for a scene, after a minute of measuring",
+      [](const Command& command) -> Action {
+        const auto given = std::make_shared<ChooseCommand>();
+        given->scene = "drape";
+        add_scene(command, *given, given->scene);
+        add_limits(command, given->limits, given->limits);
+        command
+            .option("--error", given->error,
+                    "permitted distance from the reference, over the scene's size; default: 0.02",
+                    "E")
+            .positive();
+        command.option("--fps", given->frames_per_second,
+                       "frames a second: 24, 30 or 60 (default); no step is longer than a frame",
+                       "N");
+        command.option("--budget", given->budget, "computing time that a frame may take, e.g. 2ms",
+                       "TIME");
+        add_solver(command, given->solver);
+        command.option("--seconds", given->seconds, "that measuring may take; default: 60", "S")
+            .positive();
+        command.flag("--json", given->as_json, "for programs");
+        add_no_wait(command, given->no_wait);
+        return [given] { return choose(*given); };
+      }};
 }
 
 }  // namespace harness

@@ -5,8 +5,9 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/paths.h"
-#include "harness/cli/commands.h"
+#include "harness/cli/exit_codes.h"
 #include "harness/cli/sweep_options.h"
+#include "harness/cli/verbs.h"
 #include "harness/run/job_script.h"
 
 namespace harness {
@@ -70,36 +71,42 @@ int emit(EmitCommand& given) {
 
 }  // namespace
 
-void add_emit_command(const Command& program) {
-  const auto given = std::make_shared<EmitCommand>();
-  const Command command = program.subcommand(
-      "emit", "print the script that runs a sweep in shards under Slurm or GNU parallel");
-  add_selection(command, *given);
-  add_measurement(command, *given);
-  const auto passed_on = command.as_typed();  // no number is rounded on its way through the script
+Verb emit_verb() {
+  return {"emit", "print the script that runs a sweep in shards under Slurm or GNU parallel",
+          [](const Command& command) -> Action {
+            const auto given = std::make_shared<EmitCommand>();
+            add_selection(command, *given);
+            add_measurement(command, *given);
+            const auto passed_on =
+                command.as_typed();  // no number is rounded on its way through the script
 
-  command.option("scheduler", given->scheduler, "slurm or parallel").required();
-  JobScript& job = given->job;
-  job.jobs = 0;  // not given
-  command.option("--shards", job.shards, "parts of the sweep, each a job of its own", "N")
-      .required()
-      .within(1, 1000);
-  command.option("--out", job.result,
-                 "the merged result; default results/local/<profile>-<axis>.json. Shards and "
-                 "logs go to a folder of this name with -shards",
-                 "FILE");
-  command.option("--memory", job.memory, "that a point may have and a shard reserves, e.g. 4G",
-                 "SIZE");
-  command.option("--time", job.time, "slurm: time limit of a shard", "HH:MM:SS");
-  command.option("--partition", job.partition, "slurm: where to run", "NAME");
-  command.option("--account", job.account, "slurm: whose hours", "NAME");
-  command.option("--jobs", job.jobs, "parallel: shards at once (1; more disturb each other)", "K")
-      .within(1, 1000);
-  command.does([given, passed_on] {
-    given->job.sweep = passed_on();
-    if (!given->job.memory.empty()) given->job.sweep.push_back("--memory=" + given->job.memory);
-    return emit(*given);
-  });
+            command.option("scheduler", given->scheduler, "slurm or parallel").required();
+            JobScript& job = given->job;
+            job.jobs = 0;  // not given
+            command.option("--shards", job.shards, "parts of the sweep, each a job of its own", "N")
+                .required()
+                .within(1, 1000);
+            command.option(
+                "--out", job.result,
+                "the merged result; default results/local/<profile>-<axis>.json. Shards and "
+                "logs go to a folder of this name with -shards",
+                "FILE");
+            command.option("--memory", job.memory,
+                           "that a point may have and a shard reserves, e.g. 4G", "SIZE");
+            command.option("--time", job.time, "slurm: time limit of a shard", "HH:MM:SS");
+            command.option("--partition", job.partition, "slurm: where to run", "NAME");
+            command.option("--account", job.account, "slurm: whose hours", "NAME");
+            command
+                .option("--jobs", job.jobs, "parallel: shards at once (1; more disturb each other)",
+                        "K")
+                .within(1, 1000);
+            return [given, passed_on] {
+              given->job.sweep = passed_on();
+              if (!given->job.memory.empty())
+                given->job.sweep.push_back("--memory=" + given->job.memory);
+              return emit(*given);
+            };
+          }};
 }
 
 }  // namespace harness

@@ -13,8 +13,10 @@
 #include "harness/base/paths.h"
 #include "harness/base/temporary_folder.h"
 #include "harness/base/text.h"
-#include "harness/cli/commands.h"
-#include "harness/cli/sweep_options.h"
+#include "harness/cli/exit_codes.h"
+#include "harness/cli/figures.h"
+#include "harness/cli/shared_options.h"
+#include "harness/cli/verbs.h"
 #include "harness/film/exports.h"
 #include "harness/film/pictures.h"
 #include "harness/points/suite.h"
@@ -23,10 +25,8 @@
 namespace harness {
 namespace {
 
-struct FilmOptions {
-  std::string scene = "drape", solver = "fast_projection", limits = "0.01", out;
-  SceneWords words;
-  std::string stills;
+struct FilmOptions : SceneOptions {
+  std::string solver = "fast_projection", limits = "0.01", out, stills;
   double step = 0.01, frames_per_second = 30;
   int width = 0;  // pixels; 0: not given
 };
@@ -37,16 +37,15 @@ constexpr int still_samples = 6, film_samples = 3;
 
 FilmSpec film_spec(const FilmOptions& given) {
   FilmSpec spec;
-  spec.scene = scene_of(given.scene, given.words);
-  const auto type = find_scene(spec.scene);
-  if (!type) throw unknown_name("scene", spec.scene, names_of(scene_types()));
-  spec.parameters = complete_parameters(*type, parameters_of(given.words));
+  spec.scene = scene_of(given);
+  spec.parameters = complete_parameters_of(given);
   check_solver_pattern(given.solver);
   const Pattern wanted("--solver", given.solver);
   for (const auto& backend : inextensible::backends()) {
     if (wanted.matches(backend.name)) spec.solvers.push_back({backend.name, backend.name});
   }
-  tune(spec.solvers, read_tuned_up_to_date("tuned.json"), type->kind(), {}, Untuned::none);
+  tune(spec.solvers, read_tuned_up_to_date("tuned.json"), find_scene(spec.scene)->kind(), {},
+       Untuned::none);
   spec.strain_limits = numbers_of("--limit", given.limits, Bounds::strain());
   spec.step = given.step;
   spec.frames_per_second = given.frames_per_second;
@@ -189,26 +188,29 @@ int film(FilmOptions given) {
 
 }  // namespace
 
-void add_film_command(const Command& program) {
-  const auto given = std::make_shared<FilmOptions>();
-  const Command command =
-      program.subcommand("film", "a scene as stills, a film, or files for ParaView and Blender");
-  command.option("--scene", given->scene, "which (bench list scenes), or mesh:FILE.obj", "SCENE");
-  add_scene_words(command, given->words);
-  command.alternatives("--solver", given->solver, "all whose name matches, side by side");
-  command.option("--limit,--strain", given->limits,
-                 "permitted strain, one or several between commas", "STRAIN,...");
-  command.option("--step", given->step, "s; shortened to a whole part of a frame", "S").positive();
-  command.option("--fps", given->frames_per_second, "frames a second", "N").positive();
-  command.option("--stills", given->stills,
-                 "times of the pictures in a .png, s, between commas; default: four", "TIMES");
-  command.option("--width", given->width, "of each picture, pixels; default 480", "PIXELS")
-      .within(16, 4096);
-  command.option("--out", given->out,
-                 ".webp or .mp4: a film; .png: stills; .obj, .pvd, .pc2: for other programs; "
-                 "default: results/local/film-<scene>.webp, .png with --stills",
-                 "FILE");
-  command.does([given] { return film(*given); });
+Verb film_verb() {
+  return {"film", "a scene as stills, a film, or files for ParaView and Blender",
+          [](const Command& command) -> Action {
+            const auto given = std::make_shared<FilmOptions>();
+            given->scene = "drape";
+            add_scene(command, *given, given->scene);
+            add_solver(command, given->solver);
+            add_limits(command, given->limits, given->limits);
+            command.option("--step", given->step, "s; shortened to a whole part of a frame", "S")
+                .positive();
+            command.option("--fps", given->frames_per_second, "frames a second", "N").positive();
+            command.option("--stills", given->stills,
+                           "times of the pictures in a .png, s, between commas; default: four",
+                           "TIMES");
+            command.option("--width", given->width, "of each picture; default: 480", "PIXELS")
+                .within(16, 4096);
+            command.option(
+                "--out", given->out,
+                ".webp or .mp4: a film; .png: stills; .obj, .pvd, .pc2: for other programs; "
+                "default: results/local/film-<scene>.webp, .png with --stills",
+                "FILE");
+            return [given] { return film(*given); };
+          }};
 }
 
 }  // namespace harness

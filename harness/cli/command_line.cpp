@@ -3,11 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
-#include "harness/cli/commands.h"
+#include "harness/cli/exit_codes.h"
 
 namespace harness {
 
@@ -54,10 +55,6 @@ Option add(CLI::App* app, const std::string& name, Value& value, const std::stri
 
 }  // namespace
 
-Command Command::subcommand(const std::string& name, const std::string& summary) const {
-  return {app_->add_subcommand(name, summary), chosen_};
-}
-
 Option Command::option(const std::string& name, std::string& value, const std::string& help,
                        const std::string& type) const {
   return add(app_, name, value, help, type);
@@ -91,18 +88,12 @@ Option Command::alternatives(const std::string& name, std::string& value,
 }
 Option Command::byte_count(const std::string& name, double& value, const std::string& help) const {
   return Option(app_->add_option(name, value, help)
-                    ->transform(CLI::AsSizeValue(false))
+                    ->transform(CLI::AsSizeValue(false).description(""))
                     ->type_name("BYTES"))
       .holds({.least = 1 << 20});
 }
 void Command::flag(const std::string& name, bool& value, const std::string& help) const {
   app_->add_flag(name, value, help);
-}
-
-void Command::does(Action action) const {
-  app_->callback([app = app_, chosen = chosen_, action = std::move(action)] {
-    if (app->get_subcommands().empty()) *chosen = action;  // else it is a subcommand that is meant
-  });
 }
 
 std::function<std::vector<std::string>()> Command::as_typed() const {
@@ -118,14 +109,21 @@ std::function<std::vector<std::string>()> Command::as_typed() const {
   };
 }
 
-CommandLine::CommandLine(const std::string& description, std::function<std::string()> version)
+CommandLine::CommandLine(const std::string& description, const std::vector<Verb>& verbs,
+                         std::function<std::string()> version)
     : app_(std::make_unique<CLI::App>(description, "bench")) {
   app_->set_version_flag("-V,--version", std::move(version));
+  app_->require_subcommand(0, 1);  // a word after a verb is never another verb: list answers
+  for (const Verb& verb : verbs) {
+    const bool first = &verb == &verbs.front();
+    CLI::App* app = first ? app_.get() : app_->add_subcommand(verb.name, verb.summary);
+    app->callback([this, app, action = verb.add(Command(app, &invocation_))] {
+      if (app->get_subcommands().empty()) invocation_.action = action;  // else a verb is meant
+    });
+  }
 }
 
 CommandLine::~CommandLine() = default;
-
-Command CommandLine::program() { return {app_.get(), &chosen_}; }
 
 void CommandLine::add_everywhere(const std::string& name, std::vector<std::string>& values,
                                  const std::string& help, const std::string& type) {
@@ -146,6 +144,16 @@ void CommandLine::add_everywhere(const std::string& name, std::vector<std::strin
 
 namespace {
 
+// As a result records them: it is no place for a machine's folders.
+std::vector<std::string> recorded_words(int argc, char** argv) {
+  std::vector<std::string> words{"bench"};
+  for (int i = 1; i < argc; ++i) {
+    const std::filesystem::path argument(argv[i]);
+    words.push_back(argument.is_absolute() ? argument.filename().string() : argument.string());
+  }
+  return words;
+}
+
 // The words in the order of typing, without the program's name.
 std::vector<std::string> usual_words(int argc, char** argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
@@ -153,8 +161,10 @@ std::vector<std::string> usual_words(int argc, char** argv) {
   if (words.front() == "help") {
     words.erase(words.begin());
     words.emplace_back("--help");
-  } else if (words.front() == "sweep") {
+  }
+  if (words.front() == "sweep") {
     words.front() = "--sweep";
+    if (words.size() == 1 || words[1].starts_with('-')) words.erase(words.begin());
   }
   return words;
 }
@@ -190,6 +200,7 @@ std::string not_understood(const CLI::App& program, const std::vector<std::strin
 
 std::optional<int> CommandLine::read(int argc, char** argv) {
   const std::vector<std::string> words = usual_words(argc, argv);
+  invocation_.words = recorded_words(argc, argv);
   try {
     app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as CLI11 takes them
   } catch (const CLI::ExtrasError&) {

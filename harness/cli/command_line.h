@@ -1,5 +1,5 @@
-// The words on the command line. CLI11 reads them; only command_line.cpp and command_line_pages.cpp
-// include it, because every file that does takes ten seconds to compile.
+// The words on the command line. CLI11 reads them; only command_line.cpp and line_pages.cpp include
+// it, because every file that does takes ten seconds to compile.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +20,12 @@ namespace harness {
 
 using Action = std::function<int()>;  // returns an ExitCode; throws UsageError
 
+// What was typed: all words, for the record, and the action of the verb among them.
+struct Invocation {
+  std::vector<std::string> words;
+  Action action;
+};
+
 // An option that was just added, to say more of it.
 class Option {
  public:
@@ -36,13 +42,11 @@ class Option {
   CLI::Option* option_;
 };
 
-// A command, or the program itself. What an option is written to must live until the action has
-// run, which is why actions share their options' owner.
+// Where a verb adds its options. What an option is written to must live until the action has run,
+// which is why actions share their options' owner.
 class Command {
  public:
-  Command(CLI::App* app, Action* chosen) : app_(app), chosen_(chosen) {}
-
-  Command subcommand(const std::string& name, const std::string& summary) const;
+  Command(CLI::App* app, const Invocation* invocation) : app_(app), invocation_(invocation) {}
 
   // An option if the name begins with dashes, a word in its place if not. `type`: what the help
   // calls the value.
@@ -62,43 +66,52 @@ class Command {
   Option byte_count(const std::string& name, double& value, const std::string& help) const;
   void flag(const std::string& name, bool& value, const std::string& help) const;
 
-  // What is done if the command is chosen.
-  void does(Action action) const;
-
+  // The words of the command line, for the record: ask when the action runs.
+  const std::vector<std::string>& words() const { return invocation_->words; }
   // Of the options added so far, those that will have been given, as they were typed: ask when the
   // action runs.
   std::function<std::vector<std::string>()> as_typed() const;
 
+  // Of the whole program, from its verbs and options: a manual page (roff), and completion for
+  // Bash.
+  std::string manual() const;
+  std::string bash_completion() const;
+
  private:
+  const CLI::App& program() const;
+
   CLI::App* app_;
-  Action* chosen_;
+  const Invocation* invocation_;
+};
+
+// A verb of the program. `add` adds its options, and returns what is done if it is chosen.
+struct Verb {
+  std::string name, summary;
+  Action (*add)(const Command& command);
 };
 
 class CommandLine {
  public:
-  // version: asked for by -V and --version.
-  CommandLine(const std::string& description, std::function<std::string()> version);
+  // version: asked for by -V and --version. Options of the first verb are the program's own, which
+  // goes without a name: its first option has that.
+  CommandLine(const std::string& description, const std::vector<Verb>& verbs,
+              std::function<std::string()> version);
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  Command program();
-  // Before and after the name of every command added so far, any number of times.
+  // Before and after the name of every verb, any number of times.
   void add_everywhere(const std::string& name, std::vector<std::string>& values,
                       const std::string& help, const std::string& type);
-
-  // From the options: a manual page (roff), and completion for Bash.
-  std::string manual() const;
-  std::string bash_completion() const;
 
   // `help VERB` is VERB --help, and `sweep AXIS` is --sweep AXIS. An exit code if nothing is left
   // to do: help was printed, or a word is wrong, which is said on stderr.
   std::optional<int> read(int argc, char** argv);
-  int run() const { return chosen_(); }
+  int run() const { return invocation_.action(); }
 
  private:
   std::unique_ptr<CLI::App> app_;
-  Action chosen_;
+  Invocation invocation_;
 };
 
 }  // namespace harness

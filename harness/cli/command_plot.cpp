@@ -3,39 +3,42 @@
 #include <filesystem>
 
 #include "harness/base/errors.h"
-#include "harness/cli/commands.h"
+#include "harness/cli/figures.h"
+#include "harness/cli/verbs.h"
 
 namespace harness {
 
-void add_plot_command(const Command& program) {
-  struct Given {
-    std::vector<std::string> files;
-    std::string out, name;
-  };
-  const auto given = std::make_shared<Given>();
-  const Command command = program.subcommand("plot", "draw the figures of a result file");
-  command
-      .option("results", given->files,
-              "result file; several: pieces of one sweep, drawn as one, with --name",
-              "RESULT.json ...")
-      .required();
-  command.option("--out", given->out, "folder for the figures; default: beside the result", "DIR");
-  command.option("--name", given->name, "of several files: what the pictures' names begin with",
-                 "NAME");
-  command.does([given] {
-    const bool several = given->files.size() > 1;
-    if (several == given->name.empty())
-      throw UsageError(several
-                           ? "several result files are drawn as one: give it a --name"
-                           : "--name is for several result files; pictures of one have its name");
-    std::string out = given->out;
-    if (several && out.empty())
-      out = std::filesystem::path(given->files.front()).parent_path().string();
-    std::vector<std::string> more;
-    if (!out.empty()) more = {"--out", out};
-    if (several) return draw_pieces(given->files, given->name, more);
-    return draw_result(given->files.front(), more);
-  });
+Verb plot_verb() {
+  return {"plot", "draw the figures of a result file", [](const Command& command) -> Action {
+            struct Given {
+              std::vector<std::string> files;
+              std::string out, name;
+            };
+            const auto given = std::make_shared<Given>();
+            command
+                .option("results", given->files,
+                        "result file; several: pieces of one sweep, drawn as one, with --name",
+                        "RESULT.json ...")
+                .required();
+            command.option("--out", given->out,
+                           "folder for the figures; default: beside the result", "DIR");
+            command.option("--name", given->name,
+                           "of several files: what the pictures' names begin with", "NAME");
+            return [given] {
+              const bool several = given->files.size() > 1;
+              if (several == given->name.empty())
+                throw UsageError(
+                    several ? "several result files are drawn as one: give it a --name"
+                            : "--name is for several result files; pictures of one have its name");
+              std::string out = given->out;
+              if (several && out.empty())
+                out = std::filesystem::path(given->files.front()).parent_path().string();
+              std::vector<std::string> more;
+              if (!out.empty()) more = {"--out", out};
+              if (several) return draw_pieces(given->files, given->name, more);
+              return draw_result(given->files.front(), more);
+            };
+          }};
 }
 
 }  // namespace harness

@@ -6,7 +6,9 @@
 #include "harness/base/json_reader.h"
 #include "harness/base/json_text.h"
 #include "harness/base/paths.h"
-#include "harness/cli/commands.h"
+#include "harness/cli/exit_codes.h"
+#include "harness/cli/shared_options.h"
+#include "harness/cli/verbs.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
 #include "harness/points/suite.h"
@@ -95,16 +97,20 @@ int run_points(const PointCommand& options) {
 
 }  // namespace
 
-void add_point_command(const Command& program) {
-  const auto given = std::make_shared<PointCommand>();
-  const Command command = program.subcommand(
+Verb point_verb() {
+  return {
       "point",
       "run points of a result file, given as JSON on standard input, one a line; print each as one "
-      "line of JSON");
-  command.option("--samples", given->samples, "runs of each, the first one judged; default 1", "N")
-      .within(1, 1000000);
-  command.option("--timeout", given->timeout, "seconds a run may take; default 60", "S").positive();
-  command.does([given] { return run_points(*given); });
+      "line of JSON",
+      [](const Command& command) -> Action {
+        const auto given = std::make_shared<PointCommand>();
+        command
+            .option("--samples", given->samples, "runs of each, the first one judged; default: 1",
+                    "N")
+            .within(1, 1000000);
+        add_timeout(command, given->timeout, "60");
+        return [given] { return run_points(*given); };
+      }};
 }
 
 }  // namespace harness

@@ -8,8 +8,9 @@
 #include "harness/base/json_reader.h"
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
-#include "harness/cli/commands.h"
+#include "harness/cli/exit_codes.h"
 #include "harness/cli/sweep_options.h"
+#include "harness/cli/verbs.h"
 #include "harness/judge/ensemble_runs.h"
 #include "harness/judge/reference_file.h"
 #include "harness/judge/reference_routes.h"
@@ -135,10 +136,10 @@ bool wants_ensemble(const Reference& reference, bool again) {
 std::vector<SceneOfReference> given_scenes(const SweepOptions& options) {
   if (options.scene.empty())
     throw UsageError("--n and --set go with --scene: of which scene is the reference to be?");
-  const std::string scene = scene_of(options.scene, options.scene_words);
+  const std::string scene = scene_of(options);
   const auto type = find_scene(scene);
   if (!type) throw UsageError("there is no scene '" + scene + "'; `bench list scenes` names them");
-  SceneParameters given = parameters_of(options.scene_words);
+  SceneParameters given = parameters_of(options);
   std::vector<SceneOfReference> scenes;
   if (options.n.empty()) scenes.emplace_back(scene, complete_parameters(*type, given));
   for (const double n : numbers_of("--n", options.n, Bounds::whole_number(2))) {
@@ -171,7 +172,7 @@ int make_references(const ReferenceOptions& given) {
   const SweepOptions& options = given.options;
   if (given.ensemble && given.finest > 0)
     throw UsageError("--finest does not go with --ensemble, whose runs have a step of their own");
-  const bool one_scene = !options.n.empty() || !parameters_of(options.scene_words).empty() ||
+  const bool one_scene = !options.n.empty() || !parameters_of(options).empty() ||
                          options.scene.starts_with("mesh:");  // of no suite
   const std::string folder = source_path("results/references");
   ReferenceShelf shelf(folder);
@@ -197,18 +198,21 @@ int make_references(const ReferenceOptions& given) {
 
 }  // namespace
 
-void add_reference_command(const Command& program) {
-  const auto given = std::make_shared<ReferenceOptions>();
-  const Command command = program.subcommand(
+Verb reference_verb() {
+  return {
       "reference",
       "compute what a profile's sweeps are measured against: reference trajectories, and of cloth "
-      "ensembles of runs");
-  add_scene_selection(command, given->options);
-  command.flag("--again", given->again, "those that are there already, too");
-  command.flag("--ensemble", given->ensemble,
-               "only ensembles, of references that are there; their paths stay as they are");
-  command.option("--finest", given->finest, "smallest step of step halving, s", "S").positive();
-  command.does([given] { return make_references(*given); });
+      "ensembles of runs",
+      [](const Command& command) -> Action {
+        const auto given = std::make_shared<ReferenceOptions>();
+        add_scene_selection(command, given->options);
+        command.flag("--again", given->again, "those that are there already, too");
+        command.flag("--ensemble", given->ensemble,
+                     "only ensembles, of references that are there; their paths stay as they are");
+        command.option("--finest", given->finest, "smallest step of step halving, s", "S")
+            .positive();
+        return [given] { return make_references(*given); };
+      }};
 }
 
 }  // namespace harness

@@ -7,7 +7,8 @@
 #include "harness/base/json_text.h"
 #include "harness/base/temporary_folder.h"
 #include "harness/claims/claims.h"
-#include "harness/cli/commands.h"
+#include "harness/cli/figures.h"
+#include "harness/cli/verbs.h"
 #include "harness/film/recording.h"
 #include "harness/points/named_result.h"
 #include "harness/points/result_file.h"
@@ -63,7 +64,7 @@ std::string record_into(const std::string& folder, const FilmSpec& spec) {
 struct ReportOptions {
   std::vector<std::string> results, answers;
   std::string out;
-  bool still = false;
+  bool no_motion = false;
 };
 
 int report(const ReportOptions& given) {
@@ -85,7 +86,7 @@ int report(const ReportOptions& given) {
   write_atomically(folder.file("claims.json"),
                    compact(claims_json(judge_claims(documents))) + "\n");
   write_atomically(folder.file("analyses.json"), compact(analyses_json(results)) + "\n");
-  if (!given.still) {
+  if (!given.no_motion) {
     words.emplace_back("--motion");
     words.push_back(record_into(folder.file("drape"), motion("drape", {{"n", 31}})));
     words.push_back(record_into(folder.file("patch"), motion("patch", {{"n", 25}})));
@@ -95,15 +96,18 @@ int report(const ReportOptions& given) {
 
 }  // namespace
 
-void add_report_command(const Command& program) {
-  const auto given = std::make_shared<ReportOptions>();
-  const Command command =
-      program.subcommand("report", "one page, to open offline, that tells what results found");
-  command.option("results", given->results, "result files", "RESULT.json ...").required();
-  command.option("--answers", given->answers, "results of bench answers", "ANSWERS.json ...");
-  command.option("--out", given->out, "the page", "report.html").required();
-  command.flag("--still", given->still, "no scenes in motion, which take seconds to simulate");
-  command.does([given] { return report(*given); });
+Verb report_verb() {
+  return {"report", "one page, to open offline, that tells what results found",
+          [](const Command& command) -> Action {
+            const auto given = std::make_shared<ReportOptions>();
+            command.option("results", given->results, "result files", "RESULT.json ...").required();
+            command.option("--answers", given->answers, "results of bench answers",
+                           "ANSWERS.json ...");
+            command.option("--out", given->out, "the page", "report.html").required();
+            command.flag("--no-motion", given->no_motion,
+                         "leave out the scenes in motion, which take seconds to simulate");
+            return [given] { return report(*given); };
+          }};
 }
 
 }  // namespace harness

@@ -3,7 +3,8 @@
 #include <sstream>
 
 #include "harness/base/files.h"
-#include "harness/cli/commands.h"
+#include "harness/cli/exit_codes.h"
+#include "harness/cli/verbs.h"
 #include "harness/points/result_file.h"
 #include "harness/tables/results_page.h"
 
@@ -50,28 +51,30 @@ std::string page(const ResultsOptions& given) {
 
 }  // namespace
 
-void add_results_command(const Command& program) {
-  const auto given = std::make_shared<ResultsOptions>();
-  const Command command = program.subcommand(
-      "results", "tables of what result files say, in Markdown (docs/results.md)");
-  command
-      .option("results", given->results,
-              "result files; of points that several have, the first one's count for claims",
-              "RESULT.json ...")
-      .required();
-  command.option("--growth", given->growth, "result files for the tables of growth alone",
-                 "RESULT.json ...");
-  command.option("--answers", given->answers, "results of bench answers", "ANSWERS.json ...");
-  command.option("--out", given->out, "the page; default: standard output", "FILE");
-  command.does([given] {
-    if (given->out.empty()) {
-      std::cout << page(*given);
-    } else {
-      check_writable(given->out);
-      write_atomically(given->out, page(*given));
-    }
-    return success;
-  });
+Verb results_verb() {
+  return {
+      "results", "tables of what result files say, in Markdown (docs/results.md)",
+      [](const Command& command) -> Action {
+        const auto given = std::make_shared<ResultsOptions>();
+        command
+            .option("results", given->results,
+                    "result files; of points that several have, the first one's count for claims",
+                    "RESULT.json ...")
+            .required();
+        command.option("--growth", given->growth, "result files for the tables of growth alone",
+                       "RESULT.json ...");
+        command.option("--answers", given->answers, "results of bench answers", "ANSWERS.json ...");
+        command.option("--out", given->out, "the page; default: standard output", "FILE");
+        return [given] {
+          if (given->out.empty()) {
+            std::cout << page(*given);
+          } else {
+            check_writable(given->out);
+            write_atomically(given->out, page(*given));
+          }
+          return success;
+        };
+      }};
 }
 
 }  // namespace harness

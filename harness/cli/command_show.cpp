@@ -9,7 +9,8 @@
 #include "harness/answers/measure.h"
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
-#include "harness/cli/commands.h"
+#include "harness/cli/exit_codes.h"
+#include "harness/cli/verbs.h"
 #include "harness/points/noise.h"
 #include "harness/points/result_file.h"
 #include "harness/tables/terminal.h"
@@ -95,22 +96,23 @@ int show_json(const std::string& file) {
 
 }  // namespace
 
-void add_show_command(const Command& program) {
-  struct Given {
-    std::string file;
-    bool as_json = false, all = false;
-  };
-  const auto given = std::make_shared<Given>();
-  const Command command = program.subcommand("show", "the tables of a result file");
-  command.option("result", given->file, "result file", "RESULT.json").required();
-  command.flag("--json", given->as_json,
-               "who is fastest within each strain limit and error, for programs");
-  command.flag("--all", given->all, "every contestant, and how runs failed");
-  command.does([given] {
-    if (given->as_json && given->all)
-      throw UsageError("--json has all contestants already: leave out --all");
-    return given->as_json ? show_json(given->file) : show(given->file, given->all);
-  });
+Verb show_verb() {
+  return {"show", "the tables of a result file", [](const Command& command) -> Action {
+            struct Given {
+              std::string file;
+              bool as_json = false, all = false;
+            };
+            const auto given = std::make_shared<Given>();
+            command.option("result", given->file, "result file", "RESULT.json").required();
+            command.flag("--json", given->as_json,
+                         "who is fastest within each strain limit and error, for programs");
+            command.flag("--all", given->all, "every contestant, and how runs failed");
+            return [given] {
+              if (given->as_json && given->all)
+                throw UsageError("--json has all contestants already: leave out --all");
+              return given->as_json ? show_json(given->file) : show(given->file, given->all);
+            };
+          }};
 }
 
 }  // namespace harness

@@ -1,320 +1,88 @@
-// bench --sweep strain|resolution|step: runs a suite's sweeps.
-#include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-#include <iostream>
-
+// bench --sweep strain|resolution|step|stability.
 #include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/interrupt.h"
-#include "harness/base/paths.h"
-#include "harness/base/text.h"
-#include "harness/base/timing_lock.h"
-#include "harness/cli/commands.h"
-#include "harness/cli/progress.h"
-#include "harness/cli/sweep_command.h"
-#include "harness/judge/reference_file.h"
-#include "harness/points/context.h"
-#include "harness/points/identity.h"
-#include "harness/points/noise.h"
-#include "harness/points/result_file.h"
-#include "harness/run/estimate.h"
-#include "harness/run/isolation.h"
-#include "harness/run/journal.h"
-#include "harness/run/noise_probe.h"
-#include "harness/run/overhead.h"
-#include "harness/run/quiet_samples.h"
-#include "harness/run/runner.h"
-#include "harness/tables/terminal.h"
-#include "solvers/registry.h"
+#include "harness/cli/sweep_run.h"
+#include "harness/cli/verbs.h"
 
 namespace harness {
 namespace {
 
-void dry_run(const Suite& suite, const std::vector<Search>& searches) {
-  std::size_t most = 0;
-  for (const Search& search : searches) most += search.ladder.size();
-  const Estimate guess = estimate(suite, searches);
-  std::cout << searches.size() << " searches for a best step, at most " << most
-            << " points (usually half of them), about " << duration_text(guess.seconds)
-            << ", going by a few steps of " << guess.timed << " contestants and sizes\n";
-}
-
-void tell_missing_references(const SweepCommand& options, const std::vector<Search>& searches,
-                             ReferenceShelf& shelf) {
-  const auto missing = without_reference(searches, shelf);
-  if (missing.empty()) return;
-  std::string names;
-  for (const auto& [scene, parameters] : missing) {
-    std::string name = reference_name(scene, parameters);
-    names += (names.empty() ? "" : ", ") + name.substr(0, name.rfind(".json"));
-  }
-  if (options.finest_error > 0)
-    throw UsageError("--finest-error needs references, missing: " + names +
-                     " (bench reference, with the same scene and profile, makes them)");
-  std::cerr << "bench: no reference, so no trajectory error, for " << names
-            << " (bench reference makes them)\n";
-}
-
-// What chooses points beside the suite.
-nlohmann::json selection(const SweepCommand& options) {
-  nlohmann::json chosen = {{"solver", options.solver},
-                           {"filter", options.filter},
-                           {"exclude", options.exclude},
-                           {"shard", options.shard}};
-  if (options.untimed) chosen["untimed"] = true;  // no part of it may be taken up as timed
-  return chosen;
-}
-
-// What is known already: from the journal of a run that did not finish, or from the result of one
-// that did.
-struct Past {
-  Memory memory;
-  nlohmann::json identity, context;  // null: there is none
-  bool finished = false, in_journal = false;
-};
-
-Past look_back(const SweepCommand& options, const std::string& out, const Journal& journal) {
-  const bool again = options.resume || options.rerun_failed;
-  check_unfinished(options, {journal.path(), journal.damage(), journal.points(), "points"});
-  if (journal.points() > 0) {
-    if (again && !journal.header().is_object()) return {journal.memory(), {}, {}, false, false};
-    if (again)
-      return {journal.memory(), journal.header().at("identity"), journal.header().at("context"),
-              false, journal.damage().empty()};
-  } else if (again && std::filesystem::exists(out)) {
-    const nlohmann::json result = read_result(out);
-    if (result.at("schema") != "inextensible-bench/1")
-      throw UsageError("'" + out + "' is the result of a stability sweep: nothing to resume");
-    Past past;
-    past.memory.learn(result);
-    past.context = result.at("context");
-    past.identity = identity(past.context, past.context.at("suite"),
-                             past.context.value("selection", nlohmann::json::object()));
-    past.finished = result.at("complete");
-    return past;
-  } else {
-    check_unwritten(options, out);
-  }
-  return {};
-}
-
-// The journal then holds what `memory` does.
-void begin_journal(Journal& journal, const Past& past, const Memory& memory,
-                   const nlohmann::json& header) {
-  if (!past.in_journal) journal.start(header);
-  for (const auto& [key, known] : past.memory.points) {
-    if (past.in_journal) {
-      if (!memory.points.contains(key)) journal.forget(key);
-    } else if (memory.points.contains(key)) {
-      journal.add(known.point);
-      for (const Repetition& more : known.repetitions) journal.add_repetition(key, more);
-    }
-  }
-}
-
-SweepRunners watched(const SweepRunners& inner, NoiseProbe& noise_probe, bool timed) {
-  SweepRunners runners = inner;
-  const auto budget = std::make_shared<RetakeBudget>();
-  const auto own = [timed, budget](RunLimits limits) {
-    limits.timed = timed;
-    limits.most_retaken = budget->most();
-    return limits;
+// An option that would do nothing for this sweep is an error.
+void check_options(const SweepCommand& options) {
+  const bool stability = options.sweep == "stability";
+  const auto only = [](bool given, const std::string& option, const std::string& sweeps) {
+    if (given) throw UsageError(option + " goes with --sweep " + sweeps + " only");
   };
-  runners.run = [own, budget, run = inner.run, &noise_probe](const auto& spec, const auto& limits,
-                                                             auto guess) {
-    noise_probe.sample_if_due();
-    PointResult point = run(spec, own(limits), guess);
-    budget->add(point.samples.size(), point.retaken);
-    return point;
-  };
-  runners.repeat = [own, budget, repeat = inner.repeat, &noise_probe](auto& point,
-                                                                      const auto& limits) {
-    noise_probe.sample_if_due();
-    const std::size_t samples = point.samples.size();
-    const int retaken = point.retaken;
-    repeat(point, own(limits));
-    budget->add(point.samples.size() - samples, point.retaken - retaken);
-  };
-  return runners;
-}
-
-void warn_if_busy(const nlohmann::json& context) {
-  const auto& load = context.at("load_avg");
-  const double processors = context.at("num_cpus");
-  if (!load.empty() && load.at(0).get<double>() > 0.5 * processors)
-    std::cerr << "bench: the machine is busy (load " << number_text(load.at(0), 2) << " on "
-              << processors << " processors): times will be noisy\n";
-}
-
-void tell_noise(const nlohmann::json& document) {
-  const nlohmann::json& context = document.at("context");
-  if (const auto pair = noise_of(context))
-    std::cout << "\n"
-              << pair->one << " stands there twice: in 95 % of " << pair->places
-              << " places its two times are within " << number_text(100 * std::expm1(pair->q95), 2)
-              << " % of each other; smaller differences between solvers are none\n";
-  if (document.contains("warning"))
-    std::cout << "\n" << document.at("warning").get<std::string>() << '\n';
-  if (!context.at("sentinel").at("noisy").get<bool>()) return;
-  std::cout << "\nNOISY: a fixed kernel's time varied by "
-            << number_text(100 * context.at("sentinel").at("spread").get<double>(), 2)
-            << " % during the run; counters and errors stand, compare times with care\n";
-}
-
-// The harness's own share of the shortest step that was timed.
-nlohmann::json harness_overhead(const std::vector<PointResult>& points) {
-  nlohmann::json overhead = {{"seconds_per_step", harness_seconds_per_step()}};
-  const PointResult* shortest = nullptr;
-  const auto step_seconds = [](const PointResult& p) { return p.seconds() * p.spec.step; };
-  for (const PointResult& point : points) {
-    if (point.ok() && !point.samples.empty() &&
-        (!shortest || step_seconds(point) < step_seconds(*shortest)))
-      shortest = &point;
+  if (!stability) {
+    only(!options.hard_case.empty(), "--case", "stability");
+    only(!options.values.empty(), "--values", "stability");
+    return;
   }
-  if (!shortest) return overhead;
-  overhead["shortest_step"] = step_seconds(*shortest);
-  overhead["of"] = shortest->spec.id();
-  return overhead;
-}
-
-void tell_overhead(const nlohmann::json& overhead) {
-  if (!overhead.contains("of")) return;
-  const double own = overhead.at("seconds_per_step"), step = overhead.at("shortest_step");
-  std::cout << "\nthe harness's own share of the shortest timed step: " << number_text(1e9 * own, 2)
-            << " ns of " << number_text(1e9 * step, 3) << " ns, "
-            << number_text(100 * own / step, 2) << " % (" << overhead.at("of").get<std::string>()
-            << ")\n";
-}
-
-// Runs the sweep, with progress on stderr and each run in the journal, and writes into the context
-// how quiet the machine was.
-SweepOutcome measured(const Suite& suite, const std::vector<Search>& searches,
-                      const SweepRunners& runners, Journal& journal, Memory memory, bool timed,
-                      nlohmann::json& context) {
-  Progress progress(std::cerr, isatty(STDERR_FILENO) == 1);
-  SweepEvents events;
-  events.point = [&](const PointResult& p, std::size_t s, std::size_t all) {
-    progress.point(p, s, all);
-  };
-  events.repetition = [&](std::size_t done, std::size_t all) { progress.repetition(done, all); };
-  events.interrupted = interrupted;
-  NoiseProbe noise_probe;
-  noise_probe.sample();
-  const ProcessorTicks ticks = processor_ticks();
-  SweepOutcome outcome =
-      run_sweep(suite, searches, events,
-                journaled(watched(runners, noise_probe, timed), journal, std::move(memory)));
-  progress.finish();
-  noise_probe.sample();
-  context["sentinel"] = noise_probe.to_json();
-  context["stolen"] = stolen_share(ticks, processor_ticks());
-  context["harness_overhead"] = harness_overhead(outcome.points);
-  return outcome;
+  const char* others = "strain, resolution and step";
+  only(!options.scene.empty(), "--scene", others);
+  only(!options.parameters.empty(), "--set", others);
+  only(!options.pins.empty(), "--pins", others);
+  only(!options.body.empty(), "--collider", others);
+  only(!options.n.empty(), "--n", others);
+  only(!options.limits.empty(), "--limit", others);
+  only(!options.filter.empty(), "--filter", std::string(others) + " (--case chooses hard cases)");
+  only(!options.exclude.empty(), "--exclude", others);
+  only(!options.config.empty(), "--config", others);
+  only(!options.reps.empty(), "--reps", others);
+  only(options.rel_ci > 0, "--rel-ci", others);
+  only(options.timeout > 0, "--timeout", others);
+  only(options.steps != "search", "--steps", others);
+  only(options.finest > 0, "--finest", others);
+  only(options.finest_error > 0, "--finest-error", others);
+  only(options.untimed, "--untimed", others);
+  only(options.memory > 0, "--memory", others);
+  only(options.rerun_failed, "--rerun-failed", others);
+  only(options.in_process, "--in-process", others);
 }
 
 }  // namespace
 
-int sweep_command(const SweepCommand& options, const std::vector<std::string>& command) {
-  const Suite suite = load_suite(options);
-  auto searches = plan(suite, make_filters(options));
-  if (!options.shard.empty()) searches = shard(std::move(searches), parse_shard(options.shard));
-  if (options.dry_run) {
-    dry_run(suite, searches);
-    return success;
-  }
-  const std::string out = chosen_output(options, suite.name + "-" + options.sweep);
-  check_writable(out);
-  nlohmann::json context = machine_context();
-  context["selection"] = selection(options);
-  const nlohmann::json mine = identity(context, to_json(suite), context["selection"]);
-  Journal journal(out);
-  const Past past = look_back(options, out, journal);
-  check_same(options, past.in_journal ? journal.path() : out, past.identity, mine);
-  if (past.finished && !options.rerun_failed) {
-    std::cout << out << " is complete already\n";
-    return success;
-  }
-  Memory memory = past.memory;
-  if (options.rerun_failed) memory.forget_failures();
-  SweepRunners runners;
-  const auto shelf = std::make_shared<ReferenceShelf>(source_path("results/references"));
-  runners.references = shelf;
-  tell_missing_references(options, searches, *shelf);
-  catch_interrupts();
-  std::optional<TimingLock> lock;
-  if (!options.untimed) lock.emplace(!options.no_wait);
-  if (lock && lock->waited()) {
-    context = machine_context();
-    context["selection"] = selection(options);
-  }
-  context["timed"] = !options.untimed;
-  if (!options.untimed) warn_if_busy(context);
-  if (!past.identity.is_null())
-    context["resumed"] = {{"from", past.context.at("date")},
-                          {"points", memory.points.size()},
-                          {"difference", difference(past.identity, mine)}};
-  begin_journal(journal, past, memory,
-                {{"pid", getpid()}, {"identity", mine}, {"context", context}});
-
-  if (!options.in_process) runners = isolated(runners, options.memory);
-  const SweepOutcome outcome =
-      measured(suite, searches, runners, journal, std::move(memory), !options.untimed, context);
-  const nlohmann::json document = result_document(context, suite, command, outcome.complete,
-                                                  outcome.points, shelf->summaries());
-  write_atomically(out, result_text(document));
-  print_sweep(std::cout, document);
-  tell_overhead(context["harness_overhead"]);
-  tell_noise(document);
-  std::cout << "\nall contestants: bench show " << out << " --all\nwritten:\n" << out << std::endl;
-  if (!outcome.complete) {
-    std::cerr << "bench: interrupted; the same command with --resume goes on from here\n";
-    return interrupted_exit;
-  }
-  journal.remove();
-  if (!options.no_plots && !options.untimed && draw_result(out) != 0)
-    std::cerr << "bench: the figures could not be drawn\n";
-  return success;
-}
-
-void add_sweep_command(const Command& program, const std::vector<std::string>& command) {
-  const auto given = std::make_shared<SweepCommand>();
-  SweepCommand& options = *given;
-  add_selection(program, options);
-  program.option("--out", options.out, "result file; default results/local/<profile>-<axis>.json",
-                 "FILE");
-  add_measurement(program, options);
-  program.byte_count("--memory", options.memory, "address space a point may have, e.g. 4G");
-  program.flag("--resume", options.resume, "go on with an interrupted run of the same --out");
-  program.flag("--rerun-failed", options.rerun_failed,
-               "as --resume, also after a finished run, and run again what failed");
-  program.flag(
-      "--force", options.force,
-      "drop an interrupted run; with --resume: go on though it is of another build or suite");
-  program.flag("--in-process", options.in_process,
-               "no child process a point, for debuggers and profilers");
-  program.option("--shard", options.shard,
-                 "i/N: the i-th of N parts; all solvers of a scene and size are in one of them",
-                 "I/N");
-  program.option("--case", options.hard_case,
-                 "stability: only cases in whose name this is found, e.g. 'Q[12]'", "REGEX");
-  program.option("--values", options.values,
-                 "stability: what a family of cases runs over, e.g. ratios=1e3,1e5 (distances, "
-                 "limits, ratios, links, sides, scales)",
-                 "NAME=LIST");
-  program.flag("--dry-run", options.dry_run, "say what would run and how long, and stop");
-  add_no_wait(program, options.no_wait);
-  program.flag("--no-plots", options.no_plots, "no figures at the end");
-
-  program.does([given, &command] {
-    if (given->sweep.empty())
-      throw UsageError(
-          "nothing to do: give --sweep strain, resolution, step or stability (see bench --help)");
-    check_options(*given);
-    if (given->sweep == "stability") return stability_command(*given, command);
-    return sweep_command(*given, command);
-  });
+Verb sweep_verb() {
+  return {
+      "sweep", "run a sweep over strain, resolution, step or stability: bench --sweep AXIS",
+      [](const Command& command) -> Action {
+        const auto given = std::make_shared<SweepCommand>();
+        SweepCommand& options = *given;
+        add_selection(command, options);
+        command.option("--out", options.out,
+                       "result file; default: results/local/<profile>-<axis>.json", "FILE");
+        add_measurement(command, options);
+        command.byte_count("--memory", options.memory, "address space a point may have, e.g. 4G");
+        command.flag("--resume", options.resume, "continue an interrupted run of the same --out");
+        command.flag("--rerun-failed", options.rerun_failed,
+                     "as --resume, also after a finished run, and run again what failed");
+        command.flag(
+            "--force", options.force,
+            "discard an interrupted run; with --resume: continue a run of another build or suite");
+        command.flag("--in-process", options.in_process,
+                     "run points in this process, for debuggers and profilers");
+        command.option("--shard", options.shard,
+                       "i/N: the i-th of N parts; all solvers of a scene and size are in one part",
+                       "I/N");
+        command.option("--case", options.hard_case,
+                       "stability: only cases whose name contains a match, e.g. 'Q[12]'", "REGEX");
+        command.option(
+            "--values", options.values,
+            "stability: the values of a family of cases, e.g. ratios=1e3,1e5 (distances, "
+            "limits, ratios, links, sides, scales)",
+            "NAME=LIST");
+        command.flag("--dry-run", options.dry_run, "print what would run and how long, and stop");
+        add_no_wait(command, options.no_wait);
+        add_no_plots(command, options.no_plots);
+        return [given, command] {
+          if (given->sweep.empty())
+            throw UsageError(
+                "nothing to do: give --sweep strain, resolution, step or stability (see bench "
+                "--help)");
+          check_options(*given);
+          return given->sweep == "stability" ? run_hard_cases(*given, command.words())
+                                             : run_suite(*given, command.words());
+        };
+      }};
 }
 
 }  // namespace harness

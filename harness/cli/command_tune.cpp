@@ -11,8 +11,9 @@
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
-#include "harness/cli/commands.h"
-#include "harness/cli/sweep_options.h"
+#include "harness/cli/exit_codes.h"
+#include "harness/cli/shared_options.h"
+#include "harness/cli/verbs.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
 #include "harness/run/isolation.h"
@@ -25,7 +26,7 @@ using nlohmann::json;
 
 struct TuneCommand {
   std::string solver, scene, out;
-  int budget = 0;  // 0: the rule's
+  int trials = 0;  // 0: the rule's
   double timeout = TuneOptions{}.timeout;
   bool no_wait = false, quiet = false, again = false;
 };
@@ -122,7 +123,7 @@ int run_tune(const TuneCommand& options) {
   catch_interrupts();
   const TimingLock lock(!options.no_wait);
   TuneOptions tuning;
-  if (options.budget > 0) tuning.rules.budget = tuning.trials_each = options.budget;
+  if (options.trials > 0) tuning.rules.budget = tuning.trials_each = options.trials;
   tuning.timeout = options.timeout;
   tuning.interrupted = interrupted;
   if (!options.quiet) tuning.tell = [](const std::string& line) { std::cerr << line << '\n'; };
@@ -148,28 +149,30 @@ int run_tune(const TuneCommand& options) {
 
 }  // namespace
 
-void add_tune_command(const Command& program) {
-  const auto given = std::make_shared<TuneCommand>();
-  TuneCommand& options = *given;
-  const Command command = program.subcommand(
+Verb tune_verb() {
+  return {
       "tune",
       "search the settings of each solver, with one budget and one rule, on scenes that no result "
-      "reports; what is not up to date, an hour for all");
-  command.alternatives("--solver", options.solver, "only solvers whose name matches");
-  command.option("--scene", options.scene, "chain, drape or patch only", "NAME");
-  command
-      .option("--budget", options.budget,
-              "sets of settings to try, for each solver and scene; default 10 for each setting, 40 "
-              "at most",
-              "N")
-      .within(4, 10000);
-  command.option("--timeout", options.timeout, "seconds a run may take; default 10", "S")
-      .positive();
-  command.flag("--again", options.again, "also what was found by today's rule already");
-  command.option("--out", options.out, "default configs/tuned.json", "FILE");
-  command.flag("--quiet", options.quiet, "no line for each set of settings");
-  add_no_wait(command, options.no_wait);
-  command.does([given] { return run_tune(*given); });
+      "reports; what is not up to date, an hour for all",
+      [](const Command& command) -> Action {
+        const auto given = std::make_shared<TuneCommand>();
+        TuneCommand& options = *given;
+        add_solver(command, options.solver);
+        command.option("--scene", options.scene, "chain, drape or patch; default: all", "SCENE");
+        command
+            .option("--trials", options.trials,
+                    "sets of settings to try for each solver and scene; default: 10 for each "
+                    "setting, at "
+                    "most 40",
+                    "N")
+            .within(4, 10000);
+        add_timeout(command, options.timeout, "10");
+        command.flag("--again", options.again, "also what was found by today's rule already");
+        command.option("--out", options.out, "the settings; default: configs/tuned.json", "FILE");
+        command.flag("--quiet", options.quiet, "no line for each set of settings");
+        add_no_wait(command, options.no_wait);
+        return [given] { return run_tune(*given); };
+      }};
 }
 
 }  // namespace harness

@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "harness/base/files.h"
-#include "harness/cli/commands.h"
+#include "harness/cli/exit_codes.h"
 #include "harness/compare/comparison_report.h"
 
 namespace harness {

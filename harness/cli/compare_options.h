@@ -17,7 +17,7 @@ void add_compare_options(const Command& to, CompareOptions& options);
 // Throws UsageError for a report that cannot be written, before anything is done.
 void check_reports(const CompareOptions& options);
 
-// Prints the comparison, writes the reports; the exit code (commands.h): a failure outranks a
+// Prints the comparison, writes the reports; the exit code (exit_codes.h): a failure outranks a
 // regression. name: of the JUnit suite and the Markdown heading.
 int report_comparison(const Comparison& comparison, const CompareOptions& options,
                       const std::string& name);

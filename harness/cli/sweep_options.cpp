@@ -10,9 +10,7 @@
 #include "harness/base/json_reader.h"
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
-#include "harness/cli/commands.h"
 #include "harness/judge/reference_file.h"
-#include "harness/scenes/mesh_scenes.h"
 
 namespace harness {
 
@@ -57,55 +55,18 @@ void cut_ladders(Suite& suite, double finest) {
 
 }  // namespace
 
-void add_scene_words(const Command& to, SceneWords& words) {
-  to.option("--set", words.parameters, "a parameter of the scene; repeatable", "NAME=NUMBER")
-      .repeatable();
-  to.option("--pins", words.pins,
-            "of mesh:FILE.obj: which vertices are held, e.g. 'y > 1.2' or 'y > 1.2 and x < 0'",
-            "WHERE");
-  to.option("--collider", words.body, "of mesh:FILE.obj: the body, a closed mesh", "FILE.obj");
-}
-
-std::string scene_of(const std::string& scene, const SceneWords& words) {
-  return with_mesh_parts(scene, words.pins, words.body);
-}
-
-SceneParameters parameters_of(const SceneWords& words) {
-  SceneParameters parameters;
-  for (const std::string& word : words.parameters) {
-    const auto equals = word.find('=');
-    char* end = nullptr;
-    const std::string number = equals == std::string::npos ? "" : word.substr(equals + 1);
-    const double value = std::strtod(number.c_str(), &end);
-    if (number.empty() || *end != '\0')
-      throw UsageError("--set " + word + ": must be NAME=NUMBER, a parameter of the scene");
-    parameters[word.substr(0, equals)] = value;
-  }
-  return parameters;
-}
-
 void add_scene_selection(const Command& to, SweepOptions& options) {
   to.option("--sweep", options.sweep, "axis: strain (limit), resolution, step or stability",
             "AXIS");
-  to.option("--scene", options.scene,
-            "one of `bench list scenes`, also one that the suite has not, or mesh:FILE.obj; all of "
-            "the suite's if left out",
-            "NAME");
-  add_scene_words(to, options.scene_words);
-  to.option("--n", options.n, "sizes instead of the suite's, e.g. 41 or 20,40,80", "N,...");
-  to.option("--profile", options.profile,
-            "quick (< 1 min), default (six minutes) or paper (an hour and a half)", "NAME");
-  to.option("--config", options.config, "a suite of your own instead of a profile", "FILE");
+  add_scene(to, options, "all of the suite's");
+  add_suite(to, options.profile, options.config);
 }
 
 void add_selection(const Command& to, SweepOptions& options) {
   add_scene_selection(to, options);
-  to.option("--limit", options.limits, "strain limits instead of the suite's, e.g. 0.01,0.001",
-            "STRAIN,...");
-  to.alternatives("--solver", options.solver,
-                  "only contestants whose name matches, e.g. 'shake|icd'; repeatable");
-  to.option("--filter", options.filter, "only points in whose id this is found", "REGEX");
-  to.option("--exclude", options.exclude, "without points in whose id this is found", "REGEX");
+  add_limits(to, options.limits, "the suite's");
+  add_solver(to, options.solver);
+  add_filters(to, options.filter, options.exclude);
 }
 
 void add_measurement(const Command& to, SweepOptions& options) {
@@ -117,8 +78,8 @@ void add_measurement(const Command& to, SweepOptions& options) {
             "half width of the median's 95 % confidence interval over the median, default 0.02",
             "R")
       .positive();
-  to.option("--timeout", options.timeout, "seconds a point may take", "S").positive();
-  to.option("--step", options.step,
+  add_timeout(to, options.timeout, "the suite's");
+  to.option("--steps", options.steps,
             "search (each solver's best step, default), all (the whole ladder) or adaptive "
             "(one run from the coarsest step, halved where the solver refuses it)",
             "HOW");
@@ -135,73 +96,12 @@ void add_measurement(const Command& to, SweepOptions& options) {
           "nothing that reads times takes the result");
 }
 
-std::vector<std::string> profiles() { return {"quick", "default", "paper", "large"}; }
-
-void check_profile(const std::string& name) {
-  const auto known = profiles();
-  if (std::find(known.begin(), known.end(), name) == known.end())
-    throw unknown_name("profile", name, known);
-}
-
-void check_solver_pattern(const std::string& text, const Contestants& contestants) {
-  std::vector<std::string> names = names_of(inextensible::backends());
-  for (const Contestant& c : contestants) {
-    if (!c.own_name()) names.push_back(c.name);
-  }
-  const Pattern whole("--solver", text);
-  for (const std::string& part : alternatives(text)) {
-    const Pattern expression("--solver", part);
-    if (std::none_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return expression.matches(name); }))
-      throw unknown_name("solver", part, names);
-  }
-}
-
 std::string suite_path(const SweepOptions& options) {
   if (!options.scene.empty() && !find_scene(options.scene))
     throw unknown_name("scene", options.scene, names_of(scene_types()));
   if (!options.config.empty()) return options.config;
   check_profile(options.profile);
   return source_path("configs/" + options.profile + ".json");
-}
-
-std::vector<double> numbers_of(const std::string& option, const std::string& text,
-                               const Bounds& bounds) {
-  std::vector<double> numbers;
-  std::istringstream list(text + ',');  // so that nothing behind the last comma is an item as well
-  for (std::string item; std::getline(list, item, ',');) {
-    char* end = nullptr;
-    const double number = std::strtod(item.c_str(), &end);
-    if (item.empty() || *end != '\0' || !bounds.hold(number))
-      throw UsageError(option + " is '" + shortened(text) + "': '" + shortened(item, 20) +
-                       "' must be " + bounds.text());
-    numbers.push_back(number);
-  }
-  return numbers;
-}
-
-double fraction_of(const std::string& option, const std::string& text) {
-  const auto slash = text.find('/');
-  const auto number = [&](const std::string& part) {
-    char* end = nullptr;
-    const double value = std::strtod(part.c_str(), &end);
-    if (part.empty() || *end != '\0' || !(value > 0))
-      throw UsageError(option + " is '" + shortened(text, 40) + "', must be seconds, such as 1/60");
-    return value;
-  };
-  if (slash == std::string::npos) return number(text);
-  return number(text.substr(0, slash)) / number(text.substr(slash + 1));
-}
-
-double duration_of(const std::string& option, const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  const std::string unit = end;
-  const double scale = unit == "ms" ? 1e-3 : unit == "us" ? 1e-6 : unit == "s" ? 1 : 0;
-  if (!(value > 0) || scale == 0)
-    throw UsageError(option + " is '" + shortened(text, 40) +
-                     "', must be such as 2ms, 500us or 0.002s");
-  return value * scale;
 }
 
 namespace {
@@ -232,9 +132,9 @@ void put_in_scene(json& sweeps, const SweepOptions& options) {
 // The suite with what the options say instead: it then is one like any other, checked as a whole.
 Suite edited_suite(const std::string& path, const SweepOptions& options) {
   const std::string text = read_file(path, "suite");
-  const SceneParameters given = parameters_of(options.scene_words);
+  const SceneParameters given = parameters_of(options);
   if (!given.empty() && options.scene.empty())
-    throw UsageError("--set goes with --scene: whose parameter is it?");
+    throw UsageError("--set goes with --scene: of which scene is the parameter?");
   if (options.n.empty() && options.limits.empty() && options.scene.empty())
     return parse_suite(text, path);
   json document = parse_commented(text, path);
@@ -270,7 +170,7 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
 
 Suite load_suite(const SweepOptions& given) {
   SweepOptions options = given;
-  options.scene = scene_of(given.scene, given.scene_words);
+  options.scene = scene_of(given);
   const std::string path = suite_path(options);
   Suite suite = edited_suite(path, options);
   if (!options.solver.empty()) check_solver_pattern(options.solver, contestants_of(suite));
@@ -285,15 +185,15 @@ Suite load_suite(const SweepOptions& given) {
   if (suite.sweeps.empty())
     throw UsageError("'" + path + "' has no such sweep: --sweep " + options.sweep + " --scene " +
                      options.scene);
-  if (options.step != "search" && options.step != "adaptive" && options.step != "all")
-    throw unknown_name("step", options.step, {"search", "adaptive", "all"});
+  if (options.steps != "search" && options.steps != "adaptive" && options.steps != "all")
+    throw unknown_name("choice of steps", options.steps, {"search", "adaptive", "all"});
   check_longest_step(suite);
-  if (options.step == "adaptive") {
+  if (options.steps == "adaptive") {
     if (options.sweep == "step")
-      throw UsageError("--step adaptive does not go with --sweep step, whose steps are fixed");
+      throw UsageError("--steps adaptive does not go with --sweep step, whose steps are fixed");
     for (SweepSpec& sweep : suite.sweeps) sweep.adaptive = true;
     suite.name += "-adaptive";  // files and figures of their own
-  } else if (options.step == "all" && options.sweep != "step") {
+  } else if (options.steps == "all" && options.sweep != "step") {
     for (SweepSpec& sweep : suite.sweeps) sweep.every_step = true;
     suite.name += "-all";
   }

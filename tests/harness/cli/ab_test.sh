@@ -27,11 +27,11 @@ against() {
 }
 
 for run in {1..10}; do
-  against "$BENCH_BINARY" --solver fast_projection --pairs 15 --seconds 0.03 || fail "run $run, exit $?: $(cat table.txt log.txt)"
+  against "$BENCH_BINARY" --solver fast_projection --pairs 15 --sample-seconds 0.03 || fail "run $run, exit $?: $(cat table.txt log.txt)"
 done
 
 kill $load
-against "$BENCH_WITH_FAULTS" --solver 'gauss_seidel|icd' --pairs 25 --seconds 0.1 --junit slow.xml
+against "$BENCH_WITH_FAULTS" --solver 'gauss_seidel|icd' --pairs 25 --sample-seconds 0.1 --junit slow.xml
 [[ $? == 3 ]] || fail "15 % slower: $(cat table.txt log.txt)"
 grep -q '^SLOWER *strain chain/gauss_seidel' table.txt || fail "the slower solver: $(cat table.txt)"
 grep -q '^SLOWER *strain chain/icd' table.txt && fail "the other solver: $(cat table.txt)"

@@ -36,7 +36,7 @@ refused "no sweep" slurm --shards 2
 refused "has no job script" slurm --shards 2 --sweep stability
 refused "did you mean 'fast_projection'" slurm --shards 2 "${sweep[@]}" --solver fast_projectoin
 refused "did you mean 'quick'" parallel --shards 2 --sweep strain --profile quik
-refused "did you mean 'adaptive'" slurm --shards 2 "${sweep[@]}" --step adaptiv
+refused "did you mean 'adaptive'" slurm --shards 2 "${sweep[@]}" --steps adaptiv
 refused "no point is left" slurm --shards 2 "${sweep[@]}" --filter nothing
 refused "not a regular expression" slurm --shards 2 "${sweep[@]}" --filter '('
 refused "cannot read the suite" slurm --shards 2 --sweep strain --config missing.json

@@ -146,7 +146,7 @@ refused "of an interrupted run" baseline wrong.json --out out.json
 refused "is not a result file" baseline baseline.json --out out.json
 refused "leaves no step" --sweep strain --profile quick --finest 0.05 --out out.json
 refused "--finest" --sweep strain --profile quick --finest -1 --out out.json
-refused "does not go with adaptive steps" --sweep strain --profile quick --step adaptive --finest 0.01 --out out.json
+refused "does not go with adaptive steps" --sweep strain --profile quick --steps adaptive --finest 0.01 --out out.json
 
 # Single points: the same counters as in the sweep, one line each; bad ones are refused before any runs.
 /usr/bin/python3 -c "

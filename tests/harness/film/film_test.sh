@@ -26,7 +26,7 @@ for scene in 'garment --set n=12 --set period=0.3' 'drape --set n=7' 'chain --se
   for format in obj pvd pc2; do
     mkdir -p "$name"
     # shellcheck disable=SC2086
-    "$BENCH_BINARY" film --scene $scene --set duration=0.1 --solver fast_projection --strain 0.02 --step 0.005 \
+    "$BENCH_BINARY" film --scene $scene --set duration=0.1 --solver fast_projection --limit 0.02 --step 0.005 \
       --out "$name/it.$format" >paths.txt 2>stderr.txt || fail "$scene as $format: $(tail -1 stderr.txt)"
     while read -r path; do [[ -s $path ]] || fail "$path was named, but is not there"; done < <(grep "^$name/" paths.txt)
   done

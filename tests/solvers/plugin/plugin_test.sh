@@ -110,15 +110,15 @@ grep -q '^sound conforms: ' check.txt && [[ $code == 0 ]] || fail "a sound solve
 
 # ---- Two versions of a plug-in, timed against each other; sanitizers distort times ----
 ab() {
-  "$bench" ab bench bench --old-plugin "$(sound "$1")" --new-plugin "$(sound "$2")" --suite quick --scene drape \
-    --solver sound --filter 'strain:0.001/' --pairs 8 --confirm 8 --seconds 0.02 >ab.txt 2>&1
+  "$bench" ab bench bench --old-plugin "$(sound "$1")" --new-plugin "$(sound "$2")" --scene drape \
+    --solver sound --filter 'strain:0.001/' --pairs 8 --confirm 8 --sample-seconds 0.02 >ab.txt 2>&1
 }
 if ! ((SANITIZED)); then
   ab plain slow
   [[ $? == 3 ]] && grep -q 'SLOWER.*sound' ab.txt || fail "a plug-in that has become slower: $(cat ab.txt)"
   ab slow plain || fail "a plug-in that has become faster: $(cat ab.txt)"
 fi
-refused "there is no such file" ab "$bench" "$bench" --old-plugin "$(sound plain)" --new-plugin missing.so --suite quick
+refused "there is no such file" ab "$bench" "$bench" --old-plugin "$(sound plain)" --new-plugin missing.so
 
 seq 100 >text.so
 refused "there is no such file" --plugin missing.so list

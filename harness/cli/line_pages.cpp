@@ -1,8 +1,10 @@
-// The manual page and the completion for Bash, written from the options themselves.
+// bench man, bench completion: written from the options themselves.
 #include <CLI/CLI.hpp>
+#include <iostream>
 #include <string>
 
-#include "harness/cli/command_line.h"
+#include "harness/cli/exit_codes.h"
+#include "harness/cli/verbs.h"
 
 namespace harness {
 namespace {
@@ -47,8 +49,15 @@ std::string option_names(const CLI::App& app) {
 
 }  // namespace
 
-std::string CommandLine::manual() const {
-  const std::string text = app_->get_description();
+const CLI::App& Command::program() const {
+  const CLI::App* app = app_;
+  while (app->get_parent()) app = app->get_parent();
+  return *app;
+}
+
+std::string Command::manual() const {
+  const CLI::App& bench = program();
+  const std::string text = bench.get_description();
   const std::size_t end = text.find('\n');
   std::string first = text.substr(0, end);
   if (first.starts_with("bench: ")) first = first.substr(7);
@@ -57,18 +66,19 @@ std::string CommandLine::manual() const {
                      ".SH DESCRIPTION\n.nf\n" +
                      roff(end == std::string::npos ? "" : text.substr(end + 1)) +
                      ".fi\n.SH OPTIONS\n";
-  describe_options(*app_, page);
+  describe_options(bench, page);
   page += ".SH COMMANDS\n";
-  for (const CLI::App* command : app_->get_subcommands([](const CLI::App*) { return true; })) {
+  for (const CLI::App* command : bench.get_subcommands([](const CLI::App*) { return true; })) {
     page += ".SS " + roff(command->get_name()) + "\n" + roff(command->get_description()) + "\n";
     describe_options(*command, page);
   }
   return page;
 }
 
-std::string CommandLine::bash_completion() const {
+std::string Command::bash_completion() const {
+  const CLI::App& bench = program();
   std::string verbs, cases;
-  for (const CLI::App* command : app_->get_subcommands([](const CLI::App*) { return true; })) {
+  for (const CLI::App* command : bench.get_subcommands([](const CLI::App*) { return true; })) {
     verbs += " " + command->get_name();
     cases += "    " + command->get_name() + ") words='" + option_names(*command) + "' ;;\n";
   }
@@ -83,16 +93,36 @@ std::string CommandLine::bash_completion() const {
          "    --profile) words=$(\"$bench\" list suites 2>/dev/null | sed -n 's/^  "
          "\\([a-z0-9_]*\\): .*/\\1/p') ;;\n"
          "    --sweep | sweep) words='strain resolution step stability' ;;\n"
-         "    --step) words='search all adaptive' ;;\n"
+         "    --steps) words='search all adaptive' ;;\n"
          "    help) words='" +
          verbs +
          "' ;;\n"
          "    *)\n  case $verb in\n" +
-         cases + "    *) words='" + option_names(*app_) + " help sweep" + verbs +
+         cases + "    *) words='" + option_names(bench) + " help sweep" + verbs +
          "' ;;\n  esac ;;\n  esac\n"
          "  mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\")\n"
          "  ((${#COMPREPLY[@]})) || mapfile -t COMPREPLY < <(compgen -f -- \"$word\")\n"
          "}\ncomplete -o filenames -F _bench bench ./bench\n";
+}
+
+Verb man_verb() {
+  return {"man", "print the manual page: bench man | man -l -",
+          [](const Command& command) -> Action {
+            return [command] {
+              std::cout << command.manual();
+              return success;
+            };
+          }};
+}
+
+Verb completion_verb() {
+  return {"completion", "print completion for Bash: source <(bench completion)",
+          [](const Command& command) -> Action {
+            return [command] {
+              std::cout << command.bash_completion();
+              return success;
+            };
+          }};
 }
 
 }  // namespace harness

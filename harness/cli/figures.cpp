@@ -1,4 +1,4 @@
-#include "harness/cli/commands.h"
+#include "harness/cli/figures.h"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,14 +12,10 @@
 #include "harness/base/json_reader.h"
 #include "harness/base/paths.h"
 #include "harness/base/temporary_folder.h"
+#include "harness/cli/exit_codes.h"
 #include "harness/points/result_file.h"
 
 namespace harness {
-
-void add_no_wait(const Command& to, bool& no_wait) {
-  to.flag("--no-wait", no_wait,
-          "another program is taking times on this machine: stop instead of waiting for it");
-}
 
 namespace {
 

@@ -1,4 +1,4 @@
-// bench --sweep stability: the matrix of hard cases.
+// The matrix of hard cases: bench --sweep stability.
 #include <unistd.h>
 
 #include <filesystem>
@@ -10,8 +10,9 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
 #include "harness/base/shard.h"
-#include "harness/cli/commands.h"
-#include "harness/cli/sweep_command.h"
+#include "harness/cli/exit_codes.h"
+#include "harness/cli/figures.h"
+#include "harness/cli/sweep_run.h"
 #include "harness/points/context.h"
 #include "harness/points/identity.h"
 #include "harness/points/result_file.h"
@@ -121,7 +122,7 @@ StabilityEvents events_for(CellJournal& journal) {
 
 }  // namespace
 
-int stability_command(const SweepCommand& options, const std::vector<std::string>& command) {
+int run_hard_cases(const SweepCommand& options, const std::vector<std::string>& command) {
   check_profile(options.profile);
   HardCaseValues values = hard_case_values(options.profile);
   for (const std::string& given : options.values) set_values(values, given);
@@ -151,7 +152,7 @@ int stability_command(const SweepCommand& options, const std::vector<std::string
   print_stability(std::cout, outcome);
   std::cout << "\nwritten:\n" << out << std::endl;
   if (!outcome.complete) {
-    std::cerr << "bench: interrupted; the same command with --resume goes on from here\n";
+    std::cerr << "bench: interrupted; the same command with --resume continues from here\n";
     return interrupted_exit;
   }
   journal.remove();
