@@ -23,16 +23,25 @@ A ratio may say more:
     = 3.5 above 1             the whole interval must lie there (or below), as it must where words say faster or slower
 
 A table of the committed references stands between <!-- references --> and <!-- end of references -->, and follows from their files.
+What the program lists stands between <!-- bench list NAME --> and <!-- end of list -->, and follows from `bench list NAME`; the
+folders' directions between <!-- folders of solvers --> and <!-- end of list --> follow from solvers/CMakeLists.txt. --fix makes these
+anew. A paragraph may repeat words of a list:
 
-Links between documents and
-paths in backticks must exist, Markdown files that comments name too, and docs/measuring.md must name every field of a point, every
-counter and every status. Pictures of results and docs/results.md must be of the commits that the results in the tree are of.
+    <!-- bench list suites: about six minutes -->
+
+The program is BENCH_BINARY if that is set, else that of build/release; with --fix `./bench`, which builds it first.
+
+Links between documents and paths in backticks must exist, Markdown files that comments name too. docs/measuring.md must name every
+field of a point, docs/using.md every exit code. Pictures of results and docs/results.md must be of the commits that the results in the tree are of.
 """
 
 from __future__ import annotations
 
+import functools
 import json
+import os
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -48,6 +57,8 @@ BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
 NAMED_DOCUMENT = re.compile(r"[\w/.-]*\w\.md\b")
 REFERENCES = re.compile(r"(<!-- references -->\n).*?(<!-- end of references -->)", re.DOTALL)
+LISTS = re.compile(r"(<!-- (bench list (\w+)|folders of (\w+)) -->\n\n?).*?(<!-- end of list -->)", re.DOTALL)
+REPEATED = re.compile(r"<!-- bench list (\w+): (.*?) -->")
 SOURCES = ("solvers", "harness", "tests", "plots", "cmake", "configs")
 SOURCE_SUFFIXES = {".cpp", ".h", ".py", ".sh", ".cmake", ".txt", ".json"}
 
@@ -105,8 +116,37 @@ def references() -> str:
     return "".join(rows)
 
 
-def with_references(text: str) -> str:
-    return REFERENCES.sub(lambda match: match[1] + references() + match[2], text)
+@functools.cache
+def listed(name: str) -> list[dict]:
+    program = os.environ.get("BENCH_BINARY", "./bench" if "--fix" in sys.argv[1:] else "build/release/bench")
+    return json.loads(subprocess.run([program, "list", name, "--json"], cwd=ROOT, check=True, capture_output=True).stdout)
+
+
+def table_of(name: str) -> str:
+    """Of a list of the program: the columns that its rows have."""
+    rows = [{**row, "meaning": row.get("meaning", row.get("summary", row.get("description")))} for row in listed(name)]
+    columns = [column for column in ("name", "where", "unit", "meaning") if column in rows[0]]
+    quoted = "`bench {}`" if name == "verbs" else "{}" if name == "claims" else "`{}`"
+
+    def cells(row: dict) -> str:
+        return " | ".join(quoted.format(row[column]) if column == "name" else row[column].replace("|", "\\|") for column in columns)
+
+    head = [name.removesuffix("s").replace("statuse", "status") if column == "name" else column for column in columns]
+    return f"| {' | '.join(head)} |\n{'|---' * len(columns)}|\n" + "".join(f"| {cells(row)} |\n" for row in rows) + "\n"
+
+
+def folders_of(tree: str) -> str:
+    """Which folders each folder names in its CMakeLists.txt."""
+    text = (ROOT / tree / "CMakeLists.txt").read_text(encoding="utf-8")
+    uses = [(name, found[1].split() if (found := re.search(r"USES ([a-z ]+) ", rest)) else [])
+            for name, rest in re.findall(r"^add_folder\((\w+)([^)]*)\)", text, re.MULTILINE)]
+    uses += [(name, rest.split()) for name, rest in re.findall(rf"^folder_uses\(\w+ {tree}/(\w+)([^)]*)\)", text, re.MULTILINE)]
+    return "| folder | uses |\n|---|---|\n" + "".join(f"| `{tree}/{name}` | {', '.join(used) or '-'} |\n" for name, used in uses) + "\n"
+
+
+def with_tables(text: str) -> str:
+    text = REFERENCES.sub(lambda match: match[1] + references() + match[2], text)
+    return LISTS.sub(lambda match: f"<!-- {match[2]} -->\n\n" + (table_of(match[3]) if match[3] else folders_of(match[4])) + match[5], text)
 
 
 def fix() -> None:
@@ -117,7 +157,7 @@ def fix() -> None:
             place = found_again(match[1], int(match[2]), match[3])
             return f"`{place[0]}:{place[1]}`: `{match[3]}`" if place else match[0]
 
-        new = "".join(map(measured_numbers.renewed_paragraph, measured_numbers.paragraphs(QUOTE.sub(renewed, with_references(text)))))
+        new = "".join(map(measured_numbers.renewed_paragraph, measured_numbers.paragraphs(QUOTE.sub(renewed, with_tables(text)))))
         if new != text:
             document.write_text(new, encoding="utf-8")
             print(f"{document.relative_to(ROOT)}: brought up to date")
@@ -138,7 +178,20 @@ def quotes(document: Path) -> list[str]:
 
 def tables(document: Path) -> list[str]:
     text = document.read_text(encoding="utf-8")
-    return [] if with_references(text) == text else ["the table of references is not that of the files (run tests/docs/check_docs.py --fix)"]
+    return [] if with_tables(text) == text else ["a generated table is out of date (run tests/docs/check_docs.py --fix)"]
+
+
+def repeated(document: Path) -> list[str]:
+    """Words that a paragraph repeats from a list are in both."""
+    errors = []
+    for paragraph in measured_numbers.paragraphs(document.read_text(encoding="utf-8")):
+        words = re.sub(r"\s+", " ", re.sub(r"<!--.*?-->", "", paragraph, flags=re.DOTALL)).lower()
+        for name, text in REPEATED.findall(paragraph):
+            if text not in json.dumps(listed(name)):
+                errors.append(f"bench list {name} does not say '{text}'")
+            if text not in words:
+                errors.append(f"no '{text}' beside the comment that it is from bench list {name}")
+    return errors
 
 
 def numbers(document: Path) -> list[str]:
@@ -206,13 +259,17 @@ def names_in(value: object) -> set[str]:
 
 def measured() -> list[str]:
     fields = set().union(*(names_in(points_of(file)[0]) for file in ("results/paper-strain-chain.json", "results/paper-step-chain.json")))
-    counters = (ROOT / "solvers/problem/work_counters.h").read_text(encoding="utf-8")
-    fields |= set(re.findall(r"^  (?:std::int64_t|double) (\w+) = 0;", counters, re.MULTILINE))
     schema = json.loads((ROOT / "configs/result.schema.json").read_text(encoding="utf-8"))
     fields = (fields | set(schema["definitions"]["point"]["properties"])) - {"best_at_error"}  # of older files
-    statuses = set(schema["definitions"]["status"]["enum"])
     explained = set(BACKTICKS.findall((ROOT / "docs/measuring.md").read_text(encoding="utf-8")))
-    return [f"docs/measuring.md does not explain `{name}`" for name in sorted((fields | statuses) - explained - {"error", "work"})]
+    return [f"docs/measuring.md does not explain `{name}`" for name in sorted(fields - explained - {"error", "work"})]
+
+
+def exit_codes() -> list[str]:
+    codes = set(re.findall(r" = (\d+)", (ROOT / "harness/cli/exit_codes.h").read_text(encoding="utf-8")))
+    explained = set(re.findall(r"^\| (\d+) \|", (ROOT / "docs/using.md").read_text(encoding="utf-8").partition("## Exit codes")[2].partition("\n## ")[0],
+                                re.MULTILINE))
+    return [f"docs/using.md: exit codes {sorted(explained)}, the program has {sorted(codes)}"] if codes != explained else []
 
 
 def pictures() -> list[str]:
@@ -239,8 +296,8 @@ def main() -> int:
     if "--fix" in sys.argv[1:]:
         fix()
     errors = [f"{document.relative_to(ROOT)}: {error}" for document in documents()
-              for check in (quotes, numbers, tables, links, paths) for error in check(document)]
-    errors += named_documents() + measured() + pictures()
+              for check in (quotes, numbers, tables, repeated, links, paths) for error in check(document)]
+    errors += named_documents() + measured() + exit_codes() + pictures()
     for error in errors:
         print(error)
     return 1 if errors else 0

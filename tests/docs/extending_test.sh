@@ -38,6 +38,14 @@ for new, path, anchor, code in blocks:
     lines.insert(at + 1, code)
     place.write_text("".join(lines), encoding="utf-8")
 print(f"{len(blocks)} pieces added")
+
+# The table of files to edit, of each section that has pieces.
+table = {row[0]: (int(row[1]), set(re.findall(r"`([^`]+)`", row[2])))
+         for row in re.findall(r"^\| ([a-z ]+) \| (\d+) \| (.*) \|$", page, re.MULTILINE)}
+for title, text in re.findall(r"^## An? (.*?)$(.*?)(?=^## |\Z)", page, re.MULTILINE | re.DOTALL):
+    edited = set(re.findall(r"^<!-- (\S+), after:", text, re.MULTILINE))
+    if edited and table.get(title) != (len(edited), edited):
+        sys.exit(f"the table says {table.get(title)} of a {title}, whose pieces edit {sorted(edited)}")
 PYTHON
 
 cd "$tree"
@@ -60,6 +68,9 @@ cat >../tiny.json <<'JSON'
 JSON
 "$bench" --sweep strain --config ../tiny.json --solver 'symmetric_sweeps|fast_projection' --no-plots --force --out ../tiny-result.json \
   >../sweep.log || { cat ../sweep.log; fail "the sweep failed"; }
+"$bench" list verbs | grep '^ *count: ' >/dev/null || fail "the verb is not listed"
+"$bench" count ../tiny-result.json | grep -E '^ok [0-9]+$' >/dev/null || fail "the verb does not count"
+"$bench" plot ../tiny-result.json | grep 'tiny-result-strain-over-step.svg$' >/dev/null || fail "the figure is not drawn"
 /usr/bin/python3 - ../tiny-result.json <<'PYTHON'
 import json
 import sys
