@@ -21,11 +21,18 @@ const Expectation stiff_waves{start_direction, refuses,
                               "transverse waves beside the pin with omega h > 2 grow until links "
                               "turn by 60 degrees in a step"};
 
+// Held at one corner.
+Mesh hung_cloth() {
+  Mesh mesh = cloth(11);
+  mesh.parts.pinned = {0};
+  return mesh;
+}
+
 Trial ten_seconds(Mesh mesh) { return trial_of(std::move(mesh), 1.0 / 100, 1000); }
 
-}  // namespace
+const Expectation no_drift{everyone, survives, "each step begins anew: no drift"};
 
-void add_far_starts(std::vector<HardCase>& cases, const HardCaseValues& values) {
+void add_scaled_chains(std::vector<HardCase>& cases, const std::vector<double>& scales) {
   // The release throws the ends at 50 m/s past the places where they belong, and back again.
   const char* thrown =
       "the release throws the chain through itself: what it looks like after a few steps follows "
@@ -38,26 +45,27 @@ void add_far_starts(std::vector<HardCase>& cases, const HardCaseValues& values) 
        survives,
        "close to any position there are permissible ones",
        {{refuses, thrown}}}};
-  const auto fast = [](Trial trial) {  // the release moves vertices by many edges a step
-    trial.energy_tolerance = closest_point_energy;
-    return trial;
-  };
-  for (const double scale : values.at("scales")) {
+  for (const double scale : scales) {
     cases.push_back({"far start", "scaled/" + number_text(scale), "a chain of 20 scaled by this",
-                     [scale, fast] {
+                     [scale] {
                        Mesh mesh = chain(20);
                        mesh.start.x *= scale;
-                       return fast(trial_of(std::move(mesh), 1.0 / 100, 20));
+                       Trial trial = trial_of(std::move(mesh), 1.0 / 100, 20);
+                       // The release moves vertices by many edges a step.
+                       trial.energy_tolerance = closest_point_energy;
+                       return trial;
                      },
                      expected});
   }
+}
+
+void add_noisy_cloth(std::vector<HardCase>& cases) {
   cases.push_back(
       {"far start",
        "noise",
        "11 x 11 cloth, every vertex displaced by up to 30 % of an edge",
        [] {
-         Mesh mesh = cloth(11);
-         mesh.parts.pinned = {0};
+         Mesh mesh = hung_cloth();
          std::mt19937_64 random(7);
          add_noise(mesh.start.x, mesh.parts.pinned, 0.03, random);
          return trial_of(std::move(mesh), 1.0 / 100, 20);
@@ -68,49 +76,57 @@ void add_far_starts(std::vector<HardCase>& cases, const HardCaseValues& values) 
          "that a solution exists",
          {{survives, "nor that none does"}}},
         {everyone, survives, "close to any position there are permissible ones"}}});
+}
+
+Trial with_noise_every_step(Trial trial) {
+  trial.disturb = [random = std::make_shared<std::mt19937_64>(7)](State& state, int) {
+    add_noise(state.x, {0}, 0.005, *random);
+  };
+  return trial;
+}
+
+void add_noise_every_step(std::vector<HardCase>& cases) {
+  const char* row = "noise every step";
   cases.push_back(
-      {"noise every step",
+      {row,
        "drift/chain",
        "every step of a hanging chain starts with errors of up to 10 % of an edge (C10)",
        [] {
-         Trial trial = ten_seconds(chain(20, {0, -1, 0}));
-         trial.disturb = [random = std::make_shared<std::mt19937_64>(7)](State& state, int) {
-           add_noise(state.x, {0}, 0.005, *random);
-         };
-         return trial;
+         return with_noise_every_step(ten_seconds(chain(20, {0, -1, 0})));
        },
        {{start_direction, refuses,
          "each step's noise leaves velocities of 0.3 m/s, which nothing damps: after a second "
          "links "
          "turn by 60 degrees in a step"},
-        {everyone, survives, "each step begins anew: no drift"}}});
-  cases.push_back({"noise every step",
+        no_drift}});
+  cases.push_back({row,
                    "drift/cloth",
                    "the same for an 11 x 11 cloth, 5 % of an edge",
-                   [] {
-                     Mesh mesh = cloth(11);
-                     mesh.parts.pinned = {0};
-                     Trial trial = ten_seconds(std::move(mesh));
-                     trial.disturb = [random = std::make_shared<std::mt19937_64>(7)](State& state,
-                                                                                     int) {
-                       add_noise(state.x, {0}, 0.005, *random);
-                     };
-                     return trial;
-                   },
-                   {stiff_waves, {everyone, survives, "each step begins anew: no drift"}}});
-  for (const bool cloth_swings : {false, true}) {
-    cases.push_back({"ten seconds",
-                     cloth_swings ? "swing/cloth" : "swing/chain",
-                     cloth_swings
-                         ? "an 11 x 11 cloth held at one corner swings for 10 s, h = 1/100 s"
-                         : "a chain of 20 swings for 10 s, h = 1/100 s (C10)",
-                     [cloth_swings] {
-                       Mesh mesh = cloth_swings ? cloth(11) : chain(20);
-                       mesh.parts.pinned = {0};
-                       return ten_seconds(std::move(mesh));
-                     },
-                     {stiff_waves, {everyone, survives, "each step begins anew: no drift"}}});
-  }
+                   [] { return with_noise_every_step(ten_seconds(hung_cloth())); },
+                   {stiff_waves, no_drift}});
+}
+
+void add_ten_seconds(std::vector<HardCase>& cases) {
+  const char* row = "ten seconds";
+  cases.push_back({row,
+                   "swing/chain",
+                   "a chain of 20 swings for 10 s, h = 1/100 s (C10)",
+                   [] { return ten_seconds(chain(20)); },
+                   {stiff_waves, no_drift}});
+  cases.push_back({row,
+                   "swing/cloth",
+                   "an 11 x 11 cloth held at one corner swings for 10 s, h = 1/100 s",
+                   [] { return ten_seconds(hung_cloth()); },
+                   {stiff_waves, no_drift}});
+}
+
+}  // namespace
+
+void add_far_starts(std::vector<HardCase>& cases, const HardCaseValues& values) {
+  add_scaled_chains(cases, values.at("scales"));
+  add_noisy_cloth(cases);
+  add_noise_every_step(cases);
+  add_ten_seconds(cases);
 }
 
 }  // namespace harness

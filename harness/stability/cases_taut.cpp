@@ -28,51 +28,49 @@ Expectation passes_along_a_row(double limit) {
           {{survives, "the estimate is one of order: averaged and over-relaxed passes reach it"}}};
 }
 
-}  // namespace
+Scene row_of_links(double stretch) {
+  return scene_of("taut_row", {{"stretch", stretch}, {"duration", 0.5}});
+}
 
-void add_taut(std::vector<HardCase>& cases, const HardCaseValues& values) {
-  const auto row = [](double stretch) {
-    return scene_of("taut_row", {{"stretch", stretch}, {"duration", 0.5}});
-  };
-  // A row of 1 m that is strained by s sags by sqrt(3 s / 8) m.
-  const auto taut = [](Trial trial) {
-    trial.slack = std::sqrt(3 * trial.strain_limit / 8);
-    return trial;
-  };
-  for (const double limit : values.at("limits")) {
-    const Expectation start{
-        start_direction, refuses,
-        "J(x^n) is singular at the start (Q4), and where the fall is stopped its "
-        "directions lie along the row, the correction across it"};
-    const Expectation end{
-        end_direction,
-        survives,
-        "the permissible band has an interior",
-        {{refuses,
-          "at full length no multipliers exist: whether the band ends the iteration before "
-          "depends on the path of Newton's steps"}}};
-    const Expectation current{
-        current_direction, survives,
-        "the permissible band has an interior, which damped projections find"};
-    cases.push_back({"taut row",
-                     "taut_row/" + number_text(limit),
-                     "30 links straight between pins, falling; strain limit " + number_text(limit),
-                     [=] { return taut(trial_of(row(1), 1.0 / 200, limit)); },
-                     {start, end, current, passes_along_a_row(limit), others}});
-    cases.push_back({"1 m patch",
-                     "patch/" + number_text(limit),
-                     "15 x 15 cloth, pinned 1 m apart, falling; strain limit " + number_text(limit),
-                     [=] {
-                       return taut(trial_of(scene_of("patch", {{"n", 15}, {"duration", 0.5}}),
-                                            1.0 / 400, limit));
-                     },
-                     {start, end, current, passes_along_a_row(limit), others}});
-  }
+// A row of 1 m that is strained by s sags by sqrt(3 s / 8) m.
+Trial taut(Trial trial) {
+  trial.slack = std::sqrt(3 * trial.strain_limit / 8);
+  return trial;
+}
+
+void add_between_pins(std::vector<HardCase>& cases, double limit) {
+  const std::vector<Expectation> expected{
+      {start_direction, refuses,
+       "J(x^n) is singular at the start (Q4), and where the fall is stopped its "
+       "directions lie along the row, the correction across it"},
+      {end_direction,
+       survives,
+       "the permissible band has an interior",
+       {{refuses,
+         "at full length no multipliers exist: whether the band ends the iteration before "
+         "depends on the path of Newton's steps"}}},
+      {current_direction, survives,
+       "the permissible band has an interior, which damped projections find"},
+      passes_along_a_row(limit),
+      others};
+  cases.push_back({"taut row", "taut_row/" + number_text(limit),
+                   "30 links straight between pins, falling; strain limit " + number_text(limit),
+                   [=] { return taut(trial_of(row_of_links(1), 1.0 / 200, limit)); }, expected});
+  cases.push_back(
+      {"1 m patch", "patch/" + number_text(limit),
+       "15 x 15 cloth, pinned 1 m apart, falling; strain limit " + number_text(limit),
+       [=] {
+         return taut(trial_of(scene_of("patch", {{"n", 15}, {"duration", 0.5}}), 1.0 / 400, limit));
+       },
+       expected});
+}
+
+void add_infeasible(std::vector<HardCase>& cases) {
   const std::vector<Expectation> impossible{stretching,
                                             {everyone, refuses, "nothing can satisfy it"}};
   cases.push_back({"infeasible", "infeasible/row", "pins 20 % farther apart than the row is long",
-                   [=] {
-                     Trial trial = trial_of(row(1.2), 1.0 / 100);
+                   [] {
+                     Trial trial = trial_of(row_of_links(1.2), 1.0 / 100);
                      trial.steps = 3;
                      return trial;
                    },
@@ -84,10 +82,13 @@ void add_taut(std::vector<HardCase>& cases, const HardCaseValues& values) {
                      return trial_of(std::move(mesh), 0.01, 3);
                    },
                    impossible});
+}
+
+void add_triangles(std::vector<HardCase>& cases) {
   cases.push_back({"triangles",
                    "triangles",
                    "9 x 9 cloth, all edges of its triangles constrained",
-                   [=] { return taut(trial_of(cloth(9, true), 1.0 / 400, 100)); },
+                   [] { return taut(trial_of(cloth(9, true), 1.0 / 400, 100)); },
                    {{start_direction, refuses,
                      "flat, more edges than coordinates in the plane: J(x^n) is rank deficient"},
                     {end_direction,
@@ -99,6 +100,14 @@ void add_taut(std::vector<HardCase>& cases, const HardCaseValues& values) {
                      "find"},
                     passes_along_a_row(0.01),
                     others}});
+}
+
+}  // namespace
+
+void add_taut(std::vector<HardCase>& cases, const HardCaseValues& values) {
+  for (const double limit : values.at("limits")) add_between_pins(cases, limit);
+  add_infeasible(cases);
+  add_triangles(cases);
 }
 
 }  // namespace harness
