@@ -35,11 +35,10 @@ void register_drape(int n) {
   register_steps("drape", n, at);
   register_collision("drape", n, at);
   register_strain_passes(n, at);
-  register_schur_complement(
-      "drape", n, at,
-      {"eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern",
-       "fixed_pattern_single", "fixed_pattern_mixed", "line_cg"});
-  register_saddle_point(n, at, {"projected_cg", "quasi_definite", "umfpack"});
+  register_schur_complement("drape", n, at,
+                            {"cholmod_simplicial", "cholmod_supernodal", "fixed_pattern",
+                             "fixed_pattern_mixed", "line_cg"});
+  register_saddle_point(n, at, {"projected_cg", "quasi_definite"});
 }
 
 void register_all() {
@@ -47,8 +46,8 @@ void register_all() {
   for (const int n : {80, 1000, 100000, 1000000}) register_chain(n);
   for (const int n : {15, 31, 71, 101}) register_drape(n);
   for (const int n : {15, 31, 71, 101, 201, 501})
-    register_whole_systems(n, {"eigen_ldlt", "cholmod_simplicial", "cholmod_supernodal",
-                               "fixed_pattern", "fixed_pattern_mixed", "line_cg"});
+    register_whole_systems(n, {"cholmod_simplicial", "cholmod_supernodal", "fixed_pattern",
+                               "fixed_pattern_mixed", "line_cg"});
 }
 
 }  // namespace

@@ -44,8 +44,7 @@ void linear_solver(benchmark::State& state, const std::string& name, bool solve,
   const auto rate = [](double a) { return Counter(a, Counter::kIsIterationInvariantRate); };
   state.counters["nnz_L"] = l.solver->factor_nonzeros();
   if (solve) {
-    const bool single = name == "fixed_pattern_single";
-    const double bytes = l.solver->factor_nonzeros() * (single ? sizeof(float) : sizeof(double));
+    const double bytes = l.solver->factor_nonzeros() * sizeof(double);
     state.counters["of_bandwidth"] = rate(2 * bytes / read_bandwidth(bytes));
   } else {
     state.counters["flops"] = rate(l.solver->factor_flops());
@@ -80,7 +79,7 @@ void kkt(benchmark::State& state, const std::string& solver, bool solve, int n) 
     system = std::make_unique<ProjectedCg>(m.problem(), edges,
                                            ProjectedCg::Settings{Icd::Settings{}.cg_tolerance});
   } else {
-    system = std::make_unique<KktSystem>(m.problem(), edges, solver);
+    system = std::make_unique<KktSystem>(m.problem(), edges);
   }
   if (!l.solver->factor()) return state.SkipWithError("not positive definite");
   Eigen::VectorXd mu = l.c, q(edges.count());
@@ -97,7 +96,7 @@ void kkt(benchmark::State& state, const std::string& solver, bool solve, int n) 
   if (work.factorizations != (solve ? 1 : state.iterations() + 1))
     return state.SkipWithError("another solver had to take over");
   per_item(state, edges.count());
-  state.counters["nnz_L"] = work.factor_nonzeros;  // umfpack: of L + U
+  state.counters["nnz_L"] = work.factor_nonzeros;
   state.counters["flops"] =
       Counter(solve ? 0 : work.factor_flops, Counter::kIsIterationInvariantRate);
   state.counters["back_solves"] =

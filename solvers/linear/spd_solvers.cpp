@@ -6,7 +6,6 @@
 
 #include "solvers/linear/block_tridiagonal.h"
 #include "solvers/linear/cholmod.h"
-#include "solvers/linear/eigen_ldlt.h"
 #include "solvers/linear/hybrid.h"
 #include "solvers/linear/line_cg.h"
 #include "solvers/linear/mixed_cholesky.h"
@@ -45,16 +44,12 @@ constexpr SpdSolverRow rows[] = {
      as_is, Precision::full, make<BlockTridiagonalSolver>},
     {"fixed_pattern", "multifrontal Cholesky, laid out once", lower, direct, Takes::any, fills,
      Precision::full, make<FixedPatternCholesky>},
-    {"fixed_pattern_single", "the same in single precision", lower, direct, Takes::any, fills,
-     Precision::single, make<MultifrontalCholesky<float>>},
     {"fixed_pattern_mixed", "the same in single precision where that is enough", lower, direct,
      Takes::any, fills, Precision::mixed, make<MixedCholesky>},
     {"line_cg", "conjugate gradients, preconditioned by lines", upper, iterative, Takes::any, as_is,
      Precision::full, make<LineCgSolver>},
     {"hybrid", "line_cg while it converges quickly, else fixed_pattern", upper, iterative,
      Takes::any, as_is, Precision::full, make<HybridSpdSolver>},
-    {"eigen_ldlt", "Eigen's up-looking L D L^T", upper, direct, Takes::any, fills, Precision::full,
-     make<EigenLdltSolver>},
     {"cholmod_simplicial", "CHOLMOD's simplicial Cholesky", upper, direct, Takes::any, fills,
      Precision::full, make<CholmodSolver, false>},
     {"cholmod_supernodal", "CHOLMOD's supernodal Cholesky", lower, direct, Takes::any, fills,

@@ -11,7 +11,7 @@
 namespace inextensible {
 
 enum class Takes { any, tridiagonal, block_tridiagonal };  // patterns; blocks are 3 x 3
-enum class Precision { full, single, mixed };              // of the factors
+enum class Precision { full, mixed };                      // of the factors
 
 struct SpdSolverRow {
   const char* name;

@@ -45,7 +45,7 @@ std::unique_ptr<KktSolver> make_kkt_solver(std::string_view name, const Problem&
   if (name == projected_cg)
     return std::make_unique<ProjectedCg>(problem, edges, ProjectedCg::Settings{cg_tolerance});
   if (name == block_tridiagonal) return std::make_unique<ChainKkt>(problem, edges);
-  return std::make_unique<KktSystem>(problem, edges, name);
+  return std::make_unique<KktSystem>(problem, edges);
 }
 
 }  // namespace
@@ -210,7 +210,7 @@ SettingFields<Icd::Settings> Icd::fields() {
        "of the KKT system",
        {},
        {},
-       {"auto", "projected_cg", "quasi_definite", "block_tridiagonal", "umfpack"}}};
+       {"auto", "projected_cg", "quasi_definite", "block_tridiagonal"}}};
 }
 
 Backend icd_row() {

@@ -162,7 +162,7 @@ bool ChainKkt::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
 }
 
 bool ChainKkt::leave_to_umfpack(WorkCounters& work) {
-  if (!umfpack_) umfpack_ = std::make_unique<KktSystem>(problem_, edges_, "umfpack");
+  if (!umfpack_) umfpack_ = std::make_unique<KktSystem>(problem_, edges_, KktSystem::By::umfpack);
   left_to_umfpack_ = true;
   return umfpack_->factor(*u_, *mu_, nullptr, convexified_, work);
 }

@@ -45,9 +45,8 @@ int find(const SymmetricPattern& pattern, int i, int j) {
 KktSolver::KktSolver(const Problem& problem)
     : mean_mass_(problem.total_mass() / static_cast<double>(problem.vertices())) {}
 
-KktSystem::KktSystem(const Problem& problem, const EdgeConstraints& edges,
-                     std::string_view linear_solver)
-    : KktSolver(problem), edges_(edges), umfpack_only_(linear_solver == "umfpack") {
+KktSystem::KktSystem(const Problem& problem, const EdgeConstraints& edges, By by)
+    : KktSolver(problem), edges_(edges), umfpack_only_(by == By::umfpack) {
   const std::size_t n = problem.vertices();
   vertex_unknown_.assign(n, -1);
   for (std::size_t v = 0; v < n; ++v) {
@@ -64,7 +63,7 @@ KktSystem::KktSystem(const Problem& problem, const EdgeConstraints& edges,
   }
   build_pattern(ends);
   for (Eigen::VectorXd* v : {&rhs_, &solution_, &residual_}) v->resize(size_);
-  if (!umfpack_only_) ldlt_ = std::make_unique<EigenLdltSolver>(pattern_, /*indefinite=*/true);
+  if (!umfpack_only_) ldlt_ = std::make_unique<QuasiDefiniteSolver>(pattern_);
 }
 
 void KktSystem::build_pattern(const std::vector<Edge>& ends) {

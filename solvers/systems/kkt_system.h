@@ -1,25 +1,23 @@
 // The saddle-point matrix of ICD's Newton step in fixed pattern, factored.
 //
-// Two factorizations: `quasi_definite` is L D L^T without pivoting in a fill-reducing order, of K
-// with a tiny negative diagonal in the lower block (Vanderbei 1995), corrected by iterative
-// refinement on K itself; where refinement does not reach its goal (H indefinite enough to spoil
-// the pivots) UMFPACK takes over for that matrix. `umfpack` always uses it.
+// L D L^T without pivoting in a fill-reducing order, of K with a tiny negative diagonal in the
+// lower block, corrected by iterative refinement on K itself. Where refinement does not reach its
+// goal (H indefinite enough to spoil the pivots, or masses that are too unequal) UMFPACK takes over
+// for that matrix.
 #pragma once
 
 #include <memory>
-#include <string>
-#include <string_view>
 
-#include "solvers/linear/eigen_ldlt.h"
 #include "solvers/linear/lu.h"
+#include "solvers/linear/quasi_definite.h"
 #include "solvers/systems/kkt_solver.h"
 
 namespace inextensible {
 
 class KktSystem final : public KktSolver {
  public:
-  // linear_solver: "quasi_definite" or "umfpack".
-  KktSystem(const Problem& problem, const EdgeConstraints& edges, std::string_view linear_solver);
+  enum class By { ldlt_first, umfpack };
+  KktSystem(const Problem& problem, const EdgeConstraints& edges, By by = By::ldlt_first);
 
   bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, const Contacts* contacts,
               bool convex, WorkCounters& work) override;
@@ -53,7 +51,7 @@ class KktSystem final : public KktSolver {
   std::vector<double> matrix_;  // upper triangle of K, without the regularization
   std::vector<VertexPlaces> vertex_places_;
   std::vector<EdgePlaces> edge_places_;
-  std::unique_ptr<EigenLdltSolver> ldlt_;
+  std::unique_ptr<QuasiDefiniteSolver> ldlt_;
   std::unique_ptr<UnsymmetricSolver> lu_;
   std::vector<int> full_from_upper_;
   Eigen::VectorXd rhs_, solution_, residual_;

@@ -119,7 +119,7 @@ bool ProjectedCg::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
 
 // The saddle-point matrix knows no contacts: its steps may leave their planes.
 bool ProjectedCg::factor_directly(WorkCounters& work) {
-  if (!direct_) direct_ = std::make_unique<KktSystem>(problem_, edges_, "quasi_definite");
+  if (!direct_) direct_ = std::make_unique<KktSystem>(problem_, edges_);
   direct_in_use_ = true;
   const bool factored = direct_->factor(*u_, *mu_, nullptr, convex_, work);
   convexified_ = direct_->convexified();

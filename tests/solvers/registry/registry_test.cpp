@@ -75,15 +75,15 @@ TEST(Registry, SettingsOutOfRangeAreRefusedByName) {
 
 TEST(SettingFields, ReachTheStruct) {
   BackendOptions options{0.25, 7, {}};
-  options.settings =
-      complete_settings(*find_backend("fast_projection_bdf2"),
-                        {{"max_iterations", 12.0}, {"linear_solver", std::string("eigen_ldlt")}});
+  options.settings = complete_settings(
+      *find_backend("fast_projection_bdf2"),
+      {{"max_iterations", 12.0}, {"linear_solver", std::string("cholmod_simplicial")}});
   const auto settings = settings_of<FastProjection>(options);
   EXPECT_EQ(settings.strain_limit, 0.25);
   EXPECT_EQ(settings.max_iterations, 12);
   EXPECT_EQ(settings.min_iterations, 1);  // the variant's default
   EXPECT_EQ(settings.smoothing_sweeps, 30);
-  EXPECT_EQ(settings.linear_solver, "eigen_ldlt");
+  EXPECT_EQ(settings.linear_solver, "cholmod_simplicial");
 }
 
 TEST(LinearSolvers, AreFoundByTheirNames) {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "solvers/linear/eigen_ldlt.h"
 #include "solvers/linear/lu.h"
+#include "solvers/linear/quasi_definite.h"
 #include "solvers/linear/spd_solvers.h"
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/systems/schur_complement.h"
@@ -209,7 +209,7 @@ TEST_P(SpdSolvers, RefuseWhatIsNotPositiveDefinite) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SpdSolvers,
-                         ::testing::Values("tridiagonal", "eigen_ldlt", "cholmod_simplicial",
+                         ::testing::Values("tridiagonal", "cholmod_simplicial",
                                            "cholmod_supernodal", "fixed_pattern"));
 
 TEST(UnsymmetricSolver, LeavesASmallResidualAndSeesSingularMatrices) {
@@ -238,7 +238,7 @@ TEST(UnsymmetricSolver, LeavesASmallResidualAndSeesSingularMatrices) {
   }
 }
 
-TEST(EigenLdlt, CountsTheNegativeEigenvaluesOfAQuasiDefiniteMatrix) {
+TEST(QuasiDefiniteSolver, CountsTheNegativeEigenvaluesOfAQuasiDefiniteMatrix) {
   // [ A  B^T ]
   // [ B  -C  ]  with A, C positive definite has as many negative eigenvalues as C has rows.
   const int n = 6, m = 4;
@@ -262,7 +262,7 @@ TEST(EigenLdlt, CountsTheNegativeEigenvaluesOfAQuasiDefiniteMatrix) {
     }
     pattern.column_start.push_back(pattern.entries());
   }
-  EigenLdltSolver solver(pattern, true);
+  QuasiDefiniteSolver solver(pattern);
   std::copy(values.begin(), values.end(), solver.values());
   ASSERT_TRUE(solver.factor());
   EXPECT_EQ(solver.negative_pivots(), m);
