@@ -1,112 +1,113 @@
-// bench emit: the script that runs a sweep in shards under Slurm or GNU parallel.
+// bench emit: a sweep in shards, as a script for an array of Slurm's or as commands for GNU
+// parallel.
 #include <algorithm>
-#include <filesystem>
+#include <cctype>
 #include <iostream>
 
 #include "harness/base/errors.h"
-#include "harness/base/paths.h"
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/sweep_options.h"
 #include "harness/cli/verbs.h"
-#include "harness/run/job_script.h"
 
 namespace harness {
 namespace {
 
 struct EmitCommand : SweepOptions {
-  std::string scheduler;
-  JobScript job;
+  std::string scheduler, result;
+  int shards = 1;
+  std::vector<std::string> sweep_words;  // bench's options
 };
 
-// All solvers of one scene and size stay in one shard, so that there may be less work than shards.
-std::size_t shares(const std::vector<Search>& searches, std::size_t shards) {
-  std::size_t filled = 0;
-  for (std::size_t i = 1; i <= shards; ++i) filled += !shard(searches, {i, shards}).empty();
-  return filled;
+// The word as a shell reads it back, in quotes only where it needs them.
+std::string shell_word(const std::string& word) {
+  if (std::any_of(word.begin(), word.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }))
+    throw UsageError("a command of one line has no control characters: '" + word + "'");
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_./:=,@%+-").find(static_cast<char>(c)) != std::string_view::npos;
+  };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
-// What the sweep itself would refuse is refused here, before anything waits in a queue.
+// What the sweep itself would refuse is refused here, before anything waits in a queue. All solvers
+// of one scene and size stay in one shard, so that there may be less work than shards.
 void check_sweep(const Suite& suite, const EmitCommand& given) {
   const auto searches = plan(suite, make_filters(given));
-  const std::size_t shards = given.job.shards;
-  const std::size_t most = shares(searches, shards);
-  if (shards > most)
-    throw UsageError("--shards " + std::to_string(shards) + ": this sweep has " +
-                     std::to_string(most) +
+  const auto shards = static_cast<std::size_t>(given.shards);
+  std::size_t filled = 0;
+  for (std::size_t i = 1; i <= shards; ++i) filled += !shard(searches, {i, shards}).empty();
+  if (filled < shards)
+    throw UsageError("--shards " + std::to_string(given.shards) + ": this sweep has " +
+                     std::to_string(filled) +
                      " scenes and sizes to share out, each of which stays in one shard");
-  ReferenceShelf shelf(source_path("results/references"));
-  if (given.finest_error > 0 && !without_reference(searches, shelf).empty())
-    throw UsageError(
-        "--finest-error needs references, some are missing (bench reference, with the same scene "
-        "and "
-        "profile, makes them)");
-  if (std::filesystem::is_directory(given.job.result))
-    throw UsageError("--out '" + given.job.result + "' is a folder, must be the result's name");
 }
 
-int emit(EmitCommand& given) {
+int emit(const EmitCommand& given) {
   const std::vector<std::string> known{"slurm", "parallel"};
   if (std::find(known.begin(), known.end(), given.scheduler) == known.end())
     throw unknown_name("batch system", given.scheduler, known);
-  const bool slurm = given.scheduler == "slurm";
-  JobScript& job = given.job;
-  if (!slurm && !(job.time + job.partition + job.account).empty())
-    throw UsageError("--time, --partition and --account go with emit slurm");
-  if (slurm && job.jobs > 0) throw UsageError("--jobs goes with emit parallel");
   if (given.sweep == "stability")
-    throw UsageError(
-        "--sweep stability takes two minutes and has no job script; --shard cuts it by hand");
-  if (!given.config.empty() && std::filesystem::exists(given.config) &&
-      !std::filesystem::is_regular_file(given.config))
-    throw UsageError("--config '" + given.config + "' will not be there when the shards are run");
+    throw UsageError("--sweep stability takes two minutes and has no script; --shard cuts it");
   const Suite suite = load_suite(given);
-  job.axis = given.sweep;
-  job.jobs = std::max(1, job.jobs);
-  if (job.result.empty()) job.result = "results/local/" + suite.name + "-" + given.sweep + ".json";
-  const std::string text = (slurm ? slurm_script : parallel_script)(job);
   check_sweep(suite, given);
-  std::cout << text << std::flush;
+  std::string result = given.result;
+  if (result.empty()) result = "results/local/" + suite.name + "-" + given.sweep + ".json";
+  const bool named = result.ends_with(".json");
+  const std::string stem = named ? result.substr(0, result.size() - 5) : result;
+  const std::string parts = shell_word(stem + "-shard-");
+  const std::string shards = std::to_string(given.shards);
+  const std::string end = "-of-" + shards + ".json";
+  const std::string merge = "./bench merge " + parts + "*" + end + " --out " + shell_word(result);
+  std::string words;
+  for (const std::string& word : given.sweep_words) words += " " + shell_word(word);
+  const auto command = [&](const std::string& number) {
+    return "./bench" + words + " --no-plots --resume --shard " + number + "/" + shards + " --out " +
+           parts + number + end + "\n";
+  };
+  if (given.scheduler == "parallel") {
+    std::cout << "# To GNU parallel, then: " << merge << '\n';
+    for (int i = 1; i <= given.shards; ++i) std::cout << command(std::to_string(i));
+  } else {
+    std::cout
+        << "#!/usr/bin/env bash\n"
+           "# sbatch THIS_FILE in the folder of bench, with --time, --partition, --constraint\n"
+           "# and the like; the same once more goes on where shards were interrupted. Then:\n" +
+               ("# " + merge + "\n#SBATCH --job-name=bench-" + given.sweep) +
+               ("\n#SBATCH --array=1-" + shards + "\n") +
+               "#SBATCH --exclusive\n"
+               "#SBATCH --requeue\n"
+               "#SBATCH --signal=B:TERM@60\n"  // bench then writes what it has
+               "exec " +
+               command("\"$SLURM_ARRAY_TASK_ID\"");
+  }
+  std::cout << std::flush;
   return success;
 }
 
 }  // namespace
 
 Verb emit_verb() {
-  return {"emit", "print the script that runs a sweep in shards under Slurm or GNU parallel",
-          [](const Command& command) -> Action {
-            const auto given = std::make_shared<EmitCommand>();
-            add_selection(command, *given);
-            add_measurement(command, *given);
-            const auto passed_on =
-                command.as_typed();  // no number is rounded on its way through the script
-
-            command.option("scheduler", given->scheduler, "slurm or parallel").required();
-            JobScript& job = given->job;
-            job.jobs = 0;  // not given
-            command.option("--shards", job.shards, "parts of the sweep, each a job of its own", "N")
-                .required()
-                .within(1, 1000);
-            command.option(
-                "--out", job.result,
-                "the merged result; default results/local/<profile>-<axis>.json. Shards and "
-                "logs go to a folder of this name with -shards",
-                "FILE");
-            command.option("--memory", job.memory,
-                           "that a point may have and a shard reserves, e.g. 4G", "SIZE");
-            command.option("--time", job.time, "slurm: time limit of a shard", "HH:MM:SS");
-            command.option("--partition", job.partition, "slurm: where to run", "NAME");
-            command.option("--account", job.account, "slurm: whose hours", "NAME");
-            command
-                .option("--jobs", job.jobs, "parallel: shards at once (1; more disturb each other)",
-                        "K")
-                .within(1, 1000);
-            return [given, passed_on] {
-              given->job.sweep = passed_on();
-              if (!given->job.memory.empty())
-                given->job.sweep.push_back("--memory=" + given->job.memory);
-              return emit(*given);
-            };
-          }};
+  return {
+      "emit", "print a sweep in shards: a script for Slurm, or commands for GNU parallel",
+      [](const Command& command) -> Action {
+        const auto given = std::make_shared<EmitCommand>();
+        add_selection(command, *given);
+        add_measurement(command, *given);
+        const auto passed_on = command.as_typed();  // no number is rounded on its way
+        command.option("scheduler", given->scheduler, "slurm or parallel").required();
+        command.option("--shards", given->shards, "parts of the sweep, each a job of its own", "N")
+            .required()
+            .within(1, 1000);
+        command.option("--out", given->result,
+                       "the merged result; default results/local/<profile>-<axis>.json", "FILE");
+        return [given, passed_on] {
+          given->sweep_words = passed_on();
+          return emit(*given);
+        };
+      }};
 }
 
 }  // namespace harness
