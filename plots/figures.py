@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Draws the figures of a result file: cost over permissible strain and over resolution, each solver at its best step; who is
-fastest within a strain limit and an error; and for step sweeps time against error, error over step, and the residual that a solver leaves; for a stability sweep the matrix
-of hard cases; for known answers the deviations from them.
+fastest within a strain limit and an error; for step sweeps time against error, and the residual that a solver leaves; for a
+stability sweep the matrix of hard cases; for known answers the deviations from them.
 
-    plots/figures.py results/figure4.json [--out DIR] [--format svg,png]
+    plots/figures.py results/figure4.json [--out DIR]
 
 writes <stem>-figure4a.svg and so on, and prints each path it wrote. Needs Debian's python3-matplotlib and nothing else.
 drawings/ has one file a figure; parts/ what they are put together from.
@@ -39,12 +39,10 @@ FIGURES = [import_module(f"drawings.{name}") for name in (
     "plane",                 # who is fastest within a strain limit and an error
     "growth",
     "work_precision",
-    "slack",
     "residual",              # Figure 3
     "hard_cases",
     "known_answers",
 )]
-FORMATS = ("svg", "png")
 
 
 def all_figures(document: Json) -> dict[str, Callable[[], Figure]]:
@@ -61,22 +59,12 @@ def all_figures(document: Json) -> dict[str, Callable[[], Figure]]:
     return figures
 
 
-def formats(text: str) -> list[str]:
-    wanted = [part.strip().lower() for part in text.split(",") if part.strip()]
-    unknown = [part for part in wanted if part not in FORMATS]
-    if unknown or not wanted:
-        raise argparse.ArgumentTypeError(f"'{text}': give one or more of {', '.join(FORMATS)}")
-    return wanted
-
-
 def parse(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="figures.py", description="Draws the figures of a result file.")
     parser.add_argument("result", type=Path, help="result file of the bench program (JSON)")
     parser.add_argument("--analysis", type=Path, metavar="FILE",
                         help="what `bench show RESULT.json --json` says of it; without it planes are not drawn")
     parser.add_argument("--out", type=Path, help="folder for the figures (default: the result file's folder)")
-    parser.add_argument("--format", type=formats, default=list(FORMATS), metavar="svg,png",
-                        help="file formats (default: both)")
     return parser.parse_args(arguments)
 
 
@@ -95,11 +83,9 @@ def run(arguments: list[str]) -> None:
         raise ResultError(f"cannot make folder {folder}: {error.strerror}") from error
     with matplotlib.rc_context(RC):
         for name, draw in figures.items():
-            figure = draw()
-            for suffix in options.format:
-                path = folder / f"{options.result.stem}-{name}.{suffix}"
-                save(figure, path)
-                print(path, flush=True)
+            path = folder / f"{options.result.stem}-{name}.svg"
+            save(draw(), path)
+            print(path, flush=True)
 
 
 if __name__ == "__main__":

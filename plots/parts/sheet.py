@@ -15,8 +15,6 @@ from parts.result_file import ResultError
 from parts.style import ALARM
 from parts.words import shorten, wrap
 
-PNG_DPI = 150
-
 # All lengths in inches. Placing by hand keeps the panels' size the same, however long caption and legend are.
 LEFT, GAP, RIGHT = 1.45, 0.75, 0.2
 MAIN_WIDTH, LEGEND_WIDTH = 4.5, 3.0
@@ -157,8 +155,7 @@ def _label_lines(label: str, columns: int) -> list[str]:
 
 def save(figure: Figure, path: Path) -> None:
     """Written without dates or versions, so that the same result gives the same bytes."""
-    metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
     try:
-        figure.savefig(path, dpi=PNG_DPI, metadata=metadata)
+        figure.savefig(path, metadata={"Date": None})
     except OSError as error:
         raise ResultError(f"cannot write {path}: {error.strerror}") from error

@@ -170,17 +170,15 @@ def test_the_program_names_the_files_it_wrote_and_writes_the_same_twice(tmp_path
     path = written(strain_sweep(), tmp_path)
     first, second = run(SCRIPT, path, "--out", tmp_path / "one"), run(SCRIPT, path, "--out", tmp_path / "two")
     assert (first.returncode, first.stderr) == (0, "")
-    names = ["result-figure4a.svg", "result-figure4a.png"]
-    assert first.stdout.split() == [str(tmp_path / "one" / name) for name in names]
+    name = "result-figure4a.svg"
+    assert first.stdout.split() == [str(tmp_path / "one" / name)]
     assert second.returncode == 0
-    for name in names:
-        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
+    assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 
 
 def test_the_programs_refuse_what_they_cannot_do(tmp_path: Path) -> None:
     missing = run(SCRIPT, tmp_path / "none.json")
     assert missing.returncode == 2 and missing.stderr.count("\n") == 1 and "cannot read" in missing.stderr
-    assert run(SCRIPT, written(strain_sweep(), tmp_path), "--format", "gif").returncode == 2
 
 
 # ---- words ------------------------------------------------------------------------------------------------------------

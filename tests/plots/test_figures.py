@@ -218,17 +218,6 @@ def test_errors_that_the_reference_cannot_tell_are_hollow() -> None:
     assert [curve.get_xdata()[place] for place in curve.get_markevery()] == [0.02, 0.04], "no filled mark beneath"
 
 
-def test_error_over_step_at_the_loose_and_the_tight_limit() -> None:
-    figure = drawn(step_sweep())["slack-chain"]
-    loose, tight = axes_with(figure, "strain limit 1 %"), axes_with(figure, "strain limit 0.01 %")
-    for axes in (loose, tight):
-        assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
-        (blue,) = curves(axes, "#0072B2")
-        assert np.allclose(blue.get_xdata(), sorted(STEPS)) and np.allclose(blue.get_ydata(), sorted(STEPS))
-    assert [marks(strip) for strip in strips(figure)] == [["N"], ["N"]]
-    assert "N = not converged" in words_of(figure)
-
-
 def test_residual_of_whoever_has_one() -> None:
     figure = drawn(step_sweep(residuals_of=("shake",)))["residual-chain"]
     assert words_of(figure).startswith("chain: residual of SHAKE Scene chain")
