@@ -24,9 +24,11 @@ sys.dont_write_bytecode = True
 
 from PIL import Image, ImageDraw, ImageFont
 
+from parts.colors import ALARM
+
 MARGIN = 8  # pixels
 FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
-BACKGROUND, INK, ALARM = (255, 255, 255), (20, 20, 20), (150, 30, 10)
+BACKGROUND, INK = (255, 255, 255), (20, 20, 20)
 FRAME_RATE = 30  # Hz, of the frames whose time captions tell, as the paper does
 GREY = 0.4       # how far the picture of a run that gave up goes towards the background
 

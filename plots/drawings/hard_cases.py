@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from parts.caption import origin_sentence, warnings_of
+from parts.colors import ALARM
 from parts.curves import Styles
 from parts.legend import Legend, Status, made_up
 from parts.result_file import STABILITY_SCHEMA, Json, ResultError, is_number, positive
@@ -26,7 +27,7 @@ OUTCOMES = {
     "crashed": Status("C", "took its process with it"),
 }
 # Of the mildest outcome to the gravest: told apart by letter and by lightness, so that grey prints read as well.
-COLORS = ("#FFFFFF", "#DCEBF7", "#B8D0E6", "#F2D38B", "#C2553B", "#A32D00", "#5C1A00")
+COLORS = ("#FFFFFF", "#DCEBF7", "#B8D0E6", "#F2D38B", "#C2553B", ALARM, "#5C1A00")
 DARK = COLORS[4:]
 CELL_WIDTH, CELL_HEIGHT = 1.0, 0.22
 LABEL_WIDTH, NAME_WIDTH = 1.75, 2.6  # of rows' and of solvers' names

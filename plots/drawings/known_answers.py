@@ -8,12 +8,13 @@ from typing import Callable
 from matplotlib.figure import Figure
 
 from parts.caption import origin_sentence, warnings_of
+from parts.colors import GREY
 from parts.curves import Styles, line_of
 from parts.legend import Legend
 from parts.result_file import ANSWERS_SCHEMA, Json, positive
 from parts.scales import log_log, step_axis
 from parts.sheet import LEFT, LEGEND_WIDTH, X_LABEL, add_legend, grid, legend_height, make_sheet
-from parts.style import GREY, styles_for
+from parts.style import styles_for
 from parts.words import clean, wrap
 
 COLUMNS = 3

@@ -11,10 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from parts.caption import SUBJECTS, origin_sentence, percent, warnings_of
+from parts.colors import DARK_GREY, LIGHT_GREY
 from parts.legend import Legend
 from parts.result_file import Json, finding_in
 from parts.sheet import LEFT, RIGHT, make_sheet
-from parts.style import LIGHT_GREY, SolverStyle, styles_for
+from parts.style import SolverStyle, styles_for
 from parts.words import clean, file_part, scene_words, wrap
 
 CELL_WIDTH, CELL_HEIGHT, NAME_SIZE, SMALL = 1.75, 0.72, 7.5, 6.5
@@ -75,7 +76,7 @@ def _draw_cell(axes: Axes, column: int, row: int, cell: Json, styles: dict[str, 
     axes.add_patch(Rectangle((column, row), 1, 1, fill=False, edgecolor="white", linewidth=1.5))
     if not name:
         axes.text(column + 0.5, row + 0.5, "\n".join(wrap(clean(cell["empty_because"]), CELL_WIDTH - 0.15, SMALL)), ha="center",
-                  va="center", fontsize=SMALL, color="#555555")
+                  va="center", fontsize=SMALL, color=DARK_GREY)
         return
     weight = "bold" if cell["clear"] else "normal"
     lines = wrap(clean(legend.label(name)), CELL_WIDTH - 0.12, NAME_SIZE, weight)[:2]

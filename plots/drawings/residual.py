@@ -13,12 +13,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from parts.caption import origin_sentence, percent, scene_sentence, warnings_of
+from parts.colors import GREY
 from parts.legend import Legend
 from parts.result_file import Json
 from parts.scales import log_log, step_axis, step_name
 from parts.sheet import GAP, LEFT, MAIN_HEIGHT, MAIN_WIDTH, grid, make_sheet
 from parts.step_runs import RunsData, Series, step_sweeps_in, styles_of
-from parts.style import GREY
 from parts.words import file_part, scene_words
 
 ByStep = dict[float, Series]

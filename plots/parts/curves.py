@@ -6,7 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from parts.best_points import FigureData
-from parts.style import GREY, SolverStyle
+from parts.colors import GREY
+from parts.style import SolverStyle
 
 Styles = dict[str, SolverStyle]
 

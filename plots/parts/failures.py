@@ -8,10 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import NullLocator
 
 from parts.best_points import FigureData
+from parts.colors import DARK_GREY, LIGHT_GREY
 from parts.curves import Styles, line_of
 from parts.scales import gap
 from parts.sheet import LEFT, ROW_HEIGHT, Sheet
-from parts.style import LIGHT_GREY
 from parts.words import clean, shorten
 
 NAME_SIZE = 6.5
@@ -46,7 +46,7 @@ def add_strip(sheet: Sheet, main: Axes, rows: Rows, styles: Styles, title: str, 
     box = main.get_position()
     strip = sheet.axes(box.x0 * sheet.width, box.y1 * sheet.height, box.width * sheet.width, ROW_HEIGHT * len(rows))
     _draw_strip(strip, main, rows, styles, names)
-    strip.set_title(title, loc="right", fontsize=7, pad=2, color="#555555")
+    strip.set_title(title, loc="right", fontsize=7, pad=2, color=DARK_GREY)
 
 
 def _draw_strip(axes: Axes, beneath: Axes, rows: Rows, styles: Styles, names: bool) -> None:

@@ -10,9 +10,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from parts.colors import ALARM
 from parts.curves import Styles, line_of
 from parts.result_file import ResultError
-from parts.style import ALARM
 from parts.words import shorten, wrap
 
 # All lengths in inches. Placing by hand keeps the panels' size the same, however long caption and legend are.

@@ -11,13 +11,9 @@ import zlib
 from dataclasses import dataclass, replace
 from typing import Any, Iterable
 
+from parts.colors import BLACK, BLUE, BROWN, GREEN, GREY, ORANGE, PURPLE, RECEDING, SKY, TEAL, VERMILLION, VIOLET
 from parts.legend import Legend, Solver
 from parts.words import FONT, clean
-
-BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
-BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
-VIOLET, BROWN, TEAL = "#6A3D9A", "#8C6D1F", "#3F7F7F"
-GREY, LIGHT_GREY, RECEDING, ALARM = "#7F7F7F", "#F2F2F2", "#BDBDBD", "#A32D00"
 
 Dashes = tuple[float, ...]  # on, off, on, off ... in points; () is a solid line
 
