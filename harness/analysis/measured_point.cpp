@@ -19,7 +19,7 @@ std::vector<double> Point::samples_of(const char* key) const {
 }
 
 double Point::delivered_strain() const {
-  for (const char* key : {"delivered_max_strain", "max_strain_after_collision", "max_strain"}) {
+  for (const char* key : {"max_strain_after_collision", "max_strain"}) {
     if (const double strain = number(key); std::isfinite(strain)) return strain;
   }
   return std::nan("");

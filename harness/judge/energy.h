@@ -42,7 +42,6 @@ class EnergyRecord {
   // shows here, and not in gain(). Means, since the velocities of two-step methods overshoot for a
   // step wherever an edge meets its limit.
   double rise() const { return rise_; }
-  double start_energy() const { return start_; }
   double scale() const { return scale_; }
 
  private:

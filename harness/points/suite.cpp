@@ -184,8 +184,7 @@ Suite parse_suite(const std::string& text, const std::string& path) {
   suite.most_reps = static_cast<int>(reader.number("most_reps", 0, Bounds::whole_number(0)));
   suite.rel_ci = reader.number("rel_ci", suite.rel_ci, Bounds::positive());
   suite.timeout = reader.number("timeout", 60, Bounds::positive());
-  const double older_name = reader.number("max_error", suite.finest_error, Bounds::positive());
-  suite.finest_error = reader.number("finest_error", older_name, Bounds::positive());
+  suite.finest_error = reader.number("finest_error", suite.finest_error, Bounds::positive());
   const Everywhere all = read_everywhere(reader);
   suite.same = all.same;
   if (all.tuned)

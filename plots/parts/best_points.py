@@ -103,10 +103,7 @@ def with_collider(point: Json) -> bool:
 
 def delivered_strain(point: Json) -> float | None:
     """The largest strain after the collision filter."""
-    for key in ("delivered_max_strain", "max_strain_after_collision"):
-        if is_number(point.get(key)):
-            return float(point[key])
-    return None
+    return float(point["max_strain_after_collision"]) if with_collider(point) else None
 
 
 def number_in_paper(scene: str, sweep: str) -> str:

@@ -47,7 +47,7 @@ def seconds(point: dict) -> float:
 
 
 def delivered_strain(point: dict) -> float:
-    for key in ("delivered_max_strain", "max_strain_after_collision", "max_strain"):
+    for key in ("max_strain_after_collision", "max_strain"):
         if point.get(key) is not None:
             return point[key]
     return math.inf

@@ -16,7 +16,7 @@ from documents import (Json, axes_with, curves, document, drawn, legend_labels, 
 from parts.result_file import spread_in, time_in
 
 FILTER = "filter_seconds_per_simulated_second"
-BLUE, GREEN = "#0072B2", "#009E73"
+GREEN = "#009E73"
 
 
 def timed(made: Json, seconds: float, spread: float = 0.01, runs: int = 9) -> Json:
@@ -35,13 +35,6 @@ def with_pair(result: Json, q95: float = 0.2) -> Json:
 
 def noise_bars(axes: Axes) -> list[Any]:
     return [line for line in axes.lines if line.get_gid() == "noise"]
-
-
-def cloth(**more: Any) -> list[Json]:
-    """At three limits; the looser one is strained more after collisions."""
-    return [point(solver, scene="drape", vertices=441, limit=limit, seconds=seconds / limit**0.5, best=True,
-                  max_strain_after_collision=after * limit**0.5, **more)
-            for solver, seconds, after in (("fast_projection", 0.01, 1.0), ("shake", 0.02, 0.3)) for limit in (0.1, 0.01, 0.001)]
 
 
 def steps_arrows(figure: Figure) -> list[str]:
