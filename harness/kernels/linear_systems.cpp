@@ -88,9 +88,9 @@ void kkt(benchmark::State& state, const std::string& solver, bool solve, int n) 
   const Positions r = Positions::Zero(3, m.x0.cols());
   Positions p = r;
   WorkCounters work;
-  if (!system->factor(l.u, mu, true, work)) return state.SkipWithError("singular");
+  if (!system->factor(l.u, mu, nullptr, true, work)) return state.SkipWithError("singular");
   while (state.KeepRunning()) {
-    if (!(solve ? system->solve(r, l.c, p, q, work) : system->factor(l.u, mu, true, work)))
+    if (!(solve ? system->solve(r, l.c, p, q, work) : system->factor(l.u, mu, nullptr, true, work)))
       return state.SkipWithError("singular, or too inaccurate");
   }
   if (work.factorizations != (solve ? 1 : state.iterations() + 1))
