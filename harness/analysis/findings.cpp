@@ -66,7 +66,8 @@ double limit_next_to(const std::vector<double>& limits, double wanted) {
   });
 }
 
-// What changes with the question: a tighter limit, else another motion, if someone else wins then.
+// What changes with the question: a tighter limit, else another motion, if another method is first
+// then.
 const Cell* second_of(const Plane& plane, const Cell& headline) {
   for (auto limit = plane.limits.rbegin(); limit != plane.limits.rend(); ++limit) {
     if (*limit >= headline.strain_limit) break;
@@ -101,14 +102,14 @@ std::string sentence_of(const Cell& cell) {
   const Entry* first = cell.first();
   if (!first) return place + ", there is no answer: " + cell.empty_because + ".";
   const auto equals = cell.equals();
-  const std::string who = !cell.counting(1) ? name_words(*first) + " alone has an answer: "
-                          : equals.size() > 1
-                              ? joined(equals) + " are the fastest, too close to tell apart: "
-                              : name_words(*first) + " is the fastest: ";
+  const std::string leader = !cell.counting(1) ? name_words(*first) + " alone has an answer: "
+                             : equals.size() > 1
+                                 ? joined(equals) + " are the fastest, too close to tell apart: "
+                                 : name_words(*first) + " is the fastest: ";
   const std::string error = std::isfinite(first->error)
                                 ? " and an error of " + number_text(100 * first->error, 2) + " %"
                                 : "";
-  return place + ", " + who + time_words(first->point.seconds()) +
+  return place + ", " + leader + time_words(first->point.seconds()) +
          " a simulated second with steps of " + step_text(first->point.number("step")) + " s" +
          error + rival_words(cell, equals) + ".";
 }

@@ -1,4 +1,4 @@
-// What analysis looks at: the points of a result file, and who competes in it.
+// What analysis looks at: the points of a result file, and its contestants.
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,7 @@ class Point {
 
   std::string id() const { return p_->at("id"); }
   std::string text(const char* key) const { return p_->at(key); }
-  // Who competes: a solver with its settings. Older files have solvers only.
+  // A solver with its settings. Older files have solvers only.
   std::string contestant() const { return p_->value("contestant", text("solver")); }
   bool is(const char* key, const std::string& value) const { return p_->at(key) == value; }
   bool flag(const char* key) const { return p_->value(key, false); }
@@ -69,7 +69,7 @@ Ratio ratio(const Point& a, const Point& b);
 // Of the time of a step.
 Ratio ratio_of_steps(const Point& a, const Point& b);
 
-// What a file says of who competes in it.
+// What a file says of a contestant.
 struct Role {
   std::string name, family;
   std::string solver;  // that it is, with settings of its own

@@ -22,7 +22,7 @@ bool may_answer(const Point& p) {
 
 std::string level_text(double level) { return number_text(100 * level) + " %"; }
 
-// Why nobody entries: the first of the reasons that holds of all.
+// Why there is no entry: the first of the reasons that holds of all.
 std::string why_empty(const std::vector<const Point*>& here, double level, double known_until) {
   const auto any = [&](auto has) { return std::any_of(here.begin(), here.end(), has); };
   if (!any([](const Point* p) { return may_answer(*p); })) return "no run keeps the strain limit";

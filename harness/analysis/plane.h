@@ -1,6 +1,6 @@
-// The question of docs/measuring.md, answered from a result file: who is fastest such that no edge
-// is strained by more than a limit and the motion is right to within a level of error. Computed
-// here once; tables, figures and pages print it.
+// The question of docs/measuring.md, answered from a result file: which method is fastest such that
+// no edge is strained by more than a limit and the motion is right to within a level of error.
+// Computed here once; tables, figures and pages print it.
 #pragma once
 
 #include <optional>
@@ -56,8 +56,8 @@ struct Plane {
   std::vector<Cell> cells;     // by limit, then by level
 
   const Cell& cell(double limit, double level) const;
-  // Rows that a figure shows before all others: who is first in a cell, then the paper's six,
-  // whether they have an answer or not.
+  // Rows that a figure shows before all others: methods that are first in a cell, then the paper's
+  // six, whether they have an answer or not.
   std::vector<std::string> leaders() const;
 };
 

@@ -50,7 +50,7 @@ std::unique_ptr<Heartbeat, Unmap> shared_heartbeat() {
   return std::unique_ptr<Heartbeat, Unmap>(new (place) Heartbeat);
 }
 
-// Processes that the kernel has killed for want of memory, ever; 0 where it does not tell.
+// Processes that the kernel has killed for lack of memory, ever; 0 where it does not tell.
 long out_of_memory_kills() {
   std::ifstream statistics("/proc/vmstat");
   std::string key;
@@ -177,7 +177,7 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
     close(pipe[0]);
     be_child(work, *heartbeat, limits.memory, parent, pipe[1]);
   }
-  setpgid(child, child);  // whoever comes first
+  setpgid(child, child);  // whichever process runs first
   close(pipe[1]);
   attend(child, pipe[0], *heartbeat, limits, outcome);
   close(pipe[0]);

@@ -11,7 +11,7 @@
 
 namespace harness {
 
-// A JSON object whose keys are read one by one; finish() refuses what nobody asked for. All throw
+// A JSON object whose keys are read one by one; finish() refuses keys that were not read. All throw
 // UsageError.
 class JsonReader {
  public:

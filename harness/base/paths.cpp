@@ -29,7 +29,7 @@ std::string source_path(const std::string& relative) {
 std::string local_result(const std::string& name) {
   const std::string folder = "results/local";
   const std::string place = share_folder().empty() ? source_path(folder) : folder;
-  std::error_code error;  // whoever writes there says what is wrong
+  std::error_code error;  // the write that follows reports what is wrong
   std::filesystem::create_directories(place, error);
   return place + "/" + name;
 }

@@ -18,7 +18,7 @@
 namespace harness {
 namespace {
 
-// Tells programs that this one starts who holds the lock for them.
+// Tells programs that this one starts which process holds the lock for them.
 constexpr const char* holder_variable = "INEXTENSIBLE_TIMING_LOCK";
 
 bool is_for_us(pid_t process) {
@@ -47,14 +47,14 @@ TimingLock::TimingLock(bool wait) {
       file_ = -1;
       return;
     }
-    const std::string who = other > 0 ? "process " + std::to_string(other) : "another process";
+    const std::string holder = other > 0 ? "process " + std::to_string(other) : "another process";
     if (!wait || interrupted()) {
       close(file_);
       if (interrupted()) throw Interrupted();
-      throw UsageError(who + " is taking times on this machine");
+      throw UsageError(holder + " is taking times on this machine");
     }
     if (!waited_)
-      std::cerr << "bench: waiting for " << who << ", which is taking times on this machine"
+      std::cerr << "bench: waiting for " << holder << ", which is taking times on this machine"
                 << std::endl;
     waited_ = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(200));

@@ -17,6 +17,7 @@ namespace harness {
   VERB(film)                \
   VERB(choose)              \
   VERB(check)               \
+  VERB(budget)              \
   VERB(claims)              \
   VERB(results)             \
   VERB(compare)             \

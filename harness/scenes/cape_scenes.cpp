@@ -44,7 +44,8 @@ inextensible::BodyMotion walking(const SceneParameters& p) {
     const double angle = strength * turn * std::sin(phase);
     inextensible::Pose pose;
     pose.turn << std::cos(angle), 0, std::sin(angle), 0, 1, 0, -std::sin(angle), 0, std::cos(angle);
-    pose.translation << strength * walk * std::sin(phase), 0, 0.5 * strength * walk * std::sin(2 * phase);
+    pose.translation << strength * walk * std::sin(phase), 0,
+        0.5 * strength * walk * std::sin(2 * phase);
     return pose;
   };
 }

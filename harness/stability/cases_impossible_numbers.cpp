@@ -18,13 +18,13 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 }  // namespace
 
 void add_impossible_numbers(std::vector<HardCase>& cases, const HardCaseValues& /*values*/) {
-  const auto add = [&](const std::string& name, const std::function<void(Mesh&)>& spoil) {
+  const auto add = [&](const std::string& name, const std::function<void(Mesh&)>& corrupt) {
     cases.push_back({"not a number",
                      "door/" + name,
                      name + " of a vertex or edge",
-                     [spoil] {
+                     [corrupt] {
                        Mesh mesh = chain(4);
-                       spoil(mesh);
+                       corrupt(mesh);
                        return trial_of(std::move(mesh), 0.01, 3);
                      },
                      {{everyone, refuses, "at the door, naming it"}}});

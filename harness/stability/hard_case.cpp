@@ -40,7 +40,7 @@ void check_values(const HardCaseValues& values) {
   }
 }
 
-// Who promises no limit need not notice that there is no solution within it.
+// A method that promises no limit need not notice that there is no solution within it.
 void admit_who_promises_nothing(HardCase& hard_case) {
   for (const auto& backend : inextensible::backends()) {
     if (backend.knob != inextensible::Knob::time_step) continue;

@@ -14,7 +14,7 @@ constexpr const char* error_control =
     "a controller that looks at energy, or at omega h, and not at refusals alone";
 
 constexpr const char* two_steps_gain =
-    "a start 30 % beyond its edges is mended in one step, and the two-step formula, no convex "
+    "a start 30 % beyond its edges is corrected in one step, and the two-step formula, no convex "
     "combination of the last states, adds energy to what that leaves; why fast projection's "
     "corrections do not let it show is not examined";
 constexpr const char* one_step_first = "a step of backward Euler after a start beyond the limit";

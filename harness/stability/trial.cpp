@@ -33,12 +33,12 @@ Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::u
   inextensible::StepController controller(
       *stepper, {.largest = trial.step, .most_halvings = controlled ? 10 : 0});
   State state = trial.scene.start;
-  Witness witness(trial, backend);
+  TrialJudge judge(trial, backend);
   std::optional<Outcome> outcome;
   const double timeout = controlled ? trial.timeout_smaller : trial.timeout;
   for (int i = 0; i < trial.steps && !outcome;) {
     if (trial.disturb && controller.aligned()) trial.disturb(state, i);
-    witness.before(state);
+    judge.before(state);
     const auto factorizations = stepper->work().factorizations;
     const auto step = controller.advance(state);
     if (!step) {
@@ -54,14 +54,14 @@ Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::u
       const double condition = stepper->reciprocal_condition();
       if (!(condition >= result.reciprocal_condition)) result.reciprocal_condition = condition;
     }
-    outcome = witness.after(stepper->filtered_positions(), state, controller.last(), result);
+    outcome = judge.after(stepper->filtered_positions(), state, controller.last(), result);
     if (controller.aligned()) ++i;
     if (!outcome && i < trial.steps && since(begin) > timeout) {
       result.detail = "stopped after " + std::to_string(stepper->work().steps) + " steps";
       outcome = Outcome::timeout;
     }
   }
-  if (!outcome) outcome = witness.finish(result);
+  if (!outcome) outcome = judge.finish(result);
   result.work = stepper->work();
   if (controlled) result.smallest_step = controller.smallest();
   return outcome.value_or(Outcome::survived);

@@ -1,5 +1,5 @@
 // One solver put through one hard case, and what the harness makes of it. No timing contest: the
-// question is whether the solver survives, and whether it is honest.
+// question is whether the solver survives, and whether it keeps its promises.
 #pragma once
 
 #include <functional>

@@ -25,7 +25,7 @@ Outcome fail(TrialResult& result, Outcome outcome, const std::string& why) {
 
 }  // namespace
 
-Witness::Witness(const Trial& trial, const inextensible::Backend& backend)
+TrialJudge::TrialJudge(const Trial& trial, const inextensible::Backend& backend)
     : trial_(trial),
       problem_(*trial.scene.problem),
       limit_promised_(backend.knob == inextensible::Knob::strain_limit),
@@ -38,13 +38,13 @@ Witness::Witness(const Trial& trial, const inextensible::Backend& backend)
   energy_.begin(trial.scene.start);
 }
 
-void Witness::before(const State& state) {
+void TrialJudge::before(const State& state) {
   start_ = state;
   if (free_) momentum_ = linear_momentum(problem_, state.v);
 }
 
-std::optional<Outcome> Witness::after(const Positions& filtered, const State& state, double h,
-                                      TrialResult& result) {
+std::optional<Outcome> TrialJudge::after(const Positions& filtered, const State& state, double h,
+                                         TrialResult& result) {
   if (!state.x.allFinite() || !state.v.allFinite())
     return fail(result, Outcome::wrong, "a state that is not finite was accepted");
   const WorstEdge worst = worst_edge(problem_, filtered);
@@ -87,7 +87,7 @@ std::optional<Outcome> Witness::after(const Positions& filtered, const State& st
 }
 
 // What is delivered: positions after everything that a step does.
-std::optional<Outcome> Witness::judge_contact(const State& state, TrialResult& result) {
+std::optional<Outcome> TrialJudge::judge_contact(const State& state, TrialResult& result) {
   const WorstEdge worst = worst_edge(problem_, state.x);
   if (limit_promised_ && worst.strain > trial_.strain_limit * (1 + 1e-9)) {
     return fail(result, Outcome::wrong,
@@ -105,13 +105,13 @@ std::optional<Outcome> Witness::judge_contact(const State& state, TrialResult& r
                   " is inside the obstacle");
 }
 
-std::optional<Outcome> Witness::finish(TrialResult& result) {
+std::optional<Outcome> TrialJudge::finish(TrialResult& result) {
   if (!judged_ || !energy_known_) return {};
   return judge_energy(energy_.finish(), release_, result);
 }
 
-std::optional<Outcome> Witness::judge_energy(std::optional<double> gain, double release,
-                                             TrialResult& result) const {
+std::optional<Outcome> TrialJudge::judge_energy(std::optional<double> gain, double release,
+                                                TrialResult& result) const {
   if (!gain) return {};
   raise(result.energy_gain, *gain);
   if (*gain <= trial_.energy_tolerance + release) return {};
@@ -121,7 +121,7 @@ std::optional<Outcome> Witness::judge_energy(std::optional<double> gain, double 
 
 // |change of momentum - weight h| over what flows in the step; positions are known to rounding
 // only.
-double Witness::momentum_defect(const State& state, double h) const {
+double TrialJudge::momentum_defect(const State& state, double h) const {
   const Eigen::Vector3d expected = momentum_ + h * mass_ * problem_.gravity();
   const double fastest = state.v.colwise().norm().maxCoeff() + start_.v.colwise().norm().maxCoeff();
   const double flow =

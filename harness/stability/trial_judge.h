@@ -10,10 +10,10 @@
 
 namespace harness {
 
-class Witness {
+class TrialJudge {
  public:
   // The trial must outlive this.
-  Witness(const Trial& trial, const inextensible::Backend& backend);
+  TrialJudge(const Trial& trial, const inextensible::Backend& backend);
 
   // Before and after each accepted step of h seconds. filtered: positions before the collision
   // filter. `after` raises the figures in `result` and gives the outcome if the step tells one

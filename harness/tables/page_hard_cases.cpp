@@ -18,7 +18,7 @@ void print_differences(std::ostream& out, const json& document) {
       if (cell.at("known_difference") && known.at("case") == cell.at("case") &&
           known.at("solver") == cell.at("solver"))
         reason = known.at("reason").get<std::string>() +
-                 "; would mend it: " + known.at("mends").get<std::string>();
+                 "; would fix it: " + known.at("mends").get<std::string>();
     }
     const std::string fixed = cell.at("at_fixed_step"), outcome = cell.at("outcome");
     rows.push_back({quoted(cell.at("case")), quoted(cell.at("solver")),

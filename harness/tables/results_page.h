@@ -4,6 +4,7 @@
 #include <ostream>
 #include <vector>
 
+#include "harness/analysis/budget.h"
 #include "harness/points/named_result.h"
 
 namespace harness {
@@ -15,5 +16,8 @@ namespace harness {
 void print_results_page(std::ostream& out, const std::vector<NamedResult>& results,
                         const std::vector<NamedResult>& growth,
                         const std::vector<NamedResult>& answers = {});
+
+// The tables of analysis/budget.h, in Markdown.
+void print_budgets(std::ostream& out, const std::vector<analysis::BudgetTable>& tables);
 
 }  // namespace harness

@@ -2,7 +2,7 @@
 //
 // L D L^T without pivoting in a fill-reducing order, of K with a tiny negative diagonal in the
 // lower block, corrected by iterative refinement on K itself. Where refinement does not reach its
-// goal (H indefinite enough to spoil the pivots, or masses that are too unequal) UMFPACK takes over
+// goal (H indefinite enough to ruin the pivots, or masses that are too unequal) UMFPACK takes over
 // for that matrix.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Spoilt documents of every kind through everything that reads them: taken, or refused in a short
-// line; nothing else.
+// Corrupted documents of every kind through everything that reads them: taken, or refused in a
+// short line; nothing else.
 //   attack_documents --seconds S --seed N SOURCES...
 // SOURCES: good files, by name: suites, results, baselines, gates, tuned settings, references,
 // journals. Prints one line of JSON: what was done, and the first failures. Exit code 1 if there
@@ -29,11 +29,11 @@
 #include "harness/run/merge.h"
 #include "harness/run/sweep.h"
 #include "harness/tables/results_page.h"
-#include "support/spoil.h"
+#include "support/corrupt.h"
 
 namespace {
 
-using harness::testing::spoil;
+using harness::testing::corrupt;
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
@@ -62,7 +62,7 @@ std::string written(const std::string& text) {
 }
 
 void read_suite(const Source& /*good*/, const std::string& text) {
-  const harness::Suite suite = harness::parse_suite(text, "spoilt");
+  const harness::Suite suite = harness::parse_suite(text, "corrupted");
   (void)to_json(suite).dump();
   std::size_t points = 0;
   for (const harness::SweepSpec& s : suite.sweeps)
@@ -71,12 +71,12 @@ void read_suite(const Source& /*good*/, const std::string& text) {
 }
 
 void read_result(const Source& good, const std::string& text) {
-  const json result = harness::parse_result(text, "spoilt");
+  const json result = harness::parse_result(text, "corrupted");
   (void)harness::judge_claims({result});
   std::ostringstream page;
-  harness::print_results_page(page, {{"spoilt", result}}, {});
+  harness::print_results_page(page, {{"corrupted", result}}, {});
   if (result.at("schema") != "inextensible-bench/1") return;
-  (void)harness::merge({{"spoilt", result}}, {.partial = true});
+  (void)harness::merge({{"corrupted", result}}, {.partial = true});
   harness::Memory().learn(result);
   (void)harness::baseline_document({result});
   const harness::ComparedResult base = harness::read_compared({written(good.text)}),
@@ -90,7 +90,7 @@ void read_result(const Source& good, const std::string& text) {
 void read_answers(const Source& /*good*/, const std::string& text) {
   const json answers = harness::read_answers(written(text));
   std::ostringstream page;
-  harness::print_results_page(page, {}, {}, {{"spoilt", answers}});
+  harness::print_results_page(page, {}, {}, {{"corrupted", answers}});
 }
 
 void read_baseline(const Source& good, const std::string& text) {
@@ -103,11 +103,11 @@ void read_baseline(const Source& good, const std::string& text) {
 }
 
 void read_gate(const Source& /*good*/, const std::string& text) {
-  (void)harness::parse_gate(text, "spoilt");
+  (void)harness::parse_gate(text, "corrupted");
 }
 
 void read_tuned(const Source& /*good*/, const std::string& text) {
-  (void)harness::parse_tuned(text, "spoilt");
+  (void)harness::parse_tuned(text, "corrupted");
 }
 
 void read_reference(const Source& /*good*/, const std::string& text) {
@@ -182,7 +182,7 @@ void attack(const Source& source, std::uint64_t first, Figures& figures) {
           heartbeat.step = i;
           std::mt19937_64 random(first + static_cast<std::uint64_t>(i));
           bool refused = false;
-          const std::string found = defect(source, spoil(source.text, random), refused);
+          const std::string found = defect(source, corrupt(source.text, random), refused);
           report["refused"] = report["refused"].get<int>() + (refused ? 1 : 0);
           if (!found.empty())
             report["failures"].push_back(source.name + ", seed " +
@@ -209,11 +209,11 @@ void attack(const Source& source, std::uint64_t first, Figures& figures) {
 // One document again, in this process, for a debugger.
 int again(const Source& source, std::uint64_t seed) {
   std::mt19937_64 random(seed);
-  const std::string text = spoil(source.text, random);
-  std::ofstream("spoilt-document") << text;
+  const std::string text = corrupt(source.text, random);
+  std::ofstream("corrupted-document") << text;
   bool refused = false;
   const std::string found = defect(source, text, refused);
-  std::cout << "written to spoilt-document: "
+  std::cout << "written to corrupted-document: "
             << (!found.empty() ? found
                 : refused      ? "refused"
                                : "taken")
@@ -241,7 +241,7 @@ int main(int argc, char** argv) {
     }
   }
   if (sources.empty()) {
-    std::cerr << "attack_documents: no good documents to spoil\n";
+    std::cerr << "attack_documents: no good documents to corrupt\n";
     return 2;
   }
   if (once) return again(sources.front(), seed);

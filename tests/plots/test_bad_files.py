@@ -135,7 +135,7 @@ def leaves(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
         yield from leaves(inner, (*path, key))
 
 
-def spoiled(result: Json, path: tuple[Any, ...], value: Any) -> Json:
+def corrupted(result: Json, path: tuple[Any, ...], value: Any) -> Json:
     result = copy.deepcopy(result)
     inner = result
     for key in path[:-1]:
@@ -154,7 +154,7 @@ def test_whatever_one_field_holds_the_file_is_drawn_or_refused(sweep: str, tmp_p
         for number, path in enumerate(leaves(small)):
             value = odd[number % len(odd)]
             try:
-                for draw in figures.all_figures(load(written(spoiled(small, path, value), tmp_path))).values():
+                for draw in figures.all_figures(load(written(corrupted(small, path, value), tmp_path))).values():
                     draw()
                 outcomes["drawn"] += 1
             except ResultError:

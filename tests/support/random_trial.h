@@ -55,12 +55,12 @@ inline Attempt attempt(const Trial& trial, const std::string& backend, const Set
   const bool limited = find_backend(backend)->knob == Knob::strain_limit;
   const auto stepper =
       make_stepper(backend, trial.scene.problem, {trial.strain_limit, 1, settings});
-  harness::Witness witness(trial, *find_backend(backend));
+  harness::TrialJudge judge(trial, *find_backend(backend));
   harness::TrialResult judged;
   State state = trial.scene.start;
   for (int i = 0; i < 4; ++i) {
     const State before = state;
-    witness.before(state);
+    judge.before(state);
     const StepResult step = stepper->advance(state, trial.step);
     if (!step) {
       if (!(state.x == before.x && state.v == before.v && state.time == before.time))
@@ -69,7 +69,7 @@ inline Attempt attempt(const Trial& trial, const std::string& backend, const Set
       return result;
     }
     ++result.steps;
-    const auto outcome = witness.after(stepper->filtered_positions(), state, trial.step, judged);
+    const auto outcome = judge.after(stepper->filtered_positions(), state, trial.step, judged);
     // Springs may stretch as far as they like.
     if (outcome && !(outcome == harness::Outcome::diverged && !limited))
       result.defect = std::string(to_string(*outcome)) + ": " + judged.detail;

@@ -30,7 +30,7 @@ TEST(Claims, EveryOneThatIsDecidedStatesItsRuleAndWhatMakesItUndecided) {
 }
 
 TEST(Claims, C7FitsTheOrdersOfResidualsThatTookTwoIterations) {
-  const auto with = [](double order, double change_order, bool second = true, double spoil = 0) {
+  const auto with = [](double order, double change_order, bool second = true, double corrupt = 0) {
     std::vector<json> points;
     int k = 0;
     for (const double step : {0.01, 0.005, 0.0025, 0.00125, 0.000625}) {
@@ -38,7 +38,7 @@ TEST(Claims, C7FitsTheOrdersOfResidualsThatTookTwoIterations) {
         json p = point("chain", "step", "fast_projection", limit, 80, step, 1);
         const double first = limit > 0.01 ? 1e-3 : std::pow(step, order);
         const double last = first * (1 - (second ? std::pow(step, change_order) : 0));
-        const double off = std::exp(spoil * (k++ / 2 % 2 ? 1 : -1));
+        const double off = std::exp(corrupt * (k++ / 2 % 2 ? 1 : -1));
         json series = json::array();
         for (int i = 0; i < 12; ++i) series.push_back({0.1 * i, off * first, off * last});
         p["error"] = {{"residuals", series}};

@@ -77,7 +77,7 @@ assert "SLOWER" in changes["fast_projection"] and "NEWLY_FAILING" not in changes
 assert int(suite.get("tests")) == 36 and int(suite.get("failures")) > 2
 PYTHON
 grep -q '^| \*\*NEWLY\\_FAILING\*\* | strain | chain/jacobi' faults.md || fail "faults.md: $(cat faults.md)"
-# The other way round the failures are mended. Less work is a change that the baseline has to learn of.
+# The other way round the failures are fixed. Less work is a change that the baseline has to learn of.
 exits 3 'FIXED' compare faulty.json base.json "${gate[@]}"
 edit base.json more.json 'd["points"][0]["work"]["iterations"] += 1'
 exits 3 'SLOWER' compare base.json more.json "${gate[@]}"

@@ -1,4 +1,4 @@
-// Spoiled suites and result files, by the thousand: what the fuzzer does, repeatably and in CI.
+// Corrupted suites and result files, by the thousand: what the fuzzer does, repeatably and in CI.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -8,14 +8,14 @@
 
 #include "harness/points/context.h"
 #include "harness/points/fuzz_documents.h"
+#include "support/corrupt.h"
 #include "support/effort.h"
-#include "support/spoil.h"
 
 namespace {
 
+using harness::testing::corrupt;
 using harness::testing::read_as_result;
 using harness::testing::read_as_suite;
-using harness::testing::spoil;
 
 std::string text_of(const std::filesystem::path& path) {
   std::ifstream file(path);
@@ -24,28 +24,28 @@ std::string text_of(const std::filesystem::path& path) {
   return text.str();
 }
 
-void spoil_and_read(const std::string& text, std::string (*read)(const std::string&), int cases) {
+void corrupt_and_read(const std::string& text, std::string (*read)(const std::string&), int cases) {
   int refused = 0;
   for (int seed = 1; seed <= cases; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::string message;
-    ASSERT_NO_THROW(message = read(spoil(text, random)));
+    ASSERT_NO_THROW(message = read(corrupt(text, random)));
     EXPECT_EQ(message.find('\n'), std::string::npos) << "more than a line: " << message;
     refused += message.empty() ? 0 : 1;
   }
-  EXPECT_GT(refused, cases / 4) << "hardly anything was spoilt: this tests nothing";
+  EXPECT_GT(refused, cases / 4) << "hardly anything was corrupted: this tests nothing";
 }
 
-TEST(Documents, SpoiltSuitesAreReadOrRefusedInALine) {
+TEST(Documents, CorruptedSuitesAreReadOrRefusedInALine) {
   for (const char* name : {"quick.json", "default.json", "paper.json", "large.json"}) {
     const std::string text = text_of(std::filesystem::path(SOURCE_DIR) / "configs" / name);
     ASSERT_EQ(read_as_suite(text), "") << name;
-    spoil_and_read(text, read_as_suite, inextensible::testing::trials(2000));
+    corrupt_and_read(text, read_as_suite, inextensible::testing::trials(2000));
   }
 }
 
-TEST(Documents, SpoiltResultsAreReadOrRefusedInALine) {
+TEST(Documents, CorruptedResultsAreReadOrRefusedInALine) {
   harness::PointResult point;
   point.spec.scene = "chain";
   point.spec.solver = "fast_projection";
@@ -62,7 +62,7 @@ TEST(Documents, SpoiltResultsAreReadOrRefusedInALine) {
                                                     {"bench"}, true, points)
                                .dump(1);
   ASSERT_EQ(read_as_result(text), "");
-  spoil_and_read(text, read_as_result, inextensible::testing::trials(2000));
+  corrupt_and_read(text, read_as_result, inextensible::testing::trials(2000));
 }
 
 }  // namespace

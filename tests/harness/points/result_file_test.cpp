@@ -144,9 +144,9 @@ TEST(ResultFile, WhoseLinearSolverIsANumberIsNone) {
   json document = result_document(machine_context(), suite, {"bench"}, true, {point});
   for (const auto& [key, wrong] :
        {std::pair("linear_solver", json(0)), {"stiffness", json("much")}}) {
-    json spoilt = document;
-    spoilt["points"][0]["options"][key] = wrong;
-    EXPECT_NE(misfits(spoilt, "configs/result.schema.json").find(key), std::string::npos) << key;
+    json corrupted = document;
+    corrupted["points"][0]["options"][key] = wrong;
+    EXPECT_NE(misfits(corrupted, "configs/result.schema.json").find(key), std::string::npos) << key;
   }
 }
 

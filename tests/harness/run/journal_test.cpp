@@ -113,7 +113,7 @@ TEST_F(JournalTest, CutAnywhereTheRestIsRunAndTheResultIsTheSame) {
   }
 }
 
-TEST_F(JournalTest, ASpoiltLineInTheMiddleIsToldByNumberAndTheOthersStand) {
+TEST_F(JournalTest, ACorruptedLineInTheMiddleIsToldByNumberAndTheOthersStand) {
   int runs = 0;
   run(suite_of("strain"), runs);
   const std::size_t points = Journal(out()).points();

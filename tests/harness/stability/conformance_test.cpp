@@ -20,7 +20,7 @@ namespace {
 using harness::examine;
 using harness::Finding;
 
-// What a fault gets to see; it spoils x after a step that was accepted, or before it.
+// What a fault gets to see; it corrupts x after a step that was accepted, or before it.
 struct Step {
   const Problem& problem;
   const Positions& x_start;
@@ -86,9 +86,9 @@ struct GivesUp : None {
 };
 
 template <class Fault>
-class Spoilt final : public VelocityFilter {
+class Corrupted final : public VelocityFilter {
  public:
-  Spoilt(const Problem& problem, double limit)
+  Corrupted(const Problem& problem, double limit)
       : problem_(problem), filter_(problem, {.strain_limit = Fault::limit_factor * limit}) {}
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override {
     const Step step{problem_, x_start, x, work};
@@ -109,13 +109,13 @@ class Spoilt final : public VelocityFilter {
 
 template <class Fault>
 std::unique_ptr<Stepper> make(std::shared_ptr<const Problem> problem, const BackendOptions& o) {
-  auto filter = std::make_unique<Spoilt<Fault>>(*problem, o.strain_limit);
+  auto filter = std::make_unique<Corrupted<Fault>>(*problem, o.strain_limit);
   return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
 }
 
 template <class Fault>
 Backend row(const char* name) {
-  return {name, "fast projection, spoilt", Knob::strain_limit, true, {}, make<Fault>};
+  return {name, "fast projection, corrupted", Knob::strain_limit, true, {}, make<Fault>};
 }
 
 std::set<std::string> failed_checks(const std::string& solver, bool hard_cases = false) {

@@ -1,4 +1,4 @@
-// The hard cases: the witness sees what it is there to see, and the outcomes that theory fixes.
+// The hard cases: the judge sees what it is there to see, and the outcomes that theory fixes.
 #include "harness/stability/stability.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ namespace {
 using harness::HardCase;
 using harness::Outcome;
 using harness::Trial;
+using harness::TrialJudge;
 using harness::TrialResult;
-using harness::Witness;
 using inextensible::State;
 
 // Two free vertices of 1 kg, 1 m apart along x, without gravity, turning about their middle.
@@ -37,18 +37,18 @@ Trial dumbbell(bool pinned) {
   return trial;
 }
 
-class WitnessTest : public testing::Test {
+class TrialJudgeTest : public testing::Test {
  protected:
   std::optional<Outcome> judge(const Trial& trial, const State& after, bool limit_promised = true) {
-    Witness witness(trial, *inextensible::find_backend(limit_promised ? "shake" : "null"));
-    witness.before(trial.scene.start);
-    const auto outcome = witness.after(after.x, after, trial.step, result_);
-    return outcome ? outcome : witness.finish(result_);
+    TrialJudge judge(trial, *inextensible::find_backend(limit_promised ? "shake" : "null"));
+    judge.before(trial.scene.start);
+    const auto outcome = judge.after(after.x, after, trial.step, result_);
+    return outcome ? outcome : judge.finish(result_);
   }
   TrialResult result_;
 };
 
-TEST_F(WitnessTest, AcceptsTheStateThatItStartedFrom) {
+TEST_F(TrialJudgeTest, AcceptsTheStateThatItStartedFrom) {
   for (const bool pinned : {false, true}) {
     const Trial trial = dumbbell(pinned);
     EXPECT_EQ(judge(trial, trial.scene.start), std::nullopt) << result_.detail;
@@ -57,14 +57,14 @@ TEST_F(WitnessTest, AcceptsTheStateThatItStartedFrom) {
   }
 }
 
-TEST_F(WitnessTest, SeesAStateThatIsNotFinite) {
+TEST_F(TrialJudgeTest, SeesAStateThatIsNotFinite) {
   const Trial trial = dumbbell(false);
   State state = trial.scene.start;
   state.v(2, 1) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(judge(trial, state), Outcome::wrong);
 }
 
-TEST_F(WitnessTest, SeesAMissedLimitOnlyWhereOneWasPromised) {
+TEST_F(TrialJudgeTest, SeesAMissedLimitOnlyWhereOneWasPromised) {
   const Trial trial = dumbbell(false);
   State state = trial.scene.start;
   state.x(0, 1) += 0.0101;
@@ -74,14 +74,14 @@ TEST_F(WitnessTest, SeesAMissedLimitOnlyWhereOneWasPromised) {
   EXPECT_NEAR(result_.max_strain, 0.0101, 1e-12);
 }
 
-TEST_F(WitnessTest, SeesDivergence) {
+TEST_F(TrialJudgeTest, SeesDivergence) {
   const Trial trial = dumbbell(false);
   State state = trial.scene.start;
   state.x(0, 1) = 12;
   EXPECT_EQ(judge(trial, state, false), Outcome::diverged);
 }
 
-TEST_F(WitnessTest, SeesAPinThatMovedByOneBit) {
+TEST_F(TrialJudgeTest, SeesAPinThatMovedByOneBit) {
   const Trial trial = dumbbell(true);
   State state = trial.scene.start;
   state.x(1, 0) = std::numeric_limits<double>::denorm_min();
@@ -89,7 +89,7 @@ TEST_F(WitnessTest, SeesAPinThatMovedByOneBit) {
   EXPECT_NE(result_.detail.find("pinned vertex 0"), std::string::npos);
 }
 
-TEST_F(WitnessTest, SeesMomentumOutOfNothing) {
+TEST_F(TrialJudgeTest, SeesMomentumOutOfNothing) {
   const Trial trial = dumbbell(false);
   State state = trial.scene.start;
   state.v(0, 0) += 1e-6;
@@ -97,7 +97,7 @@ TEST_F(WitnessTest, SeesMomentumOutOfNothing) {
   EXPECT_NE(result_.detail.find("momentum"), std::string::npos);
 }
 
-TEST_F(WitnessTest, SeesEnergyBeyondToleranceAndSlack) {
+TEST_F(TrialJudgeTest, SeesEnergyBeyondToleranceAndSlack) {
   Trial trial = dumbbell(true);  // 1/2 J, which is its scale
   State state = trial.scene.start;
   state.v(1, 1) = std::sqrt(1.04);

@@ -309,7 +309,7 @@ TEST(ChainSolvers, TellPositiveDefiniteMatricesFromIndefiniteOnes) {
       };
       EXPECT_TRUE(factors(0.99 * least));
       EXPECT_FALSE(factors(1.01 * least));
-      EXPECT_TRUE(factors(0)) << "a failed factorization must not spoil the next";
+      EXPECT_TRUE(factors(0)) << "a failed factorization must not corrupt the next";
       for (int column = 0; column < pattern.n; ++column) {
         for (const double bad :
              {-1.0, 0.0, std::nan(""), std::numeric_limits<double>::infinity()}) {

@@ -202,7 +202,7 @@ TEST_P(Steppers, LeaveAPermissibleCandidateBitForBit) {
 }
 
 // Claim C10: the constraint error of a step does not depend on the error it began with.
-TEST_P(Steppers, MendAStretchedStartInOneStep) {
+TEST_P(Steppers, CorrectAStretchedStartInOneStep) {
   if (!limits_strain(GetParam())) GTEST_SKIP() << "no strain limit";
   for (std::uint64_t seed = 0; seed < examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -205,7 +205,7 @@ TEST_P(SpdSolvers, RefuseWhatIsNotPositiveDefinite) {
   matrix.solver->values()[0] = std::nan("");
   EXPECT_FALSE(matrix.solver->factor());
   matrix.solver->values()[0] = kept;
-  EXPECT_TRUE(matrix.solver->factor()) << "a failed factorization must not spoil the next";
+  EXPECT_TRUE(matrix.solver->factor()) << "a failed factorization must not corrupt the next";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SpdSolvers,

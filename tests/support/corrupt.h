@@ -1,4 +1,4 @@
-// Documents spoilt at random, repeatably: as texts, or value by value, so that they stay JSON.
+// Documents corrupted at random, repeatably: as texts, or value by value, so that they stay JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,8 +8,8 @@
 
 namespace harness::testing {
 
-// One to four spoilt places: bytes changed, cut out, doubled or put in from a list of nuisances.
-inline std::string spoil_text(std::string text, std::mt19937_64& random) {
+// One to four corrupted places: bytes changed, cut out, doubled or put in from a list of nuisances.
+inline std::string corrupt_text(std::string text, std::mt19937_64& random) {
   const auto below = [&](std::size_t n) { return random() % n; };
   static const std::vector<std::string> nuisances{
       "null",   "-1",  "1e999",   "0",      "\"\"",
@@ -55,7 +55,7 @@ inline nlohmann::json& some_value(nlohmann::json& document, std::mt19937_64& ran
 }
 
 // One to three values that are another's, gone, or of another kind or size.
-inline std::string spoil_values(nlohmann::json document, std::mt19937_64& random) {
+inline std::string corrupt_values(nlohmann::json document, std::mt19937_64& random) {
   using nlohmann::json;
   static const std::vector<json> nuisances{nullptr,
                                            true,
@@ -108,11 +108,11 @@ inline std::string spoil_values(nlohmann::json document, std::mt19937_64& random
   return document.dump();
 }
 
-inline std::string spoil(const std::string& text, std::mt19937_64& random) {
-  if (random() % 2 == 0) return spoil_text(text, random);
+inline std::string corrupt(const std::string& text, std::mt19937_64& random) {
+  if (random() % 2 == 0) return corrupt_text(text, random);
   nlohmann::json document = nlohmann::json::parse(text, nullptr, false, true);
-  if (document.is_discarded()) return spoil_text(text, random);  // journals: a document a line
-  return spoil_values(std::move(document), random);
+  if (document.is_discarded()) return corrupt_text(text, random);  // journals: a document a line
+  return corrupt_values(std::move(document), random);
 }
 
 }  // namespace harness::testing

@@ -1,0 +1,44 @@
+// The question of plane.h the other way round: what strain and what error does a method reach
+// within so much time of each frame?
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/analysis/measured_point.h"
+
+namespace harness::analysis {
+
+inline constexpr double frame_rate = 60;  // frames a second
+
+// The run that a method reaches the most with: the tightest strain limit whose motion is right to
+// the headline's error, and of these runs the one of least error; without such a run, the one of
+// least error at the loosest limit.
+struct Reach {
+  double strain_limit, error;  // error: not-a-number if it is not known
+  double frame_seconds;        // 99 % of frames take at most that
+  bool right;                  // to the headline's error
+  Point point;
+};
+
+struct Budgeted {
+  std::string row;  // a hollow contestant's is its solver's
+  std::string family;
+  std::vector<std::optional<Reach>> reached;  // one for each budget; none: no run is that fast
+};
+
+// Of a scene and size. Rows: tightest strain at the largest budget first.
+struct BudgetTable {
+  std::string scene;
+  int resolution = 0, vertices = 0;
+  std::vector<double> budgets;  // s a frame
+  std::vector<Budgeted> rows;
+};
+
+// documents: of schema inextensible-bench/1, which must outlive the tables; pieces of one scene and
+// size make one table. Runs with a step controller do not take part.
+std::vector<BudgetTable> budget_tables(const std::vector<const nlohmann::json*>& documents,
+                                       const std::vector<double>& budgets);
+
+}  // namespace harness::analysis

@@ -1,0 +1,71 @@
+// What methods reach within a frame's time, of a result file whose times are made up.
+#include "harness/analysis/budget.h"
+
+#include <gtest/gtest.h>
+
+#include "support/invented_runs.h"
+
+namespace harness::analysis {
+namespace {
+
+using invented::document;
+using invented::run;
+using nlohmann::json;
+
+// A run whose frames take that long; a second of rates must not be mistaken for it.
+json framed(json run, double seconds) {
+  run["frame_times"] = {{24.0, seconds, 9.0, 9.0}, {frame_rate, 1e-6, seconds, 9.0}};
+  return run;
+}
+
+std::string reached(const BudgetTable& table, const std::string& row, std::size_t budget) {
+  for (const Budgeted& line : table.rows) {
+    if (line.row != row) continue;
+    const auto& reach = line.reached.at(budget);
+    return reach ? reach->point.id().substr(6) : "none";  // without "chain/"
+  }
+  return "no row";
+}
+
+TEST(Budget, HoldsTheTightestStrainWhoseMotionIsRightWithinAFrame) {
+  const json first = document({
+      framed(run("strips", 0.1, 0.02, 1, 0.01), 0.8e-3),
+      framed(run("strips", 0.1, 0.01, 2, 0.005), 0.9e-3),    // the same limit, less error
+      framed(run("strips", 0.01, 0.02, 3, 0.03), 0.9e-3),    // its motion is wrong
+      framed(run("strips", 0.01, 0.01, 3, 0.01), 4e-3),      // at the budget itself
+      framed(run("icd", 0.1, 0.02, 1, 0.03), 2e-3),          // never right: its least error
+      framed(run("icd", 0.01, 0.02, 1, 0.025), 3e-3),        //
+      framed(run("icd_untuned", 0.1, 0.02, 1, 0.05), 1e-3),  // in icd's row
+      framed(run("null", 0.01, 0.02, 1, 0), 1e-6),           // does not compete
+  });
+  json failed = framed(run("shake", 0.001, 0.02, 1, 0.001), 1e-3);
+  failed["status"] = "strain_missed";
+  json bare = run("jacobi", 0.1, 0.02, 1, 0.001);  // no frames were timed
+  bare["frame_times"] = json::array();
+  const json second = document({failed, bare, framed(run("strips", 0.001, 0.02, 1, 0.01), 16e-3)});
+  const auto tables = budget_tables({&first, &second}, {1e-3, 4e-3, 16e-3});
+  ASSERT_EQ(tables.size(), 1u) << "two pieces of one scene and size";
+  const BudgetTable& table = tables.front();
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.rows[0].row, "strips") << "the tightest strain comes first";
+  EXPECT_EQ(reached(table, "strips", 0), "strips/n:80/strain:0.1/h:0.01");
+  EXPECT_EQ(reached(table, "strips", 1), "strips/n:80/strain:0.01/h:0.01");
+  EXPECT_EQ(reached(table, "strips", 2), "strips/n:80/strain:0.001/h:0.02");
+  EXPECT_EQ(reached(table, "icd", 0), "icd_untuned/n:80/strain:0.1/h:0.02");
+  EXPECT_EQ(reached(table, "icd", 1), "icd/n:80/strain:0.01/h:0.02");
+  EXPECT_FALSE(table.rows[1].reached[1]->right);
+  EXPECT_TRUE(table.rows[0].reached[1]->right);
+  EXPECT_DOUBLE_EQ(table.rows[0].reached[0]->error, 0.005);
+  EXPECT_DOUBLE_EQ(table.rows[0].reached[1]->frame_seconds, 4e-3);
+}
+
+TEST(Budget, HasNoRunThatIsTooSlow) {
+  const json result = document({framed(run("strips", 0.1, 0.02, 1, 0.01), 2e-3)});
+  const auto tables = budget_tables({&result}, {1e-3, 2e-3});
+  ASSERT_EQ(tables.size(), 1u);
+  EXPECT_EQ(reached(tables[0], "strips", 0), "none");
+  EXPECT_EQ(reached(tables[0], "strips", 1), "strips/n:80/strain:0.1/h:0.02");
+}
+
+}  // namespace
+}  // namespace harness::analysis
