@@ -25,7 +25,7 @@ A ratio may say more:
 A table of the committed references stands between <!-- references --> and <!-- end of references -->, and follows from their files.
 What the program lists stands between <!-- bench list NAME --> and <!-- end of list -->, and follows from `bench list NAME`; the
 folders' directions between <!-- folders of solvers --> and <!-- end of list --> follow from solvers/CMakeLists.txt. --fix makes these
-anew. A paragraph may repeat words of a list:
+anew, and what stands after <!-- bench budget RESULT.json ... --> in the same way. A paragraph may repeat words of a list:
 
     <!-- bench list suites: about six minutes -->
 
@@ -57,7 +57,7 @@ BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
 NAMED_DOCUMENT = re.compile(r"[\w/.-]*\w\.md\b")
 REFERENCES = re.compile(r"(<!-- references -->\n).*?(<!-- end of references -->)", re.DOTALL)
-LISTS = re.compile(r"(<!-- (bench list (\w+)|folders of (\w+)) -->\n\n?).*?(<!-- end of list -->)", re.DOTALL)
+LISTS = re.compile(r"(<!-- (bench list (\w+)|bench budget ([^>]+?)|folders of (\w+)) -->\n\n?).*?(<!-- end of list -->)", re.DOTALL)
 REPEATED = re.compile(r"<!-- bench list (\w+): (.*?) -->")
 SOURCES = ("solvers", "harness", "tests", "plots", "cmake", "configs")
 SOURCE_SUFFIXES = {".cpp", ".h", ".py", ".sh", ".cmake", ".txt", ".json"}
@@ -117,9 +117,17 @@ def references() -> str:
 
 
 @functools.cache
-def listed(name: str) -> list[dict]:
+def output_of(*words: str) -> str:
     program = os.environ.get("BENCH_BINARY", "./bench" if "--fix" in sys.argv[1:] else "build/release/bench")
-    return json.loads(subprocess.run([program, "list", name, "--json"], cwd=ROOT, check=True, capture_output=True).stdout)
+    return subprocess.run([program, *words], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+
+
+def listed(name: str) -> list[dict]:
+    return json.loads(output_of("list", name, "--json"))
+
+
+def budgets_of(files: list[str]) -> str:
+    return output_of("budget", *files)
 
 
 def table_of(name: str) -> str:
@@ -146,7 +154,11 @@ def folders_of(tree: str) -> str:
 
 def with_tables(text: str) -> str:
     text = REFERENCES.sub(lambda match: match[1] + references() + match[2], text)
-    return LISTS.sub(lambda match: f"<!-- {match[2]} -->\n\n" + (table_of(match[3]) if match[3] else folders_of(match[4])) + match[5], text)
+    def table(match: re.Match[str]) -> str:
+        made = table_of(match[3]) if match[3] else budgets_of(match[4].split()) if match[4] else folders_of(match[5])
+        return f"<!-- {match[2]} -->\n\n" + made + match[6]
+
+    return LISTS.sub(table, text)
 
 
 def fix() -> None:

@@ -239,7 +239,7 @@ def errors_in(text: str) -> list[str]:
         for comment in COMMENTED.findall(paragraph):
             match = NUMBER.fullmatch(comment)
             if not match:
-                if ".json" in comment:
+                if ".json" in comment and not comment.startswith("<!-- bench "):
                     errors.append(f"cannot read {comment}")
                 continue
             try:
