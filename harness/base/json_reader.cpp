@@ -117,7 +117,7 @@ class Inspector : public nlohmann::json_sax<json> {
   }
   bool key(string_t& name) override {
     return keys_.back().insert(name).second ||
-           refuse("the key '" + shortened(name, 40) + "' stands twice in an object");
+           refuse("the key '" + shortened(name, 40) + "' occurs twice in an object");
   }
   bool end_object() override {
     keys_.pop_back();

@@ -82,15 +82,14 @@ void LineJournal::start(const json& header) {
 void LineJournal::append(const json& line) {
   struct stat status {};
   if (fstat(file_, &status) != 0 || status.st_nlink == 0)
-    throw FileError(path_, "go on writing", "it has been removed meanwhile");
+    throw FileError(path_, "continue", "it has been removed meanwhile");
   const std::string text = compact(line) + "\n";
   if (lseek(file_, static_cast<off_t>(length_), SEEK_SET) < 0 || !write_whole(file_, text) ||
       fdatasync(file_) != 0) {
     const std::string reason = std::strerror(errno);
     if (ftruncate(file_, static_cast<off_t>(length_)) != 0) {
     }  // a torn last line is understood, too
-    throw FileError(path_, "write",
-                    reason + "; what it holds is safe, --resume goes on from there");
+    throw FileError(path_, "write", reason + "; its lines are safe, --resume continues from there");
   }
   length_ += text.size();
 }

@@ -38,7 +38,7 @@ TimingLock::TimingLock(bool wait) {
   const std::string path = timing_lock_path();
   file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (file_ < 0)
-    throw UsageError("cannot open '" + path + "', which keeps two measurements apart: " +
+    throw UsageError("cannot open '" + path + "', the lock on taking times: " +
                      std::strerror(errno) + "; --untimed goes without");
   while (!try_lock(file_)) {
     const pid_t other = lock_holder(file_);

@@ -25,13 +25,14 @@ struct Row {
 
 constexpr Row rows[] = {
     {"C1", "Fig. 4a",
-     "chain: fast projection is asymptotically better than implicit springs as strain falls",
+     "chain: as the permitted strain falls, fast projection is asymptotically better than implicit "
+     "springs",
      claims::chain_time_over_strain},
     {"C2", "Fig. 4b",
      "chain at 1 %: fast projection scales better with resolution than implicit springs",
      claims::chain_time_over_resolution},
     {"C3", "Sec. 5", "chain of 80 at 1 %: fast projection is 25 times faster", claims::chain_speed},
-    {"C4", "Sec. 5", "the stiffness that meets a small strain cannot be set a priori",
+    {"C4", "Sec. 5", "the stiffness that meets a small strain cannot be set beforehand",
      claims::springs_stiffness},
     {"C5", "Fig. 5a",
      "drape: SHAKE, ICD and fast projection scale alike and better than strain limiting; fast "
@@ -52,15 +53,15 @@ constexpr Row rows[] = {
     {"C12", "Fig. 1",
      "a patch pinned at two corners sags visibly differently at 10 %, 1 % and less",
      claims::patch_sag},
-    {"C13", "Sec. 6", "strain stays negligible after the collision filter too",
+    {"C13", "Sec. 6", "strain stays negligible after the obstacle has pushed vertices out, too",
      claims::strain_after_collision},
     {"C14", "Sec. 3",
-     "quads keep about n degrees of freedom, triangles with all edges constrained lock",
+     "quads keep about n degrees of freedom; triangles with all edges constrained lock",
      claims::degrees_of_freedom_left},
-    {"C15", "Sec. 5", "SHAKE needs very small, cheap steps; ICD takes larger, dear ones",
+    {"C15", "Sec. 5", "SHAKE needs very small, cheap steps; ICD takes larger, expensive ones",
      claims::shake_small_steps},
     {"C16", "Fig. 7",
-     "with small strain a tight garment does not slip past a narrowing of the body",
+     "with little strain a tight garment does not slip past a narrowing of the body",
      claims::garment_slip},
 };
 
@@ -68,7 +69,8 @@ constexpr Row rows[] = {
 
 void check_timed(const json& result) {
   if (!is_timed(result))
-    throw UsageError("a result was made with --untimed, so its times say nothing; leave it out");
+    throw UsageError(
+        "a result was made with --untimed, so its times are meaningless; leave it out");
 }
 
 std::vector<ClaimVerdict> judge_claims(const std::vector<json>& results) try {
@@ -83,7 +85,7 @@ std::vector<ClaimVerdict> judge_claims(const std::vector<json>& results) try {
   }
   return all;
 } catch (const json::exception& error) {
-  throw UsageError(std::string("a result file lacks something: ") + error.what());
+  throw UsageError(std::string("a result file is incomplete: ") + error.what());
 }
 
 void print_claims(std::ostream& out, const std::vector<ClaimVerdict>& claims) {

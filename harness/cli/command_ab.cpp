@@ -226,9 +226,7 @@ int run_ab(const AbCommand& options) {
 
 Verb ab_verb() {
   return {
-      "ab",
-      "two builds of this program against each other, in interleaved pairs of runs; exit 3 if "
-      "a point has become slower, 4 if one fails",
+      "ab", "compare the speed of two builds in interleaved pairs of runs",
       [](const Command& command) -> Action {
         const auto given = std::make_shared<AbCommand>();
         AbCommand& options = *given;

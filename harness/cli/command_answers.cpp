@@ -36,8 +36,7 @@ int answers(const AnswersOptions& given, const std::vector<std::string>& command
   const auto plan = plan_answers(selection);
   const std::string out = chosen_output(given, "answers");
   if (!given.force && std::filesystem::exists(out))
-    throw UsageError("'" + out +
-                     "' is there already: --force replaces it, another --out keeps both");
+    throw UsageError("'" + out + "' exists: --force replaces it, another --out keeps both");
   check_writable(out);
   catch_interrupts();
   AnswerEvents events;
@@ -64,8 +63,7 @@ int answers(const AnswersOptions& given, const std::vector<std::string>& command
 }  // namespace
 
 Verb answers_verb() {
-  return {"answers",
-          "compare each solver with exact answers that theory knows (orbits, oscillations, falls)",
+  return {"answers", "compare each solver with exact answers (orbits, oscillations, falls)",
           [](const Command& command) -> Action {
             const auto given = std::make_shared<AnswersOptions>();
             add_solver(command, given->solver);

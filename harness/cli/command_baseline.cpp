@@ -29,7 +29,7 @@ int make_baseline(const std::vector<std::string>& files, const std::string& out)
 }  // namespace
 
 Verb baseline_verb() {
-  return {"baseline", "results without times, one point a line, to be compared with later",
+  return {"baseline", "reduce results to a file without times, to compare with later",
           [](const Command& command) -> Action {
             struct Given {
               std::vector<std::string> files;

@@ -55,7 +55,7 @@ int check_all(const std::string& solver, bool hard_cases, std::int64_t seed) {
 }  // namespace
 
 Verb check_verb() {
-  return {"check", "whether a solver keeps what every solver must, and where to look if not",
+  return {"check", "test what every solver must fulfil, and say where to look if one does not",
           [](const Command& command) -> Action {
             struct Given {
               std::string solver;

@@ -101,7 +101,7 @@ Suite suite_of(const ChooseCommand& given, double rate) {
 // A kept reference, or a finer run made now, which is on the shelf then.
 std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, ReferenceShelf& shelf) {
   if (auto kept = shelf.find(sweep.scene, sweep.scene_parameters)) return kept;
-  std::cerr << "no reference of this scene is kept: a finer run takes its place ...\n";
+  std::cerr << "this scene has no reference: making a finer run in its place ...\n";
   try {
     auto made = std::make_shared<const Reference>(
         finer_run(sweep.scene, sweep.scene_parameters, [](const std::string& line) {
@@ -111,7 +111,7 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
     shelf.put(made);
     return made;
   } catch (const UsageError& reason) {
-    std::cerr << "bench: there is none, so nothing is known of errors: " << reason.what() << '\n';
+    std::cerr << "bench: no finer run, so errors are unknown: " << reason.what() << '\n';
     return nullptr;
   }
 }

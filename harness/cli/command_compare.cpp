@@ -46,9 +46,7 @@ int run_compare(const CompareCommand& options) {
 
 Verb compare_verb() {
   return {"compare",
-          "two results point by point; exit 3 for a regression, "
-          "4 for new failures, 5 if they cannot be "
-          "compared, 6 if there are too few runs to tell",
+          "compare two results point by point: what is slower, less accurate or fails now",
           [](const Command& command) -> Action {
             const auto given = std::make_shared<CompareCommand>();
             command.option("base", given->base, "result file or baseline", "BASE.json").required();

@@ -50,7 +50,7 @@ int emit(const EmitCommand& given) {
   if (std::find(known.begin(), known.end(), given.scheduler) == known.end())
     throw unknown_name("batch system", given.scheduler, known);
   if (given.sweep == "stability")
-    throw UsageError("--sweep stability takes two minutes and has no script; --shard cuts it");
+    throw UsageError("--sweep stability is short and has no script; --shard divides it");
   const Suite suite = load_suite(given);
   check_sweep(suite, given);
   std::string result = given.result;

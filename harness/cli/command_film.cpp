@@ -189,7 +189,7 @@ int film(FilmOptions given) {
 }  // namespace
 
 Verb film_verb() {
-  return {"film", "a scene as stills, a film, or files for ParaView and Blender",
+  return {"film", "render a scene as stills or a film, or export it for ParaView and Blender",
           [](const Command& command) -> Action {
             const auto given = std::make_shared<FilmOptions>();
             given->scene = "drape";

@@ -15,8 +15,7 @@ namespace harness {
 
 Verb merge_verb() {
   return {
-      "merge", "join result files of one suite, such as shards",
-      [](const Command& command) -> Action {
+      "merge", "join the result files of a sweep's parts", [](const Command& command) -> Action {
         struct Given {
           std::vector<std::string> files;
           std::string out;
@@ -25,9 +24,9 @@ Verb merge_verb() {
         const auto given = std::make_shared<Given>();
         command.option("results", given->files, "result files", "RESULT.json").required();
         command.option("--out", given->out, "the joined result file", "FILE").required();
-        command.flag("--allow-mixed", given->options.mixed, "though machines or builds differ");
+        command.flag("--allow-mixed", given->options.mixed, "even if machines or builds differ");
         command.flag("--partial", given->options.partial,
-                     "though shards are missing; the result says that it is not complete");
+                     "even if shards are missing; the result says that it is not complete");
         return [given] {
           std::vector<NamedResult> results;
           for (const std::string& file : given->files) {

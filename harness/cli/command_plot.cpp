@@ -9,7 +9,8 @@
 namespace harness {
 
 Verb plot_verb() {
-  return {"plot", "draw the figures of a result file", [](const Command& command) -> Action {
+  return {"plot", "draw the figures of a result file again; of several pieces of one sweep as one",
+          [](const Command& command) -> Action {
             struct Given {
               std::vector<std::string> files;
               std::string out, name;

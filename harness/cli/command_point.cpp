@@ -98,19 +98,16 @@ int run_points(const PointCommand& options) {
 }  // namespace
 
 Verb point_verb() {
-  return {
-      "point",
-      "run points of a result file, given as JSON on standard input, one a line; print each as one "
-      "line of JSON",
-      [](const Command& command) -> Action {
-        const auto given = std::make_shared<PointCommand>();
-        command
-            .option("--samples", given->samples, "runs of each, the first one judged; default: 1",
-                    "N")
-            .within(1, 1000000);
-        add_timeout(command, given->timeout, "60");
-        return [given] { return run_points(*given); };
-      }};
+  return {"point", "run single points, given as JSON on standard input, one a line",
+          [](const Command& command) -> Action {
+            const auto given = std::make_shared<PointCommand>();
+            command
+                .option("--samples", given->samples,
+                        "runs of each, the first one judged; default: 1", "N")
+                .within(1, 1000000);
+            add_timeout(command, given->timeout, "60");
+            return [given] { return run_points(*given); };
+          }};
 }
 
 }  // namespace harness

@@ -70,7 +70,7 @@ class PendingReference {
                        {"build", machine_context().at("fingerprint")}}) {
     if (pieces_.dropped()) tell("runs of another build or --finest are dropped");
     if (pieces_.taken_up() > 0)
-      tell("goes on after " + std::to_string(pieces_.taken_up()) + " runs that are done");
+      tell("continues after " + std::to_string(pieces_.taken_up()) + " runs that are done");
   }
 
   void tell(const std::string& line) const { std::cerr << name_ << ": " << line << '\n'; }
@@ -192,27 +192,24 @@ int make_references(const ReferenceOptions& given) {
     }
     nothing = false;
   }
-  if (nothing) std::cout << "nothing is missing (--again computes them anew)\n";
+  if (nothing) std::cout << "nothing is missing (--again computes again)\n";
   return success;
 }
 
 }  // namespace
 
 Verb reference_verb() {
-  return {
-      "reference",
-      "compute what a profile's sweeps are measured against: reference trajectories, and of cloth "
-      "ensembles of runs",
-      [](const Command& command) -> Action {
-        const auto given = std::make_shared<ReferenceOptions>();
-        add_scene_selection(command, given->options);
-        command.flag("--again", given->again, "those that are there already, too");
-        command.flag("--ensemble", given->ensemble,
-                     "only ensembles, of references that are there; their paths stay as they are");
-        command.option("--finest", given->finest, "smallest step of step halving, s", "S")
-            .positive();
-        return [given] { return make_references(*given); };
-      }};
+  return {"reference", "compute the trajectories and ensembles that errors are measured against",
+          [](const Command& command) -> Action {
+            const auto given = std::make_shared<ReferenceOptions>();
+            add_scene_selection(command, given->options);
+            command.flag("--again", given->again, "also what exists already");
+            command.flag("--ensemble", given->ensemble,
+                         "only ensembles of references that exist; their paths stay as they are");
+            command.option("--finest", given->finest, "smallest step of step halving, s", "S")
+                .positive();
+            return [given] { return make_references(*given); };
+          }};
 }
 
 }  // namespace harness

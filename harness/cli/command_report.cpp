@@ -97,7 +97,9 @@ int report(const ReportOptions& given) {
 }  // namespace
 
 Verb report_verb() {
-  return {"report", "one page, to open offline, that tells what results found",
+  return {"report",
+          "write one page, to open offline: findings, charts, tables, figures, claims, scenes in "
+          "motion",
           [](const Command& command) -> Action {
             const auto given = std::make_shared<ReportOptions>();
             command.option("results", given->results, "result files", "RESULT.json ...").required();

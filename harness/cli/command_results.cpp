@@ -53,7 +53,7 @@ std::string page(const ResultsOptions& given) {
 
 Verb results_verb() {
   return {
-      "results", "tables of what result files say, in Markdown (docs/results.md)",
+      "results", "write tables of result files in Markdown (docs/results.md)",
       [](const Command& command) -> Action {
         const auto given = std::make_shared<ResultsOptions>();
         command

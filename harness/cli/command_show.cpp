@@ -97,7 +97,8 @@ int show_json(const std::string& file) {
 }  // namespace
 
 Verb show_verb() {
-  return {"show", "the tables of a result file", [](const Command& command) -> Action {
+  return {"show", "print a result file: which method is fastest within each strain limit and error",
+          [](const Command& command) -> Action {
             struct Given {
               std::string file;
               bool as_json = false, all = false;
@@ -105,7 +106,7 @@ Verb show_verb() {
             const auto given = std::make_shared<Given>();
             command.option("result", given->file, "result file", "RESULT.json").required();
             command.flag("--json", given->as_json,
-                         "who is fastest within each strain limit and error, for programs");
+                         "as JSON: which contestant is fastest within each strain limit and error");
             command.flag("--all", given->all, "every contestant, and how runs failed");
             return [given] {
               if (given->as_json && given->all)

@@ -43,7 +43,7 @@ void check_options(const SweepCommand& options) {
 
 Verb sweep_verb() {
   return {
-      "sweep", "run a sweep over strain, resolution, step or stability: bench --sweep AXIS",
+      "sweep", "time over strain limit, resolution or step, or hard cases: bench --sweep AXIS",
       [](const Command& command) -> Action {
         const auto given = std::make_shared<SweepCommand>();
         SweepCommand& options = *given;

@@ -151,9 +151,7 @@ int run_tune(const TuneCommand& options) {
 
 Verb tune_verb() {
   return {
-      "tune",
-      "search the settings of each solver, with one budget and one rule, on scenes that no result "
-      "reports; what is not up to date, an hour for all",
+      "tune", "search the settings of each solver, by one rule, on scenes that no result reports",
       [](const Command& command) -> Action {
         const auto given = std::make_shared<TuneCommand>();
         TuneCommand& options = *given;
@@ -167,7 +165,7 @@ Verb tune_verb() {
                     "N")
             .within(4, 10000);
         add_timeout(command, options.timeout, "10");
-        command.flag("--again", options.again, "also what was found by today's rule already");
+        command.flag("--again", options.again, "also what is up to date");
         command.option("--out", options.out, "the settings; default: configs/tuned.json", "FILE");
         command.flag("--quiet", options.quiet, "no line for each set of settings");
         add_no_wait(command, options.no_wait);

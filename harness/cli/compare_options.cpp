@@ -9,7 +9,7 @@
 namespace harness {
 
 void add_compare_options(const Command& to, CompareOptions& options) {
-  to.option("--gate", options.gate, "what passes; see configs/gate.json", "FILE");
+  to.option("--gate", options.gate, "what passes; default: configs/gate.json", "FILE");
   to.option("--junit", options.junit, "also write JUnit XML, one test case a point", "FILE");
   to.option("--markdown", options.markdown, "also write the table in Markdown", "FILE");
 }

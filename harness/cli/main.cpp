@@ -16,8 +16,8 @@ namespace harness {
 namespace {
 
 constexpr const char* description =
-    "bench: which solver keeps cloth and chains from stretching fastest, at which strain, at "
-    "which size.\n"
+    "bench: benchmark of solvers for inextensible cloth and chains: time at each strain limit, "
+    "error and size.\n"
     "\n"
     "  bench --sweep strain                     Figures 4a and 5a of Goldenthal et al. 2007\n"
     "  bench --sweep strain --profile quick     a first look\n"

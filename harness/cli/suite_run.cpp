@@ -153,15 +153,15 @@ void tell_noise(const nlohmann::json& document) {
   const nlohmann::json& context = document.at("context");
   if (const auto pair = noise_of(context))
     std::cout << "\n"
-              << pair->one << " stands there twice: in 95 % of " << pair->places
+              << pair->one << " ran twice under two names: in 95 % of " << pair->places
               << " places its two times are within " << number_text(100 * std::expm1(pair->q95), 2)
-              << " % of each other; smaller differences between solvers are none\n";
+              << " % of each other; smaller differences between solvers are noise\n";
   if (document.contains("warning"))
     std::cout << "\n" << document.at("warning").get<std::string>() << '\n';
   if (!context.at("sentinel").at("noisy").get<bool>()) return;
   std::cout << "\nNOISY: a fixed kernel's time varied by "
             << number_text(100 * context.at("sentinel").at("spread").get<double>(), 2)
-            << " % during the run; counters and errors stand, compare times with care\n";
+            << " % during the run; counters and errors are valid, compare times with care\n";
 }
 
 // The harness's own share of the shortest step that was timed.

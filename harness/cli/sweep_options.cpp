@@ -85,15 +85,17 @@ void add_measurement(const Command& to, SweepOptions& options) {
             "HOW");
   to.option("--finest", options.finest, "smallest step of the ladder instead of the suite's", "S")
       .positive();
-  to.option("--finest-error", options.finest_error,
-            "the search for best steps goes on for levels of error down to this one, over the "
-            "scene's size, instead of the suite's",
-            "E")
+  to.option(
+        "--finest-error", options.finest_error,
+        "search best steps for levels of error down to this one, over the scene's size, instead of "
+        "the suite's",
+        "E")
       .positive();
   to.option("--seed", options.seed, "of random orders", "N").not_negative();
-  to.flag("--untimed", options.untimed,
-          "for the sake of counters and errors: run at once, whatever is being timed beside it; "
-          "nothing that reads times takes the result");
+  to.flag(
+      "--untimed", options.untimed,
+      "for counters and errors only: run at once, beside programs that take times; the result is "
+      "refused wherever times are read");
 }
 
 std::string suite_path(const SweepOptions& options) {

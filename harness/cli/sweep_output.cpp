@@ -35,18 +35,17 @@ void check_unfinished(const OutputOptions& options, const Unfinished& found) {
   if (options.force) return;
   if (!found.damage.empty())
     throw UsageError("'" + found.path + "' is damaged, " + found.damage +
-                     "; --resume --force goes on with the " + entries +
-                     " that it still holds, --force starts anew");
+                     "; --resume --force continues with the " + entries +
+                     " that can be read, --force starts again");
   if (found.entries > 0 && !again)
-    throw UsageError(
-        "'" + found.path + "' holds " + entries +
-        " of a run that did not finish: --resume goes on with it, --force starts anew");
+    throw UsageError("'" + found.path + "' has " + entries +
+                     " of a run that did not finish: --resume continues it, --force starts again");
 }
 
 void check_unwritten(const OutputOptions& options, const std::string& out) {
   if (!options.force && !options.resume && !options.rerun_failed && exists(out))
     throw UsageError("'" + out +
-                     "' is there already: --force replaces it, --resume completes it, and another "
+                     "' exists: --force replaces it, --resume completes it, and another "
                      "--out keeps both");
 }
 
@@ -56,7 +55,7 @@ void check_same(const OutputOptions& options, const std::string& path, const nlo
   const std::string what = difference(was, mine);
   if (!what.empty())
     throw UsageError("'" + path + "' is of another build or selection: " + what +
-                     "; --resume --force goes on all the same");
+                     "; --resume --force continues nevertheless");
 }
 
 }  // namespace harness

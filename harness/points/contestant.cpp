@@ -28,7 +28,7 @@ void append(Contestants& all, const json& list, const std::string& where, bool o
       all.push_back(std::move(contestant));
     } else if (once) {
       throw UsageError(where + ": '" + contestant.name +
-                       "' stands there twice; give each a \"name\" of its own");
+                       "' is there twice; give each a \"name\" of its own");
     }
   }
 }

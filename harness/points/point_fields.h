@@ -61,7 +61,7 @@ inline constexpr std::tuple spec_fields{
     field("scene", &PointSpec::scene, "", "see `bench list scenes`"),
     field("scene_parameters", &PointSpec::scene_parameters, "", "all of the scene's"),
     field("contestant", &PointSpec::contestant, "",
-          "who competes; the solver unless it stands in the run several times", {.later = true}),
+          "the solver, or its name where it is in the run several times", {.later = true}),
     field("solver", &PointSpec::solver, "", "see `bench list solvers`"),
     field("settings", &PointSpec::settings, "", "the solver's settings as given", {.later = true}),
     field("strain_limit", &PointSpec::strain_limit, "", "permissible |strain|, 0.01 is 1 %",
@@ -76,7 +76,7 @@ inline constexpr std::tuple size_fields{
     field("resolution", &PointSpec::resolution, "", "the scene's own parameter of size",
           {.positive = true}),
     field("vertices", &PointSpec::vertices, "vertices", "of the mesh", {.positive = true}),
-    field("constraints", &PointSpec::constraints, "edges", "whose lengths are kept",
+    field("constraints", &PointSpec::constraints, "edges", "of constant length",
           {.positive = true})};
 
 // What came of it, beside its measures and its work.

@@ -31,23 +31,27 @@ struct PointStatusInfo {
 inline constexpr std::array point_statuses{
     PointStatusInfo{PointStatus::ok, "ok", "", "ran to the end within its strain limit"},
     PointStatusInfo{PointStatus::strain_missed, "strain_missed", "S",
-                    "ran to the end, strained beyond its limit"},
+                    "an edge was strained more than permitted"},
     PointStatusInfo{PointStatus::energy_gained, "energy_gained", "E",
-                    "ran to the end, and made energy out of nothing"},
+                    "energy rose by more than the scene's bound"},
     PointStatusInfo{
         PointStatus::motion_lost, "motion_lost", "M",
-        "ran to the end, and hardly moved, or hung or shook, where the reference does not"},
+        "moved less than half as far as the reference, or kinetic energy is not the ensemble's"},
     PointStatusInfo{PointStatus::not_converged, "not_converged", "N",
-                    "the solver gave up on a step and said so"},
+                    "the solver refused a step: out of iterations, or no progress"},
     PointStatusInfo{PointStatus::diverged, "diverged", "D",
-                    "positions not finite, or strains out of all proportion"},
-    PointStatusInfo{PointStatus::timeout, "timeout", "T", "took longer than it was given"},
-    PointStatusInfo{PointStatus::out_of_memory, "out_of_memory", "O", "asked for too much memory"},
+                    "a position was not finite, or an edge was strained more than tenfold"},
+    PointStatusInfo{PointStatus::timeout, "timeout", "T",
+                    "took longer than a point may, or could no longer be the best"},
+    PointStatusInfo{PointStatus::out_of_memory, "out_of_memory", "O",
+                    "needed more memory than it was given"},
     PointStatusInfo{PointStatus::crashed, "crashed", "C", "ended its process"},
     PointStatusInfo{PointStatus::unsupported, "unsupported", "U",
-                    "the solver does not take this problem"},
-    PointStatusInfo{PointStatus::skipped, "skipped", "K",
-                    "was not run, or timed out while calibrating"}};
+                    "the solver does not support this problem"},
+    PointStatusInfo{
+        PointStatus::skipped, "skipped", "K",
+        "not run: every step timed out at the neighbouring, easier point; or its calibration "
+        "timed out"}};
 static_assert([] {
   for (std::size_t i = 0; i < point_statuses.size(); ++i)
     if (static_cast<std::size_t>(point_statuses[i].status) != i) return false;

@@ -134,7 +134,7 @@ ParameterInfos sphere_parameters() {
           {"gap", 0.001, "between sphere and cloth at the start, m", -1e-300, 1e6},
           {"friction", 0.3, "Coulomb coefficient", -1e-300, 1e3},
           {"contact", 1,
-           "1: kept while edges are; 0: in a pass of its own after that, as the paper does",
+           "1: enforced together with edges; 0: in a pass of its own after that, as in the paper",
            -1e-300, 1, true}};
 }
 

@@ -110,7 +110,7 @@ std::pair<int, int> count_garment(const SceneParameters& p) {
 SceneType garment_scene() {
   return {
       "garment",
-      "a skirt that nothing but its rim holds, on a body that sways and turns (Figure 7)",
+      "a skirt held by nothing but its rim, on a body that sways and turns (Figure 7)",
       "n",
       with_cloth_parameters(
           {{"n", 64, "vertices around", 8, 4000, true},

@@ -33,7 +33,7 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
   out << "## Where these numbers come from\n\n";
   tables::print_sources(out, all);
 } catch (const nlohmann::json::exception& error) {
-  throw UsageError(std::string("a result file lacks something: ") + error.what());
+  throw UsageError(std::string("a result file is incomplete: ") + error.what());
 }
 
 }  // namespace harness

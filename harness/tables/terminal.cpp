@@ -151,7 +151,7 @@ void print_everybody(std::ostream& out, const Plane& plane, const Setting& set) 
       out << (first || !cell.first() ? "1" : analysis::text(*cell.lead_over(&entry)))
           << (entry.counts           ? ""
               : entry.role.again     ? ", a second time"
-              : !entry.role.competes ? ", keeps no limit"
+              : !entry.role.competes ? ", no strain limit"
                                      : ", slower settings")
           << '\n';
     }

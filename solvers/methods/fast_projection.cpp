@@ -223,7 +223,9 @@ SettingFields<FastProjection::Settings> FastProjection::fields(bool searched_pas
 
 Backend fast_projection_row() {
   return {.name = "fast_projection",
-          .summary = "Algorithm 1 of Goldenthal et al. 2007",
+          .summary =
+              "the paper's Algorithm 1: repeated projections, constraint directions from the "
+              "current iterate",
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(FastProjection::fields()),
@@ -249,7 +251,7 @@ SettingInfo blend() {
 Backend fast_projection_bdf2_row() {
   Backend row = inside_bdf2<FastProjection>(fast_projection_row());
   row.name = "fast_projection_bdf2";
-  row.summary = "fast projection inside the two-step formula BDF2: second order";
+  row.summary = "fast projection in BDF2, a second-order time step";
   FastProjection::Settings defaults;
   defaults.min_iterations = 1;
   defaults.smoothing_sweeps = 30;
@@ -263,7 +265,7 @@ Backend fast_projection_bdf2_row() {
 Backend fast_projection_bdf2opt_row() {
   Backend row = fast_projection_bdf2_row();
   row.name = "fast_projection_bdf2opt";
-  row.summary = "the same with half the error constant: BDF2 blended with BDF3";
+  row.summary = "fast projection in BDF2 blended with BDF3, with half the error constant";
   row.contestant = false;
   row.settings.push_back(blend());
   row.make = [](std::shared_ptr<const Problem> problem,

@@ -193,7 +193,7 @@ Backend fast_projection_adaptive_row() {
 Backend fast_projection_adaptive_bdf2_row() {
   Backend row = inside_bdf2<FastProjectionAdaptive>(fast_projection_adaptive_row());
   row.name = "fast_projection_adaptive_bdf2";
-  row.summary = "the same inside the two-step formula BDF2: second order";
+  row.summary = "fast_projection_adaptive in BDF2, a second-order time step";
   row.citation = "Goldenthal et al. 2007; Bender and Bayer 2008; English and Bridson 2008";
   row.label = "fast projection, adaptive, in BDF2";
   return row;

@@ -104,7 +104,7 @@ SettingFields<GaussSeidel::Settings> GaussSeidel::fields() {
 
 Backend gauss_seidel_row() {
   return {.name = "gauss_seidel",
-          .summary = "strain limiting, edge after edge in random order",
+          .summary = "strain limiting: edge after edge, in random order",
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(GaussSeidel::fields()),

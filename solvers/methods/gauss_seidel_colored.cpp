@@ -30,7 +30,7 @@ SettingFields<GaussSeidelColored::Settings> GaussSeidelColored::fields() {
 
 Backend gauss_seidel_colored_row() {
   return {.name = "gauss_seidel_colored",
-          .summary = "the same, edges that share no vertex side by side in vectors",
+          .summary = "strain limiting: edges that share no vertex side by side in vectors",
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(GaussSeidelColored::fields()),

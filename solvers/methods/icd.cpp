@@ -215,7 +215,7 @@ SettingFields<Icd::Settings> Icd::fields() {
 
 Backend icd_row() {
   return {.name = "icd",
-          .summary = "implicit constraint direction: positions and multipliers together",
+          .summary = "Lagrange multipliers, constraint directions from the end of the step",
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(Icd::fields()),

@@ -236,7 +236,7 @@ SettingFields<ImplicitSprings::Settings> ImplicitSprings::fields() {
 
 Backend implicit_springs_row() {
   return {.name = "implicit_springs",
-          .summary = "backward Euler on stiff springs, Newton with line search",
+          .summary = "stiff springs in backward Euler, by Newton with line search",
           .knob = Knob::stiffness,
           .contestant = true,
           .settings = setting_infos(ImplicitSprings::fields()),

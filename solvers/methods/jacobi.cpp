@@ -55,7 +55,7 @@ SettingFields<Jacobi::Settings> Jacobi::fields() {
 
 Backend jacobi_row() {
   return {.name = "jacobi",
-          .summary = "strain limiting, all edges at once and averaged",
+          .summary = "strain limiting: all edges corrected at once, averaged",
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(Jacobi::fields()),

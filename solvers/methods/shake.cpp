@@ -175,7 +175,7 @@ SettingFields<Shake::Settings> Shake::fields() {
 
 Backend shake_row() {
   return {.name = "shake",
-          .summary = "constraint direction from the start of the step",
+          .summary = "Lagrange multipliers, constraint directions from the start of the step",
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(Shake::fields()),

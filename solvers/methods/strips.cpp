@@ -58,7 +58,7 @@ SettingFields<Strips::Settings> Strips::fields() {
 
 Backend strips_row() {
   return {.name = "strips",
-          .summary = "projection of every yarn of the cloth as a whole, with passes between",
+          .summary = "every yarn projected as a whole, passes of colored Gauss-Seidel between",
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(Strips::fields()),
@@ -72,7 +72,7 @@ Backend strips_row() {
 Backend strips_bdf2_row() {
   Backend row = inside_bdf2<Strips>(strips_row());
   row.name = "strips_bdf2";
-  row.summary = "strips inside the two-step formula BDF2: second order";
+  row.summary = "strips in BDF2, a second-order time step";
   row.citation = "Bender and Bayer 2008; English and Bridson 2008";
   row.label = "strips in BDF2";
   row.same_on_chains = "fast_projection_adaptive_bdf2";

@@ -121,7 +121,7 @@ SettingFields<XpbdSmallSteps::Settings> XpbdSmallSteps::fields() {
 
 Backend xpbd_small_steps_row() {
   return {.name = "xpbd_small_steps",
-          .summary = "a fixed number of passes a step, no test of convergence: small steps do it",
+          .summary = "XPBD as in engines: a fixed number of passes in small steps, no test",
           .knob = Knob::time_step,
           .contestant = true,
           .settings = setting_infos(XpbdSmallSteps::fields()),

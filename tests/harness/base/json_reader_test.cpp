@@ -25,7 +25,7 @@ TEST(JsonReader, TakesWhatItWrites) {
 }
 
 TEST(JsonReader, RefusesAKeyThatStandsTwice) {
-  EXPECT_NE(complaint(R"({"a": 1, "b": {"a": 2}, "a": 3})").find("'a' stands twice"),
+  EXPECT_NE(complaint(R"({"a": 1, "b": {"a": 2}, "a": 3})").find("'a' occurs twice"),
             std::string::npos);
   EXPECT_EQ(complaint(R"({"a": {"x": 1}, "b": {"x": 1}})"), "") << "two objects";
 }

@@ -232,7 +232,7 @@ refused "no regular file" "${tiny[@]}" --out -
 # ---- A finished result is not replaced without a word ----
 cp closed.json kept.json
 "$BENCH_BINARY" "${tiny[@]}" --out closed.json >/dev/null 2>err.txt
-[[ $? == 2 ]] && grep -q "is there already" err.txt && cmp -s closed.json kept.json || fail "a finished result: $(cat err.txt)"
+[[ $? == 2 ]] && grep -q "exists: --force replaces it" err.txt && cmp -s closed.json kept.json || fail "a finished result: $(cat err.txt)"
 "$BENCH_BINARY" "${tiny[@]}" --out closed.json --force >/dev/null 2>&1 || fail "--force over a finished result: exit $?"
 cmp -s closed.json kept.json && fail "--force did not replace it"
 
@@ -320,7 +320,7 @@ kill -KILL $! 2>/dev/null
 wait $! 2>/dev/null
 if [[ -e cut.json.journal ]]; then
   "$BENCH_BINARY" "${cases[@]}" --out cut.json >/dev/null 2>err.txt
-  [[ $? == 2 ]] && grep -q -- "--resume goes on" err.txt || fail "an unfinished stability sweep is not asked about: $(cat err.txt)"
+  [[ $? == 2 ]] && grep -q -- "--resume continues it" err.txt || fail "an unfinished stability sweep is not asked about: $(cat err.txt)"
 fi
 "$BENCH_BINARY" "${cases[@]}" --resume --out cut.json >/dev/null 2>&1 || fail "resumed hard cases: exit $?"
 python3 - <<'PYTHON' || fail "resumed hard cases are not undisturbed ones"

@@ -91,7 +91,7 @@ for after in 3 20 45; do
 done
 before=$(wc -l <killed.json.journal)
 "${bench[@]}" --out killed.json >/dev/null 2>err.txt
-[[ $? == 2 ]] && line_of err.txt "--resume goes on with it" || fail "an unfinished run is not asked about: $(cat err.txt)"
+[[ $? == 2 ]] && line_of err.txt "--resume continues it" || fail "an unfinished run is not asked about: $(cat err.txt)"
 [[ $(wc -l <killed.json.journal) == "$before" ]] || fail "an unfinished run was touched"
 "${bench[@]}" --resume --out killed.json >/dev/null 2>&1 || fail "resumed run: exit $?"
 same whole.json killed.json || fail "killed and resumed is not undisturbed"

@@ -95,7 +95,7 @@ TEST(Contestants, ThatAreWrongAreRefusedByName) {
   const auto says = [](const std::string& message, const std::string& part) {
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
-  says(complaint("", R"("solvers": ["jacobi", "jacobi"])"), "'jacobi' stands there twice");
+  says(complaint("", R"("solvers": ["jacobi", "jacobi"])"), "'jacobi' is there twice");
   says(complaint("", R"("solvers": [{"name": "icd", "solver": "jacobi"}])"), "another solver");
   says(complaint("", R"("solvers": [{"name": "my solver", "solver": "icd"}])"), "a-z, 0-9 and _");
   says(complaint("", R"("solvers": [{"name": "x", "solver": "idc"}])"), "did you mean 'icd'");

@@ -54,7 +54,7 @@ TEST(Terminal, HasEverybodyIfAskedFor) {
   EXPECT_EQ(brief.str().find("icd_untuned"), std::string::npos);
   EXPECT_NE(brief.str().find("1 of 5 runs did not end well: diverged 1"), std::string::npos)
       << brief.str();
-  for (const char* words : {"icd_untuned", "slower settings", "keeps no limit",
+  for (const char* words : {"icd_untuned", "slower settings", "no strain limit",
                             "chain, shake: diverged x 1", "3.00 (2.99-3.01)"})
     EXPECT_NE(all.str().find(words), std::string::npos) << words << "\nin\n" << all.str();
   std::istringstream lines(all.str());
