@@ -61,6 +61,11 @@ gate=(--gate counters.json)
 
 # Two runs of one program; of a program that does more, and fails, where a fault was put.
 exits 0 '36 points: 36 SAME' compare base.json again.json "${gate[@]}"
+/usr/bin/python3 - <<'PYTHON' || fail "two runs differ in their strain"
+import json
+first, second = ({p["id"]: (p["max_strain"], p["rms_strain"]) for p in json.load(open(name))["points"]} for name in ("base.json", "again.json"))
+assert first == second and any(all(pair) for pair in first.values()), first
+PYTHON
 exits 4 'NEWLY_FAILING' compare base.json faulty.json "${gate[@]}" --junit faults.xml --markdown faults.md
 /usr/bin/python3 - <<'PYTHON' || fail "the changes by faults"
 import xml.etree.ElementTree as tree

@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 
+#include "support/effort.h"
 #include "support/random_trial.h"
 
 namespace inextensible {
@@ -12,7 +13,7 @@ namespace {
 
 int cases() {
   const char* wanted = std::getenv("RANDOM_CASES");
-  return wanted ? std::atoi(wanted) : 1000;
+  return wanted ? std::atoi(wanted) : testing::trials(1000);
 }
 
 class RandomCases : public ::testing::TestWithParam<const char*> {};
