@@ -38,7 +38,7 @@ struct Delay {
   }
 };
 ")
-with_fault(gauss_seidel.cpp "  for (int passes = 0;; ++passes) {" "  const Delay delay;\n  for (int sweeps = 0;; ++sweeps) {")
+with_fault(gauss_seidel.cpp "  for (int passes = 0;; ++passes) {" "  const Delay delay;\n  for (int passes = 0;; ++passes) {")
 # Fast projection: one iteration more than is needed.
 with_fault(fast_projection.cpp "  for (int j = 0, best_j = 0;; ++j) {" "  int extra = 0;\n  for (int j = 0, best_j = 0;; ++j) {")
 with_fault(fast_projection.cpp "j >= settings_.min_iterations)" "j >= settings_.min_iterations && extra++ > 0)")
