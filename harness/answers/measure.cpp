@@ -12,11 +12,11 @@
 #include "harness/base/fields_json.h"
 #include "harness/base/json_text.h"
 #include "harness/base/text.h"
-#include "harness/judge/measures.h"
+#include "harness/judge/drive.h"
+#include "harness/judge/mechanics.h"
 #include "harness/points/schema.h"
 #include "harness/run/calibration.h"
 #include "solvers/registry.h"
-#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 namespace {
@@ -56,45 +56,39 @@ Ending run_once(const KnownAnswer& answer, const Built& built, const Backend& ba
                 const inextensible::Settings& settings, double step, double timeout) {
   Ending ending;
   const auto begin = Clock::now();
-  State state = built.scene.start;
-  if (built.scene.staggered && backend.velocities == inextensible::Velocities::half_step)
-    state = inextensible::start_half_step_back(*built.scene.problem, state, step);
-  const auto stepper = inextensible::make_stepper(backend.name, built.scene.problem,
+  const Scene& scene = built.scene;
+  State state = start_of(scene, backend, step), before = state;
+  const auto stepper = inextensible::make_stepper(backend.name, scene.problem,
                                                   {answer.strain_limit, 1, settings, &state});
   const auto reading = answer.reading(built.at);
   stepper->observe(reading->observer());
-  const auto steps = std::lround(built.scene.duration / step);
-  for (long i = 0; i < steps && ending.status == PointStatus::ok && !reading->done(); ++i) {
-    const State before = state;
-    if (const auto result = stepper->advance(state, step); !result) {
-      ending.status = PointStatus::not_converged;
-      ending.detail = "refused at t = " + number_text(state.time, 3) + " s: " + result.detail;
-    } else {
-      reading->after(before, state, step);
-      ending.strain = std::max(
-          ending.strain, strain_range(*built.scene.problem, stepper->filtered_positions()).most);
-      if (!(ending.strain <= Calibration::cut_short * answer.strain_limit) &&
-          backend.knob == inextensible::Knob::stiffness) {
-        ending.status = PointStatus::strain_missed;
-        ending.detail = "strain " + number_text(ending.strain, 3);
-      } else if (i + 1 < steps && since(begin) > timeout) {
-        ending.status = PointStatus::timeout;
-        ending.detail = "longer than " + number_text(timeout) + " s";
-      }
+  const auto look = [&](const State& after, const Driven& /*driven*/) {
+    reading->after(before, after, step);
+    before = after;
+    raise(ending.strain, strain_range(*scene.problem, stepper->filtered_positions()).most);
+    if (backend.knob == inextensible::Knob::stiffness &&
+        !(ending.strain <= Calibration::cut_short * answer.strain_limit)) {
+      ending.status = PointStatus::strain_missed;
+      ending.detail = "strain " + number_text(ending.strain, 3);
     }
-  }
+    return ending.status == PointStatus::ok && !reading->done();
+  };
+  const Driven driven =
+      drive(*stepper, state, {step, std::lround(scene.duration / step)}, look, {timeout, begin});
   stepper->observe(nullptr);
   ending.seconds = since(begin);
+  if (driven.end == Driven::End::refused) {
+    ending.status = PointStatus::not_converged;
+    ending.detail = "refused at t = " + number_text(state.time, 3) + " s: " + driven.result.detail;
+  } else if (driven.end == Driven::End::timed_out) {
+    ending.status = PointStatus::timeout;
+    ending.detail = "longer than " + number_text(timeout) + " s";
+  }
   if (ending.status == PointStatus::ok) {
     ending.value = reading->value();
     if (!std::isfinite(ending.value)) ending.detail = "the run does not tell";
   }
   return ending;
-}
-
-// N: the weight, or of what flies without one m v^2 / size, ten times over the limit.
-double first_stiffness(const KnownAnswer& answer, const Scene& scene) {
-  return 10 * energy_scale(scene) / scene.size / answer.strain_limit;
 }
 
 Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double step,
@@ -110,7 +104,7 @@ Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double 
         run_once(answer, built, backend, {{"stiffness", stiffness}}, step, timeout);
     return {e.status, e.strain, e.seconds, e.detail};
   });
-  const auto found = calibration.find(first_stiffness(answer, built.scene));
+  const auto found = calibration.find(first_stiffness(built.scene, answer.strain_limit));
   if (found) return endings.at(*found);
   best.detail = calibration.detail();
   return best;

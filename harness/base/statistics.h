@@ -26,7 +26,7 @@ double quantile(std::vector<double> samples, double fraction);
 // nearest to the program's own time, and the median moves with how much was disturbed that minute.
 // Chen and Revels, Robust benchmarking in noisy environments (2016, arXiv:1608.04295), derive this
 // and show it on machines like ours. It needs samples far longer than a read of the clock, which
-// could make a single run look too short: hence batches (run/runner.cpp).
+// could make a single run look too short: hence batches (run/measure_point.cpp).
 double time_of(const std::vector<double>& samples);
 
 // A positive number with its 95 % confidence interval; nothing known: from 0 to infinity.

@@ -21,7 +21,7 @@
 #include "harness/cli/verbs.h"
 #include "harness/compare/pairs.h"
 #include "harness/points/result_file.h"
-#include "harness/run/runner.h"
+#include "harness/run/measure_point.h"
 
 namespace harness {
 namespace {

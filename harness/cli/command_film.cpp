@@ -11,6 +11,7 @@
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
+#include "harness/base/statistics.h"
 #include "harness/base/temporary_folder.h"
 #include "harness/base/text.h"
 #include "harness/cli/exit_codes.h"
@@ -64,14 +65,10 @@ void print_times(const Recording& recording) {
   std::cout << "steps of 1/" << number_text(1 / recording.step, 6) << " s, "
             << recording.steps_per_frame << " a frame; milliseconds a frame:\n";
   for (const Take& take : recording.takes) {
-    std::vector<double> sorted = take.seconds;
-    std::sort(sorted.begin(), sorted.end());
     std::cout << "  " << take.solver << ", " << number_text(100 * take.strain_limit) << " %: ";
-    if (!sorted.empty()) {
-      const auto at = [&sorted](double part) {
-        return number_text(
-            1e3 * sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1))],
-            3);
+    if (!take.seconds.empty()) {
+      const auto at = [&take](double part) {
+        return number_text(1e3 * quantile(take.seconds, part), 3);
       };
       std::cout << "median " << at(0.5) << ", 99 of 100 below " << at(0.99) << ", worst " << at(1)
                 << "; largest strain "

@@ -12,7 +12,7 @@
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
 #include "harness/points/suite.h"
-#include "harness/run/runner.h"
+#include "harness/run/measure_point.h"
 
 namespace harness {
 namespace {

@@ -23,10 +23,10 @@
 #include "harness/run/estimate.h"
 #include "harness/run/isolation.h"
 #include "harness/run/journal.h"
+#include "harness/run/measure_point.h"
 #include "harness/run/noise_probe.h"
 #include "harness/run/overhead.h"
 #include "harness/run/quiet_samples.h"
-#include "harness/run/runner.h"
 #include "harness/tables/terminal.h"
 #include "solvers/registry.h"
 

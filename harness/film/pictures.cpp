@@ -25,10 +25,7 @@ constexpr double line_spacing = 7;  // pixels between lines of yarns, at least
 
 // Of each vertex, by the largest strain of its edges.
 Eigen::Matrix3Xd colours_of(const Stage& stage, const inextensible::Positions& x, double limit) {
-  std::vector<double> most(static_cast<std::size_t>(x.cols()), 0);
-  const std::vector<double> all = strains(stage, x);
-  for (std::size_t k = 0; k < all.size(); ++k)
-    for (const int end : stage.edges[k]) most[end] = std::max(most[end], all[k]);
+  const std::vector<double> most = strains_of_vertices(stage, x);
   Eigen::Matrix3Xd colours(3, x.cols());
   for (Eigen::Index v = 0; v < x.cols(); ++v) colours.col(v) = strain_colour(most[v] / limit);
   return colours;

@@ -7,15 +7,14 @@
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/base/interrupt.h"
 #include "harness/base/json_text.h"
 #include "harness/base/text.h"
 #include "harness/film/orientation.h"
-#include "harness/run/runner.h"
+#include "harness/judge/drive.h"
+#include "harness/judge/mechanics.h"
+#include "harness/run/measure_point.h"
 #include "solvers/problem/triangle_collider.h"
 #include "solvers/registry.h"
-#include "solvers/stepping/step_controller.h"
-#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 namespace {
@@ -35,6 +34,8 @@ Stage stage_of(const Scene& scene) {
   }
   return stage;
 }
+
+constexpr double strain_unit = 1.0 / 60;  // of a take's limit; colours end at four times that
 
 // The settings given, and for springs the stiffness that a sweep would find.
 inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contestant, double limit,
@@ -74,35 +75,30 @@ Take take_of(const Scene& scene, const Stage& stage, const Contestant& contestan
   take.label = label_of(contestant);
   take.strain_limit = limit;
   take.smallest_step = pace.step;
-  State state = scene.start;
-  if (scene.staggered && inextensible::find_backend(contestant.solver)->velocities ==
-                             inextensible::Velocities::half_step)
-    state = inextensible::start_half_step_back(*scene.problem, state, pace.step);
+  State state = start_of(scene, *inextensible::find_backend(contestant.solver), pace.step);
   const auto stepper =
       inextensible::make_stepper(contestant.solver, scene.problem, {limit, 1, settings, &state});
-  inextensible::StepController controller(*stepper, {.largest = pace.step});
-  const auto keep = [&] {
-    take.frames.push_back(state.x);
-    const std::vector<double> all = strains(stage, state.x);
+  const auto keep = [&](const State& at) {
+    take.frames.push_back(at.x);
+    const std::vector<double> all = strains(stage, at.x);
     take.largest_strain.push_back(all.empty() ? 0 : *std::max_element(all.begin(), all.end()));
     told(take);
   };
-  keep();
-  while (take.frames.size() < pace.frames) {
-    const auto begin = Clock::now();
-    for (int i = 0; i < pace.steps_per_frame;) {
-      if (interrupted()) throw Interrupted();
-      const auto result = controller.advance(state);
-      if (!result) {
-        take.detail = "gave up at t = " + number_text(state.time, 3) + " s: " + result.detail;
-        return take;
-      }
-      if (controller.aligned()) ++i;
-    }
-    take.smallest_step = controller.smallest();
+  keep(state);
+  auto begin = Clock::now();
+  const auto look = [&](const State& at, const Driven& driven) {
+    if (!driven.whole || driven.steps % pace.steps_per_frame != 0) return true;
+    take.smallest_step = driven.smallest;
     take.seconds.push_back(since(begin));
-    keep();
-  }
+    keep(at);
+    begin = Clock::now();
+    return true;
+  };
+  const long steps = pace.steps_per_frame * (static_cast<long>(pace.frames) - 1);
+  const Driven driven = drive(*stepper, state, {pace.step, steps, usual_halvings}, look,
+                              {.interrupted = interrupted});
+  if (driven.end == Driven::End::refused)
+    take.detail = "gave up at t = " + number_text(state.time, 3) + " s: " + driven.result.detail;
   return take;
 }
 
@@ -113,9 +109,17 @@ std::vector<double> strains(const Stage& stage, const inextensible::Positions& x
   all.reserve(stage.edges.size());
   for (std::size_t k = 0; k < stage.edges.size(); ++k) {
     const auto [a, b] = stage.edges[k];
-    all.push_back(std::abs((x.col(b) - x.col(a)).norm() / stage.rest_length[k] - 1));
+    all.push_back(strain_size(x, a, b, stage.rest_length[k]));
   }
   return all;
+}
+
+std::vector<double> strains_of_vertices(const Stage& stage, const inextensible::Positions& x) {
+  std::vector<double> most(static_cast<std::size_t>(x.cols()), 0);
+  const std::vector<double> all = strains(stage, x);
+  for (std::size_t k = 0; k < all.size(); ++k)
+    for (const int end : stage.edges[k]) most[end] = std::max(most[end], all[k]);
+  return most;
 }
 
 inextensible::Positions body_at(const Stage& stage, std::size_t frame) {
@@ -198,11 +202,23 @@ nlohmann::json film_header(const Recording& recording) {
           {"vertices", recording.takes.empty() ? 0 : recording.takes[0].frames[0].cols()},
           {"triangles", recording.stage.triangles},
           {"edges", recording.stage.edges},
-          {"rest_length", recording.stage.rest_length},
+          {"strain_unit", strain_unit},
           {"body", body},
           {"body_triangles", recording.stage.body_triangles},
           {"body_poses", poses},
           {"takes", takes}};
+}
+
+std::string film_strains(const Recording& recording) {
+  std::string bytes;
+  for (const Take& take : recording.takes) {
+    for (const inextensible::Positions& frame : take.frames) {
+      for (const double strain : strains_of_vertices(recording.stage, frame))
+        bytes += static_cast<char>(static_cast<unsigned char>(
+            std::min(255.0, std::round(strain / take.strain_limit / strain_unit))));
+    }
+  }
+  return bytes;
 }
 
 std::string film_positions(const Recording& recording) {
@@ -227,6 +243,7 @@ void write_film_header(const std::string& folder, const Recording& recording) {
 void write_recording(const std::string& folder, const Recording& recording) {
   write_film_header(folder, recording);
   write_atomically(folder + "/film.f32", film_positions(recording));
+  write_atomically(folder + "/film.u8", film_strains(recording));
 }
 
 }  // namespace harness

@@ -65,9 +65,13 @@ inextensible::Positions body_at(const Stage& stage, std::size_t frame);
 // |strain| of every edge of the stage.
 std::vector<double> strains(const Stage& stage, const inextensible::Positions& x);
 
-// Into a folder that is there: film.json holds all but positions (poses as the rows of [turn way]),
-// film.f32 these as 32-bit floats, little-endian, x y z of every vertex of every frame of every
-// take in turn. Both throw FileError.
+// Of every vertex, the largest of its edges.
+std::vector<double> strains_of_vertices(const Stage& stage, const inextensible::Positions& x);
+
+// Into a folder that is there. film.json: all but what is of vertices (poses as the rows of [turn
+// way]). film.f32: 32-bit floats, little-endian, x y z of every vertex of every frame of every take
+// in turn. film.u8: bytes in the same order, the vertex's strain over the take's limit, in
+// `strain_unit`s. Both throw FileError.
 void write_film_header(const std::string& folder, const Recording& recording);
 void write_recording(const std::string& folder, const Recording& recording);
 

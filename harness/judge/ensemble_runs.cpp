@@ -4,7 +4,7 @@
 
 #include "harness/base/text.h"
 #include "harness/judge/energy.h"
-#include "harness/judge/measures.h"
+#include "harness/judge/mechanics.h"
 #include "harness/judge/reference_routes.h"
 #include "solvers/registry.h"
 

@@ -5,12 +5,11 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
-#include "harness/judge/measures.h"
+#include "harness/judge/mechanics.h"
 #include "harness/judge/route_runs.h"
 #include "harness/points/measures.h"
 #include "harness/scenes/pendulum.h"
 #include "solvers/registry.h"
-#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 

@@ -9,8 +9,8 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
+#include "harness/judge/drive.h"
 #include "solvers/registry.h"
-#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 
@@ -26,24 +26,20 @@ void follow(const Scene& scene, const inextensible::State& start, const Route& r
             const std::vector<double>& times, const Tell& tell, const Look& look) {
   const std::string& solver = route.solver;
   const auto stepper = inextensible::make_stepper(solver, scene.problem, {route.limit, 1, {}});
-  const bool half =
-      inextensible::find_backend(solver)->velocities == inextensible::Velocities::half_step;
   inextensible::State state =
-      half ? inextensible::start_half_step_back(*scene.problem, start, h) : start;
-  const auto per_sample = std::lround(sample_interval / h);
-  tell(solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ...");
-  for (const double time : times) {
-    for (long i = 1; i <= per_sample; ++i) {
-      const auto result = stepper->advance(state, h);
-      if (!result) {
-        tell(solver + ", h = 1/" + number_text(std::round(1 / h)) +
-             " s stopped before t = " + number_text(time) +
-             " s: " + inextensible::to_string(result.status) + ", " + result.detail);
-        return;
-      }
-      look(state, i == per_sample);
-    }
-  }
+      start_from(*scene.problem, start, *inextensible::find_backend(solver), h);
+  const std::string run = solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ";
+  const long per_sample = std::lround(sample_interval / h);
+  tell(run + "...");
+  const Pace pace{h, per_sample * static_cast<long>(times.size())};
+  const Driven driven =
+      drive(*stepper, state, pace, [&](const inextensible::State& now, const Driven& so_far) {
+        look(now, so_far.steps % per_sample == 0);
+        return true;
+      });
+  if (driven.end == Driven::End::refused)
+    tell(run + "stopped before t = " + number_text(times[driven.steps / per_sample]) +
+         " s: " + inextensible::to_string(driven.result.status) + ", " + driven.result.detail);
 }
 
 std::vector<inextensible::State> moved_starts(const Scene& scene, double by, int count) {

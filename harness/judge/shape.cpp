@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "harness/judge/measures.h"
+#include "harness/judge/mechanics.h"
 #include "solvers/problem/forces.h"
 
 namespace harness {

@@ -44,20 +44,7 @@ Everywhere read_everywhere(JsonReader& reader) {
   return all;
 }
 
-SweepSpec read_sweep(const json& object, const std::string& where, const Everywhere& all) {
-  JsonReader reader(object, where);
-  SweepSpec spec;
-  spec.sweep = reader.text("sweep", "");
-  const auto kinds = sweep_kinds();
-  if (std::find(kinds.begin(), kinds.end(), spec.sweep) == kinds.end())
-    throw UsageError(where + ": " + unknown_name("sweep", spec.sweep, kinds).what());
-  spec.scene = reader.text("scene", "");
-  const auto type = find_scene(spec.scene);
-  if (!type)
-    throw UsageError(where + ": " +
-                     unknown_name("scene", spec.scene, names_of(scene_types())).what());
-  const json* solvers = reader.find("solvers");
-  spec.contestants = read_contestants(solvers, reader.find("also"), type->kind() == "chain", where);
+void read_limits(JsonReader& reader, const std::string& where, SweepSpec& spec) {
   spec.limits = reader.numbers("limits", Bounds::strain());
   if (const double limit = reader.number("limit", 0, Bounds::strain()); limit > 0) {
     if (!spec.limits.empty()) throw UsageError(where + ": give 'limit' or 'limits', not both");
@@ -65,6 +52,9 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
   }
   if (spec.limits.empty())
     throw UsageError(where + ": 'limits' is missing, for example \"limits\": [0.1, 0.01]");
+}
+
+void read_scene_parameters(JsonReader& reader, const SceneType& type, SweepSpec& spec) {
   for (const double n : reader.numbers("resolutions", Bounds::whole_number(2)))
     spec.resolutions.push_back(static_cast<int>(n));
   if (const json* parameters = reader.find("scene_parameters")) {
@@ -77,12 +67,12 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
       spec.scene_parameters[key] = value.get<double>();
     }
   }
-  if (spec.resolutions.empty()) {
-    const auto place = spec.scene_parameters.find(type->resolution);
-    const auto complete = complete_parameters(*type, spec.scene_parameters);
-    spec.resolutions = {static_cast<int>(
-        place == spec.scene_parameters.end() ? complete.at(type->resolution) : place->second)};
-  }
+  if (!spec.resolutions.empty()) return;
+  const SceneParameters complete = complete_parameters(type, spec.scene_parameters);
+  spec.resolutions = {static_cast<int>(complete.at(type.resolution))};
+}
+
+void read_steps(JsonReader& reader, const std::string& where, SweepSpec& spec) {
   if (const json* steps = reader.find("steps")) {
     JsonReader ladder(*steps, where + ": 'steps'");
     spec.coarsest = ladder.number("coarsest", spec.coarsest, Bounds::positive());
@@ -97,29 +87,57 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
     throw UsageError(where + ": a step sweep has fixed steps, so no 'adaptive' ones");
   if (spec.adaptive && spec.every_step)
     throw UsageError(where + ": 'steps': 'adaptive' and 'all' exclude each other");
-  if (const json* options = reader.find("solver_options")) {
-    if (!options->is_object()) reader.fail_at("solver_options", *options, "an object { ... }");
-    for (const auto& [name, value] : options->items()) {
-      const auto& backend = checked_backend(name, where + ": 'solver_options'");
-      spec.solver_options[name] = read_settings(value, where + ": 'solver_options'", backend);
-    }
+}
+
+void read_solver_options(JsonReader& reader, const std::string& where, SweepSpec& spec) {
+  const json* options = reader.find("solver_options");
+  if (!options) return;
+  if (!options->is_object()) reader.fail_at("solver_options", *options, "an object { ... }");
+  for (const auto& [name, value] : options->items()) {
+    const auto& backend = checked_backend(name, where + ": 'solver_options'");
+    spec.solver_options[name] = read_settings(value, where + ": 'solver_options'", backend);
   }
+}
+
+// Impossible values are found before anything runs.
+void fit_steps_to_duration(const SceneType& type, bool coarsest_given, SweepSpec& spec) {
+  const double duration = complete_parameters(type, spec.scene_parameters).at("duration");
+  if (!coarsest_given) spec.coarsest = std::min(spec.coarsest, duration);
+  if (spec.coarsest > duration)
+    throw UsageError("'duration' is " + number_text(duration) +
+                     " s, must be at least the longest step, " + number_text(spec.coarsest) +
+                     " s ('steps': 'coarsest')");
+  if (duration / spec.finest > most_steps)
+    throw UsageError("'duration' is " + number_text(duration) + " s, more than " +
+                     number_text(most_steps) + " steps of " + number_text(spec.finest) +
+                     " s ('steps': 'finest')");
+}
+
+SweepSpec read_sweep(const json& object, const std::string& where, const Everywhere& all) {
+  JsonReader reader(object, where);
+  SweepSpec spec;
+  spec.sweep = reader.text("sweep", "");
+  const auto kinds = sweep_kinds();
+  if (std::find(kinds.begin(), kinds.end(), spec.sweep) == kinds.end())
+    throw UsageError(where + ": " + unknown_name("sweep", spec.sweep, kinds).what());
+  spec.scene = reader.text("scene", "");
+  const auto type = find_scene(spec.scene);
+  if (!type)
+    throw UsageError(where + ": " +
+                     unknown_name("scene", spec.scene, names_of(scene_types())).what());
+  const json* solvers = reader.find("solvers");
+  spec.contestants = read_contestants(solvers, reader.find("also"), type->kind() == "chain", where);
+  read_limits(reader, where, spec);
+  read_scene_parameters(reader, *type, spec);
+  read_steps(reader, where, spec);
+  read_solver_options(reader, where, spec);
   const Untuned untuned = read_untuned(reader, all.tuned.has_value(), all.untuned);
+  const json* steps = reader.find("steps");
   reader.finish();
   if (all.tuned) tune(spec.contestants, *all.tuned, type->kind(), spec.solver_options, untuned);
   add_double(spec.contestants, all.same);
-  try {  // impossible values are found before anything runs
-    const double duration = complete_parameters(*type, spec.scene_parameters).at("duration");
-    const json* steps = reader.find("steps");
-    if (!(steps && steps->contains("coarsest"))) spec.coarsest = std::min(spec.coarsest, duration);
-    if (spec.coarsest > duration)
-      throw UsageError("'duration' is " + number_text(duration) +
-                       " s, must be at least the longest step, " + number_text(spec.coarsest) +
-                       " s ('steps': 'coarsest')");
-    if (duration / spec.finest > most_steps)
-      throw UsageError("'duration' is " + number_text(duration) + " s, more than " +
-                       number_text(most_steps) + " steps of " + number_text(spec.finest) +
-                       " s ('steps': 'finest')");
+  try {
+    fit_steps_to_duration(*type, steps && steps->contains("coarsest"), spec);
   } catch (const UsageError& error) {
     throw UsageError(where + ": 'scene_parameters': " + error.what());
   }

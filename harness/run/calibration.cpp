@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "harness/base/text.h"
+#include "harness/judge/mechanics.h"
 
 namespace harness {
 namespace {
@@ -19,6 +20,10 @@ const double aim = 0.5 * std::log(close_enough);
 constexpr double least_stride_from_cut_short = 0.4;
 constexpr double stride_from_failure = 0.3;  // in decades
 
+// What a strand of springs bears, in what falls to it of the forces of the scene: strain = tension
+// / EA. On a falling chain the tension is a few times its weight.
+constexpr double tension_over_force = 5;
+
 // Runs that came to their end. What else they did wrong is said of the measured run.
 bool strain_counts(PointStatus status) {
   return status == PointStatus::ok || status == PointStatus::strain_missed ||
@@ -26,6 +31,17 @@ bool strain_counts(PointStatus status) {
 }
 
 }  // namespace
+
+// The forces of the scene are its weight, and for what flies without one m v^2 / (2 size). They are
+// shared by as many strands as there are lengths of the scene in its edges: one in a chain, two for
+// each row of a cloth.
+double first_stiffness(const Scene& scene, double strain_limit) {
+  double length = 0;
+  for (const double l : scene.problem->rest_length()) length += l;
+  const double strands = std::max(1.0, std::round(length / scene.size));
+  const double force_of_a_strand = energy_scale(scene) / scene.size / strands;
+  return tension_over_force * force_of_a_strand / strain_limit;
+}
 
 std::optional<double> Calibration::find(double guess) {
   std::optional<double> soft, stiff;  // logarithms: too soft, stiff enough

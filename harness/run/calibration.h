@@ -7,6 +7,7 @@
 #include <string>
 
 #include "harness/points/status.h"
+#include "harness/scenes/scene.h"
 
 namespace harness {
 
@@ -56,5 +57,8 @@ class Calibration {
   PointStatus status_ = PointStatus::strain_missed;
   std::string detail_ = "no stiffness keeps the strain within the limit";
 };
+
+// N: where a search may begin without a neighbour's stiffness to go by.
+double first_stiffness(const Scene& scene, double strain_limit);
 
 }  // namespace harness

@@ -1,10 +1,12 @@
 #include "harness/run/estimate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <stdexcept>
 
 #include "harness/base/clock.h"
+#include "harness/judge/drive.h"
 #include "harness/run/sweep.h"
 #include "harness/scenes/scene.h"
 #include "solvers/registry.h"
@@ -29,10 +31,9 @@ double seconds_per_second(const Search& search, double step, double timeout) {
         {search.base.strain_limit, search.base.seed, search.base.settings});
     inextensible::State state = scene.start;
     const auto begin = Clock::now();
-    int steps = 0;
-    while (since(begin) < look && steps * step < scene.duration && stepper->advance(state, step))
-      ++steps;
-    if (steps > 0) return since(begin) / (steps * step);
+    const long steps = std::lround(std::ceil(scene.duration / step));
+    const Driven driven = drive(*stepper, state, {step, steps}, {.timeout = look});
+    if (driven.steps > 0) return since(begin) / (static_cast<double>(driven.steps) * step);
   } catch (const std::invalid_argument&) {  // refused at the door, which takes no time
     return 0;
   }

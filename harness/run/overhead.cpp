@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "harness/base/child_process.h"
-#include "harness/judge/measures.h"
+#include "harness/judge/mechanics.h"
 #include "harness/run/point_runner.h"
 
 namespace harness {

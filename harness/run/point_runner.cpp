@@ -6,14 +6,14 @@
 
 #include "harness/base/child_process.h"
 #include "harness/base/text.h"
+#include "harness/judge/drive.h"
 #include "harness/judge/judge.h"
-#include "harness/judge/measures.h"
+#include "harness/judge/mechanics.h"
 #include "harness/run/frame_times.h"
-#include "solvers/stepping/step_controller.h"
-#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 
+using inextensible::State;
 using inextensible::Status;
 
 namespace {
@@ -49,9 +49,7 @@ PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
       scene_(find_scene(spec.scene)->build(spec.scene_parameters)),
       backend_(*inextensible::find_backend(spec.solver)),
       steps_(static_cast<int>(std::lround(scene_.duration / spec.step))),
-      first_state_(scene_.start) {
-  if (scene_.staggered && backend_.velocities == inextensible::Velocities::half_step)
-    first_state_ = inextensible::start_half_step_back(*scene_.problem, first_state_, spec.step);
+      first_state_(start_of(scene_, backend_, spec.step)) {
   if (limits.references) reference_ = limits.references->find(spec.scene, spec.scene_parameters);
 }
 
@@ -68,22 +66,54 @@ Judge::Options PointRunner::judging(bool errors) const {
   return options;
 }
 
-bool PointRunner::timed_out(double time, Run& run) const {
-  const bool slow = run.seconds > limits_.hopeless;
-  if (!slow && !(since(start_) > limits_.timeout)) return false;
-  std::ostringstream text;
-  text << "longer than " << (slow ? limits_.hopeless : limits_.timeout) << " s"
-       << (slow ? ", far above the best time so far" : "") << "; stopped at t = " << time << " s";
-  run.status = PointStatus::timeout;
-  run.detail = text.str();
-  return true;
-}
+// Judges the steps of a run, and times them.
+class PointRunner::Look : public Onlooker {
+ public:
+  // judge: null leaves all time to the steps.
+  Look(const PointRunner& runner, Judge* judge, double stop_at, Run& run)
+      : runner_(runner), judge_(judge), stop_at_(stop_at), run_(run), frames_(runner.spec_.step) {}
 
-void PointRunner::refuse(const inextensible::StepResult& result, double time, Run& run) {
-  run.status =
-      result.status == Status::not_finite ? PointStatus::diverged : PointStatus::not_converged;
-  run.detail = refusal(result, run.stepper->work().steps, time);
-}
+  int before(const State& state, const Driven& /*driven*/) {
+    if (judge_) judge_->before(state, runner_.spec_.step);
+    if (judge_) cpu_begin_ = thread_seconds();
+    begin_ = Clock::now();
+    return block_;
+  }
+
+  void each(const State& state, const Driven& driven) { runner_.beat(driven.steps, state.time); }
+
+  void all(const State& state, const Driven& driven) {
+    const double seconds = since(begin_);
+    run_.seconds += seconds;
+    if (judge_) run_.cpu_seconds += thread_seconds() - cpu_begin_;
+    const double time = state.time - runner_.first_state_.time;
+    if (driven.taken > 0)
+      frames_.add(runner_.spec_.adaptive ? 1 : driven.taken, runner_.spec_.step, time, seconds);
+    if (!judge_ && seconds < shortest_block) block_ *= 2;
+  }
+
+  bool after(const State& state, const Driven& driven) {
+    if (runner_.spec_.adaptive) run_.smallest_step = driven.smallest;
+    if (judge_) {
+      const double strain =
+          judge_->after(run_.stepper->filtered_positions(), state, driven.last, driven.whole);
+      if (runner_.overstrained(strain, stop_at_, run_)) return false;
+    }
+    return driven.steps == runner_.steps_ || !(run_.seconds > runner_.limits_.hopeless);
+  }
+
+  std::vector<FrameTime> frame_times() const { return frames_.summary(); }
+
+ private:
+  const PointRunner& runner_;
+  Judge* judge_;
+  double stop_at_;
+  Run& run_;
+  FrameTimes frames_;
+  int block_ = 1;  // steps that are timed as one
+  double cpu_begin_ = 0;
+  Clock::time_point begin_;
+};
 
 bool PointRunner::overstrained(double strain, double stop_at, Run& run) const {
   if (backend_.knob == inextensible::Knob::none || strain <= stop_at) return false;
@@ -91,6 +121,23 @@ bool PointRunner::overstrained(double strain, double stop_at, Run& run) const {
   run.detail = "strain " + std::to_string(strain) + " at step " +
                std::to_string(run.stepper->work().steps - 1);
   return true;
+}
+
+void PointRunner::tell_end(const Driven& driven, double time, Run& run) const {
+  if (driven.end == Driven::End::arrived || run.status != PointStatus::ok) return;
+  if (driven.end == Driven::End::refused) {
+    run.status = driven.result.status == Status::not_finite ? PointStatus::diverged
+                                                            : PointStatus::not_converged;
+    run.detail = refusal(driven.result, run.stepper->work().steps, time);
+    if (spec_.adaptive) run.detail += "; at the smallest step, " + number_text(driven.next) + " s";
+    return;
+  }
+  const bool slow = driven.end == Driven::End::stopped;
+  run.status = PointStatus::timeout;
+  std::ostringstream text;
+  text << "longer than " << (slow ? limits_.hopeless : limits_.timeout) << " s"
+       << (slow ? ", far above the best time so far" : "") << "; stopped at t = " << time << " s";
+  run.detail = text.str();
 }
 
 Run PointRunner::run(const inextensible::Settings& settings, bool judged, double stop_at,
@@ -107,52 +154,17 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
     run.stepper->observe(judge->observer());
     run.observed = judge->observer() != nullptr;
   }
-  inextensible::State state = first_state_;
-  std::optional<inextensible::StepController> controller;
-  if (spec_.adaptive)
-    controller.emplace(*run.stepper, inextensible::StepController::Settings{.largest = spec_.step});
+  State state = first_state_;
   beat(0, 0);
-  FrameTimes frames(spec_.step);
-  int block = 1;  // steps that are timed as one
+  Look look(*this, judge ? &*judge : nullptr, stop_at, run);
   // Between blocks there is little but reads of the clock; the judge takes longer than steps do.
   const double cpu_begin = thread_seconds();
-  for (int i = 0; i < steps_;) {
-    if (judge) judge->before(state, spec_.step);
-    inextensible::StepResult result;
-    bool whole = true;
-    int taken = 0;
-    const double cpu_before = judged ? thread_seconds() : cpu_begin;
-    const auto before = Clock::now();
-    for (int k = 0; k < block && i < steps_; ++k, ++taken) {
-      result = controller ? controller->advance(state) : run.stepper->advance(state, spec_.step);
-      if (!result) break;
-      whole = !controller || controller->aligned();
-      if (whole) ++i;
-      beat(i, state.time);
-    }
-    const double seconds = since(before);
-    run.seconds += seconds;
-    if (judged) run.cpu_seconds += thread_seconds() - cpu_before;
-    if (taken > 0)
-      frames.add(controller ? 1 : taken, spec_.step, state.time - first_state_.time, seconds);
-    if (!judged && seconds < shortest_block) block *= 2;
-    if (!result) {
-      refuse(result, state.time, run);
-      if (controller)
-        run.detail += "; at the smallest step, " + number_text(controller->next()) + " s";
-      break;
-    }
-    if (controller) run.smallest_step = controller->smallest();
-    if (judge) {
-      const double strain = judge->after(run.stepper->filtered_positions(), state,
-                                         controller ? controller->last() : spec_.step, whole);
-      if (overstrained(strain, stop_at, run)) break;
-    }
-    if (limits_.interrupted && limits_.interrupted()) throw Interrupted();
-    if (i < steps_ && timed_out(state.time, run)) break;
-  }
+  const Driven driven =
+      drive(*run.stepper, state, {spec_.step, steps_, spec_.adaptive ? usual_halvings : 0}, look,
+            {limits_.timeout, start_, limits_.interrupted});
   if (!judged) run.cpu_seconds = thread_seconds() - cpu_begin;
-  run.frame_times = frames.summary();
+  tell_end(driven, state.time, run);
+  run.frame_times = look.frame_times();
   if (judge) {
     run.stepper->observe(nullptr);
     run.measures = judge->finish();
@@ -197,17 +209,10 @@ void PointRunner::decide(const Judge& judge, Run& run) const {
 double PointRunner::bare_seconds_per_step() const {
   const auto stepper = inextensible::make_stepper(
       spec_.solver, scene_.problem, {spec_.strain_limit, spec_.seed, {}, &first_state_});
-  inextensible::State state = first_state_;
+  State state = first_state_;
   const auto before = Clock::now();
   for (int i = 0; i < steps_; ++i) stepper->advance(state, spec_.step);
   return since(before) / steps_;
-}
-
-double PointRunner::force_of_a_strand() const {
-  double length = 0;
-  for (const double l : scene_.problem->rest_length()) length += l;
-  const double strands = std::max(1.0, std::round(length / scene_.size));
-  return energy_scale(scene_) / scene_.size / strands;
 }
 
 void PointRunner::restart_clock(RunPart part) {
@@ -216,7 +221,7 @@ void PointRunner::restart_clock(RunPart part) {
 }
 
 // Where this run is, for the process that watches over it. In whatever order it sees that.
-void PointRunner::beat(int step, double time) const {
+void PointRunner::beat(long step, double time) const {
   if (!limits_.heartbeat) return;
   limits_.heartbeat->step.store(step, std::memory_order_relaxed);
   limits_.heartbeat->time.store(time, std::memory_order_relaxed);

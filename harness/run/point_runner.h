@@ -5,8 +5,9 @@
 #include <string>
 
 #include "harness/base/clock.h"
+#include "harness/judge/drive.h"
 #include "harness/judge/judge.h"
-#include "harness/run/runner.h"
+#include "harness/run/measure_point.h"
 #include "solvers/registry.h"
 
 namespace harness {
@@ -44,24 +45,20 @@ class PointRunner {
   void restart_clock(RunPart part);
   const inextensible::Backend& backend() const { return backend_; }
   const PointSpec& spec() const { return spec_; }
+  const Scene& scene() const { return scene_; }
   int steps() const { return steps_; }
   double seconds_per_step(const Run& run) const { return run.seconds / steps_; }
-  // N, of the forces in this scene: the weight, and for what flies without one m v^2 / (2 size);
-  // shared by as many strands as there are lengths of the scene in its edges, one in a chain, two
-  // for each row of a cloth.
-  double force_of_a_strand() const;
 
  private:
   // The status of a run that reached its end: what kept it from being one of this motion.
   void decide(const Judge& judge, Run& run) const;
   Judge::Options judging(bool errors) const;  // errors: and what is measured beside them
-  // Whether the run has taken too long by now; if so, says it in its status.
-  bool timed_out(double time, Run& run) const;
-  // Of a step that was refused.
-  static void refuse(const inextensible::StepResult& result, double time, Run& run);
+  class Look;
+  // Says in the run's status why its drive ended before the scene did.
+  void tell_end(const Driven& driven, double time, Run& run) const;
   // Whether the strain of a step ends the run; if so, says it in its status.
   bool overstrained(double strain, double stop_at, Run& run) const;
-  void beat(int step, double time) const;
+  void beat(long step, double time) const;
 
   const PointSpec& spec_;
   const RunLimits& limits_;

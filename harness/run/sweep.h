@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "harness/run/measure_point.h"
 #include "harness/run/plan.h"
-#include "harness/run/runner.h"
 
 namespace harness {
 

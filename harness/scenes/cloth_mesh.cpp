@@ -83,6 +83,79 @@ std::vector<Pairing> pairings(const std::vector<Eigen::Vector3d>& x,
   return all;
 }
 
+// A mesh being cut: each side into n, and faces accordingly.
+struct Refinement {
+  const ClothMesh& mesh;
+  int n;
+  ClothMesh fine = {mesh.vertices, {}, {}};
+  std::map<Side, int> first_on = {};  // of n - 1 new vertices from the lower end on
+
+  double part(int i) const { return static_cast<double>(i) / n; }
+
+  int add(const Eigen::Vector3d& x) {
+    fine.vertices.push_back(x);
+    return static_cast<int>(fine.vertices.size()) - 1;
+  }
+
+  int on_side(int a, int b, int i) {  // i of n parts from a to b
+    if (i == 0) return a;
+    if (i == n) return b;
+    const Side s = side(a, b);
+    const auto [found, fresh] = first_on.try_emplace(s, static_cast<int>(fine.vertices.size()));
+    if (fresh) {
+      for (int k = 1; k < n; ++k)
+        add((1 - part(k)) * mesh.vertices[s.first] + part(k) * mesh.vertices[s.second]);
+    }
+    return found->second + (a == s.first ? i : n - i) - 1;
+  }
+
+  int in_quad(const std::array<int, 4>& corners, int i, int j) {
+    const auto [a, b, c, d] = corners;
+    if (i == 0) return on_side(a, b, j);
+    if (i == n) return on_side(d, c, j);
+    if (j == 0) return on_side(a, d, i);
+    if (j == n) return on_side(b, c, i);
+    const auto& x = mesh.vertices;
+    const double u = part(i), v = part(j);
+    return add((1 - u) * ((1 - v) * x[a] + v * x[b]) + u * ((1 - v) * x[d] + v * x[c]));
+  }
+
+  int in_triangle(const std::array<int, 3>& corners, int i, int j) {  // i parts to b, j to c
+    const auto [a, b, c] = corners;
+    if (j == 0) return on_side(a, b, i);
+    if (i == 0) return on_side(a, c, j);
+    if (i + j == n) return on_side(b, c, j);
+    const auto& x = mesh.vertices;
+    const double u = part(i), v = part(j);
+    return add((1 - u - v) * x[a] + u * x[b] + v * x[c]);
+  }
+
+  void cut(const std::array<int, 4>& quad) {
+    std::vector<std::vector<int>> at(n + 1, std::vector<int>(n + 1));
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; j <= n; ++j) at[i][j] = in_quad(quad, i, j);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j)
+        fine.quads.push_back({at[i][j], at[i][j + 1], at[i + 1][j + 1], at[i + 1][j]});
+    }
+  }
+
+  void cut(const std::array<int, 3>& triangle) {
+    std::map<std::pair<int, int>, int> known;
+    const auto at = [&](int i, int j) {
+      const auto [found, fresh] = known.try_emplace({i, j}, 0);
+      if (fresh) found->second = in_triangle(triangle, i, j);
+      return found->second;
+    };
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; i + j < n; ++j) {
+        fine.triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+        if (i + j + 1 < n) fine.triangles.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+      }
+    }
+  }
+};
+
 }  // namespace
 
 ClothMesh cloth_of(const MeshFile& file, const std::string& path) {
@@ -116,72 +189,10 @@ ClothMesh cloth_of(const MeshFile& file, const std::string& path) {
 
 ClothMesh refined(const ClothMesh& mesh, int n) {
   if (n == 1) return mesh;
-  ClothMesh fine;
-  fine.vertices = mesh.vertices;
-  std::map<Side, int> first_on;                    // of n - 1 new vertices from the lower end on
-  const auto on_side = [&](int a, int b, int i) {  // i of n parts from a to b
-    if (i == 0) return a;
-    if (i == n) return b;
-    const Side s = side(a, b);
-    const auto [found, fresh] = first_on.try_emplace(s, static_cast<int>(fine.vertices.size()));
-    if (fresh) {
-      for (int k = 1; k < n; ++k) {
-        const double part = static_cast<double>(k) / n;
-        fine.vertices.emplace_back((1 - part) * mesh.vertices[s.first] +
-                                   part * mesh.vertices[s.second]);
-      }
-    }
-    return found->second + (a == s.first ? i : n - i) - 1;
-  };
-  for (const auto& [a, b, c, d] : mesh.quads) {
-    std::vector<std::vector<int>> at(n + 1, std::vector<int>(n + 1));
-    for (int i = 0; i <= n; ++i) {
-      for (int j = 0; j <= n; ++j) {
-        if (i == 0) {
-          at[i][j] = on_side(a, b, j);
-        } else if (i == n) {
-          at[i][j] = on_side(d, c, j);
-        } else if (j == 0) {
-          at[i][j] = on_side(a, d, i);
-        } else if (j == n) {
-          at[i][j] = on_side(b, c, i);
-        } else {
-          const double u = static_cast<double>(i) / n, v = static_cast<double>(j) / n;
-          at[i][j] = static_cast<int>(fine.vertices.size());
-          fine.vertices.emplace_back((1 - u) * ((1 - v) * mesh.vertices[a] + v * mesh.vertices[b]) +
-                                     u * ((1 - v) * mesh.vertices[d] + v * mesh.vertices[c]));
-        }
-      }
-    }
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < n; ++j)
-        fine.quads.push_back({at[i][j], at[i][j + 1], at[i + 1][j + 1], at[i + 1][j]});
-    }
-  }
-  for (const auto& triangle : mesh.triangles) {
-    const int a = triangle[0], b = triangle[1], c = triangle[2];
-    std::map<std::pair<int, int>, int> inside;
-    const auto at = [&](int i, int j) {  // i parts from a to b, j from a to c
-      if (j == 0) return on_side(a, b, i);
-      if (i == 0) return on_side(a, c, j);
-      if (i + j == n) return on_side(b, c, j);
-      const auto [found, fresh] =
-          inside.try_emplace({i, j}, static_cast<int>(fine.vertices.size()));
-      if (fresh) {
-        const double u = static_cast<double>(i) / n, v = static_cast<double>(j) / n;
-        fine.vertices.emplace_back((1 - u - v) * mesh.vertices[a] + u * mesh.vertices[b] +
-                                   v * mesh.vertices[c]);
-      }
-      return found->second;
-    };
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; i + j < n; ++j) {
-        fine.triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
-        if (i + j + 1 < n) fine.triangles.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
-      }
-    }
-  }
-  return fine;
+  Refinement refinement{mesh, n};
+  for (const auto& quad : mesh.quads) refinement.cut(quad);
+  for (const auto& triangle : mesh.triangles) refinement.cut(triangle);
+  return refinement.fine;
 }
 
 std::vector<Side> sides_of_quads(const ClothMesh& mesh) {

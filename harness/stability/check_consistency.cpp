@@ -1,3 +1,4 @@
+#include "harness/judge/drive.h"
 #include "harness/judge/reference.h"
 #include "harness/scenes/pendulum.h"
 #include "harness/stability/checks.h"
@@ -7,7 +8,6 @@ namespace harness {
 using inextensible::Knob;
 using inextensible::Positions;
 using inextensible::State;
-using inextensible::StepResult;
 
 Findings check_consistency(const Examinee& solver) {
   const char* check = "consistency";
@@ -25,14 +25,13 @@ Findings check_consistency(const Examinee& solver) {
     fine.limit = 1e-6;
     const auto stepper = solver.stepper(fine);
     State state = c.scene.start;
-    for (int i = 0; i < refinement * c.steps; ++i) {
-      if (const StepResult result = stepper->advance(state, c.step / refinement); !result)
-        return {
-            judged(false, check,
-                   text("not measured: refuses h = 1/", 250 * refinement,
-                        " s on a falling chain of 8 at strain limit 1e-6: ", result.detail),
-                   "an easy scene; look at the iteration limit and at what ends the iteration")};
-    }
+    const Driven driven = drive(*stepper, state, {c.step / refinement, refinement * c.steps});
+    if (driven.end == Driven::End::refused)
+      return {
+          judged(false, check,
+                 text("not measured: refuses h = 1/", 250 * refinement,
+                      " s on a falling chain of 8 at strain limit 1e-6: ", driven.result.detail),
+                 "an easy scene; look at the iteration limit and at what ends the iteration")};
     ends.push_back(state.x);
   }
   const double coarse = rms_distance(c.scene, ends[0], ends[2]),

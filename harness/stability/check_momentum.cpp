@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "harness/judge/measures.h"
+#include "harness/judge/drive.h"
+#include "harness/judge/mechanics.h"
 #include "harness/stability/checks.h"
 
 namespace harness {
@@ -29,11 +31,14 @@ double loss_of_spin(const Examinee& solver, const Case& c, double step, double& 
   double scale = 0;
   for (Eigen::Index i = 0; i < state.v.cols(); ++i)
     scale += problem.mass()[i] * state.v.col(i).norm();
-  for (int i = 0; i < std::lround(momentum_duration / step); ++i) {
-    const Vector3d before = linear_momentum(problem, state.v);
-    if (!stepper->advance(state, step)) return std::numeric_limits<double>::infinity();
-    linear = std::max(linear, (linear_momentum(problem, state.v) - before).norm() / scale);
-  }
+  Vector3d before = linear_momentum(problem, state.v);
+  const auto look = [&](const State& now, const Driven& /*driven*/) {
+    const Vector3d after = linear_momentum(problem, now.v);
+    linear = std::max(linear, (after - std::exchange(before, after)).norm() / scale);
+    return true;
+  };
+  const Driven driven = drive(*stepper, state, {step, std::lround(momentum_duration / step)}, look);
+  if (driven.end == Driven::End::refused) return std::numeric_limits<double>::infinity();
   return (angular_momentum(problem, state) - start).norm() / (scale * c.scene.size);
 }
 

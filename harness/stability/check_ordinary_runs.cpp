@@ -2,9 +2,9 @@
 #include <functional>
 
 #include "harness/base/text.h"
-#include "harness/judge/measures.h"
+#include "harness/judge/drive.h"
+#include "harness/judge/mechanics.h"
 #include "harness/stability/checks.h"
-#include "solvers/stepping/step_controller.h"
 
 namespace harness {
 
@@ -13,7 +13,6 @@ using inextensible::Positions;
 using inextensible::Problem;
 using inextensible::State;
 using inextensible::Stepper;
-using inextensible::StepResult;
 using inextensible::WorkCounters;
 
 namespace {
@@ -58,31 +57,30 @@ void look(const Case& c, const Stepper& stepper, const State& state, Ordinary& a
   }
 }
 
-void drive(const Examinee& solver, const Case& c, Ordinary& all) {
+void take_steps(const Examinee& solver, const Case& c, Ordinary& all) {
   const auto stepper = solver.stepper(c);
-  inextensible::StepController controller(*stepper, {.largest = c.step, .most_halvings = 10});
   State state = c.scene.start;
   std::int64_t accepted = 0;
-  while (state.time < (c.steps - 0.5) * c.step || !controller.aligned()) {
-    const std::vector<std::int64_t> before = counts_of(stepper->work());
-    const StepResult result = controller.advance(state);
-    if (!result) {
-      all.stopped = text(c.name, " at t = ", state.time, " s, steps down to ", controller.next(),
-                         " s: ", to_string(result.status), ", ", result.detail);
-      return;
-    }
+  std::vector<std::int64_t> before = counts_of(stepper->work());
+  const auto look_on = [&](const State& now, const Driven& driven) {
     ++accepted;
     ++all.steps;
-    if (controller.last() < c.step) ++all.smaller;
-    look(c, *stepper, state, all);
+    if (driven.last < c.step) ++all.smaller;
+    look(c, *stepper, now, all);
     const std::vector<std::int64_t> after = counts_of(stepper->work());
     const bool falls =
         !std::equal(before.begin(), before.end(), after.begin(), std::less_equal<>());
     if (all.wrong_count.empty() &&
-        (falls || stepper->work().steps != accepted || result.iterations < 0))
+        (falls || stepper->work().steps != accepted || driven.result.iterations < 0))
       all.wrong_count = text(falls ? "a counter fell" : "steps or iterations are wrong", " at ",
                              c.name, ", step ", accepted);
-  }
+    before = after;
+    return true;
+  };
+  const Driven driven = drive(*stepper, state, {c.step, c.steps, 10}, look_on);
+  if (driven.end == Driven::End::refused)
+    all.stopped = text(c.name, " at t = ", state.time, " s, steps down to ", driven.next,
+                       " s: ", to_string(driven.result.status), ", ", driven.result.detail);
 }
 
 }  // namespace
@@ -95,7 +93,7 @@ Findings check_ordinary_runs(const Examinee& solver) {
   Ordinary all;
   std::string stopped;
   for (const Case& c : cases) {
-    drive(solver, c, all);
+    take_steps(solver, c, all);
     if (stopped.empty()) stopped = all.stopped;
   }
   Findings findings;

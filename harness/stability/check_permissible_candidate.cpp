@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <variant>
 
-#include "harness/judge/measures.h"
+#include "harness/judge/mechanics.h"
 #include "harness/stability/checks.h"
 #include "solvers/problem/forces.h"
 

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "harness/base/text.h"
-#include "harness/judge/measures.h"
+#include "harness/judge/mechanics.h"
 #include "harness/stability/case_parts.h"
 #include "solvers/problem/forces.h"
 #include "solvers/registry.h"

@@ -5,9 +5,9 @@
 #include <sstream>
 
 #include "harness/base/clock.h"
+#include "harness/judge/drive.h"
 #include "harness/stability/trial_judge.h"
 #include "solvers/registry.h"
-#include "solvers/stepping/step_controller.h"
 
 namespace harness {
 namespace {
@@ -23,48 +23,63 @@ inextensible::Settings settings_of(const Trial& trial, const inextensible::Backe
   return settings;
 }
 
-// One attempt, with or without the step controller.
+// Disturbs and judges the steps of an attempt.
+struct TrialLook : Onlooker {
+  const Trial& trial;
+  const inextensible::Stepper& stepper;
+  TrialJudge& judge;
+  TrialResult& result;
+  std::optional<Outcome> outcome = {};
+  std::int64_t factorizations = 0;  // before the step
+
+  int before(State& state, const Driven& driven) {
+    if (trial.disturb && driven.whole) trial.disturb(state, static_cast<int>(driven.steps));
+    judge.before(state);
+    factorizations = stepper.work().factorizations;
+    return 1;
+  }
+
+  bool after(const State& state, const Driven& driven) {
+    if (stepper.work().factorizations > factorizations) {
+      const double condition = stepper.reciprocal_condition();
+      if (!(condition >= result.reciprocal_condition)) result.reciprocal_condition = condition;
+    }
+    outcome = judge.after(stepper.filtered_positions(), state, driven.last, result);
+    return !outcome;
+  }
+};
+
+std::string refusal(const inextensible::StepResult& step, std::int64_t number) {
+  std::ostringstream text;
+  text << "step " << number << ": " << inextensible::to_string(step.status) << ", " << step.detail;
+  if (step.worst_edge >= 0) text << "; edge " << step.worst_edge;
+  return text.str();
+}
+
+// One attempt, at the trial's own step or with smaller ones where it is refused.
 Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::uint64_t seed,
-                bool controlled, TrialResult& result) {
+                bool smaller, TrialResult& result) {
   const auto begin = Clock::now();
   inextensible::check_state(*trial.scene.problem, trial.scene.start);
   const auto stepper = inextensible::make_stepper(
       backend.name, trial.scene.problem, {trial.strain_limit, seed, settings_of(trial, backend)});
-  inextensible::StepController controller(
-      *stepper, {.largest = trial.step, .most_halvings = controlled ? 10 : 0});
   State state = trial.scene.start;
   TrialJudge judge(trial, backend);
-  std::optional<Outcome> outcome;
-  const double timeout = controlled ? trial.timeout_smaller : trial.timeout;
-  for (int i = 0; i < trial.steps && !outcome;) {
-    if (trial.disturb && controller.aligned()) trial.disturb(state, i);
-    judge.before(state);
-    const auto factorizations = stepper->work().factorizations;
-    const auto step = controller.advance(state);
-    if (!step) {
-      std::ostringstream text;
-      text << "step " << stepper->work().steps << ": " << inextensible::to_string(step.status)
-           << ", " << step.detail;
-      if (step.worst_edge >= 0) text << "; edge " << step.worst_edge;
-      result.detail = text.str();
-      outcome = Outcome::refused;
-      break;
-    }
-    if (stepper->work().factorizations > factorizations) {
-      const double condition = stepper->reciprocal_condition();
-      if (!(condition >= result.reciprocal_condition)) result.reciprocal_condition = condition;
-    }
-    outcome = judge.after(stepper->filtered_positions(), state, controller.last(), result);
-    if (controller.aligned()) ++i;
-    if (!outcome && i < trial.steps && since(begin) > timeout) {
-      result.detail = "stopped after " + std::to_string(stepper->work().steps) + " steps";
-      outcome = Outcome::timeout;
-    }
-  }
-  if (!outcome) outcome = judge.finish(result);
+  TrialLook look{{}, trial, *stepper, judge, result};
+  const Driven driven = drive(*stepper, state, {trial.step, trial.steps, smaller ? 10 : 0}, look,
+                              {smaller ? trial.timeout_smaller : trial.timeout, begin});
   result.work = stepper->work();
-  if (controlled) result.smallest_step = controller.smallest();
-  return outcome.value_or(Outcome::survived);
+  if (smaller) result.smallest_step = driven.smallest;
+  if (driven.end == Driven::End::refused) {
+    result.detail = refusal(driven.result, result.work.steps);
+    return Outcome::refused;
+  }
+  if (driven.end == Driven::End::timed_out) {
+    result.detail = "stopped after " + std::to_string(result.work.steps) + " steps";
+    return Outcome::timeout;
+  }
+  if (!look.outcome) look.outcome = judge.finish(result);
+  return look.outcome.value_or(Outcome::survived);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "harness/base/text.h"
-#include "harness/judge/measures.h"
+#include "harness/judge/mechanics.h"
 #include "solvers/problem/forces.h"
 
 namespace harness {

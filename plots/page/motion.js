@@ -45,8 +45,9 @@
 
   function decoded(film) {
     if (film.x) return film;
-    const bytes = Uint8Array.from(atob(film.positions), (letter) => letter.charCodeAt(0));
-    const whole = new Uint16Array(bytes.buffer);
+    const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    const whole = new Uint16Array(bytes(film.positions).buffer);
+    film.strainUnits = bytes(film.strains);
     film.x = new Float32Array(whole.length);
     for (let i = 0; i < whole.length; ++i) film.x[i] = film.low[i % 3] + whole[i] / 65535 * film.span[i % 3];
     let begin = 0;
@@ -125,13 +126,8 @@
       if (film.body.length) {
         drawMesh(body, bodyNormals, new Float32Array(body.length).fill(0.62), new Uint16Array(film.body_triangles.flat()), gl.TRIANGLES);
       }
-      const most = new Float32Array(n), tints = new Float32Array(3 * n);
-      film.edges.forEach(([a, b], k) => {
-        const strain = Math.abs(Math.hypot(x[3 * b] - x[3 * a], x[3 * b + 1] - x[3 * a + 1], x[3 * b + 2] - x[3 * a + 2]) / film.rest_length[k] - 1) / take.strain_limit;
-        most[a] = Math.max(most[a], strain);
-        most[b] = Math.max(most[b], strain);
-      });
-      for (let v = 0; v < n; ++v) colour(most[v], tints, 3 * v);
+      const tints = new Float32Array(3 * n);
+      for (let v = 0; v < n; ++v) colour(film.strainUnits[begin / 3 + v] * film.strain_unit, tints, 3 * v);
       if (film.triangles.length) {
         drawMesh(x, normalsOf(x, film.triangles), tints, new Uint16Array(film.triangles.flat()), gl.TRIANGLES);
       } else {

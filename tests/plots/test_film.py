@@ -29,9 +29,10 @@ def recorded(folder: Path, stretched: float = 1.0, chain: bool = False, body: bo
                                   for t in ([a, a + 1, a + n], [a + n + 1, a + 1, a + n])]
     takes = [np.stack([flat - [0, 0.1 * frame, 0] for frame in range(3)]), np.stack([flat * stretched] * 3)]
     np.concatenate(takes).astype("<f4").tofile(folder / "film.f32")
+    np.repeat([0, min(255, round(60 * abs(stretched - 1) / 0.01))], 3 * count).astype("u1").tofile(folder / "film.u8")
     tetrahedron = [[0, -1, 0], [1, -1.2, 0], [0, -1.2, 1], [0, -2, 0]]
     header = {"schema": "inextensible-film/1", "scene": "falling", "scene_parameters": {}, "step": 0.01, "frames_per_second": 10,
-              "vertices": count, "triangles": triangles, "edges": edges, "rest_length": [1 / (n - 1)] * len(edges),
+              "vertices": count, "triangles": triangles, "edges": edges, "strain_unit": 1 / 60,
               "body": tetrahedron if body else [], "body_triangles": [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] if body else [],
               "body_poses": [[0, 0, 1, frame, 0, 1, 0, 0, -1, 0, 0, 0] for frame in range(3)] if moves else [],
               "takes": [{"solver": name, "label": name, "strain_limit": 0.01, "detail": "", "frames": 3,

@@ -72,6 +72,20 @@ std::array<int, 3> pixel(const Pixels& pixels, const Eigen::Vector2d& seen) {
   return {rgb[0], rgb[1], rgb[2]};
 }
 
+// One corner is drawn away by 2 % of an edge along its row, twice the limit; 60 units are the limit.
+TEST(Recordings, HoldTheStrainOfEachVertexOverTheLimit) {
+  Recording recording = flat_square(4);
+  recording.takes[0].frames[0](0, 0) -= 0.02 / 3;
+  const TemporaryFolder folder("strains");
+  write_recording(folder.path(), recording);
+  std::ifstream file(folder.path() + "/film.u8", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  std::string expected(16, '\0');
+  expected[0] = expected[1] = 120;
+  expected[4] = 1;  // its column's edge is turned, and longer by (0.02)^2 / 2
+  EXPECT_EQ(bytes, expected);
+}
+
 TEST(Pictures, OfFlatClothHaveOneShade) {
   const Recording recording = flat_square(12);
   const View view = view_of_all(recording);

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <memory>
 
-#include "harness/judge/measures.h"
+#include "harness/judge/mechanics.h"
 
 namespace harness {
 namespace {

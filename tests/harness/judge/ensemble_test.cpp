@@ -11,13 +11,13 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/interrupt.h"
+#include "harness/judge/drive.h"
 #include "harness/judge/ensemble_runs.h"
 #include "harness/judge/judge.h"
-#include "harness/judge/measures.h"
+#include "harness/judge/mechanics.h"
 #include "harness/judge/reference_file.h"
 #include "solvers/problem/forces.h"
 #include "solvers/registry.h"
-#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 namespace {
@@ -176,13 +176,15 @@ Measures judged(const SmallDrape& drape, const Scene& moved_by, double h) {
   Judge judge(drape.scene, options);
   const auto stepper =
       inextensible::make_stepper("fast_projection", moved_by.problem, {1e-4, 1, {}});
-  State state = inextensible::start_half_step_back(*moved_by.problem, moved_by.start, h);
-  const long steps = std::lround(drape.scene.duration / h);
-  for (long i = 0; i < steps; ++i) {
-    judge.before(state, h);
-    EXPECT_TRUE(stepper->advance(state, h));
-    judge.after(state.x, state, h);
-  }
+  State state = start_of(moved_by, *inextensible::find_backend("fast_projection"), h);
+  judge.before(state, h);
+  const auto look = [&](const State& now, const Driven& /*driven*/) {
+    judge.after(now.x, now, h);
+    judge.before(now, h);
+    return true;
+  };
+  drive(*stepper, state, {h, std::lround(drape.scene.duration / h)}, look);
+  EXPECT_NEAR(state.time, drape.scene.duration, 1e-9);
   return judge.finish();
 }
 

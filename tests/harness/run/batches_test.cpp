@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/points/point_json.h"
-#include "harness/run/runner.h"
+#include "harness/run/measure_point.h"
 
 namespace harness {
 namespace {

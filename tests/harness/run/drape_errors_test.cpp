@@ -4,7 +4,7 @@
 #include <string>
 
 #include "harness/judge/reference.h"
-#include "harness/run/runner.h"
+#include "harness/run/measure_point.h"
 #include "solvers/registry.h"
 
 namespace harness {

@@ -10,7 +10,7 @@
 
 #include "harness/judge/ensemble_runs.h"
 #include "harness/judge/reference_file.h"
-#include "harness/run/runner.h"
+#include "harness/run/measure_point.h"
 
 namespace harness {
 namespace {

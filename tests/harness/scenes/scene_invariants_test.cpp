@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "harness/judge/measures.h"
+#include "harness/judge/mechanics.h"
 #include "harness/scenes/scene.h"
 #include "solvers/problem/forces.h"
 #include "solvers/problem/triangle_collider.h"

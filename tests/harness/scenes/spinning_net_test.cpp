@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "harness/judge/drive.h"
 #include "harness/judge/reference.h"
 #include "harness/scenes/scene.h"
 #include "solvers/registry.h"
-#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 namespace {
@@ -58,13 +58,9 @@ std::vector<double> step_angles(const char* solver, double h,
 double error_after_a_second(const char* solver, double h) {
   const Scene scene = net();
   const auto stepper = inextensible::make_stepper(solver, scene.problem, {1e-11, 1, {}});
-  const bool half =
-      inextensible::find_backend(solver)->velocities == inextensible::Velocities::half_step;
-  State state =
-      half ? inextensible::start_half_step_back(*scene.problem, scene.start, h) : scene.start;
-  for (int i = 0; (i + 0.5) * h < 1; ++i) {
-    if (!stepper->advance(state, h)) return std::nan("");
-  }
+  State state = start_of(scene, *inextensible::find_backend(solver), h);
+  if (drive(*stepper, state, {h, std::lround(1 / h)}).end != Driven::End::arrived)
+    return std::nan("");
   return rms_distance(scene, state.x, find_scene("spinning_net")->exact(parameters(), 1));
 }
 

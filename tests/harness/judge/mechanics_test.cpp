@@ -1,5 +1,5 @@
 // Strain, momentum and energy against figures found by hand.
-#include "harness/judge/measures.h"
+#include "harness/judge/mechanics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "harness/run/runner.h"
+#include "harness/run/measure_point.h"
 
 #include <algorithm>
 #include <fstream>
@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "harness/judge/measures.h"
+#include "harness/judge/mechanics.h"
 #include "harness/run/calibration.h"
 #include "harness/run/point_runner.h"
 #include "harness/run/quiet_samples.h"
@@ -18,10 +18,6 @@ namespace {
 // A shorter judged step is timed again without the judge.
 constexpr double shortest_judged_step = 5e-5;  // s: four phases and the step itself are timed
 constexpr double least_filter_sample = 0.005;  // s, of a run with short steps
-
-// What a strand of springs bears, in what falls to it of the forces of the scene: strain = tension
-// / EA. On a falling chain the tension is a few times its weight.
-constexpr double tension_over_force = 5;
 
 // Peak resident size of this process since the last reset; 0 where the system does not tell.
 void reset_peak_rss() { std::ofstream("/proc/self/clear_refs") << 5; }
@@ -140,8 +136,8 @@ bool calibrate(PointResult& point, PointRunner& runner, inextensible::Settings& 
     const Run run = runner.run(settings, true, Calibration::cut_short * spec.strain_limit);
     return {run.status, run.measures.max_strain, run.seconds, run.detail};
   });
-  point.stiffness = calibration.find(
-      guess.value_or(tension_over_force * runner.force_of_a_strand() / spec.strain_limit));
+  point.stiffness =
+      calibration.find(guess.value_or(first_stiffness(runner.scene(), spec.strain_limit)));
   point.calibration_seconds = since(begin);
   point.calibration_runs = calibration.runs();
   if (!point.stiffness) {

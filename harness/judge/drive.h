@@ -1,0 +1,123 @@
+// Drives a scene: where a method starts it, and its steps to the end, for whatever looks on.
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <type_traits>
+
+#include "harness/base/clock.h"
+#include "harness/base/interrupt.h"
+#include "harness/scenes/scene.h"
+#include "solvers/registry.h"
+#include "solvers/stepping/step_controller.h"
+
+namespace harness {
+
+// Where a method begins to take steps of h seconds: half a step back where its velocities are those
+// of the middle of a step.
+inextensible::State start_from(const inextensible::Problem& problem,
+                               const inextensible::State& state,
+                               const inextensible::Backend& backend, double h);
+// The same from the scene's start, where the scene asks for that.
+inextensible::State start_of(const Scene& scene, const inextensible::Backend& backend, double h);
+
+struct Pace {
+  double step;       // s
+  long steps;        // of a drive
+  int halvings = 0;  // how often a step that is refused may be halved
+};
+
+inline constexpr int usual_halvings = inextensible::StepController::Settings{}.most_halvings;
+
+struct DriveLimits {
+  double timeout = std::numeric_limits<double>::infinity();  // s of wall time, since `begin`
+  Clock::time_point begin = Clock::now();
+  std::function<bool()> interrupted = nullptr;
+};
+
+// A drive so far, and how it ended.
+struct Driven {
+  enum class End { arrived, stopped, refused, timed_out };
+  End end = End::arrived;
+  long steps = 0;                        // of the pace, whole ones
+  bool whole = true;                     // the last one taken ends such a step
+  int taken = 0;                         // whole or halved, since `before`
+  inextensible::StepResult result = {};  // of the last one
+  double last, smallest, next;           // s, of those taken and of the next one
+};
+
+// What looks on at a drive, and hides what it needs of this.
+struct Onlooker {
+  // How many steps to take before `after`. May change the state.
+  int before(inextensible::State& /*state*/, const Driven& /*driven*/) { return 1; }
+  // After each of them; after all of them, and after a refusal.
+  void each(const inextensible::State& /*state*/, const Driven& /*driven*/) {}
+  void all(const inextensible::State& /*state*/, const Driven& /*driven*/) {}
+  // Not after a refusal. Whether to go on.
+  bool after(const inextensible::State& /*state*/, const Driven& /*driven*/) { return true; }
+};
+
+// Takes the steps of a pace from a state on, up to a refusal, which leaves the state as it was. The
+// limits are looked at after each `after`. Throws Interrupted.
+template <std::derived_from<Onlooker> Look>
+Driven drive(inextensible::Stepper& stepper, inextensible::State& state, const Pace& pace,
+             Look& look, const DriveLimits& limits = {}) {
+  using inextensible::StepController;
+  std::optional<StepController> controller;
+  if (pace.halvings > 0)
+    controller.emplace(
+        stepper, StepController::Settings{.largest = pace.step, .most_halvings = pace.halvings});
+  Driven driven{.last = pace.step, .smallest = pace.step, .next = pace.step};
+  while (driven.steps < pace.steps) {
+    const int block = look.before(state, driven);
+    for (driven.taken = 0; driven.taken < block && driven.steps < pace.steps; ++driven.taken) {
+      driven.result = controller ? controller->advance(state) : stepper.advance(state, pace.step);
+      if (!driven.result) break;
+      driven.whole = !controller || controller->aligned();
+      if (driven.whole) ++driven.steps;
+      look.each(state, driven);
+    }
+    look.all(state, driven);
+    if (controller) {
+      driven.last = controller->last();
+      driven.smallest = controller->smallest();
+      driven.next = controller->next();
+    }
+    if (!driven.result) {
+      driven.end = Driven::End::refused;
+    } else if (!look.after(state, driven)) {
+      driven.end = Driven::End::stopped;
+    } else if (limits.interrupted && limits.interrupted()) {
+      throw Interrupted();
+    } else if (driven.steps < pace.steps && since(limits.begin) > limits.timeout) {
+      driven.end = Driven::End::timed_out;
+    } else {
+      continue;
+    }
+    break;
+  }
+  return driven;
+}
+
+inline Driven drive(inextensible::Stepper& stepper, inextensible::State& state, const Pace& pace,
+                    const DriveLimits& limits = {}) {
+  Onlooker nobody;
+  return drive(stepper, state, pace, nobody, limits);
+}
+
+// Where a function is all that looks on: called after each step, it returns whether to go on.
+template <std::predicate<const inextensible::State&, const Driven&> After>
+Driven drive(inextensible::Stepper& stepper, inextensible::State& state, const Pace& pace,
+             After after, const DriveLimits& limits = {}) {
+  struct Look : Onlooker {
+    After& call;
+    explicit Look(After& a) : call(a) {}
+    bool after(const inextensible::State& now, const Driven& driven) { return call(now, driven); }
+  } look(after);
+  return drive(stepper, state, pace, look, limits);
+}
+
+}  // namespace harness

@@ -1,0 +1,121 @@
+// How drives end, and what their onlookers see, with a stepper that refuses long steps.
+#include "harness/judge/drive.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "support/scenes.h"
+
+namespace harness {
+namespace {
+
+using inextensible::Backend;
+using inextensible::Positions;
+using inextensible::State;
+using inextensible::StepResult;
+using testing::build;
+using End = Driven::End;
+
+constexpr double h = 0.01;
+
+class Picky : public inextensible::Stepper {
+ public:
+  Picky(const Scene& scene, double longest, double until = 1e9)
+      : Stepper(scene.problem), longest_(longest), until_(until) {}
+
+ protected:
+  StepResult solve(const State& state, double step, Positions& x) override {
+    if (step > longest_ || state.time > until_) return {inextensible::Status::not_converged};
+    x = state.x;
+    return {};
+  }
+
+ private:
+  double longest_, until_;  // s
+};
+
+struct Driving {
+  Scene scene = build("chain", {{"n", 3}});
+  State state = scene.start;
+};
+
+TEST(Drive, TakesTheStepsOfItsPaceInBlocks) {
+  struct : Onlooker {
+    std::vector<int> blocks;
+    std::vector<long> counted;
+    int looks = 0;
+    int before(State& /*state*/, const Driven& /*driven*/) { return 3; }
+    void each(const State& /*state*/, const Driven& driven) { counted.push_back(driven.steps); }
+    void all(const State& /*state*/, const Driven& driven) { blocks.push_back(driven.taken); }
+    bool after(const State& /*state*/, const Driven& /*driven*/) { return ++looks > 0; }
+  } look;
+  Driving d;
+  Picky stepper(d.scene, 1);
+  const Driven driven = drive(stepper, d.state, {h, 7}, look);
+  EXPECT_EQ(driven.end, End::arrived);
+  EXPECT_EQ(look.blocks, (std::vector<int>{3, 3, 1}));
+  EXPECT_EQ(look.counted, (std::vector<long>{1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(look.looks, 3);
+  EXPECT_NEAR(d.state.time, 7 * h, 1e-12);
+}
+
+TEST(Drive, EndsWithARefusalThatNobodyLooksAt) {
+  Driving d;
+  Picky stepper(d.scene, 1, 2.5 * h);
+  int looks = 0;
+  const Driven driven = drive(stepper, d.state, {h, 7}, [&](auto&&...) { return ++looks > 0; });
+  EXPECT_EQ(driven.end, End::refused);
+  EXPECT_EQ(driven.result.status, inextensible::Status::not_converged);
+  EXPECT_EQ(driven.steps, 3);
+  EXPECT_EQ(looks, 3);
+  EXPECT_NEAR(d.state.time, 3 * h, 1e-12);
+}
+
+TEST(Drive, HalvesStepsAsOftenAsItMay) {
+  for (const int halvings : {1, 2}) {
+    Driving d;
+    Picky stepper(d.scene, h / 4);
+    int part = 0;
+    const Driven driven =
+        drive(stepper, d.state, {h, 2, halvings}, [&](const State&, const Driven& so_far) {
+          ++part;
+          EXPECT_EQ(so_far.whole, part % 4 == 0);
+          EXPECT_EQ(so_far.steps, part / 4);
+          return true;
+        });
+    EXPECT_EQ(driven.end, halvings == 1 ? End::refused : End::arrived);
+    EXPECT_EQ(part, halvings == 1 ? 0 : 8);
+    if (halvings == 1) EXPECT_EQ(driven.next, h / 2) << "was refused as well";
+    EXPECT_EQ(driven.smallest, halvings == 1 ? h : h / 4);
+  }
+}
+
+TEST(Drive, StopsWhereItIsToldTo) {
+  Driving d;
+  Picky stepper(d.scene, 1);
+  const auto three = [](const State&, const Driven& driven) { return driven.steps < 3; };
+  EXPECT_EQ(drive(stepper, d.state, {h, 7}, three).end, End::stopped);
+  const Driven late = drive(stepper, d.state, {h, 7}, {.timeout = -1});
+  EXPECT_EQ(late.end, End::timed_out);
+  EXPECT_EQ(late.steps, 1);
+  EXPECT_EQ(drive(stepper, d.state, {h, 1}, {.timeout = -1}).end, End::arrived);
+  EXPECT_THROW(drive(stepper, d.state, {h, 7}, {.interrupted = [] { return true; }}), Interrupted);
+}
+
+// The chain begins to fall freely: half a step back it rises at g h / 2.
+TEST(Drive, StartsHalfAStepBackWhereVelocitiesAndSceneAskForIt) {
+  Scene chain = build("chain", {{"n", 3}});
+  Backend backend = *inextensible::find_backend("null");
+  backend.velocities = inextensible::Velocities::half_step;
+  EXPECT_NEAR(start_of(chain, backend, h).v(1, 2), 0.5 * 9.81 * h, 1e-12);
+  EXPECT_EQ(start_of(chain, backend, h).x, chain.start.x);
+  chain.staggered = false;
+  EXPECT_EQ(start_of(chain, backend, h).v, chain.start.v);
+  chain.staggered = true;
+  backend.velocities = inextensible::Velocities::whole_step;
+  EXPECT_EQ(start_of(chain, backend, h).v, chain.start.v);
+}
+
+}  // namespace
+}  // namespace harness
