@@ -17,7 +17,7 @@ using inextensible::StepResult;
 using testing::build;
 using End = Driven::End;
 
-constexpr double h = 0.01;
+constexpr double whole_step = 0.01;
 
 class Picky : public inextensible::Stepper {
  public:
@@ -52,33 +52,34 @@ TEST(Drive, TakesTheStepsOfItsPaceInBlocks) {
   } look;
   Driving d;
   Picky stepper(d.scene, 1);
-  const Driven driven = drive(stepper, d.state, {h, 7}, look);
+  const Driven driven = drive(stepper, d.state, {whole_step, 7}, look);
   EXPECT_EQ(driven.end, End::arrived);
   EXPECT_EQ(look.blocks, (std::vector<int>{3, 3, 1}));
   EXPECT_EQ(look.counted, (std::vector<long>{1, 2, 3, 4, 5, 6, 7}));
   EXPECT_EQ(look.looks, 3);
-  EXPECT_NEAR(d.state.time, 7 * h, 1e-12);
+  EXPECT_NEAR(d.state.time, 7 * whole_step, 1e-12);
 }
 
 TEST(Drive, EndsWithARefusalThatNobodyLooksAt) {
   Driving d;
-  Picky stepper(d.scene, 1, 2.5 * h);
+  Picky stepper(d.scene, 1, 2.5 * whole_step);
   int looks = 0;
-  const Driven driven = drive(stepper, d.state, {h, 7}, [&](auto&&...) { return ++looks > 0; });
+  const Driven driven =
+      drive(stepper, d.state, {whole_step, 7}, [&](auto&&...) { return ++looks > 0; });
   EXPECT_EQ(driven.end, End::refused);
   EXPECT_EQ(driven.result.status, inextensible::Status::not_converged);
   EXPECT_EQ(driven.steps, 3);
   EXPECT_EQ(looks, 3);
-  EXPECT_NEAR(d.state.time, 3 * h, 1e-12);
+  EXPECT_NEAR(d.state.time, 3 * whole_step, 1e-12);
 }
 
 TEST(Drive, HalvesStepsAsOftenAsItMay) {
   for (const int halvings : {1, 2}) {
     Driving d;
-    Picky stepper(d.scene, h / 4);
+    Picky stepper(d.scene, whole_step / 4);
     int part = 0;
     const Driven driven =
-        drive(stepper, d.state, {h, 2, halvings}, [&](const State&, const Driven& so_far) {
+        drive(stepper, d.state, {whole_step, 2, halvings}, [&](const State&, const Driven& so_far) {
           ++part;
           EXPECT_EQ(so_far.whole, part % 4 == 0);
           EXPECT_EQ(so_far.steps, part / 4);
@@ -86,8 +87,10 @@ TEST(Drive, HalvesStepsAsOftenAsItMay) {
         });
     EXPECT_EQ(driven.end, halvings == 1 ? End::refused : End::arrived);
     EXPECT_EQ(part, halvings == 1 ? 0 : 8);
-    if (halvings == 1) EXPECT_EQ(driven.next, h / 2) << "was refused as well";
-    EXPECT_EQ(driven.smallest, halvings == 1 ? h : h / 4);
+    if (halvings == 1) {
+      EXPECT_EQ(driven.next, whole_step / 2) << "was refused as well";
+    }
+    EXPECT_EQ(driven.smallest, halvings == 1 ? whole_step : whole_step / 4);
   }
 }
 
@@ -95,12 +98,13 @@ TEST(Drive, StopsWhereItIsToldTo) {
   Driving d;
   Picky stepper(d.scene, 1);
   const auto three = [](const State&, const Driven& driven) { return driven.steps < 3; };
-  EXPECT_EQ(drive(stepper, d.state, {h, 7}, three).end, End::stopped);
-  const Driven late = drive(stepper, d.state, {h, 7}, {.timeout = -1});
+  EXPECT_EQ(drive(stepper, d.state, {whole_step, 7}, three).end, End::stopped);
+  const Driven late = drive(stepper, d.state, {whole_step, 7}, {.timeout = -1});
   EXPECT_EQ(late.end, End::timed_out);
   EXPECT_EQ(late.steps, 1);
-  EXPECT_EQ(drive(stepper, d.state, {h, 1}, {.timeout = -1}).end, End::arrived);
-  EXPECT_THROW(drive(stepper, d.state, {h, 7}, {.interrupted = [] { return true; }}), Interrupted);
+  EXPECT_EQ(drive(stepper, d.state, {whole_step, 1}, {.timeout = -1}).end, End::arrived);
+  EXPECT_THROW(drive(stepper, d.state, {whole_step, 7}, {.interrupted = [] { return true; }}),
+               Interrupted);
 }
 
 // The chain begins to fall freely: half a step back it rises at g h / 2.
@@ -108,13 +112,13 @@ TEST(Drive, StartsHalfAStepBackWhereVelocitiesAndSceneAskForIt) {
   Scene chain = build("chain", {{"n", 3}});
   Backend backend = *inextensible::find_backend("null");
   backend.velocities = inextensible::Velocities::half_step;
-  EXPECT_NEAR(start_of(chain, backend, h).v(1, 2), 0.5 * 9.81 * h, 1e-12);
-  EXPECT_EQ(start_of(chain, backend, h).x, chain.start.x);
+  EXPECT_NEAR(start_of(chain, backend, whole_step).v(1, 2), 0.5 * 9.81 * whole_step, 1e-12);
+  EXPECT_EQ(start_of(chain, backend, whole_step).x, chain.start.x);
   chain.staggered = false;
-  EXPECT_EQ(start_of(chain, backend, h).v, chain.start.v);
+  EXPECT_EQ(start_of(chain, backend, whole_step).v, chain.start.v);
   chain.staggered = true;
   backend.velocities = inextensible::Velocities::whole_step;
-  EXPECT_EQ(start_of(chain, backend, h).v, chain.start.v);
+  EXPECT_EQ(start_of(chain, backend, whole_step).v, chain.start.v);
 }
 
 }  // namespace
