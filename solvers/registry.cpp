@@ -17,6 +17,7 @@
 #include "solvers/methods/rattle_suzuki.h"
 #include "solvers/methods/shake.h"
 #include "solvers/methods/strips.h"
+#include "solvers/methods/vertex_block_descent.h"
 #include "solvers/methods/xpbd_small_steps.h"
 
 namespace inextensible {
@@ -42,6 +43,7 @@ std::vector<Backend> built_in() {
       xpbd_small_steps_row(),
       fast_projection_bdf2opt_row(),
       rattle_suzuki_row(),
+      vertex_block_descent_row(),
       null_row(),
       oracle_row(),
   };

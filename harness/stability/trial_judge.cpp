@@ -30,7 +30,7 @@ TrialJudge::TrialJudge(const Trial& trial, const inextensible::Backend& backend)
       problem_(*trial.scene.problem),
       limit_promised_(backend.knob == inextensible::Knob::strain_limit),
       mass_(problem_.total_mass()),
-      free_(problem_.pinned().empty() && !problem_.collider()),
+      free_(backend.conserves_momentum && problem_.pinned().empty() && !problem_.collider()),
       energy_(problem_, energy_scale(trial.scene), backend.velocities) {
   judged_ = trial.energy_tolerance >= 0 && !trial.disturb && energy_.scale() > 0;
   // What a start that violates the limit releases is known after the first step.

@@ -92,6 +92,10 @@ struct Backend {
   // others.
   bool takes_bending = true, takes_drag = true, takes_implicit_forces = true;
   Velocities velocities = Velocities::half_step;
+  // Whether only what acts from outside changes linear momentum, and a step's forces act along
+  // edges, however far the method iterates. One that moves vertices one by one, or lets forces turn
+  // towards their edges, has that at convergence only.
+  bool conserves_momentum = true;
 };
 
 // The part of the problem that the method does not take, in words; null: it takes all.

@@ -1,0 +1,126 @@
+// G(x) = 1/2 |x - (x^n + h v^n + h^2 g)|_M^2 + h^2 V(x), V = stretch and shear springs, one
+// vertex after the other: x_i += H_i^-1 f_i. A spring's negative stiffness across its direction is
+// dropped, as implicit_springs does: the paper's Hessian is indefinite under compression. No line
+// search, as in the paper. Momentum is conserved only as far as the iteration has converged: a pass
+// moves vertices one by one.
+//
+// A vertex in contact takes the minimum within its plane. Loops: one over vertices a pass.
+#include "solvers/methods/vertex_block_descent.h"
+
+#include <algorithm>
+
+namespace inextensible {
+namespace {
+
+constexpr int most_contact_rounds = 30;
+
+Springs all_springs(const Problem& problem, double stiffness) {
+  Springs all = problem.shear() ? *problem.shear() : Springs{};
+  for (int k = 0; k < problem.constraints(); ++k) {
+    all.edges.push_back(problem.edges()[k]);
+    all.rest_length.push_back(problem.rest_length()[k]);
+    all.stiffness.push_back(stiffness / problem.rest_length()[k]);
+  }
+  return all;
+}
+
+}  // namespace
+
+VertexBlockDescent::VertexBlockDescent(std::shared_ptr<const Problem> shared,
+                                       const Settings& settings)
+    : Stepper(std::move(shared)),
+      iterations_(settings.iterations),
+      passes_(problem(), all_springs(problem(), settings.stiffness)),
+      inertial_(3, problem().vertices()),
+      inertia_(problem().mass()),
+      v_before_(3, problem().vertices()) {}
+
+// The paper's adaptive initialization: gravity counts as far as the last step's acceleration
+// says that nothing bears it; the first step starts from the free flight.
+void VertexBlockDescent::start(const State& state, double h, Positions& x) const {
+  x = inertial_;
+  const double gravity = problem().gravity().norm();
+  if (h_before_ == 0 || gravity == 0) return;
+  const Eigen::Vector3d down = problem().gravity() / gravity;
+  for (int v = 0; v < problem().vertices(); ++v) {
+    if (problem().inverse_mass()[v] == 0) continue;
+    const double fall = down.dot(state.v.col(v) - v_before_.col(v)) / h_before_;
+    x.col(v) = state.x.col(v) + h * state.v.col(v) + h * h * std::clamp(fall, 0.0, gravity) * down;
+  }
+}
+
+StepResult VertexBlockDescent::solve(const State& state, double h, Positions& x) {
+  Stopwatch stopwatch(phases_wanted_);
+  const Eigen::Vector3d fall = h * h * problem().gravity();
+  inertial_ = state.x + h * state.v;
+  inertial_.colwise() += fall;
+  for (const int vertex : problem().pinned()) inertial_.col(vertex) = state.x.col(vertex);
+  for (int v = 0; problem().has_drag() && v < problem().vertices(); ++v) {
+    const double mass = problem().mass()[v], drag = h * problem().drag(v);
+    inertia_[v] = mass + drag;
+    inertial_.col(v) += drag / (mass + drag) * (state.x.col(v) - inertial_.col(v));
+  }
+  Contacts* contacts = contacts_inside();
+  if (contacts) {
+    contacts->apply_friction(inertial_, work_);
+    contacts->find(inertial_, work_);
+  }
+  start(state, h, x);
+  if (contacts) contacts->find(x, work_);
+  passes_.load(x, inertial_, inertia_);
+  StepResult result;
+  for (int round = 0;; ++round) {
+    passes_.set_planes(contacts);
+    for (int i = 0; i < iterations_; ++i) passes_.visit_all(h * h);
+    result.iterations += iterations_;
+    work_.spring_evaluations += std::int64_t{iterations_} * passes_.entries();
+    passes_.store(x);
+    if (!passes_.finite())
+      return {Status::not_finite, result.iterations, -1, 0, "a position overflowed"};
+    if (!contacts) break;
+    passes_.read_pushes(*contacts);
+    if (contacts->find(x, work_) == 0) break;
+    if (round == most_contact_rounds) {
+      return {Status::not_converged, result.iterations, -1, 0,
+              "ever more vertices in the obstacle"};
+    }
+  }
+  phases_.unconstrained += stopwatch();
+  return result;
+}
+
+// The history is of accepted steps, so that one tried again after a refusal starts as it did.
+StepResult VertexBlockDescent::end_velocities(const State& before, double h,
+                                              const Positions& filtered, const Positions& x,
+                                              Positions& v) {
+  v_before_ = before.v;
+  h_before_ = h;
+  return Stepper::end_velocities(before, h, filtered, x, v);
+}
+
+SettingFields<VertexBlockDescent::Settings> VertexBlockDescent::fields() {
+  using S = Settings;
+  return {{"stiffness", &S::stiffness, "spring stiffness EA in N; sweeps search it", positive},
+          {"iterations", &S::iterations, "passes over all vertices a step", at_least_one,
+           SearchRange{20, 500}}};
+}
+
+Backend vertex_block_descent_row() {
+  return {.name = "vertex_block_descent",
+          .summary = "backward Euler on stiff springs, a number of passes over single vertices",
+          .knob = Knob::stiffness,
+          .contestant = false,
+          .settings = setting_infos(VertexBlockDescent::fields()),
+          .make = [](std::shared_ptr<const Problem> problem,
+                     const BackendOptions& options) -> std::unique_ptr<Stepper> {
+            return std::make_unique<VertexBlockDescent>(std::move(problem),
+                                                        settings_of<VertexBlockDescent>(options));
+          },
+          .direction = Direction::springs,
+          .citation = "Chen et al. 2024",
+          .label = "vertex block descent",
+          .takes_bending = false,
+          .conserves_momentum = false};
+}
+
+}  // namespace inextensible
