@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "solvers/methods/augmented_vbd.h"
 #include "solvers/methods/dense_oracle.h"
 #include "solvers/methods/fast_projection.h"
 #include "solvers/methods/fast_projection_adaptive.h"
@@ -44,6 +45,7 @@ std::vector<Backend> built_in() {
       fast_projection_bdf2opt_row(),
       rattle_suzuki_row(),
       vertex_block_descent_row(),
+      augmented_vbd_row(),
       null_row(),
       oracle_row(),
   };

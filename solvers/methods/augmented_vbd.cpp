@@ -1,0 +1,87 @@
+// An iteration is one pass over vertices with f_k = r_k C_k + mu_k along each edge, C_k = d_k -
+// l_k, and mu_k += r_k C_k after it: the paper's hard constraints, mu = h^2 lambda. Two departures
+// from it. The penalty r_k stays at the inertia's scale, 1 / (w_a + w_b), instead of growing
+// without end, which leaves passes that converge. And as C is what is judged, all of it is
+// corrected, not only what the step added (the paper's alpha is 0), so that nothing is left for a
+// stabilization afterwards. A step ends at the closest point of Goldenthal et al. 2007, Theorem 1,
+// where it is iterated to the end: C = 0, and M (x - x0) + J^T mu = 0 at x itself.
+//
+// Multipliers start from the last accepted step's forces, and vertices from where these would take
+// the candidate: what is at rest is solved before the first pass. Loops: two over vertices and
+// the ends of their edges a pass.
+#include "solvers/methods/augmented_vbd.h"
+
+namespace inextensible {
+namespace {
+
+Springs penalties(const Problem& problem, double penalty) {
+  Springs springs{problem.edges(), problem.rest_length(), {}};
+  for (const auto [a, b] : problem.edges())
+    springs.stiffness.push_back(penalty / (problem.inverse_mass()[a] + problem.inverse_mass()[b]));
+  return springs;
+}
+
+}  // namespace
+
+AugmentedVbd::AugmentedVbd(const Problem& problem, const Settings& settings)
+    : problem_(problem),
+      edges_(problem, settings.strain_limit),
+      strain_limit_(settings.strain_limit),
+      max_iterations_(settings.max_iterations),
+      most_(settings.direction_tolerance * settings.strain_limit * problem.shortest_rest_length() /
+            settings.penalty),
+      passes_(problem, penalties(problem, settings.penalty)),
+      target_(3, problem.vertices()),
+      tension_(passes_.tensions()) {}
+
+StepResult AugmentedVbd::apply(const Positions& /*x_start*/, double h, Iterate x,
+                               WorkCounters& work) {
+  if (edges_.permissible(x)) return {Status::ok, 0};
+  target_ = x;
+  Contacts* contacts = x.contacts();
+  for (int c = 0; c < x.touching(); ++c)
+    target_.col(contacts->vertex(c)) -= contacts->push(c) * contacts->normal(c);
+  passes_.load(x, target_, problem_.mass());
+  passes_.set_planes(contacts);
+  passes_.tensions() = h * h * tension_;
+  passes_.follow_tensions();
+  for (int j = 1; j <= max_iterations_; ++j) {
+    const bool still = passes_.visit_all(1) <= most_ * most_;
+    work.edge_projections += problem_.constraints();
+    const bool ends = passes_.update_tensions(strain_limit_) && still;
+    if (!ends && (j % 64 != 0 || passes_.finite())) continue;
+    passes_.store(x);
+    if (!edges_.permissible(x)) return refuse(Status::not_converged, j, edges_, x, "overflow");
+    tension_ = passes_.tensions() / (h * h);
+    if (contacts) passes_.read_pushes(*contacts);
+    return {Status::ok, j};
+  }
+  passes_.store(x);
+  return refuse(Status::not_converged, max_iterations_, edges_, x, "pass limit");
+}
+
+SettingFields<AugmentedVbd::Settings> AugmentedVbd::fields() {
+  using S = Settings;
+  return {
+      {"max_iterations", &S::max_iterations, "passes a step before it is refused", at_least_one},
+      {"penalty", &S::penalty, "stiffness of an edge over that of its ends' inertia", positive,
+       SearchRange{1, 20}},
+      {"direction_tolerance", &S::direction_tolerance,
+       "last move of a vertex, times penalty, in strain limit times shortest rest length", positive,
+       SearchRange{0.5, 3}}};
+}
+
+Backend augmented_vbd_row() {
+  return {.name = "augmented_vbd",
+          .summary = "hard lengths by the method of multipliers, in passes over single vertices",
+          .knob = Knob::strain_limit,
+          .contestant = false,
+          .settings = setting_infos(AugmentedVbd::fields()),
+          .make = make_filter_stepper<AugmentedVbd>,
+          .direction = Direction::end,
+          .citation = "Giles, Diaz and Yuksel 2025",
+          .label = "augmented VBD",
+          .conserves_momentum = false};
+}
+
+}  // namespace inextensible
