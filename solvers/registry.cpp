@@ -14,6 +14,7 @@
 #include "solvers/methods/implicit_springs.h"
 #include "solvers/methods/jacobi.h"
 #include "solvers/methods/null_filter.h"
+#include "solvers/methods/projective_dynamics.h"
 #include "solvers/methods/rattle.h"
 #include "solvers/methods/rattle_suzuki.h"
 #include "solvers/methods/shake.h"
@@ -46,6 +47,7 @@ std::vector<Backend> built_in() {
       rattle_suzuki_row(),
       vertex_block_descent_row(),
       augmented_vbd_row(),
+      projective_dynamics_row(),
       null_row(),
       oracle_row(),
   };

@@ -19,7 +19,10 @@ constexpr double gravity = 9.81, short_step = 1.0 / 400;
 
 Settings stiff_enough(const char* solver) {
   Settings settings;
-  if (find_backend(solver)->knob == Knob::stiffness) settings["stiffness"] = 1e6;
+  for (const SettingInfo& setting : find_backend(solver)->settings) {
+    if (setting.name == std::string("stiffness")) settings["stiffness"] = 1e6;
+    if (setting.name == std::string("penalty")) settings["direction_tolerance"] = 0.1;
+  }
   return settings;
 }
 
@@ -155,7 +158,8 @@ TEST_P(Friction, OfARopeRoundAPostGrowsAsTheCapstanEquationSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Friction,
-                         ::testing::Values("implicit_springs", "gauss_seidel_colored", "shake",
+                         ::testing::Values("implicit_springs", "augmented_vbd",
+                                           "projective_dynamics", "gauss_seidel_colored", "shake",
                                            "icd", "fast_projection", "strips"));
 
 }  // namespace

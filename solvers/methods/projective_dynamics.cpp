@@ -1,0 +1,267 @@
+// The step minimizes 1/2 |x - x0|_M^2 with |z_k| = l_k for z_k = x_b - x_a, by the alternating
+// direction method of multipliers with weights r_k (kg; D: the differences x_b - x_a):
+//   (M + D^T r D) x = M x0 + D^T r (z - u),
+//   z_k = l_k (D x + u)_k / |(D x + u)_k|,   u += D x - z.
+// Its fixed points are those of ICD (Goldenthal et al. 2007), r u = h^2 times an
+// edge's force. As r is at the inertia's scale, h is not in the matrix, which is one for x, y and
+// z. A step starts from the last accepted one's forces.
+//
+// Each iterate conserves linear momentum. u turns towards its edge as z does, so that angular
+// momentum is conserved as far as the iteration has converged.
+//
+// With contact inside, a vertex that touches is one more term, z_v = x_v within its half-space, and
+// the others pull towards where they are, so that the matrix stays. Loops: three solves, one pass
+// over edges, an iteration.
+#include "solvers/methods/projective_dynamics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/linear/spd_solvers.h"
+#include "solvers/systems/vertex_blocks.h"
+
+namespace inextensible {
+namespace {
+
+constexpr double contact_weight = 1;  // of a vertex's own term, times its mass
+
+}  // namespace
+
+ProjectiveDynamics::ProjectiveDynamics(const Problem& problem, const Settings& settings)
+    : problem_(problem),
+      edges_(problem, settings.strain_limit),
+      max_iterations_(settings.max_iterations),
+      most_(settings.direction_tolerance * settings.strain_limit / settings.penalty),
+      most_push_(settings.direction_tolerance * settings.strain_limit *
+                 problem.shortest_rest_length()),
+      shortest_(std::max(1 - settings.target * settings.strain_limit, 0.0)),
+      longest_(1 + settings.target * settings.strain_limit),
+      place_(problem.vertices(), -1),
+      target_(3, problem.vertices()) {
+  for (const auto [a, b] : problem.edges()) {
+    weight_.push_back(settings.penalty / (problem.inverse_mass()[a] + problem.inverse_mass()[b]));
+  }
+  choose_solver(settings.linear_solver);
+  rhs_.resize(static_cast<Eigen::Index>(free_vertex_.size()), 3);
+  if (problem.contact_inside()) anchor_.resize(3, problem.vertices());
+  z_.resize(3, problem.constraints());
+  u_.resize(3, problem.constraints());
+  last_u_.setZero(3, problem.constraints());
+}
+
+// Which vertices of `order` share an edge, as a matrix in that order.
+SymmetricPattern ProjectiveDynamics::graph_of(const std::vector<int>& order, bool one_chain) {
+  free_vertex_ = order;
+  std::vector<Edge> pairs;
+  for (int f = 0; f < static_cast<int>(order.size()); ++f) {
+    place_[order[f]] = f;
+    // Where one chain ends and the next begins the matrix holds zeros.
+    if (one_chain && f > 0) pairs.push_back({f - 1, f});
+  }
+  for (const auto [a, b] : problem_.edges()) {
+    if (place_[a] >= 0 && place_[b] >= 0) pairs.push_back({place_[a], place_[b]});
+  }
+  return vertex_graph(static_cast<int>(order.size()), pairs);
+}
+
+void ProjectiveDynamics::choose_solver(std::string_view wanted) {
+  std::vector<int> order;
+  for (int v = 0; v < problem_.vertices(); ++v) {
+    if (problem_.inverse_mass()[v] > 0) order.push_back(v);
+  }
+  SymmetricPattern graph = graph_of(order, true);
+  linear_solver_ = wanted != "auto"      ? std::string(wanted)
+                   : graph.tridiagonal() ? "tridiagonal"
+                                         : "cholmod_simplicial";
+  if (spd_solver(linear_solver_).fills) {
+    const std::vector<int> elimination = fill_reducing_order(graph_of(order, false));
+    for (std::size_t f = 0; f < order.size(); ++f) order[f] = free_vertex_[elimination[f]];
+    graph = graph_of(order, false);
+  }
+  const bool upper = triangle_of(linear_solver_) == SymmetricPattern::Triangle::upper;
+  pattern_ = upper ? graph : lower_triangle(graph);
+  solver_ = make_spd_solver(linear_solver_, pattern_);
+}
+
+// M + D^T r D, once.
+bool ProjectiveDynamics::factor(WorkCounters& work) {
+  if (factored_) return true;
+  double* value = solver_->values();
+  std::fill(value, value + pattern_.entries(), 0.0);
+  const auto add = [&](int f, int g, double number) {
+    if (f < 0 || g < 0) return;
+    const bool upper = pattern_.triangle == SymmetricPattern::Triangle::upper;
+    const int low = std::min(f, g), high = std::max(f, g);
+    const int row = upper ? low : high, column = upper ? high : low;
+    const int* first = pattern_.row_index.data();
+    const int* place = std::lower_bound(first + pattern_.column_start[column],
+                                        first + pattern_.column_start[column + 1], row);
+    value[place - first] += number;
+  };
+  const double scale = problem_.contact_inside() ? 1 + contact_weight : 1;
+  for (std::size_t f = 0; f < free_vertex_.size(); ++f) {
+    const int i = static_cast<int>(f);
+    add(i, i, scale * problem_.mass()[free_vertex_[f]]);
+  }
+  for (int k = 0; k < problem_.constraints(); ++k) {
+    const int a = place_[problem_.edges()[k].a], b = place_[problem_.edges()[k].b];
+    add(a, a, weight_[k]);
+    add(b, b, weight_[k]);
+    add(a, b, -weight_[k]);
+  }
+  ++work.assemblies;
+  ++work.factorizations;
+  factored_ = solver_->factor();
+  work.factor_nonzeros = solver_->factor_nonzeros();
+  work.factor_flops = solver_->factor_flops();
+  return factored_;
+}
+
+// z_k towards x_b - x_a + u_k. Without a direction it keeps the one that it had.
+void ProjectiveDynamics::project_edge(int k, const Eigen::Vector3d& sum) {
+  const double l = edges_.rest_length[k], norm = sum.norm();
+  if (norm > 0) z_.col(k) = std::clamp(norm, shortest_ * l, longest_ * l) / norm * sum;
+}
+
+// z and u; whether all edges of x keep the limit, and z has come to rest.
+bool ProjectiveDynamics::project_edges(const Positions& x) {
+  int violations = 0;
+  for (int k = 0; k < edges_.count(); ++k) {
+    const Eigen::Vector3d d = x.col(edges_.b[k]) - x.col(edges_.a[k]), sum = d + u_.col(k),
+                          before = z_.col(k);
+    const double l = edges_.rest_length[k], square = d.squaredNorm() / (l * l);
+    project_edge(k, sum);
+    u_.col(k) = sum - z_.col(k);
+    const bool fits = square >= edges_.permissible_low && square <= edges_.permissible_high;
+    const bool rests = (z_.col(k) - before).squaredNorm() <= most_ * most_ * l * l;
+    violations += fits && rests ? 0 : 1;
+  }
+  return violations == 0;
+}
+
+// u from the last accepted step's forces, and x where these would take the candidate.
+void ProjectiveDynamics::start(double h, Iterate iterate) {
+  Positions& x = iterate;
+  u_ = h * h * last_u_;
+  for (int k = 0; k < edges_.count(); ++k) {
+    const Eigen::Vector3d force = weight_[k] * u_.col(k);
+    if (edges_.wa[k] > 0) x.col(edges_.a[k]) += edges_.wa[k] * force;
+    if (edges_.wb[k] > 0) x.col(edges_.b[k]) -= edges_.wb[k] * force;
+  }
+  z_.setZero();
+  for (int k = 0; k < edges_.count(); ++k)
+    project_edge(k, x.col(edges_.b[k]) - x.col(edges_.a[k]) + u_.col(k));
+  project_vertices(iterate);
+}
+
+// anchor_ and contacts' pushes: u_v = -push / contact_weight along the normal. Whether pushes have
+// come to rest.
+bool ProjectiveDynamics::project_vertices(Iterate x) {
+  Contacts* contacts = x.contacts();
+  if (!contacts) return true;
+  const Contacts::Timing measured = contacts->timing();
+  bool rest = true;
+  anchor_ = x.positions();
+  for (int c = 0; c < contacts->count(); ++c) {
+    const Eigen::Vector3d normal = contacts->normal(c);
+    const double before = contacts->push(c);
+    auto at = anchor_.col(contacts->vertex(c));
+    at -= before / contact_weight * normal;
+    const double gap = std::min(0.0, contacts->gap(c, at)), push = -contact_weight * gap;
+    contacts->set_push(c, push);
+    at -= 2 * gap * normal;
+    rest &= std::abs(push - before) <= most_push_;
+  }
+  return rest;
+}
+
+void ProjectiveDynamics::solve(Positions& x, WorkCounters& work) {
+  for (std::size_t f = 0; f < free_vertex_.size(); ++f) {
+    const int v = free_vertex_[f];
+    auto row = rhs_.row(static_cast<Eigen::Index>(f));
+    row = problem_.mass()[v] * target_.col(v).transpose();
+    if (problem_.contact_inside())
+      row += contact_weight * problem_.mass()[v] * anchor_.col(v).transpose();
+  }
+  for (int k = 0; k < edges_.count(); ++k) {
+    const int a = place_[edges_.a[k]], b = place_[edges_.b[k]];
+    Eigen::RowVector3d pull = weight_[k] * (z_.col(k) - u_.col(k)).transpose();
+    if (a < 0) pull += weight_[k] * x.col(edges_.a[k]).transpose();
+    if (b < 0) pull -= weight_[k] * x.col(edges_.b[k]).transpose();
+    if (a >= 0) rhs_.row(a) -= pull;
+    if (b >= 0) rhs_.row(b) += pull;
+  }
+  for (int axis = 0; axis < 3; ++axis) solver_->solve(rhs_.col(axis).data());
+  work.back_solves += 3;
+  for (std::size_t f = 0; f < free_vertex_.size(); ++f)
+    x.col(free_vertex_[f]) = rhs_.row(static_cast<Eigen::Index>(f)).transpose();
+}
+
+// Of x within the limit: takes vertices out of their planes, if edges bear it.
+bool ProjectiveDynamics::ends(Iterate x) const {
+  const Contacts* contacts = x.contacts();
+  for (int c = 0; c < x.touching(); ++c) {
+    auto at = x.positions().col(contacts->vertex(c));
+    at -= std::min(0.0, contacts->gap(c, at)) * contacts->normal(c);
+  }
+  return edges_.permissible(x);
+}
+
+StepResult ProjectiveDynamics::apply(const Positions& /*x_start*/, double h, Iterate x,
+                                     WorkCounters& work) {
+  if (edges_.permissible(x)) return {Status::ok, 0};
+  if (!factor(work)) return refuse(Status::singular, 0, edges_, x, "the matrix is singular");
+  target_ = x;
+  for (int c = 0; c < x.touching(); ++c)
+    target_.col(x.contacts()->vertex(c)) -= x.contacts()->push(c) * x.contacts()->normal(c);
+  start(h, x);
+  for (int j = 1; j <= max_iterations_; ++j) {
+    solve(x, work);
+    const bool edges_rest = project_edges(x), vertices_rest = project_vertices(x);
+    if (edges_rest && vertices_rest && ends(x)) {
+      last_u_ = u_ / (h * h);
+      return {Status::ok, j};
+    }
+    if (j % 64 == 0 && !x.positions().allFinite())
+      return refuse(Status::not_converged, j, edges_, x, "overflow");
+  }
+  return refuse(Status::not_converged, max_iterations_, edges_, x, "iteration limit");
+}
+
+SettingFields<ProjectiveDynamics::Settings> ProjectiveDynamics::fields() {
+  using S = Settings;
+  std::vector<const char*> solvers{"auto"};
+  for (const SpdSolverRow& row : spd_solvers()) {
+    if (row.takes != Takes::block_tridiagonal && row.direct && row.precision == Precision::full)
+      solvers.push_back(row.name);
+  }
+  return {{"max_iterations", &S::max_iterations, "iterations a step before it is refused",
+           at_least_one},
+          {"target", &S::target, projection_target, below_limit, tunable_below_limit},
+          {"penalty", &S::penalty, "weight of an edge over that of its ends' inertia", positive,
+           SearchRange{3, 100}},
+          {"direction_tolerance", &S::direction_tolerance,
+           "last move of an edge's projection, times penalty, in strain limit times rest length",
+           positive, SearchRange{0.1, 3}},
+          {"linear_solver",
+           &S::linear_solver,
+           "factorization of the constant matrix",
+           {},
+           {},
+           solvers}};
+}
+
+Backend projective_dynamics_row() {
+  return {.name = "projective_dynamics",
+          .summary = "hard lengths by ADMM: single edges, then one constant linear system",
+          .knob = Knob::strain_limit,
+          .contestant = false,
+          .settings = setting_infos(ProjectiveDynamics::fields()),
+          .make = make_filter_stepper<ProjectiveDynamics>,
+          .direction = Direction::end,
+          .citation = "Liu et al. 2013; Narain, Overby and Brown 2016",
+          .label = "projective dynamics (ADMM)",
+          .conserves_momentum = false};
+}
+
+}  // namespace inextensible

@@ -1,0 +1,127 @@
+// What ADMM converges to, and that its matrix is factored once.
+#include "solvers/methods/projective_dynamics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "solvers/registry.h"
+#include "support/contact.h"
+#include "support/motion.h"
+
+namespace inextensible {
+namespace {
+
+using testing::h;
+using testing::Random;
+using testing::random_mesh;
+using testing::RandomMesh;
+
+// Theorem 1 of Goldenthal et al. 2007, by the dense Newton of the oracle, whatever the weights.
+TEST(ProjectiveDynamics, IteratedToTheEndIsTheClosestPoint) {
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    for (const double penalty : {3.0, 10.0, 30.0}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", penalty " + std::to_string(penalty));
+      Random random(seed);
+      const RandomMesh mesh = random_mesh(random, 4, 4, static_cast<int>(seed % 2));
+      const auto oracle = make_stepper("oracle", mesh.problem, {1e-10, 1, {}});
+      const auto admm =
+          make_stepper("projective_dynamics", mesh.problem, {1e-10, 1, {{"penalty", penalty}}});
+      State state = testing::moving_state(random, mesh, 1);
+      for (int step = 0; step < 5; ++step) {
+        State copy = state;
+        ASSERT_TRUE(oracle->advance(state, h));
+        ASSERT_TRUE(admm->advance(copy, h));
+        EXPECT_LE((copy.x - state.x).cwiseAbs().maxCoeff(), 1e-8) << "step " << step;
+      }
+    }
+  }
+}
+
+TEST(ProjectiveDynamics, IsIcdOnTheGroundToo) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const auto ground =
+        std::make_shared<const testing::Ground>(Eigen::Vector3d(0.1, 1, 0), 0.0, 0.2);
+    const RandomMesh mesh = random_mesh(random, 4, 4, 0, ground);
+    const auto icd = make_stepper("icd", mesh.problem, {1e-9, 1, {}});
+    const auto admm = make_stepper("projective_dynamics", mesh.problem, {1e-9, 1, {}});
+    State state = testing::moving_state(random, mesh, 0.3);
+    state.x.row(1).array() += 0.5;
+    state.v.row(1).array() -= 3;
+    State other = state;
+    for (int step = 0; step < 30; ++step) {
+      ASSERT_TRUE(icd->advance(state, h));
+      ASSERT_TRUE(admm->advance(other, h));
+      ASSERT_LE((other.x - state.x).cwiseAbs().maxCoeff(), 1e-5) << "step " << step;
+    }
+    EXPECT_GT(admm->work().contacts, 0);
+  }
+}
+
+// Inner forces come in equal and opposite pairs, which are parallel to their edges only in the end.
+TEST(ProjectiveDynamics, ConservesLinearMomentumAlwaysAndAngularWhereItHasConverged) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const RandomMesh mesh = random_mesh(random, 4, 5, 0);
+    const Problem& problem = *mesh.problem;
+    const State start = testing::moving_state(random, mesh, 4);
+    const auto spin_lost = [&](double tolerance) {
+      const auto stepper = make_stepper("projective_dynamics", mesh.problem,
+                                        {0.005, 1, {{"direction_tolerance", tolerance}}});
+      State state = start;
+      EXPECT_TRUE(stepper->advance(state, h));
+      EXPECT_GT(stepper->work().iterations, 0);
+      EXPECT_LT(testing::linear_momentum(problem, state.v - start.v).norm(), 1e-10);
+      return testing::angular_momentum(problem, state.x, state.v - start.v).norm();
+    };
+    EXPECT_LT(spin_lost(1e-4), 0.01 * spin_lost(3));
+  }
+}
+
+TEST(ProjectiveDynamics, FactorsOnceWhateverTheSteps) {
+  for (const char* solver : {"auto", "fixed_pattern", "cholmod_supernodal"}) {
+    SCOPED_TRACE(solver);
+    Random random(3);
+    const RandomMesh mesh = random_mesh(random, 5, 6, 1);
+    const auto plain = make_stepper("projective_dynamics", mesh.problem, {1e-3, 1, {}}),
+               other = make_stepper("projective_dynamics", mesh.problem,
+                                    {1e-3, 1, {{"linear_solver", std::string(solver)}}});
+    State state = testing::moving_state(random, mesh, 2), copy = state;
+    for (const double step : {h, h / 2, h, h / 4}) {
+      ASSERT_TRUE(plain->advance(state, step));
+      ASSERT_TRUE(other->advance(copy, step));
+    }
+    EXPECT_EQ(other->work().factorizations, 1);
+    EXPECT_EQ(other->work().back_solves, 3 * other->work().iterations);
+    EXPECT_LT((copy.x - state.x).norm(), 1e-10);
+  }
+}
+
+// A step ends within the limit; the same step again goes on from its forces, and so they end where
+// an edge is strained by `target` times the limit.
+TEST(ProjectiveDynamics, BringsAnEdgeToItsTarget) {
+  ProblemParts parts;
+  parts.gravity.setZero();
+  parts.mass = {1, 3};
+  parts.edges = {{0, 1}};
+  parts.rest_length = {1};
+  const auto problem = std::make_shared<const Problem>(parts);
+  for (const auto& [from, to] : {std::pair{1.3, 1.05}, std::pair{0.8, 0.95}}) {
+    const auto stepper = make_stepper("projective_dynamics", problem, {0.1, 1, {{"target", 0.5}}});
+    double length = 0;
+    for (int i = 0; i < 300; ++i) {
+      State state{Positions::Zero(3, 2), Positions::Zero(3, 2), 0};
+      state.x(0, 1) = from;
+      ASSERT_TRUE(stepper->advance(state, h));
+      length = (state.x.col(1) - state.x.col(0)).norm();
+      EXPECT_LE(std::abs(length - 1), 0.1);
+    }
+    EXPECT_NEAR(length, to, 1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace inextensible
