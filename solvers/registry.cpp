@@ -18,6 +18,7 @@
 #include "solvers/methods/rattle.h"
 #include "solvers/methods/rattle_suzuki.h"
 #include "solvers/methods/shake.h"
+#include "solvers/methods/soft_step.h"
 #include "solvers/methods/strips.h"
 #include "solvers/methods/vertex_block_descent.h"
 #include "solvers/methods/xpbd_small_steps.h"
@@ -48,6 +49,7 @@ std::vector<Backend> built_in() {
       vertex_block_descent_row(),
       augmented_vbd_row(),
       projective_dynamics_row(),
+      soft_step_row(),
       null_row(),
       oracle_row(),
   };

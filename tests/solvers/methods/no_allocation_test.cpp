@@ -72,7 +72,11 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"drape", 15, "fast_projection_adaptive", 0.005},
         Case{"drape", 15, "fast_projection_adaptive_bdf2", 0.005},
         Case{"drape", 15, "shake", 0.001}, Case{"drape", 15, "icd", 0.005},
-        Case{"drape", 15, "implicit_springs", 0.005}),
+        Case{"drape", 15, "implicit_springs", 0.005},
+        Case{"chain", 80, "vertex_block_descent", 0.005},
+        Case{"drape", 15, "vertex_block_descent", 0.005}, Case{"chain", 80, "augmented_vbd", 0.005},
+        Case{"drape", 15, "augmented_vbd", 0.005}, Case{"chain", 80, "projective_dynamics", 0.005},
+        Case{"drape", 15, "projective_dynamics", 0.005}, Case{"chain", 80, "soft_step", 0.001}),
     [](const auto& i) {
       return std::string(i.param.scene) + "_" + i.param.solver + "_" + i.param.linear_solver;
     });

@@ -1,0 +1,117 @@
+// With n_k the directions and C_k the elongations at the start, p_k the impulses, which the last
+// step's forces begin, m_k = 1 / (w_a + w_b), omega = 2 pi frequency / h and zeta the damping
+// (Catto, solver2d, solve_soft_step.c):
+//   s = 2 zeta + h omega,  c = h omega s,  bias = omega / s,
+//   first stage: dp = -m_k c / (1 + c) (n.(v_b - v_a) + bias C_k) - p_k / (1 + c);   x += h v;
+//   second stage: dp = -m_k n.(v_b - v_a).
+// Each step is one of his substeps. He bounds the frequency by 60 Hz, for what is drawn; here the
+// step's own is the bound. Departure: n_k is that of the end in the second stage.
+//
+// At rest p_k is the load times h, and the first stage must leave it: C_k = load / (m_k omega^2).
+// Loops: two passes over edges, in the mesh's order.
+#include "solvers/methods/soft_step.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "solvers/problem/forces.h"
+#include "solvers/problem/stopwatch.h"
+
+namespace inextensible {
+
+SoftStep::SoftStep(std::shared_ptr<const Problem> shared, const Settings& settings)
+    : Stepper(std::move(shared)), passes_(settings.passes), edges_(problem(), 0) {
+  const double angle = 2 * std::numbers::pi * settings.frequency;  // h omega
+  const double s = 2 * settings.damping + angle, c = angle * s;
+  hardness_ = c / (1 + c);
+  give_ = 1 / (1 + c);
+  rate_ = angle / s;
+  n_.resize(3, edges_.count());
+  length_.resize(edges_.count());
+  impulse_.resize(edges_.count());
+  last_force_.setZero(edges_.count());
+}
+
+void SoftStep::directions(const Positions& x) {
+  for (int k = 0; k < edges_.count(); ++k) {
+    n_.col(k) = x.col(edges_.b[k]) - x.col(edges_.a[k]);
+    length_[k] = n_.col(k).norm();
+    if (length_[k] > 0) n_.col(k) /= length_[k];
+  }
+}
+
+// A pinned end is not written to: adding 0 would make -0 of it.
+void SoftStep::pull(int k, double impulse, Positions& x) const {
+  if (edges_.wa[k] > 0) x.col(edges_.a[k]) -= edges_.wa[k] * impulse * n_.col(k);
+  if (edges_.wb[k] > 0) x.col(edges_.b[k]) += edges_.wb[k] * impulse * n_.col(k);
+}
+
+// Velocities are differences to the start of the step, times h.
+StepResult SoftStep::solve(const State& state, double h, Positions& x) {
+  Stopwatch stopwatch(phases_wanted_);
+  unconstrained_step(problem(), state, h, x, work_);
+  phases_.unconstrained += stopwatch();
+  directions(start_positions());
+  impulse_ = h * h * last_force_;
+  for (int k = 0; k < edges_.count(); ++k) pull(k, impulse_[k], x);
+  for (int pass = 0; pass < passes_; ++pass) {
+    for (int k = 0; k < edges_.count(); ++k) {
+      const double way = n_.col(k).dot(x.col(edges_.b[k]) - x.col(edges_.a[k])) - length_[k];
+      const double mass = 1 / (edges_.wa[k] + edges_.wb[k]);
+      const double change =
+          -mass * hardness_ * (way + rate_ * (length_[k] - edges_.rest_length[k])) -
+          give_ * impulse_[k];
+      impulse_[k] += change;
+      pull(k, change, x);
+    }
+  }
+  work_.edge_projections += std::int64_t{passes_} * edges_.count();
+  phases_.filter += stopwatch();
+  return {Status::ok, passes_};
+}
+
+StepResult SoftStep::end_velocities(const State& start, double h, const Positions& /*filtered*/,
+                                    const Positions& x, Positions& v) {
+  v = (x - start.x) * (1 / h);
+  directions(x);
+  for (int pass = 0; pass < passes_; ++pass) {
+    for (int k = 0; k < edges_.count(); ++k) {
+      const double rate = n_.col(k).dot(v.col(edges_.b[k]) - v.col(edges_.a[k]));
+      const double change = -rate / (edges_.wa[k] + edges_.wb[k]);
+      impulse_[k] += h * change;
+      pull(k, change, v);
+    }
+  }
+  work_.edge_projections += std::int64_t{passes_} * edges_.count();
+  if (std::isfinite(v.sum())) last_force_ = impulse_ / (h * h);
+  return {};
+}
+
+SettingFields<SoftStep::Settings> SoftStep::fields() {
+  using S = Settings;
+  return {{"passes", &S::passes, "Gauss-Seidel passes of either stage", at_least_one,
+           SearchRange{1, 8}},
+          {"frequency", &S::frequency, "of an edge's spring, in 1 / step", positive,
+           SearchRange{0.05, 1}},
+          {"damping", &S::damping, "ratio of an edge's spring, 1: critical", positive,
+           SearchRange{1, 20}}};
+}
+
+Backend soft_step_row() {
+  return {.name = "soft_step",
+          .summary = "velocities by Gauss-Seidel, positions by soft springs: small steps do it",
+          .knob = Knob::time_step,
+          .contestant = false,
+          .settings = setting_infos(SoftStep::fields()),
+          .make = [](std::shared_ptr<const Problem> problem,
+                     const BackendOptions& options) -> std::unique_ptr<Stepper> {
+            return std::make_unique<SoftStep>(std::move(problem), settings_of<SoftStep>(options));
+          },
+          .direction = Direction::start,
+          .citation = "Catto 2024",
+          .label = "soft step (TGS)",
+          .takes_collider = false,
+          .takes_implicit_forces = false};
+}
+
+}  // namespace inextensible
