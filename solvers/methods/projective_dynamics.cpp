@@ -72,7 +72,7 @@ void ProjectiveDynamics::choose_solver(std::string_view wanted) {
   SymmetricPattern graph = graph_of(order, true);
   linear_solver_ = wanted != "auto"      ? std::string(wanted)
                    : graph.tridiagonal() ? "tridiagonal"
-                                         : "cholmod_simplicial";
+                                         : "fixed_pattern";
   if (spd_solver(linear_solver_).fills) {
     const std::vector<int> elimination = fill_reducing_order(graph_of(order, false));
     for (std::size_t f = 0; f < order.size(); ++f) order[f] = free_vertex_[elimination[f]];

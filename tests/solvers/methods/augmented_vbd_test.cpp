@@ -12,7 +12,6 @@
 namespace inextensible {
 namespace {
 
-using testing::h;
 using testing::Random;
 using testing::random_mesh;
 using testing::RandomMesh;
@@ -30,8 +29,8 @@ TEST(AugmentedVbd, IteratedToTheEndIsTheClosestPoint) {
       State state = testing::moving_state(random, mesh, 1);
       for (int step = 0; step < 5; ++step) {
         State copy = state;
-        ASSERT_TRUE(oracle->advance(state, h));
-        ASSERT_TRUE(augmented->advance(copy, h));
+        ASSERT_TRUE(oracle->advance(state, testing::h));
+        ASSERT_TRUE(augmented->advance(copy, testing::h));
         EXPECT_LE((copy.x - state.x).cwiseAbs().maxCoeff(), 1e-7) << "step " << step;
       }
     }
@@ -47,7 +46,7 @@ TEST(AugmentedVbd, ConservesMomentumAsFarAsItHasConverged) {
     const auto stepper = make_stepper("augmented_vbd", mesh.problem,
                                       {0.005, 1, {{"direction_tolerance", tolerance}}});
     State state = start;
-    EXPECT_TRUE(stepper->advance(state, h));
+    EXPECT_TRUE(stepper->advance(state, testing::h));
     return testing::linear_momentum(*mesh.problem, state.v - start.v).norm();
   };
   EXPECT_GT(lost(3), 1e-4);
@@ -69,8 +68,8 @@ TEST(AugmentedVbd, IsIcdOnTheGroundToo) {
     state.v.row(1).array() -= 3;
     State other = state;
     for (int step = 0; step < 30; ++step) {
-      ASSERT_TRUE(icd->advance(state, h));
-      ASSERT_TRUE(augmented->advance(other, h));
+      ASSERT_TRUE(icd->advance(state, testing::h));
+      ASSERT_TRUE(augmented->advance(other, testing::h));
       ASSERT_LE((other.x - state.x).cwiseAbs().maxCoeff(), 1e-5) << "step " << step;
     }
     EXPECT_GT(augmented->work().contacts, 0);
@@ -94,9 +93,9 @@ TEST(AugmentedVbd, KeepsTheMultipliersOfTheLastAcceptedStep) {
   const State rest{x, Positions::Zero(3, links + 1), 0};
   const auto stepper = make_stepper("augmented_vbd", problem, {1e-8, 1, {}});
   State state = rest;
-  const StepResult first = stepper->advance(state, h);
+  const StepResult first = stepper->advance(state, testing::h);
   ASSERT_TRUE(first);
-  for (const double step : {h, 2 * h, h / 2}) {
+  for (const double step : {testing::h, 2 * testing::h, testing::h / 2}) {
     state = rest;
     State wild = rest;
     wild.v = 1e300 * Positions::Random(3, links + 1);

@@ -68,9 +68,9 @@ TEST(ProjectiveDynamics, ConservesLinearMomentumAlwaysAndAngularWhereItHasConver
     const RandomMesh mesh = random_mesh(random, 4, 5, 0);
     const Problem& problem = *mesh.problem;
     const State start = testing::moving_state(random, mesh, 4);
-    const auto spin_lost = [&](double tolerance) {
+    const auto spin_lost = [&](double loosened) {
       const auto stepper = make_stepper("projective_dynamics", mesh.problem,
-                                        {0.005, 1, {{"direction_tolerance", tolerance}}});
+                                        {0.005, 1, {{"direction_tolerance", loosened}}});
       State state = start;
       EXPECT_TRUE(stepper->advance(state, h));
       EXPECT_GT(stepper->work().iterations, 0);

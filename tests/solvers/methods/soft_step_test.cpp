@@ -11,11 +11,11 @@
 namespace inextensible {
 namespace {
 
-constexpr double gravity = 9.81;
+constexpr double acceleration = 9.81;
 
 std::shared_ptr<const Problem> yarn(int links, double length, double mass) {
   ProblemParts parts;
-  parts.gravity = {0, -gravity, 0};
+  parts.gravity = {0, -acceleration, 0};
   parts.mass.assign(links + 1, mass);
   parts.pinned = {0};
   for (int i = 0; i < links; ++i) parts.edges.push_back({i, i + 1});
@@ -39,7 +39,7 @@ TEST(SoftStep, LeavesAHangingYarnTheElongationOfItsSprings) {
       while (state.time < 20) ASSERT_TRUE(stepper->advance(state, step));
       const double omega = 2 * std::numbers::pi * frequency / step;
       for (int k = 1; k <= links; ++k) {
-        const double load = (links - k + 1) * mass * gravity;
+        const double load = (links - k + 1) * mass * acceleration;
         const double longer = load / ((k == 1 ? mass : mass / 2) * omega * omega);
         const double now = (state.x.col(k) - state.x.col(k - 1)).norm() - length;
         EXPECT_NEAR(now, longer, 1e-3 * longer) << "link " << k;
@@ -52,21 +52,21 @@ TEST(SoftStep, LeavesAHangingYarnTheElongationOfItsSprings) {
 // second stage leaves no velocity along it at the end.
 TEST(SoftStep, LeavesNoVelocityAlongALink) {
   const auto problem = yarn(1, 1, 1);
-  const double h = 0.01;
+  const double step = 0.01;
   State state{Positions::Zero(3, 2), Positions::Zero(3, 2), 0};
   state.x(0, 1) = 1;
   state.v(1, 1) = 2;
   const auto stepper = make_stepper("soft_step", problem, {});
-  ASSERT_TRUE(stepper->advance(state, h));
+  ASSERT_TRUE(stepper->advance(state, step));
   EXPECT_NEAR(state.x(0, 1), 1, 1e-15);
-  EXPECT_NEAR(state.x(1, 1), h * (2 - h * gravity), 1e-15);
+  EXPECT_NEAR(state.x(1, 1), step * (2 - step * acceleration), 1e-15);
   const Eigen::Vector3d d = state.x.col(1);
   EXPECT_NEAR(state.v.col(1).dot(d), 0, 1e-15);
-  const Eigen::Vector3d free(0, 2 - h * gravity, 0);
+  const Eigen::Vector3d free(0, 2 - step * acceleration, 0);
   EXPECT_NEAR((state.v.col(1) - (free - d.dot(free) / d.squaredNorm() * d)).norm(), 0, 1e-14);
 }
 
-// Elongations fall as h^2 in motion too.
+// Elongations acceleration as h^2 in motion too.
 TEST(SoftStep, StretchesASwingingYarnWithTheSquareOfTheStep) {
   constexpr int links = 10;
   const auto problem = yarn(links, 0.1, 0.1);

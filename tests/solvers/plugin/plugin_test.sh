@@ -93,7 +93,7 @@ use() {
     tune) words=(--scene chain --solver icd --out tuned.json) ;;  # there already
     reference) words=(--profile quick --scene chain) ;;           # there already
     emit) words=(parallel --shards 2 --sweep strain --profile quick) ;;
-    merge) words=(shard.json --out merged.json) ;;
+    merge) words=(shard.json --out merged.json --plugin "$plugin") ;;
   esac
   "$bench" "$1" "${words[@]}" <point.txt
 }
