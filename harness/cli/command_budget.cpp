@@ -21,6 +21,7 @@ int print_budgets_of(const std::vector<std::string>& files, const std::vector<do
     if (results.back().at("schema") == "inextensible-bench/1") sweeps.push_back(&results.back());
   }
   std::vector<double> seconds;
+  seconds.reserve(ms.size());
   for (const double budget : ms) seconds.push_back(1e-3 * budget);
   const auto tables = analysis::budget_tables(sweeps, seconds);
   if (tables.empty())

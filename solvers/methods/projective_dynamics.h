@@ -21,7 +21,7 @@ class ProjectiveDynamics final : public VelocityFilter {
     // A step ends when no edge's z moves by more than this times strain_limit times its length,
     // over the penalty: so much of what pulls at vertices is not yet what edges do.
     double direction_tolerance = 1;
-    std::string_view linear_solver = "auto";  // tridiagonal on chains, else cholmod_simplicial
+    std::string_view linear_solver = "auto";  // tridiagonal on chains, else fixed_pattern
   };
   static SettingFields<Settings> fields();
   ProjectiveDynamics(const Problem& problem, const Settings& settings);
