@@ -1,4 +1,4 @@
-// Claims on who is fast, and how time grows.
+// Claims on which method is fast, and how time grows.
 #pragma once
 
 #include "harness/claims/curves.h"

@@ -1,5 +1,5 @@
-// C5 and C6: fast projection against the others of the paper's six methods on the drape; who else
-// is ahead is told apart.
+// C5 and C6: fast projection against the others of the paper's six methods on the drape; which
+// others is ahead is told apart.
 #include <algorithm>
 #include <functional>
 #include <limits>
@@ -56,7 +56,7 @@ std::string ahead_from(const Curve& fast, const std::vector<Curve>& others) {
   return from;
 }
 
-// Who is fastest of all that compete, at each place of fast projection's curve: "strips at 10 %, 1
+// The fastest of all contestants, at each place of fast projection's curve: "strips at 10 %, 1
 // %; icd at 0.1 %".
 std::string first_of_all(const Points& points, const std::string& sweep, const Curve& fast,
                          double level, const std::function<std::string(double)>& words,

@@ -42,7 +42,7 @@ std::vector<SweepSpec> chosen_scenes(const std::string& name) {
   return scenes;
 }
 
-// All that have something to be tuned; who does not compete, only by name.
+// All that have something to be tuned; a solver that is no contestant only by name.
 std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec& scene) {
   std::vector<std::string> solvers;
   const bool chain = find_scene(scene.scene)->kind() == "chain";

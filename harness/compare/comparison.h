@@ -39,7 +39,7 @@ struct PointChange {
 struct TimeChange {
   Change change = Change::same;  // same, faster, slower or ambiguous
   std::string reason;            // "" if same
-  bool too_few = false;          // ambiguous for want of samples
+  bool too_few = false;          // ambiguous: too few samples
 };
 
 // Samples of the same unit. Faster and slower are judged alike, from the faster side.

@@ -104,8 +104,8 @@ Driven drive(inextensible::Stepper& stepper, inextensible::State& state, const P
 
 inline Driven drive(inextensible::Stepper& stepper, inextensible::State& state, const Pace& pace,
                     const DriveLimits& limits = {}) {
-  Onlooker nobody;
-  return drive(stepper, state, pace, nobody, limits);
+  Onlooker none;
+  return drive(stepper, state, pace, none, limits);
 }
 
 // Where a function is all that looks on: called after each step, it returns whether to go on.

@@ -32,7 +32,7 @@ Route smooth_route() { return {"rattle", 1e-12, 2}; }
 // keeps off the singularity.
 Route contact_route() { return {"rattle", 1e-9, 1}; }
 // Friction inside the solve is no smooth function of the start, and RATTLE's small steps along old
-// directions get stuck on it; sweeps that mend it set the limit.
+// directions get stuck on it; the passes that correct it set the limit.
 Route contact_inside_route() { return {"fast_projection_bdf2", 1e-5, 1}; }
 Route contact_route_when_singular() { return {"fast_projection_bdf2", 1e-6, 1}; }
 // The second one there, at the first one's limit. The two differ in the direction of constraint

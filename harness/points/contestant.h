@@ -1,4 +1,4 @@
-// Who stands in a sweep: a solver under a name, with settings of its own. One solver may stand
+// A contestant of a sweep: a solver under a name, with settings of its own. One solver may stand
 // there several times.
 #pragma once
 

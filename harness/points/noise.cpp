@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// Where a point stands in a comparison: everything but who it is, and the step, which the best
+// Where a point stands in a comparison: everything but its contestant and the step, which the best
 // ones choose.
 std::string place_of(const PointSpec& spec) {
   PointSpec place = spec;

@@ -19,7 +19,7 @@ struct PointSpec {
   SceneParameters scene_parameters;  // complete
   int resolution = 0;                // the scene's own resolution parameter
   int vertices = 0, constraints = 0;
-  std::string contestant;  // who competes; empty: the solver under its own name
+  std::string contestant;  // empty: the solver under its own name
   std::string solver;
   inextensible::Settings settings;  // given ones only
   double strain_limit = 0.01;

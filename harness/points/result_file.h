@@ -20,7 +20,7 @@ nlohmann::json result_document(nlohmann::json context, const Suite& suite,
 // As it is written: one point a line.
 std::string result_text(const nlohmann::json& document);
 
-// false: it was made while others may have been timed, so its times are nobody's.
+// false: it was made while others may have been timed, so its times mean nothing.
 bool is_timed(const nlohmann::json& document);
 
 // A document of either kind of result: of a sweep or of a stability sweep. Throws UsageError,

@@ -44,7 +44,7 @@ struct Suite {
   // The file that the contestants' tuned settings are from, and a hash of what it says; "": none.
   std::string tuned_file, tuned_hash;
   std::vector<SweepSpec> sweeps;
-  // Times the fastest run of a place: who takes longer is stopped there. Not in files.
+  // Times the fastest run of a place: a run that takes longer is stopped there. Not in files.
   double far_behind = 30;
 };
 

@@ -27,7 +27,7 @@ struct RunLimits {
   std::shared_ptr<ReferenceShelf> references = nullptr;  // null: no errors against references
   Heartbeat* heartbeat = nullptr;                        // told of every step; see child_process.h
   int most_retaken = 3;                                  // times that a sample may be taken again
-  bool timed = true;  // false: nobody will read the times, and one run is a sample
+  bool timed = true;  // false: times are not used, and one run is a sample
 };
 
 // One judged run, and a first sample of its time. guess: a stiffness to begin calibration from,

@@ -51,13 +51,13 @@ class StepSearch {
   // the best one's: which of them is the best, more samples must say.
   std::vector<std::size_t> near_best(double level, double factor) const;
 
-  // Whether every step that was tried was given up for want of time.
+  // Whether every step that was tried was stopped by its time-out.
   bool timed_out() const { return timed_out_ && !unsupported_; }
   // Seconds per simulated second: a run that takes longer is of no use to the search.
   double longest_useful() const;
 
  private:
-  static bool gave_up(const PointResult& point);  // for want of time
+  static bool gave_up(const PointResult& point);  // stopped by its time-out
   void consider(std::size_t rung, const PointResult& point);
   bool slower(std::size_t rung, double level);
   void sample_again(std::size_t rung);

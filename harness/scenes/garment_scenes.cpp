@@ -39,7 +39,7 @@ std::vector<Ring> profile(const SceneParameters& p) {
   return rings;
 }
 
-// To and fro along x and about y, from rest on.
+// Oscillates along x and turns about y, from rest.
 inextensible::BodyMotion swaying(const SceneParameters& p) {
   const double sway = p.at("sway"), turn = p.at("turn"), period = p.at("period");
   return [=](double time) {

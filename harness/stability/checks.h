@@ -13,7 +13,7 @@ using Findings = std::vector<Finding>;
 Findings check_ordinary_runs(const Examinee& solver);
 // Linear and angular momentum of a free, weightless net.
 Findings check_momentum(const Examinee& solver);
-// Steps that nobody can take.
+// Steps that no method can take.
 Findings check_refusal(const Examinee& solver);
 // A candidate that keeps the limit already.
 Findings check_permissible_candidate(const Examinee& solver);

@@ -78,8 +78,8 @@ Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::u
     result.detail = "stopped after " + std::to_string(result.work.steps) + " steps";
     return Outcome::timeout;
   }
-  if (!look.outcome) look.outcome = judge.finish(result);
-  return look.outcome.value_or(Outcome::survived);
+  if (look.outcome) return *look.outcome;
+  return judge.finish(result).value_or(Outcome::survived);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The plane strain x error of each scene: who is fastest within each limit and level of error.
+// The plane strain x error of each scene: the fastest method within each limit and level of error.
 #include <algorithm>
 #include <cmath>
 

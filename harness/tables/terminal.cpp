@@ -57,7 +57,7 @@ std::string percent_or_unknown(double fraction) {
   return std::isnan(fraction) ? "?" : number_text(100 * fraction, 2) + " %";
 }
 
-// Who it is, and what that costs.
+// Its name, step and time.
 void print_entry(std::ostream& out, const Entry& entry, const std::string& name,
                  const Setting& set) {
   out << std::setw(set.name_width) << name << std::setw(time_width)

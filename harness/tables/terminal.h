@@ -1,4 +1,5 @@
-// What a terminal shows of a sweep's result: who is fastest, the answer in words, how time grows.
+// What a terminal shows of a sweep's result: the fastest methods, the answer in words, how time
+// grows.
 #pragma once
 
 #include <nlohmann/json.hpp>

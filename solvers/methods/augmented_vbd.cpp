@@ -39,7 +39,7 @@ StepResult AugmentedVbd::apply(const Positions& /*x_start*/, double h, Iterate x
   if (edges_.permissible(x)) return {Status::ok, 0};
   target_ = x;
   Contacts* contacts = x.contacts();
-  for (int c = 0; c < x.touching(); ++c)
+  for (int c = 0; c < x.contact_count(); ++c)
     target_.col(contacts->vertex(c)) -= contacts->push(c) * contacts->normal(c);
   passes_.load(x, target_, problem_.mass());
   passes_.set_planes(contacts);

@@ -4,13 +4,13 @@
 // iteration.
 //
 // Where J W J^T is singular or nearly so (a row pulled straight between two pins, Q3) that step
-// does not exist or overshoots. When several iterations have not lowered |C|, or one has raised it
-// beyond all measure, the best x_j is taken up again, and the rest of the step is Levenberg's and
-// Marquardt's (1963) with the damping rule of Nielsen (1999):
+// does not exist or overshoots. When several iterations have not lowered |C|^2, or one has raised
+// it by more than `overshoot`, the best x_j is restored, and the rest of the step is Levenberg's
+// and Marquardt's (1963) with the damping rule of Nielsen (1999):
 //   (J W J^T + damping D) mu = C~,   D the diagonal,
 // which minimizes |C~ + J dx|^2 + damping |dx|^2 in the norms of D^-1 and M. C~ is what of C lies
-// outside the inner part of the permissible band; the undamped step takes it for C too, where a
-// target is set.
+// outside a fraction of the permissible band: `inner_band` for damped projections, `target` for the
+// others (0: all of C).
 //
 // Iterative linear solvers solve (7) to a residual of a fraction of |C(x_j)|, the forcing term of
 // an inexact Newton method: first_forcing, then as |C| has fallen, squared (Eisenstat and Walker
@@ -24,8 +24,8 @@
 namespace inextensible {
 namespace {
 
-// Iterations without a new least |C|: Newton often recovers from a rise or two. But not from this
-// rise of |C|^2, where J W J^T was singular in all but rounding, and digits are lost on the way.
+// Iterations without a new least |C|: Newton often recovers from a rise or two. Not, however, from
+// a rise of |C|^2 by this factor, where J W J^T was singular but for rounding, and digits are lost.
 constexpr int patience = 8;
 constexpr double overshoot = 1e8, overshoot_in_contact = 100;
 constexpr double least_forcing = 1e-8, damped_forcing = 1e-4;
@@ -77,7 +77,7 @@ StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Ite
     if (j > 0)
       forcing = std::clamp(0.9 * error / last_error, least_forcing, settings_.first_forcing);
     last_error = error;
-    const double most = (x.touching() > 0 ? overshoot_in_contact : overshoot) * least_error;
+    const double most = (x.contact_count() > 0 ? overshoot_in_contact : overshoot) * least_error;
     if (j - best_j == patience || !(error < most)) return damped(j, x, work);
 
     if (!system_.factor(u_, x.contacts(), work)) return damped(j, x, work);  // J W J^T
@@ -105,7 +105,7 @@ void FastProjection::keep_best(Iterate x) {
   if (observer_) best_multipliers_ = multipliers_;
 }
 
-void FastProjection::take_back(Iterate x) {
+void FastProjection::restore_best(Iterate x) {
   x.restore(best_);
   if (observer_) multipliers_ = best_multipliers_;
 }
@@ -138,7 +138,7 @@ StepResult FastProjection::damped(int j, Iterate x, WorkCounters& work) {
   for (bool taken_back = true;; ++j) {
     if (taken_back) {
       ++work.line_search_steps;
-      take_back(x);
+      restore_best(x);
       linearize(settings_.inner_band, x);
       error = mu_.squaredNorm();
     }
@@ -197,7 +197,8 @@ SettingFields<FastProjection::Settings> FastProjection::fields(bool searched_pas
       {"min_iterations", &S::min_iterations, least_iterations, count_from_zero,
        tunable_least_iterations},
       {"target", &S::target, projection_target, below_limit, tunable_below_limit},
-      // There a straight row at full length has no neighbour with C = 0, but many permissible ones.
+      // In that configuration a straight row at full length has no neighbour with C = 0, but many
+      // permissible ones.
       {"inner_band", &S::inner_band, "target of damped projections, where J W J^T is singular",
        below_limit},
       // A projection sees the whole cloth, but only to first order; most of what it leaves is

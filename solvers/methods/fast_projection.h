@@ -37,7 +37,7 @@ class FastProjection final : public VelocityFilter {
   bool linearize(double target, const Positions& x);
   void correct(Iterate x);
   void keep_best(Iterate x);
-  void take_back(Iterate x);
+  void restore_best(Iterate x);
   void pass(int most, Iterate x, WorkCounters& work);
   void show(int j, const Positions& x);
   StepResult damped(int j, Iterate x, WorkCounters& work);

@@ -62,8 +62,8 @@ StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*
   double cost = 0;
   for (int rounds = 0;; ++rounds) {
     // Newton's method overshoots where a step takes vertices far round an obstacle; passes do not.
-    if (x.touching() > 0 && rounds == most_rounds_in_contact) {
-      passes_.restart();
+    if (x.contact_count() > 0 && rounds == most_rounds_in_contact) {
+      passes_.restore_contacts();
       seen_ = {};
       return passes_.limit(StrainPasses::Order::in_turn, StrainPasses::far_too_many, edges, x,
                            work);
@@ -76,8 +76,8 @@ StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*
     work.edge_projections += corrected;
     StrainPasses::Passed done{corrected, 0};
     if (corrected > 0) done = passes_.in_turn(settings_.sweeps, work);
-    const double round =
-        (link_cost + done.passes) * edges.count() + contact_cost * (1 + done.passes) * x.touching();
+    const double round = (link_cost + done.passes) * edges.count() +
+                         contact_cost * (1 + done.passes) * x.contact_count();
     cost += round;
     if (done.left == 0) {
       passes_.store(x);

@@ -50,7 +50,7 @@ class Icd final : public VelocityFilter {
   bool permissible_ = false;
   double largest_f_ = 0;             // m, over vertices
   double merit_ = 0;                 // sum of |F|^2 and C^2, m^2
-  Eigen::VectorXd previous_lambda_;  // of the last accepted step, 1/kg-scaled: mu / h^2
+  Eigen::VectorXd previous_lambda_;  // mu / h^2 of the last solve that converged
 };
 
 Backend icd_row();

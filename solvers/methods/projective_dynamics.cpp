@@ -200,7 +200,7 @@ void ProjectiveDynamics::solve(Positions& x, WorkCounters& work) {
 // Of x within the limit: takes vertices out of their planes, if edges bear it.
 bool ProjectiveDynamics::ends(Iterate x) const {
   const Contacts* contacts = x.contacts();
-  for (int c = 0; c < x.touching(); ++c) {
+  for (int c = 0; c < x.contact_count(); ++c) {
     auto at = x.positions().col(contacts->vertex(c));
     at -= std::min(0.0, contacts->gap(c, at)) * contacts->normal(c);
   }
@@ -212,7 +212,7 @@ StepResult ProjectiveDynamics::apply(const Positions& /*x_start*/, double h, Ite
   if (edges_.permissible(x)) return {Status::ok, 0};
   if (!factor(work)) return refuse(Status::singular, 0, edges_, x, "the matrix is singular");
   target_ = x;
-  for (int c = 0; c < x.touching(); ++c)
+  for (int c = 0; c < x.contact_count(); ++c)
     target_.col(x.contacts()->vertex(c)) -= x.contacts()->push(c) * x.contacts()->normal(c);
   start(h, x);
   for (int j = 1; j <= max_iterations_; ++j) {

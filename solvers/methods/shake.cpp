@@ -1,12 +1,12 @@
 // (5) and (7) are those of Goldenthal et al. 2007, which take J at x_j where SHAKE takes J(x^n).
 //
-// Newton on C(x0 - W J(x^n)^T mu) = 0 with mu = h^2 lambda. Its matrix J(x_j) W J(x^n)^T is
-// replaced by J(x^n) W J(x^n)^T, symmetric and factored once a step; where that does not halve the
-// constraint error, the true matrix at the best iterate so far is built, unsymmetric, and kept
+// Newton on C(x0 - W J(x^n)^T h^2 lambda) = 0, with mu = h^2 dlambda. Its matrix J(x_j) W J(x^n)^T
+// is replaced by J(x^n) W J(x^n)^T, symmetric and factored once a step; where that does not halve
+// the constraint error, the true matrix at the best iterate so far is built, unsymmetric, and kept
 // until it fails in turn. A step along its direction that does not lower the error is halved.
 // The equations have spurious solutions far away; the closest point of the manifold is at most
-// twice as far from x^n (on it) as x0 is, so what is farther, slack apart, is refused. Loops: one
-// assembly and factorization a step, one solve and two passes over edges an iteration.
+// twice as far from x^n (on it) as x0 is, so what is farther, allowing for slack, is refused.
+// Loops: one assembly and factorization a step, one solve and two passes over edges an iteration.
 #include "solvers/methods/shake.h"
 
 #include <algorithm>
@@ -18,7 +18,8 @@ namespace inextensible {
 namespace {
 
 constexpr double shortest_step = 1e-3;  // of Newton's
-constexpr const char* no_solution = "the iterative linear solver did not converge";
+constexpr const char* no_solution =
+    "the linear solver did not converge, or its multipliers grew too large";
 
 }  // namespace
 
@@ -42,7 +43,7 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Iterate x, WorkC
   Matrix matrix = Matrix::start;
   double least_error = 0;  // |C| at best_
   double full_step = 0;    // |mu_| before halving
-  double reach = 0;        // |x^{n+1} - x^n| of a solution that is near
+  double reach = 0;        // largest |x^{n+1} - x^n| that is not taken for spurious
   for (int j = 0;; ++j) {
     const bool permissible = linearize(x);
     const double error = c_.norm();
@@ -63,7 +64,7 @@ StepResult Shake::apply(const Positions& x_start, double /*h*/, Iterate x, WorkC
       }
     } else if (error < 0.5 * least_error) {
       if (matrix == Matrix::here) matrix = Matrix::kept;
-    } else if (matrix == Matrix::here && !(error < least_error)) {  // half of Newton's own step
+    } else if (matrix == Matrix::here && !(error < least_error)) {  // no decrease: half the step
       if (mu_.norm() < shortest_step * full_step) {
         return refuse(Status::not_converged, j, edges, x,
                       "no step along J(x^n) lowers the constraint error");

@@ -127,7 +127,7 @@ void StrainPasses::begin(Iterate x) {
   if (contacts_) contacts_->save(begun_);
 }
 
-void StrainPasses::restart() {
+void StrainPasses::restore_contacts() {
   if (contacts_) contacts_->restore(begun_);
 }
 

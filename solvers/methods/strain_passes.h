@@ -1,6 +1,6 @@
-// Passes of strain corrections over colored edges: what jacobi and gauss_seidel_colored share. They
-// differ in where corrections go: to the positions themselves, or to a sum that is added at the
-// end.
+// Passes of strain corrections over colored edges: what jacobi, gauss_seidel_colored and the
+// projections with passes share. Jacobi adds corrections to a sum, which is added to the positions
+// at the end of a pass; the others correct the positions at once.
 #pragma once
 
 #include <cstdint>
@@ -43,9 +43,9 @@ class StrainPasses {
     edges_.load(x, x_);
     contacts_ = x.contacts();
   }
-  // load(); restart() takes up the contacts of that time again.
+  // load(), and saves the contacts of x; restore_contacts() restores them.
   void begin(Iterate x);
-  void restart();
+  void restore_contacts();
   void store(Positions& x) const { edges_.store(x_, x); }
   bool finite() const { return x_.allFinite(); }
   ColoredEdges::Places& positions() { return x_; }
@@ -64,7 +64,7 @@ class StrainPasses {
   std::int64_t in_turn();  // in the order of edges(), each from where the last one left its ends
   std::int64_t at_once();  // all from the same positions
   // Passes in turn until one corrects nothing, at most `most` of them, all counted; `left`: what
-  // the last one corrected.
+  // the last one corrected, 1 if there was none.
   struct Passed {
     std::int64_t left;
     int passes;

@@ -23,8 +23,9 @@ StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
   passes_.begin(x);
   for (int passes = 0;; ++passes) {
     // Newton's method overshoots where a step takes vertices far round an obstacle; passes do not.
-    if (x.touching() > 0 && passes == most_passes_in_contact) {
-      passes_.restart();
+    // x is still the candidate: nothing has been stored.
+    if (x.contact_count() > 0 && passes == most_passes_in_contact) {
+      passes_.restore_contacts();
       return passes_.limit(StrainPasses::Order::in_turn, StrainPasses::far_too_many, edges_, x,
                            work);
     }

@@ -1,6 +1,7 @@
 // Strips (Bender and Bayer 2008, "Parallel simulation of inextensible cloth"): every yarn of the
-// cloth is projected as a whole, warp after weft; passes over all edges correct between two such
-// projections what couples the yarns.
+// cloth is projected as a whole, all yarns of one color (warp or weft, on a grid) before the next.
+// Departures from the paper: one Newton step on positions for each yarn, and colored Gauss-Seidel
+// passes over all edges between two rounds.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // With J and W of one yarn alone, J W J^T is tridiagonal: a step of Newton's method on it costs
-// little more than a pass and carries along the yarn as far as it is long, for which passes need
-// the square of that. With g = d / l of a link and nu = 4 mu,
+// little more than a pass over its edges and propagates along the whole yarn, for which passes need
+// the square of its length. With g = d / l of a link and nu = 4 mu,
 //   (w_a + w_b) |g|^2 nu + couplings -w g . g' nu' = C~,   x -= W J^T mu = w g nu / 2 at an end.
 // C~ is what of C lies beyond the target, so that slack within it is not taken back. A yarn none
 // of whose links is beyond the limit is left alone. Where a yarn lies straight between two pins

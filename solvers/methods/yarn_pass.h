@@ -19,15 +19,16 @@ class YarnPass {
   YarnPass(const Problem& problem, double strain_limit, double target, const ColoredEdges& places);
 
   // One step of Newton's method for every yarn, color after color. Returns how many links were
-  // beyond the limit; one without length counts as none. contacts: their vertices move within their
-  // planes only; null: none.
+  // beyond the limit; one without length counts as none. contacts: the equations are those of
+  // vertices that move within their planes only; the caller settles contacts afterwards. null:
+  // none.
   std::int64_t project(ColoredEdges::Places& x, const Contacts* contacts, WorkCounters& work);
 
   bool crossing() const { return crossing_; }  // whether yarns share vertices
 
  private:
   static constexpr int lanes = 8;
-  // Yarns of one color side by side, one a lane; shorter ones end in links that are none.
+  // Yarns of one color side by side, one a lane; shorter ones are padded with null links.
   struct Bundle {
     int links, first, yarns;  // first: row of vertices and links in the arrays below
   };

@@ -51,9 +51,9 @@ class Contacts {
   // of its plane, as it may be where the obstacle is not convex, takes the plane that is nearest
   // now. Returns how many were inside, deeper than `tolerance()`.
   int find(const Positions& x, WorkCounters& work);
-  // As find(); and every contact takes the plane that is nearest now: the one of the start of an
-  // iteration keeps its vertex out of half a space, where the obstacle may be long past. Then
-  // settles. Returns how many planes are new or others.
+  // As find(); and a contact that holds a vertex which has left the surroundings of its plane takes
+  // the plane that is nearest now: the old one keeps the vertex out of half a space, where the
+  // obstacle may be long past. Then settles. Returns how many planes are new or replaced.
   int update(Positions& x, WorkCounters& work);
   double tolerance() const { return tolerance_; }  // m
 

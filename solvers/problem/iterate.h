@@ -1,6 +1,6 @@
 // What the iterations of a step move: positions, and, where contact is inside the solve, the planes
-// that keep vertices out of the obstacle. A method moves vertices and calls settle(); whether there
-// is an obstacle is none of its concern.
+// that keep vertices out of the obstacle. Most methods only move vertices and call settle(); those
+// that build a system of equations also read contacts().
 #pragma once
 
 #include "solvers/problem/contacts.h"
@@ -13,22 +13,23 @@ class Iterate {
   // x: 3 x n. contacts: null, or begun (Contacts::begin).
   Iterate(Positions& x, Contacts* contacts = nullptr) : x_(&x), contacts_(contacts) {}
 
-  // Wherever positions are asked for.
+  // Converts to its positions wherever these are asked for.
   operator Positions&() const { return *x_; }
   Positions& positions() const { return *x_; }
 
   Contacts* contacts() const { return contacts_; }
-  int touching() const { return contacts_ ? contacts_->count() : 0; }  // contacts
+  int contact_count() const { return contacts_ ? contacts_->count() : 0; }
 
   // After vertices have moved: those that went through their planes are put back.
   void settle() const {
     if (contacts_) contacts_->settle(*x_);
   }
-  // After an iteration: every contact takes the plane that is nearest now (Contacts::update).
+  // After an iteration: planes that their vertices have left are replaced by the nearest one, and
+  // vertices that are inside the obstacle now get a contact (Contacts::update).
   void renew_planes(WorkCounters& work) const {
     if (contacts_) contacts_->update(*x_, work);
   }
-  // Contacts of vertices that are inside the obstacle and have none; returns how many are inside.
+  // Adds contacts for vertices that are inside the obstacle; returns how many are inside.
   int find_contacts(WorkCounters& work) const { return contacts_ ? contacts_->find(*x_, work) : 0; }
 
   // To be taken up again later in the step.

@@ -6,12 +6,12 @@
 namespace inextensible {
 namespace {
 
-// Of a convex obstacle every vertex is found once at most.
+// Limit on rounds. Of a convex obstacle every vertex is found once at most.
 constexpr int most_rounds = 30;
-// The start is permissible and outside, but for what the obstacle moves: the closest point that is
-// so too lies no farther from the candidate than the start, and so at most twice as far from the
-// start as the candidate; methods that are not exact get twice that. An iteration that wandered off
-// ends elsewhere, and gives energy.
+// The start is feasible, but for what the obstacle moves. So the feasible point closest to the
+// candidate is no farther from it than the start is, hence at most twice as far from the start as
+// the candidate (triangle inequality). Inexact methods get another factor of 2. What is farther is
+// a spurious solution, and would add energy.
 constexpr double farthest = 4;
 
 }  // namespace

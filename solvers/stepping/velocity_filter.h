@@ -18,7 +18,8 @@ class VelocityFilter {
   VelocityFilter(const VelocityFilter&) = delete;
   VelocityFilter& operator=(const VelocityFilter&) = delete;
 
-  // x_start = x^n and x = x0 (both 3 x n) in, x = x^{n+1} out; the filtered velocity is (x -
+  // x_start = x^n and x = x0 (both 3 x n; where new contacts made another round necessary, x is the
+  // last round's result) in, x = x^{n+1} out; the filtered velocity is (x -
   // x_start) / h. On refusal x is unspecified. Pinned vertices keep their place bit for bit, and
   // contacts hold when it ends: another settle() would change nothing.
   virtual StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) = 0;
@@ -44,7 +45,6 @@ class FilterStepper final : public Stepper {
   const char* linear_solver() const override { return filter_->linear_solver(); }
   double reciprocal_condition() const override { return filter_->reciprocal_condition(); }
   void observe(IterateObserver* observer) override { filter_->observe(observer); }
-  VelocityFilter& filter() { return *filter_; }
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override;
@@ -53,7 +53,7 @@ class FilterStepper final : public Stepper {
   std::unique_ptr<ImplicitForces> implicit_;  // null: V explicit
 };
 
-// Of an unconstrained step whose forces could not be found.
+// The refusal of a step whose system of implicit forces is singular.
 StepResult no_forces();
 
 }  // namespace inextensible

@@ -11,14 +11,14 @@ ActiveContacts::ActiveContacts(const Problem& problem) {
 }
 
 void ActiveContacts::begin(Iterate x0) {
-  contacts_ = x0.touching() > 0 ? x0.contacts() : nullptr;
+  contacts_ = x0.contact_count() > 0 ? x0.contacts() : nullptr;
   if (!contacts_) return;
   free_ = x0;
   for (int c = 0; c < contacts_->count(); ++c)
     free_.col(contacts_->vertex(c)) -= contacts_->push(c) * contacts_->normal(c);
 }
 
-void ActiveContacts::candidate(Positions& x) const {
+void ActiveContacts::write_candidate(Positions& x) const {
   if (!contacts_) return;
   x = free_;
   hold(x);
@@ -44,7 +44,7 @@ void ActiveContacts::take_reactions(const Eigen::VectorXd& mass, Positions& f) {
   }
 }
 
-bool ActiveContacts::change(const Positions& x) {
+bool ActiveContacts::update(const Positions& x) {
   if (!contacts_) return false;
   const Contacts::Timing measured = contacts_->timing();
   bool changed = false;

@@ -17,14 +17,15 @@ class ActiveContacts {
   // At the candidate x0 (3 x n), whose contacts are settled.
   void begin(Iterate x0);
   // The candidate, with its held vertices on their planes, to x.
-  void candidate(Positions& x) const;
+  void write_candidate(Positions& x) const;
   // Held vertices of x, onto their planes.
   void hold(Positions& x) const;
-  // Takes what planes bear off the residual f (3 x n), kg m, of vertices of these masses, and
-  // remembers it.
+  // Removes the reactions of planes, along the normals of held vertices, from the residual f (3 x
+  // n) of equations scaled by these masses, and stores them.
   void take_reactions(const Eigen::VectorXd& mass, Positions& f);
-  // At a solution x, after take_reactions(): whether other vertices are held now. Pushes follow.
-  bool change(const Positions& x);
+  // At a solution x, after take_reactions(): releases planes that would pull, holds with those that
+  // were crossed, and updates pushes. Returns whether other vertices are held now.
+  bool update(const Positions& x);
 
  private:
   Contacts* contacts_ = nullptr;

@@ -1,5 +1,5 @@
-// Random meshes through every solver with every linear solver: each step is honest or a clean
-// refusal, whatever the mesh.
+// Random meshes through every solver with every linear solver: each step keeps its promises or is a
+// clean refusal, whatever the mesh.
 //   attack_meshes --seconds S --seed N
 // Prints one line of JSON: what was done, and the first failures. Exit code 1 if there are any.
 #include <chrono>

@@ -1,5 +1,5 @@
 // Verdicts on the paper's claims follow from points by the stated rules: invented points in, known
-// verdicts out. Those on who is fast: contests_test.cpp.
+// verdicts out. Those on which method is fast: contests_test.cpp.
 #include "harness/claims/claims.h"
 
 #include <gtest/gtest.h>
@@ -176,7 +176,7 @@ TEST(Claims, C15AsksForSmallerAndCheaperStepsOfRunsThatHoldTheirEnergy) {
     return verdict("C15", {run("shake", shake_step, shake_seconds), run("icd", 0.01, 1)}, noise);
   };
   EXPECT_EQ(with(0.001, 2).verdict, "reproduced");
-  EXPECT_EQ(with(0.001, 20).verdict, "not reproduced");  // small, but dear
+  EXPECT_EQ(with(0.001, 20).verdict, "not reproduced");  // small, but expensive
   EXPECT_EQ(with(0.02, 0.1).verdict, "not reproduced");
   EXPECT_EQ(with(0.001, 8, 0.5).verdict, "undecided");
   EXPECT_TRUE(says(with(0.001, 2), "SHAKE 1/1000 s, ICD 1/100 s, whose step takes 5.00 ("));

@@ -1,4 +1,4 @@
-// Claims on who is fast: verdicts only where intervals lie on one side.
+// Claims on which method is fast: verdicts only where intervals lie on one side.
 #include "harness/claims/contests.h"
 
 #include <gtest/gtest.h>
@@ -224,7 +224,7 @@ TEST(Claims, C5AsksForFlatSlopesAndTheFirstPlaceForFastProjection) {
   EXPECT_EQ(with(2, -0.2, 0.6).verdict, "undecided");
 }
 
-// The contest is among the paper's six; who else is faster is told apart.
+// The contest is among the paper's six; others that are faster are named apart.
 TEST(Claims, C6TellsOfRivalsBesideTheSix) {
   json result;
   const auto with = [&](bool hollow, const std::string& family) {

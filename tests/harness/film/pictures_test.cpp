@@ -72,7 +72,8 @@ std::array<int, 3> pixel(const Pixels& pixels, const Eigen::Vector2d& seen) {
   return {rgb[0], rgb[1], rgb[2]};
 }
 
-// One corner is drawn away by 2 % of an edge along its row, twice the limit; 60 units are the limit.
+// One corner is drawn away by 2 % of an edge along its row, twice the limit; 60 units are the
+// limit.
 TEST(Recordings, HoldTheStrainOfEachVertexOverTheLimit) {
   Recording recording = flat_square(4);
   recording.takes[0].frames[0](0, 0) -= 0.02 / 3;

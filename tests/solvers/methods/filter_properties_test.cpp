@@ -220,7 +220,7 @@ TEST_P(Steppers, CorrectAStretchedStartInOneStep) {
 }
 
 // Squares overflow, or positions nearly so. Local methods may even then find permissible positions;
-// who refuses leaves the state untouched and nothing behind in the stepper: the next step is a
+// a refusal leaves the state untouched and nothing behind in the stepper: the next step is a
 // fresh stepper's (but for Gauss-Seidel's random numbers, which have moved on).
 TEST_P(Steppers, SurviveOverflowAndGoOnAsIfNothingHadBeen) {
   for (const double speed : {1e160, 1e300}) {

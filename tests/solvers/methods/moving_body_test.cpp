@@ -98,8 +98,8 @@ TEST(MovingBody, NeedsABody) {
 class EveryMethod : public ::testing::TestWithParam<const char*> {};
 
 // Cloth that falls onto a ball sees no difference between a ball at rest and both in the same
-// steady motion, but for what iterations stop at: who forgot to carry contacts along would be wrong
-// by 0.1.
+// steady motion, but for what iterations stop at: a method that did not carry contacts along would
+// be wrong by 0.1.
 TEST_P(EveryMethod, SeesNoSteadyMotionThatItShares) {
   const Vector3d velocity(0.7, -0.4, 1.1);
   const Eigen::Matrix3d turned =
