@@ -1,4 +1,5 @@
 // What strain and error methods reach within so much time a frame.
+#include <algorithm>
 #include <cmath>
 
 #include "harness/analysis/budget.h"
@@ -29,11 +30,19 @@ void print_budgets(std::ostream& out, const std::vector<BudgetTable>& tables) {
     for (const double budget : table.budgets)
       head.push_back(number_text(1e3 * budget) + " ms a frame");
     print_head(out, head);
+    std::string none;
     for (const Budgeted& row : table.rows) {
       std::vector<std::string> cells{quoted(row.row)};
       for (const auto& reach : row.reached) cells.push_back(reach_text(reach));
-      print_row(out, cells);
+      const bool any = std::any_of(row.reached.begin(), row.reached.end(),
+                                   [](const auto& reach) { return reach.has_value(); });
+      if (any) {
+        print_row(out, cells);
+      } else {
+        none += (none.empty() ? "" : ", ") + cells.front();
+      }
     }
+    if (!none.empty()) out << "\nNo run is that fast: " << none << ".\n";
     out << '\n';
   }
 }

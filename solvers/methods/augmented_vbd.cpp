@@ -37,10 +37,8 @@ AugmentedVbd::AugmentedVbd(const Problem& problem, const Settings& settings)
 StepResult AugmentedVbd::apply(const Positions& /*x_start*/, double h, Iterate x,
                                WorkCounters& work) {
   if (edges_.permissible(x)) return {Status::ok, 0};
-  target_ = x;
+  x.without_pushes(target_);
   Contacts* contacts = x.contacts();
-  for (int c = 0; c < x.contact_count(); ++c)
-    target_.col(contacts->vertex(c)) -= contacts->push(c) * contacts->normal(c);
   passes_.load(x, target_, problem_.mass());
   passes_.set_planes(contacts);
   passes_.tensions() = h * h * tension_;

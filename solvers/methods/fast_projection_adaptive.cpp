@@ -19,7 +19,6 @@ namespace {
 constexpr double most_overshoot = 100;
 constexpr double memory = 0.6;                       // of a mean, a step
 constexpr int first_retry = 4, longest_retry = 128;  // steps
-constexpr int most_rounds_in_contact = 100;
 constexpr int first_rounds = 8;  // until a projection of the whole is tried for the first time
 
 // In visits of an edge by a pass, 1.3 ns, as kernels measures them: a link in a pass over yarns;
@@ -61,18 +60,14 @@ StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*
   Way way = regular ? choose() : rounds_alone;
   double cost = 0;
   for (int rounds = 0;; ++rounds) {
-    // Newton's method overshoots where a step takes vertices far round an obstacle; passes do not.
-    if (x.contact_count() > 0 && rounds == most_rounds_in_contact) {
-      passes_.restore_contacts();
+    if (x.contact_count() > 0 && rounds == StrainPasses::most_rounds_in_contact) {
       seen_ = {};
-      return passes_.limit(StrainPasses::Order::in_turn, StrainPasses::far_too_many, edges, x,
-                           work);
+      return passes_.passes_alone(edges, x, work);
     }
-    const bool gives_up =
-        rounds == settings_.max_iterations || (rounds % 64 == 63 && !passes_.finite());
+    const bool stops = passes_.gives_up(rounds, settings_.max_iterations);
     passes_.settle_contacts();
     const std::int64_t corrected =
-        gives_up ? 0 : yarns_.project(passes_.positions(), x.contacts(), work);
+        stops ? 0 : yarns_.project(passes_.positions(), x.contacts(), work);
     work.edge_projections += corrected;
     StrainPasses::Passed done{corrected, 0};
     if (corrected > 0) done = passes_.in_turn(settings_.sweeps, work);
@@ -81,14 +76,15 @@ StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*
     cost += round;
     if (done.left == 0) {
       passes_.store(x);
-      if (!gives_up && x.find_contacts(work) > 0) continue;
-      if (edges.permissible(x)) {
+      if (!stops && x.find_contacts(work) > 0) continue;
+      const StepResult result =
+          StrainPasses::verdict(rounds, stops ? "round limit" : nullptr, edges, x);
+      if (result) {
         learn(way, cost);
-        return {Status::ok, rounds};
+      } else {
+        seen_ = {};  // a refused step leaves nothing behind
       }
-      seen_ = {};  // a refused step leaves nothing behind
-      return refuse(Status::not_converged, rounds, edges, x,
-                    gives_up ? "round limit" : "an edge has no length");
+      return result;
     }
     if (!regular) continue;
     if (way == rounds_alone && too_expensive(rounds + 1, cost)) {

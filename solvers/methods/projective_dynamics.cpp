@@ -211,9 +211,7 @@ StepResult ProjectiveDynamics::apply(const Positions& /*x_start*/, double h, Ite
                                      WorkCounters& work) {
   if (edges_.permissible(x)) return {Status::ok, 0};
   if (!factor(work)) return refuse(Status::singular, 0, edges_, x, "the matrix is singular");
-  target_ = x;
-  for (int c = 0; c < x.contact_count(); ++c)
-    target_.col(x.contacts()->vertex(c)) -= x.contacts()->push(c) * x.contacts()->normal(c);
+  x.without_pushes(target_);
   start(h, x);
   for (int j = 1; j <= max_iterations_; ++j) {
     solve(x, work);

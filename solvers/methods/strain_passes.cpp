@@ -108,18 +108,22 @@ StepResult StrainPasses::limit(Order order, int most_passes, const EdgeConstrain
                                Iterate x, WorkCounters& work) {
   load(x);
   for (int passes = 0;; ++passes) {
-    const bool gives_up = passes == most_passes || (passes % 64 == 63 && !finite());
-    const std::int64_t corrected = gives_up ? 0 : order == Order::in_turn ? in_turn() : at_once();
+    const bool stops = gives_up(passes, most_passes);
+    const std::int64_t corrected = stops ? 0 : order == Order::in_turn ? in_turn() : at_once();
     work.edge_projections += corrected;
     if (corrected > 0) {
       if (contacts_ && passes % 1024 == 1023) renew_planes(x, work);
       continue;
     }
     store(x);
-    if (edges.permissible(x)) return {Status::ok, passes};
-    return refuse(Status::not_converged, passes, edges, x,
-                  gives_up ? "pass limit" : "an edge has no length");
+    return verdict(passes, stops ? "pass limit" : nullptr, edges, x);
   }
+}
+
+StepResult StrainPasses::verdict(int passes, const char* limit, const EdgeConstraints& edges,
+                                 const Positions& x) {
+  if (edges.permissible(x)) return {Status::ok, passes};
+  return refuse(Status::not_converged, passes, edges, x, limit ? limit : "an edge has no length");
 }
 
 void StrainPasses::begin(Iterate x) {
@@ -127,8 +131,10 @@ void StrainPasses::begin(Iterate x) {
   if (contacts_) contacts_->save(begun_);
 }
 
-void StrainPasses::restore_contacts() {
+StepResult StrainPasses::passes_alone(const EdgeConstraints& edges, Iterate x, WorkCounters& work) {
+  constexpr int most_passes = 100'000;
   if (contacts_) contacts_->restore(begun_);
+  return limit(Order::in_turn, most_passes, edges, x, work);
 }
 
 // By way of x, where vertices lie as contacts know them.

@@ -43,11 +43,21 @@ class StrainPasses {
     edges_.load(x, x_);
     contacts_ = x.contacts();
   }
-  // load(), and saves the contacts of x; restore_contacts() restores them.
+  // load(), and saves the contacts of x for passes_alone().
   void begin(Iterate x);
-  void restore_contacts();
   void store(Positions& x) const { edges_.store(x_, x); }
   bool finite() const { return x_.allFinite(); }
+  // Whether to stop after so many passes: at most `most`, and no more than some with overflow.
+  bool gives_up(int passes, int most) const {
+    return passes == most || (passes % 64 == 63 && !finite());
+  }
+  // Nothing is left to correct, or passes were given up for the reason `limit` (null: they were
+  // not): ok if x, as stored, is permissible.
+  static StepResult verdict(int passes, const char* limit, const EdgeConstraints& edges,
+                            const Positions& x);
+  // Rounds of projections in contact, after which passes alone end a step: Newton's method
+  // overshoots where a step takes vertices far round an obstacle; passes do not.
+  static constexpr int most_rounds_in_contact = 100;
   ColoredEdges::Places& positions() { return x_; }
   void settle_contacts();  // at positions()
 
@@ -55,9 +65,12 @@ class StrainPasses {
   // test of convergence, is not counted. Refuses x if an edge (of `edges`, in any order) is still
   // beyond its limit.
   enum class Order { in_turn, at_once };
-  static constexpr int far_too_many = 100'000;  // passes, for steps that passes alone are to end
   StepResult limit(Order order, int most_passes, const EdgeConstraints& edges, Iterate x,
                    WorkCounters& work);
+
+  // Ends a step that projections do not end: restores the contacts that begin() saved, and makes
+  // passes in turn, from x as it was stored last.
+  StepResult passes_alone(const EdgeConstraints& edges, Iterate x, WorkCounters& work);
 
   // One pass; returns how many edges it corrected. An edge of no length has no direction to be
   // corrected along and counts as none.

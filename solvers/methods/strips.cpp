@@ -3,11 +3,6 @@
 #include "solvers/methods/strips.h"
 
 namespace inextensible {
-namespace {
-
-constexpr int most_passes_in_contact = 100;
-
-}  // namespace
 
 Strips::Strips(const Problem& problem, const Settings& settings)
     : edges_(problem, settings.strain_limit),
@@ -22,23 +17,16 @@ StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
   if (edges_.permissible(x)) return {Status::ok, 0};
   passes_.begin(x);
   for (int passes = 0;; ++passes) {
-    // Newton's method overshoots where a step takes vertices far round an obstacle; passes do not.
-    // x is still the candidate: nothing has been stored.
-    if (x.contact_count() > 0 && passes == most_passes_in_contact) {
-      passes_.restore_contacts();
-      return passes_.limit(StrainPasses::Order::in_turn, StrainPasses::far_too_many, edges_, x,
-                           work);
-    }
-    const bool gives_up = passes == max_iterations_ || (passes % 64 == 63 && !passes_.finite());
+    if (x.contact_count() > 0 && passes == StrainPasses::most_rounds_in_contact)
+      return passes_.passes_alone(edges_, x, work);  // from the candidate: nothing has been stored
+    const bool stops = passes_.gives_up(passes, max_iterations_);
     passes_.settle_contacts();
-    std::int64_t corrected = gives_up ? 0 : yarns_.project(passes_.positions(), x.contacts(), work);
+    std::int64_t corrected = stops ? 0 : yarns_.project(passes_.positions(), x.contacts(), work);
     work.edge_projections += corrected;
     if (corrected > 0) corrected = passes_.in_turn(passes_between_, work).left;
     if (corrected > 0) continue;
     passes_.store(x);
-    if (edges_.permissible(x)) return {Status::ok, passes};
-    return refuse(Status::not_converged, passes, edges_, x,
-                  gives_up ? "pass limit" : "an edge has no length");
+    return StrainPasses::verdict(passes, stops ? "pass limit" : nullptr, edges_, x);
   }
 }
 

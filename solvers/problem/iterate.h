@@ -32,6 +32,13 @@ class Iterate {
   // Adds contacts for vertices that are inside the obstacle; returns how many are inside.
   int find_contacts(WorkCounters& work) const { return contacts_ ? contacts_->find(*x_, work) : 0; }
 
+  // The positions without what planes have pushed, to `to` (3 x n).
+  void without_pushes(Positions& to) const {
+    to = *x_;
+    for (int c = 0; c < contact_count(); ++c)
+      to.col(contacts_->vertex(c)) -= contacts_->push(c) * contacts_->normal(c);
+  }
+
   // To be taken up again later in the step.
   struct Record {
     Positions x;

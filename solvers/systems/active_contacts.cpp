@@ -12,10 +12,7 @@ ActiveContacts::ActiveContacts(const Problem& problem) {
 
 void ActiveContacts::begin(Iterate x0) {
   contacts_ = x0.contact_count() > 0 ? x0.contacts() : nullptr;
-  if (!contacts_) return;
-  free_ = x0;
-  for (int c = 0; c < contacts_->count(); ++c)
-    free_.col(contacts_->vertex(c)) -= contacts_->push(c) * contacts_->normal(c);
+  if (contacts_) x0.without_pushes(free_);
 }
 
 void ActiveContacts::write_candidate(Positions& x) const {

@@ -5,9 +5,7 @@
 
 #include <cmath>
 
-#include "solvers/registry.h"
-#include "support/contact.h"
-#include "support/motion.h"
+#include "support/side_by_side.h"
 
 namespace inextensible {
 namespace {
@@ -16,25 +14,8 @@ using testing::Random;
 using testing::random_mesh;
 using testing::RandomMesh;
 
-// Theorem 1 of Goldenthal et al. 2007, by the dense Newton of the oracle, whatever the penalty.
 TEST(AugmentedVbd, IteratedToTheEndIsTheClosestPoint) {
-  for (std::uint64_t seed = 0; seed < 8; ++seed) {
-    for (const double penalty : {1.0, 10.0, 50.0}) {
-      SCOPED_TRACE("seed " + std::to_string(seed) + ", penalty " + std::to_string(penalty));
-      Random random(seed);
-      const RandomMesh mesh = random_mesh(random, 4, 4, static_cast<int>(seed % 2));
-      const auto oracle = make_stepper("oracle", mesh.problem, {1e-10, 1, {}});
-      const auto augmented =
-          make_stepper("augmented_vbd", mesh.problem, {1e-10, 1, {{"penalty", penalty}}});
-      State state = testing::moving_state(random, mesh, 1);
-      for (int step = 0; step < 5; ++step) {
-        State copy = state;
-        ASSERT_TRUE(oracle->advance(state, testing::h));
-        ASSERT_TRUE(augmented->advance(copy, testing::h));
-        EXPECT_LE((copy.x - state.x).cwiseAbs().maxCoeff(), 1e-7) << "step " << step;
-      }
-    }
-  }
+  testing::expect_closest_point("augmented_vbd", {1.0, 10.0, 50.0}, 1e-7);
 }
 
 // Each vertex moves alone: what momentum a step takes or gives falls with its tolerance.
@@ -55,25 +36,8 @@ TEST(AugmentedVbd, ConservesMomentumAsFarAsItHasConverged) {
 }
 
 TEST(AugmentedVbd, IsIcdOnTheGroundToo) {
-  for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
-    const auto ground =
-        std::make_shared<const testing::Ground>(Eigen::Vector3d(0.1, 1, 0), 0.0, 0.2);
-    const RandomMesh mesh = random_mesh(random, 4, 4, 0, ground);
-    const auto icd = make_stepper("icd", mesh.problem, {1e-9, 1, {}});
-    const auto augmented = make_stepper("augmented_vbd", mesh.problem, {1e-9, 1, {}});
-    State state = testing::moving_state(random, mesh, 0.3);
-    state.x.row(1).array() += 0.5;
-    state.v.row(1).array() -= 3;
-    State other = state;
-    for (int step = 0; step < 30; ++step) {
-      ASSERT_TRUE(icd->advance(state, testing::h));
-      ASSERT_TRUE(augmented->advance(other, testing::h));
-      ASSERT_LE((other.x - state.x).cwiseAbs().maxCoeff(), 1e-5) << "step " << step;
-    }
-    EXPECT_GT(augmented->work().contacts, 0);
-  }
+  testing::expect_same_on_the_ground({"icd", {1e-9, 1, {}}}, {"augmented_vbd", {1e-9, 1, {}}},
+                                     1e-5);
 }
 
 // A rope at rest: multiplier k is the weight that hangs on link k, and once it is known a step

@@ -5,9 +5,7 @@
 
 #include <cmath>
 
-#include "solvers/registry.h"
-#include "support/contact.h"
-#include "support/motion.h"
+#include "support/side_by_side.h"
 
 namespace inextensible {
 namespace {
@@ -17,47 +15,13 @@ using testing::Random;
 using testing::random_mesh;
 using testing::RandomMesh;
 
-// Theorem 1 of Goldenthal et al. 2007, by the dense Newton of the oracle, whatever the weights.
 TEST(ProjectiveDynamics, IteratedToTheEndIsTheClosestPoint) {
-  for (std::uint64_t seed = 0; seed < 8; ++seed) {
-    for (const double penalty : {3.0, 10.0, 30.0}) {
-      SCOPED_TRACE("seed " + std::to_string(seed) + ", penalty " + std::to_string(penalty));
-      Random random(seed);
-      const RandomMesh mesh = random_mesh(random, 4, 4, static_cast<int>(seed % 2));
-      const auto oracle = make_stepper("oracle", mesh.problem, {1e-10, 1, {}});
-      const auto admm =
-          make_stepper("projective_dynamics", mesh.problem, {1e-10, 1, {{"penalty", penalty}}});
-      State state = testing::moving_state(random, mesh, 1);
-      for (int step = 0; step < 5; ++step) {
-        State copy = state;
-        ASSERT_TRUE(oracle->advance(state, h));
-        ASSERT_TRUE(admm->advance(copy, h));
-        EXPECT_LE((copy.x - state.x).cwiseAbs().maxCoeff(), 1e-8) << "step " << step;
-      }
-    }
-  }
+  testing::expect_closest_point("projective_dynamics", {3.0, 10.0, 30.0}, 1e-8);
 }
 
 TEST(ProjectiveDynamics, IsIcdOnTheGroundToo) {
-  for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
-    const auto ground =
-        std::make_shared<const testing::Ground>(Eigen::Vector3d(0.1, 1, 0), 0.0, 0.2);
-    const RandomMesh mesh = random_mesh(random, 4, 4, 0, ground);
-    const auto icd = make_stepper("icd", mesh.problem, {1e-9, 1, {}});
-    const auto admm = make_stepper("projective_dynamics", mesh.problem, {1e-9, 1, {}});
-    State state = testing::moving_state(random, mesh, 0.3);
-    state.x.row(1).array() += 0.5;
-    state.v.row(1).array() -= 3;
-    State other = state;
-    for (int step = 0; step < 30; ++step) {
-      ASSERT_TRUE(icd->advance(state, h));
-      ASSERT_TRUE(admm->advance(other, h));
-      ASSERT_LE((other.x - state.x).cwiseAbs().maxCoeff(), 1e-5) << "step " << step;
-    }
-    EXPECT_GT(admm->work().contacts, 0);
-  }
+  testing::expect_same_on_the_ground({"icd", {1e-9, 1, {}}}, {"projective_dynamics", {1e-9, 1, {}}},
+                                     1e-5);
 }
 
 // Inner forces come in equal and opposite pairs, which are parallel to their edges only in the end.

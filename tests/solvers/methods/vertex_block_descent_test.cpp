@@ -6,9 +6,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "solvers/registry.h"
-#include "support/contact.h"
-#include "support/motion.h"
+#include "support/side_by_side.h"
 
 namespace inextensible {
 namespace {
@@ -105,26 +103,9 @@ TEST(VertexBlockDescent, ConvergesToTheStepOfImplicitSprings) {
 
 // Where vertices stand on a floor as well: the minimum within its half-space.
 TEST(VertexBlockDescent, ConvergesToTheSameOnTheGround) {
-  for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
-    const auto ground =
-        std::make_shared<const testing::Ground>(Eigen::Vector3d(0.1, 1, 0), 0.0, 0.2);
-    const RandomMesh mesh = random_mesh(random, 4, 4, 0, ground);
-    const auto newton = make_stepper("implicit_springs", mesh.problem, {1e-6, 1, {}});
-    const auto descent =
-        make_stepper("vertex_block_descent", mesh.problem, {0.01, 1, {{"iterations", 2000.0}}});
-    State state = testing::moving_state(random, mesh, 0.3), other = state;
-    state.x.row(1).array() += 0.5;
-    state.v.row(1).array() -= 3;
-    other = state;
-    for (int step = 0; step < 30; ++step) {
-      ASSERT_TRUE(newton->advance(state, h));
-      ASSERT_TRUE(descent->advance(other, h));
-      ASSERT_LE((other.x - state.x).cwiseAbs().maxCoeff(), 1e-6) << "step " << step;
-    }
-    EXPECT_GT(descent->work().contacts, 0);
-  }
+  testing::expect_same_on_the_ground({"implicit_springs", {1e-6, 1, {}}},
+                                     {"vertex_block_descent", {0.01, 1, {{"iterations", 2000.0}}}},
+                                     1e-6);
 }
 
 // Each vertex moves alone: a pass gives momentum away, and convergence brings it back.
