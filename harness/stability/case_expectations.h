@@ -12,6 +12,11 @@ constexpr auto start_direction = inextensible::Direction::start;
 constexpr auto strain_limiting = inextensible::Direction::local;
 constexpr auto springs = inextensible::Direction::springs;
 inline const Solvers everyone;
+// Methods of multipliers: the direction of the end, but each edge's multiplier grows by itself, by
+// `multiplier_penalty` times its elongation over its ends' inertia in a pass. No matrix of J is
+// solved.
+inline const Solvers multipliers{"augmented_vbd", "projective_dynamics"};
+constexpr double multiplier_penalty = 10;
 
 constexpr Outcome survives = Outcome::survived;
 constexpr Outcome refuses = Outcome::refused;

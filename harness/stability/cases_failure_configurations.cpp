@@ -132,6 +132,18 @@ Expectation q4_of_strain_limiting(double d) {
           {{survives, "7e4 with it"}}};
 }
 
+// Multipliers mu of both edges take the vertex from y0 = d + 0.01 to y = y0 / (1 + 2 mu), and a
+// pass adds at most multiplier_penalty y^2 / 2 to mu: y^2 = d^2 + 2 q_limit takes at least
+// ((y0 / y)^3 - 1) / (3 multiplier_penalty y0^2) passes.
+Expectation q4_of_multipliers(double d) {
+  const double from = d + 0.01, to = std::sqrt(d * d + 2 * q_limit);
+  const double passes = (std::pow(from / to, 3) - 1) / (3 * multiplier_penalty * from * from);
+  if (passes > 1e5)
+    return {multipliers, refuses,
+            "multipliers grow by less than 5 y^2 a pass: beyond the 1e5 allowed"};
+  return {multipliers, survives, "some thousand passes"};
+}
+
 // At the distance d from the singular positions.
 void add_near(std::vector<HardCase>& cases, double d) {
   const Expectation too_long =
@@ -160,6 +172,7 @@ void add_near(std::vector<HardCase>& cases, double d) {
        [d] { return two_edges(0.6, 0.8, 0.8 * d); },
        {{start_direction, survives, frozen_q3},
         {strain_limiting, survives, "corrections of the too short edges multiply y in every pass"},
+        {multipliers, survives, "what pushes the too short edges apart multiplies y in every pass"},
         parallel,
         {current_direction, survives, "a damped projection multiplies y until |C| falls"},
         {everyone, survives, "springs may be short"}}});
@@ -172,6 +185,7 @@ void add_near(std::vector<HardCase>& cases, double d) {
                    "a sagging chain between two pins",
                    [d] { return two_edges(std::sqrt(1 - d * d), d, d + 0.01); },
                    {sagging,
+                    q4_of_multipliers(d),
                     q4_of_end(d),
                     q4_of_strain_limiting(d),
                     {everyone, survives, "J(x^n) is not used"}}});

@@ -7,8 +7,9 @@
 // where it is iterated to the end: C = 0, and M (x - x0) + J^T mu = 0 at x itself.
 //
 // Multipliers start from the last accepted step's forces, and vertices from where these would take
-// the candidate: what is at rest is solved before the first pass. Loops: two over vertices and
-// the ends of their edges a pass.
+// the candidate: what is at rest is solved before the first pass. Where a step is too unlike the
+// last one for that, and passes overflow, they begin once more at the candidate, without
+// multipliers. Loops: two over vertices and the ends of their edges a pass.
 #include "solvers/methods/augmented_vbd.h"
 
 namespace inextensible {
@@ -43,11 +44,18 @@ StepResult AugmentedVbd::apply(const Positions& /*x_start*/, double h, Iterate x
   passes_.set_planes(contacts);
   passes_.tensions() = h * h * tension_;
   passes_.follow_tensions();
+  bool anew = false;
   for (int j = 1; j <= max_iterations_; ++j) {
     const bool still = passes_.visit_all(1) <= most_ * most_;
     work.edge_projections += problem_.constraints();
     const bool ends = passes_.update_tensions(strain_limit_) && still;
     if (!ends && (j % 64 != 0 || passes_.finite())) continue;
+    if (!ends && !anew) {
+      anew = true;
+      passes_.load(x, target_, problem_.mass());
+      passes_.tensions().setZero();
+      continue;
+    }
     passes_.store(x);
     if (!edges_.permissible(x)) return refuse(Status::not_converged, j, edges_, x, "overflow");
     tension_ = passes_.tensions() / (h * h);
@@ -73,7 +81,7 @@ Backend augmented_vbd_row() {
   return {.name = "augmented_vbd",
           .summary = "hard lengths by the method of multipliers, in passes over single vertices",
           .knob = Knob::strain_limit,
-          .contestant = false,
+          .contestant = true,
           .settings = setting_infos(AugmentedVbd::fields()),
           .make = make_filter_stepper<AugmentedVbd>,
           .direction = Direction::end,

@@ -253,7 +253,7 @@ Backend projective_dynamics_row() {
   return {.name = "projective_dynamics",
           .summary = "hard lengths by ADMM: single edges, then one constant linear system",
           .knob = Knob::strain_limit,
-          .contestant = false,
+          .contestant = true,
           .settings = setting_infos(ProjectiveDynamics::fields()),
           .make = make_filter_stepper<ProjectiveDynamics>,
           .direction = Direction::end,

@@ -101,7 +101,7 @@ Backend soft_step_row() {
   return {.name = "soft_step",
           .summary = "velocities by Gauss-Seidel, positions by soft springs: small steps do it",
           .knob = Knob::time_step,
-          .contestant = false,
+          .contestant = true,
           .settings = setting_infos(SoftStep::fields()),
           .make = [](std::shared_ptr<const Problem> problem,
                      const BackendOptions& options) -> std::unique_ptr<Stepper> {

@@ -109,7 +109,7 @@ Backend vertex_block_descent_row() {
   return {.name = "vertex_block_descent",
           .summary = "backward Euler on stiff springs, a number of passes over single vertices",
           .knob = Knob::stiffness,
-          .contestant = false,
+          .contestant = true,
           .settings = setting_infos(VertexBlockDescent::fields()),
           .make = [](std::shared_ptr<const Problem> problem,
                      const BackendOptions& options) -> std::unique_ptr<Stepper> {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "harness/stability/case_expectations.h"
 #include "harness/stability/trial_judge.h"
 
 namespace {
@@ -153,6 +154,28 @@ TEST(HardCases, ExpectOneOutcomeInMostCells) {
     }
   }
   EXPECT_GE(strict, 0.85 * all) << strict << " of " << all;
+}
+
+// Their numbers of passes follow from it.
+TEST(HardCases, KnowThePenaltyOfMethodsOfMultipliers) {
+  for (const std::string& name : harness::case_parts::multipliers.names()) {
+    const auto settings = inextensible::complete_settings(*inextensible::find_backend(name), {});
+    EXPECT_EQ(std::get<double>(settings.at("penalty")), harness::case_parts::multiplier_penalty)
+        << name;
+  }
+}
+
+TEST(HardCases, ExpectARefusalOfContactWhereNoObstacleIsTaken) {
+  for (const HardCase& c : harness::hard_cases(harness::hard_case_values("quick"))) {
+    if (c.row != "contact") continue;
+    for (const auto& backend : inextensible::backends()) {
+      const auto e = std::find_if(c.expectations.begin(), c.expectations.end(),
+                                  [&](const auto& x) { return x.solvers.contains(backend.name); });
+      ASSERT_NE(e, c.expectations.end());
+      EXPECT_EQ(e->outcome, backend.takes_collider ? Outcome::survived : Outcome::refused)
+          << c.name << ", " << backend.name;
+    }
+  }
 }
 
 TEST(KnownDifferences, AreOfCasesAndSolversThatExistAndDifferFromWhatIsExpected) {

@@ -71,5 +71,32 @@ TEST(AugmentedVbd, KeepsTheMultipliersOfTheLastAcceptedStep) {
   }
 }
 
+// The pin of a hanging rope jumps by ten links: with the forces of the step before, passes
+// overflow.
+TEST(AugmentedVbd, BeginsAnewWhereTheLastForcesOverflow) {
+  ProblemParts parts;
+  constexpr int links = 20;
+  parts.mass.assign(links + 1, 0.05);
+  parts.pinned = {0};
+  State state{Positions::Zero(3, links + 1), Positions::Zero(3, links + 1), 0};
+  for (int i = 0; i < links; ++i) {
+    parts.edges.push_back({i, i + 1});
+    parts.rest_length.push_back(0.05);
+    state.x(1, i + 1) = -0.05 * (i + 1);
+  }
+  const auto problem = std::make_shared<const Problem>(parts);
+  const auto warm = make_stepper("augmented_vbd", problem, {0.01, 1, {}}),
+             cold = make_stepper("augmented_vbd", problem, {0.01, 1, {}});
+  for (int step = 0; step < 5; ++step) ASSERT_TRUE(warm->advance(state, 0.01));
+  state.x(0, 0) += 0.5;
+  State fresh = state;
+  const StepResult again = warm->advance(state, 0.01), once = cold->advance(fresh, 0.01);
+  ASSERT_TRUE(again);
+  ASSERT_TRUE(once);
+  EXPECT_GT(again.iterations, once.iterations);
+  EXPECT_EQ(state.x, fresh.x);
+  EXPECT_TRUE(EdgeConstraints(*problem, 0.01).permissible(state.x));
+}
+
 }  // namespace
 }  // namespace inextensible
