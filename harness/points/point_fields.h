@@ -127,6 +127,9 @@ inline constexpr std::tuple phase_fields{
           "wall time of the same run in the collision filter", in_phases),
     field("contact", &inextensible::PhaseSeconds::contact, "s",
           "what of these three goes to friction, to finding contacts and to planes",
+          {.inside = "phases", .later = true}),
+    field("copy", &inextensible::PhaseSeconds::copy, "s",
+          "wall time of the same run in copying the state into an engine and out of it",
           {.inside = "phases", .later = true})};
 
 }  // namespace harness

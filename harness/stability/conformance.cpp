@@ -45,10 +45,19 @@ Findings findings_of(const json& list) {
   return findings;
 }
 
+// A scene that the solver does not take is none to examine it on.
+Findings of_what_is_taken(const Check& check, const Examinee& examinee) {
+  try {
+    return check.run(examinee);
+  } catch (const NotTaken& reason) {
+    return {not_applicable(check.name, std::string("not taken: ") + reason.what())};
+  }
+}
+
 // In a process of its own: the solver may crash, hang or end the program.
 Findings isolated(const Check& check, const Examinee& examinee) {
   ChildOutcome outcome =
-      run_in_child([&](Heartbeat&) { return compact(to_json(check.run(examinee))); },
+      run_in_child([&](Heartbeat&) { return compact(to_json(of_what_is_taken(check, examinee))); },
                    {check.timeout, 0, examinee.options.interrupted});
   if (outcome.end == ChildOutcome::End::interrupted) throw Interrupted();
   if (auto findings = answer(outcome, findings_of)) return *findings;

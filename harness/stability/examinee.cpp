@@ -53,7 +53,11 @@ Case net(std::uint64_t seed, int n, int pins, double speed, double step, int ste
 }
 
 std::unique_ptr<inextensible::Stepper> Examinee::stepper(const Case& c) const {
-  return inextensible::make_stepper(backend.name, c.scene.problem, {c.limit, options.seed, {}});
+  try {
+    return inextensible::make_stepper(backend.name, c.scene.problem, {c.limit, options.seed, {}});
+  } catch (const std::invalid_argument& error) {
+    throw NotTaken(error.what());
+  }
 }
 
 SceneParameters Examinee::drape(int n) const {

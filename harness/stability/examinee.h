@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include "harness/scenes/scene.h"
@@ -26,12 +27,17 @@ Case scene_case(const std::string& name, const char* type, const SceneParameters
 // `pins` are pinned; speeds up to `speed` m/s in each coordinate.
 Case net(std::uint64_t seed, int n, int pins, double speed, double step, int steps, double limit);
 
+// The solver does not take the scene, and says why.
+struct NotTaken : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 struct Examinee {
   const inextensible::Backend& backend;
   const ConformanceOptions& options;
 
   bool keeps_a_limit() const { return backend.knob == inextensible::Knob::strain_limit; }
-  std::unique_ptr<inextensible::Stepper> stepper(const Case& c) const;
+  std::unique_ptr<inextensible::Stepper> stepper(const Case& c) const;  // throws NotTaken
   // Of a drape of n x n, without the parts that the solver does not take.
   SceneParameters drape(int n) const;
 };

@@ -18,10 +18,11 @@ namespace inextensible {
 
 class EdgeConstraints;
 
-// contact: what of the other three goes to friction, to finding contacts and to planes. Iterations
-// that a step needs more for them are the method's.
+// contact: what of the first three goes to friction, to finding contacts and to planes. Iterations
+// that a step needs more for them are the method's. copy: into the state of an engine and out of
+// it; part of none of the others.
 struct PhaseSeconds {
-  double unconstrained = 0, filter = 0, collision = 0, contact = 0;
+  double unconstrained = 0, filter = 0, collision = 0, contact = 0, copy = 0;
 };
 
 // Sees the iterates of a step, where a method shows them: for measurements, not for the method.

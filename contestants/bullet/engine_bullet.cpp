@@ -1,0 +1,189 @@
+// Bullet's soft body (btSoftBody), in double precision: nodes and links whose lengths are corrected
+// one after the other (PSolve_Links), as in position-based dynamics
+// (Mueller et al. 2006). A correction needs no root, so that it is exact to first order only
+// (Jakobsen 2001). The world takes one step of h; its damping, sleeping, collisions and limits on
+// what a force may move are off.
+// Shear, bending and drag, where a scene has them, are forces that the plug-in gives to nodes.
+// Loops: `velocity_iterations` + `iterations` passes over links a step.
+//
+// Departure: none from Bullet, whose world rounds the step to single precision. A node has no
+// memory but position and velocity, so that nothing else has to be put back after a refusal.
+#include <BulletSoftBody/btDefaultSoftBodySolver.h>
+#include <BulletSoftBody/btSoftBody.h>
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
+#include <btBulletDynamicsCommon.h>
+
+#include <cmath>
+#include <string>
+
+#include "contestants/common/engine.h"
+#include "solvers/plugin.h"
+#include "solvers/problem/forces.h"
+
+namespace {
+
+using inextensible::Positions;
+using inextensible::Problem;
+using inextensible::State;
+using inextensible::Status;
+using inextensible::StepResult;
+using inextensible::Stopwatch;
+
+btVector3 to_bullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Eigen::Vector3d from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+
+// A world with one body in it.
+struct World {
+  explicit World(const Problem& problem);
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+  ~World() { dynamics.removeSoftBody(body.get()); }
+
+  btSoftBodyRigidBodyCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadphase;
+  btSequentialImpulseConstraintSolver solver;
+  btSoftRigidDynamicsWorld dynamics{&dispatcher, &broadphase, &solver, &configuration};
+  std::unique_ptr<btSoftBody> body;
+};
+
+World::World(const Problem& problem) {
+  btSoftBodyWorldInfo& info = dynamics.getWorldInfo();
+  info.m_gravity = to_bullet(problem.gravity());
+  info.air_density = info.water_density = 0;
+  info.m_maxDisplacement = BT_LARGE_FLOAT;
+  std::vector<btScalar> mass = problem.mass();
+  for (const int vertex : problem.pinned()) mass[vertex] = 0;  // Bullet's word for infinite
+  const std::vector<btVector3> origin(mass.size(), btVector3(0, 0, 0));
+  body = std::make_unique<btSoftBody>(&info, problem.vertices(), origin.data(), mass.data());
+  body->m_materials[0]->m_kLST = 1;
+  body->m_cfg.kDP = 0;
+  body->m_cfg.collisions = 0;
+  body->m_cfg.diterations = 0;
+  for (int k = 0; k < problem.constraints(); ++k) {
+    body->appendLink(problem.edges()[k].a, problem.edges()[k].b);
+    btSoftBody::Link& link = body->m_links[k];
+    link.m_rl = problem.rest_length()[k];
+    link.m_c1 = link.m_rl * link.m_rl;
+  }
+  body->updateLinkConstants();
+  body->m_bUpdateRtCst = false;  // else Bullet takes the first positions for rest lengths
+  body->setActivationState(DISABLE_DEACTIVATION);
+  dynamics.addSoftBody(body.get());
+}
+
+class BulletSoftBody final : public inextensible::Stepper {
+ public:
+  struct Settings {
+    int iterations = 1, velocity_iterations = 0;
+    std::string_view order = "mesh";
+  };
+
+  BulletSoftBody(std::shared_ptr<const Problem> shared, const Settings& settings)
+      : Stepper(std::move(shared)), world_(problem()) {
+    world_.body->m_cfg.piterations = settings.iterations;
+    world_.body->m_cfg.viterations = settings.velocity_iterations;
+    if (settings.velocity_iterations > 0)  // by default nothing is done in them
+      world_.body->m_cfg.m_vsequence.push_back(btSoftBody::eVSolver::Linear);
+    if (settings.order == "random") world_.body->randomizeConstraints();
+    passes_ = settings.iterations + settings.velocity_iterations;
+    if (problem().shear() || !problem().bending().empty() || problem().has_drag())
+      forces_.resize(3, problem().vertices());
+  }
+
+  static inextensible::SettingFields<Settings> fields() {
+    using S = Settings;
+    return {{"iterations", &S::iterations, "passes over links that correct positions (piterations)",
+             inextensible::at_least_one, inextensible::SearchRange{1, 32}},
+            {"velocity_iterations", &S::velocity_iterations,
+             "passes over links before them that correct velocities (viterations)",
+             inextensible::count_from_zero, inextensible::SearchRange{0, 8}},
+            {"order",
+             &S::order,
+             "of links: the mesh's, or shuffled once (randomizeConstraints)",
+             {},
+             {},
+             {"mesh", "random"}}};
+  }
+
+ private:
+  StepResult solve(const State& state, double h, Positions& x) override {
+    // Bullet takes no step for a time that it calls zero.
+    if (btFuzzyZero(h)) return {Status::not_converged, 0, -1, 0, "Bullet takes no step so short"};
+    Stopwatch stopwatch(phases_wanted_);
+    auto& nodes = world_.body->m_nodes;
+    for (int i = 0; i < problem().vertices(); ++i) {
+      nodes[i].m_x = to_bullet(state.x.col(i));
+      nodes[i].m_v = to_bullet(state.v.col(i));
+    }
+    for (const int pin : problem().pinned()) nodes[pin].m_v.setZero();
+    phases_.copy += stopwatch();
+    if (forces_.size() > 0) give_forces(state);
+    phases_.unconstrained += stopwatch();
+    world_.dynamics.stepSimulation(h, 0);
+    work_.edge_projections += std::int64_t{passes_} * problem().constraints();
+    phases_.filter += stopwatch();
+    for (int i = 0; i < problem().vertices(); ++i) x.col(i) = from_bullet(nodes[i].m_x);
+    for (const int pin : problem().pinned()) x.col(pin) = state.x.col(pin);  // -0 stays -0
+    phases_.copy += stopwatch();
+    return {Status::ok, passes_};
+  }
+
+  // All but the weight, which is Bullet's own.
+  void give_forces(const State& state) {
+    forces_.setZero();
+    add_forces(problem(), state.x, state.v, forces_, work_);
+    for (int i = 0; i < problem().vertices(); ++i) {
+      if (problem().inverse_mass()[i] == 0) continue;
+      world_.body->addForce(to_bullet(forces_.col(i) - problem().mass()[i] * problem().gravity()),
+                            i);
+    }
+  }
+
+  StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& /*filtered*/,
+                            const Positions& /*x*/, Positions& v) override {
+    Stopwatch stopwatch(phases_wanted_);
+    for (int i = 0; i < problem().vertices(); ++i)
+      v.col(i) = from_bullet(world_.body->m_nodes[i].m_v);
+    phases_.copy += stopwatch();
+    return {};
+  }
+
+  World world_;
+  Positions forces_;  // N; empty where there are none but gravity
+  int passes_ = 0;
+};
+
+const std::string& version() {
+  static const std::string text =
+      "Bullet " + std::to_string(btGetVersion() / 100) + "." + std::to_string(btGetVersion() % 100);
+  return text;
+}
+
+inextensible::Backend row() {
+  static const std::string summary = version() + ", soft body of links (position-based), double";
+  static const std::string label = version() + " soft body";
+  inextensible::Backend row = engines::engine_row("engine_bullet", summary.c_str(), label.c_str());
+  row.settings = inextensible::setting_infos(BulletSoftBody::fields());
+  row.make =
+      [](std::shared_ptr<const Problem> problem,
+         const inextensible::BackendOptions& options) -> std::unique_ptr<inextensible::Stepper> {
+    if (problem->pins_follow_body())
+      throw std::invalid_argument("solver 'engine_bullet' takes no pins that move");
+    return std::make_unique<BulletSoftBody>(std::move(problem),
+                                            inextensible::settings_of<BulletSoftBody>(options));
+  };
+  row.takes_shear = row.takes_bending = row.takes_drag = true;
+  row.direction = inextensible::Direction::local;
+  row.citation = "Coumans 2022";
+  return row;
+}
+
+}  // namespace
+
+extern "C" const InextensiblePlugin* inextensible_plugin() {
+  static const std::vector<inextensible::Backend> rows{row()};
+  static const auto plugin = inextensible_plugin_of(version().c_str(), rows);
+  return &plugin;
+}

@@ -1,0 +1,236 @@
+// A chain of hinges in MuJoCo: joint coordinates, so that links keep their length to rounding. A
+// link is a body whose mass is a point at its end, and turns on one hinge as long as the chain
+// stays in the plane of x and y, on two otherwise. Armature, damping, limits, contacts and
+// constraints are off. One step is one mj_step.
+// Loops: over links; the mass matrix of a chain is dense, its factorization takes n^3 / 3.
+//
+// Departure: before each step the links' own axes are turned into the links, so that angles begin
+// at 0 and two hinges never come near the place where they are one (gimbal lock). MuJoCo keeps
+// nothing else from step to step without constraints.
+#include <mujoco/mujoco.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include "contestants/common/engine.h"
+#include "contestants/common/links.h"
+#include "solvers/plugin.h"
+
+namespace {
+
+using engines::LinkPoses;
+using engines::Links;
+using inextensible::Positions;
+using inextensible::Problem;
+using inextensible::State;
+using inextensible::Status;
+using inextensible::StepResult;
+using inextensible::Stopwatch;
+
+struct Free {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+
+std::string model_text(const Links& links, const Eigen::Vector3d& gravity, int hinges) {
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  text << "<mujoco><compiler boundmass='0'/><size njmax='1' nconmax='1'/><option gravity='"
+       << gravity.x() << ' ' << gravity.y() << ' ' << gravity.z()
+       << "'><flag contact='disable' constraint='disable' warmstart='disable'/></option>"
+       << "<worldbody>";
+  for (int i = 0; i < links.count(); ++i) {
+    text << "<body pos='" << (i == 0 ? 0 : links.length[i - 1]) << " 0 0'>"
+         << "<joint type='hinge' axis='0 0 1'/>";
+    if (hinges == 2) text << "<joint type='hinge' axis='0 1 0'/>";
+    // The inertia is set to 0 after loading; MuJoCo reads none that is not positive.
+    text << "<inertial pos='" << links.length[i] << " 0 0' mass='" << links.mass[i]
+         << "' diaginertia='1e-9 1e-9 1e-9'/>";
+  }
+  for (int i = 0; i < links.count(); ++i) text << "</body>";
+  text << "</worldbody></mujoco>";
+  return text.str();
+}
+
+std::unique_ptr<mjModel, Free> load(const std::string& text) {
+  const auto files = std::make_unique<mjVFS>();
+  mj_defaultVFS(files.get());
+  mj_makeEmptyFileVFS(files.get(), "chain.xml", static_cast<int>(text.size()));
+  std::memcpy(files->filedata[mj_findFileVFS(files.get(), "chain.xml")], text.data(), text.size());
+  char error[500] = "";
+  std::unique_ptr<mjModel, Free> model(mj_loadXML("chain.xml", files.get(), error, sizeof(error)));
+  mj_deleteVFS(files.get());
+  if (!model) throw std::invalid_argument(std::string("MuJoCo: ") + error);
+  return model;
+}
+
+// The chain with one or two hinges a link, as MuJoCo has it.
+class HingeChain {
+ public:
+  HingeChain(const Links& links, const Eigen::Vector3d& gravity, int hinges, int integrator)
+      : hinges_(hinges), model_(load(model_text(links, gravity, hinges))) {
+    model_->opt.integrator = integrator;
+    std::fill_n(model_->body_inertia, 3 * model_->nbody, 0.0);
+    data_.reset(mj_makeData(model_.get()));
+    if (!data_) throw std::bad_alloc();
+  }
+
+  int hinges() const { return hinges_; }
+
+  void set(const LinkPoses& poses) {
+    Eigen::Quaterniond before = Eigen::Quaterniond::Identity();
+    Eigen::Vector3d rate_before = Eigen::Vector3d::Zero();
+    for (int i = 0; i < model_->nbody - 1; ++i) {
+      const Eigen::Matrix3d& axes = poses[i].axes;
+      const Eigen::Quaterniond turned(axes);
+      const Eigen::Quaterniond against = before.conjugate() * turned;
+      mjtNum* quaternion = model_->body_quat + 4 * (i + 1);
+      quaternion[0] = against.w();
+      for (int c = 0; c < 3; ++c) quaternion[1 + c] = against.vec()[c];
+      const Eigen::Vector3d rate = poses[i].rate - rate_before;
+      mjtNum* qvel = data_->qvel + hinges_ * i;
+      qvel[0] = rate.dot(axes.col(2));
+      if (hinges_ == 2) qvel[1] = rate.dot(axes.col(1));
+      before = turned;
+      rate_before = poses[i].rate;
+    }
+    mju_zero(data_->qpos, model_->nq);
+    std::memset(data_->warning, 0, sizeof(data_->warning));
+  }
+
+  // False if MuJoCo met numbers that it does not take, and started anew from nothing.
+  bool step(double h) {
+    model_->opt.timestep = h;
+    mj_step(model_.get(), data_.get());
+    return data_->warning[mjWARN_BADQPOS].number == 0 &&
+           data_->warning[mjWARN_BADQVEL].number == 0 && data_->warning[mjWARN_BADQACC].number == 0;
+  }
+
+  // Of the ends of links, the pin's place being 0.
+  void get(const Links& links, Positions& x, Positions& v) {
+    mj_kinematics(model_.get(), data_.get());
+    mj_comPos(model_.get(), data_.get());
+    mj_comVel(model_.get(), data_.get());
+    for (int i = 0; i < links.count(); ++i) {
+      mjtNum spin_and_velocity[6];
+      mj_objectVelocity(model_.get(), data_.get(), mjOBJ_BODY, i + 1, spin_and_velocity, 0);
+      x.col(links.vertex[i]) = Eigen::Map<const Eigen::Vector3d>(data_->xipos + 3 * (i + 1));
+      v.col(links.vertex[i]) = Eigen::Map<const Eigen::Vector3d>(spin_and_velocity + 3);
+    }
+  }
+
+ private:
+  int hinges_;
+  std::unique_ptr<mjModel, Free> model_;
+  std::unique_ptr<mjData, Free> data_;
+};
+
+struct Integrator {
+  const char* name;
+  int number;
+  int evaluations;     // of the acceleration a step: a mass matrix, its factorization and a solve
+  int factorizations;  // beside these
+};
+constexpr Integrator integrators[] = {
+    {"rk4", mjINT_RK4, 4, 0}, {"implicit", mjINT_IMPLICIT, 1, 1}, {"euler", mjINT_EULER, 1, 0}};
+
+class MujocoChain final : public inextensible::Stepper {
+ public:
+  struct Settings {
+    std::string_view integrator = integrators[0].name;
+  };
+
+  MujocoChain(std::shared_ptr<const Problem> shared, const Settings& settings, const State* start)
+      : Stepper(std::move(shared)),
+        links_(problem()),
+        poses_(links_.count()),
+        v_(3, problem().vertices()) {
+    for (const Integrator& one : integrators) {
+      if (settings.integrator == one.name) integrator_ = one;
+    }
+    make(start && planar(links_, problem(), *start) ? 1 : 2);
+  }
+
+  static inextensible::SettingFields<Settings> fields() {
+    std::vector<const char*> names;
+    for (const Integrator& one : integrators) names.push_back(one.name);
+    return {{"integrator",
+             &Settings::integrator,
+             "Runge and Kutta's of order 4, implicit in velocities, or semi-implicit",
+             {},
+             {},
+             names}};
+  }
+
+ private:
+  void make(int hinges) {
+    chain_ = std::make_unique<HingeChain>(links_, problem().gravity(), hinges, integrator_.number);
+  }
+
+  StepResult solve(const State& state, double h, Positions& x) override {
+    Stopwatch stopwatch(phases_wanted_);
+    const bool in_plane = planar(links_, problem(), state);
+    if (!in_plane && chain_->hinges() == 1) make(2);  // from here on, or counters would not repeat
+    if (!find_poses(links_, state, chain_->hinges() == 1, poses_))
+      return {Status::not_finite, 0, -1, 0, "a link has no direction"};
+    chain_->set(poses_);
+    phases_.copy += stopwatch();
+    if (!chain_->step(h)) return {Status::not_finite, 0, -1, 0, "MuJoCo met a number above 1e10"};
+    work_.assemblies += integrator_.evaluations;
+    work_.factorizations += integrator_.evaluations + integrator_.factorizations;
+    work_.back_solves += integrator_.evaluations + integrator_.factorizations;
+    phases_.filter += stopwatch();
+    chain_->get(links_, x, v_);
+    x.colwise() += state.x.col(links_.pin);
+    x.col(links_.pin) = state.x.col(links_.pin);
+    v_.col(links_.pin).setZero();
+    phases_.copy += stopwatch();
+    return {Status::ok, integrator_.evaluations};
+  }
+
+  StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& /*filtered*/,
+                            const Positions& /*x*/, Positions& v) override {
+    v = v_;
+    return {};
+  }
+
+  Links links_;
+  LinkPoses poses_;
+  Integrator integrator_ = integrators[0];
+  std::unique_ptr<HingeChain> chain_;
+  Positions v_;
+};
+
+const std::string& version() {
+  static const std::string text = std::string("MuJoCo ") + mj_versionString();
+  return text;
+}
+
+inextensible::Backend row() {
+  static const std::string summary = version() + ", a chain of hinges (joint coordinates)";
+  static const std::string label = version() + " hinges";
+  inextensible::Backend row = engines::engine_row("engine_mujoco", summary.c_str(), label.c_str());
+  row.settings = inextensible::setting_infos(MujocoChain::fields());
+  row.make =
+      [](std::shared_ptr<const Problem> problem,
+         const inextensible::BackendOptions& options) -> std::unique_ptr<inextensible::Stepper> {
+    return std::make_unique<MujocoChain>(
+        std::move(problem), inextensible::settings_of<MujocoChain>(options), options.start);
+  };
+  row.citation = "Todorov, Erez and Tassa 2012";
+  row.velocities = inextensible::Velocities::whole_step;
+  return row;
+}
+
+}  // namespace
+
+extern "C" const InextensiblePlugin* inextensible_plugin() {
+  mju_user_warning = [](const char*) {};  // else it writes them to a file; steps look for them
+  static const std::vector<inextensible::Backend> rows{row()};
+  static const auto plugin = inextensible_plugin_of(version().c_str(), rows);
+  return &plugin;
+}

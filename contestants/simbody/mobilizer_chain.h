@@ -1,0 +1,43 @@
+// The chain as Simbody has it. Simbody's headers are not C++20, so that they stay behind this one.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "contestants/common/link_pose.h"
+
+namespace engines {
+
+std::string simbody_version();
+
+// Links on pins, in the plane of x and y, or on line orientations. The first hangs on the origin.
+class MobilizerChain {
+ public:
+  // length (m) and mass (kg) of each link, gravity in m/s^2; one of `integrators`.
+  MobilizerChain(const std::vector<double>& length, const std::vector<double>& mass,
+                 const Eigen::Vector3d& gravity, bool pins, std::string_view integrator,
+                 double accuracy);
+  ~MobilizerChain();
+
+  static constexpr const char* integrators[] = {"merson", "fehlberg", "verlet"};
+
+  bool pins() const;
+  void set(const std::vector<LinkPose>& poses);
+  // To `h` later. False if Simbody's steps became too many, or too short. Whatever Simbody throws.
+  bool step(double h);
+  // Tried since set().
+  int internal_steps() const;
+
+  struct Point {
+    Eigen::Vector3d place, velocity;
+  };
+  Point end_of(int link) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace engines

@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "contestants/tests/known_scenes.h"
+
+namespace engines {
+namespace {
+
+using inextensible::State;
+
+const std::string solver = "engine_bullet";
+
+class Bullet : public testing::Test {
+ protected:
+  void SetUp() override { load(PLUGIN); }
+};
+
+// Its time stepper is of first order.
+TEST_F(Bullet, SwingsAsAPendulum) {
+  const double coarse = pendulum_error(solver, 1000), fine = pendulum_error(solver, 2000);
+  EXPECT_LT(fine, 0.01);
+  EXPECT_NEAR(std::log2(coarse / fine), 1, 0.1);
+}
+
+// One pass a step from the pin down leaves link i of N the strain (N - i) g h^2 / l at rest.
+TEST_F(Bullet, OnePassCarriesALoadByOneLink) {
+  constexpr int links = 10;
+  constexpr double h = 5e-4, l = 1.0 / links, fall = 9.81 * h * h;
+  Scene scene = chain(links);
+  scene.start.x.setZero();
+  for (int i = 1; i <= links; ++i)
+    scene.start.x(1, i) = scene.start.x(1, i - 1) - l - (links - i) * fall;
+  const State after = run(solver, scene, h, 1);
+  // The correction has no root: what is left is of second order in the strain.
+  const double second = l * std::pow((2 * links - 2) * fall / l, 2);
+  EXPECT_LT(distance(after.x, scene.start.x), links * second);
+  EXPECT_LT(links * second, 0.2 * fall);  // a chain without that strain would rise by more
+  EXPECT_NEAR(largest_strain(scene, after), (links - 1) * fall / l, 0.02 * links * fall / l);
+}
+
+// More passes strain less; another order is another motion.
+TEST_F(Bullet, SettingsAreTaken) {
+  const Scene scene = chain(10);
+  const auto strain = [&scene](double passes) {
+    return largest_strain(scene, run(solver, scene, 0.01, 20, {{"iterations", passes}}));
+  };
+  EXPECT_LT(strain(100), 0.1 * strain(1));
+  const auto plain = run(solver, scene, 0.01, 20);
+  const auto velocity_first = run(solver, scene, 0.01, 20, {{"velocity_iterations", 5.0}});
+  EXPECT_LT(largest_strain(scene, velocity_first), 0.9 * largest_strain(scene, plain));
+  const auto shuffled = run(solver, scene, 0.01, 20, {{"order", std::string("random")}});
+  EXPECT_GT(distance(shuffled.x, plain.x), 1e-3);
+}
+
+// Corrections along directions at the end of a step slow a spinning body down:
+// Omega(t) = Omega / sqrt(1 + 2 Omega^2 h t).
+TEST_F(Bullet, NetSpinsDown) {
+  constexpr double omega = 2 * std::numbers::pi, h = 1e-3;
+  const Scene scene = spinning_net(5, omega);
+  const State end = run(solver, scene, h, 500, {{"iterations", 300.0}});
+  const double turning =
+      angular_momentum(scene, end).y() / angular_momentum(scene, scene.start).y();
+  EXPECT_NEAR(turning, 1 / std::sqrt(1 + 2 * omega * omega * h * 500 * h), 1e-3);
+  EXPECT_LT(largest_strain(scene, end), 1e-4);
+}
+
+// Nothing is damped: what flies freely goes on as it was, momentum and all.
+TEST_F(Bullet, TakesAndGivesStates) {
+  Scene scene = spinning_net(4, 0);
+  scene.start.v.colwise() = Eigen::Vector3d(3, -2, 1);
+  constexpr double h = 1.0 / 128;  // that single precision holds
+  const State after = run(solver, scene, h, 1);
+  EXPECT_LT(distance(after.x, scene.start.x + h * scene.start.v), 1e-14);
+  EXPECT_LT(distance(after.v, scene.start.v), 1e-12);
+  const State late = run(solver, scene, h, 1000);
+  EXPECT_LT(distance(late.v, scene.start.v), 1e-10);  // never asleep
+}
+
+TEST_F(Bullet, RefusesWithoutTrace) {
+  const Scene scene = chain(5);
+  State fast = scene.start;
+  fast.v.rightCols(2).setConstant(1e300);
+  expect_refusal_without_trace(solver, scene, fast, 1e10);
+  expect_refusal_without_trace(solver, scene, scene.start, 1e-17);  // no step to Bullet
+}
+
+// Two vertices on a spring alone swing with omega^2 = 2 k / m, and keep their middle.
+TEST_F(Bullet, TakesForces) {
+  inextensible::ProblemParts parts;
+  parts.mass = {1, 1};
+  parts.gravity.setZero();
+  parts.shear = inextensible::Springs{{{0, 1}}, {1}, {50}};
+  Scene scene{std::make_shared<const inextensible::Problem>(parts), {}};
+  scene.start.x.setZero(3, 2);
+  scene.start.v.setZero(3, 2);
+  scene.start.x.row(0) << -0.55, 0.55;
+  const State after = run(solver, scene, std::numbers::pi / 10 / 3200, 3200);  // half a period
+  EXPECT_NEAR(after.x(0, 1), 0.45, 1e-4);
+  EXPECT_NEAR(after.x(0, 0), -0.45, 1e-4);
+}
+
+TEST_F(Bullet, TakesNoImplicitForces) {
+  inextensible::ProblemParts parts;
+  parts.mass = {1, 1};
+  parts.edges = {{0, 1}};
+  parts.rest_length = {1};
+  parts.drag = {1, 1};
+  parts.implicit_forces = true;
+  const Scene scene{std::make_shared<const inextensible::Problem>(parts), {}};
+  expect_unsupported(solver, scene, "takes no implicit forces");
+}
+
+}  // namespace
+}  // namespace engines

@@ -1,0 +1,80 @@
+// What engines in joint coordinates must fulfil, each test once for an engine.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "contestants/tests/known_scenes.h"
+
+namespace engines {
+
+// fine: settings whose error of a second is far below 1e-6 at steps of 1 ms.
+inline void expect_a_chain(const std::string& solver, const inextensible::Settings& fine) {
+  EXPECT_LT(pendulum_error(solver, 1000, fine), 1e-8);
+
+  // In a plane of its own the chain takes one angle a link, in another plane two.
+  const Scene flat = chain(6), turned = chain(6, 0.7);
+  const auto in_plane = run(solver, flat, 1e-3, 300, fine);
+  const auto in_space = run(solver, turned, 1e-3, 300, fine);
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).matrix();
+  EXPECT_LT(distance(turn * in_plane.x, in_space.x), 1e-7);
+  EXPECT_LT(distance(turn * in_plane.v, in_space.v), 1e-5);
+
+  // Gravity along y changes neither energy nor the angular momentum about y.
+  const Scene swirl = swirling_chain(6);
+  const auto end = run(solver, swirl, 1e-3, 300, fine);
+  EXPECT_GT(distance(end.x, swirl.start.x), 0.1);
+  EXPECT_LT(largest_strain(swirl, end), 1e-12);
+  EXPECT_NEAR(energy(swirl, end), energy(swirl, swirl.start), 1e-6);
+  EXPECT_NEAR(angular_momentum(swirl, end).y(), angular_momentum(swirl, swirl.start).y(), 1e-7);
+}
+
+// What goes in comes out: in no time nothing changes.
+inline void expect_copies(const std::string& solver) {
+  for (const Scene& scene : {chain(9), chain(9, 0.7), swirling_chain(9)}) {
+    const auto after = run(solver, scene, 1e-12, 1);
+    EXPECT_LT(distance(after.x, scene.start.x), 1e-11);
+    EXPECT_LT(distance(after.v, scene.start.v), 1e-8);
+    EXPECT_TRUE(after.x.col(0) == scene.start.x.col(0));
+  }
+}
+
+// Vertices may be numbered in any order, masses and lengths may differ: two unlike links, released
+// level, whose first accelerations are known: tan of none, so both fall as free bodies would turn.
+inline void expect_unlike_links(const std::string& solver) {
+  inextensible::ProblemParts parts;
+  parts.mass = {0.3, 1, 2};  // vertex 1 is the pin, then 2, then 0
+  parts.pinned = {1};
+  parts.edges = {{0, 2}, {1, 2}};
+  parts.rest_length = {0.5, 0.25};
+  inextensible::State start;
+  start.x.setZero(3, 3);
+  start.v.setZero(3, 3);
+  start.x.row(0) << 1.75, 1, 1.25;
+  const Scene scene{std::make_shared<const inextensible::Problem>(parts), start};
+  // Level links carry no load across them: every vertex falls freely at first.
+  const double h = 1e-5;
+  const auto after = run(solver, scene, h, 1);
+  EXPECT_NEAR(after.v(1, 0), -9.81 * h, 1e-9);
+  EXPECT_NEAR(after.v(1, 2), -9.81 * h, 1e-9);
+  EXPECT_LT(largest_strain(scene, run(solver, scene, 1e-3, 100)), 1e-12);
+}
+
+inline void expect_chains_only(const std::string& solver) {
+  expect_unsupported(solver, spinning_net(3, 1), "0 vertices are pinned");
+  inextensible::ProblemParts parts;
+  parts.mass = {1, 1, 1, 1};
+  parts.pinned = {0};
+  parts.edges = {{0, 1}, {1, 2}, {1, 3}};
+  parts.rest_length = {1, 1, 1};
+  Scene fork{std::make_shared<const inextensible::Problem>(parts), chain(3).start};
+  expect_unsupported(solver, fork, "vertex 1 has more than two edges");
+  parts.edges.pop_back();
+  parts.rest_length.pop_back();
+  fork.problem = std::make_shared<const inextensible::Problem>(parts);
+  expect_unsupported(solver, fork, "do not hang on the pin");
+}
+
+}  // namespace engines

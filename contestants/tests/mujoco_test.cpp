@@ -1,0 +1,42 @@
+#include "contestants/tests/chain_answers.h"
+
+namespace engines {
+namespace {
+
+const std::string solver = "engine_mujoco";
+const auto word = [](const char* integrator) {
+  return inextensible::Settings{{"integrator", std::string(integrator)}};
+};
+
+class Mujoco : public testing::Test {
+ protected:
+  void SetUp() override { load(PLUGIN); }
+};
+
+TEST_F(Mujoco, MovesAChain) { expect_a_chain(solver, word("rk4")); }
+TEST_F(Mujoco, TakesAndGivesStates) { expect_copies(solver); }
+TEST_F(Mujoco, TakesUnlikeLinks) { expect_unlike_links(solver); }
+TEST_F(Mujoco, TakesChainsOnly) { expect_chains_only(solver); }
+
+TEST_F(Mujoco, IntegratorsHaveTheirOrders) {
+  const auto order = [](const char* integrator) {
+    return std::log2(pendulum_error(solver, 100, word(integrator)) /
+                     pendulum_error(solver, 200, word(integrator)));
+  };
+  EXPECT_NEAR(order("rk4"), 4, 0.3);
+  EXPECT_GT(order("euler"), 0.8);
+  EXPECT_GT(order("implicit"), 0.8);
+}
+
+TEST_F(Mujoco, RefusesWithoutTrace) {
+  const Scene scene = chain(5);
+  inextensible::State fast = scene.start;
+  fast.v(1, 5) = 1e12;  // MuJoCo takes no number beyond 1e10
+  expect_refusal_without_trace(solver, scene, fast, 1e-3);
+  inextensible::State collapsed = scene.start;
+  collapsed.x.col(3) = collapsed.x.col(2);
+  expect_refusal_without_trace(solver, scene, collapsed, 1e-3);
+}
+
+}  // namespace
+}  // namespace engines

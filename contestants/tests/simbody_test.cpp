@@ -1,0 +1,50 @@
+#include "contestants/tests/chain_answers.h"
+
+namespace engines {
+namespace {
+
+const std::string solver = "engine_simbody";
+
+class Simbody : public testing::Test {
+ protected:
+  void SetUp() override { load(PLUGIN); }
+};
+
+TEST_F(Simbody, MovesAChain) { expect_a_chain(solver, {{"accuracy", 1e-10}}); }
+TEST_F(Simbody, TakesAndGivesStates) { expect_copies(solver); }
+TEST_F(Simbody, TakesUnlikeLinks) { expect_unlike_links(solver); }
+TEST_F(Simbody, TakesChainsOnly) { expect_chains_only(solver); }
+
+// The step of the harness is no bound of the error, the accuracy is.
+TEST_F(Simbody, ErrorFollowsAccuracy) {
+  for (const char* integrator : {"merson", "fehlberg", "verlet"}) {
+    const auto error = [integrator](double accuracy) {
+      return pendulum_error(solver, 2,
+                            {{"accuracy", accuracy}, {"integrator", std::string(integrator)}});
+    };
+    EXPECT_GT(error(1e-3), 10 * error(1e-7)) << integrator;
+    EXPECT_LT(error(1e-7), 1e-4) << integrator;
+  }
+}
+
+// Going on from its own state and being set anew are the same motion.
+TEST_F(Simbody, MayBeInterrupted) {
+  const Scene scene = swirling_chain(5);
+  const inextensible::Settings fine{{"accuracy", 1e-9}};
+  const auto whole = run(solver, scene, 0.01, 20, fine);
+  Scene half = scene;
+  half.start = run(solver, scene, 0.01, 10, fine);
+  EXPECT_LT(distance(run(solver, half, 0.01, 10, fine).x, whole.x), 1e-7);
+}
+
+TEST_F(Simbody, RefusesWithoutTrace) {
+  const Scene scene = chain(2);
+  expect_refusal_without_trace(solver, scene, scene.start,
+                               1e9);  // more than 100,000 internal steps
+  inextensible::State collapsed = scene.start;
+  collapsed.x.col(2) = collapsed.x.col(1);
+  expect_refusal_without_trace(solver, scene, collapsed, 1e-3);
+}
+
+}  // namespace
+}  // namespace engines
