@@ -235,6 +235,30 @@ void print_failures(std::ostream& out, const nlohmann::json& document, bool all)
   for (const auto& [name, count] : of_contestants) out << "  " << name << " x " << count << '\n';
 }
 
+// Which solvers came from plug-ins, of which version, and what copying states into an engine and
+// out of it took of their time.
+void print_plugins(std::ostream& out, const nlohmann::json& document) {
+  const auto context = document.value("context", nlohmann::json::object());
+  const char* before = "\n";
+  for (const auto& plugin : context.value("plugins", nlohmann::json::array())) {
+    for (const auto& solver : plugin.at("solvers")) {
+      double copy = 0, all = 0;  // s
+      for (const auto& point : document.at("points")) {
+        if (point.at("solver") != solver || point.at("status") != "ok") continue;
+        const auto phases = point.value("phases", nlohmann::json::object());
+        copy += phases.value("copy", 0.0);
+        for (const char* phase : {"unconstrained", "filter", "collision", "copy"})
+          all += phases.value(phase, 0.0);
+      }
+      out << before << "plug-in " << solver.get<std::string>() << ": "
+          << plugin.at("version").get<std::string>();
+      if (copy > 0) out << "; copying its state takes " << percent(copy / all) << " of its time";
+      out << '\n';
+      before = "";
+    }
+  }
+}
+
 }  // namespace
 
 void print_sweep(std::ostream& out, const nlohmann::json& document, bool all) {
@@ -263,6 +287,7 @@ void print_sweep(std::ostream& out, const nlohmann::json& document, bool all) {
     for (const std::string& sentence : finding.sentences) print_wrapped(out, sentence);
   }
   print_failures(out, document, all);
+  print_plugins(out, document);
 }
 
 }  // namespace harness

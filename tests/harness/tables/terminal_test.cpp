@@ -42,6 +42,26 @@ TEST(Terminal, TellsTheShapeErrorsOfTheFastest) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
 }
 
+TEST(Terminal, NamesPluginsAndTheCostOfCopying) {
+  json engine = run("engine", 0.1, 0.04, 1e-3, 0.008), other = run("filter", 0.1, 0.04, 2e-3, 0.01);
+  engine["phases"] = {{"unconstrained", 0.1}, {"filter", 0.7}, {"collision", 0}, {"copy", 0.2}};
+  json failed = engine;
+  failed["status"] = "diverged";
+  failed["phases"]["copy"] = 9;
+  json result = document({engine, other, failed});
+  std::ostringstream without, with;
+  print_sweep(without, result);
+  EXPECT_EQ(without.str().find("plug-in"), std::string::npos);
+  result["context"]["plugins"] = {{{"version", "Engine 1.2"}, {"solvers", {"engine"}}},
+                                  {{"version", "3"}, {"solvers", {"filter"}}}};
+  print_sweep(with, result);
+  EXPECT_NE(
+      with.str().find("plug-in engine: Engine 1.2; copying its state takes 20 % of its time\n"),
+      std::string::npos)
+      << with.str();
+  EXPECT_NE(with.str().find("plug-in filter: 3\n"), std::string::npos) << with.str();
+}
+
 TEST(Terminal, HasEverybodyIfAskedFor) {
   json failed = run("shake", 0.1, 0.02, 2e-3, 0.01);
   failed["status"] = "diverged";
