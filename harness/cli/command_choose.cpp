@@ -84,10 +84,8 @@ Suite suite_of(const ChooseCommand& given, double rate) {
   sweep.coarsest = 1 / rate;
   sweep.finest = sweep.coarsest / finest_part;
   const Pattern wanted("--solver", given.solver.empty() ? ".*" : given.solver);
-  for (const auto& backend : inextensible::backends()) {
-    if (competes(backend, type->kind() == "chain") && wanted.matches(backend.name))
-      sweep.contestants.push_back({backend.name, backend.name});
-  }
+  sweep.contestants = competitors(*type, parameters);
+  std::erase_if(sweep.contestants, [&](const Contestant& c) { return !wanted.matches(c.name); });
   const Tuned tuned = read_tuned_up_to_date("tuned.json");
   tune(sweep.contestants, tuned, type->kind(), {}, Untuned::none);
   std::stable_sort(sweep.contestants.begin(), sweep.contestants.end(),

@@ -45,10 +45,12 @@ std::vector<SweepSpec> chosen_scenes(const std::string& name) {
 // All that have something to be tuned; a solver that is no contestant only by name.
 std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec& scene) {
   std::vector<std::string> solvers;
-  const bool chain = find_scene(scene.scene)->kind() == "chain";
+  const Contestants all = competitors(*find_scene(scene.scene), scene.scene_parameters);
   const Pattern expression("--solver", text.empty() ? ".*" : text);
   for (const auto& backend : inextensible::backends()) {
-    if ((competes(backend, chain) || backend.name == text) && expression.matches(backend.name) &&
+    const bool competes = std::any_of(
+        all.begin(), all.end(), [&](const Contestant& c) { return c.solver == backend.name; });
+    if ((competes || backend.name == text) && expression.matches(backend.name) &&
         !tunable_numbers(backend).empty())
       solvers.emplace_back(backend.name);
   }

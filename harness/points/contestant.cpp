@@ -1,7 +1,10 @@
 #include "harness/points/contestant.h"
 
 #include <algorithm>
+#include <map>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "harness/base/errors.h"
 #include "harness/base/json_reader.h"
@@ -123,19 +126,39 @@ Contestant read_contestant(const json& entry, const std::string& where) {
   return contestant;
 }
 
-bool competes(const inextensible::Backend& backend, bool chain) {
-  return backend.contestant && !(chain && *backend.same_on_chains);
+namespace {
+
+// Building takes a while where there is a body, and suites ask for one scene again and again.
+const inextensible::Problem& small_problem(const SceneType& type, const SceneParameters& given) {
+  constexpr double enough = 11;  // the same parts as at any size
+  static std::map<std::pair<std::string, SceneParameters>,
+                  std::shared_ptr<const inextensible::Problem>>
+      built;
+  SceneParameters small = complete_parameters(type, given);
+  small[type.resolution] = std::min(enough, small.at(type.resolution));
+  auto& problem = built[{type.name, small}];
+  if (!problem) problem = type.build(small).problem;
+  return *problem;
 }
 
-Contestants read_contestants(const json* solvers, const json* also, bool chain,
+}  // namespace
+
+Contestants competitors(const SceneType& type, const SceneParameters& given) {
+  const inextensible::Problem& problem = small_problem(type, given);
+  Contestants all;
+  for (const auto& backend : inextensible::backends()) {
+    const bool another = type.kind() == "chain" && *backend.same_on_chains;
+    if (backend.contestant && !another && !part_not_taken(backend, problem))
+      all.push_back({backend.name, backend.name});
+  }
+  return all;
+}
+
+Contestants read_contestants(const json* solvers, const json* also, const Contestants& missing,
                              const std::string& where) {
   Contestants all;
   if (solvers) append(all, *solvers, where + ": 'solvers'", true);
-  if (all.empty()) {
-    for (const auto& backend : inextensible::backends()) {
-      if (competes(backend, chain)) all.push_back({backend.name, backend.name});
-    }
-  }
+  if (all.empty()) all = missing;
   if (also) append(all, *also, where + ": 'also'", false);
   return all;
 }

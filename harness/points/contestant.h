@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/scenes/scene.h"
 #include "solvers/registry.h"
 
 namespace harness {
@@ -29,12 +30,12 @@ std::string label_of(const Contestant& contestant);
 // "icd", or {"name": "icd_loose", "solver": "icd", "settings": {...}, "label": "...", "hollow":
 // true}. All throw UsageError, naming `where`, key and value.
 Contestant read_contestant(const nlohmann::json& entry, const std::string& where);
-// Whether a solver stands in suites that name none: all that compete, on a chain without those that
-// are another one there.
-bool competes(const inextensible::Backend& backend, bool chain);
-// Lists of them under the keys "solvers" (all that compete where it is missing) and "also".
-Contestants read_contestants(const nlohmann::json* solvers, const nlohmann::json* also, bool chain,
-                             const std::string& where);
+// The solvers of suites that name none: all that compete and take every part of the scene, on a
+// chain without those that are another one there.
+Contestants competitors(const SceneType& type, const SceneParameters& given);
+// Lists of them under the keys "solvers" (`missing` where there is none) and "also".
+Contestants read_contestants(const nlohmann::json* solvers, const nlohmann::json* also,
+                             const Contestants& missing, const std::string& where);
 inextensible::Settings read_settings(const nlohmann::json& object, const std::string& where,
                                      const inextensible::Backend& backend);
 // That the solver would take them.

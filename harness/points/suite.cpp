@@ -126,7 +126,7 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
     throw UsageError(where + ": " +
                      unknown_name("scene", spec.scene, names_of(scene_types())).what());
   const json* solvers = reader.find("solvers");
-  spec.contestants = read_contestants(solvers, reader.find("also"), type->kind() == "chain", where);
+  const json* also = reader.find("also");
   read_limits(reader, where, spec);
   read_scene_parameters(reader, *type, spec);
   read_steps(reader, where, spec);
@@ -134,13 +134,16 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
   const Untuned untuned = read_untuned(reader, all.tuned.has_value(), all.untuned);
   const json* steps = reader.find("steps");
   reader.finish();
-  if (all.tuned) tune(spec.contestants, *all.tuned, type->kind(), spec.solver_options, untuned);
-  add_double(spec.contestants, all.same);
+  Contestants missing;
   try {
     fit_steps_to_duration(*type, steps && steps->contains("coarsest"), spec);
+    if (!solvers || solvers->empty()) missing = competitors(*type, spec.scene_parameters);
   } catch (const UsageError& error) {
     throw UsageError(where + ": 'scene_parameters': " + error.what());
   }
+  spec.contestants = read_contestants(solvers, also, missing, where);
+  if (all.tuned) tune(spec.contestants, *all.tuned, type->kind(), spec.solver_options, untuned);
+  add_double(spec.contestants, all.same);
   return spec;
 }
 

@@ -55,6 +55,32 @@ double setting(const Search& search, const char* name) {
   return std::get<double>(search.base.settings.at(name));
 }
 
+// Of the suites that name none; those that a suite names stand there whatever they take.
+TEST(Contestants, TakeEveryPartOfTheScene) {
+  for (const char* scene : {"chain", "patch", "drape", "fabric_drape"}) {
+    const auto type = find_scene(scene);
+    const Scene built = type->build(complete_parameters(*type, {}));
+    const auto all = names(suite_with("", R"("also": ["null"])", scene));
+    for (const auto& backend : inextensible::backends()) {
+      const bool another = type->kind() == "chain" && *backend.same_on_chains;
+      EXPECT_EQ(std::find(all.begin(), all.end(), backend.name) != all.end(),
+                backend.name == std::string("null") ||
+                    (backend.contestant && !another && !part_not_taken(backend, *built.problem)))
+          << scene << ", " << backend.name;
+    }
+  }
+  const auto has = [](const char* scene, const char* solver) {
+    const auto all = names(suite_with("", R"("also": [])", scene));
+    return std::find(all.begin(), all.end(), solver) != all.end();
+  };
+  EXPECT_TRUE(has("patch", "soft_step"));
+  EXPECT_FALSE(has("drape", "soft_step"));
+  EXPECT_TRUE(has("drape", "vertex_block_descent"));
+  EXPECT_FALSE(has("fabric_drape", "vertex_block_descent"));
+  EXPECT_EQ(names(suite_with("", R"("solvers": ["soft_step"])", "drape")),
+            std::vector<std::string>{"soft_step"});
+}
+
 TEST(Contestants, HaveTheirOwnNamesAndSettings) {
   const Suite suite = suite_with("", R"("solvers": ["jacobi", {"name": "jacobi_slow",
       "solver": "jacobi", "settings": {"relaxation": 1.2}, "hollow": true}],
