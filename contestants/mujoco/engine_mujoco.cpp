@@ -10,10 +10,13 @@
 #include <mujoco/mujoco.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include "contestants/common/engine.h"
@@ -36,11 +39,26 @@ struct Free {
   void operator()(mjData* data) const { mj_deleteData(data); }
 };
 
-std::string model_text(const Links& links, const Eigen::Vector3d& gravity, int hinges) {
+// MuJoCo's own ends the program, once the user has pressed Enter.
+struct MujocoError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+[[noreturn]] void throw_error(const char* message) { throw MujocoError(message); }
+
+// Numbers that a step may need at a time, more than MuJoCo guesses: for the derivatives of the
+// implicit integrator four matrices of a body's six velocities by all joint velocities.
+std::size_t stack_size(std::size_t velocities, int integrator) {
+  const std::size_t derivatives = integrator == mjINT_IMPLICIT ? 32 * velocities * velocities : 0;
+  return 10'000 + 1000 * velocities + derivatives;
+}
+
+std::string model_text(const Links& links, const Eigen::Vector3d& gravity, int hinges,
+                       int integrator) {
   std::ostringstream text;
   text.precision(std::numeric_limits<double>::max_digits10);
-  text << "<mujoco><compiler boundmass='0'/><size njmax='1' nconmax='1'/><option gravity='"
-       << gravity.x() << ' ' << gravity.y() << ' ' << gravity.z()
+  text << "<mujoco><compiler boundmass='0'/><size njmax='1' nconmax='1' nstack='"
+       << stack_size(static_cast<std::size_t>(hinges) * links.vertex.size(), integrator)
+       << "'/><option gravity='" << gravity.x() << ' ' << gravity.y() << ' ' << gravity.z()
        << "'><flag contact='disable' constraint='disable' warmstart='disable'/></option>"
        << "<worldbody>";
   for (int i = 0; i < links.count(); ++i) {
@@ -62,9 +80,17 @@ std::unique_ptr<mjModel, Free> load(const std::string& text) {
   mj_makeEmptyFileVFS(files.get(), "chain.xml", static_cast<int>(text.size()));
   std::memcpy(files->filedata[mj_findFileVFS(files.get(), "chain.xml")], text.data(), text.size());
   char error[500] = "";
-  std::unique_ptr<mjModel, Free> model(mj_loadXML("chain.xml", files.get(), error, sizeof(error)));
+  std::unique_ptr<mjModel, Free> model;
+  try {
+    model.reset(mj_loadXML("chain.xml", files.get(), error, sizeof(error)));
+  } catch (const MujocoError& fatal) {
+    std::snprintf(error, sizeof(error), "%s", fatal.what());
+  }
   mj_deleteVFS(files.get());
-  if (!model) throw std::invalid_argument(std::string("MuJoCo: ") + error);
+  if (!model) {
+    std::replace(std::begin(error), std::end(error), '\n', ' ');
+    throw std::invalid_argument(std::string("MuJoCo: ") + error);
+  }
   return model;
 }
 
@@ -72,7 +98,7 @@ std::unique_ptr<mjModel, Free> load(const std::string& text) {
 class HingeChain {
  public:
   HingeChain(const Links& links, const Eigen::Vector3d& gravity, int hinges, int integrator)
-      : hinges_(hinges), model_(load(model_text(links, gravity, hinges))) {
+      : hinges_(hinges), model_(load(model_text(links, gravity, hinges, integrator))) {
     model_->opt.integrator = integrator;
     std::fill_n(model_->body_inertia, 3 * model_->nbody, 0.0);
     data_.reset(mj_makeData(model_.get()));
@@ -102,7 +128,8 @@ class HingeChain {
     std::memset(data_->warning, 0, sizeof(data_->warning));
   }
 
-  // False if MuJoCo met numbers that it does not take, and started anew from nothing.
+  // False if MuJoCo met numbers that it does not take, and started anew from nothing. Throws
+  // MujocoError.
   bool step(double h) {
     model_->opt.timestep = h;
     mj_step(model_.get(), data_.get());
@@ -179,7 +206,14 @@ class MujocoChain final : public inextensible::Stepper {
       return {Status::not_finite, 0, -1, 0, "a link has no direction"};
     chain_->set(poses_);
     phases_.copy += stopwatch();
-    if (!chain_->step(h)) return {Status::not_finite, 0, -1, 0, "MuJoCo met a number above 1e10"};
+    bool taken = false;
+    try {
+      taken = chain_->step(h);
+    } catch (const MujocoError&) {
+      make(chain_->hinges());  // what it left is not to be trusted
+      return {Status::not_converged, 0, -1, 0, "MuJoCo gave up"};
+    }
+    if (!taken) return {Status::not_finite, 0, -1, 0, "MuJoCo met a number above 1e10"};
     work_.assemblies += integrator_.evaluations;
     work_.factorizations += integrator_.evaluations + integrator_.factorizations;
     work_.back_solves += integrator_.evaluations + integrator_.factorizations;
@@ -229,6 +263,7 @@ inextensible::Backend row() {
 }  // namespace
 
 extern "C" const InextensiblePlugin* inextensible_plugin() {
+  mju_user_error = throw_error;
   mju_user_warning = [](const char*) {};  // else it writes them to a file; steps look for them
   static const std::vector<inextensible::Backend> rows{row()};
   static const auto plugin = inextensible_plugin_of(version().c_str(), rows);

@@ -35,7 +35,8 @@ class SimbodyChain final : public inextensible::Stepper {
 
   SimbodyChain(std::shared_ptr<const Problem> shared, const Settings& settings, const State* start)
       : Stepper(std::move(shared)),
-        settings_(settings),
+        accuracy_(settings.accuracy),
+        integrator_(settings.integrator),
         links_(problem()),
         poses_(links_.count()),
         v_(3, problem().vertices()) {
@@ -56,7 +57,7 @@ class SimbodyChain final : public inextensible::Stepper {
  private:
   void make(bool pins) {
     chain_ = std::make_unique<MobilizerChain>(links_.length, links_.mass, problem().gravity(), pins,
-                                              settings_.integrator, settings_.accuracy);
+                                              integrator_, accuracy_);
     ours_.time = -1;
   }
 
@@ -109,7 +110,8 @@ class SimbodyChain final : public inextensible::Stepper {
     return {};
   }
 
-  Settings settings_;
+  double accuracy_;
+  std::string integrator_;
   Links links_;
   LinkPoses poses_;
   std::unique_ptr<MobilizerChain> chain_;

@@ -62,6 +62,23 @@ inline void expect_unlike_links(const std::string& solver) {
   EXPECT_LT(largest_strain(scene, run(solver, scene, 1e-3, 100)), 1e-12);
 }
 
+// A stepper that was made in a plane, and leaves it, is as one that was made in space, settings and
+// all.
+inline void expect_leaves_the_plane(const std::string& solver,
+                                    const inextensible::Settings& settings) {
+  const Scene flat = chain(5), swirl = swirling_chain(5);
+  const auto leaves = make(solver, flat, settings), stays = make(solver, swirl, settings);
+  inextensible::State state = flat.start, expected = swirl.start;
+  ASSERT_TRUE(leaves->advance(state, 1e-3));
+  state = swirl.start;
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_TRUE(leaves->advance(state, 1e-3));
+    ASSERT_TRUE(stays->advance(expected, 1e-3));
+  }
+  EXPECT_TRUE(state.x == expected.x && state.v == expected.v);
+  EXPECT_GT(distance(run(solver, swirl, 1e-3, 5).x, state.x), 0);  // settings that matter
+}
+
 inline void expect_chains_only(const std::string& solver) {
   expect_unsupported(solver, spinning_net(3, 1), "0 vertices are pinned");
   inextensible::ProblemParts parts;

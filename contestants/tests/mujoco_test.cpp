@@ -16,6 +16,7 @@ class Mujoco : public testing::Test {
 TEST_F(Mujoco, MovesAChain) { expect_a_chain(solver, word("rk4")); }
 TEST_F(Mujoco, TakesAndGivesStates) { expect_copies(solver); }
 TEST_F(Mujoco, TakesUnlikeLinks) { expect_unlike_links(solver); }
+TEST_F(Mujoco, LeavesThePlane) { expect_leaves_the_plane(solver, word("implicit")); }
 TEST_F(Mujoco, TakesChainsOnly) { expect_chains_only(solver); }
 
 TEST_F(Mujoco, IntegratorsHaveTheirOrders) {

@@ -13,6 +13,9 @@ class Simbody : public testing::Test {
 TEST_F(Simbody, MovesAChain) { expect_a_chain(solver, {{"accuracy", 1e-10}}); }
 TEST_F(Simbody, TakesAndGivesStates) { expect_copies(solver); }
 TEST_F(Simbody, TakesUnlikeLinks) { expect_unlike_links(solver); }
+TEST_F(Simbody, LeavesThePlane) {
+  expect_leaves_the_plane(solver, {{"integrator", std::string("verlet")}, {"accuracy", 1e-5}});
+}
 TEST_F(Simbody, TakesChainsOnly) { expect_chains_only(solver); }
 
 // The step of the harness is no bound of the error, the accuracy is.

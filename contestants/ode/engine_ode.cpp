@@ -1,0 +1,239 @@
+// ODE, in double precision: a body of a point mass a vertex, and a joint that keeps the distance of
+// two centres (DBall) an edge. A step is semi-implicit Euler's; multipliers make the velocity at
+// its end one that takes the part `erp` of each elongation back, along directions at its start.
+// They come from a factorization of the dense matrix (dWorldStep), or from passes of successive
+// over-relaxation in random order, from 0 (dWorldQuickStep). Damping and disabling are off, there
+// are no geometries.
+// Shear, bending and drag, where a scene has them, are forces that the plug-in gives to bodies.
+// Loops: over joints, `iterations` passes; "direct" m^3 / 6 for m edges.
+//
+// Departure: ODE's random numbers are one sequence for the program; each stepper has its own, which
+// a refused step does not advance.
+#include <ode/ode.h>
+
+#include <cmath>
+#include <string>
+
+#include "contestants/common/engine.h"
+#include "solvers/plugin.h"
+#include "solvers/problem/forces.h"
+
+namespace {
+
+using inextensible::Positions;
+using inextensible::Problem;
+using inextensible::State;
+using inextensible::Status;
+using inextensible::StepResult;
+using inextensible::Stopwatch;
+
+// ODE's own end the program.
+struct OdeError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+[[noreturn]] void throw_error(int /*number*/, const char* /*message*/, va_list /*values*/) {
+  throw OdeError("ODE met numbers that it does not take");
+}
+
+struct Destroy {
+  void operator()(dxWorld* world) const { dWorldDestroy(world); }
+};
+using World = std::unique_ptr<dxWorld, Destroy>;
+
+class OdeBalls final : public inextensible::Stepper {
+ public:
+  struct Settings {
+    std::string_view solver = "direct";
+    int iterations = 20;  // as ODE's
+    double relaxation = 1.3;
+    double erp = 1;
+    double cfm = 1e-10;  // as ODE's
+    std::uint64_t seed = 1;
+  };
+
+  OdeBalls(std::shared_ptr<const Problem> shared, const Settings& settings)
+      : Stepper(std::move(shared)),
+        settings_(settings),
+        direct_(settings.solver == "direct"),
+        random_(settings.seed) {
+    dAllocateODEDataForThread(dAllocateMaskAll);
+    build();
+    if (problem().shear() || !problem().bending().empty() || problem().has_drag())
+      forces_.resize(3, problem().vertices());
+  }
+
+  static inextensible::SettingFields<Settings> fields() {
+    using S = Settings;
+    return {{"solver",
+             &S::solver,
+             "a factorization (dWorldStep) or passes (dWorldQuickStep)",
+             {},
+             {},
+             {"direct", "passes"}},
+            {"iterations", &S::iterations, "passes a step", inextensible::at_least_one,
+             inextensible::SearchRange{1, 64}},
+            {"relaxation", &S::relaxation, "of passes", inextensible::relaxation_range,
+             inextensible::SearchRange{0.5, 1.95, 2}},
+            {"erp", &S::erp, "part of an elongation that a step takes back", inextensible::fraction,
+             inextensible::SearchRange{0.2, 1}},
+            {"cfm", &S::cfm, "compliance over the step, 1 / kg", inextensible::Range{}}};
+  }
+
+ private:
+  void build();
+  void put_in(const State& state);
+  void give_forces(const State& state);
+
+  StepResult solve(const State& state, double h, Positions& x) override {
+    Stopwatch stopwatch(phases_wanted_);
+    put_in(state);
+    phases_.copy += stopwatch();
+    if (forces_.size() > 0) give_forces(state);
+    phases_.unconstrained += stopwatch();
+    if (!take(h)) return {Status::not_finite, 0, -1, 0, "ODE met numbers that it does not take"};
+    phases_.filter += stopwatch();
+    for (int i = 0; i < problem().vertices(); ++i) {
+      x.col(i) = bodies_[i] ? Eigen::Map<const Eigen::Vector3d>(dBodyGetPosition(bodies_[i]))
+                            : Eigen::Map<const Eigen::Vector3d>(&state.x(0, i));
+    }
+    phases_.copy += stopwatch();
+    return {Status::ok, passes()};
+  }
+
+  bool take(double h);
+  int passes() const { return direct_ ? 1 : settings_.iterations; }
+
+  StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& /*filtered*/,
+                            const Positions& /*x*/, Positions& v) override {
+    Stopwatch stopwatch(phases_wanted_);
+    for (int i = 0; i < problem().vertices(); ++i) {
+      if (bodies_[i])
+        v.col(i) = Eigen::Map<const Eigen::Vector3d>(dBodyGetLinearVel(bodies_[i]));
+      else
+        v.col(i).setZero();
+    }
+    random_ = next_random_;
+    phases_.copy += stopwatch();
+    return {};
+  }
+
+  Settings settings_;  // but for the word, a view that does not last
+  bool direct_;
+  World world_;
+  std::vector<dBodyID> bodies_;   // null: pinned, which is the world to ODE
+  std::vector<dJointID> joints_;  // one an edge
+  Positions forces_;              // N; empty where there are none but gravity
+  unsigned long random_, next_random_ = 0;
+};
+
+void OdeBalls::build() {
+  world_.reset(dWorldCreate());
+  const Eigen::Vector3d& g = problem().gravity();
+  dWorldSetGravity(world_.get(), g.x(), g.y(), g.z());
+  dWorldSetERP(world_.get(), settings_.erp);
+  dWorldSetCFM(world_.get(), settings_.cfm);
+  dWorldSetAutoDisableFlag(world_.get(), 0);
+  dWorldSetDamping(world_.get(), 0, 0);
+  dWorldSetQuickStepNumIterations(world_.get(), settings_.iterations);
+  dWorldSetQuickStepW(world_.get(), settings_.relaxation);
+  bodies_.assign(problem().vertices(), nullptr);
+  for (int i = 0; i < problem().vertices(); ++i) {
+    if (problem().inverse_mass()[i] == 0) continue;
+    bodies_[i] = dBodyCreate(world_.get());
+    dMass mass;  // ODE wants an inertia; nothing turns a body whose joints act on its centre
+    const double radius = problem().constraints() > 0 ? problem().shortest_rest_length() : 1;
+    dMassSetSphereTotal(&mass, problem().mass()[i], radius);
+    dBodySetMass(bodies_[i], &mass);
+    dBodySetGyroscopicMode(bodies_[i], 0);
+  }
+  joints_.clear();
+  for (const auto& edge : problem().edges()) {
+    joints_.push_back(dJointCreateDBall(world_.get(), nullptr));
+    dJointAttach(joints_.back(), bodies_[edge.a], bodies_[edge.b]);
+  }
+}
+
+// Anchors are kept relative to bodies. Those on pins are places of the world, and may be set anew;
+// setting one measures the distance, which is put right after that.
+void OdeBalls::put_in(const State& state) {
+  constexpr dMatrix3 unturned = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  for (int i = 0; i < problem().vertices(); ++i) {
+    if (!bodies_[i]) continue;
+    dBodySetPosition(bodies_[i], state.x(0, i), state.x(1, i), state.x(2, i));
+    dBodySetLinearVel(bodies_[i], state.v(0, i), state.v(1, i), state.v(2, i));
+    // Nothing turns it, but for a step that overflowed.
+    dBodySetRotation(bodies_[i], unturned);
+    dBodySetAngularVel(bodies_[i], 0, 0, 0);
+    dBodySetForce(bodies_[i], 0, 0, 0);
+    dBodySetTorque(bodies_[i], 0, 0, 0);
+  }
+  for (int k = 0; k < problem().constraints(); ++k) {
+    const auto [a, b] = problem().edges()[k];
+    dJointSetDBallAnchor1(joints_[k], state.x(0, a), state.x(1, a), state.x(2, a));
+    dJointSetDBallAnchor2(joints_[k], state.x(0, b), state.x(1, b), state.x(2, b));
+    dJointSetDBallDistance(joints_[k], problem().rest_length()[k]);
+  }
+}
+
+// All but the weight, which is ODE's own.
+void OdeBalls::give_forces(const State& state) {
+  forces_.setZero();
+  add_forces(problem(), state.x, state.v, forces_, work_);
+  for (int i = 0; i < problem().vertices(); ++i) {
+    if (!bodies_[i]) continue;
+    const Eigen::Vector3d f = forces_.col(i) - problem().mass()[i] * problem().gravity();
+    dBodyAddForce(bodies_[i], f.x(), f.y(), f.z());
+  }
+}
+
+bool OdeBalls::take(double h) {
+  dRandSetSeed(random_);
+  bool taken = false;
+  try {
+    taken = (direct_ ? dWorldStep(world_.get(), h) : dWorldQuickStep(world_.get(), h)) != 0;
+  } catch (const OdeError&) {
+    build();  // what it left is not to be trusted
+  }
+  next_random_ = dRandGetSeed();
+  if (direct_) {
+    ++work_.assemblies;
+    ++work_.factorizations;
+    ++work_.back_solves;
+  } else {
+    work_.edge_projections += std::int64_t{passes()} * problem().constraints();
+  }
+  return taken;
+}
+
+constexpr const char* version = "ODE " ENGINE_VERSION;  // of the package; the library does not say
+
+inextensible::Backend row() {
+  inextensible::Backend row = engines::engine_row(
+      "engine_ode", "ODE " ENGINE_VERSION ", point bodies and joints of fixed distance, double",
+      "ODE " ENGINE_VERSION " joints");
+  row.settings = inextensible::setting_infos(OdeBalls::fields());
+  row.make =
+      [](std::shared_ptr<const Problem> problem,
+         const inextensible::BackendOptions& options) -> std::unique_ptr<inextensible::Stepper> {
+    if (problem->pins_follow_body())
+      throw std::invalid_argument("solver 'engine_ode' takes no pins that move");
+    return std::make_unique<OdeBalls>(std::move(problem),
+                                      inextensible::settings_of<OdeBalls>(options));
+  };
+  row.takes_shear = row.takes_bending = row.takes_drag = true;
+  row.direction = inextensible::Direction::start;
+  row.citation = "Smith 2001";
+  return row;
+}
+
+}  // namespace
+
+extern "C" const InextensiblePlugin* inextensible_plugin() {
+  dInitODE2(0);
+  dSetErrorHandler(throw_error);
+  dSetDebugHandler(throw_error);
+  dSetMessageHandler([](int, const char*, va_list) {});
+  static const std::vector<inextensible::Backend> rows{row()};
+  static const auto plugin = inextensible_plugin_of(version, rows);
+  return &plugin;
+}
