@@ -52,16 +52,17 @@ std::size_t stack_size(std::size_t velocities, int integrator) {
   return 10'000 + 1000 * velocities + derivatives;
 }
 
-std::string model_text(const Links& links, const Eigen::Vector3d& gravity, int hinges,
-                       int integrator) {
+// MuJoCo's reader nests 100 elements, and takes no more bodies in one file.
+constexpr int bodies_a_file = 80;
+
+std::string file_name(int part) { return "links" + std::to_string(part) + ".xml"; }
+
+// Bodies from `first` on, each in the one before it, and the rest of the chain in the last.
+std::string bodies_text(const Links& links, int hinges, int first) {
   std::ostringstream text;
   text.precision(std::numeric_limits<double>::max_digits10);
-  text << "<mujoco><compiler boundmass='0'/><size njmax='1' nconmax='1' nstack='"
-       << stack_size(static_cast<std::size_t>(hinges) * links.vertex.size(), integrator)
-       << "'/><option gravity='" << gravity.x() << ' ' << gravity.y() << ' ' << gravity.z()
-       << "'><flag contact='disable' constraint='disable' warmstart='disable'/></option>"
-       << "<worldbody>";
-  for (int i = 0; i < links.count(); ++i) {
+  const int end = std::min(first + bodies_a_file, links.count());
+  for (int i = first; i < end; ++i) {
     text << "<body pos='" << (i == 0 ? 0 : links.length[i - 1]) << " 0 0'>"
          << "<joint type='hinge' axis='0 0 1'/>";
     if (hinges == 2) text << "<joint type='hinge' axis='0 1 0'/>";
@@ -69,20 +70,41 @@ std::string model_text(const Links& links, const Eigen::Vector3d& gravity, int h
     text << "<inertial pos='" << links.length[i] << " 0 0' mass='" << links.mass[i]
          << "' diaginertia='1e-9 1e-9 1e-9'/>";
   }
-  for (int i = 0; i < links.count(); ++i) text << "</body>";
-  text << "</worldbody></mujoco>";
+  if (end < links.count()) text << "<include file='" << file_name(end / bodies_a_file) << "'/>";
+  for (int i = first; i < end; ++i) text << "</body>";
   return text.str();
 }
 
-std::unique_ptr<mjModel, Free> load(const std::string& text) {
+// The model's files, which include each other, the first one first.
+std::vector<std::string> model_files(const Links& links, const Eigen::Vector3d& gravity, int hinges,
+                                     int integrator) {
+  std::ostringstream text;
+  text.precision(std::numeric_limits<double>::max_digits10);
+  text << "<mujoco><compiler boundmass='0'/><size njmax='1' nconmax='1' nstack='"
+       << stack_size(static_cast<std::size_t>(hinges) * links.vertex.size(), integrator)
+       << "'/><option gravity='" << gravity.x() << ' ' << gravity.y() << ' ' << gravity.z()
+       << "'><flag contact='disable' constraint='disable' warmstart='disable'/></option>"
+       << "<worldbody>" << bodies_text(links, hinges, 0) << "</worldbody></mujoco>";
+  std::vector<std::string> files{text.str()};
+  for (int first = bodies_a_file; first < links.count(); first += bodies_a_file)
+    files.push_back("<mujocoinclude>" + bodies_text(links, hinges, first) + "</mujocoinclude>");
+  return files;
+}
+
+std::unique_ptr<mjModel, Free> load(const std::vector<std::string>& texts) {
+  if (texts.size() > mjMAXVFS) throw std::invalid_argument("MuJoCo: too many links to be read");
   const auto files = std::make_unique<mjVFS>();
   mj_defaultVFS(files.get());
-  mj_makeEmptyFileVFS(files.get(), "chain.xml", static_cast<int>(text.size()));
-  std::memcpy(files->filedata[mj_findFileVFS(files.get(), "chain.xml")], text.data(), text.size());
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const std::string name = file_name(static_cast<int>(i));
+    mj_makeEmptyFileVFS(files.get(), name.c_str(), static_cast<int>(texts[i].size()));
+    std::memcpy(files->filedata[mj_findFileVFS(files.get(), name.c_str())], texts[i].data(),
+                texts[i].size());
+  }
   char error[500] = "";
   std::unique_ptr<mjModel, Free> model;
   try {
-    model.reset(mj_loadXML("chain.xml", files.get(), error, sizeof(error)));
+    model.reset(mj_loadXML(file_name(0).c_str(), files.get(), error, sizeof(error)));
   } catch (const MujocoError& fatal) {
     std::snprintf(error, sizeof(error), "%s", fatal.what());
   }
@@ -98,7 +120,7 @@ std::unique_ptr<mjModel, Free> load(const std::string& text) {
 class HingeChain {
  public:
   HingeChain(const Links& links, const Eigen::Vector3d& gravity, int hinges, int integrator)
-      : hinges_(hinges), model_(load(model_text(links, gravity, hinges, integrator))) {
+      : hinges_(hinges), model_(load(model_files(links, gravity, hinges, integrator))) {
     model_->opt.integrator = integrator;
     std::fill_n(model_->body_inertia, 3 * model_->nbody, 0.0);
     data_.reset(mj_makeData(model_.get()));

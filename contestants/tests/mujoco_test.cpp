@@ -19,6 +19,15 @@ TEST_F(Mujoco, TakesUnlikeLinks) { expect_unlike_links(solver); }
 TEST_F(Mujoco, LeavesThePlane) { expect_leaves_the_plane(solver, word("implicit")); }
 TEST_F(Mujoco, TakesChainsOnly) { expect_chains_only(solver); }
 
+// More links than one file may have: a long chain hangs at rest, every mass in its place.
+TEST_F(Mujoco, TakesLongChains) {
+  constexpr int links = 200;
+  Scene scene = chain(links);
+  scene.start.x.row(1) = -scene.start.x.row(0);
+  scene.start.x.row(0).setZero();
+  EXPECT_LT(distance(run(solver, scene, 1e-3, 2).x, scene.start.x), 1e-12);
+}
+
 TEST_F(Mujoco, IntegratorsHaveTheirOrders) {
   const auto order = [](const char* integrator) {
     return std::log2(pendulum_error(solver, 100, word(integrator)) /
