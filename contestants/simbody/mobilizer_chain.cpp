@@ -76,7 +76,7 @@ MobilizerChain::MobilizerChain(const std::vector<double>& length, const std::vec
                                std::string_view integrator, double accuracy)
     : parts_(std::make_unique<Parts>()) {
   parts_->pins = pins;
-  SimTK::Force::UniformGravity(parts_->forces, parts_->matter, to_simbody(gravity));
+  const SimTK::Force::UniformGravity weight(parts_->forces, parts_->matter, to_simbody(gravity));
   parts_->matter.setShowDefaultGeometry(false);
   for (std::size_t i = 0; i < length.size(); ++i) parts_->add_link(length[i], mass[i]);
   parts_->start = parts_->system.realizeTopology();
