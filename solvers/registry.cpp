@@ -41,6 +41,7 @@ std::vector<Backend> built_in() {
       rattle_row(),
       strips_row(),
       strips_bdf2_row(),
+      strips_midpoint_row(),
       fast_projection_adaptive_row(),
       fast_projection_adaptive_bdf2_row(),
       xpbd_small_steps_row(),

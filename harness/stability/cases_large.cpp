@@ -68,13 +68,18 @@ std::vector<Expectation> long_chain(int links) {
 }  // namespace
 
 void add_large(std::vector<HardCase>& cases, const HardCaseValues& values) {
-  const auto budget = [](Trial& trial) {  // edge visits that passes may spend on a step
+  // Edge visits that passes may spend on a step, and the iterations of projections.
+  const auto budget = [](Trial& trial) {
     const double passes = std::max(100.0, 2e8 / trial.scene.problem->constraints());
-    for (const auto& backend : inextensible::backends())
-      if ((backend.direction == strain_limiting || multipliers.contains(backend.name)) &&
-          inextensible::is_built_in(backend.name) &&
-          backend.knob == inextensible::Knob::strain_limit)
+    for (const auto& backend : inextensible::backends()) {
+      if (!inextensible::is_built_in(backend.name) ||
+          backend.knob != inextensible::Knob::strain_limit)
+        continue;
+      if (backend.direction == strain_limiting || multipliers.contains(backend.name))
         trial.settings[backend.name] = {{"max_iterations", std::min(1e5, std::floor(passes))}};
+      if (backend.direction == current_direction)
+        trial.settings[backend.name] = {{"max_iterations", 200.0}};
+    }
   };
   for (const double value : values.at("links")) {
     const int n = static_cast<int>(value);

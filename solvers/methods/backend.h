@@ -61,8 +61,9 @@ struct BackendOptions {
 enum class Knob { strain_limit, stiffness, none, time_step };
 
 // Where a method's constraint forces take their direction from: each edge from its own ends in turn
-// (local), the gradient at the start of the step, at the current iterate, from springs, or the
-// gradient at the end of the step, which is solved for together with the multipliers.
+// (local), the gradient at the start of the step, at the current iterate (or halfway to it), from
+// springs, or the gradient at the end of the step, which is solved for together with the
+// multipliers.
 enum class Direction { none, local, start, current, springs, end };
 
 // What time the velocities of a state belong to. half_step: v^n = (x^n - x^{n-1}) / h is that of

@@ -8,6 +8,7 @@
 
 #include "solvers/methods/backend.h"
 #include "solvers/stepping/bdf2_stepper.h"
+#include "solvers/stepping/midpoint_stepper.h"
 #include "solvers/stepping/velocity_filter.h"
 
 namespace inextensible {
@@ -100,6 +101,33 @@ Backend inside_bdf2(Backend row) {
   if (!*row.family) row.family = row.name;
   row.make = make_bdf2_stepper<Filter>;
   row.velocities = Velocities::whole_step;
+  return row;
+}
+
+// Of the midpoint rule, not of the filter in it.
+inline SettingInfo spectral_radius() {
+  return {.name = "spectral_radius",
+          .initial = 0.8,
+          .meaning = "what an edge keeps of its rate when it bounces off its limit; 1 conserves",
+          .range = fraction,
+          .tunable = tunable_fraction};
+}
+
+// The row of a filter that takes part inside the midpoint rule instead, with these defaults.
+template <class Filter>
+Backend inside_midpoint(Backend row, const typename Filter::Settings& defaults) {
+  if (!*row.family) row.family = row.name;
+  row.settings = setting_infos(Filter::fields(), defaults);
+  row.settings.push_back(spectral_radius());
+  row.make = [](std::shared_ptr<const Problem> problem,
+                const BackendOptions& options) -> std::unique_ptr<Stepper> {
+    auto filter = std::make_unique<Filter>(*problem, settings_of<Filter>(options), Along::middle);
+    return std::make_unique<MidpointStepper>(
+        std::move(problem), std::move(filter),
+        std::get<double>(options.settings.at(spectral_radius().name)));
+  };
+  row.velocities = Velocities::whole_step;
+  row.takes_implicit_forces = false;
   return row;
 }
 

@@ -4,18 +4,19 @@
 
 namespace inextensible {
 
-Strips::Strips(const Problem& problem, const Settings& settings)
+Strips::Strips(const Problem& problem, const Settings& settings, Along along)
     : edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
       passes_(StrainPasses::by_mass(problem, {settings.strain_limit, settings.sweep_target},
                                     settings.relaxation)),
       yarns_(problem, settings.strain_limit, settings.target, passes_.edges()),
-      passes_between_(yarns_.crossing() ? settings.sweeps : 0) {}
+      passes_between_(yarns_.crossing() ? settings.sweeps : 0),
+      along_(along) {}
 
-StepResult Strips::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
-                         WorkCounters& work) {
+StepResult Strips::apply(const Positions& x_start, double /*h*/, Iterate x, WorkCounters& work) {
   if (edges_.permissible(x)) return {Status::ok, 0};
   passes_.begin(x);
+  if (along_ == Along::middle) yarns_.take_middle_from(x_start);
   for (int passes = 0;; ++passes) {
     if (x.contact_count() > 0 && passes == StrainPasses::most_rounds_in_contact)
       return passes_.passes_alone(edges_, x, work);  // from the candidate: nothing has been stored
@@ -65,6 +66,20 @@ Backend strips_bdf2_row() {
   row.citation = "Bender and Bayer 2008; English and Bridson 2008";
   row.label = "strips in BDF2";
   row.same_on_chains = "fast_projection_adaptive_bdf2";
+  return row;
+}
+
+Backend strips_midpoint_row() {
+  Strips::Settings defaults;
+  defaults.sweeps = 3;
+  defaults.target = 0.5;
+  Backend row = inside_midpoint<Strips>(strips_row(), defaults);
+  row.name = "strips_midpoint";
+  row.summary = "strips along directions of the middle of the step, in the midpoint rule";
+  row.citation = "Bender and Bayer 2008; Gonzalez 1999";
+  row.label = "strips in the midpoint rule";
+  row.same_on_chains = "";
+  row.conserves_momentum = false;  // angular: directions turn from round to round
   return row;
 }
 

@@ -25,7 +25,8 @@ class Strips final : public VelocityFilter {
     double sweep_target = 0.8;
   };
   static SettingFields<Settings> fields();
-  Strips(const Problem& problem, const Settings& settings);
+  // Passes act along edges as they are.
+  Strips(const Problem& problem, const Settings& settings, Along along = Along::edges);
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
 
  private:
@@ -34,10 +35,13 @@ class Strips final : public VelocityFilter {
   StrainPasses passes_;
   YarnPass yarns_;
   int passes_between_;
+  Along along_;
 };
 
 Backend strips_row();
 // The same inside BDF2 (bdf2_stepper.h).
 Backend strips_bdf2_row();
+// With directions of the middle of the step, inside the midpoint rule (midpoint_stepper.h).
+Backend strips_midpoint_row();
 
 }  // namespace inextensible

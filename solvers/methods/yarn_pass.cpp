@@ -17,6 +17,8 @@ namespace inextensible {
 namespace {
 
 constexpr double least_pivot = 1e-3;  // of the diagonal
+// m . d / |d|^2 of a link that has turned by 90 degrees, m = (d_start + d) / 2.
+constexpr double least_alignment = 0.5;
 
 }  // namespace
 
@@ -65,6 +67,16 @@ void YarnPass::add_bundle(const Problem& problem, const std::vector<const Yarn*>
   }
 }
 
+void YarnPass::take_middle_from(const Positions& x_start) {
+  start_g_.resize(3 * place_.size());
+  for (std::size_t at = 0; at + lanes < place_.size(); ++at) {
+    double* g = start_g_.data() + 3 * (at - at % lanes) + at % lanes;
+    const Eigen::Vector3d d =
+        x_start.col(places_.vertex(place_[at + lanes])) - x_start.col(places_.vertex(place_[at]));
+    for (int axis = 0; axis < 3; ++axis) g[axis * lanes] = d[axis] * inverse_rest_[at];
+  }
+}
+
 void YarnPass::show_normals(const Contacts& contacts, bool shown) {
   const Contacts::Timing measured = contacts.timing();
   for (int c = 0; c < contacts.count(); ++c) {
@@ -81,11 +93,12 @@ struct YarnPass::View {
   int links;
   const int* place;
   const double *w, *l, *il;  // inverse masses; rest lengths and their inverses
+  const double* start_g;     // where the middle of the step is asked for
   double* x[3];
 };
 
-// g and C~ of every link; how many of each yarn are beyond the limit.
-template <int used>
+// g (or its middle) and C~ of every link; how many of each yarn are beyond the limit.
+template <int used, bool middle>
 void YarnPass::linearize(const View& yarns, double (&violated)[lanes]) {
   const double low = band_.low, high = band_.high, target_low = target_low_,
                target_high = target_high_;
@@ -106,9 +119,19 @@ void YarnPass::linearize(const View& yarns, double (&violated)[lanes]) {
                    g2 = (next[2][i] - here[2][i]) * ilk[i];
       const double q = g0 * g0 + g1 * g1 + g2 * g2, strained = q - 1;
       const double kept = std::min(std::max(strained, target_low), target_high);
-      row.g[0][i] = g0;
-      row.g[1][i] = g1;
-      row.g[2][i] = g2;
+      if constexpr (middle) {
+        const double* start = yarns.start_g + 3 * k * lanes + i;
+        const double m0 = 0.5 * (start[0] + g0), m1 = 0.5 * (start[lanes] + g1),
+                     m2 = 0.5 * (start[2 * lanes] + g2);
+        const bool aligned = m0 * g0 + m1 * g1 + m2 * g2 > least_alignment * q;
+        row.g[0][i] = aligned ? m0 : g0;
+        row.g[1][i] = aligned ? m1 : g1;
+        row.g[2][i] = aligned ? m2 : g2;
+      } else {
+        row.g[0][i] = g0;
+        row.g[1][i] = g1;
+        row.g[2][i] = g2;
+      }
       row.c[i] = lk[i] * (strained - kept);
       violated[i] += (static_cast<int>(q < low) | static_cast<int>(!(q <= high))) && q != 0 ? 1 : 0;
       here[0][i] = next[0][i];
@@ -190,10 +213,10 @@ void YarnPass::substitute(const View& yarns) const {
 }
 
 // The first `used` lanes. A yarn none of whose links is beyond the limit stays as it is.
-template <int used, bool contact>
+template <int used, bool contact, bool middle>
 std::int64_t YarnPass::project(const View& yarns, WorkCounters& work) {
   alignas(64) double violated[lanes] = {};
-  linearize<used>(yarns, violated);
+  linearize<used, middle>(yarns, violated);
   double all = 0, solved[lanes];
   int projected = 0;
   for (int i = 0; i < used; ++i) {
@@ -210,7 +233,7 @@ std::int64_t YarnPass::project(const View& yarns, WorkCounters& work) {
   return static_cast<std::int64_t>(all);
 }
 
-template <bool contact>
+template <bool contact, bool middle>
 std::int64_t YarnPass::project_all(ColoredEdges::Places& x, WorkCounters& work) {
   std::int64_t violated = 0;
   for (const Bundle& bundle : bundles_) {
@@ -220,18 +243,22 @@ std::int64_t YarnPass::project_all(ColoredEdges::Places& x, WorkCounters& work) 
                      inverse_mass_.data() + first,
                      rest_.data() + first,
                      inverse_rest_.data() + first,
+                     middle ? start_g_.data() + 3 * first : nullptr,
                      {x.col(0).data(), x.col(1).data(), x.col(2).data()}};
-    violated +=
-        bundle.yarns == 1 ? project<1, contact>(yarns, work) : project<lanes, contact>(yarns, work);
+    violated += bundle.yarns == 1 ? project<1, contact, middle>(yarns, work)
+                                  : project<lanes, contact, middle>(yarns, work);
   }
   return violated;
 }
 
 std::int64_t YarnPass::project(ColoredEdges::Places& x, const Contacts* contacts,
                                WorkCounters& work) {
-  if (!contacts || contacts->count() == 0) return project_all<false>(x, work);
+  const bool middle = !start_g_.empty();
+  if (!contacts || contacts->count() == 0)
+    return middle ? project_all<false, true>(x, work) : project_all<false, false>(x, work);
   show_normals(*contacts, true);
-  const std::int64_t violated = project_all<true>(x, work);
+  const std::int64_t violated =
+      middle ? project_all<true, true>(x, work) : project_all<true, false>(x, work);
   show_normals(*contacts, false);
   return violated;
 }

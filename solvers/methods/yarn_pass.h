@@ -24,6 +24,12 @@ class YarnPass {
   // none.
   std::int64_t project(ColoredEdges::Places& x, const Contacts* contacts, WorkCounters& work);
 
+  // From now on corrections act along the directions that links have in the middle of the step from
+  // x_start (3 x n) to where they are, but for links that have turned by more than 90 degrees. A
+  // pass then is Newton's method with J(m) W J(m)^T for J(x_j) W J(m)^T. Until the first call they
+  // act along the links as they are.
+  void take_middle_from(const Positions& x_start);
+
   bool crossing() const { return crossing_; }  // whether yarns share vertices
 
  private:
@@ -34,12 +40,12 @@ class YarnPass {
   };
   void add_bundle(const Problem& problem, const std::vector<const Yarn*>& yarns,
                   const ColoredEdges& places);
-  template <bool contact>
+  template <bool contact, bool middle>
   std::int64_t project_all(ColoredEdges::Places& x, WorkCounters& work);
   struct View;  // of a bundle and the positions
-  template <int used, bool contact>
+  template <int used, bool contact, bool middle>
   std::int64_t project(const View& yarns, WorkCounters& work);
-  template <int used>
+  template <int used, bool middle>
   void linearize(const View& yarns, double (&violated)[lanes]);
   template <int used, bool contact>
   void eliminate(const View& yarns, const double (&solved)[lanes]);
@@ -56,16 +62,18 @@ class YarnPass {
   std::vector<int> place_;
   std::vector<double> inverse_mass_, rest_, inverse_rest_;
   struct Row {
-    alignas(64) double g[3][lanes];  // d / l of a link
+    alignas(64) double g[3][lanes];  // d / l of a link, or that of the middle of the step
     alignas(64) double off[lanes];   // coupling with the link before
     alignas(64) double inverse_pivot[lanes];
     alignas(64) double c[lanes];      // right-hand side, then the multiplier
     alignas(64) double along[lanes];  // g along the normal at the link's end; with contacts only
   };
   std::vector<Row> rows_;  // the first is zero: no link comes before
+  // d / l at the start of the step, x, y and z of a row of links; empty: not asked for.
+  std::vector<double> start_g_;
+  const ColoredEdges& places_;
 
   // With contacts only.
-  const ColoredEdges& places_;
   ColoredEdges::Places normal_;  // of the plane that holds a place's vertex, or zero
 };
 

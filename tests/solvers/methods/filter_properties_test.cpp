@@ -70,6 +70,7 @@ TEST_P(Steppers, ShortenOneEdgeByTheClosedForm) {
   if (is_elastic(GetParam())) GTEST_SKIP() << "an elastic edge";
   if (GetParam() == "rattle_suzuki") GTEST_SKIP() << "five steps in one";
   if (GetParam() == "soft_step") GTEST_SKIP() << "corrects a part of an elongation";
+  if (GetParam() == "strips_midpoint") GTEST_SKIP() << "its direction turns with the edge";
   for (std::uint64_t seed = 0; seed < 4 * examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);

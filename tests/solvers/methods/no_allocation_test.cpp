@@ -69,6 +69,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"drape", 15, "fast_projection", 0.005, "hybrid"}, Case{"drape", 15, "jacobi", 0.005},
         Case{"drape", 15, "gauss_seidel", 0.005}, Case{"drape", 15, "gauss_seidel_colored", 0.005},
         Case{"drape", 15, "strips", 0.005}, Case{"drape", 15, "strips_bdf2", 0.005},
+        Case{"drape", 15, "strips_midpoint", 0.005},
         Case{"drape", 15, "fast_projection_adaptive", 0.005},
         Case{"drape", 15, "fast_projection_adaptive_bdf2", 0.005},
         Case{"drape", 15, "shake", 0.001}, Case{"drape", 15, "icd", 0.005},

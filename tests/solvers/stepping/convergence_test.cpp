@@ -80,6 +80,15 @@ TEST(Order, OfRattleAndBdf2IsTwo) {
   EXPECT_NEAR(order("fast_projection_bdf2opt").value, 2, 0.25);
 }
 
+// All of the energy is kept: order 2; less: a part of backward Euler's error.
+TEST(Order, OfTheMidpointRuleIsTwoOnlyIfItConserves) {
+  const auto of = [](double radius) {
+    return order("strips_midpoint", {{"spectral_radius", radius}, {"target", 0.0}}).value;
+  };
+  EXPECT_NEAR(of(1), 2, 0.2);
+  EXPECT_NEAR(of(0.5), 1, 0.1);
+}
+
 TEST(Order, OfComposedRattleIsFour) {
   EXPECT_NEAR(order("rattle_suzuki", {{"min_iterations", 6.0}}).value, 4, 0.25);
 }
@@ -152,6 +161,29 @@ TEST(Energy, IsNotGainedWhereOnlyStrainNearTheLimitIsTakenBack) {
   };
   EXPECT_GT(gain(0), 0.2);
   EXPECT_LT(gain(0.8), 0.01);
+}
+
+// A net that turns without weight, 0.1 to 0.4 rad a step, for 10 rad. The midpoint rule keeps its
+// energy to the third power of the angle a step; directions of the end of the step lose it to the
+// first.
+TEST(Energy, OfATurningNetIsKeptByDirectionsOfTheMiddle) {
+  const auto type = find_scene("spinning_net");
+  const Scene scene = type->build(complete_parameters(*type, {{"n", 7}}));
+  const double start = energy(scene, scene.start);
+  const auto lost = [&](const char* solver, const inextensible::Settings& settings, double h) {
+    const auto stepper = make_stepper(solver, scene.problem, {1e-9, 1, settings});
+    State state = scene.start;
+    run(*stepper, state, h, 0.32);
+    return 1 - energy(scene, state) / start;
+  };
+  const inextensible::Settings conserving{{"spectral_radius", 1.0}, {"target", 0.0}};
+  std::vector<double> steps, errors;
+  for (double h = 0.02; steps.size() < 3; h /= 2) {
+    steps.push_back(h);
+    errors.push_back(std::abs(lost("strips_midpoint", conserving, h)));
+    EXPECT_LT(errors.back(), 0.05 * lost("strips", {}, h)) << "h = " << h;
+  }
+  EXPECT_GT(log_log_slope(steps, errors).value, 1.8);
 }
 
 std::shared_ptr<const inextensible::Problem> free_edge() {

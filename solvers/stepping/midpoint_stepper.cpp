@@ -1,0 +1,46 @@
+#include "solvers/stepping/midpoint_stepper.h"
+
+#include "solvers/problem/forces.h"
+#include "solvers/problem/stopwatch.h"
+
+namespace inextensible {
+
+MidpointStepper::MidpointStepper(std::shared_ptr<const Problem> problem,
+                                 std::unique_ptr<VelocityFilter> filter, double spectral_radius)
+    : Stepper(std::move(problem)),
+      filter_(std::move(filter)),
+      rho_(spectral_radius),
+      middle_(3, problem_->vertices()) {}
+
+StepResult MidpointStepper::solve(const State& state, double h, Positions& x) {
+  Stopwatch stopwatch(phases_wanted_);
+  const double scale = h * h / (1 + rho_);
+  x = state.x + h * state.v;
+  middle_ = 0.5 * (state.x + x);
+  add_acceleration(*problem_, middle_, scale, x, work_);
+  if (problem_->has_drag()) add_drag(*problem_, state.v, scale, x);
+  for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
+  phases_.unconstrained += stopwatch();
+  const StepResult result =
+      apply_until_clear(*filter_, contacts_inside(), start_positions(), h, x, work_);
+  phases_.filter += stopwatch();
+  return result;
+}
+
+StepResult MidpointStepper::end_velocities(const State& start, double h,
+                                           const Positions& /*filtered*/, const Positions& x,
+                                           Positions& v) {
+  Stopwatch stopwatch(phases_wanted_);
+  v = ((1 + rho_) / h) * (x - start.x) - rho_ * start.v;
+  if (contacts_) {
+    for (int contact = 0; contact < contacts_->count(); ++contact) {
+      const int i = contacts_->vertex(contact);
+      if (contacts_->holds(contact)) v.col(i) = (x.col(i) - start.x.col(i)) / h;
+    }
+  }
+  for (const int vertex : problem_->pinned()) v.col(vertex).setZero();
+  phases_.unconstrained += stopwatch();
+  return {};
+}
+
+}  // namespace inextensible
