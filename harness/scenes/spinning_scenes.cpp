@@ -101,8 +101,7 @@ SceneType spinning_net_scene() {
            one_second},
           build_net,
           count_square,
-          turned_net,
-          "patch"};
+          turned_net};
 }
 
 SceneType baton_scene() {
