@@ -75,6 +75,29 @@ Cell cell_of(const std::vector<const Point*>& here, double limit, double level, 
   return cell;
 }
 
+// A run that keeps a tighter limit keeps this one: each contestant's fastest run at the cell's limit
+// or a tighter one stands for it. cells: of one scene and size, by limit from loose to tight, then
+// by level.
+void take_tighter_runs(std::vector<Cell>& cells, std::size_t levels) {
+  for (std::size_t i = cells.size(); i-- > levels;) {
+    const Cell& tight = cells[i];
+    Cell& loose = cells[i - levels];
+    for (const Entry& entry : tight.entries) {
+      const auto own =
+          std::find_if(loose.entries.begin(), loose.entries.end(), [&](const Entry& other) {
+            return other.point.contestant() == entry.point.contestant();
+          });
+      if (own == loose.entries.end()) {
+        loose.entries.push_back(entry);
+      } else if (entry.point.seconds() < own->point.seconds()) {
+        *own = entry;
+      }
+    }
+    rank(loose.entries);
+    if (loose.first()) loose.empty_because.clear();
+  }
+}
+
 // Down to the finest one that the file's sweep went on for.
 std::vector<double> levels_in(const json& document) {
   const json suite = document.value("context", json::object()).value("suite", json::object());
@@ -105,6 +128,7 @@ Plane plane_of(const std::vector<const Point*>& points, const json& document, co
     for (const double level : plane.levels)
       plane.cells.push_back(cell_of(here, limit, level, cast));
   }
+  take_tighter_runs(plane.cells, plane.levels.size());
   return plane;
 }
 
@@ -227,6 +251,7 @@ std::vector<Plane> merged(const std::vector<Plane>& planes) {
     });
     same->limits = in_order(same->cells, [](const Cell& cell) { return cell.strain_limit; });
   }
+  for (Plane& plane : all) take_tighter_runs(plane.cells, plane.levels.size());
   return all;
 }
 

@@ -17,7 +17,8 @@ namespace harness::analysis {
 // scene, size and limit. Null: none.
 const Point* fastest_of(const std::vector<const Point*>& points, double level);
 
-// What stands for one contestant in a cell.
+// What stands for one contestant in a cell: its fastest run at the cell's strain limit or at a
+// tighter one, which keeps the cell's as well.
 struct Entry {
   Role role;
   std::string row;      // whose row it stands in: a hollow contestant's is its solver's

@@ -19,6 +19,8 @@ std::string cell_text(const Cell& cell) {
   std::string text = (cell.clear() ? bold(name) : name) + " " +
                      plain(1e3 * first->point.seconds(), 3) + " ms, " +
                      step_text(first->point.number("step"));
+  if (const double kept = first->point.number("strain_limit"); kept < cell.strain_limit)
+    text += " at " + percent(kept);
   if (cell.level == any_motion && std::isfinite(first->error))
     text += ", off by " + number_text(100 * first->error, 2) + " %";
   const double shape = first->point.error("shape");

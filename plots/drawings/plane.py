@@ -64,7 +64,7 @@ def _level(level: float | None) -> str:
 
 
 def _caption(document: Json) -> list[str]:
-    return ["In each cell the contestant that is fastest with its best step, bold if it is faster than each other one beyond the noise; "
+    return ["In each cell the contestant that is fastest with its best run at this limit or a tighter one, bold if it is faster than each other one beyond the noise; "
             "its time for one simulated second, and its error; and how many times as long the best of the paper's six methods takes.",
             origin_sentence(document)]
 

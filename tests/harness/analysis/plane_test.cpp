@@ -71,8 +71,27 @@ TEST(Plane, TakesTheRunThatTheSweepMarked) {
   EXPECT_EQ(winner(plane.cell(0.1, 0.05)), "chain/icd/n:80/strain:0.1/h:0.04") << "no mark";
 }
 
+// Within one file, and where each limit has a file of its own.
+TEST(Plane, TakesARunAtATighterLimitWhereThatIsFaster) {
+  const json loose = run("icd", 0.1, 0.01, 5, 0.01), slow = run("strips", 0.1, 0.01, 4, 0.01),
+             tight = run("icd", 0.01, 0.02, 3, 0.01), wrong = run("strips", 0.01, 0.02, 1, 0.06);
+  const json whole = document({loose, slow, tight, wrong});
+  const json piece = document({loose, slow}), other = document({tight, wrong});
+  std::vector<Plane> pieces = planes_of(piece);
+  for (Plane& plane : planes_of(other)) pieces.push_back(std::move(plane));
+  for (const auto& planes : {planes_of(whole), merged(pieces)}) {
+    ASSERT_EQ(planes.size(), 1U);
+    const Cell& cell = planes[0].cell(0.1, 0.02);
+    EXPECT_EQ(winner(cell), "chain/icd/n:80/strain:0.01/h:0.02");
+    ASSERT_EQ(cell.entries.size(), 2U) << "one of each contestant";
+    EXPECT_EQ(cell.counting(1)->point.id(), "chain/strips/n:80/strain:0.1/h:0.01");
+    EXPECT_EQ(winner(planes[0].cell(0.1, any_motion)), "chain/strips/n:80/strain:0.01/h:0.02");
+    EXPECT_EQ(winner(planes[0].cell(0.01, 0.02)), "chain/icd/n:80/strain:0.01/h:0.02");
+  }
+}
+
 TEST(Plane, SaysWhyACellIsEmpty) {
-  json failed = run("icd", 0.1, 0.01, 1, 0.01);
+  json failed = run("icd", 0.0001, 0.01, 1, 0.01);
   failed["status"] = "strain_missed";
   json unsure = run("icd", 0.01, 0.01, 1, 0.01);
   unsure["error"]["error_series"] = {{0.5, 0.01, 0.01, 0.009, 0.009}};
@@ -80,7 +99,7 @@ TEST(Plane, SaysWhyACellIsEmpty) {
   alone["error"] = {{"reference", nullptr}, {"trajectory", nullptr}, {"gap", nullptr}};
   const json result = document({failed, unsure, alone});
   const auto planes = planes_of(result);
-  EXPECT_EQ(winner(planes.at(0).cell(0.1, any_motion)), "none: no run keeps the strain limit");
+  EXPECT_EQ(winner(planes.at(0).cell(0.0001, any_motion)), "none: no run keeps the strain limit");
   EXPECT_EQ(winner(planes.at(0).cell(0.01, 0.02)), "none: the reference is not sure to 2 %");
   EXPECT_EQ(winner(planes.at(0).cell(0.01, 0.05)), "chain/icd/n:80/strain:0.01/h:0.01");
   EXPECT_EQ(winner(planes.at(0).cell(0.001, 0.05)), "none: there is no reference");
