@@ -178,18 +178,21 @@ void degrees_of_freedom_left(const Points& points, ClaimVerdict& c) {
       "degrees of freedom per vertex (3 less the rank of J over the vertices, SuiteSparseQR): "
       "reproduced if with quads within 25 % of 1 on the largest mesh, with triangles below a fifth "
       "of that; not reproduced otherwise";
-  double quads = std::nan(""), triangles = std::nan("");
+  std::map<std::string, double> left;  // a vertex, by mesh
   int largest = 0;
   for (const json* mesh : points.freedom()) {
     const int n = mesh->at("vertices");
     if (n < largest) continue;
     largest = n;
     const double each = mesh->at("degrees_of_freedom").get<double>() / n;
-    (mesh->at("mesh") == "quads" ? quads : triangles) = each;
+    left[mesh->at("mesh")] = each;
   }
-  if (std::isnan(quads) || std::isnan(triangles)) return;
+  if (!left.contains("quads") || !left.contains("triangles")) return;
+  const double quads = left["quads"], triangles = left["triangles"];
   c.measured = std::to_string(largest) + " vertices: " + text(quads) + " a vertex with quads, " +
                text(triangles) + " with triangles";
+  if (left.contains("midpoints"))
+    c.measured += ", " + text(left["midpoints"]) + " with midpoints of triangles' edges";
   c.verdict = std::abs(quads - 1) < 0.25 && triangles < 0.2 * quads ? reproduced : not_reproduced;
 }
 

@@ -1,6 +1,8 @@
 #include "harness/stability/case_parts.h"
 
+#include <array>
 #include <cmath>
+#include <map>
 #include <memory>
 
 namespace harness::case_parts {
@@ -46,6 +48,36 @@ Mesh cloth(int n, bool diagonals) {
     }
   }
   mesh.parts.pinned = {vertex(0, 0), vertex(0, n - 1)};
+  return mesh;
+}
+
+Mesh midpoint_cloth(int n) {
+  const Mesh corners = cloth(n, true);
+  std::map<std::pair<int, int>, int> midpoint_of;
+  for (const auto [a, b] : corners.parts.edges)
+    midpoint_of.emplace(std::minmax(a, b), static_cast<int>(midpoint_of.size()));
+  Mesh mesh = points(static_cast<int>(midpoint_of.size()), 0);
+  const Positions& x = corners.start.x;
+  for (const auto& [ends, v] : midpoint_of)
+    mesh.start.x.col(v) = 0.5 * (x.col(ends.first) + x.col(ends.second));
+  const double mass = 0.2 / (2 * (n - 1) * (n - 1));  // of a triangle
+  const auto add = [&](std::array<int, 3> corner) {
+    for (int i = 0; i < 3; ++i) {
+      const int a = corner[i], b = corner[(i + 1) % 3], c = corner[(i + 2) % 3];
+      const int first = midpoint_of.at(std::minmax(a, b)),
+                second = midpoint_of.at(std::minmax(a, c));
+      join(mesh, first, second, 0.5 * (x.col(b) - x.col(c)).norm());
+      mesh.parts.mass[first] += mass / 3;
+    }
+  };
+  for (int i = 0; i + 1 < n; ++i) {
+    for (int j = 0; j + 1 < n; ++j) {
+      const int v = i * n + j;  // and the diagonal from it
+      add({v, v + 1, v + n + 1});
+      add({v, v + n + 1, v + n});
+    }
+  }
+  mesh.parts.pinned = {midpoint_of.at({0, 1}), midpoint_of.at({n - 2, n - 1})};
   return mesh;
 }
 

@@ -25,6 +25,10 @@ Mesh chain(int links, const Eigen::Vector3d& direction = {1, 0, 0}, bool pinned 
 // n x n vertices, 1 m wide and 0.2 kg, horizontal, without shear; pinned at two corners of one
 // edge. diagonals: one of each quad is constrained too.
 Mesh cloth(int n, bool diagonals = false);
+// The same triangles with vertices at the midpoints of their edges, each joined to the two others
+// of its triangle at half the length of the opposite edge, and a third of the mass of its triangles
+// (English and Bridson 2008). Pinned at the outermost midpoints of one edge of the cloth.
+Mesh midpoint_cloth(int n);
 
 // A scene of scene_types() with some parameters given.
 Scene scene_of(const char* name, const SceneParameters& given);

@@ -44,13 +44,17 @@ std::vector<Freedom> degrees_of_freedom(int n) {
   std::vector<Freedom> list;
   cholmod_common common{};
   cholmod_l_start(&common);
-  for (const bool triangles : {false, true}) {
-    case_parts::Mesh mesh = case_parts::cloth(n, triangles);
+  std::pair<const char*, case_parts::Mesh> meshes[] = {
+      {"quads", case_parts::cloth(n)},
+      {"triangles", case_parts::cloth(n, true)},
+      {"midpoints", case_parts::midpoint_cloth(n)}};
+  for (auto& [name, mesh] : meshes) {
     std::mt19937_64 random(1);
     case_parts::add_noise(mesh.start.x, {}, 0.2 / (n - 1), random);
     const int rank = rank_of_jacobian(mesh, common);
-    list.push_back({triangles ? "triangles" : "quads", n * n,
-                    static_cast<int>(mesh.parts.edges.size()), rank, 3 * n * n - rank});
+    const auto coordinates = static_cast<int>(3 * mesh.parts.mass.size());
+    list.push_back(
+        {name, n * n, static_cast<int>(mesh.parts.edges.size()), rank, coordinates - rank});
   }
   cholmod_l_finish(&common);
   return list;

@@ -235,9 +235,13 @@ TEST(HardCases, NothingSatisfiesTheInfeasibleAndTheWorstEdgeIsNamed) {
 TEST(DegreesOfFreedom, AreThoseOfAFullRankJacobian) {
   for (const int n : {3, 8, 15}) {
     const auto freedom = harness::degrees_of_freedom(n);
-    ASSERT_EQ(freedom.size(), 2u);
+    ASSERT_EQ(freedom.size(), 3u);
     EXPECT_EQ(freedom[0].degrees_of_freedom, n * n + 2 * n);
     EXPECT_EQ(freedom[1].degrees_of_freedom, 4 * n - 1);
+    // Three coordinates for each edge, three constraints for each triangle, all independent.
+    const int edges = (n - 1) * (3 * n - 1), triangles = 2 * (n - 1) * (n - 1);
+    EXPECT_EQ(freedom[2].constraints, 3 * triangles);
+    EXPECT_EQ(freedom[2].degrees_of_freedom, 3 * edges - 3 * triangles);
   }
 }
 
