@@ -17,8 +17,9 @@ namespace {
 // Largest growth of |C~|^2 that is accepted of a projection of the whole in contact: passes correct
 // that much.
 constexpr double most_overshoot = 100;
-constexpr double memory = 0.6;                       // of a mean, a step
-constexpr int first_retry = 4, longest_retry = 128;  // steps
+constexpr double least_whole_damping = 1e-4, most_whole_damping = 1;  // of the diagonal
+constexpr double memory = 0.6;                                        // of a mean, a step
+constexpr int first_retry = 4, longest_retry = 128;                   // steps
 constexpr int first_rounds = 8;  // until a projection of the whole is tried for the first time
 
 // In visits of an edge by a pass, 1.3 ns, as kernels measures them: a link in a pass over yarns;
@@ -46,7 +47,8 @@ FastProjectionAdaptive::FastProjectionAdaptive(const Problem& problem, const Set
       yarns_(problem, settings.strain_limit, settings.target, passes_.edges()),
       x_(3, problem.vertices()),
       u_(3, problem.constraints()),
-      mu_(problem.constraints()) {
+      mu_(problem.constraints()),
+      before_{Positions(3, problem.vertices()), {}} {
   if (!yarns_.crossing()) settings_.sweeps = 0;
 }
 
@@ -67,7 +69,7 @@ StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*
     const bool stops = passes_.gives_up(rounds, settings_.max_iterations);
     passes_.settle_contacts();
     const std::int64_t corrected =
-        stops ? 0 : yarns_.project(passes_.positions(), x.contacts(), work);
+        stops ? 0 : yarns_.project(passes_.positions(), passes_.held_normals(), work);
     work.edge_projections += corrected;
     StrainPasses::Passed done{corrected, 0};
     if (corrected > 0) done = passes_.in_turn(settings_.sweeps, work);
@@ -76,7 +78,10 @@ StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*
     cost += round;
     if (done.left == 0) {
       passes_.store(x);
-      if (!stops && x.find_contacts(work) > 0) continue;
+      if (!stops && x.find_contacts(work) > 0) {
+        passes_.load(x);
+        continue;
+      }
       const StepResult result =
           StrainPasses::verdict(rounds, stops ? "round limit" : nullptr, edges, x);
       if (result) {
@@ -123,25 +128,32 @@ void FastProjectionAdaptive::learn(Way way, double cost) {
   mean = mean == 0 ? cost : memory * mean + (1 - memory) * cost;
 }
 
-// false: J W J^T is singular, or so nearly that the projection overshoots, as it may happen to
-// cloth that lies on an obstacle; nothing has moved then.
+// Where J W J^T is singular, or so nearly that the projection overshoots, as it may happen to cloth
+// that lies on an obstacle, it is damped (fast_projection.cpp), more and more. false: no damping
+// helps; nothing has moved then.
 bool FastProjectionAdaptive::project_the_whole(Contacts* contacts, WorkCounters& work) {
   passes_.settle_contacts();
   passes_.store(x_);
+  Iterate x{x_, contacts};
+  x.save(before_);
   const double error = linearize();
-  if (!system_.factor(u_, contacts, work)) return false;
-  if (!system_.solve(mu_, work, settings_.forcing)) return false;  // (7)
-  system_.edges().apply(u_, mu_, x_);                              // (5)
-  if (contacts) {
-    contacts->save(before_);
-    contacts->settle(x_);
-    if (!(linearize() < most_overshoot * error)) {
-      contacts->restore(before_);
-      return false;
+  for (double damping = 0; damping <= most_whole_damping;
+       damping = damping == 0 ? least_whole_damping : 10 * damping) {
+    if (damping > 0) {
+      x.restore(before_);
+      linearize();
+    }
+    if (!system_.factor(u_, contacts, work, damping)) continue;
+    if (!system_.solve(mu_, work, settings_.forcing)) continue;  // (7)
+    system_.edges().apply(u_, mu_, x_);                          // (5)
+    x.settle();
+    if (!contacts || linearize() < most_overshoot * error) {
+      passes_.load(x);
+      return true;
     }
   }
-  passes_.load({x_, contacts});
-  return true;
+  x.restore(before_);
+  return false;
 }
 
 // The gradient to u_, C~ to mu_, both at x_. Returns |C~|^2.

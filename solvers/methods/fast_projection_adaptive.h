@@ -45,7 +45,7 @@ class FastProjectionAdaptive final : public VelocityFilter {
   Positions x_;
   Eigen::Matrix3Xd u_;       // gradient of C
   Eigen::VectorXd mu_;       // C~, then h^2 dlambda
-  Contacts::Record before_;  // a projection of the whole; with contacts only
+  Iterate::Record before_;  // a projection of the whole
   // What steps have cost each way, in visits of an edge; 0: not tried yet.
   struct Seen {
     double mean[2] = {};

@@ -74,6 +74,7 @@ StrainBand::StrainBand(double strain_limit, double target)
 StrainPasses::StrainPasses(const Problem& problem, const StrainBand& band,
                            const std::vector<double>& share_a, const std::vector<double>& share_b)
     : edges_(problem),
+      planes_(edges_, problem.contact_inside()),
       band_(band),
       inverse_square_(edges_.entries()),
       share_a_(edges_.entries()),
@@ -143,10 +144,31 @@ void StrainPasses::renew_planes(Iterate x, WorkCounters& work) {
   if (contacts_->update(x, work) > 0) load(x);
 }
 
+void StrainPasses::load(Iterate x) {
+  edges_.load(x, x_);
+  contacts_ = x.contacts();
+  if (!contacts_) return;
+  const Contacts::Timing measured = contacts_->timing();
+  planes_.load(*contacts_, edges_);
+}
+
+void StrainPasses::store(Positions& x) const {
+  edges_.store(x_, x);
+  if (!contacts_) return;
+  const Contacts::Timing measured = contacts_->timing();
+  planes_.store(*contacts_, edges_);
+}
+
 void StrainPasses::settle_contacts() {
   if (!contacts_) return;
-  contacts_->settle(
-      [this](int vertex, int axis) -> double& { return x_(edges_.place(vertex), axis); });
+  const Contacts::Timing measured = contacts_->timing();
+  planes_.settle(x_);
+}
+
+const ColoredEdges::Places* StrainPasses::held_normals() {
+  if (!contacts_ || contacts_->count() == 0) return nullptr;
+  const Contacts::Timing measured = contacts_->timing();
+  return &planes_.held_normals();
 }
 
 std::int64_t StrainPasses::in_turn() {

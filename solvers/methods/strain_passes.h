@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solvers/methods/colored_edges.h"
+#include "solvers/methods/placed_contacts.h"
 #include "solvers/problem/iterate.h"
 #include "solvers/systems/constraint_system.h"
 
@@ -37,15 +38,13 @@ class StrainPasses {
   // The shares of Gauss-Seidel: by inverse mass, times `relaxation`.
   static StrainPasses by_mass(const Problem& problem, const StrainBand& band, double relaxation);
 
-  // Positions (3 x n) in and out. store() leaves pinned vertices alone. Contacts of x are settled
-  // before each pass from now on, so that they hold wherever a pass finds nothing to correct.
-  void load(Iterate x) {
-    edges_.load(x, x_);
-    contacts_ = x.contacts();
-  }
+  // Positions (3 x n) in and out, and contacts with them. store() leaves pinned vertices alone.
+  // Contacts of x are settled before each pass from now on, so that they hold wherever a pass finds
+  // nothing to correct.
+  void load(Iterate x);
   // load(), and saves the contacts of x for passes_alone().
   void begin(Iterate x);
-  void store(Positions& x) const { edges_.store(x_, x); }
+  void store(Positions& x) const;
   bool finite() const { return x_.allFinite(); }
   // Whether to stop after so many passes: at most `most`, and no more than some with overflow.
   bool gives_up(int passes, int most) const {
@@ -60,6 +59,8 @@ class StrainPasses {
   static constexpr int most_rounds_in_contact = 100;
   ColoredEdges::Places& positions() { return x_; }
   void settle_contacts();  // at positions()
+  // Normals of planes that hold their vertex, by place, zero elsewhere; null: no contacts.
+  const ColoredEdges::Places* held_normals();
 
   // Passes until one finds nothing to correct, at most `most_passes`; the last one, which is the
   // test of convergence, is not counted. Refuses x if an edge (of `edges`, in any order) is still
@@ -94,6 +95,7 @@ class StrainPasses {
   Contacts* contacts_ = nullptr;
   Contacts::Record begun_;
   ColoredEdges edges_;
+  PlacedContacts planes_;  // of contacts_
   StrainBand band_;
   Eigen::ArrayXd inverse_square_;  // 1 / l^2, by entry
   Eigen::ArrayXd share_a_, share_b_;

@@ -22,7 +22,8 @@ StepResult Strips::apply(const Positions& x_start, double /*h*/, Iterate x, Work
       return passes_.passes_alone(edges_, x, work);  // from the candidate: nothing has been stored
     const bool stops = passes_.gives_up(passes, max_iterations_);
     passes_.settle_contacts();
-    std::int64_t corrected = stops ? 0 : yarns_.project(passes_.positions(), x.contacts(), work);
+    std::int64_t corrected =
+        stops ? 0 : yarns_.project(passes_.positions(), passes_.held_normals(), work);
     work.edge_projections += corrected;
     if (corrected > 0) corrected = passes_.in_turn(passes_between_, work).left;
     if (corrected > 0) continue;

@@ -43,7 +43,6 @@ YarnPass::YarnPass(const Problem& problem, double strain_limit, double target,
   int longest = 0;
   for (const Bundle& b : bundles_) longest = std::max(longest, b.links);
   rows_.resize(static_cast<std::size_t>(longest) + 1, Row{});
-  if (problem.contact_inside()) normal_ = places.make_places();
 }
 
 void YarnPass::add_bundle(const Problem& problem, const std::vector<const Yarn*>& yarns,
@@ -77,24 +76,13 @@ void YarnPass::take_middle_from(const Positions& x_start) {
   }
 }
 
-void YarnPass::show_normals(const Contacts& contacts, bool shown) {
-  const Contacts::Timing measured = contacts.timing();
-  for (int c = 0; c < contacts.count(); ++c) {
-    const int place = places_.place(contacts.vertex(c));
-    if (!shown) {
-      normal_.row(place).setZero();
-    } else if (contacts.holds(c)) {
-      normal_.row(place) = contacts.normal(c).transpose();
-    }
-  }
-}
-
 struct YarnPass::View {
   int links;
   const int* place;
   const double *w, *l, *il;  // inverse masses; rest lengths and their inverses
   const double* start_g;     // where the middle of the step is asked for
   double* x[3];
+  const double* normal[3];  // with contacts only
 };
 
 // g (or its middle) and C~ of every link; how many of each yarn are beyond the limit.
@@ -145,10 +133,7 @@ void YarnPass::linearize(const View& yarns, double (&violated)[lanes]) {
 // that are projected, else 0.
 template <int used, bool contact>
 void YarnPass::eliminate(const View& yarns, const double (&solved)[lanes]) {
-  const double* normal[3] = {};
-  if constexpr (contact) {
-    for (int axis = 0; axis < 3; ++axis) normal[axis] = normal_.col(axis).data();
-  }
+  const auto& normal = yarns.normal;
   for (int k = 0; k < yarns.links; ++k) {
     Row& row = rows_[k + 1];
     const Row& before = rows_[k];
@@ -234,33 +219,35 @@ std::int64_t YarnPass::project(const View& yarns, WorkCounters& work) {
 }
 
 template <bool contact, bool middle>
-std::int64_t YarnPass::project_all(ColoredEdges::Places& x, WorkCounters& work) {
+std::int64_t YarnPass::project_all(ColoredEdges::Places& x, const ColoredEdges::Places* normals,
+                                   WorkCounters& work) {
   std::int64_t violated = 0;
   for (const Bundle& bundle : bundles_) {
     const std::size_t first = static_cast<std::size_t>(bundle.first) * lanes;
-    const View yarns{bundle.links,
-                     place_.data() + first,
-                     inverse_mass_.data() + first,
-                     rest_.data() + first,
-                     inverse_rest_.data() + first,
-                     middle ? start_g_.data() + 3 * first : nullptr,
-                     {x.col(0).data(), x.col(1).data(), x.col(2).data()}};
+    View yarns{bundle.links,
+               place_.data() + first,
+               inverse_mass_.data() + first,
+               rest_.data() + first,
+               inverse_rest_.data() + first,
+               middle ? start_g_.data() + 3 * first : nullptr,
+               {x.col(0).data(), x.col(1).data(), x.col(2).data()},
+               {}};
+    if constexpr (contact) {
+      for (int axis = 0; axis < 3; ++axis) yarns.normal[axis] = normals->col(axis).data();
+    }
     violated += bundle.yarns == 1 ? project<1, contact, middle>(yarns, work)
                                   : project<lanes, contact, middle>(yarns, work);
   }
   return violated;
 }
 
-std::int64_t YarnPass::project(ColoredEdges::Places& x, const Contacts* contacts,
+std::int64_t YarnPass::project(ColoredEdges::Places& x, const ColoredEdges::Places* normals,
                                WorkCounters& work) {
-  const bool middle = !start_g_.empty();
-  if (!contacts || contacts->count() == 0)
-    return middle ? project_all<false, true>(x, work) : project_all<false, false>(x, work);
-  show_normals(*contacts, true);
-  const std::int64_t violated =
-      middle ? project_all<true, true>(x, work) : project_all<true, false>(x, work);
-  show_normals(*contacts, false);
-  return violated;
+  const auto all = [&]<bool middle>() {
+    return normals ? project_all<true, middle>(x, normals, work)
+                   : project_all<false, middle>(x, normals, work);
+  };
+  return start_g_.empty() ? all.operator()<false>() : all.operator()<true>();
 }
 
 }  // namespace inextensible

@@ -19,10 +19,11 @@ class YarnPass {
   YarnPass(const Problem& problem, double strain_limit, double target, const ColoredEdges& places);
 
   // One step of Newton's method for every yarn, color after color. Returns how many links were
-  // beyond the limit; one without length counts as none. contacts: the equations are those of
-  // vertices that move within their planes only; the caller settles contacts afterwards. null:
-  // none.
-  std::int64_t project(ColoredEdges::Places& x, const Contacts* contacts, WorkCounters& work);
+  // beyond the limit; one without length counts as none. normals: of planes that hold the vertices
+  // of places, or zero; the equations are those of vertices that move within their planes only, and
+  // the caller settles contacts afterwards. null: there are none.
+  std::int64_t project(ColoredEdges::Places& x, const ColoredEdges::Places* normals,
+                       WorkCounters& work);
 
   // From now on corrections act along the directions that links have in the middle of the step from
   // x_start (3 x n) to where they are, but for links that have turned by more than 90 degrees. A
@@ -41,7 +42,8 @@ class YarnPass {
   void add_bundle(const Problem& problem, const std::vector<const Yarn*>& yarns,
                   const ColoredEdges& places);
   template <bool contact, bool middle>
-  std::int64_t project_all(ColoredEdges::Places& x, WorkCounters& work);
+  std::int64_t project_all(ColoredEdges::Places& x, const ColoredEdges::Places* normals,
+                           WorkCounters& work);
   struct View;  // of a bundle and the positions
   template <int used, bool contact, bool middle>
   std::int64_t project(const View& yarns, WorkCounters& work);
@@ -51,7 +53,6 @@ class YarnPass {
   void eliminate(const View& yarns, const double (&solved)[lanes]);
   template <int used>
   void substitute(const View& yarns) const;
-  void show_normals(const Contacts& contacts, bool shown);
 
   StrainBand band_;
   double target_low_, target_high_;  // of q - 1 = |d|^2 / l^2 - 1
@@ -72,9 +73,6 @@ class YarnPass {
   // d / l at the start of the step, x, y and z of a row of links; empty: not asked for.
   std::vector<double> start_g_;
   const ColoredEdges& places_;
-
-  // With contacts only.
-  ColoredEdges::Places normal_;  // of the plane that holds a place's vertex, or zero
 };
 
 }  // namespace inextensible

@@ -239,7 +239,6 @@ TriangleCollider::Nearest TriangleCollider::nearest_by_all(const Vector3d& p) co
 TriangleCollider::List TriangleCollider::add_list(const std::vector<int>& triangles) {
   const List list{static_cast<int>(listed_.size()), static_cast<int>(triangles.size())};
   listed_.insert(listed_.end(), triangles.begin(), triangles.end());
-  for (const int t : triangles) listed_planes_.push_back(planes_[t]);
   return list;
 }
 
@@ -268,21 +267,21 @@ bool TriangleCollider::touches(const List& list, const Vector3d& p, double depth
     return true;
   }
   const double px = p.x(), py = p.y(), pz = p.z();
-  const Plane* planes = listed_planes_.data() + list.first;
+  const int* listed = listed_.data() + list.first;
   double largest = -std::numeric_limits<double>::infinity();
-  int nearest = 0;
+  int nearest = listed[0];
   for (int i = 0; i < list.count; ++i) {
-    const double distance =
-        planes[i].x * px + planes[i].y * py + planes[i].z * pz - planes[i].offset;
+    const Plane& t = planes_[listed[i]];
+    const double distance = t.x * px + t.y * py + t.z * pz - t.offset;
     if (distance > largest) {
       largest = distance;
-      nearest = i;
+      nearest = listed[i];
     }
   }
-  witness = listed_[list.first + nearest];
+  witness = nearest;
   if (!(largest < -depth)) return false;
-  plane.normal = {planes[nearest].x, planes[nearest].y, planes[nearest].z};
-  plane.offset = planes[nearest].offset;
+  plane.normal = {planes_[nearest].x, planes_[nearest].y, planes_[nearest].z};
+  plane.offset = planes_[nearest].offset;
   return true;
 }
 
@@ -312,15 +311,15 @@ bool TriangleCollider::plane_at(const Vector3d& p, ContactPlane& plane, WorkCoun
   const List& list = lists_[cell];
   work.triangle_tests += list.count;
   if (convex_) {
-    const Plane* planes = listed_planes_.data() + list.first;
-    const auto behind = [&p](const Plane& t) {
+    const auto behind = [&](int triangle) {
+      const Plane& t = planes_[triangle];
       return t.offset - t.x * p.x() - t.y * p.y() - t.z * p.z();
     };
-    const Plane* least = std::min_element(
-        planes, planes + list.count,
-        [&behind](const Plane& s, const Plane& t) { return behind(s) < behind(t); });
-    plane.normal = {least->x, least->y, least->z};
-    plane.offset = least->offset;
+    const auto triangles = triangles_of(list);
+    const Plane& least = planes_[*std::min_element(
+        triangles.begin(), triangles.end(), [&](int s, int t) { return behind(s) < behind(t); })];
+    plane.normal = {least.x, least.y, least.z};
+    plane.offset = least.offset;
     return true;
   }
   const Nearest nearest = nearest_among(triangles_of(list), p);

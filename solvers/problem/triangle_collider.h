@@ -91,8 +91,7 @@ class TriangleCollider final : public Collider {
   std::vector<int> cell_;  // its list, or outside
   std::vector<List> lists_;
   std::vector<int> listed_;
-  std::vector<Plane> planes_;         // of the faces
-  std::vector<Plane> listed_planes_;  // of listed_
+  std::vector<Plane> planes_;  // of the faces
 };
 
 }  // namespace inextensible
