@@ -15,7 +15,7 @@ and the text must then stand in that line of that file. A paragraph may say wher
 and the number must then be in the paragraph and follow from the file, to its last digit; --fix brings both up to date where only
 digits change. `jacobi` and `fast_projection` are contestants. `strain` (with a limit) and `resolution` (with a number of vertices)
 mean the time of a best point, `error` (with a largest error) the least time within it, `delivered` (with a largest strain after
-collisions) the same, `after collision` (with a limit) the strain of a best point, `right motion` (with a limit) the fastest within an error of 2 %; the unit is s, ms or %, none for a ratio or s.
+collisions) the same, `after collision` (with a limit) the strain of a best point, `right motion` (with a limit) the fastest at it or a tighter one within an error of 2 %; the unit is s, ms or %, none for a ratio or s.
 A ratio may say more:
 
     = 3.5 (3.3-3.8)           its 95 % interval, which the paragraph must give as well

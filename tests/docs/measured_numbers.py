@@ -76,7 +76,7 @@ def point_of(file: str, quantity: str, scene: str, place: float, contestant: str
     points = [p for p in points_of(file) if p["scene"] == scene and p.get("contestant", p["solver"]) in names
               and p["status"] == "ok" and p["seconds_per_simulated_second"]]
     if quantity in ("error", "delivered", "right motion"):
-        fits = {"right motion": lambda p: p["sweep"] == "strain" and math.isclose(p["strain_limit"], place)
+        fits = {"right motion": lambda p: p["sweep"] == "strain" and p["strain_limit"] <= place * (1 + 1e-9)
                 and within_error(p, HEADLINE),
                 "error": lambda p: p["sweep"] == "step" and within_error(p, place),
                 "delivered": lambda p: p["sweep"] == "strain" and delivered_strain(p) <= place}[quantity]
