@@ -10,16 +10,18 @@ MidpointStepper::MidpointStepper(std::shared_ptr<const Problem> problem,
     : Stepper(std::move(problem)),
       filter_(std::move(filter)),
       rho_(spectral_radius),
-      middle_(3, problem_->vertices()) {}
+      middle_(3, problem_->vertices()),
+      candidate_(3, problem_->vertices()) {}
 
 StepResult MidpointStepper::solve(const State& state, double h, Positions& x) {
   Stopwatch stopwatch(phases_wanted_);
-  const double scale = h * h / (1 + rho_);
+  const double scale = 0.5 * h * h;
   x = state.x + h * state.v;
   middle_ = 0.5 * (state.x + x);
   add_acceleration(*problem_, middle_, scale, x, work_);
   if (problem_->has_drag()) add_drag(*problem_, state.v, scale, x);
   for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
+  candidate_ = x;
   phases_.unconstrained += stopwatch();
   const StepResult result =
       apply_until_clear(*filter_, contacts_inside(), start_positions(), h, x, work_);
@@ -31,7 +33,7 @@ StepResult MidpointStepper::end_velocities(const State& start, double h,
                                            const Positions& /*filtered*/, const Positions& x,
                                            Positions& v) {
   Stopwatch stopwatch(phases_wanted_);
-  v = ((1 + rho_) / h) * (x - start.x) - rho_ * start.v;
+  v = (2 * (candidate_ - start.x) + (1 + rho_) * (x - candidate_)) * (1 / h) - start.v;
   if (contacts_) {
     for (int contact = 0; contact < contacts_->count(); ++contact) {
       const int i = contacts_->vertex(contact);

@@ -1,7 +1,7 @@
 // A velocity filter inside the midpoint rule, for filters whose constraint forces act along the
-// edges as they are in the middle of the step (Along::middle):
-//   x^{n+1} = x^n + h v^n + h^2 / (1 + rho) W (f + J(m)^T lambda),  m = (x^n + x^{n+1}) / 2,
-//   v^{n+1} = (1 + rho) (x^{n+1} - x^n) / h - rho v^n.
+// edges as they are in the middle of the step (Along::middle). With x0 = x^n + h v^n + h^2/2 W f,
+//   x^{n+1} = x0 + h^2 / (1 + rho) W J(m)^T lambda,  m = (x^n + x^{n+1}) / 2,
+//   v^{n+1} = v^n + h W f + h W J(m)^T lambda = v^n + h W f + (1 + rho) (x^{n+1} - x0) / h.
 //
 // C is quadratic, so J(m) (x^{n+1} - x^n) = C(x^{n+1}) - C(x^n) exactly: where lengths stay what
 // they are, constraint forces do no work, and with rho = 1 energy and momentum are kept at any step
@@ -10,9 +10,9 @@
 //
 // rho, 0 to 1, is the spectral radius at infinite stiffness (Chung and Hulbert 1993): of a rate
 // that constraints stop, -rho times as much is left after the step. So an edge that comes to its
-// limit bounces there unless rho is less than 1. 1 is of second order; 0 is backward Euler but for
-// its directions. Vertices that an obstacle holds end the step with (x^{n+1} - x^n) / h: they do
-// not bounce. Shear is taken at x^n + h v^n / 2, drag at v^n.
+// limit bounces there unless rho is less than 1. With 1 the rule is of second order; what is
+// smaller acts on constraint forces alone. Vertices that an obstacle holds end the step with
+// (x^{n+1} - x^n) / h: they do not bounce. f has shear and bending at x^n + h v^n / 2, drag at v^n.
 #pragma once
 
 #include "solvers/stepping/velocity_filter.h"
@@ -39,7 +39,8 @@ class MidpointStepper final : public Stepper {
 
   std::unique_ptr<VelocityFilter> filter_;
   double rho_;
-  Positions middle_;  // x^n + h v^n / 2
+  Positions middle_;     // x^n + h v^n / 2
+  Positions candidate_;  // x0
 };
 
 }  // namespace inextensible

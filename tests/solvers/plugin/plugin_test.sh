@@ -136,10 +136,9 @@ for scene in ("chain", "drape"):
     assert any(p["best"] for p in points("start.json", scene)), scene
     assert not any("start" in (p.get("status_detail") or "") for p in points("start.json", scene)), scene
 assert any(p["best"] for p in points("bare.json", "chain"))
-# Nothing is run, at any step: one point a limit says so.
-lacking = points("bare.json", "drape")
-assert {p["status"] for p in lacking} == {"unsupported"}, lacking
-assert len(lacking) == len({p["strain_limit"] for p in lacking}), len(lacking)
+# A suite that names no solvers leaves out who does not take its scene.
+lacking = [p for p in json.load(open("bare.json"))["points"] if p["scene"] == "drape" and p["solver"] == "sound"]
+assert not lacking, lacking
 PYTHON
 "$bench" --plugin "$(sound bare)" check --solver sound --quick >check.txt 2>&1
 code=$?
