@@ -75,18 +75,17 @@ Cell cell_of(const std::vector<const Point*>& here, double limit, double level, 
   return cell;
 }
 
-// A run that keeps a tighter limit keeps this one: each contestant's fastest run at the cell's limit
-// or a tighter one stands for it. cells: of one scene and size, by limit from loose to tight, then
-// by level.
+// A run that keeps a tighter limit keeps this one: each contestant's fastest run at the cell's
+// limit or a tighter one stands for it. cells: of one scene and size, by limit from loose to tight,
+// then by level.
 void take_tighter_runs(std::vector<Cell>& cells, std::size_t levels) {
   for (std::size_t i = cells.size(); i-- > levels;) {
     const Cell& tight = cells[i];
     Cell& loose = cells[i - levels];
     for (const Entry& entry : tight.entries) {
-      const auto own =
-          std::find_if(loose.entries.begin(), loose.entries.end(), [&](const Entry& other) {
-            return other.point.contestant() == entry.point.contestant();
-          });
+      const auto own = std::find_if(
+          loose.entries.begin(), loose.entries.end(),
+          [&](const Entry& other) { return other.point.contestant() == entry.point.contestant(); });
       if (own == loose.entries.end()) {
         loose.entries.push_back(entry);
       } else if (entry.point.seconds() < own->point.seconds()) {

@@ -158,7 +158,8 @@ Verb tune_verb() {
         const auto given = std::make_shared<TuneCommand>();
         TuneCommand& options = *given;
         add_solver(command, options.solver);
-        command.option("--scene", options.scene, "chain, drape, patch or spinning_net; default: all", "SCENE");
+        command.option("--scene", options.scene,
+                       "chain, drape, patch or spinning_net; default: all", "SCENE");
         command
             .option("--trials", options.trials,
                     "sets of settings to try for each solver and scene; default: 10 for each "
