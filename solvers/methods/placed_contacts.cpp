@@ -41,21 +41,10 @@ void PlacedContacts::store(Contacts& contacts, const ColoredEdges& edges) const 
 void PlacedContacts::settle(ColoredEdges::Places& x) {
   const std::ptrdiff_t stride = x.rows();
   for (const int first : blocks_) {
-    const double* n0 = normal_.data() + first;
-    const double *n1 = n0 + stride, *n2 = n1 + stride;
-    double* x0 = x.data() + first;
-    double *x1 = x0 + stride, *x2 = x1 + stride;
-    const double* plane = offset_.data() + first;
-    double* pushed = push_.data() + first;
-#pragma GCC ivdep
-    for (int i = 0; i < width; ++i) {
-      const double gap = n0[i] * x0[i] + n1[i] * x1[i] + n2[i] * x2[i] - plane[i];
-      const double now = std::max(0.0, pushed[i] - gap), more = now - pushed[i];
-      pushed[i] = now;
-      x0[i] += more * n0[i];
-      x1[i] += more * n1[i];
-      x2[i] += more * n2[i];
-    }
+    const double* n = normal_.data() + first;
+    double* at = x.data() + first;
+    Contacts::visit({n, n + stride, n + 2 * stride}, offset_.data() + first, push_.data() + first,
+                    {at, at + stride, at + 2 * stride});
   }
 }
 

@@ -26,7 +26,7 @@ class PlacedContacts {
   const ColoredEdges::Places& held_normals();
 
  private:
-  static constexpr int width = 8;  // places that are settled side by side
+  static constexpr int width = Contacts::lanes;  // places that are settled side by side
 
   std::vector<int> blocks_;  // first places of those blocks of `width` that have a contact
   ColoredEdges::Places normal_, held_;

@@ -108,6 +108,23 @@ int Contacts::update(Positions& x, WorkCounters& work) {
   return changed;
 }
 
+void Contacts::settle(Positions& x) {
+  const Timing measured = timing();
+  double at[3][lanes] = {};
+  for (int first = 0; first < count_; first += lanes) {
+    const int here = std::min(lanes, count_ - first);
+    const int* vertex = vertex_.data() + first;
+    for (int i = 0; i < here; ++i) {
+      for (int axis = 0; axis < 3; ++axis) at[axis][i] = x(axis, vertex[i]);
+    }
+    visit({&value(normal_x, first), &value(normal_y, first), &value(normal_z, first)},
+          &value(offset, first), push_.data() + first, {at[0], at[1], at[2]});
+    for (int i = 0; i < here; ++i) {
+      for (int axis = 0; axis < 3; ++axis) x(axis, vertex[i]) = at[axis][i];
+    }
+  }
+}
+
 // Where the step begins, as the obstacle carries it.
 Eigen::Vector3d Contacts::carried(int vertex) const {
   const Eigen::Vector3d start = start_->col(vertex);

@@ -57,12 +57,14 @@ class Contacts {
   int update(Positions& x, WorkCounters& work);
   double tolerance() const { return tolerance_; }  // m
 
-  // Visits every contact once; x(vertex, axis) is a coordinate to read and write.
-  template <class Access>
-  void settle(const Access& x);
-  void settle(Positions& x) {
-    settle([&x](int vertex, int axis) -> double& { return x(axis, vertex); });
-  }
+  // Visits every contact once, at x (3 x n).
+  void settle(Positions& x);
+
+  // One visit of contacts side by side, at x, y and z of their vertices: normals n and offsets of
+  // planes, and pushes so far.
+  static constexpr int lanes = 8;
+  static void visit(const double* const (&n)[3], const double* offset, double* push,
+                    double* const (&x)[3]);
 
   // Takes from displacements d (3 x n, m) what leads through or out of a plane that holds its
   // vertex.
@@ -125,7 +127,6 @@ class Contacts {
  private:
   // Numbers of a contact, m; each has a column of its own.
   enum Number { normal_x, normal_y, normal_z, offset, numbers };
-  static constexpr int lanes = 8;  // contacts that are visited side by side
 
   double& value(Number number, int contact) { return numbers_[number][contact]; }
   double value(Number number, int contact) const { return numbers_[number][contact]; }
@@ -136,7 +137,6 @@ class Contacts {
   Eigen::Vector3d carried(int vertex) const;
   void take_friction(const ContactPlane& plane, double push, const Eigen::Vector3d& displacement,
                      Positions& x) const;
-  void visit(int first, double (&x)[3][lanes]);
 
   const Problem& problem_;
   mutable double* seconds_ = nullptr;
@@ -157,37 +157,17 @@ class Contacts {
   Positions candidate_, expected_, before_, pulling_, pressing_;
 };
 
-// Contacts first ... first + lanes - 1, at x. Without branches, so that compilers turn it into
-// vector instructions.
-inline void Contacts::visit(int first, double (&x)[3][lanes]) {
-  const double* n[3] = {&value(normal_x, first), &value(normal_y, first), &value(normal_z, first)};
-  const double* plane = &value(offset, first);
-  double* pushed = push_.data() + first;
+// Without branches, so that compilers turn it into vector instructions.
+inline void Contacts::visit(const double* const (&n)[3], const double* offset, double* push,
+                            double* const (&x)[3]) {
 #pragma GCC ivdep
   for (int i = 0; i < lanes; ++i) {
-    const double gap = n[0][i] * x[0][i] + n[1][i] * x[1][i] + n[2][i] * x[2][i] - plane[i];
-    const double now = std::max(0.0, pushed[i] - gap), more = now - pushed[i];
-    pushed[i] = now;
+    const double gap = n[0][i] * x[0][i] + n[1][i] * x[1][i] + n[2][i] * x[2][i] - offset[i];
+    const double now = std::max(0.0, push[i] - gap), more = now - push[i];
+    push[i] = now;
     x[0][i] += more * n[0][i];
     x[1][i] += more * n[1][i];
     x[2][i] += more * n[2][i];
-  }
-}
-
-template <class Access>
-void Contacts::settle(const Access& at) {
-  const Timing measured = timing();
-  double x[3][lanes] = {};
-  for (int first = 0; first < count_; first += lanes) {
-    const int here = std::min(lanes, count_ - first);
-    const int* vertex = vertex_.data() + first;
-    for (int i = 0; i < here; ++i) {
-      for (int axis = 0; axis < 3; ++axis) x[axis][i] = at(vertex[i], axis);
-    }
-    visit(first, x);
-    for (int i = 0; i < here; ++i) {
-      for (int axis = 0; axis < 3; ++axis) at(vertex[i], axis) = x[axis][i];
-    }
   }
 }
 
