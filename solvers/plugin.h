@@ -31,7 +31,7 @@
 #include "solvers/systems/constraint_system.h"
 
 // Counts up whenever these headers change what a plug-in relies on.
-#define INEXTENSIBLE_PLUGIN_ABI 9
+#define INEXTENSIBLE_PLUGIN_ABI 10
 
 struct InextensibleStampItem {
   const char* what;

@@ -16,7 +16,6 @@
 #include "solvers/methods/null_filter.h"
 #include "solvers/methods/projective_dynamics.h"
 #include "solvers/methods/rattle.h"
-#include "solvers/methods/rattle_suzuki.h"
 #include "solvers/methods/shake.h"
 #include "solvers/methods/soft_step.h"
 #include "solvers/methods/strips.h"
@@ -46,7 +45,6 @@ std::vector<Backend> built_in() {
       fast_projection_adaptive_bdf2_row(),
       xpbd_small_steps_row(),
       fast_projection_bdf2opt_row(),
-      rattle_suzuki_row(),
       vertex_block_descent_row(),
       augmented_vbd_row(),
       projective_dynamics_row(),

@@ -75,6 +75,8 @@ World::World(const Problem& problem) {
 
 class BulletSoftBody final : public inextensible::Stepper {
  public:
+  static constexpr const char* name = "engine_bullet";
+
   struct Settings {
     int iterations = 1, velocity_iterations = 0;
     std::string_view order = "mesh";
@@ -164,16 +166,7 @@ const std::string& version() {
 inextensible::Backend row() {
   static const std::string summary = version() + ", soft body of links (position-based), double";
   static const std::string label = version() + " soft body";
-  inextensible::Backend row = engines::engine_row("engine_bullet", summary.c_str(), label.c_str());
-  row.settings = inextensible::setting_infos(BulletSoftBody::fields());
-  row.make =
-      [](std::shared_ptr<const Problem> problem,
-         const inextensible::BackendOptions& options) -> std::unique_ptr<inextensible::Stepper> {
-    if (problem->pins_follow_body())
-      throw std::invalid_argument("solver 'engine_bullet' takes no pins that move");
-    return std::make_unique<BulletSoftBody>(std::move(problem),
-                                            inextensible::settings_of<BulletSoftBody>(options));
-  };
+  inextensible::Backend row = engines::engine_row<BulletSoftBody>(summary, label);
   row.takes_shear = row.takes_bending = row.takes_drag = true;
   row.direction = inextensible::Direction::local;
   row.citation = "Coumans 2022";

@@ -189,6 +189,8 @@ constexpr Integrator integrators[] = {
 
 class MujocoChain final : public inextensible::Stepper {
  public:
+  static constexpr const char* name = "engine_mujoco";
+
   struct Settings {
     std::string_view integrator = integrators[0].name;
   };
@@ -269,14 +271,7 @@ const std::string& version() {
 inextensible::Backend row() {
   static const std::string summary = version() + ", a chain of hinges (joint coordinates)";
   static const std::string label = version() + " hinges";
-  inextensible::Backend row = engines::engine_row("engine_mujoco", summary.c_str(), label.c_str());
-  row.settings = inextensible::setting_infos(MujocoChain::fields());
-  row.make =
-      [](std::shared_ptr<const Problem> problem,
-         const inextensible::BackendOptions& options) -> std::unique_ptr<inextensible::Stepper> {
-    return std::make_unique<MujocoChain>(
-        std::move(problem), inextensible::settings_of<MujocoChain>(options), options.start);
-  };
+  inextensible::Backend row = engines::engine_row<MujocoChain>(summary, label);
   row.citation = "Todorov, Erez and Tassa 2012";
   row.velocities = inextensible::Velocities::whole_step;
   return row;

@@ -42,6 +42,8 @@ using World = std::unique_ptr<dxWorld, Destroy>;
 
 class OdeBalls final : public inextensible::Stepper {
  public:
+  static constexpr const char* name = "engine_ode";
+
   struct Settings {
     std::string_view solver = "direct";
     int iterations = 20;  // as ODE's
@@ -208,18 +210,10 @@ bool OdeBalls::take(double h) {
 constexpr const char* version = "ODE " ENGINE_VERSION;  // of the package; the library does not say
 
 inextensible::Backend row() {
-  inextensible::Backend row = engines::engine_row(
-      "engine_ode", "ODE " ENGINE_VERSION ", point bodies and joints of fixed distance, double",
-      "ODE " ENGINE_VERSION " joints");
-  row.settings = inextensible::setting_infos(OdeBalls::fields());
-  row.make =
-      [](std::shared_ptr<const Problem> problem,
-         const inextensible::BackendOptions& options) -> std::unique_ptr<inextensible::Stepper> {
-    if (problem->pins_follow_body())
-      throw std::invalid_argument("solver 'engine_ode' takes no pins that move");
-    return std::make_unique<OdeBalls>(std::move(problem),
-                                      inextensible::settings_of<OdeBalls>(options));
-  };
+  static const std::string summary =
+      std::string(version) + ", point bodies and joints of fixed distance, double";
+  static const std::string label = std::string(version) + " joints";
+  inextensible::Backend row = engines::engine_row<OdeBalls>(summary, label);
   row.takes_shear = row.takes_bending = row.takes_drag = true;
   row.direction = inextensible::Direction::start;
   row.citation = "Smith 2001";

@@ -28,6 +28,8 @@ using inextensible::Stopwatch;
 
 class SimbodyChain final : public inextensible::Stepper {
  public:
+  static constexpr const char* name = "engine_simbody";
+
   struct Settings {
     double accuracy = 1e-3;  // Simbody's own
     std::string_view integrator = MobilizerChain::integrators[0];
@@ -129,14 +131,7 @@ inextensible::Backend row() {
   static const std::string summary =
       version() + ", a chain of mobilizers (joint coordinates), Runge-Kutta-Merson";
   static const std::string label = version() + " mobilizers";
-  inextensible::Backend row = engines::engine_row("engine_simbody", summary.c_str(), label.c_str());
-  row.settings = inextensible::setting_infos(SimbodyChain::fields());
-  row.make =
-      [](std::shared_ptr<const Problem> problem,
-         const inextensible::BackendOptions& options) -> std::unique_ptr<inextensible::Stepper> {
-    return std::make_unique<SimbodyChain>(
-        std::move(problem), inextensible::settings_of<SimbodyChain>(options), options.start);
-  };
+  inextensible::Backend row = engines::engine_row<SimbodyChain>(summary, label);
   row.citation = "Sherman, Seth and Delp 2011";
   row.velocities = inextensible::Velocities::whole_step;
   return row;

@@ -23,6 +23,22 @@ ordered_json closed_object() {
           {"properties", ordered_json::object()}};
 }
 
+const char* word_of(inextensible::Origin origin) {
+  switch (origin) {
+    case inextensible::Origin::paper:
+      return "paper";
+    case inextensible::Origin::project:
+      return "project";
+    case inextensible::Origin::literature:
+      return "literature";
+    case inextensible::Origin::engine:
+      return "engine";
+    case inextensible::Origin::elsewhere:
+      break;
+  }
+  return "elsewhere";
+}
+
 void add(ordered_json& object, const char* name, ordered_json schema, bool later) {
   if (!later) object["required"].push_back(name);
   object["properties"][name] = std::move(schema);
@@ -135,6 +151,10 @@ ordered_json legend_schema() {
                {"contestant", "boolean"}}),
       false);
   ordered_json& item = schema["properties"]["solvers"]["items"];
+  add(item, "origin",
+      {{"type", "string"},
+       {"description", "who offers it: paper, project, literature, engine or elsewhere"}},
+      true);
   add(item, "solver",
       {{"type", "string"}, {"description", "of a contestant that is not it under its own name"}},
       true);
@@ -179,12 +199,14 @@ ordered_json legend(const Contestants& contestants) {
     solvers.push_back({{"name", backend.name},
                        {"label", backend.label},
                        {"family", backend.family},
+                       {"origin", word_of(backend.origin)},
                        {"contestant", backend.contestant}});
     for (const Contestant& c : contestants) {
       if (c.own_name() || c.solver != backend.name) continue;
       solvers.push_back({{"name", c.name},
                          {"label", label_of(c)},
                          {"family", backend.family},
+                         {"origin", word_of(backend.origin)},
                          {"contestant", backend.contestant},
                          {"solver", c.solver},
                          {"hollow", c.hollow}});

@@ -16,9 +16,8 @@ from parts.failures import add_strip, failed_rows
 from parts.legend import Legend
 from parts.result_file import Json, finding_in, leaders_in, noise_factor, object_in
 from parts.scales import log_x, log_y
-from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, grid, label_ends, labels_height, make_sheet,
-                         receding_sentence)
-from parts.style import styles_for, with_leaders
+from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, grid, label_ends, labels_height, make_sheet)
+from parts.style import receding_sentences, styles_for, with_leaders
 from parts.words import scene_words
 
 
@@ -32,7 +31,7 @@ def draw(data: FigureData, document: Json, legend: Legend) -> Figure:
     steps = replace(data, curves=curves)
     styles = _with_slopes(with_leaders(styles_for(curves, legend), leaders_in(document, data.scene, data.sweep)), data, document)
     rows = failed_rows(steps, styles)
-    captions = [receding_sentence(styles), *caption_of(steps, document, legend)]
+    captions = [*receding_sentences(styles.values()), *caption_of(steps, document, legend)]
     sheet = make_sheet(f"{scene_words(data.scene)}: growth of a step's time with vertices", warnings_of(document),
                        [words for words in captions if words], LEFT + MAIN_WIDTH + LEGEND_WIDTH,
                        MAIN_HEIGHT + ROW_HEIGHT * len(rows), labels_height(styles) - MAIN_HEIGHT,

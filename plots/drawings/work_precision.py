@@ -16,9 +16,9 @@ from parts.legend import MEANINGS, Legend
 from parts.result_file import Json, finding_in, leaders_in, noise_factor
 from parts.scales import log_log
 from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, TIME_LABEL, grid, label_ends, labels_height,
-                         make_sheet, receding_sentence)
+                         make_sheet)
 from parts.step_runs import FailedStep, Run, RunsData, cheapest, step_sweeps_in, styles_of
-from parts.style import SolverStyle, with_leaders
+from parts.style import SolverStyle, receding_sentences, with_leaders
 from parts.words import scene_words
 
 TARGETS = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5)
@@ -38,7 +38,7 @@ def draw(data: RunsData, document: Json, legend: Legend) -> Figure:
              "Every run that kept its strain limit, at any step and limit, with tuned or untuned settings, is a dot. A curve joins the runs of a solver that "
              "none of its others beats in both time and error; the yellow band is the front of all solvers. Hollow: error "
              "below three times the reference's own uncertainty.",
-             receding_sentence(styles), _key_of(rows, legend), timing(document), origin_sentence(document)]
+             *receding_sentences(styles.values()), _key_of(rows, legend), timing(document), origin_sentence(document)]
     sheet = make_sheet(f"{scene_words(data.scene)}: time against error", warnings_of(document), [w for w in words if w],
                        LEFT + 1.25 * MAIN_WIDTH + LEGEND_WIDTH, 1.25 * MAIN_HEIGHT + ROW_HEIGHT * len(rows),
                        labels_height(styles) - 1.25 * MAIN_HEIGHT,

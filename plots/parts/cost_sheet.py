@@ -18,8 +18,8 @@ from parts.legend import Legend
 from parts.result_file import Json, finding_in, leaders_in, noise_factor
 from parts.scales import log_x, log_y
 from parts.sheet import (BETWEEN, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, STEPS_HEIGHT, TIME_LABEL, Sheet,
-                         grid, label_ends, labels_height, make_sheet, receding_sentence)
-from parts.style import styles_for, with_leaders
+                         grid, label_ends, labels_height, make_sheet)
+from parts.style import receding_sentences, styles_for, with_leaders
 
 HEADING = 0.22  # inches, above two columns
 
@@ -48,7 +48,7 @@ def draw(data: FigureData, document: Json, legend: Legend, axis: Axis) -> Figure
     panels_height = _main_bottom(data) + MAIN_HEIGHT
     right = columns[-1].left + MAIN_WIDTH
     finding = finding_in(document, data.scene, data.sweep, data.fixed if data.sweep == "strain" else None)
-    captions = [receding_sentence(styles), *caption_of(data, document, legend)]
+    captions = [*receding_sentences(styles.values()), *caption_of(data, document, legend)]
     sheet = make_sheet(title_of(data), warnings_of(document), [words for words in captions if words], right + LEGEND_WIDTH,
                        panels_height + strip + (HEADING if len(columns) > 1 else 0), labels_height(styles) - panels_height,
                        " ".join(finding[:1]))

@@ -18,7 +18,8 @@ MEANINGS = {TOO_WRONG: "trajectory error above the limit", NOT_CHOSEN: "ran, but
 @dataclass(frozen=True)
 class Solver:
     """`family` is shared by the variants of a method; `contestant` is false for backends that are shown but not ranked.
-    `solver` is another name's where this is that solver with other settings; `hollow` ones stand beside the ranking."""
+    `solver` is another name's where this is that solver with other settings; `hollow` ones stand beside the ranking.
+    `origin` says who offers it: "paper", "project", "literature", "engine" or "elsewhere"."""
 
     name: str
     label: str
@@ -26,6 +27,7 @@ class Solver:
     contestant: bool
     solver: str = ""
     hollow: bool = False
+    origin: str = "elsewhere"
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,7 @@ def _solver(entry: Json) -> Solver:
     name, label, family = entry["name"], entry.get("label"), entry.get("family")
     return Solver(name, clean(label if label else name.replace("_", " ")), family if isinstance(family, str) else name,
                   entry.get("contestant") is not False, entry["solver"] if isinstance(entry.get("solver"), str) else "",
-                  entry.get("hollow") is True)
+                  entry.get("hollow") is True, entry["origin"] if isinstance(entry.get("origin"), str) else "elsewhere")
 
 
 def _status(entry: Json) -> Status:

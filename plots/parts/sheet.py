@@ -130,11 +130,6 @@ def _spread(tops: list[float], heights: list[float], tall: float) -> list[float]
     return tops
 
 
-def receding_sentence(styles: Styles) -> str:
-    names = [style.label for style in styles.values() if not style.leads]
-    return f"Grey: {', '.join(names)}." if names else ""
-
-
 def clean_sentence(text: str) -> str:
     """Of the program's own words, which are longer than a name may be."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())

@@ -11,7 +11,8 @@ import zlib
 from dataclasses import dataclass, replace
 from typing import Any, Iterable
 
-from parts.colors import BLACK, BLUE, BROWN, GREEN, GREY, ORANGE, PURPLE, RECEDING, SKY, TEAL, VERMILLION, VIOLET
+from parts.colors import (BLACK, BLUE, BROWN, GREEN, GREY, ORANGE, PALE_BLUE, PALE_BROWN, PALE_GREEN, PALE_GREY, PURPLE, SKY,
+                          TEAL, VERMILLION, VIOLET)
 from parts.legend import Legend, Solver
 from parts.words import FONT, clean
 
@@ -31,7 +32,8 @@ class SolverStyle:
     size: float = 5.5
     contestant: bool = True
     hollow: bool = False
-    leads: bool = True  # else thin and grey: neither first anywhere nor one of the paper's
+    leads: bool = True  # else thin and pale: neither first anywhere nor one of the paper's
+    origin: str = "elsewhere"  # who offers it, as in the legend
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,14 @@ SPARE_LOOKS = (
     Look("P", (2, 1, 2, 4)), Look("*", (6, 1, 1, 1, 1, 1), size=7.5), Look("p", (1, 3)), Look("<", (4, 4)),
     Look(">", (7, 1.5, 3, 1.5)), Look("d", (2, 2)), Look("H", (10, 3)),
 )
+
+# Of those that neither lead nor are the paper's: how captions call them, colour and line by who offers them.
+RECEDING: dict[str, tuple[str, str, Dashes]] = {
+    "project": ("Blue, pale: this project's", PALE_BLUE, ()),
+    "literature": ("Brown, dashed: other published methods", PALE_BROWN, (4, 1.5)),
+    "engine": ("Green, dotted: engines", PALE_GREEN, (1, 1)),
+}
+RECEDING_REST = ("Grey", PALE_GREY, ())
 
 # Those that do not compete, all of them grey.
 NEUTRAL_LOOKS = (Look("", (), 0.8), Look("+", (1, 2), 0.8), Look("x", (4, 2), 0.8), Look("1", (6, 3), 0.8))
@@ -97,7 +107,22 @@ def with_leaders(styles: dict[str, SolverStyle], leaders: set[str] | None) -> di
     if leaders is None:
         return styles
     return {name: style if name in leaders or not style.contestant else
-            replace(style, color=RECEDING, marker="", dashes=(), width=0.7, leads=False) for name, style in styles.items()}
+            _receding(style) for name, style in styles.items()}
+
+
+def receding_sentences(styles: Iterable[SolverStyle]) -> list[str]:
+    """Which methods the pale lines are, a sentence for each kind."""
+    kinds: dict[str, list[str]] = {}
+    for style in styles:
+        if not style.leads:
+            kinds.setdefault(RECEDING.get(style.origin, RECEDING_REST)[0], []).append(style.label)
+    order = [words for words, _, _ in (*RECEDING.values(), RECEDING_REST)]
+    return [f"{words}: {', '.join(kinds[words])}." for words in order if words in kinds]
+
+
+def _receding(style: SolverStyle) -> SolverStyle:
+    _, color, dashes = RECEDING.get(style.origin, RECEDING_REST)
+    return replace(style, color=color, marker="", dashes=dashes, width=0.8, leads=False)
 
 
 def parent_of(solver: str, known: Iterable[str]) -> str | None:
@@ -126,7 +151,7 @@ def _of_legend(legend: Legend) -> dict[str, SolverStyle]:
         else:
             color, look = GREY, NEUTRAL_LOOKS[neutral.index(solver) % len(NEUTRAL_LOOKS)]
         styles[solver.name] = SolverStyle(solver.label, color, look.marker, look.dashes, look.width, look.size,
-                                          solver.contestant, solver.hollow)
+                                          solver.contestant, solver.hollow, origin=solver.origin)
     for solver in legend.solvers.values():
         if _copies(solver, legend):
             styles[solver.name] = replace(styles[solver.solver], label=solver.label, hollow=True, width=0.8)

@@ -86,6 +86,7 @@ Backend augmented_vbd_row() {
           .make = make_filter_stepper<AugmentedVbd>,
           .direction = Direction::end,
           .citation = "Giles, Diaz and Yuksel 2025",
+          .origin = Origin::literature,
           .label = "augmented VBD",
           .conserves_momentum = false};
 }

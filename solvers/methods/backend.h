@@ -72,6 +72,10 @@ enum class Direction { none, local, start, current, springs, end };
 // (systems/constrained_acceleration.h). whole_step: x and v are those of one instant.
 enum class Velocities { half_step, whole_step };
 
+// Who offers a method: the paper compares it, this project adds it, others have published it, or an
+// engine has it.
+enum class Origin { paper, project, literature, engine, elsewhere };
+
 struct Backend {
   const char* name;     // a-z, 0-9 and _
   const char* summary;  // one line
@@ -81,8 +85,9 @@ struct Backend {
   std::unique_ptr<Stepper> (*make)(std::shared_ptr<const Problem>, const BackendOptions&);
   Direction direction = Direction::none;
   const char* citation = "";  // author and year
-  const char* label = "";     // in figures; empty: the name
-  const char* family = "";    // the method whose colour it shares in figures; empty: its own
+  Origin origin = Origin::elsewhere;
+  const char* label = "";   // in figures; empty: the name
+  const char* family = "";  // the method whose colour it shares in figures; empty: its own
   // Another method that this one is on a chain, step for step; empty: none. Suites leave it out
   // there.
   const char* same_on_chains = "";

@@ -233,6 +233,7 @@ Backend fast_projection_row() {
           .make = make_filter_stepper<FastProjection>,
           .direction = Direction::current,
           .citation = "Goldenthal et al. 2007",
+          .origin = Origin::paper,
           .label = "fast projection",
           .shows_iterates = true};
 }

@@ -111,6 +111,7 @@ Backend gauss_seidel_row() {
           .make = make_filter_stepper<GaussSeidel>,
           .direction = Direction::local,
           .citation = "Bridson, Fedkiw and Anderson 2002; Mueller et al. 2006",
+          .origin = Origin::paper,
           .label = "Gauss-Seidel strain limiting"};
 }
 

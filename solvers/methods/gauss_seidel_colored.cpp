@@ -37,6 +37,7 @@ Backend gauss_seidel_colored_row() {
           .make = make_filter_stepper<GaussSeidelColored>,
           .direction = Direction::local,
           .citation = "Fratarcangeli, Tibaldo and Pellacini 2016",
+          .origin = Origin::literature,
           .label = "Gauss-Seidel strain limiting, colored",
           .family = "gauss_seidel"};
 }

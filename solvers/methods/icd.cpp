@@ -226,6 +226,7 @@ Backend icd_row() {
           .make = make_filter_stepper<Icd>,
           .direction = Direction::end,
           .citation = "Goldenthal et al. 2007",
+          .origin = Origin::paper,
           .label = "ICD (implicit constraint direction)"};
 }
 

@@ -247,6 +247,7 @@ Backend implicit_springs_row() {
           },
           .direction = Direction::springs,
           .citation = "Baraff and Witkin 1998",
+          .origin = Origin::paper,
           .label = "implicit springs"};
 }
 

@@ -62,6 +62,7 @@ Backend jacobi_row() {
           .make = make_filter_stepper<Jacobi>,
           .direction = Direction::local,
           .citation = "Provot 1995; Bridson, Fedkiw and Anderson 2002",
+          .origin = Origin::paper,
           .label = "Jacobi strain limiting"};
 }
 

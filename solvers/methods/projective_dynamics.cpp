@@ -258,6 +258,7 @@ Backend projective_dynamics_row() {
           .make = make_filter_stepper<ProjectiveDynamics>,
           .direction = Direction::end,
           .citation = "Liu et al. 2013; Narain, Overby and Brown 2016",
+          .origin = Origin::literature,
           .label = "projective dynamics (ADMM)",
           .conserves_momentum = false};
 }

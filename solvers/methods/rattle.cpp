@@ -58,6 +58,7 @@ Backend rattle_row() {
           },
           .direction = Direction::start,
           .citation = "Andersen 1983",
+          .origin = Origin::literature,
           .label = "RATTLE (SHAKE with velocities)",
           .family = "shake",
           .takes_implicit_forces = false,

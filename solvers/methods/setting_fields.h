@@ -99,6 +99,7 @@ std::unique_ptr<Stepper> make_bdf2_stepper(std::shared_ptr<const Problem> proble
 template <class Filter>
 Backend inside_bdf2(Backend row) {
   if (!*row.family) row.family = row.name;
+  row.origin = Origin::project;
   row.make = make_bdf2_stepper<Filter>;
   row.velocities = Velocities::whole_step;
   return row;
@@ -117,6 +118,7 @@ inline SettingInfo spectral_radius() {
 template <class Filter>
 Backend inside_midpoint(Backend row, const typename Filter::Settings& defaults) {
   if (!*row.family) row.family = row.name;
+  row.origin = Origin::project;
   row.settings = setting_infos(Filter::fields(), defaults);
   row.settings.push_back(spectral_radius());
   row.make = [](std::shared_ptr<const Problem> problem,

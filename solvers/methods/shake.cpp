@@ -183,6 +183,7 @@ Backend shake_row() {
           .make = make_filter_stepper<Shake>,
           .direction = Direction::start,
           .citation = "Ryckaert, Ciccotti and Berendsen 1977; Barth et al. 1994",
+          .origin = Origin::paper,
           .label = "SHAKE"};
 }
 

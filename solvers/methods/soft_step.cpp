@@ -109,6 +109,7 @@ Backend soft_step_row() {
           },
           .direction = Direction::start,
           .citation = "Catto 2024",
+          .origin = Origin::literature,
           .label = "soft step (TGS)",
           .takes_collider = false,
           .takes_implicit_forces = false};

@@ -51,11 +51,12 @@ Backend strips_row() {
   return {.name = "strips",
           .summary = "every yarn projected as a whole, passes of colored Gauss-Seidel between",
           .knob = Knob::strain_limit,
-          .contestant = true,
+          .contestant = false,  // strips_bdf2 is as fast or faster within every strain and error
           .settings = setting_infos(Strips::fields()),
           .make = make_filter_stepper<Strips>,
           .direction = Direction::current,
           .citation = "Bender and Bayer 2008",
+          .origin = Origin::project,
           .label = "strips",
           .same_on_chains = "fast_projection_adaptive"};
 }
@@ -66,6 +67,7 @@ Backend strips_bdf2_row() {
   row.summary = "strips in BDF2, a second-order time step";
   row.citation = "Bender and Bayer 2008; English and Bridson 2008";
   row.label = "strips in BDF2";
+  row.contestant = true;
   row.same_on_chains = "fast_projection_adaptive_bdf2";
   return row;
 }
@@ -79,6 +81,7 @@ Backend strips_midpoint_row() {
   row.summary = "strips along directions of the middle of the step, in the midpoint rule";
   row.citation = "Bender and Bayer 2008; Gonzalez 1999";
   row.label = "strips in the midpoint rule";
+  row.contestant = true;
   row.same_on_chains = "";
   row.conserves_momentum = false;  // angular: directions turn from round to round
   return row;

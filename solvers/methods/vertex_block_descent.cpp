@@ -118,6 +118,7 @@ Backend vertex_block_descent_row() {
           },
           .direction = Direction::springs,
           .citation = "Chen et al. 2024",
+          .origin = Origin::literature,
           .label = "vertex block descent",
           .takes_bending = false,
           .conserves_momentum = false};

@@ -135,6 +135,7 @@ Backend xpbd_small_steps_row() {
           },
           .direction = Direction::local,
           .citation = "Macklin et al. 2016, 2019",
+          .origin = Origin::literature,
           .label = "XPBD, small steps"};
 }
 

@@ -68,7 +68,6 @@ class Steppers : public ::testing::TestWithParam<std::string> {
 // direction at the start, by the smaller root s of |d - s d_start| = 1.
 TEST_P(Steppers, ShortenOneEdgeByTheClosedForm) {
   if (is_elastic(GetParam())) GTEST_SKIP() << "an elastic edge";
-  if (GetParam() == "rattle_suzuki") GTEST_SKIP() << "five steps in one";
   if (GetParam() == "soft_step") GTEST_SKIP() << "corrects a part of an elongation";
   if (GetParam() == "strips_midpoint") GTEST_SKIP() << "its direction turns with the edge";
   for (std::uint64_t seed = 0; seed < 4 * examples; ++seed) {

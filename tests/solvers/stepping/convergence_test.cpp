@@ -89,10 +89,6 @@ TEST(Order, OfTheMidpointRuleIsTwoOnlyIfItConserves) {
   EXPECT_NEAR(of(0.5), 1, 0.1);
 }
 
-TEST(Order, OfComposedRattleIsFour) {
-  EXPECT_NEAR(order("rattle_suzuki", {{"min_iterations", 6.0}}).value, 4, 0.25);
-}
-
 TEST(Order, OfImplicitSpringsTowardsTheirOwnStiffLimitIsOne) {
   const inextensible::Settings settings{{"stiffness", 1e4}, {"newton_tolerance", 1.0}};
   const Scene scene = short_chain();
