@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "harness/analysis/budget.h"
 #include "harness/analysis/findings.h"
 #include "harness/base/fields_json.h"
 
@@ -86,6 +87,24 @@ json growth_json(const Growth& growth) {
   return {{"scene", growth.scene}, {"strain_limit", growth.strain_limit}, {"rows", rows}};
 }
 
+json budget_json(const BudgetTable& table) {
+  json rows = json::array();
+  for (const Budgeted& row : table.rows) {
+    json stairs = json::array();
+    for (const Reach& reach : row.stairs)
+      stairs.push_back({{"id", reach.point.id()},
+                        {"frame_seconds", reach.frame_seconds},
+                        {"strain_limit", reach.strain_limit},
+                        {"error", number(reach.error)},
+                        {"right", reach.right}});
+    rows.push_back({{"row", row.row}, {"stairs", std::move(stairs)}});
+  }
+  return {{"scene", table.scene},
+          {"resolution", table.resolution},
+          {"vertices", table.vertices},
+          {"rows", std::move(rows)}};
+}
+
 json finding_json(const Finding& finding) {
   return {{"scene", finding.scene},
           {"sweep", finding.sweep},
@@ -102,17 +121,16 @@ json findings_json(const std::vector<Plane>& planes) {
   return findings;
 }
 
-json analysis_of(const json& document) { return analysis_of(planes_of(document)); }
+json analysis_of(const json& document) { return analysis_of(planes_of(document), {&document}); }
 
-json analysis_of(const std::vector<Plane>& planes) {
-  json list = json::array(), growth = json::array();
+json analysis_of(const std::vector<Plane>& planes, const std::vector<const json*>& documents) {
+  json list = json::array(), growth = json::array(), budgets = json::array();
   for (const Plane& plane : planes) list.push_back(plane_json(plane));
   for (const Growth& each : growth_in(planes)) growth.push_back(growth_json(each));
-  return {{"schema", "inextensible-analysis/1"},
-          {"headline_error", headline_error},
-          {"findings", findings_json(planes)},
-          {"planes", std::move(list)},
-          {"growth", std::move(growth)}};
+  for (const BudgetTable& each : budget_tables(documents, {})) budgets.push_back(budget_json(each));
+  return {{"schema", "inextensible-analysis/1"}, {"headline_error", headline_error},
+          {"findings", findings_json(planes)},   {"planes", std::move(list)},
+          {"growth", std::move(growth)},         {"budgets", std::move(budgets)}};
 }
 
 }  // namespace harness::analysis

@@ -58,17 +58,24 @@ BudgetTable table_of(const std::vector<const Run*>& runs, const std::vector<doub
                     static_cast<int>(one.number("vertices")),
                     budgets,
                     {}};
+  std::vector<const Run*> ascending = runs;
+  std::stable_sort(ascending.begin(), ascending.end(), [](const Run* a, const Run* b) {
+    return a->reach.frame_seconds < b->reach.frame_seconds;
+  });
   for (const std::string& row : in_order(runs, [](const Run* run) { return run->row; })) {
-    Budgeted line{row, "", {}};
+    Budgeted line{row, "", {}, {}};
+    for (const Run* run : ascending) {
+      if (run->row != row) continue;
+      line.family = run->family;
+      if (line.stairs.empty() || more(run->reach, line.stairs.back()))
+        line.stairs.push_back(run->reach);
+    }
     for (const double budget : budgets) {
-      const Run* best = nullptr;
-      for (const Run* run : runs) {
-        if (run->row != row) continue;
-        line.family = run->family;
-        if (run->reach.frame_seconds <= budget && (!best || more(run->reach, best->reach)))
-          best = run;
-      }
-      line.reached.push_back(best ? std::optional(best->reach) : std::nullopt);
+      const auto beyond =
+          std::find_if(line.stairs.begin(), line.stairs.end(),
+                       [budget](const Reach& reach) { return reach.frame_seconds > budget; });
+      line.reached.push_back(beyond == line.stairs.begin() ? std::nullopt
+                                                           : std::optional(*std::prev(beyond)));
     }
     table.rows.push_back(std::move(line));
   }

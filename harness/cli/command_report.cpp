@@ -36,7 +36,7 @@ nlohmann::json analyses_json(const std::vector<NamedResult>& results) {
   for (const NamedResult& result : results) {
     if (!result.document.contains("points")) continue;
     const std::vector<analysis::Plane> own = analysis::planes_of(result.document);
-    of[result.name] = analysis::analysis_of(own);
+    of[result.name] = analysis::analysis_of(own, {&result.document});
     planes.insert(planes.end(), own.begin(), own.end());
   }
   return {{"findings", analysis::findings_json(analysis::merged(planes))}, {"of", std::move(of)}};

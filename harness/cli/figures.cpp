@@ -3,6 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -27,6 +28,16 @@ nlohmann::json read_sweep(const std::string& file) {
   return document;
 }
 
+// Those that `all` does not name yet: pieces may have other contestants, and plug-ins of their own.
+void add_solvers(nlohmann::json& all, const nlohmann::json& more) {
+  for (const nlohmann::json& solver : more) {
+    const auto same = [&solver](const nlohmann::json& s) {
+      return s.at("name") == solver.at("name");
+    };
+    if (std::none_of(all.begin(), all.end(), same)) all.push_back(solver);
+  }
+}
+
 int draw_analysed(const std::string& file, const nlohmann::json& analysis,
                   const std::vector<std::string>& more) {
   const TemporaryFolder folder("analysis");
@@ -45,10 +56,13 @@ int draw_pieces(const std::vector<std::string>& files, const std::string& name,
   pieces.reserve(files.size());
   for (const std::string& file : files) pieces.push_back(read_sweep(file));
   std::vector<analysis::Plane> planes;
+  std::vector<const nlohmann::json*> documents;
   nlohmann::json all = pieces.front();
   all["points"].clear();
   double noise = std::nan("");
   for (const nlohmann::json& piece : pieces) {
+    documents.push_back(&piece);
+    add_solvers(all["legend"]["solvers"], piece.at("legend").at("solvers"));
     for (const nlohmann::json& point : piece.at("points")) all["points"].push_back(point);
     for (analysis::Plane& plane : analysis::planes_of(piece)) planes.push_back(std::move(plane));
     noise = std::fmax(noise, analysis::pair_noise_of(piece));
@@ -56,8 +70,8 @@ int draw_pieces(const std::vector<std::string>& files, const std::string& name,
   if (std::isfinite(noise)) all["context"]["noise"]["q95"] = noise;
   const TemporaryFolder folder("pieces");
   write_atomically(folder.file(name + ".json"), all.dump());
-  return draw_analysed(folder.file(name + ".json"), analysis::analysis_of(analysis::merged(planes)),
-                       more);
+  return draw_analysed(folder.file(name + ".json"),
+                       analysis::analysis_of(analysis::merged(planes), documents), more);
 }
 
 int draw_result(const std::string& file, const std::vector<std::string>& more) {

@@ -99,10 +99,16 @@ def two_questions() -> Json:
     plane = {"scene": "chain", "sweep": "strain", "scene_parameters": {}, "resolution": 80, "vertices": 80,
              "strain_limits": [0.01, 0.001], "error_levels": [None, 0.02], "cells": cells,
              "leaders": ["shake", "icd", "jacobi", "fast_projection"]}
+    def stair(seconds: float, limit: float, right: bool) -> Json:
+        return {"id": "", "frame_seconds": seconds, "strain_limit": limit, "error": 0.01, "right": right}
+
+    budget = {"scene": "chain", "resolution": 80, "vertices": 80, "rows": [
+        {"row": "icd", "stairs": [stair(0.5e-3, 0.01, False), stair(2e-3, 0.01, True), stair(3e-3, 0.01, True), stair(8e-3, 0.001, True)]},
+        {"row": "jacobi", "stairs": [stair(1e-3, 0.01, False)]}]}
     finding = {"scene": "chain", "sweep": "strain", "vertices": 80, "subject": "chain of 80 vertices",
                "sentences": ["At 1 % strain, right to 2 %, icd is the fastest.", "A second sentence."]}
     return {**document(points), "analysis": {"schema": "inextensible-analysis/1", "findings": [finding], "planes": [plane],
-                                             "growth": []}}
+                                             "growth": [], "budgets": [budget]}}
 
 
 def resolution_sweep(scene: str = "drape", solvers: tuple[str, ...] = ("fast_projection", "shake", "icd")) -> Json:

@@ -147,6 +147,28 @@ def test_the_plane_has_the_fastest_and_its_lead_in_each_cell() -> None:
     assert [text.get_fontweight() for text in axes.texts[:4:2]] == ["normal", "bold"]
 
 
+def test_the_budget_has_a_mark_where_a_limit_is_first_kept_with_the_right_motion() -> None:
+    figure = drawn(two_questions())["budget-chain"]
+    (axes,) = figure.axes
+    marked = [(line.get_xdata()[0], to_hex(line.get_color())) for line in axes.lines if line.get_marker() == "o"]
+    assert [ms for ms, _ in marked] == [2, 8] and marked[0][1] != marked[1][1]
+    assert [text.get_text() for text in axes.texts] == ["1 %", "0.1 %"]
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["ICD (implicit constraint direction)"]
+    assert "With no run that is right: Jacobi strain limiting." in words_of(figure)
+
+
+def test_each_kind_of_method_recedes_in_its_own_colour() -> None:
+    result = two_questions()
+    result["analysis"]["planes"][0]["leaders"] = ["fast_projection"]
+    for solver in result["legend"]["solvers"]:
+        solver["origin"] = {"shake": "engine", "jacobi": "literature"}.get(solver["name"], "paper")
+    figure = drawn(result)["figure4a"]
+    paper = next(axes for axes in figure.axes if axes.get_yscale() == "log" and not axes.get_xlabel())
+    assert {line.get_color() for line in paper.lines} == {"#0072B2", "#94CFA9", "#DDBE8B"}
+    assert "Green, dotted: engines: SHAKE." in words_of(figure)
+    assert "Brown, dashed: other published methods: Jacobi strain limiting." in words_of(figure)
+
+
 def test_adaptive_steps_are_means() -> None:
     result = document([point("shake", limit=limit, best=True, adaptive=True, step=0.04) for limit in (0.1, 0.01)])
     figure = drawn(result)["figure4a-adaptive"]
