@@ -228,6 +228,26 @@ std::vector<Plane> planes_of(const json& document) {
   return planes;
 }
 
+namespace {
+
+bool same_level(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+// Rows that `cell` does not have yet: pieces may have other contestants.
+void add_rows(Cell& cell, const Cell& more) {
+  const std::vector<Entry> own = cell.entries;
+  for (const Entry& entry : more.entries) {
+    if (std::none_of(own.begin(), own.end(), [&](const Entry& e) { return e.row == entry.row; }))
+      cell.entries.push_back(entry);
+  }
+  std::stable_sort(cell.entries.begin(), cell.entries.end(), [](const Entry& a, const Entry& b) {
+    return a.point.seconds() < b.point.seconds();
+  });
+  cell.known_until = std::max(cell.known_until, more.known_until);
+  if (!cell.entries.empty()) cell.empty_because.clear();
+}
+
+}  // namespace
+
 std::vector<Plane> merged(const std::vector<Plane>& planes) {
   std::vector<Plane> all;
   for (const Plane& plane : planes) {
@@ -241,9 +261,14 @@ std::vector<Plane> merged(const std::vector<Plane>& planes) {
       continue;
     }
     for (const Cell& cell : plane.cells) {
-      if (std::find(same->limits.begin(), same->limits.end(), cell.strain_limit) ==
-          same->limits.end())
+      const auto place = std::find_if(same->cells.begin(), same->cells.end(), [&](const Cell& c) {
+        return c.strain_limit == cell.strain_limit && same_level(c.level, cell.level);
+      });
+      if (place == same->cells.end()) {
         same->cells.push_back(cell);
+      } else {
+        add_rows(*place, cell);
+      }
     }
     std::stable_sort(same->cells.begin(), same->cells.end(), [](const Cell& a, const Cell& b) {
       return a.strain_limit > b.strain_limit;  // levels stay in their order

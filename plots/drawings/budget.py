@@ -8,6 +8,7 @@ from typing import Callable
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from parts.best_points import HEADLINE
@@ -19,7 +20,7 @@ from parts.sheet import RIGHT, grid, make_sheet
 from parts.words import clean, file_part, scene_words, shorten
 
 BUDGETS = (1, 4, 16)  # ms of a frame of 1/60 s, as in `bench budget`
-WIDTH, ROW, NAMES, SMALL = 6.0, 0.27, 2.6, 6.5
+WIDTH, ROW, NAMES = 6.0, 0.24, 2.6
 BLUES = ("#C6DBEF", "#9ECAE1", "#6BAED6", "#3182BD", "#08519C", "#08306B")  # darker: less strain
 
 Reached = list[tuple[float, float]]  # ms a frame, strain limit
@@ -39,12 +40,12 @@ def draw(place: Json, document: Json, legend: Legend) -> Figure:
     limits = _limits(place)
     rows = {row["row"]: reached for row in place["rows"] if (reached := _reached(row))}
     never = [clean(legend.label(row["row"])) for row in place["rows"] if row["row"] not in rows]
-    caption = [f"A mark: from this time a frame of 1/60 s on, in 99 of 100 frames, one core keeps the strain limit that stands "
-               f"above it, with a motion that is right to {percent(HEADLINE)}. Lines: "
+    caption = [f"A mark: from this time a frame of 1/60 s on, in 99 of 100 frames, one core keeps the strain limit of its "
+               f"colour, with a motion that is right to {percent(HEADLINE)}. Lines: "
                f"{', '.join(str(ms) for ms in BUDGETS)} ms.",
                f"With no run that is right: {', '.join(never)}." if never else "", origin_sentence(document)]
     sheet = make_sheet(f"{scene}, {place['vertices']:,} vertices: which strain a frame's time buys", warnings_of(document),
-                       [words for words in caption if words], NAMES + WIDTH + RIGHT, ROW * (len(rows) + 0.6))
+                       [words for words in caption if words], NAMES + WIDTH + RIGHT, ROW * (len(rows) + 0.6) + 0.25)
     axes = sheet.axes(NAMES, sheet.bottom, WIDTH, ROW * (len(rows) + 0.6))
     axes.set_xscale("log")
     axes.set(ylim=(len(rows) - 0.4, -1), xlabel="ms a frame of 1/60 s, in 99 of 100 frames")
@@ -52,6 +53,8 @@ def draw(place: Json, document: Json, legend: Legend) -> Figure:
         axes.axvline(budget, color=DARK_GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
     for number, reached in enumerate(rows.values()):
         _draw_row(axes, number, reached, limits)
+    axes.legend(handles=[_mark(_shade(limit, limits), percent(limit)) for limit in limits], loc="lower left", frameon=False, fontsize=8,
+                bbox_to_anchor=(0, 1), borderaxespad=0, ncol=len(limits), handletextpad=0.1, columnspacing=1.2)
     axes.set_yticks(range(len(rows)), [shorten(clean(legend.label(name)), NAMES - 0.2, 8) for name in rows])
     axes.xaxis.set_major_formatter(FuncFormatter(lambda ms, _: f"{ms:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
@@ -63,9 +66,18 @@ def draw(place: Json, document: Json, legend: Legend) -> Figure:
 def _draw_row(axes: Axes, number: int, reached: Reached, limits: list[float]) -> None:
     axes.plot([ms for ms, _ in reached], [number] * len(reached), color=LIGHT_GREY, linewidth=3, zorder=2)
     for ms, limit in reached:
-        shade = BLUES[min(limits.index(limit), len(BLUES) - 1)]
-        axes.plot([ms], [number], marker="o", markersize=6, color=shade, markeredgecolor="white", markeredgewidth=0.5, zorder=3)
-        axes.annotate(percent(limit), (ms, number), xytext=(0, 4.5), textcoords="offset points", ha="center", fontsize=SMALL, zorder=4)
+        mark = _mark(_shade(limit, limits))
+        mark.set(xdata=[ms], ydata=[number], zorder=3)
+        axes.add_line(mark)
+    axes.autoscale_view(scaley=False)
+
+
+def _mark(color: str, label: str = "") -> Line2D:
+    return Line2D([], [], marker="o", markersize=6, linestyle="none", color=color, markeredgecolor="white", markeredgewidth=0.5, label=label)
+
+
+def _shade(limit: float, limits: list[float]) -> str:
+    return BLUES[min(limits.index(limit), len(BLUES) - 1)]
 
 
 def _reached(row: Json) -> Reached:

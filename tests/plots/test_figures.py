@@ -152,7 +152,7 @@ def test_the_budget_has_a_mark_where_a_limit_is_first_kept_with_the_right_motion
     (axes,) = figure.axes
     marked = [(line.get_xdata()[0], to_hex(line.get_color())) for line in axes.lines if line.get_marker() == "o"]
     assert [ms for ms, _ in marked] == [2, 8] and marked[0][1] != marked[1][1]
-    assert [text.get_text() for text in axes.texts] == ["1 %", "0.1 %"]
+    assert legend_labels(figure) == ["1 %", "0.1 %"]
     assert [label.get_text() for label in axes.get_yticklabels()] == ["ICD (implicit constraint direction)"]
     assert "With no run that is right: Jacobi strain limiting." in words_of(figure)
 

@@ -167,5 +167,20 @@ TEST(Plane, OfPiecesIsThatOfTheWhole) {
   }
 }
 
+// Engines are measured beside the solvers, in a file of their own.
+TEST(Plane, OfPiecesWithUnlikeContestantsHasAllOfThem) {
+  const json strips = run("strips", 0.1, 0.04, 2e-3, 0.008),
+             icd = run("icd", 0.1, 0.04, 1e-3, 0.03);
+  const json whole = document({strips, icd}), one = document({strips}), other = document({icd});
+  const auto joined = merged({planes_of(one).at(0), planes_of(other).at(0)});
+  ASSERT_EQ(joined.size(), 1u);
+  const Plane expected = planes_of(whole).at(0);
+  ASSERT_EQ(joined[0].cells.size(), expected.cells.size());
+  for (std::size_t i = 0; i < expected.cells.size(); ++i) {
+    EXPECT_EQ(winner(joined[0].cells[i]), winner(expected.cells[i]));
+    EXPECT_EQ(joined[0].cells[i].entries.size(), expected.cells[i].entries.size());
+  }
+}
+
 }  // namespace
 }  // namespace harness::analysis
