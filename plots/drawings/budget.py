@@ -6,7 +6,9 @@ from __future__ import annotations
 from functools import partial
 from typing import Callable
 
+from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
@@ -21,7 +23,6 @@ from parts.words import clean, file_part, scene_words, shorten
 
 BUDGETS = (1, 4, 16)  # ms of a frame of 1/60 s, as in `bench budget`
 WIDTH, ROW, NAMES = 6.0, 0.24, 2.6
-BLUES = ("#C6DBEF", "#9ECAE1", "#6BAED6", "#3182BD", "#08519C", "#08306B")  # darker: less strain
 
 Reached = list[tuple[float, float]]  # ms a frame, strain limit
 
@@ -77,7 +78,8 @@ def _mark(color: str, label: str = "") -> Line2D:
 
 
 def _shade(limit: float, limits: list[float]) -> str:
-    return BLUES[min(limits.index(limit), len(BLUES) - 1)]
+    """Darker: less strain."""
+    return to_hex(colormaps["Blues"](0.25 + 0.75 * limits.index(limit) / max(1, len(limits) - 1)))
 
 
 def _reached(row: Json) -> Reached:
