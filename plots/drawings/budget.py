@@ -17,7 +17,7 @@ from parts.best_points import HEADLINE
 from parts.caption import SUBJECTS, origin_sentence, percent, warnings_of
 from parts.colors import DARK_GREY, LIGHT_GREY
 from parts.legend import Legend
-from parts.result_file import Json
+from parts.result_file import Json, finding_in
 from parts.sheet import RIGHT, grid, make_sheet
 from parts.words import clean, file_part, scene_words, shorten
 
@@ -45,8 +45,10 @@ def draw(place: Json, document: Json, legend: Legend) -> Figure:
                f"colour, with a motion that is right to {percent(HEADLINE)}. Lines: "
                f"{', '.join(str(ms) for ms in BUDGETS)} ms.",
                f"With no run that is right: {', '.join(never)}." if never else "", origin_sentence(document)]
+    found = [sentence for sweep in ("strain", "step") for sentence in finding_in(document, place["scene"], sweep, place["vertices"])]
     sheet = make_sheet(f"{scene}, {place['vertices']:,} vertices: which strain a frame's time buys", warnings_of(document),
-                       [words for words in caption if words], NAMES + WIDTH + RIGHT, ROW * (len(rows) + 0.6) + 0.25)
+                       [words for words in caption if words], NAMES + WIDTH + RIGHT, ROW * (len(rows) + 0.6) + 0.25,
+                       finding=" ".join(found[:1]))
     axes = sheet.axes(NAMES, sheet.bottom, WIDTH, ROW * (len(rows) + 0.6))
     axes.set_xscale("log")
     axes.set(ylim=(len(rows) - 0.4, -1), xlabel="ms a frame of 1/60 s, in 99 of 100 frames")
