@@ -28,10 +28,12 @@ nlohmann::json read_sweep(const std::string& file) {
   return document;
 }
 
-// Of the contestant that ran twice, for the noise; "": none.
-std::string second_of_pair(const nlohmann::json& piece) {
+// Whether the point is of the second of an A/A pair, which is no curve of its own. Older files have
+// no pair, and points without a contestant.
+bool runs_again(const nlohmann::json& point, const nlohmann::json& piece) {
   const auto pair = nlohmann::json::json_pointer("/context/noise/pair/1");
-  return piece.contains(pair) ? piece.at(pair).get<std::string>() : "";
+  return piece.contains(pair) && point.contains("contestant") &&
+         point.at("contestant") == piece.at(pair);
 }
 
 // Those that `all` does not name yet: pieces may have other contestants, and plug-ins of their own.
@@ -69,9 +71,8 @@ int draw_pieces(const std::vector<std::string>& files, const std::string& name,
   for (const nlohmann::json& piece : pieces) {
     documents.push_back(&piece);
     add_solvers(all["legend"]["solvers"], piece.at("legend").at("solvers"));
-    const std::string double_of_one = second_of_pair(piece);
     for (const nlohmann::json& point : piece.at("points")) {
-      if (point.value("contestant", "") != double_of_one) all["points"].push_back(point);
+      if (!runs_again(point, piece)) all["points"].push_back(point);
     }
     for (analysis::Plane& plane : analysis::planes_of(piece)) planes.push_back(std::move(plane));
     noise = std::fmax(noise, analysis::pair_noise_of(piece));

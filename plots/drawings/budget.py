@@ -19,7 +19,7 @@ from parts.colors import DARK_GREY, LIGHT_GREY
 from parts.legend import Legend
 from parts.result_file import Json, finding_in
 from parts.sheet import RIGHT, grid, make_sheet
-from parts.words import clean, file_part, scene_words, shorten
+from parts.words import clean, place_part, scene_words, shorten
 
 BUDGETS = (1, 4, 16)  # ms of a frame of 1/60 s, as in `bench budget`
 WIDTH, ROW, NAMES = 6.0, 0.24, 2.6
@@ -32,8 +32,7 @@ def figures_of(document: Json, legend: Legend) -> list[tuple[str, Callable[[], F
     if not isinstance(analysis, dict):
         return []
     places = [place for place in analysis.get("budgets", []) if len(_limits(place)) > 1]
-    return [(f"budget-{file_part(scene_words(place['scene']))}" + ("" if _alone(place, places) else f"-n{place['vertices']}"),
-             partial(draw, place, document, legend)) for place in places]
+    return [(f"budget-{place_part(place, places)}", partial(draw, place, document, legend)) for place in places]
 
 
 def draw(place: Json, document: Json, legend: Legend) -> Figure:
@@ -96,7 +95,3 @@ def _reached(row: Json) -> Reached:
 def _limits(place: Json) -> list[float]:
     """That some method reaches, loose to tight."""
     return sorted({limit for row in place["rows"] for _, limit in _reached(row)}, reverse=True)
-
-
-def _alone(place: Json, places: list[Json]) -> bool:
-    return sum(other["scene"] == place["scene"] for other in places) == 1

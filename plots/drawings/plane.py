@@ -16,7 +16,7 @@ from parts.legend import Legend
 from parts.result_file import Json, finding_in
 from parts.sheet import LEFT, RIGHT, make_sheet
 from parts.style import SolverStyle, styles_for
-from parts.words import clean, file_part, scene_words, wrap
+from parts.words import clean, place_part, scene_words, wrap
 
 CELL_WIDTH, CELL_HEIGHT, NAME_SIZE, SMALL = 1.75, 0.72, 7.5, 6.5
 NARROW = 1.0  # the column of limits' words
@@ -27,12 +27,7 @@ def figures_of(document: Json, legend: Legend) -> list[tuple[str, Callable[[], F
     if not isinstance(analysis, dict):
         return []
     planes = [plane for plane in analysis["planes"] if plane["sweep"] == "strain"]
-    return [(f"plane-{file_part(scene_words(plane['scene']))}" + ("" if _alone(plane, planes) else f"-n{plane['vertices']}"),
-             partial(draw, plane, document, legend)) for plane in planes]
-
-
-def _alone(plane: Json, planes: list[Json]) -> bool:
-    return sum(other["scene"] == plane["scene"] for other in planes) == 1
+    return [(f"plane-{place_part(plane, planes)}", partial(draw, plane, document, legend)) for plane in planes]
 
 
 def draw(plane: Json, document: Json, legend: Legend) -> Figure:

@@ -30,6 +30,12 @@ def file_part(text: str) -> str:
     return "".join(c if c.isascii() and c.isalnum() or c in "-_" else "_" for c in text)[:FILE_NAME]
 
 
+def place_part(place: dict[str, Any], places: list[dict[str, Any]]) -> str:
+    """A scene and size as part of a file's name: the scene, and the size where other `places` are of the same scene."""
+    alone = sum(other["scene"] == place["scene"] for other in places) == 1
+    return file_part(scene_words(place["scene"])) + ("" if alone else f"-n{place['vertices']}")
+
+
 @lru_cache(maxsize=4096)
 def inches(text: str, size: float, weight: str = "normal") -> float:
     """Width of a line of text; `size` in points."""

@@ -3,13 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "harness/analysis/analysis_json.h"
+#include "harness/analysis/paper_methods.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
 #include "harness/points/schema_check.h"
+#include "solvers/registry.h"
 #include "support/invented_runs.h"
 
 namespace harness::analysis {
@@ -179,6 +182,16 @@ TEST(Plane, OfPiecesWithUnlikeContestantsHasAllOfThem) {
   for (std::size_t i = 0; i < expected.cells.size(); ++i) {
     EXPECT_EQ(winner(joined[0].cells[i]), winner(expected.cells[i]));
     EXPECT_EQ(joined[0].cells[i].entries.size(), expected.cells[i].entries.size());
+  }
+}
+
+// The names that rankings compare with are those whose rows say that the paper has them.
+TEST(Plane, ComparesWithTheMethodsThatThePaperHas) {
+  for (const auto& backend : inextensible::backends()) {
+    const bool named = std::any_of(
+        all_paper_methods.begin(), all_paper_methods.end(),
+        [&](const PaperMethod& method) { return method.name == std::string(backend.name); });
+    EXPECT_EQ(named, backend.origin == inextensible::Origin::paper) << backend.name;
   }
 }
 
