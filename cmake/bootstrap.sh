@@ -97,14 +97,15 @@ configure() {
   cpu_features >"$dir/.cpu"
 }
 
-# compile FOLDER TARGETS: announces itself, unless there is nothing to do. TARGETS are words in one argument.
+# compile FOLDER TARGETS: announces itself, if there is anything to compile. TARGETS are words in one argument.
 compile() {
-  local dir=$1 targets plan files
+  local dir=$1 targets files
   read -ra targets <<<"$2"
-  plan=$(ninja -C "$dir" -n "${targets[@]}" 2>/dev/null)
-  [[ $plan != *'no work to do'* ]] || return 0
-  files=$(grep -c 'Building CXX object' <<<"$plan")
-  say "building, $files files to compile ..."
+  quietly ninja -C "$dir" build.ninja || return  # files that came or went
+  # By its own name, build.ninja would be made anew first, and a dry run would plan no further.
+  cp "$dir/build.ninja" "$dir/plan.ninja"
+  files=$(ninja -C "$dir" -f plan.ninja -n "${targets[@]}" | grep -c 'Building CXX object' || true)
+  ((files == 0)) || say "building, $files files to compile ..."
   quietly ninja -C "$dir" "${targets[@]}"
 }
 
