@@ -10,6 +10,8 @@ namespace harness::analysis {
 namespace {
 
 constexpr double headline_limit = 0.01;  // strain
+// An exponent whose interval reaches farther to both sides says nothing of growth.
+constexpr double vague_exponent = 1;
 
 std::string name_words(const Entry& entry) {
   return entry.row + (entry.role.hollow ? " with untuned settings" : "");
@@ -105,7 +107,10 @@ std::string sentence_of(const Cell& cell) {
   const std::string leader = !cell.counting(1) ? name_words(*first) + " alone has an answer: "
                              : equals.size() > 1
                                  ? joined(equals) + " are the fastest, too close to tell apart: "
-                                 : name_words(*first) + " is the fastest: ";
+                             : cell.clear() ? name_words(*first) + " is the fastest: "
+                                            : name_words(*first) +
+                                                  " has the least time, of too few samples to be "
+                                                  "sure: ";
   const std::string error = std::isfinite(first->error)
                                 ? " and an error of " + number_text(100 * first->error, 2) + " %"
                                 : "";
@@ -117,12 +122,14 @@ std::string sentence_of(const Cell& cell) {
 std::string sentence_of(const Growth& growth) {
   int sizes = 0;
   for (const RowGrowth& row : growth.rows) sizes = std::max(sizes, row.exponent.points);
-  std::vector<RowGrowth> whole;  // those that ran at all sizes
+  std::vector<RowGrowth> whole;  // those that ran at all sizes and whose exponent is known
   for (const RowGrowth& row : growth.rows) {
-    if (row.exponent.points == sizes) whole.push_back(row);
+    if (row.exponent.points == sizes && row.exponent.half_width <= vague_exponent)
+      whole.push_back(row);
   }
   if (whole.size() < 2) return "";
   const RowGrowth &least = whole.front(), &most = whole.back();
+  if (least.exponent.high() >= most.exponent.low()) return "";
   return "From " + number_text(least.smallest.number("vertices"), 7) + " to " +
          number_text(least.largest.number("vertices"), 7) +
          " vertices the time of a step grows least with " + least.row +

@@ -175,13 +175,19 @@ std::vector<const Entry*> Cell::equals() const {
   std::vector<const Entry*> list;
   const Entry* best = first();
   for (const Entry& entry : entries) {
-    if (entry.counts && (&entry == best || !ratio(entry.point, best->point).above(1)))
-      list.push_back(&entry);
+    if (!entry.counts) continue;
+    const Ratio lead = ratio(entry.point, best->point);
+    if (&entry == best || (lead.known() && !lead.above(1))) list.push_back(&entry);
   }
   return list;
 }
 
-bool Cell::clear() const { return counting(1) && equals().size() == 1; }
+bool Cell::clear() const {
+  const Entry* best = first();
+  return counting(1) && std::all_of(entries.begin(), entries.end(), [&](const Entry& entry) {
+           return !entry.counts || &entry == best || ratio(entry.point, best->point).above(1);
+         });
+}
 
 std::optional<Ratio> Cell::lead_over(const Entry* other) const {
   const Entry* best = first();

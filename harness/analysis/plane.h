@@ -39,7 +39,8 @@ struct Cell {
   const Entry* counting(std::size_t place) const;  // 0: the fastest of those that count
   const Entry* next_family() const;                // the fastest of another family than the first
   const Entry* paper_best() const;                 // the fastest of the paper's six methods
-  // Those that count and cannot be told apart from the first, which is the first of them.
+  // Those that count and are too close to the first to tell apart; the first is the first of them.
+  // None of which too few samples are known to say how close it is.
   std::vector<const Entry*> equals() const;
   // Whether the first has rivals, and is faster than each of them beyond the noise.
   bool clear() const;

@@ -77,7 +77,8 @@ void print_cells(std::ostream& out, const std::string& limit, const Cell& looses
     out << "- " << tightest.empty_because << '\n';
     return;
   }
-  print_entry(out, *first, name_of(*first) + (tightest.equals().size() > 1 ? " ~" : ""), set);
+  print_entry(out, *first,
+              name_of(*first) + (tightest.counting(1) && !tightest.clear() ? " ~" : ""), set);
   out << lead_text(tightest) << '\n';
 }
 
@@ -276,7 +277,8 @@ void print_sweep(std::ostream& out, const nlohmann::json& document, bool all) {
     out << "\nall of these runs chose their steps by a controller, which is not ranked: bench plot "
            "draws them\n";
   else
-    out << "(~: too close to the next to tell; u: with untuned settings; errors are over the "
+    out << "(~: too close to the next, or too few samples, to tell; u: with untuned settings; "
+           "errors are over the "
            "scene's size)\n";
   for (const Plane& plane : planes) {
     if (all) print_everybody(out, plane, set);

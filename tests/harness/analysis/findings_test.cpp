@@ -40,6 +40,21 @@ TEST(Findings, NameNoWinnerWithinTheNoise) {
   EXPECT_NE(sentences[0].find("; shake, the next, takes 2.0"), std::string::npos) << sentences[0];
 }
 
+// Three samples a run and no A/A pair give no interval: nobody is called equal, nobody the winner.
+TEST(Findings, SayWhereSamplesAreTooFew) {
+  json strips = run("strips", 0.01, 0.01, 0.05, 0.01), icd = run("icd", 0.01, 0.01, 0.5, 0.01);
+  for (json* one : {&strips, &icd}) {
+    json& samples = (*one)["seconds_per_simulated_second"]["samples"];
+    while (samples.size() > 3) samples.erase(samples.size() - 1);
+  }
+  const auto sentences = told({strips, icd});
+  EXPECT_NE(sentences.at(0).find("strips has the least time, of too few samples to be sure: "),
+            std::string::npos)
+      << sentences[0];
+  EXPECT_NE(sentences[0].find("icd, the best of the paper's six, takes "), std::string::npos)
+      << sentences[0];
+}
+
 // No run is right to 2 %: the nearest looser level is answered.
 TEST(Findings, AnswerTheNearestQuestionThatHasAnAnswer) {
   EXPECT_EQ(told({run("strips", 0.01, 0.01, 0.05, 0.04), run("icd", 0.01, 0.01, 0.1, 0.3)})

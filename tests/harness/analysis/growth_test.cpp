@@ -51,6 +51,23 @@ TEST(Growth, RecoversAKnownExponent) {
             "number to the power 1.25 (1.25 to 1.25), and most with icd, 1.5 (1.5 to 1.5).");
 }
 
+// Exponents that may be the same, or anything, are no finding.
+TEST(Growth, IsToldWhereIntervalsAreApart) {
+  const auto told_with = [](double strips, double scatter) {
+    std::vector<json> points;
+    for (const int n : {101, 317, 1001}) {
+      const double off = n == 317 ? scatter : 1 / scatter;
+      points.push_back(resolution_run("strips", n, off * 3e-7 * std::pow(n * n, strips)));
+      points.push_back(resolution_run("icd", n, 3e-9 / off * std::pow(n * n, 1.5)));
+    }
+    const json result = document(points);
+    return sentence_of(growth_in(planes_of(result)).at(0));
+  };
+  EXPECT_NE(told_with(1.25, 1.001), "");
+  EXPECT_EQ(told_with(1.5 - 1e-6, 1.001), "") << "the same, as far as is known";
+  EXPECT_EQ(told_with(1.25, 5), "") << "anything";
+}
+
 // Of 95 % intervals, some 95 % hold the truth: of 400, fewer than 360 with a chance below 1e-4.
 TEST(Growth, IntervalsHoldTheTruthAsOftenAsTheySay) {
   std::mt19937_64 random(7);
