@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <sstream>
 
 #include "harness/base/errors.h"
@@ -203,6 +204,8 @@ Suite load_suite(const SweepOptions& given) {
   if (options.rel_ci > 0) suite.rel_ci = options.rel_ci;
   if (options.finest > 0) cut_ladders(suite, options.finest);
   if (options.timeout > 0) suite.timeout = options.timeout;
+  // Where times mean nothing, none decides which runs come to their end.
+  if (options.untimed) suite.far_behind = std::numeric_limits<double>::infinity();
   if (options.finest_error > 0) suite.finest_error = options.finest_error;
   if (options.seed >= 0) suite.seed = static_cast<std::uint64_t>(options.seed);
   // A solver that is no contestant joins when it is asked for by its own name.
