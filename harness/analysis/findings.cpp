@@ -30,6 +30,14 @@ std::string joined(const std::vector<const Entry*>& entries) {
   return words + (rest > 0 ? " and " + std::to_string(rest) + " more" : "");
 }
 
+std::string leader_words(const Cell& cell, const std::vector<const Entry*>& equals) {
+  const std::string first = name_words(*cell.first());
+  if (!cell.counting(1)) return first + " alone has an answer";
+  if (equals.size() > 1) return joined(equals) + " are the fastest, too close to tell apart";
+  if (cell.clear()) return first + " is the fastest";
+  return first + " has the least time, of too few samples to be sure";
+}
+
 // What it costs to take another one.
 std::string rival_words(const Cell& cell, const std::vector<const Entry*>& equals) {
   const auto slower = [&](const Entry* entry) {
@@ -104,17 +112,10 @@ std::string sentence_of(const Cell& cell) {
   const Entry* first = cell.first();
   if (!first) return place + ", there is no answer: " + cell.empty_because + ".";
   const auto equals = cell.equals();
-  const std::string leader = !cell.counting(1) ? name_words(*first) + " alone has an answer: "
-                             : equals.size() > 1
-                                 ? joined(equals) + " are the fastest, too close to tell apart: "
-                             : cell.clear() ? name_words(*first) + " is the fastest: "
-                                            : name_words(*first) +
-                                                  " has the least time, of too few samples to be "
-                                                  "sure: ";
   const std::string error = std::isfinite(first->error)
                                 ? " and an error of " + number_text(100 * first->error, 2) + " %"
                                 : "";
-  return place + ", " + leader + time_words(first->point.seconds()) +
+  return place + ", " + leader_words(cell, equals) + ": " + time_words(first->point.seconds()) +
          " a simulated second with steps of " + step_text(first->point.number("step")) + " s" +
          error + rival_words(cell, equals) + ".";
 }

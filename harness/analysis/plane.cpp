@@ -173,19 +173,17 @@ const Entry* Cell::paper_best() const {
 
 std::vector<const Entry*> Cell::equals() const {
   std::vector<const Entry*> list;
-  const Entry* best = first();
   for (const Entry& entry : entries) {
-    if (!entry.counts) continue;
-    const Ratio lead = ratio(entry.point, best->point);
-    if (&entry == best || (lead.known() && !lead.above(1))) list.push_back(&entry);
+    const auto lead = lead_over(&entry);
+    if (entry.counts && (!lead || (lead->known() && !lead->above(1)))) list.push_back(&entry);
   }
   return list;
 }
 
 bool Cell::clear() const {
-  const Entry* best = first();
   return counting(1) && std::all_of(entries.begin(), entries.end(), [&](const Entry& entry) {
-           return !entry.counts || &entry == best || ratio(entry.point, best->point).above(1);
+           const auto lead = lead_over(&entry);
+           return !entry.counts || !lead || lead->above(1);
          });
 }
 
@@ -236,8 +234,6 @@ std::vector<Plane> planes_of(const json& document) {
 
 namespace {
 
-bool same_level(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
-
 // Rows that `cell` does not have yet: pieces may have other contestants.
 void add_rows(Cell& cell, const Cell& more) {
   const std::vector<Entry> own = cell.entries;
@@ -268,7 +264,7 @@ std::vector<Plane> merged(const std::vector<Plane>& planes) {
     }
     for (const Cell& cell : plane.cells) {
       const auto place = std::find_if(same->cells.begin(), same->cells.end(), [&](const Cell& c) {
-        return c.strain_limit == cell.strain_limit && same_level(c.level, cell.level);
+        return c.strain_limit == cell.strain_limit && c.level == cell.level;
       });
       if (place == same->cells.end()) {
         same->cells.push_back(cell);

@@ -40,7 +40,7 @@ struct Cell {
   const Entry* next_family() const;                // the fastest of another family than the first
   const Entry* paper_best() const;                 // the fastest of the paper's six methods
   // Those that count and are too close to the first to tell apart; the first is the first of them.
-  // None of which too few samples are known to say how close it is.
+  // Where samples are too few for an interval, it is not known, and they are not among them.
   std::vector<const Entry*> equals() const;
   // Whether the first has rivals, and is faster than each of them beyond the noise.
   bool clear() const;

@@ -204,7 +204,7 @@ Suite load_suite(const SweepOptions& given) {
   if (options.rel_ci > 0) suite.rel_ci = options.rel_ci;
   if (options.finest > 0) cut_ladders(suite, options.finest);
   if (options.timeout > 0) suite.timeout = options.timeout;
-  // Where times mean nothing, none decides which runs come to their end.
+  // Where times mean nothing, no run is stopped for being slower than another contestant's.
   if (options.untimed) suite.far_behind = std::numeric_limits<double>::infinity();
   if (options.finest_error > 0) suite.finest_error = options.finest_error;
   if (options.seed >= 0) suite.seed = static_cast<std::uint64_t>(options.seed);

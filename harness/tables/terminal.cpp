@@ -278,8 +278,7 @@ void print_sweep(std::ostream& out, const nlohmann::json& document, bool all) {
            "draws them\n";
   else
     out << "(~: too close to the next, or too few samples, to tell; u: with untuned settings; "
-           "errors are over the "
-           "scene's size)\n";
+           "errors are over the scene's size)\n";
   for (const Plane& plane : planes) {
     if (all) print_everybody(out, plane, set);
   }
