@@ -37,6 +37,7 @@ FIGURES = [import_module(f"drawings.{name}") for name in (
     "cost_over_strain",      # Figures 4a and 5a of the paper
     "cost_over_resolution",  # Figures 4b and 5b
     "plane",                 # who is fastest within a strain limit and an error
+    "lead",                  # whose the lead is: the stepper's or the method's
     "budget",                # which strain a method reaches within a frame's time
     "growth",
     "work_precision",

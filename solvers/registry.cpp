@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
+#include <string>
 
 #include "solvers/methods/augmented_vbd.h"
 #include "solvers/methods/dense_oracle.h"
@@ -19,6 +21,7 @@
 #include "solvers/methods/shake.h"
 #include "solvers/methods/soft_step.h"
 #include "solvers/methods/strips.h"
+#include "solvers/methods/time_steppers.h"
 #include "solvers/methods/vertex_block_descent.h"
 #include "solvers/methods/xpbd_small_steps.h"
 
@@ -36,15 +39,10 @@ std::vector<Backend> built_in() {
       shake_row(),
       icd_row(),
       fast_projection_row(),
-      fast_projection_bdf2_row(),
       rattle_row(),
       strips_row(),
-      strips_bdf2_row(),
-      strips_midpoint_row(),
       fast_projection_adaptive_row(),
-      fast_projection_adaptive_bdf2_row(),
       xpbd_small_steps_row(),
-      fast_projection_bdf2opt_row(),
       vertex_block_descent_row(),
       augmented_vbd_row(),
       projective_dynamics_row(),
@@ -56,21 +54,77 @@ std::vector<Backend> built_in() {
 
 std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }
 
+// Rows point to their words, those of pairs as well.
+const char* kept(std::string words) {
+  static std::set<std::string> all;
+  return all.insert(std::move(words)).first->c_str();
+}
+
+std::string joined(const char* words, const char* separator, const char* more) {
+  return *words && *more ? std::string(words) + separator + more : std::string(*words ? words : more);
+}
+
+std::string pair_name(const char* method, const char* stepper) {
+  return std::string(method) + "@" + stepper;
+}
+
 // What a row may leave empty.
 Backend completed(Backend row) {
   if (!row.citation) row.citation = "";
   if (!row.label || !*row.label) row.label = row.name;
   if (!row.family || !*row.family) row.family = row.name;
+  row.method = row.name;
+  if (!*row.stepper) row.stepper = row.make_filter || row.backward_euler ? "backward_euler" : "own";
+  for (SettingInfo& setting : row.settings) {
+    if (setting.departs) setting.tunable.reset();
+  }
   return row;
 }
 
-std::vector<Backend> completed(std::vector<Backend> rows) {
-  for (Backend& row : rows) row = completed(std::move(row));
+// The row of `method` in another stepper than its published one.
+Backend paired(const Backend& method, const TimeStepper& stepper) {
+  Backend row = completed(method);
+  row.name = kept(pair_name(method.name, stepper.name));
+  row.summary = kept(joined(method.summary, ", ", stepper.phrase));
+  row.citation = kept(joined(row.citation, "; ", stepper.citation));
+  row.label = kept(joined(row.label, " ", stepper.phrase));
+  row.stepper = stepper.name;
+  row.stepper_origin = stepper.origin;
+  row.velocities = stepper.velocities;
+  row.takes_implicit_forces = method.takes_implicit_forces && stepper.takes_implicit_forces;
+  if (*method.same_on_chains)
+    row.same_on_chains = kept(pair_name(method.same_on_chains, stepper.name));
+  // Directions turn from iterate to iterate, hence forces that have been applied.
+  if (stepper.along == Along::middle) row.conserves_momentum = row.shows_iterates = false;
+  row.settings = method.settings;
+  for (SettingInfo& setting : row.settings) {
+    for (const DefaultElsewhere& other : method.defaults_elsewhere) {
+      if (std::string_view(other.stepper) == stepper.name &&
+          std::string_view(other.setting) == setting.name)
+        setting.initial = other.value;
+    }
+  }
+  row.settings.insert(row.settings.end(), stepper.settings.begin(), stepper.settings.end());
+  return row;
+}
+
+// All pairs, those of one method side by side.
+std::vector<Backend> in_all_steppers(std::span<const Backend> methods) {
+  std::vector<Backend> rows;
+  for (const Backend& method : methods) {
+    const Backend published = completed(method);
+    rows.push_back(published);
+    if (!method.contestant) continue;
+    for (const TimeStepper& stepper : time_steppers()) {
+      if (stepper.name != std::string_view(published.stepper) && !mismatch(published, stepper))
+        rows.push_back(paired(method, stepper));
+    }
+  }
   return rows;
 }
 
 struct Table {
-  std::vector<Backend> rows = completed(built_in());
+  std::vector<Backend> rows = in_all_steppers(built_in());
   std::size_t built_in_rows = rows.size();
 };
 
@@ -89,8 +143,8 @@ void check_row(const Backend& row, std::span<const Backend> others) {
   if (std::any_of(others.begin(), others.end(),
                   [name](const Backend& b) { return b.name == name; }))
     throw std::invalid_argument("there is a solver " + quoted(name) + " already");
-  if (!row.make || !row.summary)
-    throw std::invalid_argument("solver " + quoted(name) + " has no factory or no summary");
+  if ((row.make != nullptr) == (row.make_filter != nullptr) || !row.summary)
+    throw std::invalid_argument("solver " + quoted(name) + " has no summary, or not one of `make` and `make_filter`");
 }
 
 }  // namespace
@@ -101,16 +155,30 @@ void add_backends(std::span<const Backend> rows) {
   std::vector<Backend> all = table().rows;
   for (const Backend& row : rows) {
     check_row(row, all);
-    all.push_back(completed(row));
+    for (Backend& pair : in_all_steppers({&row, 1})) all.push_back(std::move(pair));
   }
   table().rows.swap(all);
 }
 
 const Backend* find_backend(std::string_view name) {
   const auto rows = backends();
-  const auto place =
-      std::find_if(rows.begin(), rows.end(), [name](const Backend& b) { return b.name == name; });
+  const auto place = std::find_if(rows.begin(), rows.end(), [name](const Backend& b) {
+    // By its whole name in its published stepper too.
+    return b.name == name || (name.find('@') != name.npos && name == pair_name(b.method, b.stepper));
+  });
   return place == rows.end() ? nullptr : &*place;
+}
+
+std::string why_no_pair(std::string_view name) {
+  const std::size_t at = name.find('@');
+  const Backend* method = at == name.npos ? nullptr : find_backend(name.substr(0, at));
+  if (!method) return {};
+  std::string names;
+  for (const TimeStepper& stepper : time_steppers()) {
+    if (stepper.name == name.substr(at + 1)) return mismatch(*method, stepper);
+    names += (names.empty() ? "" : ", ") + std::string(stepper.name);
+  }
+  return "there is no such time stepper; there are: " + names;
 }
 
 bool is_built_in(std::string_view name) {
@@ -130,6 +198,10 @@ std::unique_ptr<Stepper> make_stepper(std::string_view name, Shared problem,
     throw std::invalid_argument("solver " + quoted(name) + " takes no " + part);
   BackendOptions resolved = options;
   resolved.settings = complete_settings(*backend, options.settings);
+  for (const TimeStepper& stepper : time_steppers()) {
+    if (stepper.around && stepper.name == std::string_view(backend->stepper))
+      return stepper.around(std::move(problem), *backend, resolved);
+  }
   return backend->make(std::move(problem), resolved);
 }
 

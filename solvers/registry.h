@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "solvers/methods/backend.h"
@@ -11,13 +12,17 @@
 namespace inextensible {
 
 std::span<const Backend> backends();
-// Appends rows from outside this library. At program start, before anything else: what backends()
+// Appends rows from outside this library, velocity filters in all time steppers that suit them. At program start, before anything else: what backends()
 // and find_backend() gave before is no longer valid. Throws std::invalid_argument, having added
 // nothing, for a name that is taken or not made of a-z, 0-9 and _ (it becomes part of point ids),
-// and for a row without `make` or summary.
+// and for a row without summary, or with neither or both of `make` and `make_filter`.
 void add_backends(std::span<const Backend> rows);
 bool is_built_in(std::string_view name);             // a row of registry.cpp
-const Backend* find_backend(std::string_view name);  // null if there is none
+// Null if there is none. A method in its published time stepper has two names: gauss_seidel and
+// gauss_seidel@backward_euler.
+const Backend* find_backend(std::string_view name);
+// Of a name method@stepper that is none of backends(), though the method is: why not. Else empty.
+std::string why_no_pair(std::string_view name);
 
 // Throws std::invalid_argument for an unknown backend, setting or choice, a strain limit that is
 // not positive, or a problem with a part that the backend does not take.

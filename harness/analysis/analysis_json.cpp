@@ -53,6 +53,13 @@ json cell_json(const Cell& cell) {
            ratio_json(any ? cell.lead_over(cell.next_family()) : std::nullopt)},
           {"paper_best", name_of(cell.paper_best())},
           {"lead_over_paper_best", ratio_json(cell.lead_over(cell.paper_best()))},
+          {"first_as_published", name_of(cell.first_as_published())},
+          {"lead_by_stepper", ratio_json(cell.lead_over(cell.first_as_published()))},
+          {"rival_in_stepper", name_of(cell.rival_in_stepper())},
+          {"lead_by_method", ratio_json(cell.lead_over(cell.rival_in_stepper()))},
+          {"paper_in_any_stepper", name_of(cell.paper_in_any_stepper())},
+          {"lead_over_paper_in_any_stepper",
+           ratio_json(cell.lead_over(cell.paper_in_any_stepper()))},
           {"entries", std::move(entries)}};
 }
 

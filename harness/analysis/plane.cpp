@@ -20,6 +20,11 @@ bool may_answer(const Point& p) {
   return p.ok() && p.timed() && p.number("step") <= longest_step * (1 + 1e-9);
 }
 
+bool is_of_paper(const std::string& method) {
+  return std::any_of(all_paper_methods.begin(), all_paper_methods.end(),
+                     [&](const PaperMethod& known) { return method == known.name; });
+}
+
 std::string level_text(double level) { return number_text(100 * level) + " %"; }
 
 // Why there is no entry: the first of the reasons that holds of all.
@@ -153,22 +158,45 @@ const Entry* Cell::counting(std::size_t place) const {
   return nullptr;
 }
 
+std::string method_of(const std::string& row) { return row.substr(0, row.find('@')); }
+
+std::string stepper_of(const std::string& row) {
+  const std::size_t at = row.find('@');
+  return at == row.npos ? "" : row.substr(at + 1);
+}
+
+template <class Has>
+const Entry* Cell::fastest(Has has) const {
+  const auto place = std::find_if(entries.begin(), entries.end(),
+                                  [&](const Entry& e) { return e.counts && has(e); });
+  return place == entries.end() ? nullptr : &*place;
+}
+
 const Entry* Cell::next_family() const {
   const Entry* best = first();
-  for (const Entry& entry : entries) {
-    if (entry.counts && entry.role.family != best->role.family) return &entry;
-  }
-  return nullptr;
+  return best ? fastest([best](const Entry& e) { return e.role.family != best->role.family; })
+              : nullptr;
 }
 
 const Entry* Cell::paper_best() const {
-  for (const Entry& entry : entries) {
-    const bool of_paper =
-        std::any_of(all_paper_methods.begin(), all_paper_methods.end(),
-                    [&](const PaperMethod& method) { return entry.row == method.name; });
-    if (entry.counts && of_paper) return &entry;
-  }
-  return nullptr;
+  return fastest([](const Entry& e) { return is_of_paper(e.row); });
+}
+
+const Entry* Cell::paper_in_any_stepper() const {
+  return fastest([](const Entry& e) { return is_of_paper(method_of(e.row)); });
+}
+
+const Entry* Cell::first_as_published() const {
+  const Entry* best = first();
+  return best ? fastest([best](const Entry& e) { return e.row == method_of(best->row); }) : nullptr;
+}
+
+const Entry* Cell::rival_in_stepper() const {
+  const Entry* best = first();
+  if (!best) return nullptr;
+  return fastest([best](const Entry& e) {
+    return stepper_of(e.row) == stepper_of(best->row) && method_of(e.row) != method_of(best->row);
+  });
 }
 
 std::vector<const Entry*> Cell::equals() const {

@@ -38,7 +38,12 @@ struct Cell {
   const Entry* first() const { return counting(0); }
   const Entry* counting(std::size_t place) const;  // 0: the fastest of those that count
   const Entry* next_family() const;                // the fastest of another family than the first
-  const Entry* paper_best() const;                 // the fastest of the paper's six methods
+  const Entry* paper_best() const;                 // the fastest of the paper's six as published
+  // The first's lead, split: its method in the published stepper, and the fastest other method in its
+  // stepper. And the fastest of the paper's six in any stepper.
+  const Entry* first_as_published() const;
+  const Entry* rival_in_stepper() const;
+  const Entry* paper_in_any_stepper() const;
   // Those that count and are too close to the first to tell apart; the first is the first of them.
   // Where samples are too few for an interval, it is not known, and they are not among them.
   std::vector<const Entry*> equals() const;
@@ -46,7 +51,16 @@ struct Cell {
   bool clear() const;
   // Times over the first's.
   std::optional<Ratio> lead_over(const Entry* other) const;
+
+ private:
+  // The fastest of those that count and have these; first() must not be null.
+  template <class Has>
+  const Entry* fastest(Has has) const;
 };
+
+// "gauss_seidel@bdf2" is the method gauss_seidel in the stepper bdf2; "" is the published one.
+std::string method_of(const std::string& row);
+std::string stepper_of(const std::string& row);
 
 // Of a scene and size in one kind of sweep.
 struct Plane {

@@ -164,7 +164,7 @@ std::vector<AnswerRun> plan_answers(const AnswerSelection& selection) {
     if (selection.answer && !selection.answer->matches(answer.name)) continue;
     const Scene scene = Built::make(answer);
     for (const Backend& backend : inextensible::backends()) {
-      if (!backend.contestant || (selection.solver && !selection.solver->matches(backend.name)))
+      if (!backend.contestant || (selection.solver && !matches(*selection.solver, backend.name)))
         continue;
       if (answer.needs_multipliers && !backend.shows_iterates) continue;
       if (inextensible::part_not_taken(backend, *scene.problem)) continue;

@@ -50,6 +50,8 @@ json solvers_json() {
                     {"label", backend.label},
                     {"summary", backend.summary},
                     {"citation", backend.citation},
+                    {"method", backend.method},
+                    {"stepper", backend.stepper},
                     {"contestant", backend.contestant},
                     {"settings", settings_json(backend)}});
   }

@@ -50,7 +50,7 @@ std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec
   for (const auto& backend : inextensible::backends()) {
     const bool competes = std::any_of(
         all.begin(), all.end(), [&](const Contestant& c) { return c.solver == backend.name; });
-    if ((competes || backend.name == text) && expression.matches(backend.name) &&
+    if ((competes || backend.name == text) && matches(expression, backend.name) &&
         !tunable_numbers(backend).empty())
       solvers.emplace_back(backend.name);
   }

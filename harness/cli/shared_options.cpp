@@ -99,6 +99,17 @@ void check_profile(const std::string& name) {
     throw unknown_name("profile", name, known);
 }
 
+namespace {
+
+// A pair that makes no sense gets its reason, any other name a suggestion.
+UsageError no_solver(const std::string& name, const std::vector<std::string>& names) {
+  const std::string reason = inextensible::why_no_pair(name);
+  if (reason.empty()) return unknown_name("solver", name, names);
+  return UsageError("there is no solver '" + name + "': " + reason);
+}
+
+}  // namespace
+
 void check_solver_pattern(const std::string& text, const Contestants& contestants) {
   std::vector<std::string> names = names_of(inextensible::backends());
   for (const Contestant& c : contestants) {
@@ -108,8 +119,8 @@ void check_solver_pattern(const std::string& text, const Contestants& contestant
   for (const std::string& part : alternatives(text)) {
     const Pattern expression("--solver", part);
     if (std::none_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return expression.matches(name); }))
-      throw unknown_name("solver", part, names);
+                     [&](const std::string& name) { return matches(expression, name); }))
+      throw no_solver(part, names);
   }
 }
 

@@ -33,8 +33,8 @@ Route smooth_route() { return {"rattle", 1e-12, 2}; }
 Route contact_route() { return {"rattle", 1e-9, 1}; }
 // Friction inside the solve is no smooth function of the start, and RATTLE's small steps along old
 // directions get stuck on it; the passes that correct it set the limit.
-Route contact_inside_route() { return {"fast_projection_bdf2", 1e-5, 1}; }
-Route contact_route_when_singular() { return {"fast_projection_bdf2", 1e-6, 1}; }
+Route contact_inside_route() { return {"fast_projection@bdf2", 1e-5, 1}; }
+Route contact_route_when_singular() { return {"fast_projection@bdf2", 1e-6, 1}; }
 // The second one there, at the first one's limit. The two differ in the direction of constraint
 // forces, the velocity's place in the step and the linear solver.
 Route second_contact_route(const Route& first) { return {"icd", first.limit, 1}; }

@@ -54,10 +54,17 @@ std::string label_of(const Contestant& contestant) {
 
 const inextensible::Backend& checked_backend(const std::string& name, const std::string& where) {
   const auto* backend = inextensible::find_backend(name);
-  if (!backend)
-    throw UsageError(where + ": " +
-                     unknown_name("solver", name, names_of(inextensible::backends())).what());
-  return *backend;
+  if (backend) return *backend;
+  if (const std::string reason = inextensible::why_no_pair(name); !reason.empty())
+    throw UsageError(where + ": there is no solver '" + name + "': " + reason);
+  throw UsageError(where + ": " +
+                   unknown_name("solver", name, names_of(inextensible::backends())).what());
+}
+
+bool matches(const Pattern& pattern, const std::string& solver) {
+  if (pattern.matches(solver)) return true;
+  const auto* backend = inextensible::find_backend(solver);
+  return backend && pattern.matches(std::string(backend->method) + "@" + backend->stepper);
 }
 
 inextensible::Settings read_settings(const json& object, const std::string& where,
@@ -96,16 +103,17 @@ void check_settings(const inextensible::Settings& settings, const std::string& w
 }
 
 void check_plain_name(const std::string& name, const std::string& where) {
-  if (!has_form(name, "[a-z0-9_]+"))
+  if (!has_form(name, "[a-z0-9_]+(@[a-z0-9_]+)?"))
     throw UsageError(where + " is " + value_text(name) +
-                     ", must be made of a-z, 0-9 and _ (it becomes part of point ids)");
+                     ", must be made of a-z, 0-9 and _, with one @ at most (it becomes part of point "
+                     "ids)");
 }
 
 Contestant read_contestant(const json& entry, const std::string& where) {
   if (entry.is_string()) {
     const std::string name = entry.get<std::string>();
-    checked_backend(name, where);
-    return {name, name};
+    const std::string solver = checked_backend(name, where).name;
+    return {solver, solver};
   }
   if (!entry.is_object())
     throw UsageError(where + " is " + value_text(entry) +
@@ -116,6 +124,8 @@ Contestant read_contestant(const json& entry, const std::string& where) {
   contestant.name = reader.text("name", "");
   contestant.solver = reader.text("solver", contestant.name);
   const auto& backend = checked_backend(contestant.solver, where);
+  if (contestant.name == contestant.solver) contestant.name = backend.name;
+  contestant.solver = backend.name;
   if (contestant.name.empty()) contestant.name = contestant.solver;
   if (const json* settings = reader.find("settings"))
     contestant.settings = read_settings(*settings, where + ": 'settings'", backend);

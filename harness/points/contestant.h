@@ -6,13 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "harness/base/pattern.h"
 #include "harness/scenes/scene.h"
 #include "solvers/registry.h"
 
 namespace harness {
 
 struct Contestant {
-  std::string name;    // a-z, 0-9 and _; the solver's own unless it stands there more than once
+  std::string name;    // a-z, 0-9, _ and @; the solver's own unless it stands there more than once
   std::string solver;  // see `bench list solvers`
   inextensible::Settings settings = {};  // given ones only
   std::string label = "";                // in figures; empty: the solver's, or the name in words
@@ -41,9 +42,12 @@ inextensible::Settings read_settings(const nlohmann::json& object, const std::st
 // That the solver would take them.
 void check_settings(const inextensible::Settings& settings, const std::string& where,
                     const inextensible::Backend& backend);
-// That it is made of a-z, 0-9 and _.
+// That it is made of a-z, 0-9 and _, and one @ for a method in a time stepper.
 void check_plain_name(const std::string& name, const std::string& where);
 const inextensible::Backend& checked_backend(const std::string& name, const std::string& where);
+// Whether the pattern is of this contestant's or solver's name, that with its published stepper
+// included.
+bool matches(const Pattern& pattern, const std::string& solver);
 
 // The way back.
 nlohmann::json to_json(const Contestant& contestant);

@@ -195,21 +195,25 @@ std::string schema_text(const std::string& name) { return folded_text(schema_doc
 
 ordered_json legend(const Contestants& contestants) {
   ordered_json solvers = ordered_json::array(), statuses = ordered_json::array();
+  const auto entry = [](const inextensible::Backend& backend, const std::string& name,
+                        const std::string& label) {
+    return ordered_json{{"name", name},
+                        {"label", label},
+                        {"family", backend.family},
+                        {"method", backend.method},
+                        {"stepper", backend.stepper},
+                        {"origin", word_of(backend.origin)},
+                        {"stepper_origin", word_of(backend.stepper_origin)},
+                        {"contestant", backend.contestant}};
+  };
   for (const auto& backend : inextensible::backends()) {
-    solvers.push_back({{"name", backend.name},
-                       {"label", backend.label},
-                       {"family", backend.family},
-                       {"origin", word_of(backend.origin)},
-                       {"contestant", backend.contestant}});
+    solvers.push_back(entry(backend, backend.name, backend.label));
     for (const Contestant& c : contestants) {
       if (c.own_name() || c.solver != backend.name) continue;
-      solvers.push_back({{"name", c.name},
-                         {"label", label_of(c)},
-                         {"family", backend.family},
-                         {"origin", word_of(backend.origin)},
-                         {"contestant", backend.contestant},
-                         {"solver", c.solver},
-                         {"hollow", c.hollow}});
+      ordered_json more = entry(backend, c.name, label_of(c));
+      more["solver"] = c.solver;
+      more["hollow"] = c.hollow;
+      solvers.push_back(std::move(more));
     }
   }
   for (const auto& row : point_statuses)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <span>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
@@ -16,11 +17,37 @@ bool selected(const SweepFilters& filters, const PointSpec& spec) {
          (!filters.exclude || !filters.exclude->found_in(id));
 }
 
-std::vector<double> step_ladder(const SweepSpec& sweep) {
+// Steps between two rungs that halve, by which these are divided: factors of about 1.2, so chosen
+// that rates of 25, 50 or 100 steps a second stay whole numbers.
+constexpr double refinements[] = {1, 1.2, 1.44, 1.68};
+
+std::vector<double> step_ladder(const SweepSpec& sweep, std::span<const double> divisors) {
   if (sweep.adaptive) return {sweep.coarsest};
   std::vector<double> ladder;
-  for (double h = sweep.coarsest; h >= sweep.finest * (1 - 1e-9); h /= 2) ladder.push_back(h);
+  for (double h = sweep.coarsest; h >= sweep.finest * (1 - 1e-9); h /= 2) {
+    for (const double divisor : divisors) {
+      if (h / divisor >= sweep.finest * (1 - 1e-9)) ladder.push_back(h / divisor);
+    }
+  }
   return ladder;
+}
+
+// The rungs of a search that the filters leave. Where they leave out some that halve, no others are
+// added.
+void add_ladder(Search& search, const SweepSpec& sweep, const SweepFilters& filters) {
+  const auto kept = [&](std::span<const double> divisors) {
+    std::vector<double> ladder = step_ladder(sweep, divisors);
+    std::erase_if(ladder, [&](double step) {
+      search.base.step = step;
+      return !selected(filters, search.base);
+    });
+    return ladder;
+  };
+  const std::size_t halvings = step_ladder(sweep, {refinements, 1}).size();
+  search.ladder = kept({refinements, 1});
+  if (search.every_step || sweep.adaptive || search.ladder.size() < halvings) return;
+  search.ladder = kept(refinements);
+  search.stride = std::size(refinements);
 }
 
 }  // namespace
@@ -36,7 +63,7 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
     std::vector<int> resolutions = sweep.resolutions;
     std::sort(resolutions.begin(), resolutions.end());
     for (const Contestant& contestant : sweep.contestants) {
-      if (filters.solver && !filters.solver->matches(contestant.name)) continue;
+      if (filters.solver && !matches(*filters.solver, contestant.name)) continue;
       for (const int resolution : resolutions) {
         SceneParameters given = sweep.scene_parameters;
         given[type.resolution] = resolution;
@@ -63,12 +90,11 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
         const std::vector<double> own_limits =
             limited ? limits : std::vector<double>(limits.begin(), limits.begin() + 1);
         for (const double limit : own_limits) {
-          Search search{base, {}, family, sweep.every_step || sweep.sweep == "step"};
+          Search search{.base = base,
+                        .family = family,
+                        .every_step = sweep.every_step || sweep.sweep == "step"};
           search.base.strain_limit = limit;
-          for (const double step : step_ladder(sweep)) {
-            search.base.step = step;
-            if (selected(filters, search.base)) search.ladder.push_back(step);
-          }
+          add_ladder(search, sweep, filters);
           if (!search.ladder.empty()) searches.push_back(std::move(search));
         }
         ++family;

@@ -16,16 +16,39 @@ constexpr double stays = 0.85;
 }  // namespace
 
 std::optional<std::size_t> StepSearch::find(std::optional<std::size_t> start) {
-  const std::size_t first = std::min(start.value_or(0), rungs_ - 1);
+  const std::size_t near = std::min(start.value_or(0), rungs_ - 1), first = near - near % stride_;
   lowest_ = highest_ = first;
   walk(first, +1);
-  if (first > 0 && !unsupported_) walk(first - 1, -1);
+  if (first > 0 && !unsupported_) walk(first - stride_, -1);
   look_around_best();
   for (auto next = beyond_best(); next && !unsupported_; next = beyond_best()) {
     walk(next->first, next->second);
     look_around_best();
   }
+  refine();
   return best_rung(any_motion);
+}
+
+// Rungs beside the best of each level, until those on both sides are there and not faster. What has
+// failed is a rung that was tried.
+void StepSearch::refine() {
+  if (stride_ == 1 || unsupported_) return;
+  std::set<std::size_t> tried;
+  std::vector<double> levels = levels_;
+  levels.push_back(any_motion);
+  for (const double level : levels) {
+    for (bool moved = true; moved;) {
+      const auto best = best_rung(level);
+      if (!best) break;
+      for (const std::size_t rung : {*best - 1, *best + 1}) {  // below 0: beyond the last
+        if (rung >= rungs_ || seconds_.at(any_motion).contains(rung) || !tried.insert(rung).second)
+          continue;
+        consider(rung, run_(rung));
+        if (seconds_.at(any_motion).contains(rung)) slower(rung, level);  // samples, if it is close
+      }
+      moved = best_rung(level) != best;
+    }
+  }
 }
 
 std::optional<std::size_t> StepSearch::find_among_all() {
@@ -112,7 +135,7 @@ void StepSearch::look_around_best() {
     for (std::optional<std::size_t> last, best = best_rung(level); best && best != last;
          best = best_rung(level)) {
       last = best;
-      for (const std::size_t rung : {*best - 1, *best + 1}) {  // below 0: none that was tried
+      for (const std::size_t rung : {*best - stride_, *best + stride_}) {  // perhaps not tried
         const auto place = all.find(rung);
         if (place == all.end() || place->second >= close_neighbor * all.at(*best)) continue;
         sample_again(*best);
@@ -125,8 +148,8 @@ void StepSearch::look_around_best() {
 std::optional<std::pair<std::size_t, int>> StepSearch::beyond_best() const {
   for (const auto& [level, times] : seconds_) {
     const auto best = best_rung(level);
-    if (best == highest_ && highest_ + 1 < rungs_) return std::pair(highest_ + 1, +1);
-    if (best == lowest_ && lowest_ > 0) return std::pair(lowest_ - 1, -1);
+    if (best == highest_ && highest_ + stride_ < rungs_) return std::pair(highest_ + stride_, +1);
+    if (best == lowest_ && lowest_ > 0) return std::pair(lowest_ - stride_, -1);
   }
   return std::nullopt;
 }
@@ -157,7 +180,7 @@ void StepSearch::walk(std::size_t from, int direction) {
   double last_error = std::numeric_limits<double>::infinity();
   error_stays_ = failures_ = 0;
   for (std::size_t rung = from; rung < rungs_;
-       rung += static_cast<std::size_t>(direction)) {  // wraps below 0
+       rung += stride_ * static_cast<std::size_t>(direction)) {  // wraps below 0
     const PointResult& point = run_(rung);
     unsupported_ = point.status == PointStatus::unsupported;
     if (unsupported_) return;

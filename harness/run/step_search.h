@@ -27,6 +27,9 @@ namespace harness {
 // three samples and it is still more than noise above. At the end the steps next to the best ones
 // get three samples, too, unless they are close_neighbor times slower; and where a best step is an
 // end of what was tried, though the ladder goes on, the search goes on from there.
+//
+// All that is on every stride-th rung, which halve the step. Then the best of any motion and of each
+// level are refined: by the rungs between, one after the other, as long as these are faster.
 class StepSearch {
  public:
   using Run = std::function<const PointResult&(std::size_t rung)>;
@@ -35,10 +38,11 @@ class StepSearch {
   static constexpr double noise = 1.03;        // a ratio of times up to this is none
   static constexpr std::size_t samples_when_close = 3;
 
-  // run: the rung's point, which is run when it is first asked for. again: the same with one sample
+  // stride: of the rungs that halve the step. run: the rung's point, which is run when it is first asked for. again: the same with one sample
   // more, if it can have one. levels: of error, loose to tight; none: any motion alone.
-  StepSearch(std::size_t rungs, Run run, Run again, std::vector<double> levels = {})
-      : rungs_(rungs), run_(std::move(run)), again_(std::move(again)), levels_(std::move(levels)) {}
+  StepSearch(std::size_t rungs, Run run, Run again, std::vector<double> levels = {},
+             std::size_t stride = 1)
+      : rungs_(rungs), stride_(stride), run_(std::move(run)), again_(std::move(again)), levels_(std::move(levels)) {}
 
   // The best rung of any motion; none if every step failed.
   // start: the rung to begin from.
@@ -62,6 +66,7 @@ class StepSearch {
   bool slower(std::size_t rung, double level);
   void sample_again(std::size_t rung);
   void look_around_best();
+  void refine();
   // Where a best step is an end of what was tried: the next rung, and in which direction it lies.
   std::optional<std::pair<std::size_t, int>> beyond_best() const;
   bool wants_less_error() const { return goal_ && !best_seconds(*goal_) && error_stays_ < 2; }
@@ -71,7 +76,7 @@ class StepSearch {
   std::optional<std::size_t> best_rung(double level) const;
   std::optional<double> best_seconds(double level) const;
 
-  std::size_t rungs_;
+  std::size_t rungs_, stride_;
   Run run_, again_;
   std::vector<double> levels_;
   // The finest level that errors can be told at; none before the first error, or without one.

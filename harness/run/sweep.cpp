@@ -202,7 +202,7 @@ class LadderRun {
             search_.ladder.size(),
             [this](std::size_t rung) -> const PointResult& { return point(rung); },
             [this](std::size_t rung) -> const PointResult& { return again(rung); },
-            levels_of(sweep.suite)) {}
+            levels_of(sweep.suite), search_.stride) {}
 
   void find_best() {
     const auto best = search_.every_step ? steps_.find_among_all()

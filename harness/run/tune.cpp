@@ -43,7 +43,11 @@ class Tuner {
     Suite suite;
     suite.sweeps = {scene};
     suite.sweeps[0].contestants = {{solver, solver}};
-    for (Search& search : plan(suite, {})) places_.push_back({.search = std::move(search)});
+    for (Search& search : plan(suite, {})) {
+      std::size_t rung = 0;
+      std::erase_if(search.ladder, [&](double) { return rung++ % search.stride != 0; });
+      places_.push_back({.search = std::move(search)});
+    }
     numbers_ = tunable_numbers(*inextensible::find_backend(solver));
     options_.rules.budget =
         std::min(options.rules.budget, options.trials_each * static_cast<int>(numbers_.size()));

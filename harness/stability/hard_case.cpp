@@ -61,7 +61,8 @@ void admit_who_promises_nothing(HardCase& hard_case) {
 bool Solvers::contains(const std::string& solver) const {
   if (everyone() || names_.contains(solver)) return true;
   const auto* backend = inextensible::find_backend(solver);
-  return direction_ && backend && backend->direction == *direction_;
+  if (!backend) return false;
+  return direction_ ? backend->direction == *direction_ : names_.contains(backend->method);
 }
 
 HardCaseValues hard_case_values(const std::string& profile) {

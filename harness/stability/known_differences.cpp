@@ -35,9 +35,9 @@ constexpr std::array differences{
     KnownDifference{"drift/cloth", "projective_dynamics", Outcome::refused,
                     Outcome::survived_smaller, folds_wander,
                     "direction_tolerance 3, with which it survives"},
-    KnownDifference{"noise", "strips_bdf2", Outcome::wrong, Outcome::wrong, two_steps_gain,
+    KnownDifference{"noise", "strips@bdf2", Outcome::wrong, Outcome::wrong, two_steps_gain,
                     one_step_first},
-    KnownDifference{"noise", "fast_projection_adaptive_bdf2", Outcome::wrong, Outcome::wrong,
+    KnownDifference{"noise", "fast_projection_adaptive@bdf2", Outcome::wrong, Outcome::wrong,
                     two_steps_gain, one_step_first},
     KnownDifference{
         "drift/cloth", "icd", Outcome::refused, Outcome::survived_smaller,

@@ -5,6 +5,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/paths.h"
+#include "harness/points/contestant.h"
 #include "harness/stability/trial_isolation.h"
 #include "solvers/registry.h"
 
@@ -83,7 +84,7 @@ ExpectationCounts StabilityOutcome::counts() const {
 StabilityPlan plan_stability(const std::vector<HardCase>& cases, const StabilityFilters& filters) {
   StabilityPlan plan;
   for (const auto& backend : inextensible::backends()) {
-    if (backend.contestant && (!filters.solver || filters.solver->matches(backend.name)))
+    if (backend.contestant && (!filters.solver || matches(*filters.solver, backend.name)))
       plan.solvers.emplace_back(backend.name);
   }
   const auto selected = [&](const std::string& name) {

@@ -69,6 +69,33 @@ void print_table(std::ostream& out, const std::vector<const Plane*>& planes) {
   out << '\n';
 }
 
+// "3.1 (3.0-3.2) `jacobi`"; first: the entry is the leader itself.
+std::string lead_text(const Cell& cell, const Entry* other) {
+  if (!other) return "none within it";
+  if (other == cell.first()) return "itself";
+  return analysis::text(*cell.lead_over(other)) + " " + quoted(other->row);
+}
+
+// How much of the lead at the headline's error is the time stepper's, and how much the method's.
+void print_attribution(std::ostream& out, const std::vector<const Plane*>& planes) {
+  const bool sizes = planes.front()->sweep == "resolution";
+  out << "Of the lead within an error of " << percent(headline_error)
+      << ", times over the first's:\n\n";
+  print_head(out, {sizes ? "vertices" : "strain", "first", "the same method as published",
+                   "the next method in the same stepper", "the paper's best as published",
+                   "the paper's best in any stepper"});
+  for (const Plane* plane : planes) {
+    for (const Cell& cell : plane->cells) {
+      if (cell.level != headline_error || !cell.first()) continue;
+      print_row(out, {sizes ? std::to_string(plane->vertices) : percent(cell.strain_limit),
+                      quoted(cell.first()->row), lead_text(cell, cell.first_as_published()),
+                      lead_text(cell, cell.rival_in_stepper()), lead_text(cell, cell.paper_best()),
+                      lead_text(cell, cell.paper_in_any_stepper())});
+    }
+  }
+  out << '\n';
+}
+
 }  // namespace
 
 void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
@@ -99,6 +126,7 @@ void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
     if (has_shapes(planes)) out << "Shape errors are deviations beyond the ensemble's spread.";
     out << "\n\n";
     print_table(out, planes);
+    print_attribution(out, planes);
   }
 }
 

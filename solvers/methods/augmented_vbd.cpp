@@ -74,7 +74,7 @@ SettingFields<AugmentedVbd::Settings> AugmentedVbd::fields() {
        SearchRange{1, 20}},
       {"direction_tolerance", &S::direction_tolerance,
        "last move of a vertex, times penalty, in strain limit times shortest rest length", positive,
-       SearchRange{0.5, 3}}};
+       tunable_direction_tolerance}};
 }
 
 Backend augmented_vbd_row() {
@@ -83,7 +83,7 @@ Backend augmented_vbd_row() {
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(AugmentedVbd::fields()),
-          .make = make_filter_stepper<AugmentedVbd>,
+          .make_filter = make_filter<AugmentedVbd>,
           .direction = Direction::end,
           .citation = "Giles, Diaz and Yuksel 2025",
           .origin = Origin::literature,

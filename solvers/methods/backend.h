@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "solvers/stepping/stepper.h"
+#include "solvers/stepping/velocity_filter.h"
 
 namespace inextensible {
 
@@ -43,6 +43,14 @@ struct SettingInfo {
   Range range = {};
   bool whole = false;  // a count: integers only
   std::optional<SearchRange> tunable = {};
+  // The setting departs from the published method: it is searched in other time steppers only.
+  bool departs = false;
+};
+
+// The default of a method's setting in another time stepper than the published one.
+struct DefaultElsewhere {
+  const char *stepper, *setting;
+  double value;
 };
 
 using Settings = std::map<std::string, std::variant<double, std::string>>;
@@ -76,13 +84,20 @@ enum class Velocities { half_step, whole_step };
 // engine has it.
 enum class Origin { paper, project, literature, engine, elsewhere };
 
+// A method in its published time stepper. The registry completes it, and adds a row for each other
+// time stepper that suits it (time_steppers.h): a contestant is method@stepper.
 struct Backend {
-  const char* name;     // a-z, 0-9 and _
+  const char* name;     // a-z, 0-9 and _; in another stepper than the published one, method@stepper
   const char* summary;  // one line
   Knob knob;
   bool contestant;  // appears in figures and rankings
   std::vector<SettingInfo> settings;
-  std::unique_ptr<Stepper> (*make)(std::shared_ptr<const Problem>, const BackendOptions&);
+  // A velocity filter has `make_filter` and stands in any stepper; corrections of the filter point
+  // along the edges or their middles as `along` says, which is `edges` unless the direction is local
+  // or current. Other methods have `make`: a time step of their own.
+  std::unique_ptr<Stepper> (*make)(std::shared_ptr<const Problem>, const BackendOptions&) = nullptr;
+  std::unique_ptr<VelocityFilter> (*make_filter)(const Problem&, const BackendOptions&,
+                                                 Along along) = nullptr;
   Direction direction = Direction::none;
   const char* citation = "";  // author and year
   Origin origin = Origin::elsewhere;
@@ -102,6 +117,15 @@ struct Backend {
   // edges, however far the method iterates. One that moves vertices one by one, or lets forces turn
   // towards their edges, has that at convergence only.
   bool conserves_momentum = true;
+  // `make` is backward Euler, and does not depend on which states it is given: BDF2 takes it from
+  // one that it extrapolates.
+  bool backward_euler = false;
+  std::vector<DefaultElsewhere> defaults_elsewhere = {};
+  // The time stepper (time_steppers.h), and who offers that; `method`: the name without it. The
+  // registry fills them in; a published stepper that is not backward Euler the row names.
+  const char* stepper = "";
+  Origin stepper_origin = Origin::paper;
+  const char* method = "";
 };
 
 // The part of the problem that the method does not take, in words; null: it takes all.

@@ -33,14 +33,16 @@ constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1
 
 }  // namespace
 
-FastProjection::FastProjection(const Problem& problem, const Settings& settings)
+FastProjection::FastProjection(const Problem& problem, const Settings& settings, Along along)
     : system_(problem, settings.strain_limit, settings.linear_solver,
               ConstraintSystem::Digits::few),
       settings_(settings),
+      along_(along),
       best_{Positions(3, problem.vertices()), {}},
       u_(3, problem.constraints()),
       mu_(problem.constraints()),
       excess_(problem.constraints()) {
+  if (along == Along::middle) u_start_.resize(3, problem.constraints());
   const bool passes = settings.smoothing_sweeps > 0 || settings.sweeps_before > 0;
   if (passes && !system_.chain()) {
     passes_ = std::make_unique<StrainPasses>(
@@ -49,9 +51,13 @@ FastProjection::FastProjection(const Problem& problem, const Settings& settings)
   }
 }
 
-StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
+StepResult FastProjection::apply(const Positions& x_start, double /*h*/, Iterate x,
                                  WorkCounters& work) {
   const EdgeConstraints& edges = system_.edges();
+  if (along_ == Along::middle) {
+    edges.gradient(x_start, u_start_);
+    if (passes_) passes_->take_middle_from(x_start);
+  }
   double least_error = std::numeric_limits<double>::infinity();  // |C~|^2 at best_
   double last_error = least_error, forcing = settings_.first_forcing;
   for (int j = 0, best_j = 0;; ++j) {
@@ -88,9 +94,11 @@ StepResult FastProjection::apply(const Positions& /*x_start*/, double /*h*/, Ite
   }
 }
 
-// C~(x) for this target to mu_, the gradient of C to u_. Returns whether x is permissible.
+// C~(x) for this target to mu_, the gradient of C to u_; that of the middle of the step makes of the
+// iteration Newton's with J(m) W J(m)^T for J(x_j) W J(m)^T. Returns whether x is permissible.
 bool FastProjection::linearize(double target, const Positions& x) {
   const bool permissible = system_.edges().linearize(x, u_, mu_);
+  if (along_ == Along::middle) to_middle(u_start_, u_);
   if (target > 0) system_.edges().excess(target, mu_);
   return permissible;
 }
@@ -186,11 +194,9 @@ double FastProjection::damped_prediction(double damping) const {
   return sum;
 }
 
-SettingFields<FastProjection::Settings> FastProjection::fields(bool searched_passes) {
+SettingFields<FastProjection::Settings> FastProjection::fields() {
   using S = Settings;
-  const auto searched = [searched_passes](SearchRange range) {
-    return searched_passes ? std::optional(range) : std::nullopt;
-  };
+  constexpr bool departs = true;  // Algorithm 1 has no passes
   return {
       {"max_iterations", &S::max_iterations, "projections a step before it is refused",
        at_least_one},
@@ -206,15 +212,15 @@ SettingFields<FastProjection::Settings> FastProjection::fields(bool searched_pas
       {"sweeps_before", &S::sweeps_before,
        "colored Gauss-Seidel passes before the first projection, at most; none on chains, where "
        "a projection costs no more than some passes",
-       count_from_zero, searched({0, 120})},
+       count_from_zero, tunable_passes, {}, departs},
       {"smoothing_sweeps", &S::smoothing_sweeps,
        "the same after each projection, at most; none on chains", count_from_zero,
-       searched({0, 120})},
+       tunable_passes, {}, departs},
       {"smoothing_target", &S::smoothing_target,
        "an edge that a pass corrects is brought to this fraction of the strain limit", fraction,
-       searched(tunable_fraction)},
+       tunable_fraction, {}, departs},
       {"smoothing_relaxation", &S::smoothing_relaxation, "times a pass's correction",
-       relaxation_range},
+       relaxation_range, tunable_relaxation, {}, departs},
       {"first_forcing", &S::first_forcing,
        "residual of a step's first linear solve by conjugate gradients or in mixed precision, of "
        "the right-hand side; those of later ones are smaller",
@@ -230,55 +236,13 @@ Backend fast_projection_row() {
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(FastProjection::fields()),
-          .make = make_filter_stepper<FastProjection>,
+          .make_filter = make_filter<FastProjection>,
           .direction = Direction::current,
           .citation = "Goldenthal et al. 2007",
           .origin = Origin::paper,
           .label = "fast projection",
-          .shows_iterates = true};
-}
-
-namespace {
-
-// Of the time stepper, not of the filter.
-SettingInfo blend() {
-  return {.name = "blend",
-          .initial = 0.48,
-          .meaning = "of BDF3 in the formula; A-stable up to 0.48",
-          .range = {0, 0.48}};
-}
-
-}  // namespace
-
-Backend fast_projection_bdf2_row() {
-  Backend row = inside_bdf2<FastProjection>(fast_projection_row());
-  row.name = "fast_projection_bdf2";
-  row.summary = "fast projection in BDF2, a second-order time step";
-  FastProjection::Settings defaults;
-  defaults.min_iterations = 1;
-  defaults.smoothing_sweeps = 30;
-  row.settings = setting_infos(FastProjection::fields(true), defaults);
-  row.citation = "Goldenthal et al. 2007; English and Bridson 2008";
-  row.label = "fast projection in BDF2";
-  row.shows_iterates = false;  // passes have no multipliers to show
-  return row;
-}
-
-Backend fast_projection_bdf2opt_row() {
-  Backend row = fast_projection_bdf2_row();
-  row.name = "fast_projection_bdf2opt";
-  row.summary = "fast projection in BDF2 blended with BDF3, with half the error constant";
-  row.contestant = false;
-  row.settings.push_back(blend());
-  row.make = [](std::shared_ptr<const Problem> problem,
-                const BackendOptions& options) -> std::unique_ptr<Stepper> {
-    auto filter = std::make_unique<FastProjection>(*problem, settings_of<FastProjection>(options));
-    return std::make_unique<Bdf2Stepper>(std::move(problem), std::move(filter),
-                                         std::get<double>(options.settings.at(blend().name)));
-  };
-  row.citation = "Goldenthal et al. 2007; Vatsa, Carpenter and Lockard 2010";
-  row.label = "fast projection in BDF2 with BDF3";
-  return row;
+          .shows_iterates = true,
+          .defaults_elsewhere = {{"bdf2", "min_iterations", 1}, {"bdf2", "smoothing_sweeps", 30}}};
 }
 
 }  // namespace inextensible

@@ -26,9 +26,8 @@ class FastProjection final : public VelocityFilter {
     double first_forcing = 1e-2;
     std::string_view linear_solver = "auto";
   };
-  // searched_passes: `bench tune` searches their number and target, too. Algorithm 1 has none.
-  static SettingFields<Settings> fields(bool searched_passes = false);
-  FastProjection(const Problem& problem, const Settings& settings);
+  static SettingFields<Settings> fields();
+  FastProjection(const Problem& problem, const Settings& settings, Along along = Along::edges);
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
   double reciprocal_condition() const override { return system_.reciprocal_condition(); }
@@ -45,9 +44,11 @@ class FastProjection final : public VelocityFilter {
 
   ConstraintSystem system_;
   Settings settings_;
+  Along along_;
   std::unique_ptr<StrainPasses> passes_;  // where some are asked for
   Iterate::Record best_;                  // x_j of least constraint error
-  Eigen::Matrix3Xd u_;                    // gradient of C at x_j
+  Eigen::Matrix3Xd u_;                    // gradient of C at x_j, or in the middle of the step
+  Eigen::Matrix3Xd u_start_;              // at x^n, for the middle of the step only
   Eigen::VectorXd mu_;                    // C~(x_j), then h^2 dlambda
   Eigen::VectorXd excess_;                // C~ of a damped iteration
   // With an observer only: h^2 lambda at x_j and at best_.
@@ -55,9 +56,5 @@ class FastProjection final : public VelocityFilter {
 };
 
 Backend fast_projection_row();
-// Inside BDF2 (each projection followed by some colored Gauss-Seidel passes), and BDF2 blended with
-// BDF3 (bdf2_stepper.h).
-Backend fast_projection_bdf2_row();
-Backend fast_projection_bdf2opt_row();
 
 }  // namespace inextensible

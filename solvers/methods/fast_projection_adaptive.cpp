@@ -38,10 +38,12 @@ double cost_of(const WorkCounters& before, const WorkCounters& after, int rows) 
 
 }  // namespace
 
-FastProjectionAdaptive::FastProjectionAdaptive(const Problem& problem, const Settings& settings)
+FastProjectionAdaptive::FastProjectionAdaptive(const Problem& problem, const Settings& settings,
+                                               Along along)
     : system_(problem, settings.strain_limit, settings.linear_solver,
               ConstraintSystem::Digits::few),
       settings_(settings),
+      along_(along),
       passes_(StrainPasses::by_mass(problem, {settings.strain_limit, settings.sweep_target},
                                     settings.relaxation)),
       yarns_(problem, settings.strain_limit, settings.target, passes_.edges()),
@@ -50,12 +52,18 @@ FastProjectionAdaptive::FastProjectionAdaptive(const Problem& problem, const Set
       mu_(problem.constraints()),
       before_{Positions(3, problem.vertices()), {}} {
   if (!yarns_.crossing()) settings_.sweeps = 0;
+  if (along == Along::middle) u_start_.resize(3, problem.constraints());
 }
 
-StepResult FastProjectionAdaptive::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
+StepResult FastProjectionAdaptive::apply(const Positions& x_start, double /*h*/, Iterate x,
                                          WorkCounters& work) {
   const EdgeConstraints& edges = system_.edges();
   if (edges.permissible(x)) return {Status::ok, 0};
+  if (along_ == Along::middle) {
+    edges.gradient(x_start, u_start_);
+    yarns_.take_middle_from(x_start);
+    passes_.take_middle_from(x_start);
+  }
   x_ = x;  // pinned vertices are where they are to be
   passes_.begin(x);
   bool regular = yarns_.crossing();  // else a yarn's projection is that of the whole
@@ -159,6 +167,7 @@ bool FastProjectionAdaptive::project_the_whole(Contacts* contacts, WorkCounters&
 // The gradient to u_, C~ to mu_, both at x_. Returns |C~|^2.
 double FastProjectionAdaptive::linearize() {
   system_.edges().linearize(x_, u_, mu_);
+  if (along_ == Along::middle) to_middle(u_start_, u_);
   system_.edges().excess(settings_.target, mu_);
   return mu_.squaredNorm();
 }
@@ -168,7 +177,7 @@ SettingFields<FastProjectionAdaptive::Settings> FastProjectionAdaptive::fields()
   return {
       {"max_iterations", &S::max_iterations, "rounds a step before it is refused", at_least_one},
       {"sweeps", &S::sweeps, "colored Gauss-Seidel passes of a round, at most", count_from_zero,
-       SearchRange{0, 60}},
+       tunable_passes},
       {"relaxation", &S::relaxation, "times a pass's correction", relaxation_range,
        tunable_relaxation},
       {"target", &S::target,
@@ -190,23 +199,13 @@ Backend fast_projection_adaptive_row() {
               "projection of every yarn, and of the whole cloth where that converges too "
               "slowly",
           .knob = Knob::strain_limit,
-          .contestant = false,  // in BDF2 it is as fast or faster within every strain and error
+          .contestant = true,
           .settings = setting_infos(FastProjectionAdaptive::fields()),
-          .make = make_filter_stepper<FastProjectionAdaptive>,
+          .make_filter = make_filter<FastProjectionAdaptive>,
           .direction = Direction::current,
           .citation = "Goldenthal et al. 2007; Bender and Bayer 2008",
           .origin = Origin::project,
           .label = "fast projection, adaptive"};
-}
-
-Backend fast_projection_adaptive_bdf2_row() {
-  Backend row = inside_bdf2<FastProjectionAdaptive>(fast_projection_adaptive_row());
-  row.name = "fast_projection_adaptive_bdf2";
-  row.summary = "fast_projection_adaptive in BDF2, a second-order time step";
-  row.citation = "Goldenthal et al. 2007; Bender and Bayer 2008; English and Bridson 2008";
-  row.label = "fast projection, adaptive, in BDF2";
-  row.contestant = true;
-  return row;
 }
 
 }  // namespace inextensible

@@ -25,7 +25,8 @@ class FastProjectionAdaptive final : public VelocityFilter {
     std::string_view linear_solver = "auto";
   };
   static SettingFields<Settings> fields();
-  FastProjectionAdaptive(const Problem& problem, const Settings& settings);
+  FastProjectionAdaptive(const Problem& problem, const Settings& settings,
+                         Along along = Along::edges);
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
   double reciprocal_condition() const override { return system_.reciprocal_condition(); }
@@ -40,10 +41,12 @@ class FastProjectionAdaptive final : public VelocityFilter {
 
   ConstraintSystem system_;
   Settings settings_;
+  Along along_;
   StrainPasses passes_;
   YarnPass yarns_;
   Positions x_;
   Eigen::Matrix3Xd u_;      // gradient of C
+  Eigen::Matrix3Xd u_start_;  // at x^n, for the middle of the step only
   Eigen::VectorXd mu_;      // C~, then h^2 dlambda
   Iterate::Record before_;  // a projection of the whole
   // What steps have cost each way, in visits of an edge; 0: not tried yet.
@@ -55,7 +58,5 @@ class FastProjectionAdaptive final : public VelocityFilter {
 };
 
 Backend fast_projection_adaptive_row();
-// The same inside BDF2 (bdf2_stepper.h).
-Backend fast_projection_adaptive_bdf2_row();
 
 }  // namespace inextensible

@@ -3,6 +3,7 @@
 // Loops: one pass over edges in random order, one check in order that stops at the first violation.
 #include "solvers/methods/gauss_seidel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -19,11 +20,12 @@ std::uint64_t next_random(std::uint64_t& state) {
 
 }  // namespace
 
-GaussSeidel::GaussSeidel(const Problem& problem, const Settings& settings)
+GaussSeidel::GaussSeidel(const Problem& problem, const Settings& settings, Along along)
     : edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
       band_(settings.strain_limit, settings.target),
       relaxation_(settings.relaxation),
+      along_(along),
       records_(problem.constraints()),
       permutation_(problem.constraints()),
       random_(settings.seed) {
@@ -47,8 +49,10 @@ void GaussSeidel::shuffle() {
   }
 }
 
-std::int64_t GaussSeidel::pass(Positions& x) const {
+template <bool middle>
+std::int64_t GaussSeidel::pass(const Positions& x_start, Positions& x) const {
   double* p = x.data();
+  const double* start = x_start.data();
   StrainBand band = band_;  // in registers
   const double relaxation = relaxation_;
   band.target_low *= relaxation;
@@ -58,12 +62,25 @@ std::int64_t GaussSeidel::pass(Positions& x) const {
     const EdgeRecord& edge = records_[k];
     double* pa = p + 3 * edge.a;
     double* pb = p + 3 * edge.b;
-    const double d0 = pb[0] - pa[0], d1 = pb[1] - pa[1], d2 = pb[2] - pa[2];
+    double d0 = pb[0] - pa[0], d1 = pb[1] - pa[1], d2 = pb[2] - pa[2];
     const double q = (d0 * d0 + d1 * d1 + d2 * d2) * edge.inverse_square;
     if (!band.violated(q)) continue;
     if (q == 0) continue;  // no direction to correct along; the check refuses if it stays so
-    const double excess =
-        relaxation - (q < band.low ? band.target_low : band.target_high) / std::sqrt(q);
+    double excess = relaxation - (q < band.low ? band.target_low : band.target_high) / std::sqrt(q);
+    if constexpr (middle) {  // |d - s m|^2 = wanted^2, as in strain_passes.cpp
+      const double *sa = start + 3 * edge.a, *sb = start + 3 * edge.b;
+      const double m0 = 0.5 * (d0 + sb[0] - sa[0]), m1 = 0.5 * (d1 + sb[1] - sa[1]),
+                   m2 = 0.5 * (d2 + sb[2] - sa[2]);
+      const double along = (d0 * m0 + d1 * m1 + d2 * m2) * edge.inverse_square,
+                   square = (m0 * m0 + m1 * m1 + m2 * m2) * edge.inverse_square;
+      if (along > least_alignment * q) {
+        const double wanted = (q < band.low ? band.target_low : band.target_high) / relaxation;
+        const double strained = q - wanted * wanted;
+        excess = relaxation * strained /
+                 (along + std::sqrt(std::max(along * along - square * strained, 0.0)));
+        d0 = m0, d1 = m1, d2 = m2;
+      }
+    }
     const double sa = edge.share_a * excess, sb = excess - sa;
     pa[0] += sa * d0;
     pa[1] += sa * d1;
@@ -76,7 +93,7 @@ std::int64_t GaussSeidel::pass(Positions& x) const {
   return projections;
 }
 
-StepResult GaussSeidel::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
+StepResult GaussSeidel::apply(const Positions& x_start, double /*h*/, Iterate x,
                               WorkCounters& work) {
   for (int passes = 0;; ++passes) {
     if (edges_.permissible(x)) return {Status::ok, passes};
@@ -84,7 +101,8 @@ StepResult GaussSeidel::apply(const Positions& /*x_start*/, double /*h*/, Iterat
       return refuse(Status::not_converged, passes, edges_, x, "pass limit");
     }
     shuffle();
-    const std::int64_t projections = pass(x);
+    const std::int64_t projections =
+        along_ == Along::middle ? pass<true>(x_start, x) : pass<false>(x_start, x);
     work.edge_projections += projections;
     x.settle();
     if (passes % 1024 == 1023) x.renew_planes(work);
@@ -108,7 +126,7 @@ Backend gauss_seidel_row() {
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(GaussSeidel::fields()),
-          .make = make_filter_stepper<GaussSeidel>,
+          .make_filter = make_filter<GaussSeidel>,
           .direction = Direction::local,
           .citation = "Bridson, Fedkiw and Anderson 2002; Mueller et al. 2006",
           .origin = Origin::paper,

@@ -20,7 +20,7 @@ class GaussSeidel final : public VelocityFilter {
     std::uint64_t seed = 1;
   };
   static SettingFields<Settings> fields();
-  GaussSeidel(const Problem& problem, const Settings& settings);
+  GaussSeidel(const Problem& problem, const Settings& settings, Along along = Along::edges);
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
 
  private:
@@ -30,12 +30,14 @@ class GaussSeidel final : public VelocityFilter {
     double share_a;         // w_a / (w_a + w_b), of the correction
   };
   void shuffle();
-  std::int64_t pass(Positions& x) const;
+  template <bool middle>
+  std::int64_t pass(const Positions& x_start, Positions& x) const;
 
   EdgeConstraints edges_;
   int max_iterations_;
   StrainBand band_;
   double relaxation_;
+  Along along_;
   std::vector<EdgeRecord> records_;
   std::vector<int> permutation_;
   std::uint64_t random_;  // SplitMix64 state

@@ -8,14 +8,17 @@
 #include "solvers/methods/gauss_seidel_colored.h"
 
 namespace inextensible {
-GaussSeidelColored::GaussSeidelColored(const Problem& problem, const Settings& settings)
+
+GaussSeidelColored::GaussSeidelColored(const Problem& problem, const Settings& settings, Along along)
     : edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
+      along_(along),
       passes_(StrainPasses::by_mass(problem, {settings.strain_limit, settings.target},
                                     settings.relaxation)) {}
 
-StepResult GaussSeidelColored::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
+StepResult GaussSeidelColored::apply(const Positions& x_start, double /*h*/, Iterate x,
                                      WorkCounters& work) {
+  if (along_ == Along::middle) passes_.take_middle_from(x_start);
   return passes_.limit(StrainPasses::Order::in_turn, max_iterations_, edges_, x, work);
 }
 
@@ -34,7 +37,7 @@ Backend gauss_seidel_colored_row() {
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(GaussSeidelColored::fields()),
-          .make = make_filter_stepper<GaussSeidelColored>,
+          .make_filter = make_filter<GaussSeidelColored>,
           .direction = Direction::local,
           .citation = "Fratarcangeli, Tibaldo and Pellacini 2016",
           .origin = Origin::literature,

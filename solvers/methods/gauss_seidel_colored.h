@@ -19,12 +19,13 @@ class GaussSeidelColored final : public VelocityFilter {
     double relaxation = 1;
   };
   static SettingFields<Settings> fields();
-  GaussSeidelColored(const Problem& problem, const Settings& settings);
+  GaussSeidelColored(const Problem& problem, const Settings& settings, Along along = Along::edges);
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
 
  private:
   EdgeConstraints edges_;
   int max_iterations_;
+  Along along_;
   StrainPasses passes_;
 };
 

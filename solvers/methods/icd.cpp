@@ -206,7 +206,7 @@ SettingFields<Icd::Settings> Icd::fields() {
       {"direction_tolerance", &S::direction_tolerance,
        "largest |F| of a vertex, in strain limit times shortest rest length; above 1 the direction "
        "may be that of an iterate short of the end",
-       positive, SearchRange{0.01, 100}},
+       positive, tunable_direction_tolerance},
       {"cg_tolerance", &S::cg_tolerance, "accuracy of a Newton step by projected_cg",
        Range{0, 1, true}, SearchRange{0.001, 0.95}},
       {"linear_solver",
@@ -223,7 +223,7 @@ Backend icd_row() {
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(Icd::fields()),
-          .make = make_filter_stepper<Icd>,
+          .make_filter = make_filter<Icd>,
           .direction = Direction::end,
           .citation = "Goldenthal et al. 2007",
           .origin = Origin::paper,

@@ -236,19 +236,16 @@ SettingFields<ImplicitSprings::Settings> ImplicitSprings::fields() {
 
 Backend implicit_springs_row() {
   return {.name = "implicit_springs",
-          .summary = "stiff springs in backward Euler, by Newton with line search",
+          .summary = "stiff springs, by Newton with line search",
           .knob = Knob::stiffness,
           .contestant = true,
           .settings = setting_infos(ImplicitSprings::fields()),
-          .make = [](std::shared_ptr<const Problem> problem,
-                     const BackendOptions& options) -> std::unique_ptr<Stepper> {
-            return std::make_unique<ImplicitSprings>(std::move(problem),
-                                                     settings_of<ImplicitSprings>(options));
-          },
+          .make = make_step<ImplicitSprings>,
           .direction = Direction::springs,
           .citation = "Baraff and Witkin 1998",
           .origin = Origin::paper,
-          .label = "implicit springs"};
+          .label = "implicit springs",
+          .backward_euler = true};
 }
 
 }  // namespace inextensible

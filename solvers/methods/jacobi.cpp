@@ -33,13 +33,15 @@ StrainPasses make_passes(const Problem& problem, const EdgeConstraints& edges,
 
 }  // namespace
 
-Jacobi::Jacobi(const Problem& problem, const Settings& settings)
+Jacobi::Jacobi(const Problem& problem, const Settings& settings, Along along)
     : edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
+      along_(along),
       passes_(make_passes(problem, edges_, settings)) {}
 
-StepResult Jacobi::apply(const Positions& /*x_start*/, double /*h*/, Iterate x,
+StepResult Jacobi::apply(const Positions& x_start, double /*h*/, Iterate x,
                          WorkCounters& work) {
+  if (along_ == Along::middle) passes_.take_middle_from(x_start);
   return passes_.limit(StrainPasses::Order::at_once, max_iterations_, edges_, x, work);
 }
 
@@ -59,7 +61,7 @@ Backend jacobi_row() {
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(Jacobi::fields()),
-          .make = make_filter_stepper<Jacobi>,
+          .make_filter = make_filter<Jacobi>,
           .direction = Direction::local,
           .citation = "Provot 1995; Bridson, Fedkiw and Anderson 2002",
           .origin = Origin::paper,

@@ -18,12 +18,13 @@ class Jacobi final : public VelocityFilter {
     double relaxation = 1.8;
   };
   static SettingFields<Settings> fields();
-  Jacobi(const Problem& problem, const Settings& settings);
+  Jacobi(const Problem& problem, const Settings& settings, Along along = Along::edges);
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
 
  private:
   EdgeConstraints edges_;
   int max_iterations_;
+  Along along_;
   StrainPasses passes_;
 };
 

@@ -1,7 +1,8 @@
 // The step minimizes 1/2 |x - x0|_M^2 with |z_k| = l_k for z_k = x_b - x_a, by the alternating
 // direction method of multipliers with weights r_k (kg; D: the differences x_b - x_a):
 //   (M + D^T r D) x = M x0 + D^T r (z - u),
-//   z_k = l_k (D x + u)_k / |(D x + u)_k|,   u += D x - z.
+//   z_k = l_k (D x + u)_k / |(D x + u)_k|,   u += D x - z,
+// over-relaxed with alpha D x + (1 - alpha) z in place of D x (Eckstein and Bertsekas 1992).
 // Its fixed points are those of ICD (Goldenthal et al. 2007), r u = h^2 times an
 // edge's force. As r is at the inertia's scale, h is not in the matrix, which is one for x, y and
 // z. A step starts from the last accepted one's forces.
@@ -31,6 +32,7 @@ ProjectiveDynamics::ProjectiveDynamics(const Problem& problem, const Settings& s
     : problem_(problem),
       edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
+      relaxation_(settings.relaxation),
       most_(settings.direction_tolerance * settings.strain_limit / settings.penalty),
       most_push_(settings.direction_tolerance * settings.strain_limit *
                  problem.shortest_rest_length()),
@@ -127,8 +129,8 @@ void ProjectiveDynamics::project_edge(int k, const Eigen::Vector3d& sum) {
 bool ProjectiveDynamics::project_edges(const Positions& x) {
   int violations = 0;
   for (int k = 0; k < edges_.count(); ++k) {
-    const Eigen::Vector3d d = x.col(edges_.b[k]) - x.col(edges_.a[k]), sum = d + u_.col(k),
-                          before = z_.col(k);
+    const Eigen::Vector3d d = x.col(edges_.b[k]) - x.col(edges_.a[k]), before = z_.col(k),
+                          sum = d + (relaxation_ - 1) * (d - before) + u_.col(k);
     const double l = edges_.rest_length[k], square = d.squaredNorm() / (l * l);
     project_edge(k, sum);
     u_.col(k) = sum - z_.col(k);
@@ -238,9 +240,11 @@ SettingFields<ProjectiveDynamics::Settings> ProjectiveDynamics::fields() {
           {"target", &S::target, projection_target, below_limit, tunable_below_limit},
           {"penalty", &S::penalty, "weight of an edge over that of its ends' inertia", positive,
            SearchRange{3, 100}},
+          {"relaxation", &S::relaxation, "alpha, of the edges' differences", Range{0, 2, true},
+           SearchRange{1, 1.9}},
           {"direction_tolerance", &S::direction_tolerance,
            "last move of an edge's projection, times penalty, in strain limit times rest length",
-           positive, SearchRange{0.1, 3}},
+           positive, tunable_direction_tolerance},
           {"linear_solver",
            &S::linear_solver,
            "factorization of the constant matrix",
@@ -255,7 +259,7 @@ Backend projective_dynamics_row() {
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(ProjectiveDynamics::fields()),
-          .make = make_filter_stepper<ProjectiveDynamics>,
+          .make_filter = make_filter<ProjectiveDynamics>,
           .direction = Direction::end,
           .citation = "Liu et al. 2013; Narain, Overby and Brown 2016",
           .origin = Origin::literature,

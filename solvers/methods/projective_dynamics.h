@@ -18,6 +18,7 @@ class ProjectiveDynamics final : public VelocityFilter {
     int max_iterations = 100000;
     double target = 0;    // of the strain limit; as FastProjection's
     double penalty = 10;  // weight of an edge, times 1 / (h^2 (w_a + w_b))
+    double relaxation = 1;
     // A step ends when no edge's z moves by more than this times strain_limit times its length,
     // over the penalty: so much of what pulls at vertices is not yet what edges do.
     double direction_tolerance = 1;
@@ -43,6 +44,7 @@ class ProjectiveDynamics final : public VelocityFilter {
   const Problem& problem_;
   EdgeConstraints edges_;
   int max_iterations_;
+  double relaxation_;
   double most_;                   // that z moves in the last iteration, in rest lengths
   double most_push_;              // m, by which a contact's push changes in it
   double shortest_, longest_;     // that an edge is brought to, in rest lengths

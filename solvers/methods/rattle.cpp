@@ -62,7 +62,8 @@ Backend rattle_row() {
           .label = "RATTLE (SHAKE with velocities)",
           .family = "shake",
           .takes_implicit_forces = false,
-          .velocities = Velocities::whole_step};
+          .velocities = Velocities::whole_step,
+          .stepper = "verlet"};
 }
 
 }  // namespace inextensible

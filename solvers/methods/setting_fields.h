@@ -4,11 +4,10 @@
 #pragma once
 
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "solvers/methods/backend.h"
-#include "solvers/stepping/bdf2_stepper.h"
-#include "solvers/stepping/midpoint_stepper.h"
 #include "solvers/stepping/velocity_filter.h"
 
 namespace inextensible {
@@ -29,6 +28,7 @@ struct SettingField {
   Range range = {};
   std::optional<SearchRange> tunable = {};
   std::vector<const char*> choices = {};
+  bool departs = false;  // as SettingInfo's
 };
 template <class Struct>
 using SettingFields = std::vector<SettingField<Struct>>;
@@ -40,7 +40,7 @@ std::vector<SettingInfo> setting_infos(const SettingFields<Struct>& fields,
   std::vector<SettingInfo> infos;
   for (const SettingField<Struct>& field : fields) {
     SettingInfo info{field.name,  0.0,   field.meaning, field.choices,
-                     field.range, false, field.tunable};
+                     field.range, false, field.tunable, field.departs};
     if (const auto* word = std::get_if<std::string_view Struct::*>(&field.member)) {
       info.initial = (defaults.**word).data();  // of a literal
     } else if (const auto* number = std::get_if<double Struct::*>(&field.member)) {
@@ -79,58 +79,23 @@ typename Method::Settings settings_of(const BackendOptions& options) {
   return settings_from(Method::fields(), options);
 }
 
-// The `make` of rows of velocity filters.
+// The `make_filter` of rows.
 template <class Filter>
-std::unique_ptr<Stepper> make_filter_stepper(std::shared_ptr<const Problem> problem,
-                                             const BackendOptions& options) {
-  auto filter = std::make_unique<Filter>(*problem, settings_of<Filter>(options));
-  return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
+std::unique_ptr<VelocityFilter> make_filter(const Problem& problem, const BackendOptions& options,
+                                            Along along) {
+  if constexpr (std::is_constructible_v<Filter, const Problem&, const typename Filter::Settings&,
+                                        Along>) {
+    return std::make_unique<Filter>(problem, settings_of<Filter>(options), along);
+  } else {
+    return std::make_unique<Filter>(problem, settings_of<Filter>(options));
+  }
 }
 
-// The same inside BDF2.
-template <class Filter>
-std::unique_ptr<Stepper> make_bdf2_stepper(std::shared_ptr<const Problem> problem,
-                                           const BackendOptions& options) {
-  auto filter = std::make_unique<Filter>(*problem, settings_of<Filter>(options));
-  return std::make_unique<Bdf2Stepper>(std::move(problem), std::move(filter), 0);
-}
-
-// The row of a filter that takes part inside BDF2 instead: all that follows from that.
-template <class Filter>
-Backend inside_bdf2(Backend row) {
-  if (!*row.family) row.family = row.name;
-  row.origin = Origin::project;
-  row.make = make_bdf2_stepper<Filter>;
-  row.velocities = Velocities::whole_step;
-  return row;
-}
-
-// Of the midpoint rule, not of the filter in it.
-inline SettingInfo spectral_radius() {
-  return {.name = "spectral_radius",
-          .initial = 0.8,
-          .meaning = "what an edge keeps of its rate when it bounces off its limit; 1 conserves",
-          .range = fraction,
-          .tunable = tunable_fraction};
-}
-
-// The row of a filter that takes part inside the midpoint rule instead, with these defaults.
-template <class Filter>
-Backend inside_midpoint(Backend row, const typename Filter::Settings& defaults) {
-  if (!*row.family) row.family = row.name;
-  row.origin = Origin::project;
-  row.settings = setting_infos(Filter::fields(), defaults);
-  row.settings.push_back(spectral_radius());
-  row.make = [](std::shared_ptr<const Problem> problem,
-                const BackendOptions& options) -> std::unique_ptr<Stepper> {
-    auto filter = std::make_unique<Filter>(*problem, settings_of<Filter>(options), Along::middle);
-    return std::make_unique<MidpointStepper>(
-        std::move(problem), std::move(filter),
-        std::get<double>(options.settings.at(spectral_radius().name)));
-  };
-  row.velocities = Velocities::whole_step;
-  row.takes_implicit_forces = false;
-  return row;
+// The `make` of rows of methods that are a time step of their own.
+template <class Method>
+std::unique_ptr<Stepper> make_step(std::shared_ptr<const Problem> problem,
+                                   const BackendOptions& options) {
+  return std::make_unique<Method>(std::move(problem), settings_of<Method>(options));
 }
 
 // What methods share.
@@ -160,6 +125,10 @@ constexpr Range forcing_range{0, 1, true};
 constexpr SearchRange tunable_forcing{1e-4, 0.3};
 constexpr Range relaxation_range{0, 2, true};
 // A chain of 640 links is relaxed best at 1.99.
-constexpr SearchRange tunable_relaxation{0.5, 1.995, 2};
+constexpr SearchRange tunable_relaxation{0.5, 1.998, 2};
+// Of passes over all edges, in one go.
+constexpr SearchRange tunable_passes{0, 2000};
+// Of methods that iterate until forces act along the edges at the end of the step.
+constexpr SearchRange tunable_direction_tolerance{0.01, 100};
 
 }  // namespace inextensible

@@ -180,11 +180,12 @@ Backend shake_row() {
           .knob = Knob::strain_limit,
           .contestant = true,
           .settings = setting_infos(Shake::fields()),
-          .make = make_filter_stepper<Shake>,
+          .make_filter = make_filter<Shake>,
           .direction = Direction::start,
           .citation = "Ryckaert, Ciccotti and Berendsen 1977; Barth et al. 1994",
           .origin = Origin::paper,
-          .label = "SHAKE"};
+          .label = "SHAKE",
+          .stepper = "verlet"};
 }
 
 }  // namespace inextensible

@@ -103,10 +103,7 @@ Backend soft_step_row() {
           .knob = Knob::time_step,
           .contestant = true,
           .settings = setting_infos(SoftStep::fields()),
-          .make = [](std::shared_ptr<const Problem> problem,
-                     const BackendOptions& options) -> std::unique_ptr<Stepper> {
-            return std::make_unique<SoftStep>(std::move(problem), settings_of<SoftStep>(options));
-          },
+          .make = make_step<SoftStep>,
           .direction = Direction::start,
           .citation = "Catto 2024",
           .origin = Origin::literature,

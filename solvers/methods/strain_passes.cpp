@@ -30,9 +30,14 @@ struct Ends {
 };
 
 // Adds to the ends at `to` what corrects the edges between those at `from`; no place occurs twice.
-inline int correct(const Ends& from, const Ends& to, const double* inverse_square,
-                   const double* share_a, const double* share_b, const StrainBand& band) {
+// In the middle of the step, from `start`, with m for d and l = 1: |d - s m|^2 = wanted^2, s by the
+// form that does not cancel.
+template <bool middle>
+inline int correct(const Ends& from, const Ends& start, const Ends& to,
+                   const double* inverse_square, const double* share_a, const double* share_b,
+                   const StrainBand& band) {
   double q[width], excess[width];
+  [[maybe_unused]] double from_start[width];  // 1: along m, 0: along d
   std::int64_t violations = 0;
   for (int i = 0; i < width; ++i) {
     const double d0 = from.bx[i] - from.ax[i];
@@ -44,14 +49,35 @@ inline int correct(const Ends& from, const Ends& to, const double* inverse_squar
   if (violations == 0) return 0;
   for (int i = 0; i < width; ++i) {
     const double wanted = q[i] < band.low ? band.target_low : band.target_high;
-    const double all = 1 - wanted / std::sqrt(q[i]);
+    double all = 1 - wanted / std::sqrt(q[i]);
+    if constexpr (middle) {
+      const double d0 = from.bx[i] - from.ax[i], d1 = from.by[i] - from.ay[i],
+                   d2 = from.bz[i] - from.az[i];
+      const double m0 = 0.5 * (d0 + start.bx[i] - start.ax[i]),
+                   m1 = 0.5 * (d1 + start.by[i] - start.ay[i]),
+                   m2 = 0.5 * (d2 + start.bz[i] - start.az[i]);
+      const double p = (d0 * m0 + d1 * m1 + d2 * m2) * inverse_square[i];
+      const double r = (m0 * m0 + m1 * m1 + m2 * m2) * inverse_square[i];
+      const double strained = q[i] - wanted * wanted;
+      const double along_middle =
+          strained / (p + std::sqrt(std::max(p * p - r * strained, 0.0)));
+      const bool aligned = p > least_alignment * q[i];
+      all = aligned ? along_middle : all;
+      from_start[i] = aligned ? 1 : 0;
+    }
     excess[i] = band.violated(q[i]) && q[i] != 0 ? all : 0;
   }
 #pragma GCC ivdep
   for (int i = 0; i < width; ++i) {
-    const double d0 = from.bx[i] - from.ax[i];
-    const double d1 = from.by[i] - from.ay[i];
-    const double d2 = from.bz[i] - from.az[i];
+    double d0 = from.bx[i] - from.ax[i];
+    double d1 = from.by[i] - from.ay[i];
+    double d2 = from.bz[i] - from.az[i];
+    if constexpr (middle) {
+      const double half = 0.5 * from_start[i];
+      d0 += half * (start.bx[i] - start.ax[i] - d0);
+      d1 += half * (start.by[i] - start.ay[i] - d1);
+      d2 += half * (start.bz[i] - start.az[i] - d2);
+    }
     const double sa = share_a[i] * excess[i], sb = share_b[i] * excess[i];
     to.ax[i] += sa * d0;
     to.ay[i] += sa * d1;
@@ -171,9 +197,14 @@ const ColoredEdges::Places* StrainPasses::held_normals() {
   return &planes_.held_normals();
 }
 
+void StrainPasses::take_middle_from(const Positions& x_start) {
+  if (start_.rows() == 0) start_ = edges_.make_places();
+  edges_.load(x_start, start_);
+}
+
 std::int64_t StrainPasses::in_turn() {
   settle_contacts();
-  return pass<true>(x_);
+  return start_.rows() > 0 ? pass<true, true>(x_) : pass<true, false>(x_);
 }
 
 StrainPasses::Passed StrainPasses::in_turn(int most, WorkCounters& work) {
@@ -188,29 +219,32 @@ StrainPasses::Passed StrainPasses::in_turn(int most, WorkCounters& work) {
 
 std::int64_t StrainPasses::at_once() {
   settle_contacts();
-  const std::int64_t corrected = pass<false>(correction_);
+  const std::int64_t corrected =
+      start_.rows() > 0 ? pass<false, true>(correction_) : pass<false, false>(correction_);
   if (corrected == 0) return 0;
   x_ += correction_;
   correction_.setZero();
   return corrected;
 }
 
-template <bool in_place>
+template <bool in_place, bool middle>
 std::int64_t StrainPasses::pass(ColoredEdges::Places& to) {
   const int *a = edges_.a().data(), *b = edges_.b().data();
   const std::ptrdiff_t stride = x_.rows();
   std::int64_t corrected = 0;
   for (const ColoredEdges::Block& block : edges_.blocks()) {
     for (int k = block.first; k < block.first + block.count; k += width) {
-      const auto correct_at = [&](const Ends& x, const Ends& sum) {
-        return correct(x, in_place ? x : sum, inverse_square_.data() + k, share_a_.data() + k,
-                       share_b_.data() + k, band_);
+      const auto correct_at = [&](const Ends& x, const Ends& start, const Ends& sum) {
+        return correct<middle>(x, start, in_place ? x : sum, inverse_square_.data() + k,
+                               share_a_.data() + k, share_b_.data() + k, band_);
       };
       if (block.adjacent) {
-        corrected += correct_at({x_.data(), stride, a[k], b[k]}, {to.data(), stride, a[k], b[k]});
+        const Ends x(x_.data(), stride, a[k], b[k]);
+        const Ends start = middle ? Ends(start_.data(), stride, a[k], b[k]) : x;
+        corrected += correct_at(x, start, {to.data(), stride, a[k], b[k]});
         continue;
       }
-      double gathered[2][6 * width];  // positions, sums
+      double gathered[3][6 * width];  // positions, sums, positions at the start
       const auto gather = [&](const ColoredEdges::Places& places, double* out) {
         for (int axis = 0; axis < 3; ++axis) {
           const double* p = places.col(axis).data();
@@ -221,7 +255,10 @@ std::int64_t StrainPasses::pass(ColoredEdges::Places& to) {
       gather(x_, gathered[0]);
       double* out = gathered[in_place ? 0 : 1];
       if (!in_place) gather(to, out);
-      const int here = correct_at({gathered[0], 2 * width, 0, width}, {out, 2 * width, 0, width});
+      if (middle) gather(start_, gathered[2]);
+      const int here = correct_at({gathered[0], 2 * width, 0, width},
+                                  {gathered[middle ? 2 : 0], 2 * width, 0, width},
+                                  {out, 2 * width, 0, width});
       if (here == 0) continue;
       corrected += here;
       for (int axis = 0; axis < 3; ++axis) {

@@ -45,6 +45,9 @@ class StrainPasses {
   // load(), and saves the contacts of x for passes_alone().
   void begin(Iterate x);
   void store(Positions& x) const;
+  // From now on corrections point along the edges as they are in the middle of the step from x_start
+  // (3 x n) to where they are. Until the first call they point along the edges as they are.
+  void take_middle_from(const Positions& x_start);
   bool finite() const { return x_.allFinite(); }
   // Whether to stop after so many passes: at most `most`, and no more than some with overflow.
   bool gives_up(int passes, int most) const {
@@ -89,7 +92,7 @@ class StrainPasses {
 
  private:
   void renew_planes(Iterate x, WorkCounters& work);
-  template <bool in_place>
+  template <bool in_place, bool middle>
   std::int64_t pass(ColoredEdges::Places& to);
 
   Contacts* contacts_ = nullptr;
@@ -100,6 +103,7 @@ class StrainPasses {
   Eigen::ArrayXd inverse_square_;  // 1 / l^2, by entry
   Eigen::ArrayXd share_a_, share_b_;
   ColoredEdges::Places x_, correction_;
+  ColoredEdges::Places start_;  // of the step; empty: middles are not asked for
 };
 
 }  // namespace inextensible

@@ -37,7 +37,7 @@ SettingFields<Strips::Settings> Strips::fields() {
   return {{"max_iterations", &S::max_iterations,
            "passes over all yarns a step before it is refused", at_least_one},
           {"sweeps", &S::sweeps, "colored Gauss-Seidel passes between two passes, at most",
-           count_from_zero, SearchRange{0, 60}},
+           count_from_zero, tunable_passes},
           {"relaxation", &S::relaxation, "times a pass's correction", relaxation_range,
            tunable_relaxation},
           {"target", &S::target, "a yarn's links are brought to this fraction of the strain limit",
@@ -51,40 +51,15 @@ Backend strips_row() {
   return {.name = "strips",
           .summary = "every yarn projected as a whole, passes of colored Gauss-Seidel between",
           .knob = Knob::strain_limit,
-          .contestant = false,  // strips_bdf2 is as fast or faster within every strain and error
+          .contestant = true,
           .settings = setting_infos(Strips::fields()),
-          .make = make_filter_stepper<Strips>,
+          .make_filter = make_filter<Strips>,
           .direction = Direction::current,
           .citation = "Bender and Bayer 2008",
           .origin = Origin::project,
           .label = "strips",
-          .same_on_chains = "fast_projection_adaptive"};
-}
-
-Backend strips_bdf2_row() {
-  Backend row = inside_bdf2<Strips>(strips_row());
-  row.name = "strips_bdf2";
-  row.summary = "strips in BDF2, a second-order time step";
-  row.citation = "Bender and Bayer 2008; English and Bridson 2008";
-  row.label = "strips in BDF2";
-  row.contestant = true;
-  row.same_on_chains = "fast_projection_adaptive_bdf2";
-  return row;
-}
-
-Backend strips_midpoint_row() {
-  Strips::Settings defaults;
-  defaults.sweeps = 3;
-  defaults.target = 0.5;
-  Backend row = inside_midpoint<Strips>(strips_row(), defaults);
-  row.name = "strips_midpoint";
-  row.summary = "strips along directions of the middle of the step, in the midpoint rule";
-  row.citation = "Bender and Bayer 2008; Gonzalez 1999";
-  row.label = "strips in the midpoint rule";
-  row.contestant = true;
-  row.same_on_chains = "";
-  row.conserves_momentum = false;  // angular: directions turn from round to round
-  return row;
+          .same_on_chains = "fast_projection_adaptive",
+          .defaults_elsewhere = {{"midpoint", "sweeps", 3}, {"midpoint", "target", 0.5}}};
 }
 
 }  // namespace inextensible

@@ -39,9 +39,5 @@ class Strips final : public VelocityFilter {
 };
 
 Backend strips_row();
-// The same inside BDF2 (bdf2_stepper.h).
-Backend strips_bdf2_row();
-// With directions of the middle of the step, inside the midpoint rule (midpoint_stepper.h).
-Backend strips_midpoint_row();
 
 }  // namespace inextensible

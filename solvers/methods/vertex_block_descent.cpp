@@ -30,6 +30,7 @@ VertexBlockDescent::VertexBlockDescent(std::shared_ptr<const Problem> shared,
                                        const Settings& settings)
     : Stepper(std::move(shared)),
       iterations_(settings.iterations),
+      relaxation_(settings.relaxation),
       passes_(problem(), all_springs(problem(), settings.stiffness)),
       inertial_(3, problem().vertices()),
       inertia_(problem().mass()),
@@ -71,7 +72,7 @@ StepResult VertexBlockDescent::solve(const State& state, double h, Positions& x)
   StepResult result;
   for (int round = 0;; ++round) {
     passes_.set_planes(contacts);
-    for (int i = 0; i < iterations_; ++i) passes_.visit_all(h * h);
+    for (int i = 0; i < iterations_; ++i) passes_.visit_all(h * h, relaxation_);
     result.iterations += iterations_;
     work_.spring_evaluations += std::int64_t{iterations_} * passes_.entries();
     passes_.store(x);
@@ -102,26 +103,26 @@ SettingFields<VertexBlockDescent::Settings> VertexBlockDescent::fields() {
   using S = Settings;
   return {{"stiffness", &S::stiffness, "spring stiffness EA in N; sweeps search it", positive},
           {"iterations", &S::iterations, "passes over all vertices a step", at_least_one,
-           SearchRange{20, 500}}};
+           SearchRange{5, 500}},
+          {"relaxation", &S::relaxation,
+           "times a vertex's move; over-relaxed, where the paper has Chebyshev's acceleration",
+           relaxation_range, tunable_relaxation}};
 }
 
 Backend vertex_block_descent_row() {
   return {.name = "vertex_block_descent",
-          .summary = "backward Euler on stiff springs, a number of passes over single vertices",
+          .summary = "stiff springs, a number of passes over single vertices",
           .knob = Knob::stiffness,
           .contestant = true,
           .settings = setting_infos(VertexBlockDescent::fields()),
-          .make = [](std::shared_ptr<const Problem> problem,
-                     const BackendOptions& options) -> std::unique_ptr<Stepper> {
-            return std::make_unique<VertexBlockDescent>(std::move(problem),
-                                                        settings_of<VertexBlockDescent>(options));
-          },
+          .make = make_step<VertexBlockDescent>,
           .direction = Direction::springs,
           .citation = "Chen et al. 2024",
           .origin = Origin::literature,
           .label = "vertex block descent",
           .takes_bending = false,
-          .conserves_momentum = false};
+          .conserves_momentum = false,
+          .backward_euler = true};
 }
 
 }  // namespace inextensible

@@ -14,6 +14,7 @@ class VertexBlockDescent final : public Stepper {
   struct Settings {
     double stiffness = 1e4;  // EA, N; as ImplicitSprings'
     int iterations = 100;    // passes a step
+    double relaxation = 1;   // times a vertex's move
   };
   static SettingFields<Settings> fields();
   VertexBlockDescent(std::shared_ptr<const Problem> problem, const Settings& settings);
@@ -25,6 +26,7 @@ class VertexBlockDescent final : public Stepper {
                             const Positions& x, Positions& v) override;
 
   int iterations_;
+  double relaxation_;
   VertexPasses passes_;
   Positions inertial_;           // x + h v + h^2 g, drag's included
   std::vector<double> inertia_;  // m + h times drag, kg

@@ -133,11 +133,11 @@ void VertexPasses::read_pushes(Contacts& contacts) const {
     contacts.set_push(c, push_[place_[contacts.vertex(c)]]);
 }
 
-double VertexPasses::visit_all(double stiffness_scale) {
+double VertexPasses::visit_all(double stiffness_scale, double relaxation) {
   double largest = 0;
   for (const Group& group : groups_) {
-    largest = std::max(largest, has_planes_ ? visit<true>(group, stiffness_scale)
-                                            : visit<false>(group, stiffness_scale));
+    largest = std::max(largest, has_planes_ ? visit<true>(group, stiffness_scale, relaxation)
+                                            : visit<false>(group, stiffness_scale, relaxation));
   }
   return largest;
 }
@@ -177,7 +177,7 @@ void VertexPasses::add_springs(const Group& group, double stiffness_scale, Model
 }
 
 template <bool with_planes>
-double VertexPasses::visit(const Group& group, double stiffness_scale) {
+double VertexPasses::visit(const Group& group, double stiffness_scale, double relaxation) {
   Model model;
   auto& [f, h] = model;
   const double* inertia = inertia_.data() + group.place;
@@ -221,6 +221,13 @@ double VertexPasses::visit(const Group& group, double stiffness_scale) {
       const double force = gap < 0 ? -gap / give : 0;
       push[i] = force / inertia[i];
       for (int axis = 0; axis < 3; ++axis) at[axis] += force * q[axis];
+    }
+    for (int axis = 0; axis < 3; ++axis) at[axis] += (relaxation - 1) * (at[axis] - x[axis][i]);
+    if constexpr (with_planes) {  // on the plane, where relaxation led through it
+      const double gap =
+          plane[0][i] * at[0] + plane[1][i] * at[1] + plane[2][i] * at[2] - plane[3][i];
+      const double through = relaxation > 1 && gap < 0 ? gap : 0;
+      for (int axis = 0; axis < 3; ++axis) at[axis] -= through * plane[axis][i];
     }
     moved[i] = 0;
     for (int axis = 0; axis < 3; ++axis) {

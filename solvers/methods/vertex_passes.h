@@ -23,10 +23,10 @@ class VertexPasses {
   void store(Positions& x) const;
   bool finite() const { return x_.allFinite(); }
 
-  // Every free vertex once: one Newton step on its energy, the others held fixed, the Hessian
-  // without what is negative across a spring. stiffness_scale multiplies the springs' stiffnesses.
-  // Returns the largest move's square, m^2.
-  double visit_all(double stiffness_scale);
+  // Every free vertex once: `relaxation` times one Newton step on its energy, the others held fixed,
+  // the Hessian without what is negative across a spring. stiffness_scale multiplies the springs'
+  // stiffnesses. Returns the largest move's square, m^2.
+  double visit_all(double stiffness_scale, double relaxation = 1);
   // A vertex with a plane stays out of its half-space; contacts must not outlive the next call.
   // null: none.
   void set_planes(const Contacts* contacts);
@@ -51,7 +51,7 @@ class VertexPasses {
   struct Model;
   void add_springs(const Group& group, double stiffness_scale, Model& model) const;
   template <bool with_planes>
-  double visit(const Group& group, double stiffness_scale);
+  double visit(const Group& group, double stiffness_scale, double relaxation);
 
   std::vector<Group> groups_;  // by color
   std::vector<int> vertex_;    // at a place, -1: none

@@ -44,8 +44,10 @@ std::vector<double> distances_from(int start, const Problem& problem,
 }  // namespace
 
 XpbdSmallSteps::XpbdSmallSteps(const Problem& problem, const Settings& settings,
-                               const Positions* rest)
-    : most_(settings.sweeps), passes_(StrainPasses::by_mass(problem, {0, 0}, settings.relaxation)) {
+                               const Positions* rest, Along along)
+    : most_(settings.sweeps),
+      along_(along),
+      passes_(StrainPasses::by_mass(problem, {0, 0}, settings.relaxation)) {
   if (settings.attachments == "edges") attach_along_edges(problem);
   if (settings.attachments == "straight") {
     if (!rest) throw std::invalid_argument("straight attachments need the positions at rest");
@@ -89,9 +91,10 @@ void XpbdSmallSteps::keep_nearest(const Problem& problem) {
   });
 }
 
-StepResult XpbdSmallSteps::apply(const Positions& /*x_start*/, double /*h*/, Iterate iterate,
+StepResult XpbdSmallSteps::apply(const Positions& x_start, double /*h*/, Iterate iterate,
                                  WorkCounters& work) {
   passes_.load(iterate);
+  if (along_ == Along::middle) passes_.take_middle_from(x_start);
   for (int i = 0; i < most_; ++i) work.edge_projections += passes_.in_turn();
   passes_.settle_contacts();
   if (!passes_.finite()) return {Status::not_finite, most_, -1, 0, "overflow"};
@@ -109,7 +112,7 @@ StepResult XpbdSmallSteps::apply(const Positions& /*x_start*/, double /*h*/, Ite
 SettingFields<XpbdSmallSteps::Settings> XpbdSmallSteps::fields() {
   using S = Settings;
   return {
-      {"sweeps", &S::sweeps, "colored Gauss-Seidel passes a step", at_least_one, SearchRange{1, 8}},
+      {"sweeps", &S::sweeps, "colored Gauss-Seidel passes a step", at_least_one, SearchRange{1, 100}},
       {"relaxation", &S::relaxation, "times a correction", relaxation_range, tunable_relaxation},
       {"attachments",
        &S::attachments,
@@ -121,22 +124,21 @@ SettingFields<XpbdSmallSteps::Settings> XpbdSmallSteps::fields() {
 
 Backend xpbd_small_steps_row() {
   return {.name = "xpbd_small_steps",
-          .summary = "XPBD as in engines: a fixed number of passes in small steps, no test",
+          .summary = "PBD with substeps (XPBD without compliance): a fixed number of passes, no test",
           .knob = Knob::time_step,
           .contestant = true,
           .settings = setting_infos(XpbdSmallSteps::fields()),
-          .make = [](std::shared_ptr<const Problem> problem,
-                     const BackendOptions& options) -> std::unique_ptr<Stepper> {
+          .make_filter = [](const Problem& problem, const BackendOptions& options,
+                            Along along) -> std::unique_ptr<VelocityFilter> {
             // The start is taken for the shape at rest.
-            auto filter =
-                std::make_unique<XpbdSmallSteps>(*problem, settings_of<XpbdSmallSteps>(options),
-                                                 options.start ? &options.start->x : nullptr);
-            return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
+            return std::make_unique<XpbdSmallSteps>(
+                problem, settings_of<XpbdSmallSteps>(options),
+                options.start ? &options.start->x : nullptr, along);
           },
           .direction = Direction::local,
           .citation = "Macklin et al. 2016, 2019",
           .origin = Origin::literature,
-          .label = "XPBD, small steps"};
+          .label = "PBD with substeps (XPBD, compliance 0)"};
 }
 
 }  // namespace inextensible

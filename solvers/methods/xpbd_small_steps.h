@@ -21,7 +21,8 @@ class XpbdSmallSteps final : public VelocityFilter {
   static SettingFields<Settings> fields();
   // rest: positions (3 x n) at rest, for straight attachments; null where they are not known.
   // Throws std::invalid_argument if they are needed.
-  XpbdSmallSteps(const Problem& problem, const Settings& settings, const Positions* rest);
+  XpbdSmallSteps(const Problem& problem, const Settings& settings, const Positions* rest,
+                 Along along = Along::edges);
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
 
  private:
@@ -34,6 +35,7 @@ class XpbdSmallSteps final : public VelocityFilter {
   void keep_nearest(const Problem& problem);
 
   int most_;
+  Along along_;
   StrainPasses passes_;
   std::vector<Attachment> attachments_;
 };

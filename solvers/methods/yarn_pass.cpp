@@ -17,8 +17,6 @@ namespace inextensible {
 namespace {
 
 constexpr double least_pivot = 1e-3;  // of the diagonal
-// m . d / |d|^2 of a link that has turned by 90 degrees, m = (d_start + d) / 2.
-constexpr double least_alignment = 0.5;
 
 }  // namespace
 

@@ -6,6 +6,13 @@
 
 namespace inextensible {
 
+void to_middle(const Eigen::Matrix3Xd& u_start, Eigen::Matrix3Xd& u) {
+  for (Eigen::Index k = 0; k < u.cols(); ++k) {
+    const Eigen::Vector3d middle = 0.5 * (u_start.col(k) + u.col(k));
+    if (middle.dot(u.col(k)) > least_alignment * u.col(k).squaredNorm()) u.col(k) = middle;
+  }
+}
+
 EdgeConstraints::EdgeConstraints(const Problem& problem, double strain_limit,
                                  std::vector<int> order)
     : permissible_low(PermissibleSquares(strain_limit).low),

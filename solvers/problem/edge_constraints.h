@@ -20,6 +20,12 @@ struct PermissibleSquares {
   double low, high;
 };
 
+// m . d / |d|^2 of an edge that has turned by 90 degrees in a step, m = (d_start + d) / 2 its middle:
+// one that has turned further is taken as it is.
+constexpr double least_alignment = 0.5;
+// u (3 x m) at the end of a step becomes that of the middle, u_start at its start.
+void to_middle(const Eigen::Matrix3Xd& u_start, Eigen::Matrix3Xd& u);
+
 // The edges of a problem as arrays, in an order of the caller's choice (a fill-reducing one, say).
 class EdgeConstraints {
  public:

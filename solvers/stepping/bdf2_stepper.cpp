@@ -4,27 +4,17 @@
 #include "solvers/problem/stopwatch.h"
 
 namespace inextensible {
-namespace {
 
-constexpr double largest_growth = 2;  // of the step; variable-step BDF2 is stable below 1 + sqrt 2
-
-}  // namespace
-
-// y^{n+1} = now y^n + before y^{n-1} + earlier y^{n-2} + beta_h y'^{n+1}.
+// y^{n+1} = now y^n + before y^{n-1} + beta_h y'^{n+1}; variable-step BDF2 (English and Bridson 2008
+// for constrained dynamics).
 Bdf2Stepper::Coefficients Bdf2Stepper::coefficients(double h) const {
-  if (blend_ > 0 && h == h_before_ && h == h_earlier_) {
-    // Vatsa, Carpenter and Lockard 2010
-    const double scale = 1 / (1.5 + blend_ / 3);
-    return {(2 + blend_) * scale, -(0.5 + blend_) * scale, blend_ / 3 * scale, h * scale};
-  }
-  // variable-step BDF2 (English and Bridson 2008 for constrained dynamics)
   const double w = h / h_before_, alpha = (1 + w) * (1 + w) / (1 + 2 * w);
-  return {alpha, 1 - alpha, 0, h * (1 + w) / (1 + 2 * w)};
+  return {alpha, 1 - alpha, h * (1 + w) / (1 + 2 * w)};
 }
 
 Bdf2Stepper::Bdf2Stepper(std::shared_ptr<const Problem> problem,
-                         std::unique_ptr<VelocityFilter> filter, double blend)
-    : Stepper(std::move(problem)), filter_(std::move(filter)), blend_(blend) {
+                         std::unique_ptr<VelocityFilter> filter)
+    : Stepper(std::move(problem)), filter_(std::move(filter)) {
   const Eigen::Index n = problem_->vertices();
   for (Positions* p : {&x_before_, &v_before_, &x_known_, &v_known_, &acceleration_})
     p->resize(3, n);
@@ -34,10 +24,6 @@ Bdf2Stepper::Bdf2Stepper(std::shared_ptr<const Problem> problem,
     implicit_ = std::make_unique<ImplicitForces>(*problem_);
     flight_velocity_.resize(3, n);
   }
-  if (blend_ > 0) {
-    x_earlier_.resize(3, n);
-    v_earlier_.resize(3, n);
-  }
 }
 
 void Bdf2Stepper::restart(const State& state, double h) {
@@ -46,7 +32,6 @@ void Bdf2Stepper::restart(const State& state, double h) {
   x_known_ = state.x;
   v_known_ = state.v;
   h_before_ = h;
-  h_earlier_ = 0;
   ++restarts_;
 }
 
@@ -54,7 +39,7 @@ StepResult Bdf2Stepper::solve(const State& state, double h, Positions& x) {
   Stopwatch stopwatch(phases_wanted_);
   if (problem_->pins_follow_body())  // they have moved since
     for (const int vertex : problem_->pinned()) x_known_.col(vertex) = state.x.col(vertex);
-  const bool known = h_before_ > 0 && h <= largest_growth * h_before_ && state.x == x_known_ &&
+  const bool known = h_before_ > 0 && h <= largest_bdf2_growth * h_before_ && state.x == x_known_ &&
                      state.v == v_known_;
   if (implicit_) {
     if (!implicit_solve(state, h, known, x)) return no_forces();
@@ -80,7 +65,6 @@ void Bdf2Stepper::explicit_solve(const State& state, double h, bool known, Posit
   // In one pass: the formula for x with the formula for v in it.
   x = c.now * (state.x + c.beta_h * state.v) + c.before * (x_before_ + c.beta_h * v_before_) +
       (c.beta_h * c.beta_h) * acceleration_;
-  if (c.earlier != 0) x += c.earlier * (x_earlier_ + c.beta_h * v_earlier_);
 }
 
 // The formulas without acceleration are the flight; what forces at its end add is (beta h)^2 a.
@@ -94,10 +78,6 @@ bool Bdf2Stepper::implicit_solve(const State& state, double h, bool known, Posit
   const Coefficients c = coefficients(h);
   flight_velocity_ = c.now * state.v + c.before * v_before_;
   x_ahead_ = c.now * state.x + c.before * x_before_;
-  if (c.earlier != 0) {
-    flight_velocity_ += c.earlier * v_earlier_;
-    x_ahead_ += c.earlier * x_earlier_;
-  }
   x_ahead_ += c.beta_h * flight_velocity_;
   if (problem_->pins_follow_body())
     for (const int vertex : problem_->pinned()) x_ahead_.col(vertex) = state.x.col(vertex);
@@ -112,12 +92,6 @@ StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Posit
   Stopwatch stopwatch(phases_wanted_);
   const Coefficients c = coefficients(h);
   v = (x - c.now * start.x - c.before * x_before_) * (1 / c.beta_h);
-  if (c.earlier != 0) v -= (c.earlier / c.beta_h) * x_earlier_;
-  if (blend_ > 0) {
-    x_earlier_.swap(x_before_);
-    v_earlier_.swap(v_before_);
-    h_earlier_ = h_before_;
-  }
   x_before_ = start.x;
   v_before_ = start.v;
   if (contacts_) {
@@ -127,10 +101,6 @@ StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Posit
       v.col(i) = (x.col(i) - start.x.col(i)) / h;
       x_before_.col(i) = x.col(i) - h * v.col(i) + (0.5 * h * h) * acceleration_.col(i);
       v_before_.col(i) = v.col(i) - h * acceleration_.col(i);
-      if (blend_ > 0) {
-        x_earlier_.col(i) = x.col(i) - 2 * h * v.col(i) + (2 * h * h) * acceleration_.col(i);
-        v_earlier_.col(i) = v.col(i) - 2 * h * acceleration_.col(i);
-      }
     }
   }
   for (const int vertex : problem_->pinned()) v.col(vertex).setZero();

@@ -10,12 +10,6 @@
 // taken at x^n + h v^n, which is second order and damps (x extrapolated from x^n and x^{n-1}
 // excites), or at x^{n+1}, where the problem asks for it (ImplicitForces).
 //
-// With a blend b of BDF3 in it, at steps of one size,
-//   (3/2 + b/3) x^{n+1} = (2 + b) x^n - (1/2 + b) x^{n-1} + b/3 x^{n-2} + h v^{n+1},
-// and the same for v: still second order and, up to b = 0.48, A-stable, with about half the error
-// constant (BDF2OPT: Vatsa, Carpenter and Lockard 2010). Until three steps of one size are known,
-// and where the step changes, it is BDF2.
-//
 // The formula assumes that velocities do not jump. A vertex that the collider moved, or a state
 // that is not the one left by the last step, gets a history of its own: that of a vertex which came
 // here under its present acceleration a, x^{n-1} = x^n - h v^n + h^2 a / 2 and v^{n-1} = v^n - h a.
@@ -25,11 +19,12 @@
 
 namespace inextensible {
 
+// Variable-step BDF2 is stable for steps that grow by less than 1 + sqrt 2.
+constexpr double largest_bdf2_growth = 2;
+
 class Bdf2Stepper final : public Stepper {
  public:
-  // blend: of BDF3 in the formula, 0 to 0.48.
-  Bdf2Stepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter,
-              double blend = 0);
+  Bdf2Stepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter);
   const char* linear_solver() const override { return filter_->linear_solver(); }
   double reciprocal_condition() const override { return filter_->reciprocal_condition(); }
   void observe(IterateObserver* observer) override { filter_->observe(observer); }
@@ -40,7 +35,7 @@ class Bdf2Stepper final : public Stepper {
 
  private:
   struct Coefficients {
-    double now, before, earlier, beta_h;
+    double now, before, beta_h;
   };
   Coefficients coefficients(double h) const;
   StepResult solve(const State& state, double h, Positions& x) override;
@@ -55,9 +50,6 @@ class Bdf2Stepper final : public Stepper {
   Positions x_before_, v_before_;  // x^{n-1}, v^{n-1}
   Positions x_known_, v_known_;    // x^n and v^n as the last step left them
   double h_before_ = 0;            // s; 0: no history
-  double blend_;
-  Positions x_earlier_, v_earlier_;           // x^{n-2}, v^{n-2}, with a blend only
-  double h_earlier_ = 0;                      // s, of the step from x^{n-2}; 0: it is not known
   Positions acceleration_;                    // m/s^2, at x_ahead_
   Positions x_ahead_;                         // x^n + h v^n, with shear or bending only
   std::unique_ptr<ImplicitForces> implicit_;  // null: forces at x_ahead_

@@ -19,10 +19,6 @@
 
 namespace inextensible {
 
-// Directions of a filter's corrections: of the edges as they are, or as they are in the middle of
-// the step from where it began to where they are.
-enum class Along { edges, middle };
-
 class MidpointStepper final : public Stepper {
  public:
   // The problem has no implicit forces. spectral_radius: rho, 0 to 1.

@@ -49,7 +49,9 @@ class Stepper {
 
   // Positions of the last accepted step after the inextensibility filter and before the collision
   // filter: where strain is measured. Meaningful until the next call of advance.
-  const Positions& filtered_positions() const { return contacts_ ? filtered_ : next_; }
+  virtual const Positions& filtered_positions() const { return contacts_ ? filtered_ : next_; }
+  // Of the last step; null without a collider.
+  const Contacts* contacts() const { return contacts_.get(); }
 
   const Problem& problem() const { return *problem_; }
   const WorkCounters& work() const { return work_; }
@@ -66,6 +68,10 @@ class Stepper {
   virtual void observe(IterateObserver* /*observer*/) {}
 
  protected:
+  // For a stepper around another one, which looks after contacts.
+  struct ContactsElsewhere {};
+  Stepper(std::shared_ptr<const Problem> problem, ContactsElsewhere);
+
   // Writes the inextensible positions at the end of the step to x; adds to work_ and phases_. Pins
   // that follow the body are, in `state`, where they end the step, without velocity: methods treat
   // them as if they never moved.

@@ -9,6 +9,11 @@
 
 namespace inextensible {
 
+// Where a filter's corrections point: along the edges as they are, or as they are in the middle of
+// the step, halfway from where it began to where they are. An edge that has turned by more than 90
+// degrees is corrected along itself.
+enum class Along { edges, middle };
+
 // A velocity filter: takes start-of-step and candidate positions, moves the candidate onto the
 // constraint manifold.
 class VelocityFilter {

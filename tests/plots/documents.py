@@ -27,9 +27,8 @@ SOLVERS = (
     ("icd", "ICD (implicit constraint direction)", "icd", True),
     ("fast_projection", "fast projection", "fast_projection", True),
     ("fast_projection_smoothed", "fast projection, smoothed", "fast_projection", True),
-    ("fast_projection_bdf2", "fast projection in BDF2", "fast_projection", True),
+    ("fast_projection@bdf2", "fast projection in BDF2", "fast_projection", True),
     ("rattle", "RATTLE (SHAKE with velocities)", "shake", True),
-    ("fast_projection_bdf2opt", "fast projection in BDF2 with BDF3", "fast_projection", True),
     ("null", "scene without inextensibility", "null", False),
     ("oracle", "oracle (no contestant)", "oracle", False),
 )

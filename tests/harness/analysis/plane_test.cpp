@@ -74,6 +74,29 @@ TEST(Plane, TakesTheRunThatTheSweepMarked) {
   EXPECT_EQ(winner(plane.cell(0.1, 0.05)), "chain/icd/n:80/strain:0.1/h:0.04") << "no mark";
 }
 
+// The leader's time over its method's in the published stepper, and over others in its own.
+TEST(Plane, SplitsTheLeadBetweenStepperAndMethod) {
+  const json result = document(
+      {run("strips@bdf2", 0.1, 0.01, 2, 0.01), run("strips", 0.1, 0.01, 6, 0.01),
+       run("icd@bdf2", 0.1, 0.01, 3, 0.01), run("icd", 0.1, 0.01, 10, 0.01),
+       run("gauss_seidel_colored", 0.1, 0.01, 5, 0.01), run("jacobi", 0.1, 0.01, 1, 0.2)});
+  const auto planes = planes_of(result);
+  const Cell& cell = planes.at(0).cell(0.1, 0.02);
+  EXPECT_EQ(cell.first()->row, "strips@bdf2");
+  EXPECT_EQ(cell.first_as_published()->row, "strips");
+  EXPECT_NEAR(cell.lead_over(cell.first_as_published())->value, 3, 1e-12);
+  EXPECT_EQ(cell.rival_in_stepper()->row, "icd@bdf2");
+  EXPECT_NEAR(cell.lead_over(cell.rival_in_stepper())->value, 1.5, 1e-12);
+  EXPECT_EQ(cell.paper_best()->row, "icd") << "as published";
+  EXPECT_EQ(cell.paper_in_any_stepper()->row, "icd@bdf2");
+  const Cell& any = planes.at(0).cell(0.1, any_motion);
+  EXPECT_EQ(any.first_as_published(), any.first());
+  EXPECT_EQ(any.rival_in_stepper()->row, "gauss_seidel_colored");
+  EXPECT_EQ(method_of("strips@bdf2"), "strips");
+  EXPECT_EQ(stepper_of("strips@bdf2"), "bdf2");
+  EXPECT_EQ(stepper_of("strips"), "");
+}
+
 // Within one file, and where each limit has a file of its own.
 TEST(Plane, TakesARunAtATighterLimitWhereThatIsFaster) {
   const json loose = run("icd", 0.1, 0.01, 5, 0.01), slow = run("strips", 0.1, 0.01, 4, 0.01),

@@ -228,7 +228,7 @@ TEST(KnownAnswers, AreMetWithTheOrdersOfTheMethods) {
     double order, deviation;  // of the finest step; at most
   } cases[] = {{"baton_place", "fast_projection", 1, 0.1},
                {"baton_place", "rattle", 2, 1e-4},
-               {"baton_rate", "fast_projection_bdf2", 2, 1e-3},
+               {"baton_rate", "fast_projection@bdf2", 2, 1e-3},
                {"swing_frequency", "rattle", 2, 1e-4},
                {"whirl_place", "rattle", 2, 1e-3},
                {"catenary_place", "fast_projection", 2, 1e-4}};

@@ -115,7 +115,7 @@ TEST(Reference, OfThePatchIsByTwoRoutesThatSurviveIt) {
   const Reference r =
       compute_reference("patch", complete_parameters(type, {{"n", 5}, {"duration", 0.2}}),
                         0.04 / 80, [](const std::string&) {});
-  EXPECT_TRUE(r.method.starts_with("fast_projection_bdf2")) << r.method;
+  EXPECT_TRUE(r.method.starts_with("fast_projection@bdf2")) << r.method;
   EXPECT_TRUE(r.second_method.starts_with("icd")) << r.second_method;
   EXPECT_GE(r.valid_until, 0.12);
   for (std::size_t i = 0; i < r.positions.size(); ++i) EXPECT_LT(r.gap[i], 1e-3) << r.times[i];

@@ -105,11 +105,11 @@ TEST(Contestants, ThatAreAnotherOneOnAChainAreLeftOutThereUnlessTheyAreNamed) {
     const auto all = names(suite_with("", solvers + R"("steps": {"finest": 0.001})", scene));
     return std::find(all.begin(), all.end(), name) != all.end();
   };
-  EXPECT_FALSE(stands("", "chain", "strips_bdf2"));
-  EXPECT_FALSE(stands("", "whip", "strips_bdf2"));
-  EXPECT_TRUE(stands("", "drape", "strips_bdf2"));
-  EXPECT_TRUE(stands("", "chain", "fast_projection_adaptive_bdf2"));
-  EXPECT_TRUE(stands(R"("solvers": ["strips_bdf2"], )", "chain", "strips_bdf2"));
+  EXPECT_FALSE(stands("", "chain", "strips@bdf2"));
+  EXPECT_FALSE(stands("", "whip", "strips@bdf2"));
+  EXPECT_TRUE(stands("", "drape", "strips@bdf2"));
+  EXPECT_TRUE(stands("", "chain", "fast_projection_adaptive@bdf2"));
+  EXPECT_TRUE(stands(R"("solvers": ["strips@bdf2"], )", "chain", "strips@bdf2"));
   for (const auto& backend : inextensible::backends()) {
     if (*backend.same_on_chains) {
       EXPECT_TRUE(inextensible::find_backend(backend.same_on_chains)) << backend.name;

@@ -6,6 +6,7 @@
 #include "harness/judge/reference.h"
 #include "harness/run/measure_point.h"
 #include "solvers/registry.h"
+#include "support/param_name.h"
 
 namespace harness {
 namespace {
@@ -52,10 +53,10 @@ TEST_P(DrapeErrors, FallWithTheStepToTheReferencesGap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ContactMethods, DrapeErrors,
-                         ::testing::Values("fast_projection", "icd", "strips", "strips_bdf2",
-                                           "strips_midpoint", "fast_projection_adaptive_bdf2",
+                         ::testing::Values("fast_projection", "icd", "strips", "strips@bdf2",
+                                           "strips@midpoint", "fast_projection_adaptive@bdf2",
                                            "gauss_seidel_colored", "jacobi", "implicit_springs"),
-                         [](const auto& method) { return std::string(method.param); });
+                         inextensible::testing::contestant_name);
 
 // Edges that shake between limits of 10 % bring energy back step by step.
 TEST(EnergyRise, OfAShakingClothFailsIt) {

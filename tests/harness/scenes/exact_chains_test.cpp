@@ -127,7 +127,7 @@ TEST(Catenary, OfLinksStaysWhereItHangs) {
   for (const char* solver : {"shake", "rattle", "icd"})
     EXPECT_LT(drift(solver, 0.01), 1e-6) << solver;
   // Iterations that end elsewhere on the constraints shift the equilibrium, less by smaller steps.
-  for (const char* solver : {"fast_projection", "fast_projection_bdf2", "gauss_seidel"}) {
+  for (const char* solver : {"fast_projection", "fast_projection@bdf2", "gauss_seidel"}) {
     const double coarse = drift(solver, 0.01), fine = drift(solver, 0.0025);
     EXPECT_LT(coarse, 1e-3) << solver;
     EXPECT_LT(fine, coarse / 4) << solver << ": " << coarse << ", " << fine;

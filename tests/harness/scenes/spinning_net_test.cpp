@@ -126,7 +126,7 @@ TEST(SpinningNet, ErrorsFallWithTheOrdersOfTheMethods) {
     const char* solver;
     double order;
   } const expected[] = {
-      {"fast_projection", 1}, {"icd", 1}, {"shake", 2}, {"rattle", 2}, {"fast_projection_bdf2", 2}};
+      {"fast_projection", 1}, {"icd", 1}, {"shake", 2}, {"rattle", 2}, {"fast_projection@bdf2", 2}};
   for (const auto& [solver, order] : expected) {
     const double coarse = error_after_a_second(solver, 1.0 / 400);
     const double fine = error_after_a_second(solver, 1.0 / 800);

@@ -13,6 +13,7 @@
 #include "harness/stability/stability.h"
 #include "solvers/methods/fast_projection.h"
 #include "solvers/registry.h"
+#include "support/param_name.h"
 
 namespace inextensible {
 namespace {
@@ -236,7 +237,7 @@ std::vector<const char*> built_in() {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BuiltInSolvers, ::testing::ValuesIn(built_in()),
-                         [](const auto& i) { return std::string(i.param); });
+                         testing::contestant_name);
 
 }  // namespace
 }  // namespace inextensible

@@ -203,7 +203,7 @@ TEST(HardCases, ShakeRefusesQ1AndQ4AndCurrentDirectionsDoNot) {
   const auto cases = harness::hard_cases(harness::hard_case_values("quick"));
   for (const char* q : {"Q1", "Q4"}) {
     EXPECT_EQ(harness::run_trial(named(cases, q).build, "shake", 1).fixed, Outcome::refused) << q;
-    for (const char* solver : {"fast_projection", "fast_projection_bdf2", "icd"})
+    for (const char* solver : {"fast_projection", "fast_projection@bdf2", "icd"})
       EXPECT_EQ(harness::run_trial(named(cases, q).build, solver, 1).fixed, Outcome::survived)
           << q << ", " << solver;
   }

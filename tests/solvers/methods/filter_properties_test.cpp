@@ -10,6 +10,7 @@
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/registry.h"
 #include "support/motion.h"
+#include "support/param_name.h"
 #include "support/random_graph.h"
 
 namespace inextensible {
@@ -69,7 +70,7 @@ class Steppers : public ::testing::TestWithParam<std::string> {
 TEST_P(Steppers, ShortenOneEdgeByTheClosedForm) {
   if (is_elastic(GetParam())) GTEST_SKIP() << "an elastic edge";
   if (GetParam() == "soft_step") GTEST_SKIP() << "corrects a part of an elongation";
-  if (GetParam() == "strips_midpoint") GTEST_SKIP() << "its direction turns with the edge";
+  if (GetParam().ends_with("@midpoint")) GTEST_SKIP() << "the direction turns with the edge";
   for (std::uint64_t seed = 0; seed < 4 * examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -189,7 +190,8 @@ TEST_P(Steppers, LeaveAPermissibleCandidateBitForBit) {
     if (setting.name == std::string("min_iterations") && std::get<double>(setting.initial) > 0)
       GTEST_SKIP() << "corrects every candidate";
   }
-  if (GetParam().ends_with("_bdf2")) GTEST_SKIP() << "another candidate than the null filter's";
+  if (GetParam().find('@') != std::string::npos)
+    GTEST_SKIP() << "another candidate than the null filter's";
   for (std::uint64_t seed = 0; seed < examples; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -247,7 +249,7 @@ TEST_P(Steppers, SurviveOverflowAndGoOnAsIfNothingHadBeen) {
       EXPECT_EQ(stepper->work().steps, 0);
       ASSERT_TRUE(stepper->advance(state, h));
       ASSERT_TRUE(make(mesh.problem, 0.005)->advance(fresh_state, h));
-      if (GetParam() != "gauss_seidel") {
+      if (find_backend(GetParam())->method != std::string("gauss_seidel")) {
         EXPECT_TRUE(same_bits(state.x, fresh_state.x));
       }
     }
@@ -281,7 +283,7 @@ TEST_P(Steppers, RefuseAProblemWithoutSolutionAndNameAnEdge) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Steppers, ::testing::ValuesIn(steppers()),
-                         [](const auto& i) { return i.param; });
+                         testing::contestant_name);
 
 // One iteration's forces go along the candidate's edges: no torque on x0, to the last digits.
 TEST(FastProjection, OneIterationDoesNoTorqueOnTheCandidate) {

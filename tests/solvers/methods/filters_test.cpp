@@ -10,6 +10,7 @@
 #include "solvers/methods/icd.h"
 #include "solvers/registry.h"
 #include "support/motion.h"
+#include "support/param_name.h"
 
 namespace inextensible {
 namespace {
@@ -129,7 +130,7 @@ TEST_P(Filters, RepeatBitForBitWithTheirCounters) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Filters, ::testing::ValuesIn(filters()),
-                         [](const auto& i) { return i.param; });
+                         testing::contestant_name);
 
 // Section 4.3: "The first iteration of these methods is identical."
 TEST(FastProjection, FirstIterationIsIcdsFirstNewtonIteration) {

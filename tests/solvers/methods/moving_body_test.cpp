@@ -9,6 +9,7 @@
 #include "solvers/problem/triangle_collider.h"
 #include "solvers/registry.h"
 #include "support/contact.h"
+#include "support/param_name.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {
@@ -144,7 +145,7 @@ std::vector<const char*> methods() {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryMethod, ::testing::ValuesIn(methods()),
-                         [](const auto& parameter) { return std::string(parameter.param); });
+                         testing::contestant_name);
 
 }  // namespace
 }  // namespace inextensible

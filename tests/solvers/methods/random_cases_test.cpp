@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "support/effort.h"
+#include "support/param_name.h"
 #include "support/random_trial.h"
 
 namespace inextensible {
@@ -40,7 +41,7 @@ std::vector<const char*> contestants() {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RandomCases, ::testing::ValuesIn(contestants()),
-                         [](const auto& parameter) { return std::string(parameter.param); });
+                         testing::contestant_name);
 
 }  // namespace
 }  // namespace inextensible

@@ -7,6 +7,7 @@
 
 #include "solvers/linear/spd_solvers.h"
 #include "solvers/methods/fast_projection.h"
+#include "solvers/methods/time_steppers.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {
@@ -26,6 +27,35 @@ TEST(Registry, RowsSayWhatFiguresNeed) {
       EXPECT_NE(row.direction, Direction::none);
     }
   }
+}
+
+// Each method is there once by itself, and in each other stepper or not, with the reason.
+TEST(Registry, EveryPairIsARowOrHasAReason) {
+  for (const Backend& method : backends()) {
+    if (!method.contestant || std::string_view(method.name) != method.method) continue;
+    const std::string published = std::string(method.name) + "@" + method.stepper;
+    EXPECT_EQ(find_backend(published), find_backend(method.name)) << published;
+    for (const TimeStepper& stepper : time_steppers()) {
+      const std::string name = std::string(method.name) + "@" + stepper.name;
+      SCOPED_TRACE(name);
+      const Backend* pair = find_backend(name);
+      EXPECT_EQ(pair == nullptr, mismatch(method, stepper) != nullptr);
+      EXPECT_EQ(why_no_pair(name).empty(), pair != nullptr);
+      if (!pair) continue;
+      EXPECT_STREQ(pair->method, method.name);
+      EXPECT_STREQ(pair->stepper, stepper.name);
+      EXPECT_EQ(pair->origin, method.origin);
+      EXPECT_EQ(pair->stepper_origin, stepper.origin);
+      EXPECT_TRUE(pair->contestant);
+    }
+  }
+  EXPECT_NE(find_backend("gauss_seidel_colored@bdf2"), nullptr);
+  EXPECT_NE(find_backend("implicit_springs@bdf2"), nullptr);
+  EXPECT_NE(find_backend("jacobi@midpoint"), nullptr);
+  EXPECT_EQ(find_backend("shake@bdf2"), nullptr);
+  EXPECT_EQ(find_backend("icd@midpoint"), nullptr);
+  EXPECT_NE(why_no_pair("icd@leapfrog"), "");
+  EXPECT_EQ(why_no_pair("icy@bdf2"), "");
 }
 
 TEST(Registry, DefaultsAndTunableRangesArePermitted) {
@@ -66,7 +96,7 @@ TEST(Registry, SettingsOutOfRangeAreRefusedByName) {
   EXPECT_NE(refusal("shake", "max_iterations", 0.0), "");
   EXPECT_NE(refusal("gauss_seidel", "target", 1.01), "");
   EXPECT_EQ(refusal("gauss_seidel", "target", 1.0), "");
-  EXPECT_NE(refusal("fast_projection_bdf2opt", "blend", 0.49), "");
+  EXPECT_NE(refusal("strips@midpoint", "spectral_radius", 1.01), "");
   EXPECT_NE(refusal("icd", "cg_tolerance", std::nan("")), "");
   EXPECT_EQ(refusal("icd", "cg_tolerance", std::string("low")),
             "solver 'icd': setting 'cg_tolerance' must be a number");
@@ -76,7 +106,7 @@ TEST(Registry, SettingsOutOfRangeAreRefusedByName) {
 TEST(SettingFields, ReachTheStruct) {
   BackendOptions options{0.25, 7, {}};
   options.settings = complete_settings(
-      *find_backend("fast_projection_bdf2"),
+      *find_backend("fast_projection@bdf2"),
       {{"max_iterations", 12.0}, {"linear_solver", std::string("cholmod_simplicial")}});
   const auto settings = settings_of<FastProjection>(options);
   EXPECT_EQ(settings.strain_limit, 0.25);

@@ -10,9 +10,11 @@
 #include "harness/scenes/pendulum.h"
 #include "harness/scenes/scene.h"
 #include "solvers/methods/fast_projection.h"
+#include "solvers/methods/shake.h"
 #include "solvers/problem/forces.h"
 #include "solvers/registry.h"
 #include "solvers/stepping/bdf2_stepper.h"
+#include "support/param_name.h"
 
 namespace harness {
 namespace {
@@ -74,20 +76,58 @@ TEST(Order, OfShakeIsTwoWithStaggeredVelocitiesAndOneWithout) {
   EXPECT_NEAR(order("shake").value, 1, 0.1);
 }
 
-TEST(Order, OfRattleAndBdf2IsTwo) {
-  EXPECT_NEAR(order("rattle").value, 2, 0.1);
-  EXPECT_NEAR(order("fast_projection_bdf2").value, 2, 0.2);
-  EXPECT_NEAR(order("fast_projection_bdf2opt").value, 2, 0.25);
+TEST(Order, OfRattleIsTwo) { EXPECT_NEAR(order("rattle").value, 2, 0.1); }
+
+// Why SHAKE has no other stepper than its own: forces along the edges at the start of a step are off by
+// half of what these turn in it, which no formula for x and v takes back.
+TEST(Order, OfShakeInBdf2IsOne) {
+  const Scene scene = short_chain();
+  const Positions exact = pendulum_at(stretch);
+  std::vector<double> steps, errors;
+  for (double h = stretch / 40; steps.size() < 5; h /= 2) {
+    auto filter = std::make_unique<inextensible::Shake>(
+        *scene.problem, inextensible::Shake::Settings{.strain_limit = tight});
+    inextensible::Bdf2Stepper stepper(scene.problem, std::move(filter));
+    State state = scene.start;
+    run(stepper, state, h);
+    steps.push_back(h);
+    errors.push_back(rms_distance(scene, state.x, exact));
+  }
+  EXPECT_NEAR(log_log_slope(steps, errors).value, 1, 0.15);
 }
 
-// All of the energy is kept: order 2; less: a part of backward Euler's error.
-TEST(Order, OfTheMidpointRuleIsTwoOnlyIfItConserves) {
-  const auto of = [](double radius) {
-    return order("strips_midpoint", {{"spectral_radius", radius}, {"target", 0.0}}).value;
-  };
-  EXPECT_NEAR(of(1), 2, 0.2);
-  EXPECT_NEAR(of(0.5), 1, 0.1);
+// Every method that keeps a strain limit, here next to nothing, in a stepper of second order.
+class PairOrder : public testing::TestWithParam<std::string> {
+ protected:
+  double of(double radius) const {
+    inextensible::Settings settings;
+    for (const inextensible::SettingInfo& info : inextensible::find_backend(GetParam())->settings) {
+      if (info.name == std::string("target")) settings["target"] = 0.0;
+      if (info.name == std::string("spectral_radius")) settings["spectral_radius"] = radius;
+    }
+    return order(GetParam(), settings).value;
+  }
+};
+
+// The midpoint rule is of second order if it keeps all of the energy; else a part of backward
+// Euler's error is there.
+TEST_P(PairOrder, IsTheSteppers) {
+  EXPECT_NEAR(of(1), 2, 0.25);
+  if (GetParam().ends_with("@midpoint")) EXPECT_NEAR(of(0.5), 1, 0.1);
 }
+
+std::vector<std::string> pairs_of_second_order() {
+  std::vector<std::string> names;
+  for (const inextensible::Backend& row : inextensible::backends()) {
+    const std::string name = row.name;
+    if (name.find('@') != name.npos && row.knob == inextensible::Knob::strain_limit)
+      names.push_back(name);
+  }
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Pairs, PairOrder, testing::ValuesIn(pairs_of_second_order()),
+                         inextensible::testing::contestant_name);
 
 TEST(Order, OfImplicitSpringsTowardsTheirOwnStiffLimitIsOne) {
   const inextensible::Settings settings{{"stiffness", 1e4}, {"newton_tolerance", 1.0}};
@@ -127,13 +167,13 @@ TEST(Energy, IsLostByImplicitMethodsInProportionToTheStepAndKeptByRattle) {
     run(*stepper, state, h, 1);
     return energy(scene, state) / 9.81;
   };
-  for (const char* solver : {"fast_projection", "fast_projection_bdf2"}) {
+  for (const char* solver : {"fast_projection", "fast_projection@bdf2"}) {
     const double coarse = drift(solver, 1.0 / 500), fine = drift(solver, 1.0 / 2000);
     EXPECT_LT(coarse, 0) << solver;
     EXPECT_LT(std::abs(fine), 0.5 * std::abs(coarse)) << solver;
   }
   const double lost = drift("fast_projection", 1.0 / 2000);
-  EXPECT_LT(std::abs(drift("fast_projection_bdf2", 1.0 / 2000)), 0.2 * std::abs(lost));
+  EXPECT_LT(std::abs(drift("fast_projection@bdf2", 1.0 / 2000)), 0.2 * std::abs(lost));
   EXPECT_LT(std::abs(drift("rattle", 1.0 / 2000)), 0.02 * std::abs(lost));
 }
 
@@ -176,7 +216,7 @@ TEST(Energy, OfATurningNetIsKeptByDirectionsOfTheMiddle) {
   std::vector<double> steps, errors;
   for (double h = 0.02; steps.size() < 3; h /= 2) {
     steps.push_back(h);
-    errors.push_back(std::abs(lost("strips_midpoint", conserving, h)));
+    errors.push_back(std::abs(lost("strips@midpoint", conserving, h)));
     EXPECT_LT(errors.back(), 0.05 * lost("strips", {}, h)) << "h = " << h;
   }
   EXPECT_GT(log_log_slope(steps, errors).value, 1.8);
@@ -190,33 +230,13 @@ std::shared_ptr<const inextensible::Problem> free_edge() {
   return std::make_shared<const inextensible::Problem>(parts);
 }
 
-// With its blend of BDF3: none, and all that is A-stable.
-class Bdf2 : public ::testing::TestWithParam<double> {
- protected:
-  static inextensible::Bdf2Stepper bdf2(const std::shared_ptr<const inextensible::Problem>& problem,
-                                        double strain_limit = 1e-12) {
-    return {problem,
-            std::make_unique<inextensible::FastProjection>(
-                *problem, inextensible::FastProjection::Settings{strain_limit}),
-            GetParam()};
-  }
-};
-INSTANTIATE_TEST_SUITE_P(Blend, Bdf2, ::testing::Values(0.0, 0.48));
-
-// Half the error constant shows where the motion is smooth.
-TEST(Bdf2Opt, IsMuchMoreAccurateThanBdf2) {
-  const Scene scene = short_chain();
-  const Positions exact = pendulum_at(stretch);
-  const auto error = [&](const char* solver) {
-    const auto stepper = make_stepper(solver, scene.problem, {tight, 1, {}});
-    State state = scene.start;
-    run(*stepper, state, stretch / 400, stretch);
-    return rms_distance(scene, state.x, exact);
-  };
-  EXPECT_LT(error("fast_projection_bdf2opt"), 0.6 * error("fast_projection_bdf2"));
+inextensible::Bdf2Stepper bdf2(const std::shared_ptr<const inextensible::Problem>& problem,
+                               double strain_limit = 1e-12) {
+  return {problem, std::make_unique<inextensible::FastProjection>(
+                       *problem, inextensible::FastProjection::Settings{strain_limit})};
 }
 
-TEST_P(Bdf2, IsExactInFreeFallWhateverTheSteps) {
+TEST(Bdf2, IsExactInFreeFallWhateverTheSteps) {
   const auto problem = free_edge();
   auto stepper = bdf2(problem);
   State state{Positions::Zero(3, 2), Positions::Zero(3, 2), 0};
@@ -233,7 +253,7 @@ TEST_P(Bdf2, IsExactInFreeFallWhateverTheSteps) {
   EXPECT_EQ(stepper.restarts(), 2);  // the first step, and the growth from 0.01 to 0.03
 }
 
-TEST_P(Bdf2, StartsAnewFromAStateThatIsNotItsOwn) {
+TEST(Bdf2, StartsAnewFromAStateThatIsNotItsOwn) {
   const auto problem = free_edge();
   auto used = bdf2(problem), fresh = bdf2(problem);
   State state{Positions::Zero(3, 2), Positions::Zero(3, 2), 0};
@@ -249,7 +269,7 @@ TEST_P(Bdf2, StartsAnewFromAStateThatIsNotItsOwn) {
 }
 
 // A step of another size keeps the order: steps alternate between h and 1.5 h.
-TEST_P(Bdf2, KeepsItsOrderWhenTheStepChanges) {
+TEST(Bdf2, KeepsItsOrderWhenTheStepChanges) {
   const Scene scene = short_chain();
   const Positions exact = pendulum_at(stretch);
   std::vector<double> steps, errors;
@@ -268,7 +288,7 @@ TEST_P(Bdf2, KeepsItsOrderWhenTheStepChanges) {
 
 // A body that hits the ground must not bounce off it by a velocity that is extrapolated over the
 // impact.
-TEST_P(Bdf2, DoesNotBounceOffACollider) {
+TEST(Bdf2, DoesNotBounceOffACollider) {
   const auto found_type = find_scene("drape");
   const SceneType& type = *found_type;
   const Scene scene = type.build(

@@ -68,7 +68,7 @@ TEST(Cantilever, HangsAsTheHeavyElasticaDoes) {
 
 TEST(Cantilever, HangsAlikeByMethodsThatTakeBendingByOtherRoutes) {
   const int n = 31;
-  for (const char* solver : {"implicit_springs", "fast_projection_bdf2", "icd", "shake"}) {
+  for (const char* solver : {"implicit_springs", "fast_projection@bdf2", "icd", "shake"}) {
     Start start = cantilever(n, 10, true);
     Settings settings;
     if (solver == std::string("implicit_springs")) settings["stiffness"] = 1e5;
@@ -133,7 +133,7 @@ Positions after(const char* solver, const Start& start, double h, double time) {
 TEST(ImplicitForces, HaveTheOrderOfTheirStepper) {
   const Start start = cloth(5, 5, true);
   for (const auto& [solver, order] :
-       {std::pair("fast_projection", 1.0), {"fast_projection_bdf2", 2.0}}) {
+       {std::pair("fast_projection", 1.0), {"fast_projection@bdf2", 2.0}}) {
     const Positions a = after(solver, start, 1.0 / 800, 0.2),
                     b = after(solver, start, 1.0 / 1600, 0.2),
                     c = after(solver, start, 1.0 / 3200, 0.2);
@@ -143,8 +143,8 @@ TEST(ImplicitForces, HaveTheOrderOfTheirStepper) {
 
 TEST(ImplicitForces, TendToTheSameMotionAsExplicitOnes) {
   const double h = 1.0 / 6400, time = 0.2;
-  const Positions x = after("fast_projection_bdf2", cloth(5, 5, true), h, time);
-  const Positions y = after("fast_projection_bdf2", cloth(5, 5, false), h, time);
+  const Positions x = after("fast_projection@bdf2", cloth(5, 5, true), h, time);
+  const Positions y = after("fast_projection@bdf2", cloth(5, 5, false), h, time);
   const Positions rattle = after("rattle", cloth(5, 5, false), h, time);
   EXPECT_LT((x - y).cwiseAbs().maxCoeff(), 3e-5);
   EXPECT_LT((x - rattle).cwiseAbs().maxCoeff(), 3e-5);
@@ -154,7 +154,7 @@ TEST(ImplicitForces, TendToTheSameMotionAsExplicitOnes) {
 
 TEST(ImplicitForces, AreStableWhereExplicitOnesBlowUp) {
   for (const char* solver :
-       {"fast_projection", "fast_projection_bdf2", "gauss_seidel", "jacobi", "icd"}) {
+       {"fast_projection", "fast_projection@bdf2", "gauss_seidel", "jacobi", "icd"}) {
     const Start start = cloth(7, 50, true);  // explicit ones would want 1/100 s
     const auto stepper = make_stepper(solver, start.problem, {0.01, 1, {}});
     State state = start.state;
@@ -197,7 +197,7 @@ TEST(ImplicitForces, DampASpringAsBackwardEulerDoes) {
 TEST(Drag, LetsFallAtTheSpeedAtWhichItBearsTheWeight) {
   for (const bool implicit : {false, true}) {
     for (const char* solver :
-         {"fast_projection", "fast_projection_bdf2", "rattle", "implicit_springs"}) {
+         {"fast_projection", "fast_projection@bdf2", "rattle", "implicit_springs"}) {
       if (implicit && solver == std::string("rattle")) continue;
       ProblemParts parts;
       parts.mass = {0.5, 2};

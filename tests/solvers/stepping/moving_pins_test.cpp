@@ -60,7 +60,7 @@ TEST_P(MovingPins, AtASteadySpeedChangeNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, MovingPins,
-                         testing::Values("fast_projection", "fast_projection_bdf2", "icd",
+                         testing::Values("fast_projection", "fast_projection@bdf2", "icd",
                                          "shake"));
 
 TEST(MovingPins, AreWhereTheBodyTakesThem) {

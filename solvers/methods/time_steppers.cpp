@@ -1,0 +1,87 @@
+#include "solvers/methods/time_steppers.h"
+
+#include <string_view>
+
+#include "solvers/stepping/bdf2_of_euler.h"
+#include "solvers/stepping/bdf2_stepper.h"
+#include "solvers/stepping/midpoint_stepper.h"
+
+namespace inextensible {
+namespace {
+
+using Shared = std::shared_ptr<const Problem>;
+using Made = std::unique_ptr<Stepper>;
+
+Made backward_euler(Shared problem, const Backend& method, const BackendOptions& options) {
+  if (method.make) return method.make(std::move(problem), options);
+  auto filter = method.make_filter(*problem, options, Along::edges);
+  return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
+}
+
+Made bdf2(Shared problem, const Backend& method, const BackendOptions& options) {
+  if (method.make) {
+    auto one_step = method.make(problem, options);
+    return std::make_unique<Bdf2OfEuler>(std::move(problem), std::move(one_step));
+  }
+  auto filter = method.make_filter(*problem, options, Along::edges);
+  return std::make_unique<Bdf2Stepper>(std::move(problem), std::move(filter));
+}
+
+constexpr const char* spectral_radius = "spectral_radius";
+
+Made midpoint(Shared problem, const Backend& method, const BackendOptions& options) {
+  auto filter = method.make_filter(*problem, options, Along::middle);
+  return std::make_unique<MidpointStepper>(
+      std::move(problem), std::move(filter),
+      std::get<double>(options.settings.at(spectral_radius)));
+}
+
+std::vector<TimeStepper> all_steppers() {
+  using enum Velocities;
+  return {
+      {"backward_euler", "", "", Origin::paper, half_step, Along::edges, true, {}, backward_euler},
+      // Symplectic where forces act along the start of the step. With velocities of half steps it
+      // is the arithmetic of backward_euler.
+      {"verlet", "", "Verlet 1967", Origin::paper, half_step, Along::edges, true, {}, backward_euler},
+      {"bdf2", "in BDF2", "Choi and Ko 2002; English and Bridson 2008", Origin::literature,
+       whole_step, Along::edges, true, {}, bdf2},
+      {"midpoint",
+       "in the midpoint rule",
+       "Simo and Tarnow 1992; Gonzalez 1999",
+       Origin::literature,
+       whole_step,
+       Along::middle,
+       false,
+       {{.name = spectral_radius,
+         .initial = 0.8,
+         .meaning = "what an edge keeps of its rate when it bounces off its limit; 1 conserves",
+         .range = {0, 1},
+         .tunable = SearchRange{0, 1}}},
+       midpoint}};
+}
+
+}  // namespace
+
+std::span<const TimeStepper> time_steppers() {
+  static const std::vector<TimeStepper> all = all_steppers();
+  return all;
+}
+
+const char* mismatch(const Backend& method, const TimeStepper& stepper) {
+  if (std::string_view(method.stepper) == stepper.name) return nullptr;
+  if (!method.make_filter) {
+    return method.backward_euler && stepper.around == bdf2 ? nullptr
+                                                           : "the method is a time step of its own";
+  }
+  if (std::string_view(stepper.name) == "verlet")
+    return "its forces act along the edges at the start of a step, the method's do not";
+  if (method.direction == Direction::start)
+    return "forces along the edges at the start of a step are of second order in its own stepper "
+           "and of first order elsewhere";
+  if (stepper.along == Along::middle && method.direction == Direction::end)
+    return "the method's forces act along the edges at the end of a step, by definition; the "
+           "stepper wants those of its middle";
+  return nullptr;
+}
+
+}  // namespace inextensible
