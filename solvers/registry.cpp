@@ -95,15 +95,8 @@ Backend paired(const Backend& method, const TimeStepper& stepper) {
   if (*method.same_on_chains)
     row.same_on_chains = kept(pair_name(method.same_on_chains, stepper.name));
   // Directions turn from iterate to iterate, hence forces that have been applied.
-  if (stepper.along == Along::middle) row.conserves_momentum = row.shows_iterates = false;
+  if (stepper.along == Along::middle) row.conserves_momentum = false;
   row.settings = method.settings;
-  for (SettingInfo& setting : row.settings) {
-    for (const DefaultElsewhere& other : method.defaults_elsewhere) {
-      if (std::string_view(other.stepper) == stepper.name &&
-          std::string_view(other.setting) == setting.name)
-        setting.initial = other.value;
-    }
-  }
   row.settings.insert(row.settings.end(), stepper.settings.begin(), stepper.settings.end());
   return row;
 }
@@ -175,7 +168,8 @@ std::string why_no_pair(std::string_view name) {
   if (!method) return {};
   std::string names;
   for (const TimeStepper& stepper : time_steppers()) {
-    if (stepper.name == name.substr(at + 1)) return mismatch(*method, stepper);
+    if (const char* reason = mismatch(*method, stepper); stepper.name == name.substr(at + 1))
+      return reason ? reason : "";
     names += (names.empty() ? "" : ", ") + std::string(stepper.name);
   }
   return "there is no such time stepper; there are: " + names;

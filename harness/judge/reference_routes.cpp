@@ -31,10 +31,11 @@ Route smooth_route() { return {"rattle", 1e-12, 2}; }
 // start (a row straight between its pins: the patch); BDF2 takes its place then, at a limit that
 // keeps off the singularity.
 Route contact_route() { return {"rattle", 1e-9, 1}; }
+const inextensible::Settings some_passes{{"min_iterations", 1.0}, {"smoothing_sweeps", 30.0}};
 // Friction inside the solve is no smooth function of the start, and RATTLE's small steps along old
 // directions get stuck on it; the passes that correct it set the limit.
-Route contact_inside_route() { return {"fast_projection@bdf2", 1e-5, 1}; }
-Route contact_route_when_singular() { return {"fast_projection@bdf2", 1e-6, 1}; }
+Route contact_inside_route() { return {"fast_projection@bdf2", 1e-5, 1, some_passes}; }
+Route contact_route_when_singular() { return {"fast_projection@bdf2", 1e-6, 1, some_passes}; }
 // The second one there, at the first one's limit. The two differ in the direction of constraint
 // forces, the velocity's place in the step and the linear solver.
 Route second_contact_route(const Route& first) { return {"icd", first.limit, 1}; }
@@ -118,7 +119,7 @@ Route first_contact_route(const Scene& scene, double h) {
   Route route = contact_route();
   inextensible::State state = scene.start;
   const auto stepper =
-      inextensible::make_stepper(route.solver, scene.problem, {route.limit, 1, {}});
+      inextensible::make_stepper(route.solver, scene.problem, {route.limit, 1, route.settings});
   if (stepper->advance(state, h)) return route;
   return contact_route_when_singular();
 }

@@ -15,6 +15,7 @@ struct Route {
   std::string solver;
   double limit;  // of strain
   int order;     // of the error that Richardson's rule takes away
+  inextensible::Settings settings = {};
 };
 
 using Tell = std::function<void(const std::string&)>;

@@ -47,12 +47,6 @@ struct SettingInfo {
   bool departs = false;
 };
 
-// The default of a method's setting in another time stepper than the published one.
-struct DefaultElsewhere {
-  const char *stepper, *setting;
-  double value;
-};
-
 using Settings = std::map<std::string, std::variant<double, std::string>>;
 
 struct BackendOptions {
@@ -120,7 +114,6 @@ struct Backend {
   // `make` is backward Euler, and does not depend on which states it is given: BDF2 takes it from
   // one that it extrapolates.
   bool backward_euler = false;
-  std::vector<DefaultElsewhere> defaults_elsewhere = {};
   // The time stepper (time_steppers.h), and who offers that; `method`: the name without it. The
   // registry fills them in; a published stepper that is not backward Euler the row names.
   const char* stepper = "";

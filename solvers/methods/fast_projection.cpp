@@ -241,8 +241,7 @@ Backend fast_projection_row() {
           .citation = "Goldenthal et al. 2007",
           .origin = Origin::paper,
           .label = "fast projection",
-          .shows_iterates = true,
-          .defaults_elsewhere = {{"bdf2", "min_iterations", 1}, {"bdf2", "smoothing_sweeps", 30}}};
+          .shows_iterates = true};
 }
 
 }  // namespace inextensible

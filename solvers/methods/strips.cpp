@@ -58,8 +58,7 @@ Backend strips_row() {
           .citation = "Bender and Bayer 2008",
           .origin = Origin::project,
           .label = "strips",
-          .same_on_chains = "fast_projection_adaptive",
-          .defaults_elsewhere = {{"midpoint", "sweeps", 3}, {"midpoint", "target", 0.5}}};
+          .same_on_chains = "fast_projection_adaptive"};
 }
 
 }  // namespace inextensible

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace inextensible::testing {
+namespace inextensible::names {
 
 // Of a contestant: gauss_seidel@bdf2 is gauss_seidel_in_bdf2.
 inline std::string plain(std::string name) {
@@ -13,4 +13,4 @@ inline std::string plain(std::string name) {
 
 inline constexpr auto contestant_name = [](const auto& info) { return plain(info.param); };
 
-}  // namespace inextensible::testing
+}  // namespace inextensible::names

@@ -15,7 +15,7 @@ using harness::Trial;
 inline Settings impatient(const std::string& backend) {
   if (backend.starts_with("strips") || backend.starts_with("fast_projection_adaptive"))
     return {{"max_iterations", 20.0}};
-  if (backend == "jacobi" || backend.starts_with("gauss_seidel"))
+  if (backend.starts_with("jacobi") || backend.starts_with("gauss_seidel"))
     return {{"max_iterations", 300.0}};
   return {};
 }

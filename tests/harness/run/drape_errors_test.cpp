@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(ContactMethods, DrapeErrors,
                          ::testing::Values("fast_projection", "icd", "strips", "strips@bdf2",
                                            "strips@midpoint", "fast_projection_adaptive@bdf2",
                                            "gauss_seidel_colored", "jacobi", "implicit_springs"),
-                         inextensible::testing::contestant_name);
+                         inextensible::names::contestant_name);
 
 // Edges that shake between limits of 10 % bring energy back step by step.
 TEST(EnergyRise, OfAShakingClothFailsIt) {

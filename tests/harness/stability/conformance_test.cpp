@@ -237,7 +237,7 @@ std::vector<const char*> built_in() {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BuiltInSolvers, ::testing::ValuesIn(built_in()),
-                         testing::contestant_name);
+                         names::contestant_name);
 
 }  // namespace
 }  // namespace inextensible

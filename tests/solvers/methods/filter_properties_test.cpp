@@ -172,11 +172,13 @@ TEST_P(Steppers, KeepMomentumOverARun) {
     State state = moving_state(random, graph, 0.5);
     const Vector3d linear = linear_momentum(p, state.v),
                    angular = angular_momentum(p, state.x, state.v);
+    // Newton's residual; BDF2 takes differences of positions times 3 / 2, and of history.
+    const double rounding = GetParam().ends_with("@bdf2") ? 3e-10 : 1e-10;
     const double scale = momentum_scale(p, state.v);
     const auto stepper = make(graph.problem, 0.001);
     for (int step = 0; step < 10; ++step) {
       ASSERT_TRUE(stepper->advance(state, 0.002));
-      EXPECT_LT((linear_momentum(p, state.v) - linear).norm(), 1e-10 * scale);
+      EXPECT_LT((linear_momentum(p, state.v) - linear).norm(), rounding * scale);
       if (GetParam() == "shake" || GetParam() == "rattle") {
         EXPECT_LT((angular_momentum(p, state.x, state.v) - angular).norm(), 1e-9 * scale);
       }
@@ -283,7 +285,7 @@ TEST_P(Steppers, RefuseAProblemWithoutSolutionAndNameAnEdge) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Steppers, ::testing::ValuesIn(steppers()),
-                         testing::contestant_name);
+                         names::contestant_name);
 
 // One iteration's forces go along the candidate's edges: no torque on x0, to the last digits.
 TEST(FastProjection, OneIterationDoesNoTorqueOnTheCandidate) {

@@ -130,7 +130,7 @@ TEST_P(Filters, RepeatBitForBitWithTheirCounters) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Filters, ::testing::ValuesIn(filters()),
-                         testing::contestant_name);
+                         names::contestant_name);
 
 // Section 4.3: "The first iteration of these methods is identical."
 TEST(FastProjection, FirstIterationIsIcdsFirstNewtonIteration) {

@@ -145,7 +145,7 @@ std::vector<const char*> methods() {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryMethod, ::testing::ValuesIn(methods()),
-                         testing::contestant_name);
+                         names::contestant_name);
 
 }  // namespace
 }  // namespace inextensible

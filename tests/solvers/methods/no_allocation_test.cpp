@@ -8,6 +8,7 @@
 
 #include "harness/scenes/scene.h"
 #include "solvers/registry.h"
+#include "support/param_name.h"
 
 namespace {
 std::atomic<long> allocations{0};
@@ -84,7 +85,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"drape", 15, "augmented_vbd", 0.005}, Case{"chain", 80, "projective_dynamics", 0.005},
         Case{"drape", 15, "projective_dynamics", 0.005}, Case{"chain", 80, "soft_step", 0.001}),
     [](const auto& i) {
-      return std::string(i.param.scene) + "_" + i.param.solver + "_" + i.param.linear_solver;
+      return std::string(i.param.scene) + "_" + inextensible::names::plain(i.param.solver) + "_" +
+             i.param.linear_solver;
     });
 
 }  // namespace

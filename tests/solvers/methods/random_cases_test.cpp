@@ -41,7 +41,7 @@ std::vector<const char*> contestants() {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RandomCases, ::testing::ValuesIn(contestants()),
-                         testing::contestant_name);
+                         names::contestant_name);
 
 }  // namespace
 }  // namespace inextensible

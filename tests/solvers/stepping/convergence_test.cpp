@@ -127,7 +127,7 @@ std::vector<std::string> pairs_of_second_order() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Pairs, PairOrder, testing::ValuesIn(pairs_of_second_order()),
-                         inextensible::testing::contestant_name);
+                         inextensible::names::contestant_name);
 
 TEST(Order, OfImplicitSpringsTowardsTheirOwnStiffLimitIsOne) {
   const inextensible::Settings settings{{"stiffness", 1e4}, {"newton_tolerance", 1.0}};
