@@ -108,7 +108,7 @@ void print_other_budgets(std::ostream& out, const std::vector<PointResult>& poin
     return ms(seconds) + " ms a frame: " +
            (pick ? pick->point->spec.name() + " at " + step_text(pick->point->spec.step) + " s, " +
                        error_text(pick->error)
-                 : std::string("no run that was tried"));
+                 : std::string("none that was tried"));
   };
   out << "with  " << with(budget / 2) << "; with " << with(budget * 2) << '\n';
 }

@@ -45,7 +45,7 @@ std::vector<PointResult> screen_all(const std::vector<Search>& searches, const C
     try {
       screened[i] = runners.screen(spec, {most, std::min(usual_look, most), stop}, {});
     } catch (const Interrupted&) {
-      screened[i].detail = "its first step takes too long";
+      screened[i].detail = "its first step took too long";
     }
   }
   return screened;
@@ -200,10 +200,9 @@ std::string why_not(const std::string& contestant, const Trials& trials, const W
                                  [&](const PointResult& p) { return p.spec.name() == contestant; });
   if (seen == trials.screened.end() || (seen->samples.empty() && seen->detail.empty()))
     return "not tried, the time was over";
-  return "no run ended in time; its first steps" +
-         (seen->samples.empty()
-              ? " failed: " + shortened(seen->detail)
-              : " took " + duration_text(seen->seconds()) + " a simulated second");
+  if (seen->samples.empty()) return "not tried: " + shortened(seen->detail);
+  return "no run ended in time; its first steps took " + duration_text(seen->seconds()) +
+         " a simulated second";
 }
 
 }  // namespace harness
