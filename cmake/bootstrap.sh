@@ -16,6 +16,36 @@ quietly() {
   return 1
 }
 
+progress_every=10  # s between two lines in a log
+
+# with_progress COMMAND...: quietly, for ninja: "[3/81] Building ..." becomes "3 of 81 steps, 12 s", on a terminal in one line that
+# is rewritten.
+with_progress() {
+  local begin=$SECONDS told=$SECONDS output='' done='' line='' more status
+  while :; do
+    status=0
+    IFS= read -r -t 1 more || status=$?
+    line+=$more
+    ((status == 0 || status > 128)) || break  # neither a line nor a second without one: the end
+    if ((status == 0)); then
+      if [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]]; then
+        done="${BASH_REMATCH[1]} of ${BASH_REMATCH[2]} steps, "
+      else
+        output+=$line$'\n'
+      fi
+      line=''
+    fi
+    if [[ -t 2 ]]; then
+      printf '\r%s: building, %s%s s ' "$program" "$done" $((SECONDS - begin)) >&2
+    elif ((SECONDS - told >= progress_every)); then
+      say "building, $done$((SECONDS - begin)) s"
+      told=$SECONDS
+    fi
+  done < <("$@" 2>&1 </dev/null)
+  [[ ! -t 2 ]] || printf '\r\e[K' >&2
+  wait $! || { printf '%s\n' "$output$line" >&2 && return 1; }
+}
+
 # locked FOLDER COMMAND...: only one process at a time does something to the folder.
 locked() {
   local folder=$1
@@ -106,7 +136,7 @@ compile() {
   cp "$dir/build.ninja" "$dir/plan.ninja"
   files=$(ninja -C "$dir" -f plan.ninja -n "${targets[@]}" | grep -c 'Building CXX object' || true)
   ((files == 0)) || say "building, $files files to compile ..."
-  quietly ninja -C "$dir" "${targets[@]}"
+  with_progress ninja -C "$dir" "${targets[@]}"
 }
 
 # build_preset FOLDER PRESET TARGETS [CMAKE_ARGUMENT...]: always configures, so that the arguments are in force.

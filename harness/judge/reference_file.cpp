@@ -161,7 +161,10 @@ json summary_of(const Reference& r) {
 }
 
 Reference read_reference(const std::string& path) {
-  const json document = parse_document(read_file(path, "reference"), path);
+  return reference_of(parse_document(read_file(path, "reference"), path), path);
+}
+
+Reference reference_of(const json& document, const std::string& path) {
   try {
     if (document.at("schema") != reference_schema && document.at("schema") != older_schema)
       throw UsageError("'" + path + "': schema is " + value_text(document.at("schema")) +

@@ -22,5 +22,7 @@ ShapeSeries shape_series_of(const nlohmann::json& rows);
 nlohmann::json summary_of(const Reference& reference);
 // Throws UsageError, naming the file, for anything that is not a reference.
 Reference read_reference(const std::string& path);
+// The same of its document; `path` is for messages.
+Reference reference_of(const nlohmann::json& document, const std::string& path);
 
 }  // namespace harness

@@ -95,9 +95,12 @@ Repetition samples_of(const PointResult& point) {
 }
 
 Repetition added_since(const Repetition& before, const PointResult& point) {
-  return {rest_of(point.samples, before.samples), rest_of(point.cpu_samples, before.cpu_samples),
+  return {rest_of(point.samples, before.samples),
+          rest_of(point.cpu_samples, before.cpu_samples),
           rest_of(point.filter_samples, before.filter_samples),
-          rest_of(point.sample_runs, before.sample_runs), point.retaken - before.retaken};
+          rest_of(point.sample_runs, before.sample_runs),
+          point.retaken - before.retaken,
+          point.frame_times};
 }
 
 void append(const Repetition& repetition, PointResult& point) {
@@ -106,6 +109,7 @@ void append(const Repetition& repetition, PointResult& point) {
   add_all(repetition.filter_samples, point.filter_samples);
   add_all(repetition.sample_runs, point.sample_runs);
   point.retaken += repetition.retaken;
+  if (!repetition.frame_times.empty()) point.frame_times = repetition.frame_times;
 }
 
 }  // namespace harness

@@ -54,7 +54,7 @@ struct PointResult {
   double calibration_guess = unknown;  // N, where the search began; unknown: at an estimate
   std::optional<double> stiffness;     // EA, N, found by calibration
   inextensible::PhaseSeconds phases;   // of the run of the first filter sample
-  std::vector<FrameTime> frame_times;  // of the run of the first sample
+  std::vector<FrameTime> frame_times;  // of a run of the fastest sample
   inextensible::WorkCounters work;
   Measures measures;
   double smallest_step = unknown;  // s, of the accepted ones of a step controller
@@ -79,6 +79,7 @@ struct Repetition {
   std::vector<double> samples, cpu_samples, filter_samples;
   std::vector<int> sample_runs;
   int retaken = 0;
+  std::vector<FrameTime> frame_times = {};  // the point's from then on; empty: as before
 };
 // What `point` has that `before` has not.
 Repetition added_since(const Repetition& before, const PointResult& point);

@@ -102,8 +102,8 @@ inline constexpr std::tuple result_fields{
     field("smallest_step", &PointResult::smallest_step, "s", "of the accepted ones; adaptive only",
           {.later = true, .nullable = true}),
     field("frame_times", &PointResult::frame_times, "frames a second, then s",
-          "of one run, at each rate of pictures that steps are fine enough for: the rate, and the "
-          "wall time of a frame, median, 99 % and worst",
+          "of one run of the fastest sample, at each rate of pictures that steps are fine enough "
+          "for: the rate, and the wall time of a frame, median, 99 % and worst",
           {.later = true}),
     field("steps_planned", &PointResult::steps_planned, "steps",
           "that the duration takes at this step; older files: to be computed", {.later = true}),

@@ -197,19 +197,25 @@ json to_json(const PointResult& point) {
 }
 
 json to_json(const Repetition& repetition) {
-  return {{"seconds", repetition.samples},
-          {"cpu", repetition.cpu_samples},
-          {"filter", repetition.filter_samples},
-          {"runs", repetition.sample_runs},
-          {"retaken", repetition.retaken}};
+  return {
+      {"seconds", repetition.samples},
+      {"cpu", repetition.cpu_samples},
+      {"filter", repetition.filter_samples},
+      {"runs", repetition.sample_runs},
+      {"retaken", repetition.retaken},
+      {"frame_times", FieldCodec<std::vector<FrameTime>>::write(repetition.frame_times, false)}};
 }
 
 Repetition repetition_of(const json& object) {
   const auto numbers = [&object](const char* key) {
     return object.value(key, std::vector<double>());
   };
-  return {object.at("seconds").get<std::vector<double>>(), numbers("cpu"), numbers("filter"),
-          object.value("runs", std::vector<int>()), object.value("retaken", 0)};
+  Repetition repetition{object.at("seconds").get<std::vector<double>>(), numbers("cpu"),
+                        numbers("filter"), object.value("runs", std::vector<int>()),
+                        object.value("retaken", 0)};
+  if (const auto frames = object.find("frame_times"); frames != object.end())
+    FieldCodec<std::vector<FrameTime>>::read(*frames, repetition.frame_times, false);
+  return repetition;
 }
 
 PointSpec spec_of(const json& object) {

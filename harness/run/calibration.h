@@ -58,6 +58,10 @@ class Calibration {
   std::string detail_ = "no stiffness keeps the strain within the limit";
 };
 
+// s: how long work that springs have counted takes on a usual machine, within a factor of two. It
+// is the same each time, as the clock's time is not.
+double nominal_seconds(const inextensible::WorkCounters& work, int edges);
+
 // N: where a search may begin without a neighbour's stiffness to go by.
 double first_stiffness(const Scene& scene, double strain_limit);
 

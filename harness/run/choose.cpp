@@ -3,8 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/base/text.h"
+#include "harness/run/screening.h"
+
 namespace harness {
 namespace {
+
+constexpr double screening_share = 0.25;  // of the time, at most
+constexpr double search_share = 0.75;     // of the time, screening included; then come finalists
+constexpr std::size_t finalists = 4;
+constexpr std::size_t final_samples = 7;  // of each
+
+bool within(const PointResult& point, const Wish& wish) {
+  return point.ok() && within_error(point.measures, wish.error);
+}
 
 std::optional<Pick> pick_of(const PointResult& point, const Wish& wish) {
   const auto frame =
@@ -14,14 +26,114 @@ std::optional<Pick> pick_of(const PointResult& point, const Wish& wish) {
   return Pick{&point, *frame, error_at(point.measures, wish.error).distance};
 }
 
+// The limits of a part of the work that ends at `share` of the time.
+std::function<bool()> stop_at(const ChooseLimits& limits, double share) {
+  return [&limits, until = share * limits.seconds] {
+    return limits.interrupted() || limits.elapsed() >= until;
+  };
+}
+
+std::vector<PointResult> screen_all(const std::vector<Search>& searches, const ChooseLimits& limits,
+                                    const ChooseRunners& runners) {
+  const double most = screening_share * limits.seconds / static_cast<double>(searches.size());
+  const auto stop = stop_at(limits, search_share);
+  std::vector<PointResult> screened(searches.size());
+  for (std::size_t i = 0; i < searches.size(); ++i) {
+    PointSpec& spec = screened[i].spec = searches[i].base;
+    spec.step = searches[i].ladder[searches[i].ladder.size() / 2];
+    if (stop()) continue;
+    try {
+      screened[i] = runners.screen(spec, {most, std::min(usual_look, most), stop}, {});
+    } catch (const Interrupted&) {
+      screened[i].detail = "its first step took too long";
+    }
+  }
+  return screened;
+}
+
+// Runs whose samples are not taken again where the machine was disturbed: on a busy one that would
+// take most of the time. Finalists have more samples.
+SweepRunners hasty(const SweepRunners& inner) {
+  const auto once = [](RunLimits limits) {
+    limits.most_retaken = 0;
+    return limits;
+  };
+  SweepRunners runners = inner;
+  runners.run = [once, run = inner.run](const auto& spec, const auto& limits, auto guess) {
+    return run(spec, once(limits), guess);
+  };
+  runners.repeat = [once, repeat = inner.repeat](auto& point, const auto& limits) {
+    repeat(point, once(limits));
+  };
+  return runners;
+}
+
+std::vector<PointResult*> fastest_runs(std::vector<PointResult>& points, const Wish& wish) {
+  std::vector<PointResult*> list;
+  for (PointResult& point : points) {
+    if (within(point, wish)) list.push_back(&point);
+  }
+  std::sort(list.begin(), list.end(),
+            [](const PointResult* a, const PointResult* b) { return a->seconds() < b->seconds(); });
+  list.resize(std::min(list.size(), finalists));
+  return list;
+}
+
+void repeat_finalists(std::vector<PointResult>& points, const Suite& suite, const Wish& wish,
+                      const ChooseLimits& limits, const SweepRunners& runners) {
+  const auto stop = stop_at(limits, 1);
+  try {
+    for (std::size_t round = 1; round < final_samples; ++round) {
+      for (PointResult* point : fastest_runs(points, wish)) {
+        if (stop()) return;
+        runners.repeat(*point, {suite.timeout, 1e300, stop});
+      }
+    }
+  } catch (const Interrupted&) {
+  }
+}
+
 }  // namespace
+
+std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened) {
+  const auto rank = [](const PointResult& point) {
+    return point.ok() ? 0 : point.status == PointStatus::strain_missed ? 1 : 2;
+  };
+  std::vector<std::size_t> order(screened.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const PointResult &one = screened[a], &other = screened[b];
+    if (rank(one) != rank(other)) return rank(one) < rank(other);
+    if (one.samples.empty() || other.samples.empty())
+      return !one.samples.empty() && other.samples.empty();
+    return one.seconds() < other.seconds();
+  });
+  return order;
+}
+
+Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
+                       const ChooseLimits& limits, const SweepEvents& events,
+                       const ChooseRunners& runners) {
+  Trials trials;
+  trials.screened = screen_all(searches, limits, runners);
+  std::vector<Search> ordered;
+  for (const std::size_t i : ladder_order(trials.screened)) ordered.push_back(searches[i]);
+  SweepEvents until = events;
+  until.interrupted = stop_at(limits, search_share);
+  SweepOutcome outcome = run_sweep(suite, ordered, until, hasty(runners));
+  trials.points = std::move(outcome.points);
+  trials.complete = outcome.complete;
+  repeat_finalists(trials.points, suite, wish, limits, runners);
+  if (limits.interrupted()) throw Interrupted();
+  return trials;
+}
 
 std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& wish,
                             const std::string& not_by) {
   std::optional<Pick> best;
   for (const PointResult& point : points) {
     const auto pick = pick_of(point, wish);
-    if (!pick || point.spec.name() == not_by || !within_error(point.measures, wish.error)) continue;
+    if (!pick || point.spec.name() == not_by || !within(point, wish)) continue;
     if (!best || point.seconds() < best->point->seconds()) best = pick;
   }
   return best;
@@ -42,6 +154,55 @@ std::optional<Pick> most_accurate(const std::vector<PointResult>& points, const 
     if (!best || better(*pick, *best)) best = pick;
   }
   return best;
+}
+
+Kept kept(const FrameTime& frame, double budget) {
+  if (!(budget > 0) || frame.slow <= budget) return Kept::nearly_all;
+  return frame.median <= budget ? Kept::half : Kept::fewer;
+}
+
+Recommendation recommend(const std::vector<PointResult>& points, const Wish& wish) {
+  Recommendation found;
+  for (const PointResult& point : points) {
+    const auto pick = pick_of(point, wish);
+    if (!pick || !within(point, wish)) continue;
+    const Kept keeps = kept(pick->frame, wish.budget);
+    if (found.best && (keeps > found.budget ||
+                       (keeps == found.budget && point.seconds() >= found.best->point->seconds())))
+      continue;
+    found.best = pick;
+    found.budget = keeps;
+  }
+  if (found.best) found.next = fastest(points, wish, found.best->point->spec.name());
+  return found;
+}
+
+std::string why_not(const std::string& contestant, const Trials& trials, const Wish& wish) {
+  const PointResult *closest = nullptr, *failed = nullptr;
+  for (const PointResult& point : trials.points) {
+    if (point.spec.name() != contestant) continue;
+    if (within(point, wish)) return "";
+    if (!point.ok()) failed = &point;
+    const auto error = [&wish](const PointResult& p) {
+      return error_at(p.measures, wish.error).distance;
+    };
+    if (point.ok() && (!closest || error(point) < error(*closest))) closest = &point;
+  }
+  const auto at = [](const PointResult& point) {
+    return " at " + step_text(point.spec.step) + " s";
+  };
+  if (closest)
+    return "error " + number_text(100 * error_at(closest->measures, wish.error).distance, 2) +
+           " %" + at(*closest);
+  if (failed)
+    return std::string(to_string(failed->status)) + at(*failed) + ": " + shortened(failed->detail);
+  const auto seen = std::find_if(trials.screened.begin(), trials.screened.end(),
+                                 [&](const PointResult& p) { return p.spec.name() == contestant; });
+  if (seen == trials.screened.end() || (seen->samples.empty() && seen->detail.empty()))
+    return "not tried, the time was over";
+  if (seen->samples.empty()) return "not tried: " + shortened(seen->detail);
+  return "no run ended in time; its first steps took " + duration_text(seen->seconds()) +
+         " a simulated second";
 }
 
 }  // namespace harness

@@ -1,18 +1,52 @@
-// Which of the runs that were measured on a scene its user should take, and what more or less
-// computation would bring.
+// Which solver and step to take for a scene: tries the contestants within a given time, and picks
+// from what their runs took.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
-#include "harness/points/point.h"
+#include "harness/run/sweep.h"
 
 namespace harness {
 
 struct Wish {
   double error = headline_error;  // over the scene's size; any_motion: whatever it looks like
   double rate = 60;               // frames a second: one that frame times are kept of
+  double budget = 0;              // s of computing time a frame; 0: none is given
 };
+
+// ---- Trying ----
+
+struct ChooseLimits {
+  double seconds = 60;              // for everything
+  std::function<double()> elapsed;  // s since the beginning
+  std::function<bool()> interrupted;
+};
+
+// screen stands for screen_point. Runs throw Interrupted as soon as their limits say so.
+struct ChooseRunners : SweepRunners {
+  decltype(SweepRunners::run) screen;
+};
+
+struct Trials {
+  std::vector<PointResult> screened;  // one of each search, in their order; skipped: no time
+  std::vector<PointResult> points;    // of ladders, the fastest with more samples
+  bool complete = true;               // false: the time was over before all ladders were done
+};
+
+// The order of the searches' ladders: the fastest first of those that met the strain limit when
+// they were screened, then that of those that missed it, then the rest.
+std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened);
+
+// Screens all contestants before the first ladder, runs ladders in ladder_order(), and takes more
+// samples of the fastest runs. A run in progress is stopped when the time is over. Throws
+// Interrupted if limits.interrupted() says so, whatever has been found.
+Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
+                       const ChooseLimits& limits, const SweepEvents& events,
+                       const ChooseRunners& runners);
+
+// ---- Picking ----
 
 struct Pick {
   const PointResult* point = nullptr;
@@ -28,5 +62,22 @@ std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& 
 // known of errors, the one with the smallest step.
 std::optional<Pick> most_accurate(const std::vector<PointResult>& points, const Wish& wish,
                                   double seconds);
+
+// How much of a budget the frames of a run keep: 99 % of them, half of them, or fewer.
+enum class Kept { nearly_all, half, fewer };
+Kept kept(const FrameTime& frame, double budget);
+
+// best: the fastest within strain limit and error of those that keep most of the budget. One that
+// keeps it in fewer than half of its frames is not to be taken.
+struct Recommendation {
+  std::optional<Pick> best, next;  // next: of another contestant
+  Kept budget = Kept::nearly_all;  // without one: nearly_all
+  bool to_be_taken() const { return best && budget != Kept::fewer; }
+  bool all_is_well() const { return best && budget == Kept::nearly_all; }
+};
+Recommendation recommend(const std::vector<PointResult>& points, const Wish& wish);
+
+// Why a contestant has no run within strain limit and error; empty: it has one.
+std::string why_not(const std::string& contestant, const Trials& trials, const Wish& wish);
 
 }  // namespace harness

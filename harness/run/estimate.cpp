@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <stdexcept>
 
-#include "harness/base/clock.h"
-#include "harness/judge/drive.h"
+#include "harness/run/screening.h"
 #include "harness/run/sweep.h"
-#include "harness/scenes/scene.h"
-#include "solvers/registry.h"
 
 namespace harness {
 namespace {
 
-constexpr double look = 0.1;            // s, at a contestant and size
 constexpr double runs_of_a_search = 6;  // as measured, with levels of error down to 1 %
 constexpr double runs_of_a_calibration = 6;
 // Steps whose samples tell which is best, of a search, at any motion and at levels of error.
@@ -22,22 +17,14 @@ constexpr double repeated_of_a_search = 2;
 // Over the timed part of a short run: making the solver, and looks at the machine.
 constexpr double around_a_run = 1.3;
 
-// Of simulating a second; the time-out where no step is taken.
+// Of simulating a second; the time-out where no step is taken, nothing where the solver does not
+// take the problem.
 double seconds_per_second(const Search& search, double step, double timeout) {
-  const Scene scene = find_scene(search.base.scene)->build(search.base.scene_parameters);
-  try {
-    const auto stepper = inextensible::make_stepper(
-        search.base.solver, scene.problem,
-        {search.base.strain_limit, search.base.seed, search.base.settings});
-    inextensible::State state = scene.start;
-    const auto begin = Clock::now();
-    const long steps = std::lround(std::ceil(scene.duration / step));
-    const Driven driven = drive(*stepper, state, {step, steps}, {.timeout = look});
-    if (driven.steps > 0) return since(begin) / (static_cast<double>(driven.steps) * step);
-  } catch (const std::invalid_argument&) {  // refused at the door, which takes no time
-    return 0;
-  }
-  return timeout;
+  PointSpec spec = search.base;
+  spec.step = step;
+  const PointResult seen = screen_point(spec, {.hopeless = usual_look});
+  if (seen.status == PointStatus::unsupported) return 0;
+  return seen.samples.empty() ? timeout : seen.seconds();
 }
 
 }  // namespace

@@ -89,8 +89,10 @@ class Sampler {
   std::optional<Run> record(Batch sample) {
     if (!sample.ok()) return std::move(sample.last);
     if (!short_steps_) record_filter(sample);
-    if (point_.samples.empty()) point_.frame_times = sample.last.frame_times;
-    point_.samples.push_back(of_a_second(sample.seconds, sample));
+    const double seconds = of_a_second(sample.seconds, sample);
+    if (point_.samples.empty() || seconds < point_.seconds())
+      point_.frame_times = sample.last.frame_times;
+    point_.samples.push_back(seconds);
     point_.cpu_samples.push_back(of_a_second(sample.cpu_seconds, sample));
     point_.sample_runs.push_back(sample.runs);
     return std::nullopt;
@@ -133,7 +135,8 @@ bool calibrate(PointResult& point, PointRunner& runner, inextensible::Settings& 
   Calibration calibration(spec.strain_limit, [&](double stiffness) -> Calibration::Trial {
     settings["stiffness"] = stiffness;
     runner.restart_clock(RunPart::calibration);  // every run has the whole time-out to itself
-    const Run run = runner.run(settings, true, Calibration::cut_short * spec.strain_limit);
+    const Run run =
+        runner.run(settings, true, Calibration::cut_short * spec.strain_limit, true, true);
     return {run.status, run.measures.max_strain, run.seconds, run.detail};
   });
   point.stiffness =
@@ -166,8 +169,8 @@ void measure(PointResult& point, PointRunner& runner, const inextensible::Settin
   Sampler sampler(point, runner, settings, short_steps, limits);
   const bool a_sample =
       !judged.last.observed && !short_steps && (!timed || judged.seconds >= least_sample);
-  const bool disturbed =
-      timed && may_be_retaken(judged) && quiet_probe().disturbed(std::max(before, after));
+  const bool disturbed = timed && limits.most_retaken > 0 && may_be_retaken(judged) &&
+                         quiet_probe().disturbed(std::max(before, after));
   const auto failed =
       a_sample && !disturbed ? sampler.record(std::move(judged)) : sampler.add(a_sample ? 1 : 0);
   if (failed) {

@@ -21,8 +21,10 @@ inline constexpr double longest_retaken = 0.25;
 enum class RunPart { measured, calibration };
 
 struct RunLimits {
-  double timeout = 60;      // s of wall time, for each run of a calibration and the measured one
-  double hopeless = 1e300;  // s of stepping after which a run cannot be the best any more
+  double timeout = 60;  // s of wall time, for each run of a calibration and the measured one
+  // s of stepping after which a run cannot be the best any more; of a calibration's run nominal
+  // ones, so that a stiffness is found or not whatever else the machine does
+  double hopeless = 1e300;
   std::function<bool()> interrupted = nullptr;           // asked after every step
   std::shared_ptr<ReferenceShelf> references = nullptr;  // null: no errors against references
   Heartbeat* heartbeat = nullptr;                        // told of every step; see child_process.h

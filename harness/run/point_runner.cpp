@@ -9,6 +9,7 @@
 #include "harness/judge/drive.h"
 #include "harness/judge/judge.h"
 #include "harness/judge/mechanics.h"
+#include "harness/run/calibration.h"
 #include "harness/run/frame_times.h"
 
 namespace harness {
@@ -29,6 +30,9 @@ constexpr int sampled_instants = 100;  // a run, for statistics that need sortin
 // are timed in blocks of at least this length where the judge need not look in between, and a run
 // whose judged steps are shorter is made again without him, for its time.
 constexpr double shortest_block = 2e-5;  // s
+
+// Nominal times are right within a factor of two: work that is a few times too much is hopeless.
+constexpr double work_patience = 4;
 
 std::string refusal(const inextensible::StepResult& result, std::int64_t step, double time) {
   std::ostringstream text;
@@ -70,12 +74,17 @@ Judge::Options PointRunner::judging(bool errors) const {
 class PointRunner::Look : public Onlooker {
  public:
   // judge: null leaves all time to the steps.
-  Look(const PointRunner& runner, Judge* judge, double stop_at, Run& run)
-      : runner_(runner), judge_(judge), stop_at_(stop_at), run_(run), frames_(runner.spec_.step) {}
+  Look(const PointRunner& runner, Judge* judge, double stop_at, bool by_work, Run& run)
+      : runner_(runner),
+        judge_(judge),
+        stop_at_(stop_at),
+        by_work_(by_work),
+        run_(run),
+        frames_(runner.spec_.step) {}
 
   int before(const State& state, const Driven& /*driven*/) {
     if (judge_) judge_->before(state, runner_.spec_.step);
-    if (judge_) cpu_begin_ = thread_seconds();
+    cpu_begin_ = thread_seconds();
     begin_ = Clock::now();
     return block_;
   }
@@ -85,10 +94,13 @@ class PointRunner::Look : public Onlooker {
   void all(const State& state, const Driven& driven) {
     const double seconds = since(begin_);
     run_.seconds += seconds;
-    if (judge_) run_.cpu_seconds += thread_seconds() - cpu_begin_;
+    const double cpu_seconds = thread_seconds() - cpu_begin_;
+    if (judge_) run_.cpu_seconds += cpu_seconds;
     const double time = state.time - runner_.first_state_.time;
+    // Where another process had the processor, the frame is not to blame.
     if (driven.taken > 0)
-      frames_.add(runner_.spec_.adaptive ? 1 : driven.taken, runner_.spec_.step, time, seconds);
+      frames_.add(runner_.spec_.adaptive ? 1 : driven.taken, runner_.spec_.step, time,
+                  std::min(seconds, cpu_seconds));
     if (!judge_ && seconds < shortest_block) block_ *= 2;
   }
 
@@ -99,15 +111,23 @@ class PointRunner::Look : public Onlooker {
           judge_->after(run_.stepper->filtered_positions(), state, driven.last, driven.whole);
       if (runner_.overstrained(strain, stop_at_, run_)) return false;
     }
-    return driven.steps == runner_.steps_ || !(run_.seconds > runner_.limits_.hopeless);
+    return driven.steps == runner_.steps_ || !(stepped() > runner_.limits_.hopeless);
   }
 
   std::vector<FrameTime> frame_times() const { return frames_.summary(); }
 
  private:
+  // s, as far as it counts against limits_.hopeless.
+  double stepped() const {
+    if (!by_work_) return run_.seconds;
+    return nominal_seconds(run_.stepper->work(), runner_.scene_.problem->constraints()) /
+           work_patience;
+  }
+
   const PointRunner& runner_;
   Judge* judge_;
   double stop_at_;
+  bool by_work_;
   Run& run_;
   FrameTimes frames_;
   int block_ = 1;  // steps that are timed as one
@@ -141,7 +161,7 @@ void PointRunner::tell_end(const Driven& driven, double time, Run& run) const {
 }
 
 Run PointRunner::run(const inextensible::Settings& settings, bool judged, double stop_at,
-                     bool phases) const {
+                     bool phases, bool by_work) const {
   Run run;
   const auto setup = Clock::now();
   run.stepper = inextensible::make_stepper(
@@ -156,7 +176,7 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
   }
   State state = first_state_;
   beat(0, 0);
-  Look look(*this, judge ? &*judge : nullptr, stop_at, run);
+  Look look(*this, judge ? &*judge : nullptr, stop_at, by_work, run);
   // Between blocks there is little but reads of the clock; the judge takes longer than steps do.
   const double cpu_begin = thread_seconds();
   const Driven driven =

@@ -35,8 +35,9 @@ class PointRunner {
   // stop_at; the errors against a reference are measured only where that is diverged_strain.
   // Throws Interrupted.
   // phases: whether they are timed, which takes tens of nanoseconds each.
-  Run run(const inextensible::Settings& settings, bool judged, double stop_at,
-          bool phases = true) const;
+  // by_work: a run is hopeless by the nominal time of its work, so that it always ends alike.
+  Run run(const inextensible::Settings& settings, bool judged, double stop_at, bool phases = true,
+          bool by_work = false) const;
 
   // The same steps with nothing around them.
   double bare_seconds_per_step() const;

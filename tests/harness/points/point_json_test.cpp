@@ -132,9 +132,11 @@ TEST(PointJson, LosesNothing) {
 
 TEST(PointJson, RepetitionsComeBackAndOlderJournalsHaveSecondsAlone) {
   PointResult point = Random(1).point();
-  const Repetition before = samples_of(point), more{{1, 2}, {0.5, 0.75}, {0.1}, {7, 8}, 3};
+  const Repetition before = samples_of(point),
+                   more{{1, 2}, {0.5, 0.75}, {0.1}, {7, 8}, 3, {{60, 0.001, 0.002, 0.003}}};
   append(repetition_of(to_json(more)), point);
   EXPECT_EQ(to_json(added_since(before, point)), to_json(more));
+  EXPECT_EQ(point.frame_times, more.frame_times);
   const Repetition older = repetition_of(json::parse(R"({"seconds": [1.5]})"));
   EXPECT_EQ(older.samples, std::vector<double>{1.5});
   EXPECT_TRUE(older.sample_runs.empty());

@@ -1,7 +1,11 @@
-// Which of some measured runs to take: planted times, errors and frames.
+// Which of some measured runs to take: planted times, errors and frames; and how the time is spent,
+// with a clock that only invented runs advance.
 #include "harness/run/choose.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
 
 namespace harness {
 namespace {
@@ -43,6 +47,161 @@ TEST(Choose, WhatFailedIsNoChoice) {
   std::vector<PointResult> all = measured_runs;
   all[1].status = PointStatus::strain_missed;
   EXPECT_EQ(fastest(all, {.error = 0.02})->point->spec.solver, "b");
+}
+
+TEST(Choose, ABudgetIsKeptByTheFramesAndNotByTheMean) {
+  std::vector<PointResult> all = measured_runs;  // frames of "b": 3 / 60 s, 99 % below 6 / 60 s
+  all[1].frame_times = {{60, 2.0 / 60, 9.0 / 60, 9.0 / 60}};
+  const auto with = [&all](double budget) { return recommend(all, {.budget = budget}); };
+  EXPECT_EQ(with(0).best->point, &all[1]) << "without a budget the fastest";
+  EXPECT_TRUE(with(0).all_is_well());
+
+  EXPECT_EQ(with(6.5 / 60).best->point, &all[2]) << "the fastest of those that keep it";
+  EXPECT_TRUE(with(6.5 / 60).all_is_well());
+  EXPECT_EQ(with(6.5 / 60).next->point, &all[1]);
+
+  const Recommendation tight = with(2.5 / 60);
+  EXPECT_EQ(tight.best->point, &all[1]);
+  EXPECT_EQ(tight.budget, Kept::half);
+  EXPECT_TRUE(tight.to_be_taken() && !tight.all_is_well());
+
+  const Recommendation impossible = with(1.5 / 60);
+  EXPECT_EQ(impossible.best->point, &all[1]) << "the fastest is told";
+  EXPECT_EQ(impossible.budget, Kept::fewer);
+  EXPECT_FALSE(impossible.to_be_taken()) << "a median above the budget is nothing to take";
+  EXPECT_FALSE(recommend(all, {.error = 0.001}).to_be_taken());
+}
+
+TEST(Choose, LaddersFollowWhatScreeningSaw) {
+  std::vector<PointResult> screened(6);
+  const auto seen = [&screened](std::size_t i, PointStatus status, std::vector<double> seconds) {
+    screened[i].status = status;
+    screened[i].samples = std::move(seconds);
+  };
+  seen(0, PointStatus::unsupported, {});
+  seen(1, PointStatus::strain_missed, {0.1});
+  seen(2, PointStatus::ok, {3});
+  seen(3, PointStatus::not_converged, {0.01});
+  seen(4, PointStatus::ok, {2});
+  seen(5, PointStatus::timeout, {});
+  EXPECT_EQ(ladder_order(screened), (std::vector<std::size_t>{4, 2, 1, 3, 0, 5}));
+}
+
+// Six contestants on a chain. A run takes the seconds of the table at 1/60 s, and twice as much at
+// half the step. The error is 1 % everywhere.
+class InventedMachine {
+ public:
+  std::map<std::string, double> seconds{
+      {"fast_projection", 5}, {"jacobi", 40}, {"gauss_seidel", 30},
+      {"strips_bdf2", 0.2},   {"icd", 20},    {"implicit_springs", 10}};
+  std::vector<std::string> calls;  // "screen icd", "run icd", "repeat icd"
+  double clock = 0;                // s
+  double interrupt_at = 1e300;
+  double latest = 0;  // s: when the last run ended or was stopped
+
+  Trials choose(double for_seconds) {
+    Suite suite;
+    suite.reps = 1;
+    suite.far_behind = 4;
+    SweepSpec& sweep = suite.sweeps.emplace_back();
+    sweep.sweep = "strain";
+    sweep.scene = "chain";
+    for (const auto& [name, s] : seconds) sweep.contestants.push_back({name, name});
+    std::reverse(sweep.contestants.begin(), sweep.contestants.end());
+    sweep.limits = {0.01};
+    sweep.resolutions = {10};
+    sweep.coarsest = 1.0 / 60;
+    sweep.finest = 1.0 / 240;
+    ChooseRunners runners;
+    runners.screen = [this](const PointSpec& spec, const RunLimits& limits, auto) {
+      calls.push_back("screen " + spec.solver);
+      EXPECT_LE(limits.hopeless, 0.1);
+      return spend(spec, limits.hopeless, limits);
+    };
+    runners.run = [this](const PointSpec& spec, const RunLimits& limits, auto) {
+      calls.push_back("run " + spec.solver);
+      return spend(spec, std::min(cost(spec), limits.hopeless), limits);
+    };
+    runners.repeat = [this](PointResult& point, const RunLimits& limits) {
+      calls.push_back("repeat " + point.spec.solver);
+      spend(point.spec, cost(point.spec), limits);
+      point.samples.push_back(cost(point.spec));
+    };
+    return try_contestants(
+        suite, plan(suite, {}), {},
+        {for_seconds, [this] { return clock; }, [this] { return clock >= interrupt_at; }}, {},
+        runners);
+  }
+
+ private:
+  double cost(const PointSpec& spec) const { return seconds.at(spec.solver) / (60 * spec.step); }
+
+  // Time passes in small pieces, and a run asks after each whether it is to stop.
+  PointResult spend(const PointSpec& spec, double busy, const RunLimits& limits) {
+    for (double spent = 0; spent < busy; spent += 0.01) {
+      latest = clock += 0.01;
+      if (limits.interrupted()) throw Interrupted();
+    }
+    PointResult point = run(spec.solver, spec.step, cost(spec), 0.01);
+    point.spec = spec;
+    if (busy < cost(spec) && calls.back().starts_with("run")) point.status = PointStatus::timeout;
+    return point;
+  }
+};
+
+TEST(Choose, ScreensEveryContestantBeforeTheFirstLadder) {
+  InventedMachine machine;
+  machine.choose(60);
+  for (std::size_t i = 0; i < 6; ++i)
+    EXPECT_TRUE(machine.calls[i].starts_with("screen")) << machine.calls[i];
+  EXPECT_EQ(machine.calls[6], "run strips_bdf2") << "the fastest when screened";
+}
+
+TEST(Choose, FindsTheFastestWhateverTheOrderOfTheList) {
+  InventedMachine machine;
+  const Trials trials = machine.choose(60);
+  const Recommendation found = recommend(trials.points, {});
+  ASSERT_TRUE(found.best);
+  EXPECT_EQ(found.best->point->spec.solver, "strips_bdf2");
+  EXPECT_EQ(found.best->point->samples.size(), 7u) << "sampled again at the end";
+}
+
+TEST(Choose, StopsARunInProgressWhenTheTimeIsOver) {
+  for (const double seconds : {0.3, 1.0, 6.0, 20.0}) {
+    InventedMachine machine;
+    machine.seconds["strips_bdf2"] = 3;
+    const Trials trials = machine.choose(seconds);
+    EXPECT_LE(machine.latest, 1.02 * seconds + 0.01);
+    EXPECT_EQ(trials.screened.size(), 6u);
+    EXPECT_EQ(recommend(trials.points, {}).best.has_value(), seconds > 5);
+    EXPECT_FALSE(trials.complete);
+  }
+}
+
+TEST(Choose, NoContestantIsDroppedWithoutAReason) {
+  for (const double seconds : {0.3, 1.0, 6.0, 60.0}) {
+    InventedMachine machine;
+    const Trials trials = machine.choose(seconds);
+    for (const auto& [name, s] : machine.seconds) {
+      const std::string why = why_not(name, trials, {});
+      const bool has_run =
+          std::any_of(trials.points.begin(), trials.points.end(),
+                      [&, n = name](const PointResult& p) { return p.ok() && p.spec.solver == n; });
+      EXPECT_EQ(why.empty(), has_run) << name << " in " << seconds << " s: " << why;
+    }
+  }
+}
+
+// At whatever moment: no answer, which might be a false one.
+TEST(Choose, AnInterruptionIsNoAnswer) {
+  InventedMachine whole;
+  whole.choose(20);
+  for (double at = 0; at < whole.latest; at += 0.17) {
+    InventedMachine machine;
+    machine.interrupt_at = at;
+    EXPECT_THROW(machine.choose(20), Interrupted) << at;
+    EXPECT_LE(machine.latest, at + 0.011) << "and at once";
+  }
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "harness/judge/ensemble_runs.h"
 #include "harness/judge/reference_file.h"
+#include "harness/run/calibration.h"
 #include "harness/run/measure_point.h"
 
 namespace harness {
@@ -67,6 +68,29 @@ TEST(PointRunner, ARunThatHangsOrShakesHasLostItsMotion) {
   EXPECT_NE(hangs.detail.find("mean kinetic energy"), std::string::npos);
   EXPECT_EQ(against(0.5, 0).status, PointStatus::motion_lost) << "it shakes";
   EXPECT_EQ(against(2, 1).status, PointStatus::ok) << "the ensemble's runs are as far apart";
+}
+
+// Two runs of one command agree: what a search for a stiffness may take is work, not time.
+TEST(PointRunner, ACalibrationIsCutOffByItsWorkAlone) {
+  PointSpec spec;
+  spec.sweep = "strain";
+  spec.scene = "drape";
+  spec.scene_parameters = complete_parameters(*find_scene("drape"), {{"n", 7}, {"duration", 0.5}});
+  spec.solver = "vertex_block_descent";
+  spec.strain_limit = 0.01;
+  spec.step = 0.01;
+  const PointResult whole = run_point(spec, {.timed = false});
+  ASSERT_TRUE(whole.stiffness) << whole.detail;
+  const auto [vertices, edges] = find_scene("drape")->counts(spec.scene_parameters);
+  const double work = nominal_seconds(whole.work, edges);
+  for (const double hopeless : {work / 2, work / 3}) {
+    const PointResult again = run_point(spec, {.hopeless = hopeless, .timed = false});
+    EXPECT_EQ(again.stiffness, whole.stiffness) << again.detail;
+    EXPECT_EQ(again.calibration_runs, whole.calibration_runs);
+  }
+  const PointResult cut = run_point(spec, {.hopeless = work / 50, .timed = false});
+  EXPECT_EQ(cut.status, PointStatus::skipped);
+  EXPECT_FALSE(cut.stiffness);
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+# bench choose, interrupted at several moments, without the time for any run, with budgets that cannot be kept, and with solvers
+# that the scene has no use for: it says what it knows, and its exit code says whether that is an answer.
+set -um  # -m: a background process does not ignore SIGINT
+fail() { echo "FAILED: $*"; exit 1; }
+rm -rf work && mkdir work && cd work || exit 1
+cloth=("$BENCH_BINARY" choose --scene cape --n 15 --seconds 30)
+
+# The moments: before anything, once the finer run begins, and after so many ladders' runs.
+# interrupted SIGNAL LINES: sends the signal when so many lines are on standard error.
+interrupted() {
+  local code
+  "${cloth[@]}" >out.txt 2>err.txt &
+  local bench=$!
+  for _ in $(seq 1500); do
+    (($(wc -l <err.txt) < $2)) && kill -0 $bench 2>/dev/null || break
+    sleep 0.02
+  done
+  kill -"$1" $bench 2>/dev/null
+  wait $bench
+  code=$?
+  [[ $code == 130 || $code == 143 ]] || fail "$1 after $2 lines: exit $code: $(cat out.txt err.txt)"
+  [[ ! -s out.txt ]] || fail "$1 after $2 lines, an answer: $(cat out.txt)"
+  (($2 == 0)) || grep -q 'interrupted' err.txt || fail "$1 after $2 lines, nothing of it is said: $(cat err.txt)"
+}
+for lines in 0 1 2 4 5 6 8 12; do
+  interrupted INT $lines
+  interrupted TERM $lines
+done
+
+# answers CODE WORDS OPTION...
+answers() {
+  local code=$1 words=$2
+  shift 2
+  "$BENCH_BINARY" choose --no-wait "$@" >out.txt 2>err.txt
+  local got=$?
+  [[ $got == "$code" ]] || fail "choose $*: exit $got, not $code: $(cat out.txt; tail -3 err.txt)"
+  grep -qE "$words" out.txt || fail "choose $*: says nothing of '$words': $(cat out.txt)"
+}
+answers 6 'no run ended within its strain limit in this time' --scene drape --n 71 --seconds 0.5
+! grep -q '^take' out.txt || fail "a solver to take, without any run"
+chain=(--scene chain --n 10 --error 0.5 --seconds 10 --solver 'fast_projection|strips_midpoint')
+answers 0 '^take' "${chain[@]}" --budget 10s
+answers 6 'no solver that was tried keeps the budget' "${chain[@]}" --budget 0.000001us
+! grep -q '^take' out.txt || fail "a solver to take, above the budget: $(cat out.txt)"
+for name in fast_projection strips_midpoint; do
+  grep -q "$name" out.txt || fail "$name was named and is nowhere: $(cat out.txt)"
+done
+echo ok
