@@ -12,13 +12,16 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <iostream>
 #include <memory>
 #include <new>
 #include <stdexcept>
 
 #include "harness/base/files.h"
+#include "harness/base/standard_streams.h"
 
 namespace harness {
 namespace {
@@ -72,6 +75,7 @@ void set_limit(int resource, double bytes) {
   std::signal(SIGTERM, SIG_DFL);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // it died before that
+  send_output_to_error();             // its answer goes through the pipe alone
   set_limit(RLIMIT_CORE, 0);
   if (memory > 0) set_limit(RLIMIT_AS, memory);
   std::string text;
@@ -81,7 +85,8 @@ void set_limit(int resource, double bytes) {
     text = threw_mark + std::string(error.what());
   }
   write_whole(pipe, text);  // or the parent is gone
-  _exit(0);                 // no destructors: the parent's objects are not ours
+  std::fflush(stdout);
+  _exit(0);  // no destructors: the parent's objects are not ours
 }
 
 bool has_ended(pid_t child) {
@@ -164,6 +169,8 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
   std::array<int, 2> pipe{};
   if (pipe2(pipe.data(), O_CLOEXEC) != 0) fail("pipe");
   const long kills = out_of_memory_kills();
+  std::cout.flush();  // or the child prints it as well
+  std::fflush(stdout);
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0) {

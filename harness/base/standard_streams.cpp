@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <iostream>
+#include <stdexcept>
 
 #include "harness/base/files.h"
 
@@ -26,6 +28,27 @@ void check_standard_output() {
   if (std::cout) return;
   throw FileError("standard output", "write to",
                   errno != 0 ? std::strerror(errno) : "it is closed or full");
+}
+
+// std::cout as well: it writes through stdout's buffer.
+void send_output_to_error() {
+  std::cout.flush();
+  std::fflush(stdout);
+  dup2(STDERR_FILENO, STDOUT_FILENO);
+}
+
+OutputToError::OutputToError() : output_(fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)) {
+  if (output_ < 0)
+    throw std::runtime_error(std::string("standard output: no descriptor left: ") +
+                             std::strerror(errno));
+  send_output_to_error();
+}
+
+OutputToError::~OutputToError() {
+  std::cout.flush();
+  std::fflush(stdout);
+  dup2(output_, STDOUT_FILENO);
+  close(output_);
 }
 
 }  // namespace harness

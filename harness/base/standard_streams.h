@@ -8,6 +8,22 @@ namespace harness {
 // First thing in main.
 void open_standard_streams();
 
+// While it lives, what is written to standard output goes to standard error: what foreign code
+// prints is mixed with no result. Throws std::runtime_error if there is no descriptor left.
+class OutputToError {
+ public:
+  OutputToError();
+  ~OutputToError();
+  OutputToError(const OutputToError&) = delete;
+  OutputToError& operator=(const OutputToError&) = delete;
+
+ private:
+  int output_;
+};
+
+// The same to the end of this process.
+void send_output_to_error();
+
 // Throws FileError if something that was printed did not get out. Last thing in main.
 void check_standard_output();
 

@@ -14,6 +14,7 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
 #include "harness/base/temporary_folder.h"
+#include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/compare_options.h"
 #include "harness/cli/exit_codes.h"
@@ -153,7 +154,9 @@ json failed_point(const PairedPoint& point, const ProgramResult& ran) {
   printed["status"] = ran.timed_out                  ? "timeout"
                       : ran.exit_code == usage_error ? "unsupported"
                                                      : "crashed";
-  printed["status_detail"] = ran.last_error_line();
+  printed["status_detail"] = ran.exit_code == success
+                                 ? "printed no result: '" + shortened(ran.out, 60) + "'"
+                                 : ran.last_error_line();
   printed["work"] = json::object();
   printed["max_strain"] = nullptr;
   printed["error"] = json::object();
@@ -213,7 +216,9 @@ int run_ab(const AbCommand& options) {
     Comparison comparison =
         compare_in_pairs(std::move(points), options.pairs, options.confirming, gate, can, run);
     if (!can.counters()) comparison.notes.push_back("counters not compared: " + can.no_counters);
-    return report_comparison(comparison, options, "bench ab");
+    return report_comparison(comparison, options, "bench ab",
+                             "some points cannot be decided (AMBIGUOUS above): take more --pairs "
+                             "and --sample-seconds, or a quieter machine");
   } catch (const NotComparable& reason) {
     std::cerr << "bench: " << reason.what() << '\n';
     return not_comparable;

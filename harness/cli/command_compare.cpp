@@ -33,7 +33,10 @@ int run_compare(const CompareCommand& options) {
   check_reports(options);
   try {
     const Comparison comparison = compare(base, next, gate);
-    return report_comparison(comparison, options, "bench compare");
+    return report_comparison(
+        comparison, options, "bench compare",
+        "times of best points differ, but too few runs or too noisy a machine leave open whether "
+        "that is noise: take more --reps, or use bench ab, which times in pairs");
   } catch (const NotComparable& reason) {
     std::cerr << "bench: " << reason.what() << "; a new baseline: bench baseline "
               << joined(options.next) << " --out "

@@ -11,6 +11,7 @@
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
+#include "harness/base/pattern.h"
 #include "harness/base/statistics.h"
 #include "harness/base/temporary_folder.h"
 #include "harness/base/text.h"

@@ -6,6 +6,7 @@
 #include "harness/base/json_reader.h"
 #include "harness/base/json_text.h"
 #include "harness/base/paths.h"
+#include "harness/base/standard_streams.h"
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/shared_options.h"
 #include "harness/cli/verbs.h"
@@ -80,14 +81,21 @@ std::vector<PointSpec> read_specs(std::istream& in) {
   return specs;
 }
 
+// A line of the solver's own among the results would be read as one of them.
+PointResult timed_point(const PointSpec& spec, const RunLimits& limits, int samples) {
+  const OutputToError no_output;
+  PointResult point = run_point(spec, limits);
+  for (int i = 1; i < samples && point.ok(); ++i) repeat_point(point, limits);
+  return point;
+}
+
 int run_points(const PointCommand& options) {
   RunLimits limits;
   limits.timeout = options.timeout;
   limits.references = std::make_shared<ReferenceShelf>(source_path("results/references"));
   const std::string fingerprint = counters_fingerprint();
   for (const PointSpec& spec : read_specs(std::cin)) {
-    PointResult point = run_point(spec, limits);
-    for (int i = 1; i < options.samples && point.ok(); ++i) repeat_point(point, limits);
+    const PointResult point = timed_point(spec, limits, options.samples);
     json line = to_json(point);
     line["counters_fingerprint"] = fingerprint;
     std::cout << compact(line) << std::endl;

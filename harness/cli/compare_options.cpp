@@ -21,7 +21,7 @@ void check_reports(const CompareOptions& options) {
 }
 
 int report_comparison(const Comparison& comparison, const CompareOptions& options,
-                      const std::string& name) {
+                      const std::string& name, const std::string& undecided) {
   if (!options.junit.empty()) write_atomically(options.junit, junit_xml(comparison, name));
   if (!options.markdown.empty())
     write_atomically(options.markdown, markdown_table(comparison, name));
@@ -29,9 +29,7 @@ int report_comparison(const Comparison& comparison, const CompareOptions& option
   if (comparison.any(is_failure)) return unexpected_outcome;
   if (comparison.any(is_regression)) return regression;
   if (!comparison.undecided()) return success;
-  std::cerr
-      << "bench: times of best points differ, and too few runs or too unquiet a machine leave "
-         "open whether that is noise: more --reps, or bench ab, which takes them in pairs\n";
+  std::cerr << "bench: " << undecided << '\n';
   return cannot_decide;
 }
 

@@ -18,8 +18,9 @@ void add_compare_options(const Command& to, CompareOptions& options);
 void check_reports(const CompareOptions& options);
 
 // Prints the comparison, writes the reports; the exit code (exit_codes.h): a failure outranks a
-// regression. name: of the JUnit suite and the Markdown heading.
+// regression. name: of the JUnit suite and the Markdown heading. undecided: what is said if times
+// of best points cannot be told apart.
 int report_comparison(const Comparison& comparison, const CompareOptions& options,
-                      const std::string& name);
+                      const std::string& name, const std::string& undecided);
 
 }  // namespace harness

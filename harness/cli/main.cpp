@@ -38,7 +38,10 @@ std::string version_text() {
 }
 
 void load(const std::vector<std::string>& plugins) {
-  for (const std::string& file : plugins) load_plugin(file);
+  {
+    const OutputToError no_output;
+    for (const std::string& file : plugins) load_plugin(file);
+  }
   for (const Plugin& plugin : loaded_plugins()) {
     if (!plugin.optimized)
       std::cerr << "bench: plug-in '" << plugin.file
@@ -66,6 +69,7 @@ int main(int argc, char** argv) {
   try {
     const int code = harness::run(argc, argv);
     harness::check_standard_output();
+    harness::send_output_to_error();  // what plug-ins print as they are unloaded
     return code;
   } catch (const harness::UsageError& error) {
     std::cerr << "bench: " << error.what() << '\n';

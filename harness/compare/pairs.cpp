@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/base/statistics.h"
+#include "harness/base/text.h"
+
 namespace harness {
 namespace {
 
+bool has_failed(const ComparedPoint& side) { return !side.status.empty() && !side.ok(); }
+
 bool failed(const PairedPoint& point) {
-  const auto has_failed = [](const ComparedPoint& side) {
-    return !side.status.empty() && !side.ok();
-  };
   return has_failed(point.before) || has_failed(point.after);
 }
 
@@ -22,6 +24,31 @@ void run_side(Side side, PairedPoint& point, const RunOne& run) {
   if (said.status.empty() || !now.ok()) said = now;
   if (now.ok()) times.push_back(process_time(printed));
   said.samples = std::move(times);
+}
+
+std::string change_text(double ratio) {
+  return (ratio < 1 ? "" : "+") + number_text(std::round(100 * (ratio - 1))) + " %";
+}
+
+// "Same" is a statement: it takes runs on both sides, and times that exclude a change as large as
+// the gate counts.
+PointChange without_false_same(PointChange result, const PairedPoint& point, const Gate& gate) {
+  const auto cannot_tell = [&result](const std::string& why) {
+    result.change = Change::ambiguous;
+    result.undecided = true;
+    result.reasons.push_back("cannot tell: " + why);
+  };
+  if (has_failed(point.before) && has_failed(point.after)) {
+    cannot_tell("fails on both sides: " + point.before.status + ", " + point.before.detail);
+    return result;
+  }
+  if (failed(point) || (result.change != Change::same && result.change != Change::ambiguous))
+    return result;
+  const Ratio ratio = ratio_of_times(point.after.samples, point.before.samples);
+  if (ratio.low < 1 / gate.median_ratio || ratio.high > gate.median_ratio)
+    cannot_tell("the time may have changed by anything from " + change_text(ratio.low) + " to " +
+                change_text(ratio.high));
+  return result;
 }
 
 Change timing(const PairedPoint& point, const Gate& gate) {
@@ -60,7 +87,8 @@ void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne&
     for (PairedPoint* point : points) {
       for (const Side side :
            {old_first ? Side::old_one : Side::new_one, old_first ? Side::new_one : Side::old_one}) {
-        if (!failed(*point)) run_side(side, *point, run);
+        const ComparedPoint& said = side == Side::old_one ? point->before : point->after;
+        if (said.status.empty() || !failed(*point)) run_side(side, *point, run);
       }
     }
   }
@@ -80,7 +108,8 @@ Comparison compare_in_pairs(std::vector<PairedPoint> points, int pairs, int conf
   Comparison comparison;
   std::vector<Flagged> flagged;
   for (PairedPoint& point : points) {
-    comparison.points.push_back(compare_point(point.before, point.after, gate, can));
+    comparison.points.push_back(
+        without_false_same(compare_point(point.before, point.after, gate, can), point, gate));
     const Change first = timing(point, gate);
     if (failed(point) || !can.times() || (first != Change::slower && first != Change::faster))
       continue;
@@ -91,7 +120,8 @@ Comparison compare_in_pairs(std::vector<PairedPoint> points, int pairs, int conf
   }
   run_pairs(again, confirming, run);
   for (const Flagged& f : flagged)
-    comparison.points[f.place] = judge_again(*f.point, f.first, gate, can);
+    comparison.points[f.place] =
+        without_false_same(judge_again(*f.point, f.first, gate, can), *f.point, gate);
   return comparison;
 }
 

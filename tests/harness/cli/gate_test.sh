@@ -132,7 +132,7 @@ exits 0 'SAME' compare busy.json busy.json
 exits 3 'SLOWER' compare busy.json slow5.json
 edit little.json busy_little.json 'd["context"]["sentinel"] = {"noisy": True, "spread": 0.3}'
 exits 3 'SLOWER' compare five.json little.json
-exits 6 'too unquiet a machine' compare five.json busy_little.json
+exits 6 'too noisy a machine' compare five.json busy_little.json
 edit five.json fast_machine.json 'd["context"]["sentinel"] = {"noisy": False, "seconds": [1e-3, 1.01e-3]}'
 edit little.json slow_machine.json 'd["context"]["sentinel"] = {"noisy": False, "seconds": [1.3e-3, 1.31e-3]}'
 exits 6 'own speed varied by as much' compare fast_machine.json slow_machine.json

@@ -130,6 +130,46 @@ TEST(CompareInPairs, TimesFoundOnceOnlyAreNoRegression) {
       << comparison.points[0].text();
 }
 
+// A machine so busy that no test of 15 pairs finds a doubled time.
+TEST(CompareInPairs, ADoubledTimeIsNeverTheSame) {
+  std::mt19937_64 random(1);
+  std::lognormal_distribution<double> noise(0, 1.5);
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto comparison = compare_in_pairs(
+        points_named({"a"}), 15, 25, informing(), {}, [&](Side side, const PairedPoint& point) {
+          return printed(point.id, (side == Side::new_one ? 2 : 1) * noise(random));
+        });
+    EXPECT_NE(comparison.points[0].change, Change::same);
+    if (comparison.points[0].change == Change::ambiguous) {
+      EXPECT_TRUE(comparison.points[0].undecided);
+    }
+  }
+}
+
+TEST(CompareInPairs, EqualTimesOnAQuietMachineAreTheSame) {
+  int runs = 0;
+  const auto comparison = compare_in_pairs(points_named({"a"}), 15, 25, informing(), {},
+                                           [&runs](Side, const PairedPoint& point) {
+                                             return printed(point.id, 1 + 1e-3 * (++runs % 7));
+                                           });
+  EXPECT_EQ(comparison.points[0].change, Change::same) << comparison.points[0].text();
+}
+
+TEST(CompareInPairs, WhatFailsOnBothSidesIsUndecidedAndWhatFailsBeforeOnlyIsFixed) {
+  for (const std::string status : {"crashed", "timeout", "diverged"}) {
+    const auto both = compare_in_pairs(
+        points_named({"a"}), 4, 4, informing(), {},
+        [&](Side, const PairedPoint& point) { return printed(point.id, 1, status); });
+    EXPECT_EQ(both.points[0].change, Change::ambiguous) << status;
+    EXPECT_TRUE(both.undecided()) << status;
+    const auto old_alone = compare_in_pairs(
+        points_named({"a"}), 4, 4, informing(), {}, [&](Side side, const PairedPoint& point) {
+          return printed(point.id, 1, side == Side::old_one ? status : "ok");
+        });
+    EXPECT_EQ(old_alone.points[0].change, Change::fixed) << status;
+  }
+}
+
 TEST(CompareInPairs, CountersInformUnlessTheGateSaysOtherwise) {
   const RunOne more_work = [](Side side, const PairedPoint& point) {
     return printed(point.id, 1, "ok", side == Side::old_one ? 10 : 11);

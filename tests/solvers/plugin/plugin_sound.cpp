@@ -1,8 +1,11 @@
 // Fast projection as plug-ins, by KIND_...; plugin_test.sh loads them.
 //   plain  as it is
 //   slow   every projection made four times: what bench ab must see
+//   loud   prints to standard output, by C and by C++, as it is loaded, used and unloaded
 //   start  with a set-up that needs the start's positions, and fails without
 //   bare   takes neither shear nor a collider
+#include <cstdio>
+#include <iostream>
 #include <stdexcept>
 
 #include "solvers/methods/fast_projection.h"
@@ -18,12 +21,26 @@ constexpr int in_vain = 3;
 constexpr int in_vain = 0;
 #endif
 
+#if defined(KIND_loud)
+void print() {
+  std::cout << "{}\n";
+  std::puts("a line of the solver's own");
+}
+struct AtBothEnds {
+  AtBothEnds() { print(); }
+  ~AtBothEnds() { print(); }
+} const at_both_ends;
+#else
+void print() {}
+#endif
+
 class Repeated final : public VelocityFilter {
  public:
   Repeated(const Problem& problem, double strain_limit)
       : inner_(problem, {.strain_limit = strain_limit}) {}
 
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override {
+    print();
     for (int i = 0; i < in_vain; ++i) {
       copy_ = x;
       inner_.apply(x_start, h, copy_, not_counted_);
