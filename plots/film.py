@@ -71,11 +71,20 @@ def length(metres: float) -> str:
     return f"{1000 * metres:.1f} mm" if abs(metres) < 1 else f"{metres:.2f} m"
 
 
+def status(take: dict[str, Any]) -> str:
+    if take["energy_gained"]:
+        return "gains energy"
+    if take["detail"]:
+        return "gave up"
+    return "ok" if max(take["largest_strain"]) <= take["strain_limit"] * (1 + 1e-6) else "strained more than permitted"
+
+
 def caption(film: Film, take: int, frame: int) -> list[str]:
     """What stands under a panel."""
     of = film.takes[take]
     frame = min(frame, of["frames"] - 1)
-    lines = [of["label"], f"permitted strain {percent(of['strain_limit'])}, largest so far {percent(max(of['largest_strain'][:frame + 1]))}"]
+    lines = [of["label"], f"steps of 1/{1 / of['step']:.6g} s: {status(of)}",
+             f"permitted strain {percent(of['strain_limit'])}, largest so far {percent(max(of['largest_strain'][:frame + 1]))}"]
     if of["seconds"]:
         seconds = statistics.median(of["seconds"]) * film.header["frames_per_second"] / FRAME_RATE
         lines.append(f"{1000 * seconds:.3g} ms for a frame of 1/{FRAME_RATE} s")
@@ -101,13 +110,19 @@ def wrapped(text: str, font: Any, width: float) -> list[str]:
 def greyed(picture: Image.Image, text: str, film: Film) -> Image.Image:
     """Without colour and pale, with a word on it: this run does not go on."""
     pale = Image.blend(picture.convert("L").convert("RGB"), Image.new("RGB", picture.size, (235, 235, 235)), GREY)
-    draw = ImageDraw.Draw(pale)
+    return alarmed(pale, text, film)
+
+
+def alarmed(picture: Image.Image, text: str, film: Film) -> Image.Image:
+    """Framed, with a word on it."""
+    draw = ImageDraw.Draw(picture)
+    draw.rectangle((0, 0, film.width - 1, film.height - 1), outline=ALARM, width=2)
     lines = wrapped(text, film.font, film.width - 4 * MARGIN)
     top = film.height - len(lines) * film.line - 3 * MARGIN
     draw.rectangle((MARGIN, top - MARGIN, film.width - MARGIN, top + len(lines) * film.line + MARGIN), fill=BACKGROUND, outline=ALARM)
     for number, line in enumerate(lines):
         draw.text(((film.width - film.font.getlength(line)) / 2, top + number * film.line), line, fill=ALARM, font=film.font)
-    return pale
+    return picture
 
 
 def panel(film: Film, take: int, frame: int) -> Image.Image:
@@ -116,6 +131,8 @@ def panel(film: Film, take: int, frame: int) -> Image.Image:
         picture = opened.convert("RGB")
     if film.gave_up(take, frame):
         picture = greyed(picture, film.takes[take]["detail"] or "ended", film)
+    elif film.takes[take]["energy_gained"]:
+        picture = alarmed(picture, "this run gains energy: its motion is wrong", film)
     lines = caption(film, take, frame)
     whole = Image.new("RGB", (film.width, film.height + (len(lines) + 1) * film.line), BACKGROUND)
     whole.paste(picture, (0, 0))

@@ -47,6 +47,8 @@ class Point {
   double steps() const { return number("duration") / number("step"); }
   // The largest strain after the collision filter, which is what a user gets.
   double delivered_strain() const;
+  // The paper's order: the obstacle pushes vertices out after the solve (contact 0).
+  bool collides_last() const { return scene_parameter("contact") == 0; }
   // Its distance to the reference at a level (points/measures.h); any_motion: at the headline's.
   ErrorAtLevel error_at(double level) const;
   // Whether that is known to be within the level; any_motion: always.

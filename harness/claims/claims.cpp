@@ -65,6 +65,25 @@ constexpr Row rows[] = {
      claims::garment_slip},
 };
 
+std::vector<ClaimVerdict> judge_points(const claims::Points& points) {
+  std::vector<ClaimVerdict> all;
+  for (const Row& row : rows) {
+    ClaimVerdict claim{row.id, row.where, row.statement, claims::not_measured, "", "", {}};
+    row.judge(points, claim);
+    if (claim.verdict == claims::not_measured) claim.points.clear();
+    all.push_back(std::move(claim));
+  }
+  return all;
+}
+
+// A verdict that another measurement of the same runs changes is no verdict.
+void mark_flip(ClaimVerdict& claim, const ClaimVerdict& again) {
+  if (claim.verdict == again.verdict) return;
+  claim.measured = claim.verdict + " by the first measurement of each run, " + again.verdict +
+                   " by the last; " + claim.measured;
+  claim.verdict = claims::undecided;
+}
+
 }  // namespace
 
 void check_timed(const json& result) {
@@ -76,12 +95,11 @@ void check_timed(const json& result) {
 std::vector<ClaimVerdict> judge_claims(const std::vector<json>& results) try {
   for (const json& result : results) check_timed(result);
   const claims::Points points(results);
-  std::vector<ClaimVerdict> all;
-  for (const Row& row : rows) {
-    ClaimVerdict claim{row.id, row.where, row.statement, claims::not_measured, "", "", {}};
-    row.judge(points, claim);
-    if (claim.verdict == claims::not_measured) claim.points.clear();
-    all.push_back(std::move(claim));
+  std::vector<ClaimVerdict> all = judge_points(points);
+  if (points.repeated()) {
+    const std::vector<json> reversed(results.rbegin(), results.rend());
+    const std::vector<ClaimVerdict> again = judge_points(claims::Points(reversed));
+    for (std::size_t i = 0; i < all.size(); ++i) mark_flip(all[i], again[i]);
   }
   return all;
 } catch (const json::exception& error) {

@@ -20,8 +20,9 @@ struct ClaimVerdict {
 void check_timed(const nlohmann::json& result);
 
 // results: documents of schema inextensible-bench/1 and inextensible-stability/1; their points are
-// taken together. Points of one id must come from one document (the first that has it counts).
-// Throws UsageError for documents that lack what a claim looks at.
+// taken together. Where several documents have a point, the first one's counts, and a verdict that
+// the last one's would change is undecided. Throws UsageError for documents that lack what a claim
+// looks at.
 std::vector<ClaimVerdict> judge_claims(const std::vector<nlohmann::json>& results);
 
 void print_claims(std::ostream& out, const std::vector<ClaimVerdict>& claims);

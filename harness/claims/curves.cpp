@@ -11,7 +11,9 @@ namespace harness::claims {
 using nlohmann::json;
 
 Points::Points(const std::vector<json>& results) {
-  std::set<std::tuple<std::string, std::string, std::string>> seen;  // id, contestant, sweep
+  // Ids do not name the order of passes.
+  using Key = std::tuple<std::string, std::string, std::string, bool>;
+  std::set<Key> seen;
   for (const json& result : results) {
     cast_.add(Cast(result));
     if (result.value("schema", "") == "inextensible-stability/1") {
@@ -22,11 +24,13 @@ Points::Points(const std::vector<json>& results) {
       }
       continue;
     }
-    std::set<std::tuple<std::string, std::string, std::string>> here;
+    std::set<Key> here;
     for (const json& p : result.at("points")) {
       const Point point(p, pair_noise_of(result));
-      const std::tuple key(point.id(), point.contestant(), point.text("sweep"));
-      if (seen.contains(key) || point.flag("adaptive")) continue;
+      if (point.flag("adaptive")) continue;
+      const Key key(point.id(), point.contestant(), point.text("sweep"), point.collides_last());
+      repeated_ = repeated_ || seen.contains(key);
+      if (seen.contains(key)) continue;
       here.insert(key);
       all_.push_back(point);
     }

@@ -33,6 +33,7 @@ class Points {
   explicit Points(const std::vector<nlohmann::json>& results);
 
   std::vector<Point> where(const Filter& wanted) const;
+  bool repeated() const { return repeated_; }  // two files have a point
 
   // The cell of a stability sweep; null if there is none.
   const nlohmann::json* cell(const std::string& hard_case, const std::string& solver) const;
@@ -66,6 +67,7 @@ class Points {
           std::optional<double> vertices = {}) const;
 
   std::vector<Point> all_;
+  bool repeated_ = false;
   Cast cast_;
   // Vertices, by scene and sweep.
   std::map<std::pair<std::string, std::string>, std::set<double, std::greater<>>> sizes_;

@@ -37,6 +37,12 @@ std::string verdict_of(Answer one, Answer other) {
   return verdict_of_all({verdict_of(one), verdict_of(other)});
 }
 
+std::string verdict_of_counts(int yes, int no, int all) {
+  if (yes == all) return reproduced;
+  if (2 * no > all) return not_reproduced;
+  return no > 0 && 2 * yes > all ? changed : undecided;
+}
+
 std::string verdict_of_all(const std::vector<std::string>& verdicts) {
   std::string common = not_measured;
   bool open = false;

@@ -29,7 +29,8 @@ namespace {
 
 struct FilmOptions : SceneOptions {
   std::string solver = "fast_projection", limits = "0.01", out, stills;
-  double step = 0.01, frames_per_second = 30;
+  double step = 0;  // s; 0: not given
+  double frames_per_second = 30;
   int width = 0;  // pixels; 0: not given
 };
 
@@ -49,7 +50,7 @@ FilmSpec film_spec(const FilmOptions& given) {
   tune(spec.solvers, read_tuned_up_to_date("tuned.json"), find_scene(spec.scene)->kind(), {},
        Untuned::none);
   spec.strain_limits = numbers_of("--limit", given.limits, Bounds::strain());
-  spec.step = given.step;
+  if (given.step > 0) spec.step = given.step;
   spec.frames_per_second = given.frames_per_second;
   return spec;
 }
@@ -57,16 +58,17 @@ FilmSpec film_spec(const FilmOptions& given) {
 void tell(const Take& take, std::size_t frame, std::size_t frames) {
   if (isatty(STDERR_FILENO) != 1 && frame < frames) return;
   std::cerr << (isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "") << take.label << " at "
-            << number_text(100 * take.strain_limit) << " %: frame " << frame << " of " << frames
+            << number_text(100 * take.strain_limit) << " %, steps of 1/"
+            << number_text(1 / take.step, 6) << " s: frame " << frame << " of " << frames
             << (frame == frames || isatty(STDERR_FILENO) != 1 ? "\n" : "");
 }
 
 // How long a frame took: what an engine asks for.
 void print_times(const Recording& recording) {
-  std::cout << "steps of 1/" << number_text(1 / recording.step, 6) << " s, "
-            << recording.steps_per_frame << " a frame; milliseconds a frame:\n";
+  std::cout << "milliseconds a frame:\n";
   for (const Take& take : recording.takes) {
-    std::cout << "  " << take.solver << ", " << number_text(100 * take.strain_limit) << " %: ";
+    std::cout << "  " << take.solver << ", " << number_text(100 * take.strain_limit)
+              << " %, steps of 1/" << number_text(1 / take.step, 6) << " s: ";
     if (!take.seconds.empty()) {
       const auto at = [&take](double part) {
         return number_text(1e3 * quantile(take.seconds, part), 3);
@@ -78,8 +80,9 @@ void print_times(const Recording& recording) {
                                3)
                 << " %";
     }
-    if (take.smallest_step < recording.step)
+    if (take.smallest_step < take.step)
       std::cout << "; steps down to 1/" << number_text(1 / take.smallest_step, 6) << " s";
+    if (!take.energy_gained.empty()) std::cout << "; gains energy: " << take.energy_gained;
     std::cout << (take.detail.empty() ? "" : "; " + take.detail) << '\n';
   }
 }
@@ -187,28 +190,32 @@ int film(FilmOptions given) {
 }  // namespace
 
 Verb film_verb() {
-  return {"film", "render a scene as stills or a film, or export it for ParaView and Blender",
-          [](const Command& command) -> Action {
-            const auto given = std::make_shared<FilmOptions>();
-            given->scene = "drape";
-            add_scene(command, *given, given->scene);
-            add_solver(command, given->solver);
-            add_limits(command, given->limits, given->limits);
-            command.option("--step", given->step, "s; shortened to a whole part of a frame", "S")
-                .positive();
-            command.option("--fps", given->frames_per_second, "frames a second", "N").positive();
-            command.option("--stills", given->stills,
-                           "times of the pictures in a .png, s, between commas; default: four",
-                           "TIMES");
-            command.option("--width", given->width, "of each picture; default: 480", "PIXELS")
-                .within(16, 4096);
-            command.option(
-                "--out", given->out,
-                ".webp or .mp4: a film; .png: stills; .obj, .pvd, .pc2: for other programs; "
-                "default: results/local/film-<scene>.webp, .png with --stills",
-                "FILE");
-            return [given] { return film(*given); };
-          }};
+  return {
+      "film", "render a scene as stills or a film, or export it for ParaView and Blender",
+      [](const Command& command) -> Action {
+        const auto given = std::make_shared<FilmOptions>();
+        given->scene = "drape";
+        add_scene(command, *given, given->scene);
+        add_solver(command, given->solver);
+        add_limits(command, given->limits, given->limits);
+        command
+            .option("--step", given->step,
+                    "s; shortened to a whole part of a frame; default: 0.01, or as short as the "
+                    "energy check asks for",
+                    "S")
+            .positive();
+        command.option("--fps", given->frames_per_second, "frames a second", "N").positive();
+        command.option("--stills", given->stills,
+                       "times of the pictures in a .png, s, between commas; default: four",
+                       "TIMES");
+        command.option("--width", given->width, "of each picture; default: 480", "PIXELS")
+            .within(16, 4096);
+        command.option("--out", given->out,
+                       ".webp or .mp4: a film; .png: stills; .obj, .pvd, .pc2: for other programs; "
+                       "default: results/local/film-<scene>.webp, .png with --stills",
+                       "FILE");
+        return [given] { return film(*given); };
+      }};
 }
 
 }  // namespace harness

@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,15 +18,22 @@ struct FilmSpec {
   SceneParameters parameters;  // complete
   Contestants solvers;
   std::vector<double> strain_limits;  // every solver at each
-  double step = 0.01;                 // s; shortened to a whole part of a frame
+  // s; shortened to a whole part of a frame. None: see record().
+  std::optional<double> step;
   double frames_per_second = 30;
 };
+
+inline constexpr double default_step = 0.01;  // s
+inline constexpr int most_refinements = 4;    // of it
 
 // One run.
 struct Take {
   std::string solver, label;
   double strain_limit = 0;
+  double step = 0;  // s
+  int steps_per_frame = 1;
   std::string detail;                           // why it ended early; empty: it did not
+  std::string energy_gained;                    // why it fails the energy check; empty: it passes
   std::vector<inextensible::Positions> frames;  // from the start on
   std::vector<double> largest_strain;           // of each frame, as delivered
   double smallest_step = 0;                     // s; a step that is refused is halved
@@ -45,8 +53,6 @@ struct Stage {
 
 struct Recording {
   FilmSpec spec;
-  double step = 0;  // s, that runs took
-  int steps_per_frame = 1;
   Stage stage;
   std::vector<Take> takes;
 };
@@ -54,7 +60,10 @@ struct Recording {
 // Of the whole film: the one at the start, and as many as the scene's duration has.
 std::size_t frames_in(const FilmSpec& spec);
 
-// told: of every frame. Springs get the stiffness that keeps the limit. Throws Interrupted.
+// Springs get the stiffness that keeps the limit. Where no step is given, each run takes the first
+// of default_step and its halves at which it neither gains energy nor gives up; if none does, the
+// one at which it goes well for longest. told: of every frame, of runs that are dropped too. Throws
+// Interrupted.
 Recording record(
     const FilmSpec& spec, const std::function<bool()>& interrupted,
     const std::function<void(const Take&, std::size_t frame, std::size_t frames)>& told);

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "harness/points/measures.h"
 #include "solvers/methods/backend.h"
@@ -43,6 +44,7 @@ class EnergyRecord {
   // step wherever an edge meets its limit.
   double rise() const { return rise_; }
   double scale() const { return scale_; }
+  const inextensible::Problem& problem() const { return problem_; }
 
  private:
   struct Instant {
@@ -63,5 +65,8 @@ class EnergyRecord {
   } window_;
   int gain_step_ = 0;
 };
+
+// Why a run of so many seconds fails the energy check; "": it passes. bound: of Scene.
+std::string energy_gained(const EnergyRecord& energy, double bound, double seconds);
 
 }  // namespace harness

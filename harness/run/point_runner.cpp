@@ -195,25 +195,16 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
 
 void PointRunner::decide(const Judge& judge, Run& run) const {
   const Measures& found = run.measures;
-  const EnergyRecord& energy = judge.energy();
   if (backend_.knob != inextensible::Knob::none &&
       !(found.max_strain <= spec_.strain_limit * (1 + 1e-9))) {
     run.status = PointStatus::strain_missed;
     run.detail = "maximum strain " + told_apart(found.max_strain, spec_.strain_limit) + " above " +
                  number_text(spec_.strain_limit);
-  } else if (energy.gain() > scene_.energy_bound) {
+  } else if (const std::string gained =
+                 energy_gained(judge.energy(), scene_.energy_bound, scene_.duration);
+             !gained.empty()) {
     run.status = PointStatus::energy_gained;
-    run.detail = "energy " + number_text(energy.gain(), 3) +
-                 " of weight times size above the start's at step " +
-                 std::to_string(energy.gain_step()) +
-                 " (t = " + number_text(energy.gain_time(), 4) + " s), permitted are " +
-                 number_text(scene_.energy_bound);
-  } else if (const double seconds = std::max(1.0, scene_.duration);
-             found.energy_rise > scene_.energy_bound * seconds) {
-    run.status = PointStatus::energy_gained;
-    run.detail = "energy rose by " + number_text(found.energy_rise, 3) +
-                 " of weight times size in all, where it can only fall; permitted are " +
-                 number_text(scene_.energy_bound * seconds);
+    run.detail = gained;
   } else if (found.moved < least_motion) {
     run.status = PointStatus::motion_lost;
     run.detail = "its vertices moved " + number_text(found.moved, 3) +

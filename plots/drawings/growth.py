@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from parts.best_points import Best, Curve, FigureData, sweeps_in
 from parts.caption import caption_of, warnings_of
 from parts.curves import Styles, draw_curves, draw_noise, draw_slopes, ends_of
-from parts.failures import add_strip, failed_rows
+from parts.failures import add_strip, failed_rows, letters_in
 from parts.legend import Legend
 from parts.result_file import Json, finding_in, leaders_in, noise_factor, object_in
 from parts.scales import log_x, log_y
@@ -31,7 +31,7 @@ def draw(data: FigureData, document: Json, legend: Legend) -> Figure:
     steps = replace(data, curves=curves)
     styles = _with_slopes(with_leaders(styles_for(curves, legend), leaders_in(document, data.scene, data.sweep)), data, document)
     rows = failed_rows(steps, styles)
-    captions = [*receding_sentences(styles.values()), *caption_of(steps, document, legend)]
+    captions = [*receding_sentences(styles.values()), *caption_of(steps, document, legend, letters_in(rows))]
     sheet = make_sheet(f"{scene_words(data.scene)}: growth of a step's time with vertices", warnings_of(document),
                        [words for words in captions if words], LEFT + MAIN_WIDTH + LEGEND_WIDTH,
                        MAIN_HEIGHT + ROW_HEIGHT * len(rows), labels_height(styles) - MAIN_HEIGHT,

@@ -19,7 +19,7 @@ TIME, FILTER_TIME = "seconds_per_simulated_second", "filter_seconds_per_simulate
 
 @dataclass(frozen=True)
 class Best:
-    """The best run of one solver at one x, its least sample. `low` to `high` is from there to the median of the samples, where
+    """The best run of one solver at one x, at its strain limit or a tighter one; its least sample. `low` to `high` is from there to the median of the samples, where
     there are three. `ladder_end`: 1 if the step is the coarsest of those tried, -1 if the finest, else 0."""
 
     x: float
@@ -32,7 +32,7 @@ class Best:
 
 @dataclass(frozen=True)
 class Failure:
-    """All steps failed at this x; `letters` say how, from the coarsest step to the finest."""
+    """No step's run counts at this x, nor at a tighter limit; `letters` say why, from the coarsest step to the finest."""
 
     x: float
     letters: str
@@ -88,10 +88,11 @@ def sweeps_in(document: Json, legend: Legend, sweep: str) -> list[FigureData]:
     for scene, fixed in sorted(groups):
         points = groups[scene, fixed]
         alone = sum(key[0] == scene for key in groups) == 1
-        data = FigureData(scene, sweep, fixed, points, _curves(points, AXES[sweep], None, legend, chosen))
+        of_scene = [point for key, group in groups.items() if key[0] == scene for point in group]
+        data = FigureData(scene, sweep, fixed, points, _curves(points, of_scene, AXES[sweep], None, legend, chosen))
         data.name = _file_part(scene, sweep, fixed, alone) + ("-adaptive" if data.adaptive else "")
         if any(chosen.has(point, HEADLINE) for point in points):
-            curves = _curves(points, AXES[sweep], HEADLINE, legend, chosen)
+            curves = _curves(points, of_scene, AXES[sweep], HEADLINE, legend, chosen)
             data.within = FigureData(scene, sweep, fixed, points, curves, data.name, HEADLINE)
         figures.append(data)
     return figures
@@ -141,19 +142,36 @@ class Chosen:
         return isinstance(marks, list) and level in marks
 
 
-def _curves(points: list[Json], axis: str, level: float | None, legend: Legend, chosen: Chosen) -> dict[str, Curve]:
+def _curves(points: list[Json], of_scene: list[Json], axis: str, level: float | None, legend: Legend,
+            chosen: Chosen) -> dict[str, Curve]:
     tried: dict[tuple[str, float], list[Json]] = {}
     for point in points:
         tried.setdefault((contestant_of(point), float(point[axis])), []).append(point)
     curves: dict[str, Curve] = {}
     for (solver, x), runs in sorted(tried.items(), key=lambda item: item[0]):
         curve = curves.setdefault(solver, Curve())
-        best = best_of(runs, level, legend.competes(solver), chosen)
+        counting = [*runs, *_tighter(runs[0], of_scene)]
+        best = best_of(counting, level, legend.competes(solver), chosen)
         if best:
             _add_best(curve, x, best)
-        else:
+        elif not any(_counts(run, level) for run in counting):
             curve.failures.append(Failure(x, failure_letters(runs, legend, level)))
     return curves
+
+
+def _tighter(run: Json, of_scene: list[Json]) -> list[Json]:
+    """The contestant's runs at tighter limits: they keep this one's as well."""
+    return [other for other in of_scene if contestant_of(other) == contestant_of(run) and other["vertices"] == run["vertices"]
+            and other["strain_limit"] < run["strain_limit"]]
+
+
+def _counts(run: Json, level: float | None) -> bool:
+    return run["status"] == OK and not _too_wrong(run, level)
+
+
+def _too_wrong(run: Json, level: float | None) -> bool:
+    error = object_in(run, "error").get("trajectory")
+    return level is not None and is_number(error) and error > level
 
 
 def _add_best(curve: Curve, x: float, point: Json) -> None:
@@ -188,10 +206,7 @@ def _step_of(point: Json) -> float | None:
 def failure_letters(runs: list[Json], legend: Legend, level: float | None = None) -> str:
     """"D" if every step diverged, "DT" if the coarse ones diverged and the fine ones took too long."""
     def letter_of(run: Json) -> str:
-        error = object_in(run, "error").get("trajectory")
-        if level is not None and run["status"] == OK and is_number(error) and error > level:
-            return TOO_WRONG
-        return legend.letter(run["status"])
+        return TOO_WRONG if run["status"] == OK and _too_wrong(run, level) else legend.letter(run["status"])
 
     return "".join(dict.fromkeys(letter_of(run) for run in sorted(runs, key=_step_or_zero, reverse=True)))
 

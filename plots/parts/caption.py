@@ -32,14 +32,10 @@ def warnings_of(document: Json) -> list[str]:
     return warnings
 
 
-def caption_of(figure: FigureData, document: Json, legend: Legend) -> list[str]:
-    """The caption's paragraphs, each to be wrapped to the figure's width."""
-    paragraphs = [_scene_sentence(figure), _method_sentence(figure, document)]
-    failures = _failure_key(figure, legend)
-    if failures:
-        paragraphs.append(failures)
-    paragraphs.append(origin_sentence(document))
-    return paragraphs
+def caption_of(figure: FigureData, document: Json, legend: Legend, letters: set[str]) -> list[str]:
+    """The caption's paragraphs, each to be wrapped to the figure's width. `letters`: of the marks above the axes."""
+    failures = [_failure_key(letters, legend)] if letters else []
+    return [_scene_sentence(figure), _method_sentence(figure, document), *failures, origin_sentence(document)]
 
 
 def _scene_sentence(figure: FigureData) -> str:
@@ -118,13 +114,9 @@ def _best_in(figure: FigureData) -> list[Best]:
     return [best for panel in _panels(figure) for curve in panel.curves.values() for best in curve.best]
 
 
-def _failure_key(figure: FigureData, legend: Legend) -> str:
-    letters = {letter for panel in _panels(figure) for name, curve in panel.curves.items() if legend.competes(name)
-               for failure in curve.failures for letter in failure.letters}
-    if not letters:
-        return ""
-    return ("A mark above the axes: every step tried failed, the letters say how, from the coarsest step to the finest: "
-            f"{legend.key(letters)}.")
+def _failure_key(letters: set[str], legend: Legend) -> str:
+    return ("A mark above the axes: no step tried gave a run that counts there, nor at a tighter limit; the letters say why, from the "
+            f"coarsest step to the finest: {legend.key(letters)}.")
 
 
 def origin_sentence(document: Json) -> str:

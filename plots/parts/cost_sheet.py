@@ -12,7 +12,7 @@ from parts.best_points import FigureData
 from parts.best_steps import draw_steps, steps_label
 from parts.caption import caption_of, percent, title_of, warnings_of
 from parts.curves import Styles, draw_curves, draw_noise, draw_slopes, ends_of
-from parts.failures import FAILED, Rows, add_strip, failed_rows
+from parts.failures import FAILED, FAILED_OR_WRONG, Rows, add_strip, failed_rows, letters_in
 from parts.filter_panel import draw_filter
 from parts.legend import Legend
 from parts.result_file import Json, finding_in, leaders_in, noise_factor
@@ -44,11 +44,12 @@ class Column:
 def draw(data: FigureData, document: Json, legend: Legend, axis: Axis) -> Figure:
     styles = with_leaders(styles_for(data.curves, legend), leaders_in(document, data.scene, data.sweep))
     columns = _columns(data, styles, axis)
+    letters = {letter for column in columns for letter in letters_in(column.rows)}
     strip = ROW_HEIGHT * max(len(column.rows) for column in columns)
     panels_height = _main_bottom(data) + MAIN_HEIGHT
     right = columns[-1].left + MAIN_WIDTH
     finding = finding_in(document, data.scene, data.sweep, data.fixed if data.sweep == "strain" else None)
-    captions = [*receding_sentences(styles.values()), *caption_of(data, document, legend)]
+    captions = [*receding_sentences(styles.values()), *caption_of(data, document, legend, letters)]
     sheet = make_sheet(title_of(data), warnings_of(document), [words for words in captions if words], right + LEGEND_WIDTH,
                        panels_height + strip + (HEADING if len(columns) > 1 else 0), labels_height(styles) - panels_height,
                        " ".join(finding[:1]))
@@ -59,7 +60,7 @@ def draw(data: FigureData, document: Json, legend: Legend, axis: Axis) -> Figure
         draw_noise(main, noise_factor(document))
         if axis.slopes:
             draw_slopes(main)
-        add_strip(sheet, main, column.rows, styles, FAILED)
+        add_strip(sheet, main, column.rows, styles, FAILED if column.data.level is None else FAILED_OR_WRONG)
         box = main.get_position()
         if len(columns) > 1:
             sheet.figure.text(box.x0, box.y1 + (strip + 0.17) / sheet.height, column.heading, fontsize=9, fontweight="bold",

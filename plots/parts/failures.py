@@ -15,7 +15,7 @@ from parts.sheet import LEFT, ROW_HEIGHT, Sheet
 from parts.words import clean, shorten
 
 NAME_SIZE = 6.5
-FAILED = "failed at every step"
+FAILED, FAILED_OR_WRONG = "failed at every step", "failed or too wrong at every step"
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex, to_rgba
@@ -10,6 +12,8 @@ from matplotlib.patches import Rectangle
 import figures
 from documents import (STEPS, axes_with, curves, document, drawn, known_answers, legend_labels, marks, point, resolution_sweep, stability,
                        step_sweep, strain_sweep, strips, texts_outside, two_questions, words_of)
+from parts.best_points import AXES, sweeps_in
+from parts.result_file import contestant_of
 
 DOCUMENTS = {"strain": strain_sweep(), "resolution": resolution_sweep(), "step": step_sweep(), "stability": stability(),
              "answers": known_answers(), "two questions": two_questions()}
@@ -80,6 +84,51 @@ def test_a_failure_has_its_letters_above_the_axes_and_in_the_caption() -> None:
     assert marks(strip) == ["DT"], "from the coarsest step to the finest"
     assert [list(line.get_xdata()) for line in strip.lines] == [[pytest.approx(0.1)]]
     assert "D = diverged, T = timeout." in words_of(figure)
+
+
+def tighter_runs() -> dict:
+    """At 10 % ICD's tighter run is faster than its own and stands for it, SHAKE has its tighter run alone, and Jacobi none at all.
+    At 1 % SHAKE's motion is wrong by 20 %."""
+    points = [point("icd", limit=0.1, seconds=0.6, id="loose"), point("icd", limit=0.01, seconds=0.4, id="tight", best=True),
+              point("shake", limit=0.1, seconds=None, status="not_converged", id="failed"),
+              point("shake", limit=0.01, seconds=0.2, id="wrong", error={"trajectory": 0.2}, best=True),
+              point("jacobi", limit=0.1, seconds=None, status="diverged", id="j1"),
+              point("jacobi", limit=0.01, seconds=None, status="timeout", id="j2")]
+    cells = [{"strain_limit": limit, "error_level": level, "entries": [{"id": which} for which in (["tight"] if level else ["wrong", "tight"])]}
+             for limit in (0.1, 0.01) for level in (None, 0.02)]
+    plane = {"scene": "chain", "sweep": "strain", "cells": cells, "leaders": ["icd", "shake", "jacobi"]}
+    return {**document(points), "analysis": {"planes": [plane], "findings": [], "growth": [], "budgets": []}}
+
+
+def test_a_run_at_a_tighter_limit_stands_at_a_looser_one_too() -> None:
+    result = tighter_runs()
+    (paper,) = sweeps_in(result, figures.legend_of(result), "strain")
+    ours = paper.within
+    assert ours
+    assert [(best.x, best.seconds) for best in paper.curves["icd"].best] == [(0.01, 0.4), (0.1, 0.4)]
+    assert [(best.x, best.seconds) for best in paper.curves["shake"].best] == [(0.01, 0.2), (0.1, 0.2)]
+    assert [(best.x, best.seconds) for best in ours.curves["icd"].best] == [(0.01, 0.4), (0.1, 0.4)]
+
+
+@pytest.mark.parametrize("name", [*DOCUMENTS, "tighter runs"])
+def test_no_failure_mark_appears_where_a_run_is_ok(name: str) -> None:
+    result = tighter_runs() if name == "tighter runs" else DOCUMENTS[name]
+    legend = figures.legend_of(result)
+    for sweep, axis in AXES.items():
+        for data in sweeps_in(result, legend, sweep) if "points" in result else []:
+            for panel in filter(None, (data, data.within)):
+                for solver, curve in panel.curves.items():
+                    for failure in curve.failures:
+                        there = [run for run in panel.points if contestant_of(run) == solver and run["status"] == "ok"
+                                 and (run[axis] <= failure.x if axis == "strain_limit" else run[axis] == failure.x)]
+                        assert all(run["error"]["trajectory"] > (panel.level or math.inf) for run in there), (solver, failure)
+
+
+def test_what_is_too_wrong_is_not_called_failed() -> None:
+    figure = figures.all_figures(tighter_runs())["figure4a"]()
+    left, right = strips(figure)
+    assert (left.get_title(loc="right"), right.get_title(loc="right")) == ("failed at every step", "failed or too wrong at every step")
+    assert sorted(marks(left)) == ["D", "T"] and sorted(marks(right)) == ["D", "N", "T", "X"]
 
 
 def test_what_was_measured_where_and_how_stands_beneath() -> None:

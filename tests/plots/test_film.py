@@ -31,11 +31,11 @@ def recorded(folder: Path, stretched: float = 1.0, chain: bool = False, body: bo
     np.concatenate(takes).astype("<f4").tofile(folder / "film.f32")
     np.repeat([0, min(255, round(60 * abs(stretched - 1) / 0.01))], 3 * count).astype("u1").tofile(folder / "film.u8")
     tetrahedron = [[0, -1, 0], [1, -1.2, 0], [0, -1.2, 1], [0, -2, 0]]
-    header = {"schema": "inextensible-film/1", "scene": "falling", "scene_parameters": {}, "step": 0.01, "frames_per_second": 10,
+    header = {"schema": "inextensible-film/1", "scene": "falling", "scene_parameters": {}, "frames_per_second": 10,
               "vertices": count, "triangles": triangles, "edges": edges, "strain_unit": 1 / 60,
               "body": tetrahedron if body else [], "body_triangles": [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] if body else [],
               "body_poses": [[0, 0, 1, frame, 0, 1, 0, 0, -1, 0, 0, 0] for frame in range(3)] if moves else [],
-              "takes": [{"solver": name, "label": name, "strain_limit": 0.01, "detail": "", "frames": 3,
+              "takes": [{"solver": name, "label": name, "strain_limit": 0.01, "step": 0.01, "energy_gained": "", "detail": "", "frames": 3,
                          "largest_strain": [0.0] * 3, "seconds": [0.01] * 2} for name in ("one", "other")]}
     (folder / "film.json").write_text(json.dumps(header))
     return folder
@@ -114,16 +114,39 @@ def test_a_run_that_gave_up_is_grey_and_says_so(tmp_path: Path) -> None:
     assert np.any((word[:, :, 0] > 100) & (word[:, :, 1] < 80)), "the word is on the picture"
 
 
+def test_captions_name_the_step_and_how_the_run_went(tmp_path: Path) -> None:
+    made = film.load(pictured(tmp_path, [0, 1, 2], ends=1))
+    made.takes[0]["step"] = 1 / 240
+    assert film.caption(made, 0, 2)[1] == "steps of 1/240 s: ok"
+    assert film.caption(made, 1, 2)[1] == "steps of 1/100 s: gave up"
+    made.takes[0]["largest_strain"] = [0.0, 0.011, 0.0]
+    assert film.caption(made, 0, 2)[1] == "steps of 1/240 s: strained more than permitted"
+    made.takes[0]["energy_gained"] = "energy 4 of weight times size"
+    assert film.caption(made, 0, 2)[1] == "steps of 1/240 s: gains energy"
+
+
+def test_a_run_that_gains_energy_is_marked_in_every_picture(tmp_path: Path) -> None:
+    made = film.load(pictured(tmp_path, [0, 1, 2]))
+    plain = pixels(film.panel(made, 0, 0))
+    made.takes[0]["energy_gained"] = "energy 4 of weight times size"
+    for frame in range(3):
+        marked = pixels(film.panel(made, 0, frame))
+        assert np.array_equal(marked[HEIGHT // 4, WIDTH // 2], plain[HEIGHT // 4, WIDTH // 2]), "the picture stays"
+        for row, column in ((0, WIDTH // 2), (HEIGHT - 1, WIDTH // 2), (HEIGHT // 2, 0), (HEIGHT // 2, WIDTH - 1)):
+            red, green, blue = marked[row, column]
+            assert red > 2 * green and red > 2 * blue, "a red frame"
+
+
 def test_captions_tell_strain_so_far_time_and_sag(tmp_path: Path) -> None:
     made = film.load(pictured(tmp_path, [0, 1, 2]))
     made.takes[0]["largest_strain"] = [0.0, 0.0099, 0.005]
     made.takes[0]["seconds"] = [0.01, 0.03]
-    assert film.caption(made, 0, 0)[1] == "permitted strain 1 %, largest so far below 0.001 %"
+    assert film.caption(made, 0, 0)[2] == "permitted strain 1 %, largest so far below 0.001 %"
     lines = film.caption(made, 0, 2)
     assert lines[0] == "one"
-    assert lines[1] == "permitted strain 1 %, largest so far 0.99 %"
-    assert lines[2] == "6.67 ms for a frame of 1/30 s"  # 20 ms for a tenth of a second
-    assert lines[3] == "sag: lower edge 22.0 mm"
+    assert lines[2] == "permitted strain 1 %, largest so far 0.99 %"
+    assert lines[3] == "6.67 ms for a frame of 1/30 s"  # 20 ms for a tenth of a second
+    assert lines[4] == "sag: lower edge 22.0 mm"
 
 
 def test_lengths_are_in_units_that_fit() -> None:

@@ -1,0 +1,247 @@
+// Runs of a film: how they are recorded, and at which step.
+#include <algorithm>
+#include <cmath>
+
+#include "harness/base/clock.h"
+#include "harness/base/text.h"
+#include "harness/film/orientation.h"
+#include "harness/film/recording.h"
+#include "harness/judge/drive.h"
+#include "harness/judge/energy.h"
+#include "harness/judge/mechanics.h"
+#include "harness/run/measure_point.h"
+#include "solvers/problem/triangle_collider.h"
+#include "solvers/registry.h"
+
+namespace harness {
+namespace {
+
+using inextensible::State;
+
+Stage stage_of(const Scene& scene) {
+  Stage stage;
+  stage.triangles = oriented(scene.triangles);
+  for (const auto [a, b] : scene.problem->edges()) stage.edges.push_back({a, b});
+  stage.rest_length = scene.problem->rest_length();
+  stage.marks = scene.marks;
+  const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(scene.problem->collider());
+  if (body) {
+    stage.body = body->mesh().vertices;
+    stage.body_triangles = body->mesh().triangles;
+  }
+  return stage;
+}
+
+// The settings given, and for springs the stiffness that a sweep would find.
+inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contestant, double limit,
+                                  double step, const std::function<bool()>& interrupted) {
+  const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
+  inextensible::Settings settings = contestant.settings;
+  if (backend.knob != inextensible::Knob::stiffness || settings.contains("stiffness"))
+    return settings;
+  PointSpec point;
+  point.sweep = "strain";
+  point.scene = spec.scene;
+  point.scene_parameters = spec.parameters;
+  point.solver = contestant.solver;
+  point.settings = settings;
+  point.strain_limit = limit;
+  point.step = step;
+  RunLimits limits;
+  limits.timed = false;
+  limits.interrupted = interrupted;
+  const PointResult found = run_point(point, limits);
+  if (found.stiffness) settings["stiffness"] = *found.stiffness;
+  return settings;
+}
+
+// A step that cannot be solved may cost a hundred thousand passes, and as many again at each of its
+// halves. A run gives up where all its steps together, refused ones too, need more than this.
+constexpr int most_halvings = 8;
+constexpr std::int64_t spare_tries = 1000, tries_per_step = 100;
+constexpr std::int64_t spare_iterations = 500'000, iterations_per_step = 10'000;
+
+// Why a run is to give up after so many of its steps; "": it is not.
+std::string too_much_work(const inextensible::WorkCounters& work, long steps) {
+  const std::int64_t tries = work.steps + work.rejected_steps;
+  if (tries > spare_tries + tries_per_step * steps)
+    return std::to_string(tries) + " tries of steps for " + std::to_string(steps) + " steps";
+  if (work.iterations > spare_iterations + iterations_per_step * steps)
+    return std::to_string(work.iterations) + " iterations for " + std::to_string(steps) + " steps";
+  return "";
+}
+
+std::string gave_up(double time, const std::string& why) {
+  return "gave up at t = " + number_text(time, 3) + " s: " + why;
+}
+
+// Records one run.
+class Recorder {
+ public:
+  Recorder(const Scene& scene, const Stage& stage, const inextensible::Stepper& stepper,
+           inextensible::Velocities velocities, double energy_bound, Take& take,
+           const std::function<void(const Take&)>& told)
+      : scene_(scene),
+        stage_(stage),
+        stepper_(stepper),
+        energy_(*scene.problem, energy_scale(scene), velocities),
+        energy_bound_(energy_bound),
+        take_(take),
+        told_(told) {
+    energy_.begin(scene.start);
+  }
+
+  void keep(const State& at) {
+    take_.frames.push_back(at.x);
+    const std::vector<double> all = strains(stage_, at.x);
+    take_.largest_strain.push_back(all.empty() ? 0 : *std::max_element(all.begin(), all.end()));
+    told_(take_);
+    begin_ = Clock::now();
+  }
+
+  // Whether to go on.
+  bool after(const State& at, const Driven& driven) {
+    const double seconds = since(begin_);
+    energy_.after(at, driven.last);
+    judge_energy();
+    if (driven.whole && driven.steps % take_.steps_per_frame == 0) {
+      take_.smallest_step = driven.smallest;
+      take_.seconds.push_back(seconds);
+      keep(at);
+    }
+    const std::string work = too_much_work(stepper_.work(), driven.steps);
+    if (!work.empty()) take_.detail = gave_up(at.time, work);
+    return work.empty();
+  }
+
+  void finish() {
+    energy_.finish();
+    judge_energy();
+  }
+
+ private:
+  void judge_energy() {
+    if (take_.energy_gained.empty())
+      take_.energy_gained = energy_gained(energy_, energy_bound_, scene_.duration);
+  }
+
+  const Scene& scene_;
+  const Stage& stage_;
+  const inextensible::Stepper& stepper_;
+  EnergyRecord energy_;
+  double energy_bound_;
+  Take& take_;
+  const std::function<void(const Take&)>& told_;
+  Clock::time_point begin_;
+};
+
+// What the runs of a film have in common.
+struct FilmSetup {
+  const FilmSpec& spec;
+  const Scene& scene;
+  const Stage& stage;
+  double energy_bound;
+  const std::function<bool()>& interrupted;
+  const std::function<void(const Take&)>& told;
+};
+
+// Ends early where energy is gained, unless `to_the_end`.
+Take take_of(const FilmSetup& setup, const Contestant& contestant, double limit, double step,
+             bool to_the_end) {
+  const double rate = setup.spec.frames_per_second;
+  Take take;
+  take.solver = contestant.name;
+  take.label = label_of(contestant);
+  take.strain_limit = limit;
+  take.steps_per_frame = std::max(1, static_cast<int>(std::ceil(1 / (rate * step) - 1e-9)));
+  take.step = take.smallest_step = 1 / (rate * take.steps_per_frame);
+  const auto settings = calibrated(setup.spec, contestant, limit, take.step, setup.interrupted);
+  const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
+  State state = start_of(setup.scene, backend, take.step);
+  const auto stepper = inextensible::make_stepper(contestant.solver, setup.scene.problem,
+                                                  {limit, 1, settings, &state});
+  Recorder recorder(setup.scene, setup.stage, *stepper, backend.velocities, setup.energy_bound,
+                    take, setup.told);
+  recorder.keep(state);
+  const long steps = take.steps_per_frame * (static_cast<long>(frames_in(setup.spec)) - 1);
+  const Driven driven =
+      drive(*stepper, state, {take.step, steps, most_halvings},
+            [&](const State& at, const Driven& so_far) {
+              return recorder.after(at, so_far) && (to_the_end || take.energy_gained.empty());
+            },
+            {.interrupted = setup.interrupted});
+  if (driven.end == Driven::End::refused) take.detail = gave_up(state.time, driven.result.detail);
+  recorder.finish();
+  return take;
+}
+
+// At the first of the default step and its halves at which the run passes; where none does, at the
+// one that goes well for longest.
+Take take_of_default_step(const FilmSetup& setup, const Contestant& contestant, double limit) {
+  double step = default_step, longest_step = step;
+  std::size_t longest = 0;
+  for (int halved = 0; halved <= most_refinements; ++halved) {
+    Take take = take_of(setup, contestant, limit, step, false);
+    if (take.detail.empty() && take.energy_gained.empty()) return take;
+    if (take.frames.size() > longest) longest_step = take.step;
+    longest = std::max(longest, take.frames.size());
+    step = take.step / 2;
+  }
+  return take_of(setup, contestant, limit, longest_step, true);
+}
+
+// A body that moves does work: it can throw cloth at twice its own speed at most, as an elastic
+// impact does, and lift it as far as it rises itself.
+double energy_bound_of(const Scene& scene, const Stage& stage, double frames_per_second) {
+  if (std::isfinite(scene.energy_bound)) return scene.energy_bound;
+  const auto at = [&](std::size_t frame, Eigen::Index i) {
+    const inextensible::Pose& pose = stage.body_poses[frame];
+    return pose(stage.body.empty() ? Eigen::Vector3d(scene.start.x.col(i)) : stage.body[i]);
+  };
+  const auto points = stage.body.empty() ? scene.start.x.cols() : std::ssize(stage.body);
+  double fastest = 0, rise = 0;
+  for (std::size_t frame = 1; frame < stage.body_poses.size(); ++frame) {
+    for (Eigen::Index i = 0; i < points; ++i) {
+      fastest = std::max(fastest, (at(frame, i) - at(frame - 1, i)).norm() * frames_per_second);
+      rise = std::max(rise, at(frame, i).y() - at(0, i).y());
+    }
+  }
+  const inextensible::Problem& problem = *scene.problem;
+  const double work =
+      problem.total_mass() * (0.5 * std::pow(2 * fastest, 2) + problem.gravity().norm() * rise);
+  return Scene{}.energy_bound + work / energy_scale(scene);
+}
+
+}  // namespace
+
+std::size_t frames_in(const FilmSpec& spec) {
+  return 1 + static_cast<std::size_t>(
+                 std::floor(spec.parameters.at("duration") * spec.frames_per_second + 1e-9));
+}
+
+Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
+                 const std::function<void(const Take&, std::size_t, std::size_t)>& told) {
+  const Scene scene = find_scene(spec.scene)->build(spec.parameters);
+  Recording recording;
+  recording.spec = spec;
+  recording.stage = stage_of(scene);
+  const std::size_t frames = frames_in(spec);
+  if (const auto& motion = scene.problem->body_motion()) {
+    for (std::size_t i = 0; i < frames; ++i)
+      recording.stage.body_poses.push_back(
+          motion(scene.start.time + static_cast<double>(i) / spec.frames_per_second));
+  }
+  const std::function<void(const Take&)> tell = [&](const Take& take) {
+    told(take, take.frames.size(), frames);
+  };
+  const double energy_bound = energy_bound_of(scene, recording.stage, spec.frames_per_second);
+  const FilmSetup setup{spec, scene, recording.stage, energy_bound, interrupted, tell};
+  for (const double limit : spec.strain_limits) {
+    for (const Contestant& contestant : spec.solvers)
+      recording.takes.push_back(spec.step ? take_of(setup, contestant, limit, *spec.step, true)
+                                          : take_of_default_step(setup, contestant, limit));
+  }
+  return recording;
+}
+
+}  // namespace harness
