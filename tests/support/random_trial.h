@@ -17,6 +17,8 @@ inline Settings impatient(const std::string& backend) {
     return {{"max_iterations", 20.0}};
   if (backend.starts_with("jacobi") || backend.starts_with("gauss_seidel"))
     return {{"max_iterations", 300.0}};
+  if (backend.starts_with("projective_dynamics") || backend.starts_with("augmented_vbd"))
+    return {{"max_iterations", 3000.0}};
   return {};
 }
 

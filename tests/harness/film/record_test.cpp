@@ -22,8 +22,8 @@ Take filmed(const std::string& scene, const SceneParameters& given, const Contes
 TEST(Films, TakeAStepAtWhichNoEnergyIsGainedUnlessOneIsGiven) {
   // Links that are brought to their length almost exactly, by many passes: twice the bound at 1/120
   // s.
-  const Contestant contestant{"fast_projection_bdf2",
-                              "fast_projection_bdf2",
+  const Contestant contestant{"fast_projection@bdf2",
+                              "fast_projection@bdf2",
                               {{"first_forcing", 0.0395},
                                {"smoothing_sweeps", 111.0},
                                {"smoothing_target", 0.0953},
@@ -44,7 +44,7 @@ TEST(Films, TakeAStepAtWhichNoEnergyIsGainedUnlessOneIsGiven) {
 // skirt gains nine times what the body can do.
 TEST(Films, JudgeEnergyBesideABodyThatMoves) {
   const auto garment = [](std::optional<double> step) {
-    return filmed("garment", {{"n", 40}, {"duration", 1}}, {"strips_bdf2", "strips_bdf2"}, 0.01,
+    return filmed("garment", {{"n", 40}, {"duration", 1}}, {"strips@bdf2", "strips@bdf2"}, 0.01,
                   step);
   };
   const Take chosen = garment({});
