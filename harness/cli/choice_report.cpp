@@ -145,7 +145,7 @@ json to_json(const ChoiceReport& report) {
           {"runner_up", pick_json(found.next)},
           {"half_budget", pick_json(most_accurate(trials.points, wish, budget / 2))},
           {"double_budget", pick_json(most_accurate(trials.points, wish, budget * 2))},
-          {"out", all_why_not(report)},
+          {"without_result", all_why_not(report)},
           {"reference", reference.empty() ? json() : json(reference)},
           {"measured_seconds", seconds}};
 }
