@@ -174,7 +174,7 @@ grep -q '^curtain.obj, 49 vertices' chosen.txt && grep -q '^take  .* error [0-9.
 
 # Settings are searched and put among those of other solvers.
 cp "$root/configs/tuned.json" .
-"$BENCH_BINARY" tune --scene chain --solver icd --again --trials 4 --timeout 2 --out tuned.json --quiet >/dev/null || fail "tune"
+"$BENCH_BINARY" tune --scene chain --solver icd --again --trials 4 --timeout 30 --out tuned.json --quiet >/dev/null || fail "tune"
 /usr/bin/python3 - "$root/configs/tuned.json" <<'PYTHON' || fail "tuned.json"
 import json, sys
 before, after = ({(e["kind"], e["solver"]): e for e in json.load(open(name))["tuned"]} for name in (sys.argv[1], "tuned.json"))
