@@ -8,10 +8,11 @@ namespace harness {
 
 std::string Bounds::text() const {
   std::string words = whole ? "a whole number" : "a number";
-  if (least > -huge) words += (above ? " above " : " of at least ") + number_text(least);
+  const int digits = whole ? 16 : 6;
+  if (least > -huge) words += (above ? " above " : " of at least ") + number_text(least, digits);
   if (most < huge)
-    words +=
-        (least > -huge ? " and" : "") + ((below ? " below " : " at most ") + number_text(most));
+    words += (least > -huge ? " and" : "") +
+             ((below ? " below " : " at most ") + number_text(most, digits));
   return words;
 }
 

@@ -85,6 +85,16 @@ void write_through(const std::string& path, const std::string& text) {
   if (!whole) throw FileError(path, "write");
 }
 
+// error: of the attempt, 0 if the file was opened and nothing came.
+std::string unreadable_because(const std::string& path, int error) {
+  std::error_code unknown;
+  if (fs::is_directory(path, unknown)) return "it is a folder";
+  if (fs::is_symlink(path, unknown) && !fs::exists(path, unknown))
+    return "it is a link to '" + fs::read_symlink(path, unknown).string() +
+           "', which does not exist";
+  return error == 0 ? "it is empty" : std::strerror(error);
+}
+
 }  // namespace
 
 FileError::FileError(const std::string& path, const std::string& verb)
@@ -104,10 +114,12 @@ bool write_whole(int file, const std::string& text) {
 }
 
 std::string read_file(const std::string& path, const std::string& what) {
+  errno = 0;
   std::ifstream file(path);
   std::ostringstream text;
   if (!file || !(text << file.rdbuf()))
-    throw UsageError("cannot read the " + what + " '" + path + "'");
+    throw UsageError("cannot read the " + what + " '" + path +
+                     "': " + unreadable_because(path, errno));
   return text.str();
 }
 

@@ -1,8 +1,10 @@
 #include "harness/base/standard_streams.h"
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -20,6 +22,13 @@ void open_standard_streams() {
     const int opened = open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
     if (opened != descriptor) _exit(1);  // no way to say why
   }
+}
+
+std::size_t output_columns() {
+  constexpr std::size_t usual = 120, least = 40;
+  winsize size{};
+  const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? std::max<std::size_t>(size.ws_col, least) : usual;
 }
 
 void check_standard_output() {

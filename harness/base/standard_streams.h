@@ -1,6 +1,8 @@
 // Standard input, output and error as a program may find them: closed, full, cut off.
 #pragma once
 
+#include <cstddef>
+
 namespace harness {
 
 // Opens those of descriptors 0 to 2 that are closed, to where nothing can be read or written:
@@ -23,6 +25,9 @@ class OutputToError {
 
 // The same to the end of this process.
 void send_output_to_error();
+
+// Columns of the terminal that standard output is; 120 where it is none.
+std::size_t output_columns();
 
 // Throws FileError if something that was printed did not get out. Last thing in main.
 void check_standard_output();

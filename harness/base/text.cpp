@@ -1,5 +1,6 @@
 #include "harness/base/text.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
@@ -35,6 +36,34 @@ std::string shortened(const std::string& text, std::size_t most) {
     if (std::iscntrl(static_cast<unsigned char>(c)) != 0) c = ' ';
   }
   return text.size() > most ? line + "..." : line;
+}
+
+std::string fitted(const std::string& text, std::size_t columns) {
+  constexpr std::size_t none = std::string::npos;
+  std::istringstream lines(text);
+  std::string result;
+  for (std::string line; std::getline(lines, line);) {
+    line.erase(line.find_last_not_of(' ') + 1);
+    std::size_t begin = line.find_first_not_of(' ');  // no break before the first word
+    while (line.size() > columns) {
+      std::size_t at = line.rfind(' ', columns);
+      while (at != none && at > begin && line[at + 1] == '%') at = line.rfind(' ', at - 1);
+      if (at == none || at <= begin) at = line.find(' ', std::max(begin, columns));
+      if (at == none) break;
+      const std::size_t last = line.find_last_not_of(' ', at),
+                        next = line.find_first_not_of(' ', at);
+      // In a table below the column, if that leaves room.
+      const std::size_t column = line.rfind("  ", last);
+      const bool table =
+          column != none && column > begin && column + 2 + line.size() - next <= columns;
+      const std::size_t indent = table ? column + 2 : 2;
+      result += line.substr(0, last + 1) + '\n';
+      line = std::string(indent, ' ') + line.substr(next);
+      begin = indent;
+    }
+    result += line + '\n';
+  }
+  return result;
 }
 
 std::string step_text(double step) { return std::isnan(step) ? "-" : "1/" + number_text(1 / step); }

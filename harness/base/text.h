@@ -18,6 +18,9 @@ std::string told_apart(double value, double other);
 // Of a text for a message: its beginning if it is long, and one line in any case.
 std::string shortened(const std::string& text, std::size_t most = 120);
 
+// Lines of more than `columns` go on below, indented, from a space on; a longer word stays whole.
+std::string fitted(const std::string& text, std::size_t columns);
+
 // "1/250" for a step of 0.004 s, "-" for none (NaN).
 std::string step_text(double step);
 

@@ -66,7 +66,7 @@ Verb check_verb() {
             add_solver(command, given->solver).required();
             command.flag("--quick", given->quick, "without the hard cases, which may take minutes");
             command.option("--seed", given->seed, "of methods that draw random numbers", "N")
-                .not_negative();
+                .holds(Bounds::exact_number());
             return [given] { return check_all(given->solver, !given->quick, given->seed); };
           }};
 }

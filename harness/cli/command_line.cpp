@@ -169,10 +169,16 @@ std::vector<std::string> usual_words(int argc, char** argv) {
   return words;
 }
 
-// What is wrong with the first of the typed words that CLI11 had no place for.
-std::string not_understood(const CLI::App& program, const std::vector<std::string>& typed) {
+// Of the verb that was typed, or the program.
+const CLI::App* command_of(const CLI::App& program) {
   const CLI::App* command = &program;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  return command;
+}
+
+// What is wrong with the first of the typed words that CLI11 had no place for.
+std::string not_understood(const CLI::App& program, const std::vector<std::string>& typed) {
+  const CLI::App* command = command_of(program);
   const std::vector<std::string> left = program.remaining(true);
   const auto first = std::find_if(typed.begin(), typed.end(), [&left](const std::string& word) {
     return std::find(left.begin(), left.end(), word) != left.end();
@@ -190,7 +196,7 @@ std::string not_understood(const CLI::App& program, const std::vector<std::strin
       known.push_back(sub->get_name());
     message = "no command '" + shortened(word, 40) + "'";
   } else {
-    return "'" + shortened(word, 40) + "' is one word too many" + of;
+    return "unexpected argument '" + shortened(word, 40) + "'" + of;
   }
   const std::string meant = closest(word.substr(0, word.find('=')), known);
   return message + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
@@ -201,15 +207,21 @@ std::string not_understood(const CLI::App& program, const std::vector<std::strin
 std::optional<int> CommandLine::read(int argc, char** argv) {
   const std::vector<std::string> words = usual_words(argc, argv);
   invocation_.words = recorded_words(argc, argv);
+  const auto refused = [this](const std::string& why) {
+    const CLI::App* command = command_of(*app_);
+    std::cerr << "bench: " << why << " (see bench "
+              << (command == app_.get() ? "" : command->get_name() + " ") << "--help)\n";
+    return usage_error;
+  };
   try {
     app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as CLI11 takes them
   } catch (const CLI::ExtrasError&) {
-    std::cerr << "bench: " << not_understood(*app_, words) << " (see bench --help)\n";
-    return usage_error;
+    return refused(not_understood(*app_, words));
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app_->exit(error);  // --help, --version
-    std::cerr << "bench: " << error.what() << " (see bench --help)\n";
-    return usage_error;
+    if (error.get_exit_code() != 0) return refused(error.what());
+    const bool no_verb = !words.front().starts_with('-') && app_->get_subcommands().empty();
+    if (no_verb) return refused(not_understood(*app_, words));  // help of what is not there
+    return app_->exit(error);                                   // --help, --version
   }
   return std::nullopt;
 }

@@ -4,10 +4,12 @@
 #include <iostream>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "harness/analysis/analysis_json.h"
 #include "harness/answers/measure.h"
 #include "harness/base/errors.h"
+#include "harness/base/standard_streams.h"
 #include "harness/base/text.h"
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/verbs.h"
@@ -20,21 +22,21 @@ namespace {
 
 using nlohmann::json;
 
-void print_head(const json& document, const std::string& file) {
+void print_head(std::ostream& out, const json& document, const std::string& file) {
   const json& context = document.at("context");
   const json& build = context.at("build");
-  std::cout << file << ": " << context.at("date").get<std::string>() << " on "
-            << context.at("cpu_model").get<std::string>() << ", commit "
-            << build.at("git").get<std::string>().substr(0, 12)
-            << (build.value("dirty", false) ? " with changes" : "") << ", "
-            << build.at("compiler").get<std::string>() << '\n';
-  if (document.contains("warning")) std::cout << document.at("warning").get<std::string>() << '\n';
-  if (!document.value("complete", true)) std::cout << "not complete: the run was interrupted\n";
-  if (!is_timed(document)) std::cout << "made with --untimed: its times mean nothing\n";
+  out << file << ": " << context.at("date").get<std::string>() << " on "
+      << context.at("cpu_model").get<std::string>() << ", commit "
+      << build.at("git").get<std::string>().substr(0, 12)
+      << (build.value("dirty", false) ? " with changes" : "") << ", "
+      << build.at("compiler").get<std::string>() << '\n';
+  if (document.contains("warning")) out << document.at("warning").get<std::string>() << '\n';
+  if (!document.value("complete", true)) out << "not complete: the run was interrupted\n";
+  if (!is_timed(document)) out << "made with --untimed: its times mean nothing\n";
 }
 
 // How each solver's hard cases ended, and which did not end as expected.
-void print_outcomes(const json& document) {
+void print_outcomes(std::ostream& out, const json& document) {
   std::map<std::string, std::map<std::string, int>> counts;
   std::set<std::string> outcomes;
   for (const json& cell : document.at("matrix")) {
@@ -43,43 +45,47 @@ void print_outcomes(const json& document) {
     outcomes.insert(outcome);
   }
   constexpr int name_width = 32, width = 18;
-  std::cout << document.at("matrix").size() << " hard cases and solvers; how they ended:\n"
-            << std::left << std::setw(name_width) << "";
-  for (const std::string& outcome : outcomes) std::cout << std::setw(width) << outcome;
-  std::cout << '\n';
+  out << document.at("matrix").size() << " hard cases and solvers; how they ended:\n"
+      << std::left << std::setw(name_width) << "";
+  for (const std::string& outcome : outcomes) out << std::setw(width) << outcome;
+  out << '\n';
   for (auto& [solver, ended] : counts) {
-    std::cout << std::setw(name_width) << solver;
-    for (const std::string& outcome : outcomes) std::cout << std::setw(width) << ended[outcome];
-    std::cout << '\n';
+    out << std::setw(name_width) << solver;
+    for (const std::string& outcome : outcomes) out << std::setw(width) << ended[outcome];
+    out << '\n';
   }
   for (const json& cell : document.at("matrix")) {
     if (cell.at("as_expected").get<bool>()) continue;
-    std::cout << "not as expected"
-              << (cell.at("known_difference").get<bool>() ? ", but known: " : ": ")
-              << cell.at("case").get<std::string>() << ", " << cell.at("solver").get<std::string>()
-              << ": " << cell.at("outcome").get<std::string>() << '\n';
+    out << "not as expected" << (cell.at("known_difference").get<bool>() ? ", but known: " : ": ")
+        << cell.at("case").get<std::string>() << ", " << cell.at("solver").get<std::string>()
+        << ": " << cell.at("outcome").get<std::string>() << '\n';
   }
 }
 
-int show(const std::string& file, bool all) {
-  const json document = read_result_or_answers(file);
-  print_head(document, file);
+void print_whole(std::ostream& out, const json& document, const std::string& file, bool all) {
+  print_head(out, document, file);
   if (is_answers(document)) {
-    print_answers(std::cout, document);
-    return success;
+    print_answers(out, document);
+    return;
   }
   if (document.at("schema") == "inextensible-stability/1") {
-    print_outcomes(document);
-    return success;
+    print_outcomes(out, document);
+    return;
   }
   const json& context = document.at("context");
-  print_sweep(std::cout, document, all);
+  print_sweep(out, document, all, output_columns());
   if (const auto pair = noise_of(context))
-    std::cout << "\ndifferences below " << number_text(100 * std::expm1(pair->q95), 2)
-              << " % are noise, by " << pair->one << " against itself\n";
+    out << "\ndifferences below " << number_text(100 * std::expm1(pair->q95), 2)
+        << " % are noise, by " << pair->one << " against itself\n";
   if (!all)
-    std::cout << "\nall contestants: bench show " << file
-              << " --all; a page with figures: bench report " << file << " --out report.html\n";
+    out << "\nall contestants: bench show " << file << " --all; a page with figures: bench report "
+        << file << " --out report.html\n";
+}
+
+int show(const std::string& file, bool all) {
+  std::ostringstream text;
+  print_whole(text, read_result_or_answers(file), file, all);
+  std::cout << fitted(text.str(), output_columns());
   return success;
 }
 

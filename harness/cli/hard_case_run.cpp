@@ -10,6 +10,7 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
 #include "harness/base/shard.h"
+#include "harness/base/standard_streams.h"
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/figures.h"
 #include "harness/cli/sweep_run.h"
@@ -149,7 +150,7 @@ int run_hard_cases(const SweepCommand& options, const std::vector<std::string>& 
   const std::uint64_t seed = options.seed < 0 ? 1 : static_cast<std::uint64_t>(options.seed);
   const StabilityOutcome outcome = run_stability(plan, seed, events_for(journal));
   write_atomically(out, result_text(stability_document(context, outcome, seed, command)));
-  print_stability(std::cout, outcome);
+  print_stability(std::cout, outcome, output_columns());
   std::cout << "\nwritten:\n" << out << std::endl;
   if (!outcome.complete) {
     std::cerr << "bench: interrupted; the same command with --resume continues from here\n";

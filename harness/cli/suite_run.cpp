@@ -9,6 +9,7 @@
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
+#include "harness/base/standard_streams.h"
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/exit_codes.h"
@@ -216,7 +217,7 @@ SweepOutcome measured(const Suite& suite, const std::vector<Search>& searches,
 }
 
 void print_document(const nlohmann::json& document, const std::string& out) {
-  print_sweep(std::cout, document);
+  print_sweep(std::cout, document, false, output_columns());
   tell_overhead(document.at("context").at("harness_overhead"));
   tell_noise(document);
   std::cout << "\nall contestants: bench show " << out << " --all\nwritten:\n" << out << std::endl;

@@ -92,7 +92,7 @@ void add_measurement(const Command& to, SweepOptions& options) {
         "the suite's",
         "E")
       .positive();
-  to.option("--seed", options.seed, "of random orders", "N").not_negative();
+  to.option("--seed", options.seed, "of random orders", "N").holds(Bounds::exact_number());
   to.flag(
       "--untimed", options.untimed,
       "for counters and errors only: run at once, beside programs that take times; the result is "

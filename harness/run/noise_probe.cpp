@@ -41,10 +41,10 @@ double fixed_work() {
 // milliseconds.
 void NoiseProbe::sample() {
   constexpr int runs = 50;
-  fixed_work();
+  work_();
   double sum = 0, least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < runs; ++i) {
-    const double seconds = fixed_work();
+    const double seconds = work_();
     sum += seconds;
     least = std::min(least, seconds);
   }

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 namespace harness {
@@ -17,8 +19,11 @@ class NoiseProbe {
   // Spread (largest over smallest time, less 1) from which on the machine counts as noisy.
   static constexpr double noisy_from = 0.1;
 
+  using Work = std::function<double()>;  // does the work; s that it took
+
   // every: s between samples.
-  explicit NoiseProbe(double every = 60) : every_(every) {}
+  explicit NoiseProbe(double every = 60, Work work = fixed_work)
+      : every_(every), work_(std::move(work)) {}
 
   void sample();
   void sample_if_due();
@@ -34,6 +39,7 @@ class NoiseProbe {
 
  private:
   double every_;
+  Work work_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::vector<Sample> samples_;
 };

@@ -91,7 +91,8 @@ struct StabilityEvents {
 StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
                                const StabilityEvents& events);
 
-void print_stability(std::ostream& out, const StabilityOutcome& outcome);
+// At most `columns` wide: tables of more solvers go on below.
+void print_stability(std::ostream& out, const StabilityOutcome& outcome, std::size_t columns = 120);
 nlohmann::json stability_document(nlohmann::json context, const StabilityOutcome& outcome,
                                   std::uint64_t seed, const std::vector<std::string>& command);
 

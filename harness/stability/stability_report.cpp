@@ -170,23 +170,45 @@ json counts_json(const ExpectationCounts& c) {
           {"new_differences", c.new_differences}};
 }
 
-}  // namespace
+// The first word of a row or column and its cells below or beside it.
+using Line = std::vector<std::string>;
 
-void print_stability(std::ostream& out, const StabilityOutcome& outcome) {
-  constexpr int row_width = 26, cell_width = 17;
-  const auto table = [&](const std::string& title, const std::vector<std::string>& rows,
-                         const std::vector<std::string>& columns, auto text) {
-    if (rows.empty()) return;
-    out << '\n' << title << '\n' << std::left << std::setw(row_width) << "";
-    for (const auto& column : columns)
-      out << std::setw(std::max(cell_width, int(column.size()) + 2)) << column;
-    out << '\n';
-    for (const auto& row : rows) {
-      out << std::setw(row_width) << row;
-      for (const auto& column : columns)
-        out << std::setw(std::max(cell_width, int(column.size()) + 2)) << text(row, column);
+int width_of(const Line& column) {
+  const auto longest =
+      std::max_element(column.begin(), column.end(),
+                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  return static_cast<int>(longest->size()) + 2;
+}
+
+// The first column, then as many of the others as fit; those that do not fit follow below.
+void print_columns(std::ostream& out, const std::vector<Line>& columns, std::size_t width) {
+  for (std::size_t first = 1, last = 1; first < columns.size(); first = last) {
+    std::size_t total = width_of(columns[0]);
+    do {
+      total += width_of(columns[last++]);
+    } while (last < columns.size() && total + width_of(columns[last]) <= width);
+    out << (first > 1 ? "\n" : "") << std::left;
+    for (std::size_t row = 0; row < columns[0].size(); ++row) {
+      out << std::setw(width_of(columns[0])) << columns[0][row];
+      for (std::size_t i = first; i < last; ++i)
+        out << std::setw(width_of(columns[i])) << columns[i][row];
       out << '\n';
     }
+  }
+}
+
+void print_whole(std::ostream& out, const StabilityOutcome& outcome, std::size_t width) {
+  const auto table = [&](const std::string& title, const Line& rows, const Line& solvers,
+                         auto text) {
+    if (rows.empty()) return;
+    std::vector<Line> columns{{""}};
+    columns[0].insert(columns[0].end(), rows.begin(), rows.end());
+    for (const auto& solver : solvers) {
+      columns.push_back({solver});
+      for (const auto& row : rows) columns.back().push_back(text(row, solver));
+    }
+    out << '\n' << title << '\n';
+    print_columns(out, columns, width);
   };
   table(
       "S survived, s survived with smaller steps, R refused cleanly, T timed out, D diverged, W "
@@ -220,6 +242,14 @@ void print_stability(std::ostream& out, const StabilityOutcome& outcome) {
   }
   print_same_frames(out, outcome.same_frames);
   print_expectations(out, outcome);
+}
+
+}  // namespace
+
+void print_stability(std::ostream& out, const StabilityOutcome& outcome, std::size_t columns) {
+  std::ostringstream text;
+  print_whole(text, outcome, columns);
+  out << fitted(text.str(), columns);
 }
 
 json stability_document(json context, const StabilityOutcome& outcome, std::uint64_t seed,

@@ -19,8 +19,7 @@ using analysis::Plane;
 
 namespace {
 
-constexpr int limit_width = 9, level_width = 13, time_width = 9, step_width = 9, error_width = 9,
-              columns = 120;
+constexpr int limit_width = 9, level_width = 13, time_width = 9, step_width = 9, error_width = 9;
 
 // How a table is set: as wide as its names need.
 struct Setting {
@@ -111,25 +110,15 @@ void print_rows(std::ostream& out, const Plane& plane, bool sizes, const Setting
 
 // Of the fastest runs in the column "any", where their shape errors are known.
 void print_shapes(std::ostream& out, const Plane& plane) {
-  constexpr std::size_t width = columns - 1;  // and a comma
-  std::string line = "shape errors of the fastest, whatever their motion:";
-  bool any = false;
+  const char* before = "shape errors of the fastest, whatever their motion: ";
   for (const Cell& cell : plane.cells) {
     const Entry* first = cell.level == any_motion ? cell.first() : nullptr;
     const double shape = first ? first->point.error("shape") : unknown;
     if (std::isnan(shape)) continue;
-    const std::string word =
-        " " + percent(cell.strain_limit) + ": " + number_text(100 * shape, 2) + " %";
-    const std::string comma = any ? "," : "";
-    if (line.size() + comma.size() + word.size() > width) {
-      out << line << comma << '\n';
-      line = " " + word;
-    } else {
-      line += comma + word;
-    }
-    any = true;
+    out << before << percent(cell.strain_limit) << ": " << number_text(100 * shape, 2) << " %";
+    before = ", ";
   }
-  if (any) out << line << '\n';
+  if (before == std::string(", ")) out << '\n';
 }
 
 // Everybody in the cells of any motion and of the headline's error.
@@ -179,20 +168,6 @@ Setting setting_of(const std::vector<Plane>& planes, bool all) {
   return set;
 }
 
-// Sentences begin at the left and go on indented.
-void print_wrapped(std::ostream& out, const std::string& sentence) {
-  std::istringstream words(sentence);
-  std::string line, word;
-  while (words >> word) {
-    if (!line.empty() && line.size() + 1 + word.size() > columns) {
-      out << line << '\n';
-      line = " ";
-    }
-    line += (line.empty() ? "" : " ") + word;
-  }
-  out << line << '\n';
-}
-
 void print_growth(std::ostream& out, const analysis::Growth& growth) {
   constexpr int name_width = 32, exponent_width = 24, range_width = 20, step_time_width = 14;
   out << '\n'
@@ -213,7 +188,7 @@ void print_growth(std::ostream& out, const analysis::Growth& growth) {
   }
 }
 
-// How runs that did not end well ended.
+// How runs that failed did so.
 void print_failures(std::ostream& out, const nlohmann::json& document, bool all) {
   std::map<std::string, int> statuses;
   std::map<std::string, int> of_contestants;
@@ -228,7 +203,8 @@ void print_failures(std::ostream& out, const nlohmann::json& document, bool all)
   }
   if (failed == 0) return;
   std::string line = "\n" + std::to_string(failed) + " of " +
-                     std::to_string(document.at("points").size()) + " runs did not end well:";
+                     std::to_string(document.at("points").size()) +
+                     " trial runs failed (coarse steps are tried until they do):";
   for (const auto& [status, count] : statuses)
     line += (line.back() == ':' ? " " : ", ") + status + " " + std::to_string(count);
   out << line << '\n';
@@ -260,9 +236,7 @@ void print_plugins(std::ostream& out, const nlohmann::json& document) {
   }
 }
 
-}  // namespace
-
-void print_sweep(std::ostream& out, const nlohmann::json& document, bool all) {
+void print_whole(std::ostream& out, const nlohmann::json& document, bool all) {
   const auto planes = analysis::planes_of(document);
   const Setting set = setting_of(planes, all);
   std::string last;
@@ -285,10 +259,18 @@ void print_sweep(std::ostream& out, const nlohmann::json& document, bool all) {
   for (const analysis::Growth& growth : analysis::growth_in(planes)) print_growth(out, growth);
   for (const analysis::Finding& finding : analysis::findings_of(planes)) {
     out << '\n' << finding.subject << ":\n";
-    for (const std::string& sentence : finding.sentences) print_wrapped(out, sentence);
+    for (const std::string& sentence : finding.sentences) out << sentence << '\n';
   }
   print_failures(out, document, all);
   print_plugins(out, document);
+}
+
+}  // namespace
+
+void print_sweep(std::ostream& out, const nlohmann::json& document, bool all, std::size_t columns) {
+  std::ostringstream text;
+  print_whole(text, document, all);
+  out << fitted(text.str(), columns);
 }
 
 }  // namespace harness

@@ -56,7 +56,14 @@ refused "there is no folder 'nowhere'" film --out nowhere/x.png
 refused "no option '--limt'; did you mean '--limit'?" "${sweep[@]}" --limt 0.01
 refused "no option '--stils=1' of bench film; did you mean '--stills'?" film --stils=1 --out x.png
 refused "no command 'shwo'; did you mean 'show'?" shwo one.json
-refused "'two.json' is one word too many of bench show" show one.json two.json
+refused "unexpected argument 'two.json' of bench show (see bench show --help)" show one.json two.json
+refused "no command 'foo' (see bench --help)" help foo
+refused "--solver is required (see bench check --help)" check
+for seed in 99999999999999999999 -1 1.5; do
+  refused "'$seed', must be a whole number of at least 0 and at most 9007199254740992" check --solver icd --seed $seed
+  refused "'$seed', must be a whole number of at least 0 and at most 9007199254740992" "${sweep[@]}" --seed $seed
+done
+"$BENCH_BINARY" help check >help.txt && grep -q -- '--quick' help.txt || fail "help of a verb"
 refused "'1' must be a number above 0 and below 1" "${sweep[@]}" --limit 1
 refused "'' must be a number above 0 and below 1" "${sweep[@]}" --limit 0.01,
 refused "'-1' must be a number of at least 0" film --stills=-1 --out x.png
@@ -66,7 +73,11 @@ refused "did you mean 'solvers'" list solver
 refused "--finest-error needs references, missing: chain-n7" --sweep strain --profile quick --scene chain --out out.json --finest-error 0.02 \
   --config <(echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1], "scene_parameters": {"n": 7}}]}')
 refused "--finest-error" "${sweep[@]}" --finest-error -1
-refused "cannot read the result file" claims missing.json
+refused "cannot read the result file 'missing.json': No such file or directory" claims missing.json
+mkdir -p folder && ln -sf nowhere.json dangling.json && : >empty.json
+refused "cannot read the result file 'folder': it is a folder" show folder
+refused "'dangling.json': it is a link to 'nowhere.json', which does not exist" show dangling.json
+refused "cannot read the result file 'empty.json': it is empty" show empty.json
 echo '{"schema": "another"}' >other.json
 refused "is not a result file" claims other.json
 refused "did you mean 'drape'" reference --scene drap
@@ -174,7 +185,7 @@ grep -q '^curtain.obj, 49 vertices' chosen.txt && grep -q '^take  .* error [0-9.
 
 # Settings are searched and put among those of other solvers.
 cp "$root/configs/tuned.json" .
-"$BENCH_BINARY" tune --scene chain --solver icd --again --trials 4 --timeout 2 --out tuned.json --quiet >/dev/null || fail "tune"
+"$BENCH_BINARY" tune --scene chain --solver icd --again --trials 4 --timeout 30 --out tuned.json --quiet >/dev/null || fail "tune"
 /usr/bin/python3 - "$root/configs/tuned.json" <<'PYTHON' || fail "tuned.json"
 import json, sys
 before, after = ({(e["kind"], e["solver"]): e for e in json.load(open(name))["tuned"]} for name in (sys.argv[1], "tuned.json"))

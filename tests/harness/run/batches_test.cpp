@@ -30,8 +30,6 @@ TEST(Batches, ASampleOfAShortRunTakesAtLeastTwentyMilliseconds) {
   for (std::size_t i = 0; i < 4; ++i) {
     const double a_run = point.samples[i] * point.spec.step * point.steps_planned;
     EXPECT_GE(a_run * point.sample_runs[i], least_sample * (1 - 1e-9));
-    EXPECT_LT(a_run * (point.sample_runs[i] - 1), least_sample * 2) << "no longer than needed";
-    EXPECT_GT(point.sample_runs[i], 1);
     EXPECT_GT(point.cpu_samples[i], 0);
   }
   EXPECT_GE(point.measured_seconds(), 4 * least_sample * (1 - 1e-9));

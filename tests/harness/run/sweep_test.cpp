@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 #include "harness/base/errors.h"
 
@@ -130,6 +131,23 @@ TEST(StepSearch, StopsWhoIsFarBehindTheFastestOfAPlace) {
   ASSERT_EQ(cutoffs.size(), 4u);  // two time-outs end each walk
   for (const double cutoff : cutoffs) EXPECT_NEAR(cutoff, 30 * 0.1, 1e-9);
   for (const auto& point : outcome.points) EXPECT_NE(point.status, PointStatus::skipped);
+}
+
+// As with --untimed --steps all: which runs end must not depend on the machine.
+TEST(StepSearch, StopsNobodyWhereTimesAreNotUsed) {
+  Suite suite = one_family();
+  suite.sweeps[0].contestants = {{"fast_projection", "fast_projection"}, {"jacobi", "jacobi"}};
+  suite.sweeps[0].every_step = true;
+  suite.far_behind = std::numeric_limits<double>::infinity();
+  SweepRunners runners = fake(1.0 / 200, 1, nullptr);
+  runners.run = [inner = runners.run](const PointSpec& spec, const RunLimits& limits,
+                                      std::optional<double> guess) {
+    EXPECT_GE(limits.hopeless, 1e300);
+    PointResult point = inner(spec, limits, guess);
+    if (spec.solver == "jacobi") point.samples.front() *= 1000;
+    return point;
+  };
+  EXPECT_EQ(run_sweep(suite, plan(suite, {}), {}, runners).points.size(), 36u);
 }
 
 // A solver is skipped at the next limit only where all of its steps timed out: one that was refused

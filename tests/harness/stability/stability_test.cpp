@@ -259,6 +259,10 @@ TEST(Stability, AFilteredSweepRunsJudgesAndPrints) {
   std::ostringstream text;
   harness::print_stability(text, outcome);
   EXPECT_NE(text.str().find("Q4"), std::string::npos);
+  std::ostringstream narrow;
+  harness::print_stability(narrow, outcome, 40);  // a table below the other
+  std::istringstream lines(narrow.str());
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 40u) << line;
   EXPECT_NE(text.str().find("4 cells: 3 with one expected outcome, 1 that admit two; not as "
                             "expected: 0, of them 0 not known"),
             std::string::npos)

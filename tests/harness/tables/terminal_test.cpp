@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
+
 #include "support/invented_runs.h"
 
 namespace harness::tables {
@@ -24,6 +26,26 @@ TEST(Terminal, PrintsThePlane) {
   EXPECT_NE(out.str().find("2.00 (1.99-2.01) by shake"), std::string::npos) << out.str();
   std::istringstream lines(out.str());
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+TEST(Terminal, IsNoWiderThanItMayBeAndLosesNoWord) {
+  const json result =
+      document({run("fast_projection_adaptive_bdf2", 0.1, 0.04, 1e-3, 0.008),
+                run("icd", 0.1, 0.04, 3e-3, 0.03), run("fast_projection", 0.1, 0.02, 2e-3, 0.01)});
+  std::ostringstream whole;
+  print_sweep(whole, result, true, 1000);
+  for (const std::size_t columns : {60, 80, 100}) {
+    std::ostringstream out;
+    print_sweep(out, result, true, columns);
+    EXPECT_EQ(words_of(out.str()), words_of(whole.str()));
+    std::istringstream lines(out.str());
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), columns) << line;
+  }
 }
 
 TEST(Terminal, TellsTheShapeErrorsOfTheFastest) {
@@ -72,7 +94,9 @@ TEST(Terminal, HasEverybodyIfAskedFor) {
   print_sweep(brief, result);
   print_sweep(all, result, true);
   EXPECT_EQ(brief.str().find("icd_untuned"), std::string::npos);
-  EXPECT_NE(brief.str().find("1 of 5 runs did not end well: diverged 1"), std::string::npos)
+  EXPECT_NE(brief.str().find(
+                "1 of 5 trial runs failed (coarse steps are tried until they do): diverged 1"),
+            std::string::npos)
       << brief.str();
   for (const char* words : {"icd_untuned", "slower settings", "no strain limit",
                             "chain, shake: diverged x 1", "3.00 (2.99-3.01)"})
