@@ -1,6 +1,7 @@
 // The plane strain x error of each scene: the fastest method within each limit and level of error.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "harness/analysis/findings.h"
 #include "harness/analysis/words.h"
@@ -37,6 +38,24 @@ bool has_shapes(const std::vector<const Plane*>& planes) {
       return cell.first() && std::isfinite(cell.first()->point.error("shape"));
     });
   });
+}
+
+// Up to when errors count, where that is not the whole run.
+std::string span_of_errors(const std::vector<const Plane*>& planes) {
+  double first = std::numeric_limits<double>::infinity(), last = 0, duration = 0;
+  for (const Plane* plane : planes) {
+    for (const Cell& cell : plane->cells) {
+      if (cell.level != headline_error || !cell.first() || cell.known_until == 0) continue;
+      first = std::min(first, cell.known_until);
+      last = std::max(last, cell.known_until);
+      duration = std::max(duration, cell.first()->point.number("duration"));
+    }
+  }
+  if (last == 0 || first > duration * (1 - 1e-9)) return "";
+  return "An error of at most " + percent(headline_error) + " is a mean up to " +
+         (first < last ? number_text(first) + " or " : "") + number_text(last) + " s of " +
+         number_text(duration) +
+         " s: later two references differ too much, and at the end of that time it can be larger. ";
 }
 
 bool has_rivals(const Plane& plane) {
@@ -123,6 +142,7 @@ void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
         if (here) out << sentence << ' ';
       }
     }
+    out << span_of_errors(planes);
     if (has_shapes(planes)) out << "Shape errors are deviations beyond the ensemble's spread.";
     out << "\n\n";
     print_table(out, planes);

@@ -99,6 +99,21 @@ TEST(ResultsPage, OlderFilesAreRead) {
   has(page(result), "| 1 % | **`fast_projection`** 1000 ms");
 }
 
+// A mean over a third of the run says nothing of its end.
+TEST(ResultsPage, SaysUpToWhenErrorsCountUnlessItIsTheWholeRun) {
+  const auto with = [](double last) {
+    json result = sweep(0.01);
+    for (json& p : result["points"])
+      p["error"] = {
+          {"trajectory", 0.01},
+          {"gap", 1e-6},
+          {"error_series", {{0.1, 0.01, 0.02, 1e-6, 1e-6}, {last, 0.01, 0.02, 1e-6, 1e-6}}}};
+    return page(result);
+  };
+  has(with(0.36), "An error of at most 2 % is a mean up to 0.36 s of 1 s");
+  EXPECT_EQ(with(1.0).find("is a mean up to"), std::string::npos);
+}
+
 TEST(ResultsPage, ErrorsCountWhereTheReferenceIsSure) {
   json p = point("chain", "step", "icd", 0.01, 80, 0.01, 1);
   p["error"] = {{"trajectory", 0.5}, {"gap", 0.2}};

@@ -35,7 +35,7 @@ std::vector<std::string> words_of(const std::string& text) {
 
 TEST(Terminal, IsNoWiderThanItMayBeAndLosesNoWord) {
   const json result =
-      document({run("fast_projection_adaptive_bdf2", 0.1, 0.04, 1e-3, 0.008),
+      document({run("fast_projection_adaptive@bdf2", 0.1, 0.04, 1e-3, 0.008),
                 run("icd", 0.1, 0.04, 3e-3, 0.03), run("fast_projection", 0.1, 0.02, 2e-3, 0.01)});
   std::ostringstream whole;
   print_sweep(whole, result, true, 1000);
