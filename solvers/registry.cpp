@@ -61,7 +61,8 @@ const char* kept(std::string words) {
 }
 
 std::string joined(const char* words, const char* separator, const char* more) {
-  return *words && *more ? std::string(words) + separator + more : std::string(*words ? words : more);
+  return *words && *more ? std::string(words) + separator + more
+                         : std::string(*words ? words : more);
 }
 
 std::string pair_name(const char* method, const char* stepper) {
@@ -137,7 +138,8 @@ void check_row(const Backend& row, std::span<const Backend> others) {
                   [name](const Backend& b) { return b.name == name; }))
     throw std::invalid_argument("there is a solver " + quoted(name) + " already");
   if ((row.make != nullptr) == (row.make_filter != nullptr) || !row.summary)
-    throw std::invalid_argument("solver " + quoted(name) + " has no summary, or not one of `make` and `make_filter`");
+    throw std::invalid_argument("solver " + quoted(name) +
+                                " has no summary, or not one of `make` and `make_filter`");
 }
 
 }  // namespace
@@ -157,7 +159,8 @@ const Backend* find_backend(std::string_view name) {
   const auto rows = backends();
   const auto place = std::find_if(rows.begin(), rows.end(), [name](const Backend& b) {
     // By its whole name in its published stepper too.
-    return b.name == name || (name.find('@') != name.npos && name == pair_name(b.method, b.stepper));
+    return b.name == name ||
+           (name.find('@') != name.npos && name == pair_name(b.method, b.stepper));
   });
   return place == rows.end() ? nullptr : &*place;
 }

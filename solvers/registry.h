@@ -12,12 +12,13 @@
 namespace inextensible {
 
 std::span<const Backend> backends();
-// Appends rows from outside this library, velocity filters in all time steppers that suit them. At program start, before anything else: what backends()
-// and find_backend() gave before is no longer valid. Throws std::invalid_argument, having added
-// nothing, for a name that is taken or not made of a-z, 0-9 and _ (it becomes part of point ids),
-// and for a row without summary, or with neither or both of `make` and `make_filter`.
+// Appends rows from outside this library, velocity filters in all time steppers that suit them. At
+// program start, before anything else: what backends() and find_backend() gave before is no longer
+// valid. Throws std::invalid_argument, having added nothing, for a name that is taken or not made
+// of a-z, 0-9 and _ (it becomes part of point ids), and for a row without summary, or with neither
+// or both of `make` and `make_filter`.
 void add_backends(std::span<const Backend> rows);
-bool is_built_in(std::string_view name);             // a row of registry.cpp
+bool is_built_in(std::string_view name);  // a row of registry.cpp
 // Null if there is none. A method in its published time stepper has two names: gauss_seidel and
 // gauss_seidel@backward_euler.
 const Backend* find_backend(std::string_view name);

@@ -39,8 +39,8 @@ struct Cell {
   const Entry* counting(std::size_t place) const;  // 0: the fastest of those that count
   const Entry* next_family() const;                // the fastest of another family than the first
   const Entry* paper_best() const;                 // the fastest of the paper's six as published
-  // The first's lead, split: its method in the published stepper, and the fastest other method in its
-  // stepper. And the fastest of the paper's six in any stepper.
+  // The first's lead, split: its method in the published stepper, and the fastest other method in
+  // its stepper. And the fastest of the paper's six in any stepper.
   const Entry* first_as_published() const;
   const Entry* rival_in_stepper() const;
   const Entry* paper_in_any_stepper() const;

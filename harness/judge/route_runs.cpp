@@ -25,7 +25,8 @@ constexpr double parted = 1e-2;  // gap at which a reference ends, over the scen
 void follow(const Scene& scene, const inextensible::State& start, const Route& route, double h,
             const std::vector<double>& times, const Tell& tell, const Look& look) {
   const std::string& solver = route.solver;
-  const auto stepper = inextensible::make_stepper(solver, scene.problem, {route.limit, 1, route.settings});
+  const auto stepper =
+      inextensible::make_stepper(solver, scene.problem, {route.limit, 1, route.settings});
   inextensible::State state =
       start_from(*scene.problem, start, *inextensible::find_backend(solver), h);
   const std::string run = solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ";

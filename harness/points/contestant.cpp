@@ -104,9 +104,10 @@ void check_settings(const inextensible::Settings& settings, const std::string& w
 
 void check_plain_name(const std::string& name, const std::string& where) {
   if (!has_form(name, "[a-z0-9_]+(@[a-z0-9_]+)?"))
-    throw UsageError(where + " is " + value_text(name) +
-                     ", must be made of a-z, 0-9 and _, with one @ at most (it becomes part of point "
-                     "ids)");
+    throw UsageError(
+        where + " is " + value_text(name) +
+        ", must be made of a-z, 0-9 and _, with one @ at most (it becomes part of point "
+        "ids)");
 }
 
 Contestant read_contestant(const json& entry, const std::string& where) {

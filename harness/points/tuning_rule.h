@@ -17,6 +17,10 @@ const std::vector<SweepSpec>& tuning_scenes();
 // All that a search depends on but for the programs that it times: the scene with all its
 // parameters, sizes, limits, ladder and level of error, and the solver's settings with their
 // defaults and ranges.
+// Of a scene, in turn: where a solver takes too long at one of the sizes, it is tuned at the first
+// of these that is smaller and does not take too long.
+std::vector<int> smaller_sizes(const std::string& scene);
+
 nlohmann::json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver);
 
 // Whether an entry was found by today's rule.

@@ -20,8 +20,8 @@ struct SweepFilters {
 struct Search {
   PointSpec base;              // all but the step
   std::vector<double> ladder;  // s, coarse to fine; those that the filters leave
-  // Rungs to a halving: every stride-th is one of coarsest / 2^k, those between are steps that a best
-  // step is refined by.
+  // Rungs to a halving: every stride-th is one of coarsest / 2^k, those between are steps that a
+  // best step is refined by.
   std::size_t stride = 1;
   // Searches of one family (same sweep, scene, size and contestant) come from loose to tight; each
   // starts from the step that was best in the one before.

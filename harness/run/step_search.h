@@ -28,8 +28,8 @@ namespace harness {
 // get three samples, too, unless they are close_neighbor times slower; and where a best step is an
 // end of what was tried, though the ladder goes on, the search goes on from there.
 //
-// All that is on every stride-th rung, which halve the step. Then the best of any motion and of each
-// level are refined: by the rungs between, one after the other, as long as these are faster.
+// All that is on every stride-th rung, which halve the step. Then the best of any motion and of
+// each level are refined: by the rungs between, one after the other, as long as these are faster.
 class StepSearch {
  public:
   using Run = std::function<const PointResult&(std::size_t rung)>;
@@ -38,11 +38,16 @@ class StepSearch {
   static constexpr double noise = 1.03;        // a ratio of times up to this is none
   static constexpr std::size_t samples_when_close = 3;
 
-  // stride: of the rungs that halve the step. run: the rung's point, which is run when it is first asked for. again: the same with one sample
-  // more, if it can have one. levels: of error, loose to tight; none: any motion alone.
+  // stride: of the rungs that halve the step. run: the rung's point, which is run when it is first
+  // asked for. again: the same with one sample more, if it can have one. levels: of error, loose to
+  // tight; none: any motion alone.
   StepSearch(std::size_t rungs, Run run, Run again, std::vector<double> levels = {},
              std::size_t stride = 1)
-      : rungs_(rungs), stride_(stride), run_(std::move(run)), again_(std::move(again)), levels_(std::move(levels)) {}
+      : rungs_(rungs),
+        stride_(stride),
+        run_(std::move(run)),
+        again_(std::move(again)),
+        levels_(std::move(levels)) {}
 
   // The best rung of any motion; none if every step failed.
   // start: the rung to begin from.

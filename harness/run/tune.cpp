@@ -40,14 +40,9 @@ class Tuner {
   Tuner(const std::string& solver, const SweepSpec& scene, const TuneOptions& options,
         const SweepRunners& runners)
       : options_(options), runners_(runners) {
-    Suite suite;
-    suite.sweeps = {scene};
-    suite.sweeps[0].contestants = {{solver, solver}};
-    for (Search& search : plan(suite, {})) {
-      std::size_t rung = 0;
-      std::erase_if(search.ladder, [&](double) { return rung++ % search.stride != 0; });
-      places_.push_back({.search = std::move(search)});
-    }
+    scene_ = scene;
+    scene_.contestants = {{solver, solver}};
+    places_ = places_of(scene_);
     numbers_ = tunable_numbers(*inextensible::find_backend(solver));
     options_.rules.budget =
         std::min(options.rules.budget, options.trials_each * static_cast<int>(numbers_.size()));
@@ -86,6 +81,19 @@ class Tuner {
   }
 
  private:
+  // At steps that are halved.
+  static std::vector<Place> places_of(const SweepSpec& scene) {
+    Suite suite;
+    suite.sweeps = {scene};
+    std::vector<Place> places;
+    for (Search& search : plan(suite, {})) {
+      std::size_t rung = 0;
+      std::erase_if(search.ladder, [&](double) { return rung++ % search.stride != 0; });
+      places.push_back({.search = std::move(search)});
+    }
+    return places;
+  }
+
   Values initial() const {
     Values values;
     for (const TunedNumber& number : numbers_) values.push_back(number.initial);
@@ -117,21 +125,25 @@ class Tuner {
     return point;
   }
 
-  // The ladder's best step with the settings that the solver has by itself. Places where none
-  // counts say nothing about settings; those where it takes long are left out but for the fastest.
+  // The ladder's best step with the settings that the solver has by itself, at a smaller size where
+  // that takes too long. Places where no step counts at any size say nothing about settings.
   void begin() {
-    for (Place& place : places_) find_best(place, far_too_long * options_.longest_run);
-    if (std::all_of(places_.begin(), places_.end(),
-                    [](const Place& place) { return place.best_seconds >= 1e300; }))
-      find_best(places_.front(), 1e300);
+    for (Place& place : places_) {
+      find_best(place, far_too_long * options_.longest_run);
+      for (const int size : smaller_sizes(scene_.scene)) {
+        if (place.best_seconds * duration(place) <= options_.longest_run) break;
+        if (size >= place.search.base.resolution) continue;
+        SweepSpec smaller = scene_;
+        smaller.resolutions = {size};
+        smaller.limits = {place.search.base.strain_limit};
+        place = places_of(smaller).front();
+        find_best(place, far_too_long * options_.longest_run);
+      }
+    }
     std::erase_if(places_, [](const Place& place) { return place.best_seconds >= 1e300; });
     std::stable_sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) {
       return a.best_seconds < b.best_seconds;
     });
-    const auto long_one = std::find_if(places_.begin(), places_.end(), [this](const Place& place) {
-      return place.best_seconds * duration(place) > options_.longest_run;
-    });
-    places_.erase(std::max(long_one, std::min(places_.begin() + 1, places_.end())), places_.end());
   }
 
   static double duration(const Place& place) {
@@ -259,6 +271,7 @@ class Tuner {
 
   TuneOptions options_;
   SweepRunners runners_;
+  SweepSpec scene_;
   std::vector<Place> places_;
   std::vector<TunedNumber> numbers_;
   std::map<Values, std::vector<Found>> last_;  // of the last time that all were measured

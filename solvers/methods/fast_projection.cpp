@@ -94,8 +94,8 @@ StepResult FastProjection::apply(const Positions& x_start, double /*h*/, Iterate
   }
 }
 
-// C~(x) for this target to mu_, the gradient of C to u_; that of the middle of the step makes of the
-// iteration Newton's with J(m) W J(m)^T for J(x_j) W J(m)^T. Returns whether x is permissible.
+// C~(x) for this target to mu_, the gradient of C to u_; that of the middle of the step makes of
+// the iteration Newton's with J(m) W J(m)^T for J(x_j) W J(m)^T. Returns whether x is permissible.
 bool FastProjection::linearize(double target, const Positions& x) {
   const bool permissible = system_.edges().linearize(x, u_, mu_);
   if (along_ == Along::middle) to_middle(u_start_, u_);
@@ -209,18 +209,35 @@ SettingFields<FastProjection::Settings> FastProjection::fields() {
        below_limit},
       // A projection sees the whole cloth, but only to first order; most of what it leaves is
       // local, and cheaper to correct by passes over edges.
-      {"sweeps_before", &S::sweeps_before,
+      {"sweeps_before",
+       &S::sweeps_before,
        "colored Gauss-Seidel passes before the first projection, at most; none on chains, where "
        "a projection costs no more than some passes",
-       count_from_zero, tunable_passes, {}, departs},
-      {"smoothing_sweeps", &S::smoothing_sweeps,
-       "the same after each projection, at most; none on chains", count_from_zero,
-       tunable_passes, {}, departs},
-      {"smoothing_target", &S::smoothing_target,
-       "an edge that a pass corrects is brought to this fraction of the strain limit", fraction,
-       tunable_fraction, {}, departs},
-      {"smoothing_relaxation", &S::smoothing_relaxation, "times a pass's correction",
-       relaxation_range, tunable_relaxation, {}, departs},
+       count_from_zero,
+       tunable_passes,
+       {},
+       departs},
+      {"smoothing_sweeps",
+       &S::smoothing_sweeps,
+       "the same after each projection, at most; none on chains",
+       count_from_zero,
+       tunable_passes,
+       {},
+       departs},
+      {"smoothing_target",
+       &S::smoothing_target,
+       "an edge that a pass corrects is brought to this fraction of the strain limit",
+       fraction,
+       tunable_fraction,
+       {},
+       departs},
+      {"smoothing_relaxation",
+       &S::smoothing_relaxation,
+       "times a pass's correction",
+       relaxation_range,
+       tunable_relaxation,
+       {},
+       departs},
       {"first_forcing", &S::first_forcing,
        "residual of a step's first linear solve by conjugate gradients or in mixed precision, of "
        "the right-hand side; those of later ones are smaller",

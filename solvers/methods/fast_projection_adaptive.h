@@ -45,10 +45,10 @@ class FastProjectionAdaptive final : public VelocityFilter {
   StrainPasses passes_;
   YarnPass yarns_;
   Positions x_;
-  Eigen::Matrix3Xd u_;      // gradient of C
+  Eigen::Matrix3Xd u_;        // gradient of C
   Eigen::Matrix3Xd u_start_;  // at x^n, for the middle of the step only
-  Eigen::VectorXd mu_;      // C~, then h^2 dlambda
-  Iterate::Record before_;  // a projection of the whole
+  Eigen::VectorXd mu_;        // C~, then h^2 dlambda
+  Iterate::Record before_;    // a projection of the whole
   // What steps have cost each way, in visits of an edge; 0: not tried yet.
   struct Seen {
     double mean[2] = {};

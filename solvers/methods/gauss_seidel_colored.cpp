@@ -9,7 +9,8 @@
 
 namespace inextensible {
 
-GaussSeidelColored::GaussSeidelColored(const Problem& problem, const Settings& settings, Along along)
+GaussSeidelColored::GaussSeidelColored(const Problem& problem, const Settings& settings,
+                                       Along along)
     : edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
       along_(along),

@@ -39,8 +39,7 @@ Jacobi::Jacobi(const Problem& problem, const Settings& settings, Along along)
       along_(along),
       passes_(make_passes(problem, edges_, settings)) {}
 
-StepResult Jacobi::apply(const Positions& x_start, double /*h*/, Iterate x,
-                         WorkCounters& work) {
+StepResult Jacobi::apply(const Positions& x_start, double /*h*/, Iterate x, WorkCounters& work) {
   if (along_ == Along::middle) passes_.take_middle_from(x_start);
   return passes_.limit(StrainPasses::Order::at_once, max_iterations_, edges_, x, work);
 }

@@ -59,8 +59,7 @@ inline int correct(const Ends& from, const Ends& start, const Ends& to,
       const double p = (d0 * m0 + d1 * m1 + d2 * m2) * inverse_square[i];
       const double r = (m0 * m0 + m1 * m1 + m2 * m2) * inverse_square[i];
       const double strained = q[i] - wanted * wanted;
-      const double along_middle =
-          strained / (p + std::sqrt(std::max(p * p - r * strained, 0.0)));
+      const double along_middle = strained / (p + std::sqrt(std::max(p * p - r * strained, 0.0)));
       const bool aligned = p > least_alignment * q[i];
       all = aligned ? along_middle : all;
       from_start[i] = aligned ? 1 : 0;
@@ -256,9 +255,9 @@ std::int64_t StrainPasses::pass(ColoredEdges::Places& to) {
       double* out = gathered[in_place ? 0 : 1];
       if (!in_place) gather(to, out);
       if (middle) gather(start_, gathered[2]);
-      const int here = correct_at({gathered[0], 2 * width, 0, width},
-                                  {gathered[middle ? 2 : 0], 2 * width, 0, width},
-                                  {out, 2 * width, 0, width});
+      const int here =
+          correct_at({gathered[0], 2 * width, 0, width},
+                     {gathered[middle ? 2 : 0], 2 * width, 0, width}, {out, 2 * width, 0, width});
       if (here == 0) continue;
       corrected += here;
       for (int axis = 0; axis < 3; ++axis) {

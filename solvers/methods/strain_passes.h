@@ -45,8 +45,8 @@ class StrainPasses {
   // load(), and saves the contacts of x for passes_alone().
   void begin(Iterate x);
   void store(Positions& x) const;
-  // From now on corrections point along the edges as they are in the middle of the step from x_start
-  // (3 x n) to where they are. Until the first call they point along the edges as they are.
+  // From now on corrections point along the edges as they are in the middle of the step from
+  // x_start (3 x n) to where they are. Until the first call they point along the edges as they are.
   void take_middle_from(const Positions& x_start);
   bool finite() const { return x_.allFinite(); }
   // Whether to stop after so many passes: at most `most`, and no more than some with overflow.

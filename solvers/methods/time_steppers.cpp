@@ -31,9 +31,8 @@ constexpr const char* spectral_radius = "spectral_radius";
 
 Made midpoint(Shared problem, const Backend& method, const BackendOptions& options) {
   auto filter = method.make_filter(*problem, options, Along::middle);
-  return std::make_unique<MidpointStepper>(
-      std::move(problem), std::move(filter),
-      std::get<double>(options.settings.at(spectral_radius)));
+  return std::make_unique<MidpointStepper>(std::move(problem), std::move(filter),
+                                           std::get<double>(options.settings.at(spectral_radius)));
 }
 
 std::vector<TimeStepper> all_steppers() {
@@ -42,9 +41,24 @@ std::vector<TimeStepper> all_steppers() {
       {"backward_euler", "", "", Origin::paper, half_step, Along::edges, true, {}, backward_euler},
       // Symplectic where forces act along the start of the step. With velocities of half steps it
       // is the arithmetic of backward_euler.
-      {"verlet", "", "Verlet 1967", Origin::paper, half_step, Along::edges, true, {}, backward_euler},
-      {"bdf2", "in BDF2", "Choi and Ko 2002; English and Bridson 2008", Origin::literature,
-       whole_step, Along::edges, true, {}, bdf2},
+      {"verlet",
+       "",
+       "Verlet 1967",
+       Origin::paper,
+       half_step,
+       Along::edges,
+       true,
+       {},
+       backward_euler},
+      {"bdf2",
+       "in BDF2",
+       "Choi and Ko 2002; English and Bridson 2008",
+       Origin::literature,
+       whole_step,
+       Along::edges,
+       true,
+       {},
+       bdf2},
       {"midpoint",
        "in the midpoint rule",
        "Simo and Tarnow 1992; Gonzalez 1999",

@@ -23,9 +23,9 @@ class VertexPasses {
   void store(Positions& x) const;
   bool finite() const { return x_.allFinite(); }
 
-  // Every free vertex once: `relaxation` times one Newton step on its energy, the others held fixed,
-  // the Hessian without what is negative across a spring. stiffness_scale multiplies the springs'
-  // stiffnesses. Returns the largest move's square, m^2.
+  // Every free vertex once: `relaxation` times one Newton step on its energy, the others held
+  // fixed, the Hessian without what is negative across a spring. stiffness_scale multiplies the
+  // springs' stiffnesses. Returns the largest move's square, m^2.
   double visit_all(double stiffness_scale, double relaxation = 1);
   // A vertex with a plane stays out of its half-space; contacts must not outlive the next call.
   // null: none.

@@ -112,7 +112,8 @@ StepResult XpbdSmallSteps::apply(const Positions& x_start, double /*h*/, Iterate
 SettingFields<XpbdSmallSteps::Settings> XpbdSmallSteps::fields() {
   using S = Settings;
   return {
-      {"sweeps", &S::sweeps, "colored Gauss-Seidel passes a step", at_least_one, SearchRange{1, 100}},
+      {"sweeps", &S::sweeps, "colored Gauss-Seidel passes a step", at_least_one,
+       SearchRange{1, 100}},
       {"relaxation", &S::relaxation, "times a correction", relaxation_range, tunable_relaxation},
       {"attachments",
        &S::attachments,
@@ -123,22 +124,22 @@ SettingFields<XpbdSmallSteps::Settings> XpbdSmallSteps::fields() {
 }
 
 Backend xpbd_small_steps_row() {
-  return {.name = "xpbd_small_steps",
-          .summary = "PBD with substeps (XPBD without compliance): a fixed number of passes, no test",
-          .knob = Knob::time_step,
-          .contestant = true,
-          .settings = setting_infos(XpbdSmallSteps::fields()),
-          .make_filter = [](const Problem& problem, const BackendOptions& options,
-                            Along along) -> std::unique_ptr<VelocityFilter> {
-            // The start is taken for the shape at rest.
-            return std::make_unique<XpbdSmallSteps>(
-                problem, settings_of<XpbdSmallSteps>(options),
-                options.start ? &options.start->x : nullptr, along);
-          },
-          .direction = Direction::local,
-          .citation = "Macklin et al. 2016, 2019",
-          .origin = Origin::literature,
-          .label = "PBD with substeps (XPBD, compliance 0)"};
+  return {
+      .name = "xpbd_small_steps",
+      .summary = "PBD with substeps (XPBD without compliance): a fixed number of passes, no test",
+      .knob = Knob::time_step,
+      .contestant = true,
+      .settings = setting_infos(XpbdSmallSteps::fields()),
+      .make_filter = [](const Problem& problem, const BackendOptions& options,
+                        Along along) -> std::unique_ptr<VelocityFilter> {
+        // The start is taken for the shape at rest.
+        return std::make_unique<XpbdSmallSteps>(problem, settings_of<XpbdSmallSteps>(options),
+                                                options.start ? &options.start->x : nullptr, along);
+      },
+      .direction = Direction::local,
+      .citation = "Macklin et al. 2016, 2019",
+      .origin = Origin::literature,
+      .label = "PBD with substeps (XPBD, compliance 0)"};
 }
 
 }  // namespace inextensible

@@ -20,8 +20,8 @@ struct PermissibleSquares {
   double low, high;
 };
 
-// m . d / |d|^2 of an edge that has turned by 90 degrees in a step, m = (d_start + d) / 2 its middle:
-// one that has turned further is taken as it is.
+// m . d / |d|^2 of an edge that has turned by 90 degrees in a step, m = (d_start + d) / 2 its
+// middle: one that has turned further is taken as it is.
 constexpr double least_alignment = 0.5;
 // u (3 x m) at the end of a step becomes that of the middle, u_start at its start.
 void to_middle(const Eigen::Matrix3Xd& u_start, Eigen::Matrix3Xd& u);

@@ -13,8 +13,8 @@ Bdf2OfEuler::Bdf2OfEuler(std::shared_ptr<const Problem> problem, std::unique_ptr
 StepResult Bdf2OfEuler::solve(const State& state, double h, Positions& x) {
   const auto& pinned = problem_->pinned();
   for (const int vertex : pinned) x_known_.col(vertex) = state.x.col(vertex);  // may have moved
-  const bool known = h_before_ > 0 && h <= largest_bdf2_growth * h_before_ &&
-                     state.x == x_known_ && state.v == v_known_;
+  const bool known = h_before_ > 0 && h <= largest_bdf2_growth * h_before_ && state.x == x_known_ &&
+                     state.v == v_known_;
   const double w = known ? h / h_before_ : 0;  // 0: alpha and beta are 1, backward Euler
   const double alpha = (1 + w) * (1 + w) / (1 + 2 * w), beta_h = h * (1 + w) / (1 + 2 * w);
   if (known) {

@@ -2,11 +2,11 @@
 //   alpha = (1 + w)^2 / (1 + 2 w), beta = (1 + w) / (1 + 2 w) (equal steps: 4/3 and 2/3),
 //   s^{n+1} = alpha s^n + (1 - alpha) s^{n-1} + beta h s'^{n+1},   s = (x, v),
 // is that step over beta h from the state alpha s^n + (1 - alpha) s^{n-1}, whose time is (1 - beta)
-// h after s^n (Choi and Ko 2002 take implicit springs in BDF2). The first step, and one from a state
-// that is not the one the last step left, is backward Euler.
+// h after s^n (Choi and Ko 2002 take implicit springs in BDF2). The first step, and one from a
+// state that is not the one the last step left, is backward Euler.
 //
-// A vertex that the collider holds gets a history of its own, as in Bdf2Stepper: that of a free fall
-// which ends here.
+// A vertex that the collider holds gets a history of its own, as in Bdf2Stepper: that of a free
+// fall which ends here.
 #pragma once
 
 #include "solvers/stepping/stepper.h"

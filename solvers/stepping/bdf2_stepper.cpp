@@ -5,8 +5,8 @@
 
 namespace inextensible {
 
-// y^{n+1} = now y^n + before y^{n-1} + beta_h y'^{n+1}; variable-step BDF2 (English and Bridson 2008
-// for constrained dynamics).
+// y^{n+1} = now y^n + before y^{n-1} + beta_h y'^{n+1}; variable-step BDF2 (English and Bridson
+// 2008 for constrained dynamics).
 Bdf2Stepper::Coefficients Bdf2Stepper::coefficients(double h) const {
   const double w = h / h_before_, alpha = (1 + w) * (1 + w) / (1 + 2 * w);
   return {alpha, 1 - alpha, h * (1 + w) / (1 + 2 * w)};

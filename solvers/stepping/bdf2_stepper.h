@@ -47,9 +47,9 @@ class Bdf2Stepper final : public Stepper {
   bool implicit_solve(const State& state, double h, bool known, Positions& x);
 
   std::unique_ptr<VelocityFilter> filter_;
-  Positions x_before_, v_before_;  // x^{n-1}, v^{n-1}
-  Positions x_known_, v_known_;    // x^n and v^n as the last step left them
-  double h_before_ = 0;            // s; 0: no history
+  Positions x_before_, v_before_;             // x^{n-1}, v^{n-1}
+  Positions x_known_, v_known_;               // x^n and v^n as the last step left them
+  double h_before_ = 0;                       // s; 0: no history
   Positions acceleration_;                    // m/s^2, at x_ahead_
   Positions x_ahead_;                         // x^n + h v^n, with shear or bending only
   std::unique_ptr<ImplicitForces> implicit_;  // null: forces at x_ahead_

@@ -14,7 +14,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 NUMBER = re.compile(
-    r"<!-- (?P<file>\S+\.json) (?P<quantity>[a-z ]+) (?P<scene>\w+) (?P<place>[\d.]+): (?P<one>\w+)(?: / (?P<other>\w+))?"
+    r"<!-- (?P<file>\S+\.json) (?P<quantity>[a-z ]+) (?P<scene>\w+) (?P<place>[\d.]+): (?P<one>[\w@]+)(?: / (?P<other>[\w@]+))?"
     r" = (?P<number>[\d.]+) ?(?P<unit>ms|s|%|)(?: \((?P<low>[\d.]+)-(?P<high>[\d.]+)\))?(?P<within> within interval)?"
     r"(?: (?P<side>above|below) (?P<bound>[\d.]+))? -->")
 COMMENTED = re.compile(r"<!--.*?-->", re.DOTALL)

@@ -76,10 +76,10 @@ TEST(Plane, TakesTheRunThatTheSweepMarked) {
 
 // The leader's time over its method's in the published stepper, and over others in its own.
 TEST(Plane, SplitsTheLeadBetweenStepperAndMethod) {
-  const json result = document(
-      {run("strips@bdf2", 0.1, 0.01, 2, 0.01), run("strips", 0.1, 0.01, 6, 0.01),
-       run("icd@bdf2", 0.1, 0.01, 3, 0.01), run("icd", 0.1, 0.01, 10, 0.01),
-       run("gauss_seidel_colored", 0.1, 0.01, 5, 0.01), run("jacobi", 0.1, 0.01, 1, 0.2)});
+  const json result =
+      document({run("strips@bdf2", 0.1, 0.01, 2, 0.01), run("strips", 0.1, 0.01, 6, 0.01),
+                run("icd@bdf2", 0.1, 0.01, 3, 0.01), run("icd", 0.1, 0.01, 10, 0.01),
+                run("gauss_seidel_colored", 0.1, 0.01, 5, 0.01), run("jacobi", 0.1, 0.01, 1, 0.2)});
   const auto planes = planes_of(result);
   const Cell& cell = planes.at(0).cell(0.1, 0.02);
   EXPECT_EQ(cell.first()->row, "strips@bdf2");

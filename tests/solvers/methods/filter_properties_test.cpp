@@ -284,8 +284,7 @@ TEST_P(Steppers, RefuseAProblemWithoutSolutionAndNameAnEdge) {
   EXPECT_EQ(state.time, before.time);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Steppers, ::testing::ValuesIn(steppers()),
-                         names::contestant_name);
+INSTANTIATE_TEST_SUITE_P(All, Steppers, ::testing::ValuesIn(steppers()), names::contestant_name);
 
 // One iteration's forces go along the candidate's edges: no torque on x0, to the last digits.
 TEST(FastProjection, OneIterationDoesNoTorqueOnTheCandidate) {

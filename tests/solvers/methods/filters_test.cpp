@@ -129,8 +129,7 @@ TEST_P(Filters, RepeatBitForBitWithTheirCounters) {
   EXPECT_EQ(work[0], work[1]);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Filters, ::testing::ValuesIn(filters()),
-                         names::contestant_name);
+INSTANTIATE_TEST_SUITE_P(All, Filters, ::testing::ValuesIn(filters()), names::contestant_name);
 
 // Section 4.3: "The first iteration of these methods is identical."
 TEST(FastProjection, FirstIterationIsIcdsFirstNewtonIteration) {

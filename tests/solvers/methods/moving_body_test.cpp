@@ -144,8 +144,7 @@ std::vector<const char*> methods() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryMethod, ::testing::ValuesIn(methods()),
-                         names::contestant_name);
+INSTANTIATE_TEST_SUITE_P(All, EveryMethod, ::testing::ValuesIn(methods()), names::contestant_name);
 
 }  // namespace
 }  // namespace inextensible

@@ -78,8 +78,8 @@ TEST(Order, OfShakeIsTwoWithStaggeredVelocitiesAndOneWithout) {
 
 TEST(Order, OfRattleIsTwo) { EXPECT_NEAR(order("rattle").value, 2, 0.1); }
 
-// Why SHAKE has no other stepper than its own: forces along the edges at the start of a step are off by
-// half of what these turn in it, which no formula for x and v takes back.
+// Why SHAKE has no other stepper than its own: forces along the edges at the start of a step are
+// off by half of what these turn in it, which no formula for x and v takes back.
 TEST(Order, OfShakeInBdf2IsOne) {
   const Scene scene = short_chain();
   const Positions exact = pendulum_at(stretch);
