@@ -153,7 +153,12 @@ ordered_json legend_schema() {
   ordered_json& item = schema["properties"]["solvers"]["items"];
   add(item, "origin",
       {{"type", "string"},
-       {"description", "who offers it: paper, project, literature, engine or elsewhere"}},
+       {"description", "who offers the method: paper, project, literature, engine or elsewhere"}},
+      true);
+  add(item, "method", {{"type", "string"}}, true);
+  add(item, "stepper", {{"type", "string"}, {"description", "the time stepper that it stands in"}},
+      true);
+  add(item, "stepper_origin", {{"type", "string"}, {"description", "who offers the stepper"}},
       true);
   add(item, "solver",
       {{"type", "string"}, {"description", "of a contestant that is not it under its own name"}},

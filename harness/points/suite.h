@@ -27,6 +27,7 @@ struct SweepSpec {
   double coarsest = 1.0 / 25, finest = 1.0 / 25600;  // s, ends of the step ladder
   bool adaptive = false;    // a step controller from `coarsest` down, instead of the ladder
   bool every_step = false;  // the whole ladder instead of a search; step sweeps always do
+  bool refine = true;       // best steps, by rungs between those that halve. Not in files
   SceneParameters scene_parameters;
   std::map<std::string, inextensible::Settings> solver_options;  // a contestant's own go first
 };

@@ -45,7 +45,8 @@ void add_ladder(Search& search, const SweepSpec& sweep, const SweepFilters& filt
   };
   const std::size_t halvings = step_ladder(sweep, {refinements, 1}).size();
   search.ladder = kept({refinements, 1});
-  if (search.every_step || sweep.adaptive || search.ladder.size() < halvings) return;
+  if (search.every_step || sweep.adaptive || !sweep.refine || search.ladder.size() < halvings)
+    return;
   search.ladder = kept(refinements);
   search.stride = std::size(refinements);
 }

@@ -42,6 +42,7 @@ class Tuner {
       : options_(options), runners_(runners) {
     scene_ = scene;
     scene_.contestants = {{solver, solver}};
+    scene_.refine = false;
     places_ = places_of(scene_);
     numbers_ = tunable_numbers(*inextensible::find_backend(solver));
     options_.rules.budget =
@@ -81,16 +82,11 @@ class Tuner {
   }
 
  private:
-  // At steps that are halved.
   static std::vector<Place> places_of(const SweepSpec& scene) {
     Suite suite;
     suite.sweeps = {scene};
     std::vector<Place> places;
-    for (Search& search : plan(suite, {})) {
-      std::size_t rung = 0;
-      std::erase_if(search.ladder, [&](double) { return rung++ % search.stride != 0; });
-      places.push_back({.search = std::move(search)});
-    }
+    for (Search& search : plan(suite, {})) places.push_back({.search = std::move(search)});
     return places;
   }
 

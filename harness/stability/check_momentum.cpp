@@ -21,7 +21,9 @@ constexpr double momentum_duration = 0.04;  // s
 // it.
 constexpr double momentum_limit = 1e-5;
 // Rounding, and the 1e-10 to which the KKT system's residual is refined.
-constexpr double momentum_tolerance = 1e-9, spin_tolerance = 1e-9;
+constexpr double momentum_tolerance = 1e-9;
+// What edges may do within their limit has no order in the step: a hundredth of it is let pass.
+constexpr double spin_tolerance = 0.01 * momentum_limit;
 // Of a quarter of the step: 1/4 for an error of first order in h, 1 for one that steps do not
 // lessen; between the two, on a logarithmic scale.
 constexpr double vanishing = 0.5;

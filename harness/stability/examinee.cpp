@@ -52,9 +52,11 @@ Case net(std::uint64_t seed, int n, int pins, double speed, double step, int ste
       std::move(scene), step, steps, limit};
 }
 
-std::unique_ptr<inextensible::Stepper> Examinee::stepper(const Case& c) const {
+std::unique_ptr<inextensible::Stepper> Examinee::stepper(
+    const Case& c, const inextensible::Settings& settings) const {
   try {
-    return inextensible::make_stepper(backend.name, c.scene.problem, {c.limit, options.seed, {}});
+    return inextensible::make_stepper(backend.name, c.scene.problem,
+                                      {c.limit, options.seed, settings});
   } catch (const std::invalid_argument& error) {
     throw NotTaken(error.what());
   }

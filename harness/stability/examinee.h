@@ -37,7 +37,9 @@ struct Examinee {
   const ConformanceOptions& options;
 
   bool keeps_a_limit() const { return backend.knob == inextensible::Knob::strain_limit; }
-  std::unique_ptr<inextensible::Stepper> stepper(const Case& c) const;  // throws NotTaken
+  // Throws NotTaken.
+  std::unique_ptr<inextensible::Stepper> stepper(const Case& c,
+                                                 const inextensible::Settings& settings = {}) const;
   // Of a drape of n x n, without the parts that the solver does not take.
   SceneParameters drape(int n) const;
 };

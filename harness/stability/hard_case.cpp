@@ -62,7 +62,8 @@ bool Solvers::contains(const std::string& solver) const {
   if (everyone() || names_.contains(solver)) return true;
   const auto* backend = inextensible::find_backend(solver);
   if (!backend) return false;
-  return direction_ ? backend->direction == *direction_ : names_.contains(backend->method);
+  if (direction_) return backend->direction == *direction_;
+  return names_.contains(backend->method) || names_.contains(std::string("@") + backend->stepper);
 }
 
 HardCaseValues hard_case_values(const std::string& profile) {

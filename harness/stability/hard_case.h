@@ -17,6 +17,7 @@ namespace harness {
 
 // The solvers that an expectation speaks of: those whose constraint forces take their direction
 // from the same place, those named, or all.
+// names: of contestants, of methods in all steppers, or "@bdf2": all methods in that stepper.
 class Solvers {
  public:
   Solvers() = default;

@@ -86,12 +86,12 @@ struct Backend {
   Knob knob;
   bool contestant;  // appears in figures and rankings
   std::vector<SettingInfo> settings;
-  // A velocity filter has `make_filter` and stands in any stepper; corrections of the filter point
-  // along the edges or their middles as `along` says, which is `edges` unless the direction is
-  // local or current. Other methods have `make`: a time step of their own.
+  // A velocity filter has `make_filter` and stands in any stepper; where its corrections point, it
+  // is told only if it `takes_middle`. Other methods have `make`: a time step of their own.
   std::unique_ptr<Stepper> (*make)(std::shared_ptr<const Problem>, const BackendOptions&) = nullptr;
   std::unique_ptr<VelocityFilter> (*make_filter)(const Problem&, const BackendOptions&,
                                                  Along along) = nullptr;
+  bool takes_middle = false;
   Direction direction = Direction::none;
   const char* citation = "";  // author and year
   Origin origin = Origin::elsewhere;

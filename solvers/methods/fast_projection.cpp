@@ -254,6 +254,7 @@ Backend fast_projection_row() {
           .contestant = true,
           .settings = setting_infos(FastProjection::fields()),
           .make_filter = make_filter<FastProjection>,
+          .takes_middle = true,
           .direction = Direction::current,
           .citation = "Goldenthal et al. 2007",
           .origin = Origin::paper,

@@ -202,6 +202,7 @@ Backend fast_projection_adaptive_row() {
           .contestant = true,
           .settings = setting_infos(FastProjectionAdaptive::fields()),
           .make_filter = make_filter<FastProjectionAdaptive>,
+          .takes_middle = true,
           .direction = Direction::current,
           .citation = "Goldenthal et al. 2007; Bender and Bayer 2008",
           .origin = Origin::project,

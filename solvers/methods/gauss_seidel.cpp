@@ -127,6 +127,7 @@ Backend gauss_seidel_row() {
           .contestant = true,
           .settings = setting_infos(GaussSeidel::fields()),
           .make_filter = make_filter<GaussSeidel>,
+          .takes_middle = true,
           .direction = Direction::local,
           .citation = "Bridson, Fedkiw and Anderson 2002; Mueller et al. 2006",
           .origin = Origin::paper,

@@ -39,6 +39,7 @@ Backend gauss_seidel_colored_row() {
           .contestant = true,
           .settings = setting_infos(GaussSeidelColored::fields()),
           .make_filter = make_filter<GaussSeidelColored>,
+          .takes_middle = true,
           .direction = Direction::local,
           .citation = "Fratarcangeli, Tibaldo and Pellacini 2016",
           .origin = Origin::literature,

@@ -61,6 +61,7 @@ Backend jacobi_row() {
           .contestant = true,
           .settings = setting_infos(Jacobi::fields()),
           .make_filter = make_filter<Jacobi>,
+          .takes_middle = true,
           .direction = Direction::local,
           .citation = "Provot 1995; Bridson, Fedkiw and Anderson 2002",
           .origin = Origin::paper,

@@ -54,6 +54,7 @@ Backend strips_row() {
           .contestant = true,
           .settings = setting_infos(Strips::fields()),
           .make_filter = make_filter<Strips>,
+          .takes_middle = true,
           .direction = Direction::current,
           .citation = "Bender and Bayer 2008",
           .origin = Origin::project,

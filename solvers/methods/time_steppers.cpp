@@ -95,6 +95,8 @@ const char* mismatch(const Backend& method, const TimeStepper& stepper) {
   if (stepper.along == Along::middle && method.direction == Direction::end)
     return "the method's forces act along the edges at the end of a step, by definition; the "
            "stepper wants those of its middle";
+  if (stepper.along == Along::middle && !method.takes_middle)
+    return "the method corrects edges along themselves; the stepper wants their middles";
   return nullptr;
 }
 

@@ -10,20 +10,27 @@ Bdf2OfEuler::Bdf2OfEuler(std::shared_ptr<const Problem> problem, std::unique_ptr
     p->resize(3, problem_->vertices());
 }
 
+void Bdf2OfEuler::restart(const State& state, double h) {
+  const Eigen::Vector3d gravity = problem_->gravity();
+  x_before_ = state.x - h * state.v;
+  x_before_.colwise() += Eigen::Vector3d(0.5 * h * h * gravity);
+  v_before_ = state.v;
+  v_before_.colwise() -= Eigen::Vector3d(h * gravity);
+  x_known_ = state.x;
+  v_known_ = state.v;
+  h_before_ = h;
+}
+
 StepResult Bdf2OfEuler::solve(const State& state, double h, Positions& x) {
   const auto& pinned = problem_->pinned();
   for (const int vertex : pinned) x_known_.col(vertex) = state.x.col(vertex);  // may have moved
-  const bool known = h_before_ > 0 && h <= largest_bdf2_growth * h_before_ && state.x == x_known_ &&
-                     state.v == v_known_;
-  const double w = known ? h / h_before_ : 0;  // 0: alpha and beta are 1, backward Euler
+  if (!(h_before_ > 0) || h > largest_bdf2_growth * h_before_ || state.x != x_known_ ||
+      state.v != v_known_)
+    restart(state, h);
+  const double w = h / h_before_;
   const double alpha = (1 + w) * (1 + w) / (1 + 2 * w), beta_h = h * (1 + w) / (1 + 2 * w);
-  if (known) {
-    ahead_.x = alpha * state.x + (1 - alpha) * x_before_;
-    ahead_.v = alpha * state.v + (1 - alpha) * v_before_;
-  } else {
-    ahead_.x = state.x;
-    ahead_.v = state.v;
-  }
+  ahead_.x = alpha * state.x + (1 - alpha) * x_before_;
+  ahead_.v = alpha * state.v + (1 - alpha) * v_before_;
   ahead_.time = state.time + (h - beta_h);
   for (const int vertex : pinned) {
     ahead_.x.col(vertex) = start_positions().col(vertex);

@@ -1,12 +1,11 @@
 // BDF2 around a method that is a backward Euler step of its own. With w = h / h_{n-1},
 //   alpha = (1 + w)^2 / (1 + 2 w), beta = (1 + w) / (1 + 2 w) (equal steps: 4/3 and 2/3),
 //   s^{n+1} = alpha s^n + (1 - alpha) s^{n-1} + beta h s'^{n+1},   s = (x, v),
-// is that step over beta h from the state alpha s^n + (1 - alpha) s^{n-1}, whose time is (1 - beta)
-// h after s^n (Choi and Ko 2002 take implicit springs in BDF2). The first step, and one from a
-// state that is not the one the last step left, is backward Euler.
+// is that step over beta h from the state alpha s^n + (1 - alpha) s^{n-1}, whose time is
+// (1 - beta) h after s^n (Choi and Ko 2002 take implicit springs in BDF2).
 //
-// A vertex that the collider holds gets a history of its own, as in Bdf2Stepper: that of a free
-// fall which ends here.
+// A state that is not the one the last step left, and a vertex that the collider holds, get a
+// history of their own, as in Bdf2Stepper: that of a free fall which ends here.
 #pragma once
 
 #include "solvers/stepping/stepper.h"
@@ -21,6 +20,7 @@ class Bdf2OfEuler final : public Stepper {
   double reciprocal_condition() const override { return euler_->reciprocal_condition(); }
 
  private:
+  void restart(const State& state, double h);
   StepResult solve(const State& state, double h, Positions& x) override;
   StepResult end_velocities(const State& start, double h, const Positions& filtered,
                             const Positions& x, Positions& v) override;

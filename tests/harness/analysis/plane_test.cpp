@@ -211,6 +211,7 @@ TEST(Plane, OfPiecesWithUnlikeContestantsHasAllOfThem) {
 // The names that rankings compare with are those whose rows say that the paper has them.
 TEST(Plane, ComparesWithTheMethodsThatThePaperHas) {
   for (const auto& backend : inextensible::backends()) {
+    if (std::string(backend.name) != backend.method) continue;  // in another stepper
     const bool named = std::any_of(
         all_paper_methods.begin(), all_paper_methods.end(),
         [&](const PaperMethod& method) { return method.name == std::string(backend.name); });

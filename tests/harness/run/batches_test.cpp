@@ -40,7 +40,7 @@ TEST(Batches, ProcessorTimeIsNoMoreThanWallTime) {
   const PointResult point = run_point(short_chain(0.001), {});
   ASSERT_TRUE(point.ok()) << point.detail;
   // Reads of the clock between blocks of steps are part of it, and not of the wall time.
-  EXPECT_LT(point.cpu_samples[0], 1.1 * point.samples[0]);
+  EXPECT_LT(point.cpu_samples[0], 1.5 * point.samples[0]);
 }
 
 TEST(Batches, WithoutAReaderOfTimesOneRunIsASample) {

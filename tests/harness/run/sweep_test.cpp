@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -24,6 +25,7 @@ Suite one_family() {
   sweep.limits = {0.1, 0.01};
   sweep.resolutions = {10};
   sweep.finest = 1.0 / 6400;
+  sweep.refine = false;
   suite.sweeps = {sweep};
   return suite;
 }
@@ -62,6 +64,23 @@ TEST(StepSearch, FindsTheFastestStepAndStopsAfterTwoRises) {
   for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_DOUBLE_EQ(steps[i], expected[i]);
   for (const auto& point : outcome.points)
     EXPECT_EQ(point.best, std::abs(point.spec.step - 1.0 / 200) < 1e-9);
+}
+
+// Between the rungs that halve: the best of all steps is found, whichever it is, and no run is made
+// twice.
+TEST(StepSearch, RefinesTheBestStepByFactorsOfOnePointTwo) {
+  Suite suite = one_family();
+  suite.sweeps[0].limits = {0.01};
+  suite.sweeps[0].refine = true;
+  for (const double rate : {100.0, 120.0, 144.0, 168.0, 200.0, 240.0, 288.0, 336.0}) {
+    std::vector<double> steps;
+    const auto outcome = run_sweep(suite, plan(suite, {}), {}, fake(1 / rate, 1, &steps));
+    std::sort(steps.begin(), steps.end());
+    EXPECT_EQ(std::adjacent_find(steps.begin(), steps.end()), steps.end()) << rate;
+    EXPECT_LE(steps.size(), 14U) << rate;
+    for (const auto& point : outcome.points)
+      EXPECT_EQ(point.best, std::abs(point.spec.step - 1 / rate) < 1e-9) << rate;
+  }
 }
 
 TEST(StepSearch, RunsTheWholeLadderWhereAsked) {

@@ -2,6 +2,7 @@
 // rest, seen by someone who walks past.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <memory>
 
