@@ -78,6 +78,7 @@ Suite suite_of(const ChooseCommand& given, double rate) {
   suite.far_behind = far_behind * std::max(1.0, headline_error / given.error);
   SweepSpec& sweep = suite.sweeps.emplace_back();
   sweep.sweep = "strain";
+  sweep.refine = false;  // the time is better spent on other contestants
   sweep.scene = scene;
   sweep.limits = {limit_of(given)};
   sweep.scene_parameters = parameters;

@@ -124,16 +124,18 @@ class Tuner {
   // The ladder's best step with the settings that the solver has by itself, at a smaller size where
   // that takes too long. Places where no step counts at any size say nothing about settings.
   void begin() {
+    const std::vector<int> smaller_ones = smaller_sizes(scene_.scene);
     for (Place& place : places_) {
       find_best(place, far_too_long * options_.longest_run);
-      for (const int size : smaller_sizes(scene_.scene)) {
+      for (const int size : smaller_ones) {
         if (place.best_seconds * duration(place) <= options_.longest_run) break;
         if (size >= place.search.base.resolution) continue;
         SweepSpec smaller = scene_;
         smaller.resolutions = {size};
         smaller.limits = {place.search.base.strain_limit};
         place = places_of(smaller).front();
-        find_best(place, far_too_long * options_.longest_run);
+        const bool last = size == smaller_ones.back();
+        find_best(place, last ? 1e300 : far_too_long * options_.longest_run);
       }
     }
     std::erase_if(places_, [](const Place& place) { return place.best_seconds >= 1e300; });

@@ -104,6 +104,7 @@ class InventedMachine {
     suite.reps = 1;
     suite.far_behind = 4;
     SweepSpec& sweep = suite.sweeps.emplace_back();
+    sweep.refine = false;
     sweep.sweep = "strain";
     sweep.scene = "chain";
     for (const auto& [name, s] : seconds) sweep.contestants.push_back({name, name});
