@@ -90,7 +90,7 @@ void print_table(std::ostream& out, const std::vector<const Plane*>& planes) {
 
 // "3.1 (3.0-3.2) `jacobi`"; first: the entry is the leader itself.
 std::string lead_text(const Cell& cell, const Entry* other) {
-  if (!other) return "none within it";
+  if (!other) return "none in these results";
   if (other == cell.first()) return "itself";
   return analysis::text(*cell.lead_over(other)) + " " + quoted(other->row);
 }
@@ -98,8 +98,8 @@ std::string lead_text(const Cell& cell, const Entry* other) {
 // How much of the lead at the headline's error is the time stepper's, and how much the method's.
 void print_attribution(std::ostream& out, const std::vector<const Plane*>& planes) {
   const bool sizes = planes.front()->sweep == "resolution";
-  out << "Of the lead within an error of " << percent(headline_error)
-      << ", times over the first's:\n\n";
+  out << "Where the lead within an error of " << percent(headline_error)
+      << " comes from (times relative to the leader's):\n\n";
   print_head(out, {sizes ? "vertices" : "strain", "first", "the same method as published",
                    "the next method in the same stepper", "the paper's best as published",
                    "the paper's best in any stepper"});

@@ -8,6 +8,7 @@ from functools import partial
 from typing import Callable
 
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 
 from parts.caption import SUBJECTS, origin_sentence, percent, warnings_of
 from parts.colors import BLACK, BLUE, GREY, ORANGE, SKY
@@ -16,7 +17,8 @@ from parts.result_file import Json
 from parts.sheet import RIGHT, make_sheet
 from parts.words import clean, place_part, scene_words
 
-NAMES, WIDTH, BAR = 2.3, 4.6, 0.15  # inches
+NAMES, WIDTH, BAR = 3.1, 4.6, 0.15  # inches
+TICKS = (1, 1.5, 2, 3, 5, 10, 20, 50, 100)
 # What is compared with the leader: key of its name and of the ratio, words, colour.
 SHARES = (
     ("first_as_published", "lead_by_stepper", "the same method, as published", ORANGE),
@@ -57,11 +59,14 @@ def draw(plane: Json, document: Json, legend: Legend) -> Figure:
                 low, high = lead["low"] or lead["value"], lead["high"] or lead["value"]
                 axes.barh(y, lead["value"] - 1, left=1, height=0.9 / (len(SHARES) + 1.5), color=color, label=words if place == 0 else None)
                 axes.plot([low, high], [y, y], color=BLACK, linewidth=0.8)
-            text = f" {lead['value']:.2g}  {clean(legend.label(cell[name]))}" if lead else " the leader itself" if itself else " none within it"
+            text = f" {lead['value']:.2g}  {clean(legend.label(cell[name]))}" if lead else " the leader itself" if itself else " none in these results"
             axes.text(max(lead["high"] or lead["value"], 1) if lead else 1, y, text, va="center", fontsize=6.5)
     axes.set_xscale("log")
     leads = [cell[ratio]["value"] for cell in cells for _, ratio, _, _ in SHARES if cell.get(ratio)]
     axes.set(xlim=(1, 8 * max(leads)), ylim=(len(cells), 0), xlabel="times the leader's time")
+    axes.set_xticks([tick for tick in TICKS if tick <= 4 * max(leads)], minor=False)
+    axes.xaxis.set_major_formatter(lambda tick, _: f"{tick:g}")
+    axes.xaxis.set_minor_locator(NullLocator())
     axes.set_yticks([k + 0.5 for k in range(len(cells))],
                     [f"{percent(cell['strain_limit'])}: {clean(legend.label(cell['first']))}" for cell in cells])
     axes.tick_params(axis="y", length=0)
