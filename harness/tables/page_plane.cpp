@@ -95,24 +95,19 @@ std::string lead_text(const Cell& cell, const Entry* other) {
   return analysis::text(*cell.lead_over(other)) + " " + quoted(other->row);
 }
 
-// How much of the lead at the headline's error is the time stepper's, and how much the method's.
-void print_attribution(std::ostream& out, const std::vector<const Plane*>& planes) {
-  const bool sizes = planes.front()->sweep == "resolution";
-  out << "Where the lead within an error of " << percent(headline_error)
-      << " comes from (times relative to the leader's):\n\n";
-  print_head(out, {sizes ? "vertices" : "strain", "first", "the same method as published",
-                   "the next method in the same stepper", "the paper's best as published",
-                   "the paper's best in any stepper"});
-  for (const Plane* plane : planes) {
-    for (const Cell& cell : plane->cells) {
-      if (cell.level != headline_error || !cell.first()) continue;
-      print_row(out, {sizes ? std::to_string(plane->vertices) : percent(cell.strain_limit),
-                      quoted(cell.first()->row), lead_text(cell, cell.first_as_published()),
-                      lead_text(cell, cell.rival_in_stepper()), lead_text(cell, cell.paper_best()),
-                      lead_text(cell, cell.paper_in_any_stepper())});
-    }
+// How much of the lead at the headline's error is the time stepper's, and how much the method's: at
+// 1 % strain. The figure has all limits.
+void print_attribution(std::ostream& out, const Plane& plane) {
+  constexpr double limit = 0.01;
+  for (const Cell& cell : plane.cells) {
+    if (cell.level != headline_error || cell.strain_limit != limit || !cell.first()) continue;
+    out << "Where the lead of " << quoted(cell.first()->row) << " at " << percent(limit)
+        << " comes from, in times its time: the same method as published "
+        << lead_text(cell, cell.first_as_published()) << "; the next method in the same stepper "
+        << lead_text(cell, cell.rival_in_stepper()) << "; the paper's best as published "
+        << lead_text(cell, cell.paper_best()) << ", in any stepper "
+        << lead_text(cell, cell.paper_in_any_stepper()) << ". ";
   }
-  out << '\n';
 }
 
 }  // namespace
@@ -143,10 +138,12 @@ void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
       }
     }
     out << span_of_errors(planes);
+    for (const Plane* plane : planes) {
+      if (plane->sweep == "strain") print_attribution(out, *plane);
+    }
     if (has_shapes(planes)) out << "Shape errors are deviations beyond the ensemble's spread.";
     out << "\n\n";
     print_table(out, planes);
-    print_attribution(out, planes);
   }
 }
 

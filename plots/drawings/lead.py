@@ -13,7 +13,7 @@ from matplotlib.ticker import NullLocator
 from parts.caption import SUBJECTS, origin_sentence, percent, warnings_of
 from parts.colors import BLACK, BLUE, GREY, ORANGE, SKY
 from parts.legend import Legend
-from parts.result_file import Json
+from parts.result_file import Json, finding_in
 from parts.sheet import RIGHT, make_sheet
 from parts.words import clean, place_part, scene_words
 
@@ -48,7 +48,8 @@ def draw(plane: Json, document: Json, legend: Legend) -> Figure:
     scene = SUBJECTS.get(plane["scene"], scene_words(plane["scene"]))
     title = f"{scene}, {plane['vertices']:,} vertices: how much of the lead is the time stepper's, and how much the method's"
     row = BAR * (len(SHARES) + 1.5)
-    sheet = make_sheet(title, warnings_of(document), _caption(document, analysis), NAMES + WIDTH + 1.1 + RIGHT, row * len(cells) + 0.2)
+    sheet = make_sheet(title, warnings_of(document), _caption(document, analysis), NAMES + WIDTH + 1.1 + RIGHT, row * len(cells) + 0.2,
+                       finding=" ".join(finding_in(document, plane["scene"], plane["sweep"], plane["vertices"])))
     axes = sheet.axes(NAMES, sheet.bottom, WIDTH, row * len(cells))
     for place, cell in enumerate(cells):
         for number, (name, ratio, words, color) in enumerate(SHARES):
