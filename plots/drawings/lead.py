@@ -38,7 +38,7 @@ def figures_of(document: Json, legend: Legend) -> list[tuple[str, Callable[[], F
 
 def cells_of(plane: Json, analysis: Json) -> list[Json]:
     """Those of the headline's error that have a leader and anything to compare it with."""
-    return [cell for cell in plane["cells"] if cell["error_level"] == analysis.get("headline_error") and cell["first"]
+    return [cell for cell in plane["cells"] if cell["error_level"] == analysis.get("headline_error") and cell.get("first")
             and any(cell.get(ratio) for _, ratio, _, _ in SHARES)]
 
 

@@ -106,7 +106,7 @@ def two_questions() -> Json:
         {"row": "jacobi", "stairs": [stair(1e-3, 0.01, False)]}]}
     finding = {"scene": "chain", "sweep": "strain", "vertices": 80, "subject": "chain of 80 vertices",
                "sentences": ["At 1 % strain, right to 2 %, icd is the fastest.", "A second sentence."]}
-    return {**document(points), "analysis": {"schema": "inextensible-analysis/1", "findings": [finding], "planes": [plane],
+    return {**document(points), "analysis": {"schema": "inextensible-analysis/1", "headline_error": 0.02, "findings": [finding], "planes": [plane],
                                              "growth": [], "budgets": [budget]}}
 
 

@@ -147,7 +147,7 @@ def test_warnings() -> None:
 
 def test_the_two_questions_stand_side_by_side_with_one_legend() -> None:
     pictures = drawn(two_questions())
-    assert list(pictures) == ["figure4a", "plane-chain", "budget-chain"]
+    assert list(pictures) == ["figure4a", "plane-chain", "lead-chain", "budget-chain"]
     figure = pictures["figure4a"]
     paper, ours = [axes for axes in figure.axes if axes.get_yscale() == "log" and not axes.get_xlabel()]
     assert paper.get_ylim() == ours.get_ylim() and paper.get_position().x0 < ours.get_position().x0
