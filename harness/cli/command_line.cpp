@@ -169,7 +169,7 @@ std::vector<std::string> usual_words(int argc, char** argv) {
   return words;
 }
 
-// Of the verb that was typed, or the program.
+// Help for the verb that was typed, or for the program.
 const CLI::App* command_of(const CLI::App& program) {
   const CLI::App* command = &program;
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();

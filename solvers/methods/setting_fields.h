@@ -126,9 +126,9 @@ constexpr SearchRange tunable_forcing{1e-4, 0.3};
 constexpr Range relaxation_range{0, 2, true};
 // A chain of 640 links is relaxed best at 1.99.
 constexpr SearchRange tunable_relaxation{0.5, 1.998, 2};
-// Of passes over all edges, in one go.
+// The number of passes over all edges between two tests.
 constexpr SearchRange tunable_passes{0, 2000};
-// Of methods that iterate until forces act along the edges at the end of the step.
+// For methods that iterate until forces act along the edges at the end of the step.
 constexpr SearchRange tunable_direction_tolerance{0.01, 100};
 
 }  // namespace inextensible

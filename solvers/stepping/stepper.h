@@ -50,7 +50,7 @@ class Stepper {
   // Positions of the last accepted step after the inextensibility filter and before the collision
   // filter: where strain is measured. Meaningful until the next call of advance.
   virtual const Positions& filtered_positions() const { return contacts_ ? filtered_ : next_; }
-  // Of the last step; null without a collider.
+  // The contacts of the last step; null without a collider.
   const Contacts* contacts() const { return contacts_.get(); }
 
   const Problem& problem() const { return *problem_; }

@@ -5,7 +5,7 @@
 
 namespace inextensible::names {
 
-// Of a contestant: gauss_seidel@bdf2 is gauss_seidel_in_bdf2.
+// The name of a contestant: gauss_seidel@bdf2 is gauss_seidel_in_bdf2.
 inline std::string plain(std::string name) {
   if (const std::size_t at = name.find('@'); at != name.npos) name.replace(at, 1, "_in_");
   return name;
