@@ -91,10 +91,11 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
         const std::vector<double> own_limits =
             limited ? limits : std::vector<double>(limits.begin(), limits.begin() + 1);
         for (const double limit : own_limits) {
-          Search search{.base = base,
-                        .family = family,
-                        .every_step = sweep.every_step || sweep.sweep == "step"};
+          Search search;
+          search.base = base;
           search.base.strain_limit = limit;
+          search.family = family;
+          search.every_step = sweep.every_step || sweep.sweep == "step";
           add_ladder(search, sweep, filters);
           if (!search.ladder.empty()) searches.push_back(std::move(search));
         }

@@ -113,7 +113,9 @@ class PairOrder : public testing::TestWithParam<std::string> {
 // Euler's error is there.
 TEST_P(PairOrder, IsTheSteppers) {
   EXPECT_NEAR(of(1), 2, 0.25);
-  if (GetParam().ends_with("@midpoint")) EXPECT_NEAR(of(0.5), 1, 0.1);
+  if (GetParam().ends_with("@midpoint")) {
+    EXPECT_NEAR(of(0.5), 1, 0.1);
+  }
 }
 
 std::vector<std::string> pairs_of_second_order() {
