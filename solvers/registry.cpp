@@ -6,24 +6,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "solvers/methods/augmented_vbd.h"
-#include "solvers/methods/dense_oracle.h"
-#include "solvers/methods/fast_projection.h"
-#include "solvers/methods/fast_projection_adaptive.h"
-#include "solvers/methods/gauss_seidel.h"
-#include "solvers/methods/gauss_seidel_colored.h"
-#include "solvers/methods/icd.h"
-#include "solvers/methods/implicit_springs.h"
-#include "solvers/methods/jacobi.h"
-#include "solvers/methods/null_filter.h"
-#include "solvers/methods/projective_dynamics.h"
-#include "solvers/methods/rattle.h"
-#include "solvers/methods/shake.h"
-#include "solvers/methods/soft_step.h"
-#include "solvers/methods/strips.h"
+#include "solvers/methods/rows.h"
 #include "solvers/methods/time_steppers.h"
-#include "solvers/methods/vertex_block_descent.h"
-#include "solvers/methods/xpbd_small_steps.h"
 
 namespace inextensible {
 namespace {
@@ -142,6 +126,24 @@ void check_row(const Backend& row, std::span<const Backend> others) {
                                 " has no summary, or not one of `make` and `make_filter`");
 }
 
+const Backend& row_of(std::string_view name) {
+  const Backend* backend = find_backend(name);
+  if (!backend) throw std::invalid_argument("no solver " + quoted(name));
+  return *backend;
+}
+
+// With all settings.
+BackendOptions checked(const Backend& backend, const Problem& problem, BackendOptions options) {
+  if (!(options.strain_limit > 0) || !std::isfinite(options.strain_limit)) {
+    throw std::invalid_argument("strain limit is " + std::to_string(options.strain_limit) +
+                                ", must be positive");
+  }
+  if (const char* part = part_not_taken(backend, problem))
+    throw std::invalid_argument("solver " + quoted(backend.name) + " takes no " + part);
+  options.settings = complete_settings(backend, options.settings);
+  return options;
+}
+
 }  // namespace
 
 std::span<const Backend> backends() { return table().rows; }
@@ -185,21 +187,20 @@ bool is_built_in(std::string_view name) {
 
 std::unique_ptr<Stepper> make_stepper(std::string_view name, Shared problem,
                                       const BackendOptions& options) {
-  const Backend* backend = find_backend(name);
-  if (!backend) throw std::invalid_argument("no solver " + quoted(name));
-  if (!(options.strain_limit > 0) || !std::isfinite(options.strain_limit)) {
-    throw std::invalid_argument("strain limit is " + std::to_string(options.strain_limit) +
-                                ", must be positive");
-  }
-  if (const char* part = part_not_taken(*backend, *problem))
-    throw std::invalid_argument("solver " + quoted(name) + " takes no " + part);
-  BackendOptions resolved = options;
-  resolved.settings = complete_settings(*backend, options.settings);
+  const Backend& backend = row_of(name);
+  const BackendOptions resolved = checked(backend, *problem, options);
   for (const TimeStepper& stepper : time_steppers()) {
-    if (stepper.around && stepper.name == std::string_view(backend->stepper))
-      return stepper.around(std::move(problem), *backend, resolved);
+    if (stepper.around && stepper.name == std::string_view(backend.stepper))
+      return stepper.around(std::move(problem), backend, resolved);
   }
-  return backend->make(std::move(problem), resolved);
+  return backend.make(std::move(problem), resolved);
+}
+
+std::unique_ptr<VelocityFilter> make_velocity_filter(std::string_view name, const Problem& problem,
+                                                     const BackendOptions& options, Along along) {
+  const Backend& backend = row_of(name);
+  if (!backend.make_filter) return nullptr;
+  return backend.make_filter(problem, checked(backend, problem, options), along);
 }
 
 }  // namespace inextensible

@@ -29,5 +29,9 @@ std::string why_no_pair(std::string_view name);
 // not positive, or a problem with a part that the backend does not take.
 std::unique_ptr<Stepper> make_stepper(std::string_view name, std::shared_ptr<const Problem> problem,
                                       const BackendOptions& options);
+// The velocity filter alone; null where the method is a time step of its own. Throws likewise.
+std::unique_ptr<VelocityFilter> make_velocity_filter(std::string_view name, const Problem& problem,
+                                                     const BackendOptions& options,
+                                                     Along along = Along::edges);
 
 }  // namespace inextensible

@@ -101,12 +101,9 @@ class BulletSoftBody final : public inextensible::Stepper {
             {"velocity_iterations", &S::velocity_iterations,
              "passes over links before them that correct velocities (viterations)",
              inextensible::count_from_zero, inextensible::SearchRange{0, 8}},
-            {"order",
-             &S::order,
-             "of links: the mesh's, or shuffled once (randomizeConstraints)",
-             {},
-             {},
-             {"mesh", "random"}}};
+            inextensible::word_field(
+                "order", &S::order, "of links: the mesh's, or shuffled once (randomizeConstraints)",
+                {"mesh", "random"})};
   }
 
  private:

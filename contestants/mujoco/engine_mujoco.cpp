@@ -209,12 +209,9 @@ class MujocoChain final : public inextensible::Stepper {
   static inextensible::SettingFields<Settings> fields() {
     std::vector<const char*> names;
     for (const Integrator& one : integrators) names.push_back(one.name);
-    return {{"integrator",
-             &Settings::integrator,
-             "Runge and Kutta's of order 4, implicit in velocities, or semi-implicit",
-             {},
-             {},
-             names}};
+    return {inextensible::word_field(
+        "integrator", &Settings::integrator,
+        "Runge and Kutta's of order 4, implicit in velocities, or semi-implicit", names)};
   }
 
  private:

@@ -66,12 +66,9 @@ class OdeBalls final : public inextensible::Stepper {
 
   static inextensible::SettingFields<Settings> fields() {
     using S = Settings;
-    return {{"solver",
-             &S::solver,
-             "a factorization (dWorldStep) or passes (dWorldQuickStep)",
-             {},
-             {},
-             {"direct", "passes"}},
+    return {inextensible::word_field("solver", &S::solver,
+                                     "a factorization (dWorldStep) or passes (dWorldQuickStep)",
+                                     {"direct", "passes"}),
             {"iterations", &S::iterations, "passes a step", inextensible::at_least_one,
              inextensible::SearchRange{1, 64}},
             {"relaxation", &S::relaxation, "of passes", inextensible::relaxation_range,

@@ -48,12 +48,10 @@ class SimbodyChain final : public inextensible::Stepper {
   static inextensible::SettingFields<Settings> fields() {
     return {{"accuracy", &Settings::accuracy, "of the internal steps, relative",
              inextensible::Range{1e-12, 0.5}, inextensible::SearchRange{1e-6, 0.5}},
-            {"integrator",
-             &Settings::integrator,
-             "Runge, Kutta and Merson's, Fehlberg's, or Verlet's of order 2",
-             {},
-             {},
-             {std::begin(MobilizerChain::integrators), std::end(MobilizerChain::integrators)}}};
+            inextensible::word_field(
+                "integrator", &Settings::integrator,
+                "Runge, Kutta and Merson's, Fehlberg's, or Verlet's of order 2",
+                {std::begin(MobilizerChain::integrators), std::end(MobilizerChain::integrators)})};
   }
 
  private:

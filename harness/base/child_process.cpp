@@ -107,7 +107,7 @@ void attend(pid_t child, int pipe, Heartbeat& heartbeat, const ChildLimits& limi
     kill(child, SIGTERM);
   };
   std::array<char, 65536> buffer{};
-  for (double last = now();;) {
+  for (double last = heartbeat.begin;;) {
     // Asked first: what it wrote before it ended is in the pipe then, and poll sees it.
     const bool ended = has_ended(child);
     pollfd ready{pipe, POLLIN, 0};

@@ -1,10 +1,7 @@
 // One pass of strain limiting over all edges.
 #include "harness/kernels/hardware_peak.h"
 #include "harness/kernels/kernel.h"
-#include "solvers/methods/gauss_seidel.h"
-#include "solvers/methods/gauss_seidel_colored.h"
-#include "solvers/methods/jacobi.h"
-#include "solvers/methods/strips.h"
+#include "solvers/registry.h"
 
 namespace harness::kernels {
 namespace {
@@ -12,17 +9,21 @@ namespace {
 using namespace inextensible;
 using benchmark::Counter;
 
+std::unique_ptr<VelocityFilter> filter(const Problem& problem, const char* method, double passes) {
+  const Backend& row = *find_backend(method);
+  BackendOptions options{.settings = complete_settings(row, {})};
+  options.settings["max_iterations"] = passes;
+  // A pass over yarns alone.
+  if (const auto sweeps = options.settings.find("sweeps"); sweeps != options.settings.end())
+    sweeps->second = 0.0;
+  return row.make_filter(problem, options, Along::edges);
+}
+
 // One pass over a cloth stretched by a fifth, so that every edge is corrected. A call that
 // may not pass at all costs the checks, the refusal and the clock: that is taken off.
-template <class Filter>
-void strain_pass(benchmark::State& state, int n) {
+void strain_pass(benchmark::State& state, const char* method, int n) {
   const Moment& m = moment("drape", n);
-  typename Filter::Settings settings;
-  settings.max_iterations = 1;
-  if constexpr (requires { settings.sweeps; }) settings.sweeps = 0;  // a pass over yarns alone
-  Filter one(m.problem(), settings);
-  settings.max_iterations = 0;
-  Filter none(m.problem(), settings);
+  const auto one = filter(m.problem(), method, 1), none = filter(m.problem(), method, 0);
   const Positions stretched = 1.2 * m.x0;
   Positions x = stretched;
   WorkCounters work;
@@ -30,9 +31,9 @@ void strain_pass(benchmark::State& state, int n) {
   while (state.KeepRunning()) {
     x = stretched;
     const double begin = processor_seconds();
-    benchmark::DoNotOptimize(none.apply(m.state.x, m.h, x, work));
+    benchmark::DoNotOptimize(none->apply(m.state.x, m.h, x, work));
     const double middle = processor_seconds();
-    benchmark::DoNotOptimize(one.apply(m.state.x, m.h, x, work));
+    benchmark::DoNotOptimize(one->apply(m.state.x, m.h, x, work));
     const double seconds = (processor_seconds() - middle) - (middle - begin);
     state.SetIterationTime(seconds);
     total += seconds;
@@ -48,15 +49,11 @@ void strain_pass(benchmark::State& state, int n) {
 }  // namespace
 
 void register_strain_passes(int n, const std::string& at) {
-  using State = benchmark::State;
-  add("strain_pass/gauss_seidel" + at, [=](State& s) {
-    strain_pass<GaussSeidel>(s, n);
-  })->UseManualTime();
-  add("strain_pass/gauss_seidel_colored" + at, [=](State& s) {
-    strain_pass<GaussSeidelColored>(s, n);
-  })->UseManualTime();
-  add("strain_pass/jacobi" + at, [=](State& s) { strain_pass<Jacobi>(s, n); })->UseManualTime();
-  add("strain_pass/strips" + at, [=](State& s) { strain_pass<Strips>(s, n); })->UseManualTime();
+  for (const char* method : {"gauss_seidel", "gauss_seidel_colored", "jacobi", "strips"}) {
+    add("strain_pass/" + std::string(method) + at, [=](benchmark::State& state) {
+      strain_pass(state, method, n);
+    })->UseManualTime();
+  }
 }
 
 }  // namespace harness::kernels

@@ -1,3 +1,6 @@
+// Augmented vertex block descent (Giles, Diaz and Yuksel 2025) with hard lengths: the edges'
+// multipliers are sought by the method of multipliers, and vertices moved one by one in between.
+//
 // An iteration is one pass over vertices with f_k = r_k C_k + mu_k along each edge, C_k = d_k -
 // l_k, and mu_k += r_k C_k after it: the paper's hard constraints, mu = h^2 lambda. Two departures
 // from it. The penalty r_k stays at the inertia's scale, 1 / (w_a + w_b), instead of growing
@@ -10,10 +13,38 @@
 // the candidate: what is at rest is solved before the first pass. Where a step is too unlike the
 // last one for that, and passes overflow, they begin once more at the candidate, without
 // multipliers. Loops: two over vertices and the ends of their edges a pass.
-#include "solvers/methods/augmented_vbd.h"
+#include "solvers/methods/rows.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/methods/vertex_passes.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 namespace {
+
+class AugmentedVbd final : public VelocityFilter {
+ public:
+  struct Settings {
+    double strain_limit = 0.01;
+    int max_iterations = 100000;  // passes a step
+    double penalty = 10;          // stiffness of an edge, times 1 / (h^2 (w_a + w_b))
+    // A step ends when no vertex moves by more than this times strain_limit times the shortest rest
+    // length, over the penalty: an edge answers a move of its ends by that times it.
+    double direction_tolerance = 1;
+  };
+  static SettingFields<Settings> fields();
+  AugmentedVbd(const Problem& problem, const Settings& settings);
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
+
+ private:
+  const Problem& problem_;
+  EdgeConstraints edges_;
+  double strain_limit_;
+  int max_iterations_;
+  double most_;  // m, that vertices move in the last pass
+  VertexPasses passes_;
+  Positions target_;        // the candidate without what planes pushed it
+  Eigen::ArrayXd tension_;  // of the last accepted step, N, by the passes' entries
+};
 
 Springs penalties(const Problem& problem, double penalty) {
   Springs springs{problem.edges(), problem.rest_length(), {}};
@@ -21,8 +52,6 @@ Springs penalties(const Problem& problem, double penalty) {
     springs.stiffness.push_back(penalty / (problem.inverse_mass()[a] + problem.inverse_mass()[b]));
   return springs;
 }
-
-}  // namespace
 
 AugmentedVbd::AugmentedVbd(const Problem& problem, const Settings& settings)
     : problem_(problem),
@@ -76,6 +105,8 @@ SettingFields<AugmentedVbd::Settings> AugmentedVbd::fields() {
        "last move of a vertex, times penalty, in strain limit times shortest rest length", positive,
        tunable_direction_tolerance}};
 }
+
+}  // namespace
 
 Backend augmented_vbd_row() {
   return {.name = "augmented_vbd",

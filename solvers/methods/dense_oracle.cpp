@@ -1,12 +1,30 @@
-#include "solvers/methods/dense_oracle.h"
-
+// Registered as `oracle`, no contestant: the M-closest point of {C = 0} (ICD = SAP, Goldenthal
+// et al. 2007, Theorem 1) to 1e-12, by dense Newton with full pivoting. Slow and obvious:
+// what tests compare with, for small n.
+#include <Eigen/Dense>
 #include <stdexcept>
 #include <string>
+
+#include "solvers/methods/rows.h"
+#include "solvers/stepping/velocity_filter.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 namespace {
 
-constexpr double tolerance = 1e-12;  // of C and F, in rest lengths
+class DenseOracle final : public VelocityFilter {
+ public:
+  explicit DenseOracle(const Problem& problem);
+  StepResult apply(const Positions& x_start, double h, Iterate iterate,
+                   WorkCounters& work) override;
+
+ private:
+  const Problem& problem_;
+  EdgeConstraints edges_;
+};
+
+constexpr int largest_problem = 600;  // vertices
+constexpr double tolerance = 1e-12;   // of C and F, in rest lengths
 
 // J (m x 3n) with zero columns at pinned vertices.
 Eigen::MatrixXd dense_jacobian(const EdgeConstraints& edges, const Positions& x) {
@@ -20,12 +38,7 @@ Eigen::MatrixXd dense_jacobian(const EdgeConstraints& edges, const Positions& x)
   return jacobian;
 }
 
-}  // namespace
-
-DenseOracle::DenseOracle(const Problem& problem)
-    : problem_(problem),
-      edges_(problem, tolerance),
-      mu_(Eigen::VectorXd::Zero(problem.constraints())) {
+DenseOracle::DenseOracle(const Problem& problem) : problem_(problem), edges_(problem, tolerance) {
   if (problem.vertices() > largest_problem) {
     throw std::invalid_argument("solver 'oracle' is dense, for at most " +
                                 std::to_string(largest_problem) + " vertices; this problem has " +
@@ -52,10 +65,8 @@ StepResult DenseOracle::apply(const Positions& /*x_start*/, double /*h*/, Iterat
         mass.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(displacement.data(), n3)) +
         jacobian.transpose() * mu;
     if (c.cwiseAbs().maxCoeff() <= goal &&
-        (force.cwiseQuotient(mass)).cwiseAbs().maxCoeff() <= goal) {
-      mu_ = mu;
+        (force.cwiseQuotient(mass)).cwiseAbs().maxCoeff() <= goal)
       return {Status::ok, j};
-    }
     Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(n3 + m, n3 + m);
     kkt.diagonal().head(n3) = mass;
     for (Eigen::Index k = 0; k < m; ++k) {
@@ -86,17 +97,16 @@ StepResult DenseOracle::apply(const Positions& /*x_start*/, double /*h*/, Iterat
   return refuse(Status::not_converged, iteration_limit, edges_, x, "iteration limit");
 }
 
+}  // namespace
+
 Backend oracle_row() {
   return {.name = "oracle",
           .summary = "dense Newton to 1e-12, small problems: what tests compare with",
           .knob = Knob::none,
           .contestant = false,
           .settings = {},
-          .make = [](std::shared_ptr<const Problem> problem,
-                     const BackendOptions&) -> std::unique_ptr<Stepper> {
-            auto filter = std::make_unique<DenseOracle>(*problem);
-            return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
-          },
+          .make_filter = [](const Problem& problem, const BackendOptions&, Along)
+              -> std::unique_ptr<VelocityFilter> { return std::make_unique<DenseOracle>(problem); },
           .citation = "Goldenthal et al. 2007",
           .label = "oracle (no contestant)"};
 }

@@ -21,6 +21,8 @@
 #include <cmath>
 #include <limits>
 
+#include "solvers/methods/rows.h"
+
 namespace inextensible {
 namespace {
 
@@ -209,35 +211,18 @@ SettingFields<FastProjection::Settings> FastProjection::fields() {
        below_limit},
       // A projection sees the whole cloth, but only to first order; most of what it leaves is
       // local, and cheaper to correct by passes over edges.
-      {"sweeps_before",
-       &S::sweeps_before,
+      {"sweeps_before", &S::sweeps_before,
        "colored Gauss-Seidel passes before the first projection, at most; none on chains, where "
        "a projection costs no more than some passes",
-       count_from_zero,
-       tunable_passes,
-       {},
+       count_from_zero, tunable_passes, departs},
+      {"smoothing_sweeps", &S::smoothing_sweeps,
+       "the same after each projection, at most; none on chains", count_from_zero, tunable_passes,
        departs},
-      {"smoothing_sweeps",
-       &S::smoothing_sweeps,
-       "the same after each projection, at most; none on chains",
-       count_from_zero,
-       tunable_passes,
-       {},
-       departs},
-      {"smoothing_target",
-       &S::smoothing_target,
-       "an edge that a pass corrects is brought to this fraction of the strain limit",
-       fraction,
-       tunable_fraction,
-       {},
-       departs},
-      {"smoothing_relaxation",
-       &S::smoothing_relaxation,
-       "times a pass's correction",
-       relaxation_range,
-       tunable_relaxation,
-       {},
-       departs},
+      {"smoothing_target", &S::smoothing_target,
+       "an edge that a pass corrects is brought to this fraction of the strain limit", fraction,
+       tunable_fraction, departs},
+      {"smoothing_relaxation", &S::smoothing_relaxation, "times a pass's correction",
+       relaxation_range, tunable_relaxation, departs},
       {"first_forcing", &S::first_forcing,
        "residual of a step's first linear solve by conjugate gradients or in mixed precision, of "
        "the right-hand side; those of later ones are smaller",

@@ -55,6 +55,4 @@ class FastProjection final : public VelocityFilter {
   Eigen::VectorXd multipliers_, best_multipliers_;
 };
 
-Backend fast_projection_row();
-
 }  // namespace inextensible

@@ -1,3 +1,6 @@
+// Strips while they converge quickly, fast projection's step for the whole cloth where they do not:
+// a yarn carries corrections along itself at once, but across yarns they travel by passes.
+//
 // A round is a pass over all yarns (yarn_pass.h), then passes over edges, until nothing is left to
 // correct or their number is reached. A step takes rounds alone, or a projection of the whole cloth
 // after each round (equations 5 and 7 of Goldenthal et al. 2007, with C~ for C): whichever has cost
@@ -7,12 +10,63 @@
 //
 // Loops: three passes over links a yarn, one pass over edges; one assembly, one factorization and
 // one solve a projection of the whole.
-#include "solvers/methods/fast_projection_adaptive.h"
-
 #include <algorithm>
+#include <memory>
+
+#include "solvers/methods/rows.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/methods/strain_passes.h"
+#include "solvers/methods/yarn_pass.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 namespace {
+
+class FastProjectionAdaptive final : public VelocityFilter {
+ public:
+  // What each is for stands in fields().
+  struct Settings {
+    double strain_limit = 0.01;
+    int max_iterations = 5000;
+    int sweeps = 20;
+    double relaxation = 1.8;
+    double target = 0.8;
+    double sweep_target = 0.8;
+    double forcing = 1e-2;
+    std::string_view linear_solver = "auto";
+  };
+  static SettingFields<Settings> fields();
+  FastProjectionAdaptive(const Problem& problem, const Settings& settings,
+                         Along along = Along::edges);
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
+  const char* linear_solver() const override { return system_.solver_name().c_str(); }
+  double reciprocal_condition() const override { return system_.reciprocal_condition(); }
+
+ private:
+  enum Way { rounds_alone, with_the_whole };  // how a step is done
+  Way choose();
+  bool too_expensive(int rounds, double cost) const;
+  void learn(Way way, double cost);
+  double linearize();
+  bool project_the_whole(Contacts* contacts, WorkCounters& work);
+
+  ConstraintSystem system_;
+  Settings settings_;
+  Along along_;
+  StrainPasses passes_;
+  YarnPass yarns_;
+  Positions x_;
+  Eigen::Matrix3Xd u_;        // gradient of C
+  Eigen::Matrix3Xd u_start_;  // at x^n, for the middle of the step only
+  Eigen::VectorXd mu_;        // C~, then h^2 dlambda
+  Iterate::Record before_;    // a projection of the whole
+  // What steps have cost each way, in visits of an edge; 0: not tried yet.
+  struct Seen {
+    double mean[2] = {};
+    Way cheaper = rounds_alone;
+    int retry_interval = 0, until_retry = 0;  // steps until the more expensive way is tried again
+  } seen_;
+};
 
 // Largest growth of |C~|^2 that is accepted of a projection of the whole in contact: passes correct
 // that much.
@@ -35,8 +89,6 @@ double cost_of(const WorkCounters& before, const WorkCounters& after, int rows) 
   return rows * (row_cost + 4 * solves) + solves * nonzero_cost * after.factor_nonzeros +
          factorizations * operation_cost * after.factor_flops;
 }
-
-}  // namespace
 
 FastProjectionAdaptive::FastProjectionAdaptive(const Problem& problem, const Settings& settings,
                                                Along along)
@@ -192,6 +244,8 @@ SettingFields<FastProjectionAdaptive::Settings> FastProjectionAdaptive::fields()
        Range{1e-8, 1}, tunable_forcing},
       schur_solver_field<S>()};
 }
+
+}  // namespace
 
 Backend fast_projection_adaptive_row() {
   return {.name = "fast_projection_adaptive",

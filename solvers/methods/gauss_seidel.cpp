@@ -1,14 +1,46 @@
+// Gauss-Seidel strain limiting (Bridson, Fedkiw and Anderson 2002; Mueller et al. 2006): edge after
+// edge, in a fresh random permutation each pass (Goldenthal et al. 2007, section 5), until the
+// maximum strain is permissible.
+//
 // One visit moves both ends of an edge along it, shared by inverse mass, so that momentum is kept.
 // Edges within the limit are left alone (Provot 1995); others are brought to the target strain.
 // Loops: one pass over edges in random order, one check in order that stops at the first violation.
-#include "solvers/methods/gauss_seidel.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "solvers/methods/rows.h"
+#include "solvers/methods/strain_limiting.h"
+
 namespace inextensible {
 namespace {
+
+class GaussSeidel final : public VelocityFilter {
+ public:
+  using Settings = LimiterSettings;
+  static SettingFields<Settings> fields() { return Settings::fields(); }
+  GaussSeidel(const Problem& problem, const Settings& settings, Along along = Along::edges);
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
+
+ private:
+  struct EdgeRecord {  // all that a visit needs
+    int a, b;
+    double inverse_square;  // 1 / l^2
+    double share_a;         // w_a / (w_a + w_b), of the correction
+  };
+  void shuffle();
+  template <bool middle>
+  std::int64_t pass(const Positions& x_start, Positions& x) const;
+
+  EdgeConstraints edges_;
+  int max_iterations_;
+  StrainBand band_;
+  double relaxation_;
+  Along along_;
+  std::vector<EdgeRecord> records_;
+  std::vector<int> permutation_;
+  std::uint64_t random_;  // SplitMix64 state
+};
 
 // SplitMix64 (Steele, Lea and Flood 2014).
 std::uint64_t next_random(std::uint64_t& state) {
@@ -17,8 +49,6 @@ std::uint64_t next_random(std::uint64_t& state) {
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
   return z ^ (z >> 31);
 }
-
-}  // namespace
 
 GaussSeidel::GaussSeidel(const Problem& problem, const Settings& settings, Along along)
     : edges_(problem, settings.strain_limit),
@@ -53,10 +83,8 @@ template <bool middle>
 std::int64_t GaussSeidel::pass(const Positions& x_start, Positions& x) const {
   double* p = x.data();
   const double* start = x_start.data();
-  StrainBand band = band_;  // in registers
+  const StrainBand band = band_;  // in registers
   const double relaxation = relaxation_;
-  band.target_low *= relaxation;
-  band.target_high *= relaxation;
   std::int64_t projections = 0;
   for (const int k : permutation_) {
     const EdgeRecord& edge = records_[k];
@@ -66,21 +94,20 @@ std::int64_t GaussSeidel::pass(const Positions& x_start, Positions& x) const {
     const double q = (d0 * d0 + d1 * d1 + d2 * d2) * edge.inverse_square;
     if (!band.violated(q)) continue;
     if (q == 0) continue;  // no direction to correct along; the check refuses if it stays so
-    double excess = relaxation - (q < band.low ? band.target_low : band.target_high) / std::sqrt(q);
-    if constexpr (middle) {  // |d - s m|^2 = wanted^2, as in strain_passes.cpp
+    const double wanted = q < band.low ? band.target_low : band.target_high;
+    double excess = 1 - wanted / std::sqrt(q);
+    if constexpr (middle) {
       const double *sa = start + 3 * edge.a, *sb = start + 3 * edge.b;
       const double m0 = 0.5 * (d0 + sb[0] - sa[0]), m1 = 0.5 * (d1 + sb[1] - sa[1]),
                    m2 = 0.5 * (d2 + sb[2] - sa[2]);
       const double along = (d0 * m0 + d1 * m1 + d2 * m2) * edge.inverse_square,
                    square = (m0 * m0 + m1 * m1 + m2 * m2) * edge.inverse_square;
       if (along > least_alignment * q) {
-        const double wanted = (q < band.low ? band.target_low : band.target_high) / relaxation;
-        const double strained = q - wanted * wanted;
-        excess = relaxation * strained /
-                 (along + std::sqrt(std::max(along * along - square * strained, 0.0)));
+        excess = excess_along(q, along, square, wanted);
         d0 = m0, d1 = m1, d2 = m2;
       }
     }
+    excess *= relaxation;
     const double sa = edge.share_a * excess, sb = excess - sa;
     pa[0] += sa * d0;
     pa[1] += sa * d1;
@@ -111,14 +138,7 @@ StepResult GaussSeidel::apply(const Positions& x_start, double /*h*/, Iterate x,
   }
 }
 
-SettingFields<GaussSeidel::Settings> GaussSeidel::fields() {
-  using S = Settings;
-  return {
-      {"max_iterations", &S::max_iterations, "passes a step before it is refused", at_least_one},
-      {"target", &S::target, "a corrected edge is brought to this fraction of the strain limit",
-       fraction, tunable_fraction},
-      {"relaxation", &S::relaxation, "times the correction", relaxation_range, tunable_relaxation}};
-}
+}  // namespace
 
 Backend gauss_seidel_row() {
   return {.name = "gauss_seidel",

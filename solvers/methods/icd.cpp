@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/methods/rows.h"
 #include "solvers/systems/chain_kkt.h"
 #include "solvers/systems/kkt_system.h"
 #include "solvers/systems/projected_cg.h"
@@ -209,12 +210,8 @@ SettingFields<Icd::Settings> Icd::fields() {
        positive, tunable_direction_tolerance},
       {"cg_tolerance", &S::cg_tolerance, "accuracy of a Newton step by projected_cg",
        Range{0, 1, true}, SearchRange{0.001, 0.95}},
-      {"linear_solver",
-       &S::linear_solver,
-       "of the KKT system",
-       {},
-       {},
-       {"auto", "projected_cg", "quasi_definite", "block_tridiagonal"}}};
+      word_field("linear_solver", &S::linear_solver, "of the KKT system",
+                 {"auto", "projected_cg", "quasi_definite", "block_tridiagonal"})};
 }
 
 Backend icd_row() {

@@ -53,6 +53,4 @@ class Icd final : public VelocityFilter {
   Eigen::VectorXd previous_lambda_;  // mu / h^2 of the last solve that converged
 };
 
-Backend icd_row();
-
 }  // namespace inextensible

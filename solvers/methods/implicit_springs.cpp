@@ -17,6 +17,7 @@
 #include <cmath>
 
 #include "solvers/linear/spd_solvers.h"
+#include "solvers/methods/rows.h"
 
 namespace inextensible {
 namespace {
@@ -213,25 +214,18 @@ SettingFields<ImplicitSprings::Settings> ImplicitSprings::fields() {
       // Instructions at 1 % strain and 1/100 s, plain Newton = 1, on the chain of 80 and the drape
       // of 21 x 21: start and tension take 0.66 and 0.77, with reuse 0.59 and 0.55. A reuse of 30
       // takes 0.55 and 0.53 but ends steps less exactly on the chain.
-      {"start",
-       &S::start,
-       "where Newton starts: at the lowest of free flight, last positions and their extrapolation "
-       "to "
-       "second order, or of the first two",
-       {},
-       {},
-       {"extrapolated", "flight"}},
-      {"tension",
-       &S::tension,
-       "which tension stiffens the Hessian across a spring: that of the last linearization, or of "
-       "the positions",
-       {},
-       {},
-       {"linearized", "current"}},
+      word_field("start", &S::start,
+                 "where Newton starts: at the lowest of free flight, last positions and their "
+                 "extrapolation to second order, or of the first two",
+                 {"extrapolated", "flight"}),
+      word_field("tension", &S::tension,
+                 "which tension stiffens the Hessian across a spring: that of the last "
+                 "linearization, or of the positions",
+                 {"linearized", "current"}),
       {"reuse", &S::reuse,
        "a Newton step below this many tolerances keeps its factorization for the next; 0: never",
        Range{0}, SearchRange{0, 100}},
-      {"linear_solver", &S::linear_solver, "factorization of the Hessian", {}, {}, solvers}};
+      word_field("linear_solver", &S::linear_solver, "factorization of the Hessian", solvers)};
 }
 
 Backend implicit_springs_row() {

@@ -71,6 +71,4 @@ class ImplicitSprings final : public Stepper {
   double h_before_ = 0;                     // s; 0: no step yet
 };
 
-Backend implicit_springs_row();
-
 }  // namespace inextensible

@@ -1,3 +1,7 @@
+// Projective dynamics (Liu et al. 2013, Bouaziz et al. 2014) with hard lengths, as ADMM (Narain,
+// Overby and Brown 2016): each edge is brought to its length by itself, and a constant linear
+// system, factored once, makes vertices follow.
+//
 // The step minimizes 1/2 |x - x0|_M^2 with |z_k| = l_k for z_k = x_b - x_a, by the alternating
 // direction method of multipliers with weights r_k (kg; D: the differences x_b - x_a):
 //   (M + D^T r D) x = M x0 + D^T r (z - u),
@@ -13,20 +17,71 @@
 // With contact inside, a vertex that touches is one more term, z_v = x_v within its half-space, and
 // the others pull towards where they are, so that the matrix stays. Loops: three solves, one pass
 // over edges, an iteration.
-#include "solvers/methods/projective_dynamics.h"
-
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "solvers/linear/spd_solver.h"
 #include "solvers/linear/spd_solvers.h"
+#include "solvers/methods/rows.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/systems/constraint_system.h"
 #include "solvers/systems/vertex_blocks.h"
 
 namespace inextensible {
 namespace {
 
-constexpr double contact_weight = 1;  // of a vertex's own term, times its mass
+class ProjectiveDynamics final : public VelocityFilter {
+ public:
+  struct Settings {
+    double strain_limit = 0.01;
+    int max_iterations = 100000;
+    double target = 0;    // of the strain limit; as FastProjection's
+    double penalty = 10;  // weight of an edge, times 1 / (h^2 (w_a + w_b))
+    double relaxation = 1;
+    // A step ends when no edge's z moves by more than this times strain_limit times its length,
+    // over the penalty: so much of what pulls at vertices is not yet what edges do.
+    double direction_tolerance = 1;
+    std::string_view linear_solver = "auto";  // tridiagonal on chains, else fixed_pattern
+  };
+  static SettingFields<Settings> fields();
+  ProjectiveDynamics(const Problem& problem, const Settings& settings);
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
+  const char* linear_solver() const override { return linear_solver_.c_str(); }
+  double reciprocal_condition() const override { return solver_->reciprocal_condition(); }
 
-}  // namespace
+ private:
+  SymmetricPattern graph_of(const std::vector<int>& order, bool one_chain);
+  void choose_solver(std::string_view wanted);
+  bool factor(WorkCounters& work);
+  void start(double h, Iterate x);
+  void project_edge(int k, const Eigen::Vector3d& sum);
+  bool project_edges(const Positions& x);
+  bool project_vertices(Iterate x);
+  void solve(Positions& x, WorkCounters& work);
+  bool ends(Iterate x) const;
+
+  const Problem& problem_;
+  EdgeConstraints edges_;
+  int max_iterations_;
+  double relaxation_;
+  double most_;                   // that z moves in the last iteration, in rest lengths
+  double most_push_;              // m, by which a contact's push changes in it
+  double shortest_, longest_;     // that an edge is brought to, in rest lengths
+  std::vector<double> weight_;    // of edges, kg
+  std::vector<int> free_vertex_;  // in elimination order
+  std::vector<int> place_;        // of a vertex among them, -1: pinned
+  SymmetricPattern pattern_;
+  std::string linear_solver_;
+  std::unique_ptr<SpdSolver> solver_;
+  bool factored_ = false;
+  Eigen::MatrixX3d rhs_;             // by free vertex
+  Positions target_;                 // the candidate without what planes pushed it
+  Positions anchor_;                 // z - u of vertices, with contact inside only
+  Eigen::Matrix3Xd z_, u_, last_u_;  // of edges; last_u_: u / h^2 of the last accepted step
+};
+
+constexpr double contact_weight = 1;  // of a vertex's own term, times its mass
 
 ProjectiveDynamics::ProjectiveDynamics(const Problem& problem, const Settings& settings)
     : problem_(problem),
@@ -245,13 +300,11 @@ SettingFields<ProjectiveDynamics::Settings> ProjectiveDynamics::fields() {
           {"direction_tolerance", &S::direction_tolerance,
            "last move of an edge's projection, times penalty, in strain limit times rest length",
            positive, tunable_direction_tolerance},
-          {"linear_solver",
-           &S::linear_solver,
-           "factorization of the constant matrix",
-           {},
-           {},
-           solvers}};
+          word_field("linear_solver", &S::linear_solver, "factorization of the constant matrix",
+                     solvers)};
 }
+
+}  // namespace
 
 Backend projective_dynamics_row() {
   return {.name = "projective_dynamics",

@@ -1,9 +1,33 @@
-#include "solvers/methods/rattle.h"
+// RATTLE (Andersen 1983): SHAKE's kin with velocities at the ends of steps. Second order,
+// symmetric, hence without damping:
+//   x^{n+1} = x^n + h v^n + h^2/2 (a(x^n) - W J(x^n)^T lambda)   with C(x^{n+1}) = 0  (SHAKE),
+//   v^{n+1} = (x^{n+1} - x^n)/h + h/2 a(x^{n+1}) - W J(x^{n+1})^T nu   with J(x^{n+1}) v^{n+1} = 0.
+// The matrix of the second line is the one that SHAKE needs in the next step: one factorization and
+// two solves a step.
 
+#include "solvers/methods/rows.h"
+#include "solvers/methods/shake.h"
 #include "solvers/problem/forces.h"
 #include "solvers/problem/stopwatch.h"
 
 namespace inextensible {
+namespace {
+
+class Rattle : public Stepper {
+ public:
+  Rattle(std::shared_ptr<const Problem> problem, const Shake::Settings& settings);
+  const char* linear_solver() const override { return shake_.linear_solver(); }
+  double reciprocal_condition() const override { return shake_.reciprocal_condition(); }
+
+ protected:
+  StepResult solve(const State& state, double h, Positions& x) override;
+  StepResult end_velocities(const State& start, double h, const Positions& filtered,
+                            const Positions& x, Positions& v) override;
+
+ private:
+  Shake shake_;
+  Positions v_half_;  // with drag only
+};
 
 Rattle::Rattle(std::shared_ptr<const Problem> problem, const Shake::Settings& settings)
     : Stepper(std::move(problem)), shake_(*problem_, settings) {}
@@ -42,6 +66,8 @@ StepResult Rattle::end_velocities(const State& start, double h, const Positions&
   phases_.filter += stopwatch();
   return result;
 }
+
+}  // namespace
 
 Backend rattle_row() {
   Shake::Settings defaults;

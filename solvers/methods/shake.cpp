@@ -14,6 +14,8 @@
 #include <limits>
 #include <numeric>
 
+#include "solvers/methods/rows.h"
+
 namespace inextensible {
 namespace {
 

@@ -62,6 +62,4 @@ class Shake final : public VelocityFilter {
   std::unique_ptr<ContactTerms> current_contact_terms_;  // with contacts only
 };
 
-Backend shake_row();
-
 }  // namespace inextensible

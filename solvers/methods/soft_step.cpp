@@ -1,3 +1,7 @@
+// Soft step, or TGS soft (Catto 2024): velocity constraints by Gauss-Seidel, positions by a spring
+// of the step's own frequency, and a second stage that takes the spring's velocity away again. It
+// promises no strain limit: strain falls as h^2, and the step is what buys it.
+//
 // With n_k the directions and C_k the elongations at the start, p_k the impulses, which the last
 // step's forces begin, m_k = 1 / (w_a + w_b), omega = 2 pi frequency / h and zeta the damping
 // (Catto, solver2d, solve_soft_step.c):
@@ -9,15 +13,43 @@
 //
 // At rest p_k is the load times h, and the first stage must leave it: C_k = load / (m_k omega^2).
 // Loops: two passes over edges, in the mesh's order.
-#include "solvers/methods/soft_step.h"
-
 #include <cmath>
 #include <numbers>
 
+#include "solvers/methods/rows.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/problem/edge_constraints.h"
 #include "solvers/problem/forces.h"
 #include "solvers/problem/stopwatch.h"
 
 namespace inextensible {
+namespace {
+
+class SoftStep final : public Stepper {
+ public:
+  struct Settings {
+    int passes = 1;           // over edges, of either stage
+    double frequency = 0.25;  // of the springs, in 1/h
+    double damping = 10;      // ratio, 1: critical
+  };
+  static SettingFields<Settings> fields();
+  SoftStep(std::shared_ptr<const Problem> problem, const Settings& settings);
+
+ private:
+  StepResult solve(const State& state, double h, Positions& x) override;
+  StepResult end_velocities(const State& start, double h, const Positions& filtered,
+                            const Positions& x, Positions& v) override;
+  void directions(const Positions& x);
+  void pull(int k, double impulse, Positions& x) const;
+
+  int passes_;
+  double hardness_, give_, rate_;  // massScale, impulseScale and h times bias of the source
+  EdgeConstraints edges_;
+  Eigen::Matrix3Xd n_;          // of the edges; 0 where one has no length
+  Eigen::VectorXd length_;      // m, at n_
+  Eigen::VectorXd impulse_;     // of this step, kg m: h times impulse
+  Eigen::VectorXd last_force_;  // of the last accepted step, N
+};
 
 SoftStep::SoftStep(std::shared_ptr<const Problem> shared, const Settings& settings)
     : Stepper(std::move(shared)), passes_(settings.passes), edges_(problem(), 0) {
@@ -96,6 +128,8 @@ SettingFields<SoftStep::Settings> SoftStep::fields() {
           {"damping", &S::damping, "ratio of an edge's spring, 1: critical", positive,
            SearchRange{1, 20}}};
 }
+
+}  // namespace
 
 Backend soft_step_row() {
   return {.name = "soft_step",

@@ -30,8 +30,7 @@ struct Ends {
 };
 
 // Adds to the ends at `to` what corrects the edges between those at `from`; no place occurs twice.
-// In the middle of the step, from `start`, with m for d and l = 1: |d - s m|^2 = wanted^2, s by the
-// form that does not cancel.
+// `middle`: along the edges in the middle of the step from `start`.
 template <bool middle>
 inline int correct(const Ends& from, const Ends& start, const Ends& to,
                    const double* inverse_square, const double* share_a, const double* share_b,
@@ -58,10 +57,8 @@ inline int correct(const Ends& from, const Ends& start, const Ends& to,
                    m2 = 0.5 * (d2 + start.bz[i] - start.az[i]);
       const double p = (d0 * m0 + d1 * m1 + d2 * m2) * inverse_square[i];
       const double r = (m0 * m0 + m1 * m1 + m2 * m2) * inverse_square[i];
-      const double strained = q[i] - wanted * wanted;
-      const double along_middle = strained / (p + std::sqrt(std::max(p * p - r * strained, 0.0)));
       const bool aligned = p > least_alignment * q[i];
-      all = aligned ? along_middle : all;
+      all = aligned ? excess_along(q[i], p, r, wanted) : all;
       from_start[i] = aligned ? 1 : 0;
     }
     excess[i] = band.violated(q[i]) && q[i] != 0 ? all : 0;

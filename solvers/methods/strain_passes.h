@@ -3,6 +3,8 @@
 // at the end of a pass; the others correct the positions at once.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -27,6 +29,13 @@ struct StrainBand {
   double low, high;
   double target_low, target_high;
 };
+
+// The s of |d - s m| = wanted, by the form that does not cancel: q = |d|^2, along = d . m and
+// square = |m|^2, m an edge in the middle of the step, all over its rest length.
+inline double excess_along(double q, double along, double square, double wanted) {
+  const double strained = q - wanted * wanted;
+  return strained / (along + std::sqrt(std::max(along * along - square * strained, 0.0)));
+}
 
 class StrainPasses {
  public:

@@ -36,42 +36,36 @@ Made midpoint(Shared problem, const Backend& method, const BackendOptions& optio
 }
 
 std::vector<TimeStepper> all_steppers() {
+  using enum Origin;
   using enum Velocities;
-  return {
-      {"backward_euler", "", "", Origin::paper, half_step, Along::edges, true, {}, backward_euler},
-      // Symplectic where forces act along the start of the step. With velocities of half steps it
-      // is the arithmetic of backward_euler.
-      {"verlet",
-       "",
-       "Verlet 1967",
-       Origin::paper,
-       half_step,
-       Along::edges,
-       true,
-       {},
-       backward_euler},
-      {"bdf2",
-       "in BDF2",
-       "Choi and Ko 2002; English and Bridson 2008",
-       Origin::literature,
-       whole_step,
-       Along::edges,
-       true,
-       {},
-       bdf2},
-      {"midpoint",
-       "in the midpoint rule",
-       "Simo and Tarnow 1992; Gonzalez 1999",
-       Origin::literature,
-       whole_step,
-       Along::middle,
-       false,
-       {{.name = spectral_radius,
-         .initial = 0.8,
-         .meaning = "what an edge keeps of its rate when it bounces off its limit; 1 conserves",
-         .range = {0, 1},
-         .tunable = SearchRange{0, 1}}},
-       midpoint}};
+  const SettingInfo rho{
+      .name = spectral_radius,
+      .initial = 0.8,
+      .meaning = "what an edge keeps of its rate when it bounces off its limit; 1 conserves",
+      .range = {0, 1},
+      .tunable = SearchRange{0, 1}};
+  return {{"backward_euler", "", "", paper, half_step, Along::edges, true, {}, backward_euler},
+          // Symplectic where forces act along the start of the step. With velocities of half steps
+          // it is the arithmetic of backward_euler.
+          {"verlet", "", "Verlet 1967", paper, half_step, Along::edges, true, {}, backward_euler},
+          {"bdf2",
+           "in BDF2",
+           "Choi and Ko 2002; English and Bridson 2008",
+           literature,
+           whole_step,
+           Along::edges,
+           true,
+           {},
+           bdf2},
+          {"midpoint",
+           "in the midpoint rule",
+           "Simo and Tarnow 1992; Gonzalez 1999",
+           literature,
+           whole_step,
+           Along::middle,
+           false,
+           {rho},
+           midpoint}};
 }
 
 }  // namespace

@@ -1,3 +1,8 @@
+// Vertex block descent (Chen, Liu, Yang and Yuksel 2024): the implicit springs' energy, backward
+// Euler's, lowered by a given number of passes that move one vertex at a time. It has no strain
+// limit of its own, as they have none; and as passes end before the minimum, less stiffness than
+// asked for is what shows.
+//
 // G(x) = 1/2 |x - (x^n + h v^n + h^2 g)|_M^2 + h^2 V(x), V = stretch and shear springs, one
 // vertex after the other: x_i += H_i^-1 f_i. A spring's negative stiffness across its direction is
 // dropped, as implicit_springs does: the paper's Hessian is indefinite under compression. No line
@@ -5,12 +10,39 @@
 // moves vertices one by one.
 //
 // A vertex in contact takes the minimum within its plane. Loops: one over vertices a pass.
-#include "solvers/methods/vertex_block_descent.h"
-
 #include <algorithm>
+
+#include "solvers/methods/rows.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/methods/vertex_passes.h"
 
 namespace inextensible {
 namespace {
+
+class VertexBlockDescent final : public Stepper {
+ public:
+  struct Settings {
+    double stiffness = 1e4;  // EA, N; as ImplicitSprings'
+    int iterations = 100;    // passes a step
+    double relaxation = 1;   // times a vertex's move
+  };
+  static SettingFields<Settings> fields();
+  VertexBlockDescent(std::shared_ptr<const Problem> problem, const Settings& settings);
+
+ private:
+  StepResult solve(const State& state, double h, Positions& x) override;
+  void start(const State& state, double h, Positions& x) const;
+  StepResult end_velocities(const State& before, double h, const Positions& filtered,
+                            const Positions& x, Positions& v) override;
+
+  int iterations_;
+  double relaxation_;
+  VertexPasses passes_;
+  Positions inertial_;           // x + h v + h^2 g, drag's included
+  std::vector<double> inertia_;  // m + h times drag, kg
+  Positions v_before_;           // v^{n-1}
+  double h_before_ = 0;          // s; 0: no step yet
+};
 
 constexpr int most_contact_rounds = 30;
 
@@ -23,8 +55,6 @@ Springs all_springs(const Problem& problem, double stiffness) {
   }
   return all;
 }
-
-}  // namespace
 
 VertexBlockDescent::VertexBlockDescent(std::shared_ptr<const Problem> shared,
                                        const Settings& settings)
@@ -108,6 +138,8 @@ SettingFields<VertexBlockDescent::Settings> VertexBlockDescent::fields() {
            "times a vertex's move; over-relaxed, where the paper has Chebyshev's acceleration",
            relaxation_range, tunable_relaxation}};
 }
+
+}  // namespace
 
 Backend vertex_block_descent_row() {
   return {.name = "vertex_block_descent",

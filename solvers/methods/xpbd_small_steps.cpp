@@ -1,3 +1,7 @@
+// XPBD with small steps (Macklin et al. 2016, 2019): a fixed number of passes a step, one as a
+// rule, without a test of convergence. It promises no strain limit: strain falls as h^2, and the
+// step is what buys it.
+//
 // Compliance is 0, so that with one pass from lambda = 0 an edge's multiplier is its correction
 // (Macklin et al. 2016, eq. 18), and no multiplier is read again: every edge is brought to its rest
 // length, warp and weft, one color after the other. Loops: `sweeps` passes over edges and one
@@ -5,8 +9,6 @@
 //
 // At rest under gravity an edge keeps a strain of about g h^2 / l times the edges below it: one
 // pass carries a load by one edge, or by one color.
-#include "solvers/methods/xpbd_small_steps.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -14,8 +16,44 @@
 #include <queue>
 #include <stdexcept>
 
+#include "solvers/methods/rows.h"
+#include "solvers/methods/setting_fields.h"
+#include "solvers/methods/strain_passes.h"
+
 namespace inextensible {
 namespace {
+
+class XpbdSmallSteps final : public VelocityFilter {
+ public:
+  // Long-range attachments (Kim, Chentanez and Mueller 2012): no vertex is farther from a pinned
+  // one than its rest distance, along edges, which inextensible edges imply, or straight, which
+  // holds only where nothing shears. Momentum is not kept.
+  struct Settings {
+    int sweeps = 1;
+    double relaxation = 1;  // of a correction
+    std::string_view attachments = "none";
+  };
+  static SettingFields<Settings> fields();
+  // rest: positions (3 x n) at rest, for straight attachments; null where they are not known.
+  // Throws std::invalid_argument if they are needed.
+  XpbdSmallSteps(const Problem& problem, const Settings& settings, const Positions* rest,
+                 Along along = Along::edges);
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
+
+ private:
+  struct Attachment {
+    int vertex, pin;
+    double distance;  // m
+  };
+  void attach_along_edges(const Problem& problem);
+  void attach_straight(const Problem& problem, const Positions& rest);
+  void keep_nearest(const Problem& problem);
+
+  int most_;
+  Along along_;
+  StrainPasses passes_;
+  std::vector<Attachment> attachments_;
+};
 
 constexpr int most_attachments = 4;  // of a vertex: to the nearest pins
 
@@ -40,8 +78,6 @@ std::vector<double> distances_from(int start, const Problem& problem,
   }
   return distance;
 }
-
-}  // namespace
 
 XpbdSmallSteps::XpbdSmallSteps(const Problem& problem, const Settings& settings,
                                const Positions* rest, Along along)
@@ -115,13 +151,12 @@ SettingFields<XpbdSmallSteps::Settings> XpbdSmallSteps::fields() {
       {"sweeps", &S::sweeps, "colored Gauss-Seidel passes a step", at_least_one,
        SearchRange{1, 100}},
       {"relaxation", &S::relaxation, "times a correction", relaxation_range, tunable_relaxation},
-      {"attachments",
-       &S::attachments,
-       "of vertices to pinned ones, at their rest distance along edges or straight",
-       {},
-       {},
-       {"none", "edges", "straight"}}};
+      word_field("attachments", &S::attachments,
+                 "of vertices to pinned ones, at their rest distance along edges or straight",
+                 {"none", "edges", "straight"})};
 }
+
+}  // namespace
 
 Backend xpbd_small_steps_row() {
   return {

@@ -43,7 +43,13 @@ with_fault(gauss_seidel.cpp "  for (int passes = 0;; ++passes) {" "  const Delay
 with_fault(fast_projection.cpp "  for (int j = 0, best_j = 0;; ++j) {" "  int extra = 0;\n  for (int j = 0, best_j = 0;; ++j) {")
 with_fault(fast_projection.cpp "j >= settings_.min_iterations)" "j >= settings_.min_iterations && extra++ > 0)")
 # Jacobi: gives up after three sweeps.
-with_fault(jacobi.cpp "max_iterations_(settings.max_iterations)" "max_iterations_(3)")
+with_fault(jacobi.cpp "PassLimiter(problem, settings," "PassLimiter(problem, three_passes(settings),")
+with_fault(jacobi.cpp "namespace {\n" "namespace {
+LimiterSettings three_passes(LimiterSettings settings) {
+  settings.max_iterations = 3;
+  return settings;
+}
+")
 
 # The copies come first, so that the archive's members of that name are not taken.
 add_executable(bench_with_faults ${fault_sources} $<TARGET_OBJECTS:bench>)

@@ -1,10 +1,10 @@
 // What the method of multipliers converges to, and what it remembers.
-#include "solvers/methods/augmented_vbd.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "solvers/problem/edge_constraints.h"
 #include "support/side_by_side.h"
 
 namespace inextensible {

@@ -5,7 +5,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "solvers/methods/dense_oracle.h"
 #include "solvers/methods/fast_projection.h"
 #include "solvers/methods/icd.h"
 #include "solvers/registry.h"
@@ -241,7 +240,7 @@ TEST(Icd, SolutionIsTheClosestPointOfTheManifold) {
     Positions icd = candidate, oracle = candidate;
     Icd::Settings settings{1e-10};
     ASSERT_TRUE(Icd(p, settings).apply(mesh.x, h, icd, work));
-    ASSERT_TRUE(DenseOracle(p).apply(mesh.x, h, oracle, work));
+    ASSERT_TRUE(make_velocity_filter("oracle", p, {})->apply(mesh.x, h, oracle, work));
     EXPECT_LT((icd - oracle).norm(), 1e-7);
 
     const auto distance = [&](const Positions& x) {

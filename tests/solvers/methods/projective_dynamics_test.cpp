@@ -1,5 +1,4 @@
 // What ADMM converges to, and that its matrix is factored once.
-#include "solvers/methods/projective_dynamics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
 // Soft step: the law of a hanging yarn, and a single pendulum against its own formulas.
-#include "solvers/methods/soft_step.h"
 
 #include <gtest/gtest.h>
 

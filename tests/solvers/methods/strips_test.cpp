@@ -1,5 +1,4 @@
 // Yarns are found whatever the mesh; a yarn's projection is fast projection's on a chain.
-#include "solvers/methods/strips.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +6,8 @@
 #include <set>
 
 #include "solvers/methods/fast_projection.h"
-#include "solvers/methods/fast_projection_adaptive.h"
+#include "solvers/methods/yarns.h"
+#include "solvers/registry.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {
@@ -57,11 +57,12 @@ TEST(Strips, OnAChainAreFastProjection) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     testing::Random random(seed);
     const auto chain = testing::random_mesh(random, 1, 2 + static_cast<int>(random() % 40), 1);
-    Strips strips(*chain.problem, {.strain_limit = 1e-3, .sweeps = 0, .target = 0});
+    const auto strips = make_velocity_filter("strips", *chain.problem,
+                                             {1e-3, 1, {{"sweeps", 0.0}, {"target", 0.0}}});
     FastProjection projection(*chain.problem, {.strain_limit = 1e-3});
     Positions x = testing::perturbed(random, chain, 0.05), y = x;
     WorkCounters work;
-    const StepResult mine = strips.apply(chain.x, 0.01, x, work);
+    const StepResult mine = strips->apply(chain.x, 0.01, x, work);
     const StepResult wanted = projection.apply(chain.x, 0.01, y, work);
     ASSERT_TRUE(mine) << mine.detail;
     ASSERT_TRUE(wanted) << wanted.detail;
@@ -90,7 +91,7 @@ TEST(Strips, OnSeveralChainsAreFastProjectionOnEach) {
                                chain.rest_length().end());
     }
     const Problem all(parts);
-    Strips strips(all, {.strain_limit = 1e-3, .target = 0});
+    const auto strips = make_velocity_filter("strips", all, {1e-3, 1, {{"target", 0.0}}});
     Positions x(3, all.vertices()), wanted = x, start = x;
     WorkCounters work;
     for (Eigen::Index at = 0; const testing::RandomMesh& chain : chains) {
@@ -103,7 +104,7 @@ TEST(Strips, OnSeveralChainsAreFastProjectionOnEach) {
       wanted.middleCols(at, n) = y;
       at += n;
     }
-    ASSERT_TRUE(strips.apply(start, 0.01, x, work));
+    ASSERT_TRUE(strips->apply(start, 0.01, x, work));
     EXPECT_LE((x - wanted).cwiseAbs().maxCoeff(), 1e-10);
   }
 }
@@ -114,12 +115,12 @@ TEST(FastProjectionAdaptive, OnAChainIsStrips) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     testing::Random random(seed);
     const auto chain = testing::random_mesh(random, 1, 2 + static_cast<int>(random() % 40), 1);
-    Strips strips(*chain.problem, {.strain_limit = 1e-3});
-    FastProjectionAdaptive adaptive(*chain.problem, {.strain_limit = 1e-3});
+    const auto strips = make_velocity_filter("strips", *chain.problem, {1e-3});
+    const auto adaptive = make_velocity_filter("fast_projection_adaptive", *chain.problem, {1e-3});
     Positions x = testing::perturbed(random, chain, 0.05), y = x;
     WorkCounters work, same_work;
-    ASSERT_TRUE(strips.apply(chain.x, 0.01, x, work));
-    ASSERT_TRUE(adaptive.apply(chain.x, 0.01, y, same_work));
+    ASSERT_TRUE(strips->apply(chain.x, 0.01, x, work));
+    ASSERT_TRUE(adaptive->apply(chain.x, 0.01, y, same_work));
     EXPECT_TRUE((x.array() == y.array()).all());
   }
 }
@@ -133,8 +134,9 @@ TEST(FastProjectionAdaptive, ProjectsTheWholeWhereStripsAreSlowAndNotWhereTheyAr
     const auto cloth = testing::random_mesh(random, 50, 50, 1);
     const int pin = cloth.problem->pinned().front();
     for (const double limit : {0.1, 1e-5}) {
-      Strips strips(*cloth.problem, {.strain_limit = limit});
-      FastProjectionAdaptive adaptive(*cloth.problem, {.strain_limit = limit});
+      const auto strips = make_velocity_filter("strips", *cloth.problem, {limit});
+      const auto adaptive =
+          make_velocity_filter("fast_projection_adaptive", *cloth.problem, {limit});
       const EdgeConstraints edges(*cloth.problem, limit);
       WorkCounters work, strips_work;
       int rounds = 0, strips_rounds = 0;
@@ -142,8 +144,8 @@ TEST(FastProjectionAdaptive, ProjectsTheWholeWhereStripsAreSlowAndNotWhereTheyAr
         Positions x = testing::perturbed(random, cloth, limit < 1e-3 ? 1e-6 : 0.005);
         if (limit < 1e-3) x = (1.03 * (x.colwise() - x.col(pin))).colwise() + x.col(pin).eval();
         Positions y = x;
-        const StepResult mine = adaptive.apply(cloth.x, 0.01, x, work);
-        const StepResult theirs = strips.apply(cloth.x, 0.01, y, strips_work);
+        const StepResult mine = adaptive->apply(cloth.x, 0.01, x, work);
+        const StepResult theirs = strips->apply(cloth.x, 0.01, y, strips_work);
         ASSERT_TRUE(mine && theirs) << mine.detail;
         EXPECT_TRUE(edges.permissible(x));
         rounds += mine.iterations;

@@ -1,11 +1,11 @@
 // Passes against an obvious one, and what they converge to: the minimum that Newton finds.
-#include "solvers/methods/vertex_block_descent.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "solvers/methods/vertex_passes.h"
 #include "support/side_by_side.h"
 
 namespace inextensible {

@@ -1,9 +1,9 @@
 // Small steps against an independent sweep over the same colors, the strain that theory gives a
 // loaded yarn, and what attachments promise.
-#include "solvers/methods/xpbd_small_steps.h"
 
 #include <gtest/gtest.h>
 
+#include "solvers/methods/colored_edges.h"
 #include "solvers/registry.h"
 #include "support/random_mesh.h"
 
@@ -35,11 +35,13 @@ TEST(XpbdSmallSteps, AreAGivenNumberOfSweeps) {
                                            2 + static_cast<int>(random() % 12), 2);
     const int sweeps = 1 + static_cast<int>(random() % 3);
     const double relaxation = testing::uniform(random, 0.5, 1.5);
-    XpbdSmallSteps filter(*mesh.problem, {.sweeps = sweeps, .relaxation = relaxation}, nullptr);
+    const auto filter = make_velocity_filter(
+        "xpbd_small_steps", *mesh.problem,
+        {.settings = {{"sweeps", static_cast<double>(sweeps)}, {"relaxation", relaxation}}});
     Positions x = testing::perturbed(random, mesh, 0.05), wanted = x;
     for (int i = 0; i < sweeps; ++i) wanted = swept(*mesh.problem, wanted, relaxation);
     WorkCounters work;
-    ASSERT_TRUE(filter.apply(mesh.x, 0.01, x, work));
+    ASSERT_TRUE(filter->apply(mesh.x, 0.01, x, work));
     EXPECT_LE((x - wanted).cwiseAbs().maxCoeff(), 1e-12);
   }
 }
@@ -113,13 +115,18 @@ TEST(XpbdSmallSteps, AttachmentsFollowEdgesOrGoStraight) {
   rest << 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0;
   for (const auto& [kind, distance] :
        {std::pair<std::string_view, double>{"edges", 2}, {"straight", std::sqrt(2.0)}}) {
-    XpbdSmallSteps filter(square, {.attachments = kind}, &rest);
+    const State start{rest, 0 * rest, 0};
+    const auto filter =
+        make_velocity_filter("xpbd_small_steps", square,
+                             {.settings = {{"attachments", std::string(kind)}}, .start = &start});
     Positions x = 1000 * rest;
     WorkCounters work;
-    ASSERT_TRUE(filter.apply(rest, 0.01, x, work));
+    ASSERT_TRUE(filter->apply(rest, 0.01, x, work));
     EXPECT_NEAR(x.col(3).norm(), distance, 1e-9) << kind;
   }
-  EXPECT_THROW(XpbdSmallSteps(square, {.attachments = "straight"}, nullptr), std::invalid_argument);
+  EXPECT_THROW(make_velocity_filter("xpbd_small_steps", square,
+                                    {.settings = {{"attachments", std::string("straight")}}}),
+               std::invalid_argument);
 }
 
 }  // namespace

@@ -1,0 +1,26 @@
+// The row of each method; registry.cpp lists them.
+#pragma once
+
+#include "solvers/methods/backend.h"
+
+namespace inextensible {
+
+Backend implicit_springs_row();
+Backend jacobi_row();
+Backend gauss_seidel_row();
+Backend gauss_seidel_colored_row();
+Backend shake_row();
+Backend icd_row();
+Backend fast_projection_row();
+Backend rattle_row();
+Backend strips_row();
+Backend fast_projection_adaptive_row();
+Backend xpbd_small_steps_row();
+Backend vertex_block_descent_row();
+Backend augmented_vbd_row();
+Backend projective_dynamics_row();
+Backend soft_step_row();
+Backend null_row();
+Backend oracle_row();
+
+}  // namespace inextensible
