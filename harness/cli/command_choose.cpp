@@ -86,7 +86,7 @@ Suite suite_of(const ChooseCommand& given, double rate) {
   sweep.coarsest = 1 / rate;
   sweep.finest = sweep.coarsest / finest_part;
   sweep.contestants = contestants_for(given.solver, *type, parameters);
-  tune(sweep.contestants, read_tuned_up_to_date("tuned.json"), type->kind(), {}, Untuned::none);
+  tune(sweep.contestants, read_tuned_up_to_date("tuned.json"), type->kind(), {}, false);
   return suite;
 }
 

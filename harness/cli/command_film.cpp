@@ -48,7 +48,7 @@ FilmSpec film_spec(const FilmOptions& given) {
     if (wanted.matches(backend.name)) spec.solvers.push_back({backend.name, backend.name});
   }
   tune(spec.solvers, read_tuned_up_to_date("tuned.json"), find_scene(spec.scene)->kind(), {},
-       Untuned::none);
+       false);
   spec.strain_limits = numbers_of("--limit", given.limits, Bounds::strain());
   if (given.step > 0) spec.step = given.step;
   spec.frames_per_second = given.frames_per_second;

@@ -50,7 +50,7 @@ FilmSpec motion(const std::string& scene, const SceneParameters& given) {
   spec.parameters = complete_parameters(*type, given);
   for (const char* solver : {"gauss_seidel_colored", "fast_projection", "fast_projection@bdf2"})
     spec.solvers.push_back({solver, solver});
-  tune(spec.solvers, read_tuned_up_to_date("tuned.json"), type->kind(), {}, Untuned::none);
+  tune(spec.solvers, read_tuned_up_to_date("tuned.json"), type->kind(), {}, false);
   spec.strain_limits = {0.01};
   return spec;
 }

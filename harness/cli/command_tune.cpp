@@ -89,24 +89,24 @@ json context_of(const TuneCommand& options) {
           {"timeout", options.timeout}};
 }
 
-// The settings of an entry that are an end of their range: beyond it there may be better ones.
-std::string at_ends(const TunedEntry& entry) {
+// The settings of a place that are an end of their range: beyond it there may be better ones.
+std::string at_ends(const std::string& solver, const TunedPlace& place) {
   std::string names;
-  for (const TunedNumber& n : tunable_numbers(*inextensible::find_backend(entry.solver))) {
-    const auto found = entry.settings.find(n.name);
-    if (found == entry.settings.end()) continue;
+  for (const TunedNumber& n : tunable_numbers(*inextensible::find_backend(solver))) {
+    const auto found = place.settings.find(n.name);
+    if (found == place.settings.end()) continue;
     const double at = position_of(n, std::get<double>(found->second));
     if (at <= 0 || at >= 1) names += (names.empty() ? "  ends of ranges: " : ", ") + n.name;
   }
   return names;
 }
 
-void print(const std::vector<TunedEntry>& entries) {
-  for (const TunedEntry& e : entries) {
-    std::cout << std::left << std::setw(10) << e.kind << std::setw(30) << e.solver << std::setw(8)
-              << (e.places.empty() ? "-" : number_text(e.gain, 3)) << std::setw(10)
-              << std::to_string(e.evaluations) + "/" + std::to_string(e.budget)
-              << to_json(e.settings).dump() << at_ends(e) << '\n';
+void print(const TunedEntry& entry) {
+  for (const TunedPlace& p : entry.places) {
+    std::cout << std::left << std::setw(14) << entry.kind << std::setw(35) << entry.solver
+              << std::setw(6) << p.resolution << std::setw(8) << number_text(100 * p.limit) + " %"
+              << std::setw(7) << number_text(p.gain(), 3) << to_json(p.settings).dump()
+              << at_ends(entry.solver, p) << std::endl;
   }
 }
 
@@ -132,19 +132,17 @@ int run_tune(const TuneCommand& options) {
   SweepRunners runners;
   runners.references = std::make_shared<ReferenceShelf>(source_path("results/references"));
   runners = isolated(runners, 0);
-  std::vector<TunedEntry> found;
+  std::cout << "kind          solver                             size  limit   gain   settings\n";
   for (const SweepSpec& scene : scenes) {
     for (const std::string& solver : chosen_solvers(options.solver, scene)) {
       if (!options.again && stands(entries, find_scene(scene.scene)->kind(), solver)) continue;
       TunedEntry entry = tune_solver(solver, scene, tuning, runners);
       entry.context = context_of(options);
-      found.push_back(entry);
+      print(entry);
       put_in(entries, std::move(entry));
       write_atomically(out, document_text(tuned_document(entries)));
     }
   }
-  std::cout << "kind      solver                        gain    tried     settings\n";
-  print(found);
   std::cout << "\nwritten:\n" << out << std::endl;
   return success;
 }
@@ -162,9 +160,8 @@ Verb tune_verb() {
                        "chain, drape, patch or spinning_net; default: all", "SCENE");
         command
             .option("--trials", options.trials,
-                    "sets of settings to try for each solver and scene; default: 10 for each "
-                    "setting, at "
-                    "most 40",
+                    "sets of settings to try for each solver, size and limit; default: 10 for each "
+                    "setting, at most 40",
                     "N")
             .within(4, 10000);
         add_timeout(command, options.timeout, "10");

@@ -36,7 +36,8 @@ Stage stage_of(const Scene& scene) {
 inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contestant, double limit,
                                   double step, const std::function<bool()>& interrupted) {
   const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
-  inextensible::Settings settings = contestant.settings;
+  const int size = static_cast<int>(spec.parameters.at(find_scene(spec.scene)->resolution));
+  inextensible::Settings settings = contestant.settings_for(size, limit);
   if (backend.knob != inextensible::Knob::stiffness || settings.contains("stiffness"))
     return settings;
   PointSpec point;

@@ -1,6 +1,7 @@
 #include "harness/points/contestant.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -110,6 +111,41 @@ void check_plain_name(const std::string& name, const std::string& where) {
         "ids)");
 }
 
+namespace {
+
+std::vector<SettingsAt> read_settings_at(const json& places, const std::string& where,
+                                         const inextensible::Backend& backend) {
+  if (!places.is_array()) throw UsageError(where + " must be a list");
+  std::vector<SettingsAt> all;
+  for (const json& place : places) {
+    JsonReader reader(place, where);
+    SettingsAt& at = all.emplace_back();
+    at.resolution =
+        static_cast<int>(reader.number("resolution", 0, {.least = 1, .most = 1e6, .whole = true}));
+    at.limit = reader.number("limit", 0, Bounds::strain());
+    if (const json* settings = reader.find("settings"))
+      at.settings = read_settings(*settings, where, backend);
+    check_settings(at.settings, where, backend);
+    reader.finish();
+  }
+  return all;
+}
+
+}  // namespace
+
+inextensible::Settings Contestant::settings_for(int resolution, double limit) const {
+  inextensible::Settings all = settings;
+  const auto distance = [&](const SettingsAt& at) {
+    return std::hypot(std::log(at.resolution / static_cast<double>(resolution)),
+                      std::log(at.limit / limit));
+  };
+  const auto nearest =
+      std::min_element(settings_at.begin(), settings_at.end(),
+                       [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  if (nearest != settings_at.end()) all.insert(nearest->settings.begin(), nearest->settings.end());
+  return all;
+}
+
 Contestant read_contestant(const json& entry, const std::string& where) {
   if (entry.is_string()) {
     const std::string name = entry.get<std::string>();
@@ -130,6 +166,8 @@ Contestant read_contestant(const json& entry, const std::string& where) {
   if (contestant.name.empty()) contestant.name = contestant.solver;
   if (const json* settings = reader.find("settings"))
     contestant.settings = read_settings(*settings, where + ": 'settings'", backend);
+  if (const json* places = reader.find("settings_at"))
+    contestant.settings_at = read_settings_at(*places, where + ": 'settings_at'", backend);
   contestant.label = reader.text("label", "");
   contestant.hollow = reader.flag("hollow", false);
   reader.finish();
@@ -181,7 +219,16 @@ json to_json(const Contestant& contestant) {
                  {"settings", to_json(contestant.settings)}};
   if (!contestant.label.empty()) object["label"] = contestant.label;
   if (contestant.hollow) object["hollow"] = true;
+  if (!contestant.settings_at.empty()) object["settings_at"] = to_json(contestant.settings_at);
   return object;
+}
+
+json to_json(const std::vector<SettingsAt>& places) {
+  json list = json::array();
+  for (const SettingsAt& at : places)
+    list.push_back(
+        {{"resolution", at.resolution}, {"limit", at.limit}, {"settings", to_json(at.settings)}});
+  return list;
 }
 
 std::string double_of(const std::string& name) { return name + "_again"; }

@@ -12,13 +12,24 @@
 
 namespace harness {
 
+// Settings for scenes of about this size and strain limit.
+struct SettingsAt {
+  int resolution = 1;
+  double limit = 0.01;
+  inextensible::Settings settings;
+  bool operator==(const SettingsAt&) const = default;
+};
+
 struct Contestant {
   std::string name;    // a-z, 0-9, _ and @; the solver's own unless it stands there more than once
   std::string solver;  // see `bench list solvers`
   inextensible::Settings settings = {};  // given ones only
   std::string label = "";                // in figures; empty: the solver's, or the name in words
   bool hollow = false;                   // beside the ranking, drawn with hollow marks
+  // Further settings, of which those of the nearest place hold (by the ratios of sizes and limits).
+  std::vector<SettingsAt> settings_at = {};
 
+  inextensible::Settings settings_for(int resolution, double limit) const;
   bool own_name() const { return name == solver; }
   bool operator==(const Contestant&) const = default;
 };
@@ -51,6 +62,7 @@ bool matches(const Pattern& pattern, const std::string& solver);
 
 // The way back.
 nlohmann::json to_json(const Contestant& contestant);
+nlohmann::json to_json(const std::vector<SettingsAt>& places);
 
 // The same solver with the same settings once more, right after it, as <name>_again: how far two
 // equal ones are apart is the noise of a result. Nothing if `name` does not stand there, or its

@@ -21,25 +21,21 @@ using nlohmann::json;
 // What a suite says of the contestants of all its sweeps.
 struct Everywhere {
   std::optional<Tuned> tuned;
-  Untuned untuned = Untuned::none;
+  bool untuned = false;
   std::string same;
 };
 
-Untuned read_untuned(JsonReader& reader, bool tuned, Untuned otherwise) {
-  const json* value = reader.find("untuned");
-  if (!value) return otherwise;
-  if (*value == false) return Untuned::none;
-  if (!tuned) throw UsageError(reader.where("untuned") + " goes with 'tuned'");
-  if (*value == true) return Untuned::all;
-  if (*value == "where_faster") return Untuned::where_faster;
-  reader.fail_at("untuned", *value, "true, false or \"where_faster\"");
+bool read_untuned(JsonReader& reader, bool tuned, bool otherwise) {
+  const bool untuned = reader.flag("untuned", otherwise);
+  if (untuned && !tuned) throw UsageError(reader.where("untuned") + " goes with 'tuned'");
+  return untuned;
 }
 
 Everywhere read_everywhere(JsonReader& reader) {
   Everywhere all;
   if (const std::string file = reader.text("tuned", ""); !file.empty())
     all.tuned = read_tuned_up_to_date(file);
-  all.untuned = read_untuned(reader, all.tuned.has_value(), Untuned::none);
+  all.untuned = read_untuned(reader, all.tuned.has_value(), false);
   all.same = reader.text("same", "");
   return all;
 }
@@ -131,7 +127,7 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
   read_scene_parameters(reader, *type, spec);
   read_steps(reader, where, spec);
   read_solver_options(reader, where, spec);
-  const Untuned untuned = read_untuned(reader, all.tuned.has_value(), all.untuned);
+  const bool untuned = read_untuned(reader, all.tuned.has_value(), all.untuned);
   const json* steps = reader.find("steps");
   reader.finish();
   Contestants missing;

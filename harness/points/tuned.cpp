@@ -18,7 +18,7 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr const char* schema = "inextensible-tuned/2";
+constexpr const char* schema = "inextensible-tuned/3";
 
 const json& list_in(JsonReader& reader, const char* key) {
   const json* list = reader.find(key);
@@ -26,19 +26,23 @@ const json& list_in(JsonReader& reader, const char* key) {
   return *list;
 }
 
-TunedPlace read_place(const json& object, const std::string& where) {
+TunedPlace read_place(const json& object, const std::string& where,
+                      const inextensible::Backend& backend) {
   JsonReader reader(object, where);
   TunedPlace place;
   place.resolution =
       static_cast<int>(reader.number("resolution", 0, {.least = 1, .most = 1e6, .whole = true}));
-  for (const auto& [key, member] : {std::pair("limit", &TunedPlace::limit),
-                                    std::pair("default_seconds", &TunedPlace::default_seconds),
-                                    std::pair("default_step", &TunedPlace::default_step)})
-    place.*member = reader.number(key, 0, Bounds::positive());
   for (const auto& [key, member] :
-       {std::pair("seconds", &TunedPlace::seconds), std::pair("step", &TunedPlace::step)}) {
-    const json* value = reader.find(key);
-    place.*member = value && value->is_null() ? unknown : reader.number(key, 0, Bounds::positive());
+       {std::pair("limit", &TunedPlace::limit),
+        std::pair("default_seconds", &TunedPlace::default_seconds),
+        std::pair("default_step", &TunedPlace::default_step),
+        std::pair("seconds", &TunedPlace::seconds), std::pair("step", &TunedPlace::step)})
+    place.*member = reader.number(key, 0, Bounds::positive());
+  place.evaluations =
+      static_cast<int>(reader.number("evaluations", 0, {.least = 0, .most = 1e9, .whole = true}));
+  if (const json* settings = reader.find("settings")) {
+    place.settings = read_settings(*settings, where + ": 'settings'", backend);
+    check_settings(place.settings, where + ": 'settings'", backend);
   }
   reader.finish();
   return place;
@@ -50,20 +54,10 @@ TunedEntry read_entry(const json& object, const std::string& where) {
   entry.kind = reader.one_of("kind", "", scene_kinds(), "kind of scene");
   entry.solver = reader.text("solver", "");
   const auto& backend = checked_backend(entry.solver, where);
-  if (const json* settings = reader.find("settings"))
-    entry.settings = read_settings(*settings, where + ": 'settings'", backend);
-  try {
-    complete_settings(backend, entry.settings);
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(where + ": 'settings': " + error.what());
-  }
-  entry.gain = reader.number("gain", 1, Bounds::positive());
-  entry.evaluations =
-      static_cast<int>(reader.number("evaluations", 0, {.least = 0, .most = 1e9, .whole = true}));
   entry.budget =
       static_cast<int>(reader.number("budget", 0, {.least = 0, .most = 1e9, .whole = true}));
   for (const json& place : list_in(reader, "places"))
-    entry.places.push_back(read_place(place, where + ": 'places'"));
+    entry.places.push_back(read_place(place, where + ": 'places'", backend));
   const json* rule = reader.find("rule");
   if (!rule || !rule->is_object()) throw UsageError(reader.where("rule") + " must be an object");
   entry.rule = *rule;
@@ -72,11 +66,17 @@ TunedEntry read_entry(const json& object, const std::string& where) {
   return entry;
 }
 
+std::vector<SettingsAt> settings_of(const TunedEntry& entry) {
+  std::vector<SettingsAt> all;
+  for (const TunedPlace& p : entry.places) all.push_back({p.resolution, p.limit, p.settings});
+  return all;
+}
+
 // Two files with the same settings are the same to a sweep, whenever they were found.
 std::string hash_of(const std::vector<TunedEntry>& entries) {
   std::map<std::string, json> settings;
   for (const TunedEntry& entry : entries)
-    settings[entry.kind + "/" + entry.solver] = to_json(entry.settings);
+    settings[entry.kind + "/" + entry.solver] = to_json(settings_of(entry));
   return fnv1a(json(settings).dump());
 }
 
@@ -123,15 +123,14 @@ ordered_json tuned_document(const std::vector<TunedEntry>& entries) {
     for (const TunedPlace& p : entry.places)
       places.push_back({{"resolution", p.resolution},
                         {"limit", p.limit},
+                        {"settings", to_json(p.settings)},
+                        {"evaluations", p.evaluations},
                         {"default_seconds", p.default_seconds},
                         {"default_step", p.default_step},
-                        {"seconds", number(p.seconds)},
-                        {"step", number(p.step)}});
+                        {"seconds", p.seconds},
+                        {"step", p.step}});
     list.push_back({{"kind", entry.kind},
                     {"solver", entry.solver},
-                    {"settings", to_json(entry.settings)},
-                    {"gain", entry.gain},
-                    {"evaluations", entry.evaluations},
                     {"budget", entry.budget},
                     {"places", places},
                     {"rule", entry.rule},
@@ -140,35 +139,25 @@ ordered_json tuned_document(const std::vector<TunedEntry>& entries) {
   return {{"schema", schema}, {"tuned", list}};
 }
 
-namespace {
-
-// By more than what two runs of the same differ by.
-bool faster_without(const TunedEntry& entry) {
-  constexpr double noise = 0.05;
-  return std::any_of(entry.places.begin(), entry.places.end(), [](const TunedPlace& p) {
-    return !(p.seconds <= (1 + noise) * p.default_seconds);
-  });
-}
-
-}  // namespace
-
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
-          const std::map<std::string, inextensible::Settings>& given, Untuned untuned) {
+          const std::map<std::string, inextensible::Settings>& given, bool untuned) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const TunedEntry* entry = all[i].own_name() ? tuned.find(kind, all[i].solver) : nullptr;
     if (!entry) continue;
     Contestant before = all[i];
     const auto fixed = given.find(before.solver);
-    for (const auto& [name, value] : entry->settings) {
-      if (fixed == given.end() || !fixed->second.contains(name))
-        all[i].settings.emplace(name, value);
+    all[i].settings_at = settings_of(*entry);
+    bool differs = false;
+    for (SettingsAt& at : all[i].settings_at) {
+      std::erase_if(at.settings, [&](const auto& setting) {
+        return before.settings.contains(setting.first) ||
+               (fixed != given.end() && fixed->second.contains(setting.first));
+      });
+      differs = differs || !at.settings.empty();
     }
+    if (!differs) all[i].settings_at.clear();
     before.name += "_untuned";
-    const bool beside =
-        untuned == Untuned::all || (untuned == Untuned::where_faster && faster_without(*entry));
-    if (!beside || all[i].settings == before.settings ||
-        find_contestant(all, before.name) != all.end())
-      continue;
+    if (!untuned || !differs || find_contestant(all, before.name) != all.end()) continue;
     before.label = label_of(all[i]) + ", untuned";
     before.hollow = true;
     all.insert(all.begin() + static_cast<std::ptrdiff_t>(i) + 1, std::move(before));

@@ -1,5 +1,5 @@
-// Settings that `bench tune` found: for each solver at most one set a kind of scene. The file is
-// configs/tuned.json, its schema configs/tuned.schema.json.
+// Settings that `bench tune` found: for each solver and kind of scene one set for each of some
+// sizes and strain limits. The file is configs/tuned.json, its schema configs/tuned.schema.json.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,22 +10,23 @@
 
 namespace harness {
 
-// The time at one size and strain limit of a tuning scene, each at its best step of those tried.
+// What was found at one size and strain limit of a tuning scene. Times are those of the best step
+// of those tried.
 struct TunedPlace {
   int resolution = 0;
   double limit = 0;
+  inextensible::Settings settings;               // those that are not the default
+  int evaluations = 0;                           // sets of settings that were tried
   double default_seconds = 0, default_step = 0;  // s/s, s
-  // With the settings that were found; not-a-number where they fail.
-  double seconds = 0, step = 0;
+  double seconds = 0, step = 0;                  // with the settings
+
+  double gain() const { return default_seconds / seconds; }
 };
 
 struct TunedEntry {
   std::string kind;  // of scene
   std::string solver;
-  inextensible::Settings settings;  // those that are not the default
-  // Geometric mean over the places of default_seconds over the smaller of both.
-  double gain = 1;
-  int evaluations = 0, budget = 0;  // sets of settings that were tried, and that might have been
+  int budget = 0;  // sets of settings that might have been tried at a place
   std::vector<TunedPlace> places;
   nlohmann::json rule;     // tuning_rule() of when it was found
   nlohmann::json context;  // date, commit and machine
@@ -46,13 +47,10 @@ Tuned parse_tuned(const std::string& text, const std::string& file);
 
 nlohmann::ordered_json tuned_document(const std::vector<TunedEntry>& entries);
 
-// Which solvers stand there once more, hollow, without their tuned settings, as <name>_untuned:
-// none, those that were faster without somewhere when they were tuned, or all that have any.
-enum class Untuned { none, where_faster, all };
-
 // Under its own name a solver gets its tuned settings, as far as neither its entry nor `given`
-// says otherwise.
+// says otherwise. If `untuned`, those that get any stand there once more, hollow, without them, as
+// <name>_untuned.
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
-          const std::map<std::string, inextensible::Settings>& given, Untuned untuned);
+          const std::map<std::string, inextensible::Settings>& given, bool untuned);
 
 }  // namespace harness

@@ -16,7 +16,7 @@ SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarses
   SweepSpec spec;
   spec.sweep = "strain";
   spec.scene = scene;
-  spec.limits = {0.03, 0.003, 0.0003};
+  spec.limits = {0.02, 0.002, 0.0002};
   spec.resolutions = std::move(sizes);
   spec.coarsest = coarsest;
   spec.finest = 1.0 / 6400;

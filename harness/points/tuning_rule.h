@@ -9,18 +9,17 @@
 
 namespace harness {
 
-// The scenes that settings are searched on, one a kind, each at two sizes and three limits, so that
-// a setting that suits one of them alone is found out. No reported result has these sizes or
-// limits. Without contestants.
+// The scenes that settings are searched on, one a kind, each at two sizes and three limits. No
+// reported result has these sizes. Without contestants.
 const std::vector<SweepSpec>& tuning_scenes();
+
+// Where a solver takes too long at one of a scene's sizes, it is tuned at the first of these that
+// is smaller and does not take too long.
+std::vector<int> smaller_sizes(const std::string& scene);
 
 // All that a search depends on but for the programs that it times: the scene with all its
 // parameters, sizes, limits, ladder and level of error, and the solver's settings with their
 // defaults and ranges.
-// Of a scene, in turn: where a solver takes too long at one of the sizes, it is tuned at the first
-// of these that is smaller and does not take too long.
-std::vector<int> smaller_sizes(const std::string& scene);
-
 nlohmann::json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver);
 
 // Whether an entry was found by today's rule.

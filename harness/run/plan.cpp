@@ -78,11 +78,6 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
         base.constraints = constraints;
         base.contestant = contestant.name;
         base.solver = contestant.solver;
-        base.settings = contestant.settings;
-        if (const auto options = sweep.solver_options.find(contestant.solver);
-            options != sweep.solver_options.end()) {
-          base.settings.insert(options->second.begin(), options->second.end());
-        }
         base.seed = suite.seed;
         base.adaptive = sweep.adaptive;
         // Without a limit of its own a solver does the same at all of them.
@@ -94,6 +89,10 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
           Search search;
           search.base = base;
           search.base.strain_limit = limit;
+          search.base.settings = contestant.settings_for(resolution, limit);
+          if (const auto options = sweep.solver_options.find(contestant.solver);
+              options != sweep.solver_options.end())
+            search.base.settings.insert(options->second.begin(), options->second.end());
           search.family = family;
           search.every_step = sweep.every_step || sweep.sweep == "step";
           add_ladder(search, sweep, filters);

@@ -11,10 +11,9 @@
 namespace harness {
 namespace {
 
-constexpr double give_up_at = 2.5;    // times the time that is known at a place
-constexpr double far_too_long = 4;    // times options.longest_run: no step of a short one takes it
-constexpr double no_use_above = 1.2;  // times the time without settings: that would count instead
-constexpr int samples = 3;            // of the best steps
+constexpr double give_up_at = 2.5;  // times the time that is known at a place
+constexpr double far_too_long = 4;  // times options.longest_run: no step of a short one takes it
+constexpr int samples = 3;          // of the best steps
 
 // Whether a run ran to the end with a motion that is right to the headline's error, or of which
 // nothing is known.
@@ -24,70 +23,56 @@ bool counts(const PointResult& point) {
 
 // One size and strain limit of the scene, and what is known there.
 struct Place {
-  Search search;
+  Search search = {};
   std::optional<double> stiffness = {};  // to begin calibrations from
   std::size_t best_rung = 0;             // of the best time so far; where the next search begins
   double best_seconds = 1e300;           // s/s
 };
 
 struct Found {
-  std::optional<std::size_t> rung = {};  // of the best step; none: all that were tried fail
-  double seconds = 0;                    // s/s
+  std::size_t rung = 0;  // of the best step
+  double seconds = 0;    // s/s
 };
 
+// At one place.
 class Tuner {
  public:
-  Tuner(const std::string& solver, const SweepSpec& scene, const TuneOptions& options,
-        const SweepRunners& runners)
-      : options_(options), runners_(runners) {
-    scene_ = scene;
-    scene_.contestants = {{solver, solver}};
-    scene_.refine = false;
-    places_ = places_of(scene_);
-    numbers_ = tunable_numbers(*inextensible::find_backend(solver));
-    options_.rules.budget =
-        std::min(options.rules.budget, options.trials_each * static_cast<int>(numbers_.size()));
-    entry_.kind = find_scene(scene.scene)->kind();
-    entry_.solver = solver;
-    entry_.budget = options_.rules.budget;
-    entry_.rule = tuning_rule(scene, *inextensible::find_backend(solver));
+  Tuner(const SweepSpec& scene, const TuneOptions& options, const SweepRunners& runners,
+        const std::vector<TunedNumber>& numbers)
+      : options_(options), runners_(runners), scene_(scene), numbers_(numbers) {
+    place_ = place_at(scene.resolutions.front());
   }
 
-  TunedEntry run() {
-    if (numbers_.empty()) return entry_;
+  // Nothing where no step counts at any size: that says nothing about settings. `guess` is tried
+  // first and takes the values found.
+  std::optional<TunedPlace> run(Values& guess) {
     begin();
-    if (places_.empty()) return entry_;
+    if (place_.best_seconds >= 1e300) return {};
     const auto seconds = [this](const Values& values, double hopeless) {
       return evaluate(values, hopeless);
     };
-    const TuneOutcome outcome = tune_values(numbers_, seconds, options_.rules);
-    entry_.gain = outcome.gain;
-    entry_.evaluations = outcome.evaluations;
-    entry_.settings = settings_of(outcome.values);
+    const TuneOutcome outcome = tune_values(numbers_, seconds, options_.rules, guess);
     const auto was = last_.find(initial()), is = last_.find(outcome.values);
-    if (was == last_.end() || is == last_.end()) return entry_;
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      const auto step = [&](const Found& found) {
-        return found.rung ? places_[i].search.ladder[*found.rung] : unknown;
-      };
-      const Found &before = was->second[i], &now = is->second[i];
-      const PointSpec& base = places_[i].search.base;
-      entry_.places.push_back({base.resolution, base.strain_limit, before.seconds, step(before),
-                               now.rung ? now.seconds : unknown, step(now)});
-    }
-    std::sort(entry_.places.begin(), entry_.places.end(), [](const auto& a, const auto& b) {
-      return std::pair(a.resolution, -a.limit) < std::pair(b.resolution, -b.limit);
-    });
-    return entry_;
+    if (was == last_.end() || is == last_.end()) return {};
+    guess = outcome.values;
+    const Found &before = was->second, &now = is->second;
+    const PointSpec& base = place_.search.base;
+    return TunedPlace{base.resolution,
+                      base.strain_limit,
+                      settings_of(outcome.values),
+                      outcome.evaluations,
+                      before.seconds,
+                      place_.search.ladder[before.rung],
+                      now.seconds,
+                      place_.search.ladder[now.rung]};
   }
 
  private:
-  static std::vector<Place> places_of(const SweepSpec& scene) {
+  Place place_at(int size) const {
     Suite suite;
-    suite.sweeps = {scene};
-    std::vector<Place> places;
-    for (Search& search : plan(suite, {})) places.push_back({.search = std::move(search)});
-    return places;
+    suite.sweeps = {scene_};
+    suite.sweeps.front().resolutions = {size};
+    return {.search = plan(suite, {}).front()};
   }
 
   Values initial() const {
@@ -103,57 +88,40 @@ class Tuner {
     return settings;
   }
 
-  PointSpec spec(const Place& place, std::size_t rung, const inextensible::Settings& settings) {
-    PointSpec spec = place.search.base;
-    spec.step = place.search.ladder[rung];
-    spec.settings = settings;
-    return spec;
-  }
-
-  PointResult run_once(Place& place, std::size_t rung, const inextensible::Settings& settings,
+  PointResult run_once(std::size_t rung, const inextensible::Settings& settings,
                        double most_seconds) {
-    const PointSpec what = spec(place, rung, settings);
-    const double hopeless = std::max(0.05, most_seconds * duration(place));
+    PointSpec what = place_.search.base;
+    what.step = place_.search.ladder[rung];
+    what.settings = settings;
+    const double hopeless = std::max(0.05, most_seconds * duration());
     PointResult point =
         runners_.run(what, {options_.timeout, hopeless, options_.interrupted, runners_.references},
-                     place.stiffness);
-    if (point.stiffness) place.stiffness = point.stiffness;
+                     place_.stiffness);
+    if (point.stiffness) place_.stiffness = point.stiffness;
     return point;
   }
 
   // The ladder's best step with the settings that the solver has by itself, at a smaller size where
-  // that takes too long. Places where no step counts at any size say nothing about settings.
+  // that takes too long.
   void begin() {
     const std::vector<int> smaller_ones = smaller_sizes(scene_.scene);
-    for (Place& place : places_) {
-      find_best(place, far_too_long * options_.longest_run);
-      for (const int size : smaller_ones) {
-        if (place.best_seconds * duration(place) <= options_.longest_run) break;
-        if (size >= place.search.base.resolution) continue;
-        SweepSpec smaller = scene_;
-        smaller.resolutions = {size};
-        smaller.limits = {place.search.base.strain_limit};
-        place = places_of(smaller).front();
-        const bool last = size == smaller_ones.back();
-        find_best(place, last ? 1e300 : far_too_long * options_.longest_run);
-      }
+    find_best(far_too_long * options_.longest_run);
+    for (const int size : smaller_ones) {
+      if (place_.best_seconds * duration() <= options_.longest_run) break;
+      if (size >= place_.search.base.resolution) continue;
+      place_ = place_at(size);
+      find_best(size == smaller_ones.back() ? 1e300 : far_too_long * options_.longest_run);
     }
-    std::erase_if(places_, [](const Place& place) { return place.best_seconds >= 1e300; });
-    std::stable_sort(places_.begin(), places_.end(), [](const Place& a, const Place& b) {
-      return a.best_seconds < b.best_seconds;
-    });
   }
 
-  static double duration(const Place& place) {
-    return place.search.base.scene_parameters.at("duration");
-  }
+  double duration() const { return place_.search.base.scene_parameters.at("duration"); }
 
-  void find_best(Place& place, double most_seconds) {
+  void find_best(double most_seconds) {
     std::map<std::size_t, PointResult> known;
-    double best = most_seconds / duration(place) / give_up_at;
+    double best = most_seconds / duration() / give_up_at;
     const auto run = [&](std::size_t rung) -> const PointResult& {
       const auto [at, fresh] = known.try_emplace(rung);
-      if (fresh) at->second = run_once(place, rung, {}, give_up_at * best);
+      if (fresh) at->second = run_once(rung, {}, give_up_at * best);
       if (counts(at->second)) best = std::min(best, at->second.seconds());
       return at->second;
     };
@@ -161,89 +129,48 @@ class Tuner {
       runners_.repeat(known.at(rung), {options_.timeout, 1e300, options_.interrupted, nullptr});
       return known.at(rung);
     };
-    StepSearch(place.search.ladder.size(), run, again, {headline_error}).find(std::nullopt);
-    for (const auto& [rung, point] : known) {
-      if (!counts(point) || point.seconds() >= place.best_seconds) continue;
-      place.best_rung = rung;
-      place.best_seconds = point.seconds();
-    }
+    StepSearch(place_.search.ladder.size(), run, again, {headline_error}).find(std::nullopt);
+    for (const auto& [rung, point] : known)
+      if (counts(point)) learn({rung, point.seconds()});
   }
 
-  // Geometric mean, over the places, of the faster of these settings and none; none if that is
-  // bound to be above `hopeless`.
+  // The seconds of the best step with these settings; none if there is none, or they are above
+  // `hopeless`.
   std::optional<double> evaluate(const Values& values, double hopeless) {
     const inextensible::Settings settings = settings_of(values);
     const bool in_race = hopeless < 1e300;
     const auto own = last_.find(values);
-    std::vector<Found> found;
-    std::vector<PointResult> points;
-    const auto without = [&](std::size_t i) {
-      return settings.empty() ? 1e300 : last_.at(initial())[i].seconds;
-    };
-    const auto log_sum = [&] {  // over the places so far
-      double sum = 0;
-      for (std::size_t i = 0; i < found.size(); ++i)
-        sum += std::log(std::min(found[i].seconds, without(i)));
-      return sum;
-    };
-    const auto count = static_cast<double>(places_.size());
-    double log_rest = 0;
-    for (const Place& place : places_) log_rest += std::log(0.5 * place.best_seconds);
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      PointResult point;
-      const std::size_t start = own == last_.end()
-                                    ? places_[i].best_rung
-                                    : own->second[i].rung.value_or(places_[i].best_rung);
-      const auto rung = best_step(places_[i], settings, start, in_race ? 1 : 2, without(i), point);
-      if (!rung && settings.empty()) break;
-      found.push_back({rung, rung ? point.seconds() : 1e300});
-      points.push_back(std::move(point));
-      log_rest -= std::log(0.5 * places_[i].best_seconds);
-      if (in_race && (log_sum() + log_rest) / count > std::log(hopeless)) break;
+    PointResult fastest;
+    std::optional<std::size_t> rung =
+        best_step(settings, own == last_.end() ? place_.best_rung : own->second.rung,
+                  in_race ? 1 : 2, hopeless, fastest);
+    // One run is enough to say of what is slower that it is not better.
+    if (rung && (!in_race || fastest.seconds() < place_.best_seconds)) {
+      for (int i = 1; i < samples; ++i)
+        runners_.repeat(fastest, {options_.timeout, 1e300, options_.interrupted, nullptr});
     }
-    std::optional<double> mean;
-    if (found.size() == places_.size()) {
-      mean = std::exp(log_sum() / count);
-      // One run is enough to say of what is slower that it is not better.
-      if (!in_race || *mean < lowest_) {
-        repeat(points, found);
-        mean = std::exp(log_sum() / count);
-        lowest_ = std::min(lowest_, *mean);
-      }
-    }
-    tell(settings, mean);
-    if (mean) learn(values, std::move(found));
-    return mean;
+    if (rung && fastest.seconds() > hopeless) rung.reset();
+    options_.tell(scene_.scene + "/" + place_.search.base.solver + " " + to_json(settings).dump() +
+                  ": " + (rung ? duration_text(fastest.seconds()) + "/s" : "too slow"));
+    if (!rung) return {};
+    last_[values] = {*rung, fastest.seconds()};
+    learn(last_[values]);
+    return fastest.seconds();
   }
 
-  void repeat(std::vector<PointResult>& points, std::vector<Found>& found) {
-    for (int i = 1; i < samples; ++i) {
-      for (std::size_t p = 0; p < points.size(); ++p) {
-        if (!found[p].rung) continue;
-        runners_.repeat(points[p], {options_.timeout, 1e300, options_.interrupted, nullptr});
-        found[p].seconds = points[p].seconds();
-      }
-    }
-  }
-
-  void learn(const Values& values, std::vector<Found> found) {
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      if (!found[i].rung || found[i].seconds >= places_[i].best_seconds) continue;
-      places_[i].best_seconds = found[i].seconds;
-      places_[i].best_rung = *found[i].rung;
-    }
-    last_[values] = std::move(found);
+  void learn(const Found& found) {
+    if (found.seconds >= place_.best_seconds) return;
+    place_.best_seconds = found.seconds;
+    place_.best_rung = found.rung;
   }
 
   // The rung of the fastest step, whose run goes to `fastest`: from `start` to both sides, until
-  // `patience` steps in a row are not faster. What takes longer than `enough` is of no use.
-  std::optional<std::size_t> best_step(Place& place, const inextensible::Settings& settings,
-                                       std::size_t start, int patience, double enough,
-                                       PointResult& fastest) {
+  // `patience` steps in a row are not faster.
+  std::optional<std::size_t> best_step(const inextensible::Settings& settings, std::size_t start,
+                                       int patience, double hopeless, PointResult& fastest) {
     std::optional<std::size_t> best;
     const auto faster = [&](std::size_t rung) {
-      const double most = best ? fastest.seconds() : no_use_above * enough;
-      PointResult point = run_once(place, rung, settings, most);
+      PointResult point = run_once(rung, settings, best ? fastest.seconds() : hopeless);
       if (!counts(point) || (best && point.seconds() >= fastest.seconds())) return false;
       best = rung;
       fastest = std::move(point);
@@ -253,7 +180,7 @@ class Tuner {
     const auto go = [&](int direction) {
       int in_vain = 0;
       for (auto at = static_cast<int>(start) + direction;
-           in_vain < patience && at >= 0 && at < static_cast<int>(place.search.ladder.size());
+           in_vain < patience && at >= 0 && at < static_cast<int>(place_.search.ladder.size());
            at += direction)
         in_vain = faster(static_cast<std::size_t>(at)) ? 0 : in_vain + 1;
     };
@@ -262,26 +189,42 @@ class Tuner {
     return best;
   }
 
-  void tell(const inextensible::Settings& settings, const std::optional<double>& mean) {
-    options_.tell(entry_.kind + "/" + entry_.solver + " " + to_json(settings).dump() + ": " +
-                  (mean ? duration_text(*mean) + "/s" : std::string("too slow")));
-  }
-
-  TuneOptions options_;
-  SweepRunners runners_;
-  SweepSpec scene_;
-  std::vector<Place> places_;
-  std::vector<TunedNumber> numbers_;
-  std::map<Values, std::vector<Found>> last_;  // of the last time that all were measured
-  double lowest_ = 1e300;                      // mean of what was run several times
-  TunedEntry entry_;
+  const TuneOptions& options_;
+  const SweepRunners& runners_;
+  const SweepSpec& scene_;  // one size and limit
+  const std::vector<TunedNumber>& numbers_;
+  Place place_;
+  std::map<Values, Found> last_;  // of the last time that it was measured
 };
 
 }  // namespace
 
-TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene,
-                       const TuneOptions& options, const SweepRunners& runners) {
-  return Tuner(solver, scene, options, runners).run();
+TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOptions options,
+                       const SweepRunners& runners) {
+  const inextensible::Backend& backend = *inextensible::find_backend(solver);
+  const std::vector<TunedNumber> numbers = tunable_numbers(backend);
+  options.rules.budget =
+      std::min(options.rules.budget, options.trials_each * static_cast<int>(numbers.size()));
+  TunedEntry entry{.kind = find_scene(scene.scene)->kind(),
+                   .solver = solver,
+                   .budget = options.rules.budget,
+                   .places = {},
+                   .rule = tuning_rule(scene, backend),
+                   .context = {}};
+  if (numbers.empty()) return entry;
+  Values guess;
+  for (const int size : scene.resolutions) {
+    for (const double limit : scene.limits) {
+      SweepSpec here = scene;
+      here.contestants = {{solver, solver}};
+      here.refine = false;
+      here.resolutions = {size};
+      here.limits = {limit};
+      if (auto place = Tuner(here, options, runners, numbers).run(guess))
+        entry.places.push_back(std::move(*place));
+    }
+  }
+  return entry;
 }
 
 }  // namespace harness

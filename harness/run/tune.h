@@ -1,8 +1,8 @@
-// What bench tune searches for: settings of a solver on scenes of one kind, judged by the time of
-// the fastest step whose motion is right to the headline's error, at several sizes and strain
-// limits (tune_search.h has the search; where there is no reference, any motion counts). At each
-// place the faster of tuned and untuned counts, as it does in rankings: so a setting may help where
-// it helps, and harms nowhere.
+// What bench tune searches for: settings of a solver on scenes of one kind, at several sizes and
+// strain limits, each for itself: best relaxations and numbers of passes depend on both. A set is
+// judged by the time of the fastest step whose motion is right to the headline's error
+// (tune_search.h has the search; where there is no reference, any motion counts). What was found at
+// one place is the first guess at the next.
 #pragma once
 
 #include "harness/points/suite.h"
@@ -23,9 +23,9 @@ struct TuneOptions {
   std::function<void(const std::string&)> tell = [](const std::string&) {};  // lines of progress
 };
 
-// Without `context`. No settings where nothing is gained, or the solver fails everywhere as it is.
-// Throws Interrupted.
-TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene,
-                       const TuneOptions& options, const SweepRunners& runners = {});
+// Without `context`. A place has no settings where nothing is gained, and is left out where the
+// solver fails as it is. Throws Interrupted.
+TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOptions options,
+                       const SweepRunners& runners = {});
 
 }  // namespace harness

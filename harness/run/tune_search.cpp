@@ -11,6 +11,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();  // seconds of what fails
 constexpr double give_up_trial_at = 1.5;                          // times the best seconds
+constexpr double last_reach = 0.15;                               // times the first
 constexpr std::uint64_t seed = 1;
 
 double shift(const TunedNumber& number) {
@@ -39,15 +40,18 @@ class DimensionedSearch {
                     const TuneRules& rules)
       : numbers_(numbers), seconds_(seconds), rules_(rules) {}
 
-  TuneOutcome run() {
+  TuneOutcome run(const Values& guess) {
     for (const TunedNumber& n : numbers_) outcome_.values.push_back(n.initial);
     const Values initial = outcome_.values;
     if (numbers_.empty() || rules_.budget < 2) return outcome_;
     best_ = evaluate(initial, none);
     if (best_ == none) return outcome_;
+    if (!guess.empty() && left() > 0) try_out(guess);
     const int steps = left();
-    for (int step = 1; step <= steps; ++step)
+    for (int step = 1; step <= steps; ++step) {
+      reach_ = rules_.reach * std::pow(last_reach, static_cast<double>(step) / steps);
       try_out(neighbor(1 - std::log(step) / std::log(std::max(2, steps))));
+    }
     if (outcome_.values == initial) return outcome_;
     const double now = evaluate(outcome_.values, none), was = evaluate(initial, none);
     if (now < none && was < none && was / now > 1 + rules_.least_gain) {
@@ -92,7 +96,7 @@ class DimensionedSearch {
   }
 
   double moved(const TunedNumber& number, double value) {
-    std::normal_distribution<double> distance(0, rules_.reach);
+    std::normal_distribution<double> distance(0, reach_);
     double at = position_of(number, value) + distance(random_);
     if (at < 0) at = -at > 1 ? 0 : -at;  // reflected at an end of the range
     if (at > 1) at = at > 2 ? 1 : 2 - at;
@@ -104,6 +108,7 @@ class DimensionedSearch {
   TuneRules rules_;
   TuneOutcome outcome_;
   double best_ = none;
+  double reach_ = 0;  // of the present trial
   std::set<Values> seen_;
   std::mt19937_64 random_{seed};
 };
@@ -111,8 +116,8 @@ class DimensionedSearch {
 }  // namespace
 
 TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
-                        const TuneRules& rules) {
-  return DimensionedSearch(numbers, seconds, rules).run();
+                        const TuneRules& rules, const Values& guess) {
+  return DimensionedSearch(numbers, seconds, rules).run(guess);
 }
 
 std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend,

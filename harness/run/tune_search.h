@@ -1,7 +1,8 @@
 // The search for a method's best settings by one rule for all, dynamically dimensioned search
 // (Tolson and Shoemaker, Water Resources Research 43, 2007): each trial moves some settings of the
 // best set by a normal distance, all of them at first and one in the end, since settings interact
-// (a relaxation and a target). Knows no solver: what a set of settings costs, a function says.
+// (a relaxation and a target). Departure: distances shrink, for budgets of a few dozen trials.
+// Knows no solver: what a set of settings costs, a function says.
 #pragma once
 
 #include <functional>
@@ -32,7 +33,7 @@ using TuneObjective = std::function<std::optional<double>(const Values&, double 
 
 struct TuneRules {
   int budget = 40;           // evaluations at most, of all settings together
-  double reach = 0.2;        // standard deviation of a move, over the range
+  double reach = 0.3;        // standard deviation of the first moves, over the range
   double least_gain = 0.05;  // all of it must be faster than the defaults by more than this
 };
 
@@ -42,9 +43,9 @@ struct TuneOutcome {
   int evaluations = 0;  // the first one included; at most the budget
 };
 
-// Throws what `seconds` throws.
+// `guess`, if any, is tried right after the initial values. Throws what `seconds` throws.
 TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
-                        const TuneRules& rules = {});
+                        const TuneRules& rules = {}, const Values& guess = {});
 
 // Where a value lies in its range, from 0 to 1, and back: by the logarithm of the distance to its
 // bound where it has one; logarithmic where it spans a factor of ten, for counts too (of 1 +

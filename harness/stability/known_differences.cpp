@@ -56,6 +56,14 @@ constexpr std::array differences{
                     "an edge without length has no direction until rounding gives it one; one pass "
                     "brings it to its length in that step, and BDF2 takes that for a velocity",
                     "not tried: a first step of backward Euler"},
+    KnownDifference{"coincident", "xpbd_small_steps@midpoint", wrong, wrong, bounces,
+                    "not tried: spectral_radius 0"},
+    KnownDifference{"noise", "xpbd_small_steps@midpoint", wrong, wrong, bounces,
+                    "not tried: spectral_radius 0"},
+    KnownDifference{
+        "chain/10000", "xpbd_small_steps@midpoint", Outcome::survived, Outcome::survived,
+        "the chain stretches, but stays below what counts as diverged; why is not examined",
+        "none is needed"},
     KnownDifference{"noise", "vertex_block_descent@bdf2", wrong, wrong, unfinished, finish},
     KnownDifference{"swing/chain", "vertex_block_descent@bdf2", wrong, wrong, unfinished, finish},
     KnownDifference{"swing/cloth", "vertex_block_descent@bdf2", wrong, wrong, unfinished, finish},

@@ -171,6 +171,7 @@ Backend xpbd_small_steps_row() {
         return std::make_unique<XpbdSmallSteps>(problem, settings_of<XpbdSmallSteps>(options),
                                                 options.start ? &options.start->x : nullptr, along);
       },
+      .takes_middle = true,
       .direction = Direction::local,
       .citation = "Macklin et al. 2016, 2019",
       .origin = Origin::literature,

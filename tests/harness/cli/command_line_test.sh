@@ -190,7 +190,7 @@ cp "$root/configs/tuned.json" .
 import json, sys
 before, after = ({(e["kind"], e["solver"]): e for e in json.load(open(name))["tuned"]} for name in (sys.argv[1], "tuned.json"))
 found = after[("chain", "icd")]
-assert found["budget"] == 4 and 0 < found["evaluations"] <= 4, found
+assert found["budget"] == 4 and all(0 < p["evaluations"] <= 4 for p in found["places"]), found
 assert {p["resolution"] for p in found["places"]} <= {50, 200, 25, 12} and found["places"], found
 assert len(before) > 10 and {**before, ("chain", "icd"): found} == after, before.keys() ^ after.keys()
 PYTHON

@@ -24,10 +24,17 @@ std::string write_tuned(const std::vector<TunedEntry>& entries) {
   return path;
 }
 
+TunedPlace place_at(int resolution, double limit, const inextensible::Settings& settings) {
+  return {resolution, limit, settings, 12, 2, 0.005, 1, 0.01};
+}
+
 TunedEntry of_the_drape(const std::string& solver, const inextensible::Settings& settings) {
   const SweepSpec& scene = tuning_scenes().at(1);
-  return {scene.scene, solver, settings, 1.5,
-          3,           4,      {},       tuning_rule(scene, *inextensible::find_backend(solver)),
+  return {scene.scene,
+          solver,
+          40,
+          {place_at(25, 0.02, settings)},
+          tuning_rule(scene, *inextensible::find_backend(solver)),
           {}};
 }
 
@@ -162,21 +169,42 @@ TEST(Tuned, SettingsAreUsedForTheirKindOfSceneAndBelowWhatASuiteSays) {
   EXPECT_EQ(to_json(parse_suite(to_json(drape).dump(), "again")), to_json(drape));
 }
 
+TEST(Tuned, SettingsAreThoseOfTheNearestSizeAndLimit) {
+  TunedEntry entry = of_the_drape("jacobi", {{"relaxation", 1.1}});
+  entry.places.push_back(place_at(25, 0.0002, {{"relaxation", 1.2}}));
+  entry.places.push_back(place_at(55, 0.02, {{"relaxation", 1.3}}));
+  entry.places.push_back(place_at(55, 0.0002, {}));
+  const Suite suite =
+      parse_suite(R"({"tuned": ")" + write_tuned({entry}) +
+                      R"(", "sweeps": [{"sweep": "resolution", "scene": "drape", "limits":
+                      [0.1, 0.0001], "resolutions": [21, 71], "solvers": ["jacobi"]}]})",
+                  "suite");
+  std::map<std::pair<int, double>, double> found;
+  for (const Search& search : plan(suite, {})) {
+    const auto& settings = search.base.settings;
+    found[{search.base.resolution, search.base.strain_limit}] =
+        settings.empty() ? 0 : std::get<double>(settings.at("relaxation"));
+  }
+  EXPECT_EQ(found,
+            (std::map<std::pair<int, double>, double>{
+                {{21, 0.1}, 1.1}, {{21, 0.0001}, 1.2}, {{71, 0.1}, 1.3}, {{71, 0.0001}, 0}}));
+}
+
 TEST(Tuned, AFileIsReadAsItIsWrittenAndItsHashIsThatOfItsSettings) {
-  TunedEntry e{"chain", "jacobi",          {{"relaxation", 1.7}}, 1.25, 12, 40,
-               {},      {{"error", 0.02}}, {{"date", "today"}}};
-  e.places.push_back({50, 0.01, 2, 0.005, 1, 0.01});
+  TunedEntry e{
+      "chain",           "jacobi",           40, {place_at(50, 0.01, {{"relaxation", 1.7}})},
+      {{"error", 0.02}}, {{"date", "today"}}};
   const std::string text = tuned_document({e}).dump();
   const Tuned once = parse_tuned(text, "t");
   ASSERT_EQ(once.entries.size(), 1u);
   EXPECT_EQ(tuned_document(once.entries).dump(), text);
-  e.gain = 7;
+  e.places[0].seconds = 7;
   EXPECT_EQ(parse_tuned(tuned_document({e}).dump(), "t").hash, once.hash);
-  e.settings["relaxation"] = 1.71;
+  e.places[0].settings["relaxation"] = 1.71;
   EXPECT_NE(parse_tuned(tuned_document({e}).dump(), "t").hash, once.hash);
   for (const auto& [from, to] :
        {std::pair("1.7", "7.5"), std::pair("relaxation", "relation"), std::pair("jacobi", "jakobi"),
-        std::pair("chain", "train"), std::pair("1.25", "-1"), std::pair("tuned/2", "tuned/9")}) {
+        std::pair("chain", "train"), std::pair("0.005", "-1"), std::pair("tuned/3", "tuned/9")}) {
     std::string wrong = text;
     wrong.replace(wrong.find(from), std::string(from).size(), to);
     EXPECT_THROW(static_cast<void>(parse_tuned(wrong, "t")), UsageError) << to;

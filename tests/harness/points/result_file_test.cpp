@@ -244,8 +244,8 @@ TEST(Suites, ThatAreCommittedFitTheirSchemaAndAreAccepted) {
 TEST(Tuned, SettingsThatAreCommittedFitTheirSchemaAndAreAccepted) {
   EXPECT_EQ(misfits(read(source("configs/tuned.json")), "configs/tuned.schema.json"), "");
   EXPECT_NO_THROW(static_cast<void>(read_tuned_up_to_date("tuned.json")));
-  TunedEntry entry{"chain", "icd", {{"max_iterations", 3.0}}, 1.5, 2, 3, {}, {}, {}};
-  entry.places.push_back({50, 0.01, 2, 0.01, 1, 0.02});
+  TunedEntry entry{"chain", "icd", 3, {{50, 0.01, {{"max_iterations", 3.0}}, 2, 2, 0.01, 1, 0.02}},
+                   {},      {}};
   entry.rule = tuning_rule(tuning_scenes().front(), *inextensible::find_backend("icd"));
   entry.context = {{"date", "d"}, {"cpu_model", "c"}, {"commit", "c"}};
   EXPECT_EQ(misfits(json::parse(tuned_document({entry}).dump()), "configs/tuned.schema.json"), "");
