@@ -46,7 +46,7 @@ class Tuner {
   // Nothing where no step counts at any size: that says nothing about settings. `guess` is tried
   // first and takes the values found.
   std::optional<TunedPlace> run(Values& guess) {
-    begin();
+    begin(guess);
     if (place_.best_seconds >= 1e300) return {};
     const auto seconds = [this](const Values& values, double hopeless) {
       return evaluate(values, hopeless);
@@ -102,16 +102,24 @@ class Tuner {
   }
 
   // The ladder's best step with the settings that the solver has by itself, at a smaller size where
-  // that takes too long.
-  void begin() {
+  // that takes too long, and longer with `guess` too: a default must not decide at which size a
+  // method is tuned.
+  void begin(const Values& guess) {
     const std::vector<int> smaller_ones = smaller_sizes(scene_.scene);
     find_best(far_too_long * options_.longest_run);
     for (const int size : smaller_ones) {
-      if (place_.best_seconds * duration() <= options_.longest_run) break;
+      if (place_.best_seconds < 1e300 && takes_too_long() && !guess.empty())
+        evaluate(guess, give_up_at * place_.best_seconds);
+      if (!takes_too_long()) break;
       if (size >= place_.search.base.resolution) continue;
       place_ = place_at(size);
+      last_.clear();
       find_best(size == smaller_ones.back() ? 1e300 : far_too_long * options_.longest_run);
     }
+  }
+
+  bool takes_too_long() const {
+    return !(place_.best_seconds * duration() <= options_.longest_run);
   }
 
   double duration() const { return place_.search.base.scene_parameters.at("duration"); }

@@ -16,8 +16,8 @@ struct TuneOptions {
   TuneRules rules;
   int trials_each = 10;  // of rules.budget at most so many for each setting
   double timeout = 10;   // s, of a run
-  // Where a solver's best run takes longer than this as it is, the place is taken at a smaller
-  // size.
+  // Where a solver's best run takes longer than this, as it is and with what was found at the place
+  // before, the place is taken at a smaller size.
   double longest_run = 0.25;  // s
   std::function<bool()> interrupted = nullptr;
   std::function<void(const std::string&)> tell = [](const std::string&) {};  // lines of progress

@@ -282,6 +282,30 @@ TEST(Tune, APlaceWhoseRunsAreLongIsTakenAtASmallerSize) {
   EXPECT_EQ(sizes(1e-3), (std::set<int>{12})) << "the smallest, though it takes long there too";
 }
 
+// A default must not decide at which size a method is tuned: at 200 vertices this one takes too
+// long with it, and not with what was found at 50.
+TEST(Tune, APlaceStaysWhereWhatWasFoundBeforeIsFastEnough) {
+  SweepRunners runners = fake(10);
+  runners.run = [run = runners.run](const PointSpec& spec, const RunLimits& limits,
+                                    std::optional<double> stiffness) {
+    RunLimits scaled = limits;
+    const double size = spec.resolution / 50.0;
+    scaled.hopeless /= size;
+    PointResult point = run(spec, scaled, stiffness);
+    for (double& seconds : point.samples) seconds *= size;
+    return point;
+  };
+  const auto places = [&](double longest_run) {
+    TuneOptions options = thorough();
+    options.longest_run = longest_run;
+    const TunedEntry entry = tune_solver("gauss_seidel_colored", chain(), options, runners);
+    return std::count_if(entry.places.begin(), entry.places.end(),
+                         [](const TunedPlace& place) { return place.resolution == 200; });
+  };
+  EXPECT_EQ(places(2), 3);  // 2.4 s without settings, 0.4 s with those found
+  EXPECT_EQ(places(0.3), 0);
+}
+
 TEST(Tune, AnEntryIsRefusedOnceItsRuleHasChanged) {
   TunedEntry entry =
       tune_solver("gauss_seidel_colored", chain(), {.rules = {.budget = 10}}, fake(10));
