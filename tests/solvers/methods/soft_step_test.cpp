@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "solvers/problem/edge_constraints.h"
 #include "solvers/registry.h"
 
 namespace inextensible {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "solvers/methods/colored_edges.h"
+#include "solvers/problem/edge_constraints.h"
 #include "solvers/registry.h"
 #include "support/random_mesh.h"
 
