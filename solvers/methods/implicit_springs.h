@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string>
 
 #include "solvers/methods/setting_fields.h"
@@ -68,7 +69,7 @@ class ImplicitSprings final : public Stepper {
   Eigen::VectorXd gradient_, step_;
   std::vector<double> pull_, pull_before_;  // N/m, predicted tension over length; the last step's
   Positions v_before_;                      // v^{n-1}
-  double h_before_ = 0;                     // s; 0: no step yet
+  double time_before_ = std::numeric_limits<double>::infinity();  // s, of v_before_
 };
 
 }  // namespace inextensible

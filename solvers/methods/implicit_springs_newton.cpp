@@ -37,7 +37,9 @@ double ImplicitSprings::start(const State& state, double h, Positions& x) {
   consider(state.x);
   if (!extrapolates_) return lowest;
   ahead_ = state.x + h * state.v;
-  if (h_before_ > 0) ahead_ += (h * h / h_before_) * (state.v - v_before_);
+  // The time between states, not the last step's length: within BDF2 they differ.
+  const double since = state.time - time_before_;
+  if (since > 0) ahead_ += (h * h / since) * (state.v - v_before_);
   for (const int vertex : problem().pinned()) ahead_.col(vertex) = state.x.col(vertex);
   consider(ahead_);
   return lowest;
@@ -202,7 +204,7 @@ StepResult ImplicitSprings::newton(double h, double current, Positions& x) {
 StepResult ImplicitSprings::end_velocities(const State& before, double h, const Positions& filtered,
                                            const Positions& x, Positions& v) {
   v_before_ = before.v;
-  h_before_ = h;
+  time_before_ = before.time;
   pull_before_.swap(pull_);
   return Stepper::end_velocities(before, h, filtered, x, v);
 }

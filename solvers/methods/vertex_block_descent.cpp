@@ -11,6 +11,7 @@
 //
 // A vertex in contact takes the minimum within its plane. Loops: one over vertices a pass.
 #include <algorithm>
+#include <limits>
 
 #include "solvers/methods/rows.h"
 #include "solvers/methods/setting_fields.h"
@@ -41,7 +42,7 @@ class VertexBlockDescent final : public Stepper {
   Positions inertial_;           // x + h v + h^2 g, drag's included
   std::vector<double> inertia_;  // m + h times drag, kg
   Positions v_before_;           // v^{n-1}
-  double h_before_ = 0;          // s; 0: no step yet
+  double time_before_ = std::numeric_limits<double>::infinity();  // s, of v_before_
 };
 
 constexpr int most_contact_rounds = 30;
@@ -71,11 +72,12 @@ VertexBlockDescent::VertexBlockDescent(std::shared_ptr<const Problem> shared,
 void VertexBlockDescent::start(const State& state, double h, Positions& x) const {
   x = inertial_;
   const double gravity = problem().gravity().norm();
-  if (h_before_ == 0 || gravity == 0) return;
+  const double since = state.time - time_before_;  // within BDF2 not the last step's length
+  if (since <= 0 || gravity == 0) return;
   const Eigen::Vector3d down = problem().gravity() / gravity;
   for (int v = 0; v < problem().vertices(); ++v) {
     if (problem().inverse_mass()[v] == 0) continue;
-    const double fall = down.dot(state.v.col(v) - v_before_.col(v)) / h_before_;
+    const double fall = down.dot(state.v.col(v) - v_before_.col(v)) / since;
     x.col(v) = state.x.col(v) + h * state.v.col(v) + h * h * std::clamp(fall, 0.0, gravity) * down;
   }
 }
@@ -125,7 +127,7 @@ StepResult VertexBlockDescent::end_velocities(const State& before, double h,
                                               const Positions& filtered, const Positions& x,
                                               Positions& v) {
   v_before_ = before.v;
-  h_before_ = h;
+  time_before_ = before.time;
   return Stepper::end_velocities(before, h, filtered, x, v);
 }
 
