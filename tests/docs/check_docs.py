@@ -98,10 +98,10 @@ def found_again(path: str, line: int, text: str) -> tuple[str, int] | None:
 
 
 def references() -> str:
-    """Which routes made each committed reference, and until when it can be trusted at some levels of error."""
+    """Until when each committed reference can be trusted at some levels of error."""
     levels = (0.02, 0.01, 0.005)
-    rows = ["| reference | first route | second route | order seen | " + " | ".join(
-        f"trusted at {100 * level:g} % until, s" for level in levels) + " | runs of the ensemble |\n|" + "---|" * (5 + len(levels)) + "\n"]
+    rows = ["| reference | " + " | ".join(f"{100 * level:g} %" for level in levels) + " | runs of the ensemble |\n|"
+            + "---|" * (2 + len(levels)) + "\n"]
 
     def number_of(path: Path) -> int:
         return int(re.findall(r"-n(\d+)", path.name)[0])
@@ -110,9 +110,8 @@ def references() -> str:
         file = json.loads(path.read_text(encoding="utf-8"))
         known = list(zip(file["times"], file["gap"]))[:len(file["positions"])]
         until = (max((t for t, gap in known if measured_numbers.SURE * gap <= level), default=0) for level in levels)
-        order = file["observed_order"]
-        rows.append(f"| `{path.stem}` | {file['method']} | {file['second_method']} | {'-' if order is None else format(order, '.2g')} | "
-                    + " | ".join(f"{t:g}" for t in until) + f" | {file.get('ensemble', {}).get('runs', '-')} |\n")
+        rows.append(f"| `{path.stem}` | " + " | ".join(f"{t:g}" for t in until)
+                    + f" | {file.get('ensemble', {}).get('runs', '-')} |\n")
     return "".join(rows)
 
 
