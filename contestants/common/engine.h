@@ -34,7 +34,7 @@ template <class Engine>
 inextensible::Backend engine_row(const std::string& summary, const std::string& label) {
   return {.name = Engine::name,
           .summary = summary.c_str(),
-          .knob = inextensible::Knob::time_step,
+          .strain_control = inextensible::StrainControl::time_step,
           .contestant = true,
           .settings = inextensible::setting_infos(Engine::fields()),
           .make = make_engine<Engine>,

@@ -30,7 +30,7 @@ struct Run {
   Reach reach;
 };
 
-std::optional<Run> run_of(const json& document, const Cast& cast, double noise) {
+std::optional<Run> run_of(const json& document, const ContestantRoles& cast, double noise) {
   const Point point(document, noise);
   if (document.value("adaptive", false) || !point.ok()) return std::nullopt;
   const Role role = cast.of(point.contestant());
@@ -99,7 +99,7 @@ std::vector<BudgetTable> budget_tables(const std::vector<const json*>& documents
                                        const std::vector<double>& budgets) {
   std::vector<Run> runs;
   for (const json* document : documents) {
-    const Cast cast(*document);
+    const ContestantRoles cast(*document);
     const double noise = pair_noise_of(*document);
     for (const json& p : document->at("points")) {
       if (auto run = run_of(p, cast, noise)) runs.push_back(std::move(*run));

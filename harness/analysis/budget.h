@@ -29,7 +29,7 @@ struct Budgeted {
   std::vector<std::optional<Reach>> reached;  // one for each budget; none: no run is that fast
 };
 
-// Of a scene and size. Rows: tightest strain at the largest budget first.
+// One scene and size. Rows: tightest strain at the largest budget first.
 struct BudgetTable {
   std::string scene;
   int resolution = 0, vertices = 0;

@@ -9,7 +9,7 @@
 
 namespace harness::analysis {
 
-// Of one row of the ranking, at its fastest runs whatever their motion.
+// Growth of one row of the ranking, at its fastest runs for any motion.
 struct RowGrowth {
   std::string row;
   Slope exponent;           // of the time of a step over the number of vertices

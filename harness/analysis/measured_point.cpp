@@ -13,9 +13,7 @@ double Point::filter_seconds() const {
 std::vector<double> Point::samples_of(const char* key) const {
   const auto seconds = p_->find(key);
   if (seconds == p_->end() || !seconds->is_object()) return {};
-  if (const auto samples = seconds->find("samples"); samples != seconds->end())
-    return samples->get<std::vector<double>>();
-  return {seconds->at("median").get<double>()};
+  return seconds->at("samples");
 }
 
 double Point::delivered_strain() const {
@@ -71,7 +69,7 @@ Ratio ratio_of_steps(const Point& a, const Point& b) {
   return times(ratio(a, b), a.number("step") / b.number("step"));
 }
 
-Cast::Cast(const json& document) {
+ContestantRoles::ContestantRoles(const json& document) {
   const json legend = document.value("legend", json::object());
   for (const char* list : {"contestants", "solvers"}) {
     for (const json& entry : legend.value(list, json::array())) {
@@ -92,19 +90,21 @@ Cast::Cast(const json& document) {
   }
 }
 
-Role Cast::of(const std::string& contestant) const {
+Role ContestantRoles::of(const std::string& contestant) const {
   const auto place = known_.find(contestant);
   return place != known_.end()
              ? place->second
              : Role{.name = contestant, .family = contestant, .solver = contestant};
 }
 
-std::string Cast::at_any_settings(const std::string& contestant) const {
+std::string ContestantRoles::at_any_settings(const std::string& contestant) const {
   const Role role = of(contestant);
   return role.hollow && !role.again ? role.solver : contestant;
 }
 
-void Cast::add(const Cast& other) { known_.insert(other.known_.begin(), other.known_.end()); }
+void ContestantRoles::add(const ContestantRoles& other) {
+  known_.insert(other.known_.begin(), other.known_.end());
+}
 
 double pair_noise_of(const json& document) {
   const json noise = document.value("context", json::object()).value("noise", json());

@@ -22,8 +22,7 @@ class Point {
 
   std::string id() const { return p_->at("id"); }
   std::string text(const char* key) const { return p_->at(key); }
-  // A solver with its settings. Older files have solvers only.
-  std::string contestant() const { return p_->value("contestant", text("solver")); }
+  std::string contestant() const { return p_->at("contestant"); }  // a solver with its settings
   bool is(const char* key, const std::string& value) const { return p_->at(key) == value; }
   bool flag(const char* key) const { return p_->value(key, false); }
   bool ok() const { return is("status", "ok"); }
@@ -39,9 +38,8 @@ class Point {
   const nlohmann::json& document() const { return *p_; }
 
   double seconds() const { return time_of(samples()); }  // not-a-number where nothing was timed
-  // Of the inextensibility filter alone; not-a-number in older files.
+  // Time of the inextensibility filter alone.
   double filter_seconds() const;
-  // Of older files without samples the median, for one.
   std::vector<double> samples() const { return samples_of("seconds_per_simulated_second"); }
   double noise() const { return noise_; }
   double steps() const { return number("duration") / number("step"); }
@@ -66,9 +64,9 @@ class Point {
   double noise_;
 };
 
-// Of a's time over b's.
+// Ratio of a's time to b's.
 Ratio ratio(const Point& a, const Point& b);
-// Of the time of a step.
+// Ratio of the times of a step.
 Ratio ratio_of_steps(const Point& a, const Point& b);
 
 // What a file says of a contestant.
@@ -81,16 +79,16 @@ struct Role {
   bool ranked() const { return competes && !hollow && !again; }
 };
 
-// Of one file's legend and noise; contestants that it does not name are their own family.
-class Cast {
+// One file's legend and noise; contestants that it does not name are their own family.
+class ContestantRoles {
  public:
-  Cast() = default;
-  explicit Cast(const nlohmann::json& document);
+  ContestantRoles() = default;
+  explicit ContestantRoles(const nlohmann::json& document);
   Role of(const std::string& contestant) const;
   // Whose row a contestant's points stand in where any settings may be chosen: a hollow one's in
   // its solver's, but for the second of an A/A pair, which would give the first a second chance.
   std::string at_any_settings(const std::string& contestant) const;
-  void add(const Cast& other);  // what is known already stays
+  void add(const ContestantRoles& other);  // what is known already stays
 
  private:
   std::map<std::string, Role> known_;

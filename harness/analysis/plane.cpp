@@ -56,7 +56,8 @@ void rank(std::vector<Entry>& entries) {
   }
 }
 
-Cell cell_of(const std::vector<const Point*>& here, double limit, double level, const Cast& cast) {
+Cell cell_of(const std::vector<const Point*>& here, double limit, double level,
+             const ContestantRoles& cast) {
   Cell cell;
   cell.strain_limit = limit;
   cell.level = level;
@@ -113,7 +114,8 @@ std::vector<double> levels_in(const json& document) {
   return levels;
 }
 
-Plane plane_of(const std::vector<const Point*>& points, const json& document, const Cast& cast) {
+Plane plane_of(const std::vector<const Point*>& points, const json& document,
+               const ContestantRoles& cast) {
   const Point& one = *points.front();
   Plane plane;
   plane.scene = one.text("scene");
@@ -238,7 +240,7 @@ std::vector<std::string> Plane::leaders() const {
 }
 
 std::vector<Plane> planes_of(const json& document) {
-  const Cast cast(document);
+  const ContestantRoles cast(document);
   const double noise = pair_noise_of(document);
   std::vector<Point> points;
   for (const json& p : document.at("points")) {

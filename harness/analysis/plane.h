@@ -27,7 +27,7 @@ struct Entry {
   double error = unknown;  // at the cell's level; of any motion at the headline's
 };
 
-// Of a strain limit and a level of error.
+// One strain limit and error level.
 struct Cell {
   double strain_limit = 0, level = any_motion;
   std::vector<Entry> entries;  // fastest first
@@ -62,7 +62,7 @@ struct Cell {
 std::string method_of(const std::string& row);
 std::string stepper_of(const std::string& row);
 
-// Of a scene and size in one kind of sweep.
+// One scene and size in one kind of sweep.
 struct Plane {
   std::string scene, sweep;
   nlohmann::json scene_parameters;

@@ -29,7 +29,7 @@ class Swing : public Reading {
   }
 
  protected:
-  // Of the parabola through three positions whose middle one is the largest.
+  // Records the peak of the parabola through three positions whose middle one is the largest.
   void raise_peak(double was, double is) {
     const double a = std::abs(before_last_), b = std::abs(was), c = std::abs(is);
     if (b >= a && b >= c && 2 * b > a + c)

@@ -62,25 +62,25 @@ Ending run_once(const KnownAnswer& answer, const Built& built, const Backend& ba
                                                   {answer.strain_limit, 1, settings, &state});
   const auto reading = answer.reading(built.at);
   stepper->observe(reading->observer());
-  const auto look = [&](const State& after, const Driven& /*driven*/) {
+  const auto look = [&](const State& after, const DriveState& /*driven*/) {
     reading->after(before, after, step);
     before = after;
     raise(ending.strain, strain_range(*scene.problem, stepper->filtered_positions()).most);
-    if (backend.knob == inextensible::Knob::stiffness &&
+    if (backend.strain_control == inextensible::StrainControl::stiffness &&
         !(ending.strain <= Calibration::cut_short * answer.strain_limit)) {
       ending.status = PointStatus::strain_missed;
       ending.detail = "strain " + number_text(ending.strain, 3);
     }
     return ending.status == PointStatus::ok && !reading->done();
   };
-  const Driven driven =
+  const DriveState driven =
       drive(*stepper, state, {step, std::lround(scene.duration / step)}, look, {timeout, begin});
   stepper->observe(nullptr);
   ending.seconds = since(begin);
-  if (driven.end == Driven::End::refused) {
+  if (driven.end == DriveState::End::refused) {
     ending.status = PointStatus::not_converged;
     ending.detail = "refused at t = " + number_text(state.time, 3) + " s: " + driven.result.detail;
-  } else if (driven.end == Driven::End::timed_out) {
+  } else if (driven.end == DriveState::End::timed_out) {
     ending.status = PointStatus::timeout;
     ending.detail = "longer than " + number_text(timeout) + " s";
   }
@@ -94,7 +94,7 @@ Ending run_once(const KnownAnswer& answer, const Built& built, const Backend& ba
 Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double step,
                       double timeout) {
   const Built built(answer);
-  if (backend.knob != inextensible::Knob::stiffness)
+  if (backend.strain_control != inextensible::StrainControl::stiffness)
     return run_once(answer, built, backend, {}, step, timeout);
   Ending best;
   best.status = PointStatus::skipped;

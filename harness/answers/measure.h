@@ -45,7 +45,7 @@ double exact_value(const KnownAnswer& answer);
 nlohmann::json answers_document(nlohmann::json context, const std::vector<AnswerRun>& plan,
                                 const AnswerOutcome& outcome,
                                 const std::vector<std::string>& command);
-// Of such a document.
+// Prints such a document.
 void print_answers(std::ostream& out, const nlohmann::json& document);
 
 }  // namespace harness

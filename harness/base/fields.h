@@ -9,7 +9,6 @@ namespace harness {
 
 struct FieldTraits {
   const char* inside = "";  // the nested object of the file that holds it
-  bool later = false;       // absent in older files; it then keeps its initial value
   bool nullable = false;    // null in files: a number that is not known, a text that is empty
   bool positive = false;    // a number above 0, not merely of at least 0
 };

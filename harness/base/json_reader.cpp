@@ -170,7 +170,7 @@ json parse_commented(const std::string& text, const std::string& path) {
 }
 
 std::string value_text(const json& value) {
-  // Of what is large only the kind: writing it down may take as long as reading it did.
+  // A large value is named by its kind only: printing it may take as long as reading it.
   if (value.is_structured() && value.size() > 8)
     return std::string(value.is_array() ? "a list" : "an object") + " of " +
            std::to_string(value.size());

@@ -11,7 +11,7 @@ namespace harness {
 struct Shard {
   std::size_t index = 1, count = 1;
 
-  // Of a list, one stretch: the stretches of all parts, in their order, are the list.
+  // Keeps one stretch of a list: the stretches of all parts, in order, are the list.
   template <class T>
   void keep(std::vector<T>& list) const {
     const std::size_t begin = list.size() * (index - 1) / count, end = list.size() * index / count;

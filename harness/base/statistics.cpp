@@ -50,7 +50,7 @@ std::vector<double> ways_to_sum(const std::vector<int>& ranks, std::size_t n) {
   return ways[n];
 }
 
-// Of all ways to choose n of these ranks, the fraction whose sum is at least `least`.
+// Fraction of all ways to choose n of these ranks whose sum is at least `least`.
 double exact_tail(const std::vector<int>& ranks, std::size_t n, int least) {
   const std::vector<double> ways = ways_to_sum(ranks, n);
   return std::accumulate(ways.begin() + least, ways.end(), 0.0) /
@@ -124,7 +124,7 @@ Ratio ratio_of_times(const std::vector<double>& a, const std::vector<double>& b,
       for (const double y : b) quotients.push_back(x / y);
     }
     std::sort(quotients.begin(), quotients.end());
-    // Of skewed samples the quotient of minima may lie outside of what the test keeps.
+    // With skewed samples the quotient of minima may lie outside the test's interval.
     ratio.low = std::min(quotients[c - 1], ratio.value);
     ratio.high = std::max(quotients[quotients.size() - c], ratio.value);
   }

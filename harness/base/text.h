@@ -15,7 +15,7 @@ double rounded_to(double value, int digits = 6);
 // against a limit of 0.0001.
 std::string told_apart(double value, double other);
 
-// Of a text for a message: its beginning if it is long, and one line in any case.
+// A text shortened for a message: its beginning if it is long, and always one line.
 std::string shortened(const std::string& text, std::size_t most = 120);
 
 // Lines of more than `columns` go on below, indented, from a space on; a longer word stays whole.

@@ -14,7 +14,7 @@ namespace harness::claims {
 
 namespace {
 
-// Of a run's sampled steps that took a second iteration: in the others the last is the first.
+// Sampled steps that took a second iteration; in the others the last is the first.
 struct Residuals {
   int samples = 0;
   double first = 0, last = 0, change = 0;  // means, m
@@ -108,7 +108,7 @@ constexpr double alike = 0.01;  // of the cloth's size: a viewer sees no differe
 // runs has sqrt(2) times the deviation of one.
 const double deviations_of_a_difference = 3 * std::sqrt(2);
 
-// Of one scene of the stability sweep's direct comparison.
+// One scene of the stability sweep's frame-by-frame comparison.
 struct Frames {
   double before = 0;  // largest distance of a vertex up to first contact
   double beyond = 0;  // after it: difference of a shape statistic beyond the ensemble's, largest

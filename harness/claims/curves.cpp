@@ -15,7 +15,7 @@ Points::Points(const std::vector<json>& results) {
   using Key = std::tuple<std::string, std::string, std::string, bool>;
   std::set<Key> seen;
   for (const json& result : results) {
-    cast_.add(Cast(result));
+    cast_.add(ContestantRoles(result));
     if (result.value("schema", "") == "inextensible-stability/1") {
       for (const json& cell : result.at("matrix")) matrix_.push_back(&cell);
       for (const json& mesh : result.at("degrees_of_freedom")) freedom_.push_back(&mesh);

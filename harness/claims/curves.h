@@ -68,15 +68,15 @@ class Points {
 
   std::vector<Point> all_;
   bool repeated_ = false;
-  Cast cast_;
+  ContestantRoles cast_;
   // Vertices, by scene and sweep.
   std::map<std::pair<std::string, std::string>, std::set<double, std::greater<>>> sizes_;
   std::vector<const nlohmann::json*> matrix_, freedom_, same_frame_;
 };
 
-// Of seconds over the axis, both logarithmic.
+// Slope of seconds over the axis, both logarithmic.
 Slope slope_of(const Curve& curve);
-// Of a's seconds over b's, where both have a point: its interval is the wider one of what the
+// Ratio of a's seconds to b's, where both have a point: its interval is the wider one of what the
 // scatter about the line and what the ratios' own intervals give.
 Slope slope_of_ratio(const Curve& a, const Curve& b);
 // Notes the curve's points as evidence.

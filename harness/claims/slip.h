@@ -5,7 +5,7 @@
 
 namespace harness::claims {
 
-// Of a point of the scene: how far its rim is below the waist where it began, over the way from
+// How far a point's rim is below the waist where it began, over the way from
 // there to the hips; of the end that is higher and of the one that is lower.
 struct Slip {
   double least, most;

@@ -26,11 +26,11 @@ Answer below(const Slope& slope, double threshold);
 Answer all_of(const std::vector<Answer>& answers);  // no if one is no
 
 std::string verdict_of(Answer answer);
-// Of a claim in two parts: one of them yes and the other no is `changed`.
+// Verdict on a claim in two parts: one yes and one no is `changed`.
 std::string verdict_of(Answer one, Answer other);
 // Counts of places: not reproduced if not so at most, changed if so at most, undecided if at half.
 std::string verdict_of_counts(int yes, int no, int all);
-// Of the same claim looked at in several ways; a way that was not measured does not count.
+// Verdict on a claim judged in several ways; a way that was not measured does not count.
 std::string verdict_of_all(const std::vector<std::string>& verdicts);
 
 std::string text(double value, int digits = 3);

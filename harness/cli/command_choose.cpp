@@ -91,7 +91,7 @@ Suite suite_of(const ChooseCommand& given, double rate) {
 }
 
 // A kept reference, or a finer run made now, which is on the shelf then. Null: neither.
-std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, ReferenceShelf& shelf,
+std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, ReferenceFolder& shelf,
                                                const ChooseLimits& limits) {
   if (auto kept = shelf.find(sweep.scene, sweep.scene_parameters)) return kept;
   std::cerr << "this scene has no reference: making a finer run in its place ...\n";
@@ -121,7 +121,7 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
 }
 
 Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
-               std::shared_ptr<ReferenceShelf> shelf) {
+               std::shared_ptr<ReferenceFolder> shelf) {
   SweepEvents events;
   events.point = [](const PointResult& point, std::size_t search, std::size_t all) {
     std::cerr << '[' << search + 1 << '/' << all << "] " << point.spec.name() << " at "
@@ -147,7 +147,7 @@ int choose(const ChooseCommand& given) {
   const TimingLock lock(!given.no_wait);
   const auto begin = Clock::now();
   const ChooseLimits limits{given.seconds, [begin] { return since(begin); }, interrupted};
-  const auto shelf = std::make_shared<ReferenceShelf>(source_path("results/references"));
+  const auto shelf = std::make_shared<ReferenceFolder>(source_path("results/references"));
   const auto reference = reference_for(sweep, *shelf, limits);
   if (!reference) wish.error = any_motion;
   const Trials trials = measure(suite, wish, limits, shelf);

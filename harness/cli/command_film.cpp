@@ -55,7 +55,7 @@ FilmSpec film_spec(const FilmOptions& given) {
   return spec;
 }
 
-void tell(const Take& take, std::size_t frame, std::size_t frames) {
+void tell(const FilmRun& take, std::size_t frame, std::size_t frames) {
   if (isatty(STDERR_FILENO) != 1 && frame < frames) return;
   std::cerr << (isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "") << take.label << " at "
             << number_text(100 * take.strain_limit) << " %, steps of 1/"
@@ -66,7 +66,7 @@ void tell(const Take& take, std::size_t frame, std::size_t frames) {
 // How long a frame took: what an engine asks for.
 void print_times(const Recording& recording) {
   std::cout << "milliseconds a frame:\n";
-  for (const Take& take : recording.takes) {
+  for (const FilmRun& take : recording.takes) {
     std::cout << "  " << take.solver << ", " << number_text(100 * take.strain_limit)
               << " %, steps of 1/" << number_text(1 / take.step, 6) << " s: ";
     if (!take.seconds.empty()) {
@@ -123,10 +123,10 @@ int draw_pictures(const FilmOptions& given, const Recording& recording, bool sti
   return draw({folder.path(), given.out}, "film.py");
 }
 
-using Writer = std::vector<std::string> (*)(const Recording&, const Take&, const std::string&,
+using Writer = std::vector<std::string> (*)(const Recording&, const FilmRun&, const std::string&,
                                             const std::string&);
 
-// Of a file for other programs; null: pictures.
+// Writer of a file for other programs; null: pictures.
 Writer writer_of(const FilmOptions& given, const std::string& extension) {
   const std::vector<std::pair<std::string, Writer>> writers{
       {".obj", write_obj}, {".pvd", write_vtk}, {".pc2", write_pc2}};
@@ -178,7 +178,7 @@ int film(FilmOptions given) {
   if (!writer) return draw_pictures(given, recording, extension == ".png");
   const std::filesystem::path out(given.out);
   const std::string folder = out.has_parent_path() ? out.parent_path().string() : ".";
-  for (const Take& take : recording.takes) {
+  for (const FilmRun& take : recording.takes) {
     const bool one = recording.takes.size() == 1;
     const std::string name =
         out.stem().string() + (one ? "" : "-" + take.solver + "-" + number_text(take.strain_limit));

@@ -96,19 +96,6 @@ void Command::flag(const std::string& name, bool& value, const std::string& help
   app_->add_flag(name, value, help);
 }
 
-std::function<std::vector<std::string>()> Command::as_typed() const {
-  const std::vector<const CLI::Option*> options = std::as_const(*app_).get_options();
-  return [options] {
-    std::vector<std::string> words;
-    for (const CLI::Option* option : options) {
-      if (option->count() == 0) continue;
-      const std::string value = option->reduced_results().back();
-      if (!value.empty()) words.push_back(option->get_name() + "=" + value);
-    }
-    return words;
-  };
-}
-
 CommandLine::CommandLine(const std::string& description, const std::vector<Verb>& verbs,
                          std::function<std::string()> version)
     : app_(std::make_unique<CLI::App>(description, "bench")) {

@@ -1,5 +1,5 @@
-// The words on the command line. CLI11 reads them; only command_line.cpp and line_pages.cpp include
-// it, because every file that does takes ten seconds to compile.
+// The words on the command line. CLI11 reads them. Only command_line.cpp includes it, because every
+// file that does takes ten seconds to compile.
 #pragma once
 
 #include <cstdint>
@@ -68,18 +68,8 @@ class Command {
 
   // The words of the command line, for the record: ask when the action runs.
   const std::vector<std::string>& words() const { return invocation_->words; }
-  // Of the options added so far, those that will have been given, as they were typed: ask when the
-  // action runs.
-  std::function<std::vector<std::string>()> as_typed() const;
-
-  // Of the whole program, from its verbs and options: a manual page (roff), and completion for
-  // Bash.
-  std::string manual() const;
-  std::string bash_completion() const;
 
  private:
-  const CLI::App& program() const;
-
   CLI::App* app_;
   const Invocation* invocation_;
 };

@@ -92,7 +92,7 @@ PointResult timed_point(const PointSpec& spec, const RunLimits& limits, int samp
 int run_points(const PointCommand& options) {
   RunLimits limits;
   limits.timeout = options.timeout;
-  limits.references = std::make_shared<ReferenceShelf>(source_path("results/references"));
+  limits.references = std::make_shared<ReferenceFolder>(source_path("results/references"));
   const std::string fingerprint = counters_fingerprint();
   for (const PointSpec& spec : read_specs(std::cin)) {
     const PointResult point = timed_point(spec, limits, options.samples);

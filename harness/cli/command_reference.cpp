@@ -132,7 +132,7 @@ bool wants_ensemble(const Reference& reference, bool again) {
          is_cloth(find_scene(reference.scene)->build(reference.parameters));
 }
 
-// Of one scene, at the sizes that were given.
+// Sweeps of one scene at the sizes that were given.
 std::vector<SceneOfReference> given_scenes(const SweepOptions& options) {
   if (options.scene.empty())
     throw UsageError("--n and --set go with --scene: of which scene is the reference to be?");
@@ -157,7 +157,7 @@ std::vector<SceneOfReference> scenes_of_suite(const SweepOptions& options) {
            (!options.scene.empty() && s.scene != options.scene);
   });
   if (suite.sweeps.empty()) throw UsageError("no sweep of the suite has such a scene");
-  ReferenceShelf nothing("");
+  ReferenceFolder nothing("");
   return without_reference(plan(suite, {}), nothing);
 }
 
@@ -175,7 +175,7 @@ int make_references(const ReferenceOptions& given) {
   const bool one_scene = !options.n.empty() || !parameters_of(options).empty() ||
                          options.scene.starts_with("mesh:");  // of no suite
   const std::string folder = source_path("results/references");
-  ReferenceShelf shelf(folder);
+  ReferenceFolder shelf(folder);
   bool nothing = true;
   for (const auto& [scene, parameters] :
        one_scene ? given_scenes(options) : scenes_of_suite(options)) {

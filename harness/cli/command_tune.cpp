@@ -130,7 +130,7 @@ int run_tune(const TuneCommand& options) {
   tuning.interrupted = interrupted;
   if (!options.quiet) tuning.tell = [](const std::string& line) { std::cerr << line << '\n'; };
   SweepRunners runners;
-  runners.references = std::make_shared<ReferenceShelf>(source_path("results/references"));
+  runners.references = std::make_shared<ReferenceFolder>(source_path("results/references"));
   runners = isolated(runners, 0);
   std::cout << "kind          solver                             size  limit   gain   settings\n";
   for (const SweepSpec& scene : scenes) {

@@ -11,7 +11,7 @@
 namespace harness {
 namespace {
 
-// Of the terminal, less one: a line that fills it scrolls.
+// Width of the terminal, less one: a line that fills it scrolls.
 std::size_t columns() {
   winsize size{};
   const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;

@@ -25,7 +25,7 @@ class Progress {
   // "120 points, 2 min 5 s, about 4 min left".
   std::string state(double fraction, std::chrono::steady_clock::time_point begin,
                     const std::string& head) const;
-  // Of a log: whether this much done is worth a line.
+  // Whether this much done is worth a line of a log.
   bool worth_a_line(double fraction);
 
   std::ostream& out_;

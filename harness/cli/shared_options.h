@@ -20,7 +20,7 @@ void add_scene(const Command& to, SceneOptions& options, const std::string& stan
 // These throw UsageError. parameters_of: those of --set.
 std::string scene_of(const SceneOptions& options);
 SceneParameters parameters_of(const SceneOptions& options);
-// Of a scene of one size.
+// Options that choose a scene of one size.
 SceneParameters complete_parameters_of(const SceneOptions& options);
 
 Option add_solver(const Command& to, std::string& solver);
@@ -29,7 +29,7 @@ void add_filters(const Command& to, std::string& filter, std::string& exclude);
 void add_suite(const Command& to, std::string& profile, std::string& config);
 void add_timeout(const Command& to, double& timeout, const std::string& standard);
 void add_no_plots(const Command& to, bool& no_plots);
-// Of verbs that take times.
+// Options of verbs that take times.
 void add_no_wait(const Command& to, bool& no_wait);
 
 std::vector<std::string> profiles();
@@ -38,7 +38,7 @@ void check_profile(const std::string& name);
 // A regular expression, each of whose alternatives must match the name of some solver, or of some
 // contestant.
 void check_solver_pattern(const std::string& text, const Contestants& contestants = {});
-// Of a list between commas, "20,40,80". Throws UsageError, naming the option.
+// Numbers of a list between commas, "20,40,80". Throws UsageError, naming the option.
 std::vector<double> numbers_of(const std::string& option, const std::string& text,
                                const Bounds& bounds);
 // Seconds of "2ms", "500us" or "0.002s"; throws UsageError.

@@ -44,7 +44,7 @@ void dry_run(const Suite& suite, const std::vector<Search>& searches) {
 }
 
 void tell_missing_references(const SweepCommand& options, const std::vector<Search>& searches,
-                             ReferenceShelf& shelf) {
+                             ReferenceFolder& shelf) {
   const auto missing = without_reference(searches, shelf);
   if (missing.empty()) return;
   std::string names;
@@ -248,7 +248,7 @@ int run_suite(const SweepCommand& options, const std::vector<std::string>& comma
   Memory memory = past.memory;
   if (options.rerun_failed) memory.forget_failures();
   SweepRunners runners;
-  const auto shelf = std::make_shared<ReferenceShelf>(source_path("results/references"));
+  const auto shelf = std::make_shared<ReferenceFolder>(source_path("results/references"));
   runners.references = shelf;
   tell_missing_references(options, searches, *shelf);
   catch_interrupts();

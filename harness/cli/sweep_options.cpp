@@ -227,7 +227,7 @@ SweepFilters make_filters(const SweepOptions& options) {
 }
 
 std::vector<std::pair<std::string, SceneParameters>> without_reference(
-    const std::vector<Search>& searches, ReferenceShelf& shelf) {
+    const std::vector<Search>& searches, ReferenceFolder& shelf) {
   std::map<std::string, std::pair<std::string, SceneParameters>> missing;
   for (const Search& search : searches) {
     const auto& [scene, parameters] = std::pair(search.base.scene, search.base.scene_parameters);

@@ -25,12 +25,9 @@ namespace harness {
   VERB(ab)                  \
   VERB(tune)                \
   VERB(reference)           \
-  VERB(emit)                \
   VERB(merge)               \
   VERB(point)               \
-  VERB(list)                \
-  VERB(man)                 \
-  VERB(completion)
+  VERB(list)
 
 #define HARNESS_DECLARE(name) Verb name##_verb();
 HARNESS_VERBS(HARNESS_DECLARE)

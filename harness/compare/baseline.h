@@ -37,7 +37,7 @@ struct ComparedResult {
 ComparedResult read_compared(const std::vector<std::string>& paths);
 ComparedPoint compared_point(const nlohmann::json& point);  // of a result file or a baseline
 
-// Of result files, as read_result gives them.
+// The baseline of result files, as read_result gives them.
 nlohmann::ordered_json baseline_document(const std::vector<nlohmann::json>& results);
 
 }  // namespace harness

@@ -187,7 +187,7 @@ namespace {
 constexpr double same_speed = 0.05;     // of two machines: |log(ratio)| of the fixed kernel's times
 constexpr double unknown_spread = 0.5;  // of a noisy file that does not say
 
-// Of the kernel that sweeps time in between; not-a-number in files without it.
+// Time of the kernel that sweeps run in between; not-a-number in files without it.
 double kernel_seconds(const nlohmann::json& context) {
   const auto place = context.find("sentinel");
   if (place == context.end() || !place->contains("seconds")) return std::nan("");

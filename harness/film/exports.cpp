@@ -22,7 +22,7 @@ std::string written(const std::string& path, const std::string& text) {
   return path;
 }
 
-std::string obj_text(const Stage& stage, const inextensible::Positions& x) {
+std::string obj_text(const FilmScene& stage, const inextensible::Positions& x) {
   std::ostringstream out;
   out.precision(9);
   for (Eigen::Index i = 0; i < x.cols(); ++i)
@@ -36,7 +36,7 @@ std::string obj_text(const Stage& stage, const inextensible::Positions& x) {
 }
 
 // Edges first, as lines, then triangles: VTK numbers the cells of a file in this order.
-std::string vtp_text(const Stage& stage, const inextensible::Positions& x) {
+std::string vtp_text(const FilmScene& stage, const inextensible::Positions& x) {
   std::ostringstream out;
   out.precision(9);
   const auto array = [&out](const char* type, const char* name, int components, auto&& values) {
@@ -87,7 +87,7 @@ void append(std::string& bytes, Number number) {
 // A mesh of a film: the cloth of a take, or the body beside it.
 struct Part {
   std::string name;  // of its files
-  Stage mesh;
+  FilmScene mesh;
   bool stays;  // one frame is all
   std::function<inextensible::Positions(std::size_t frame)> at;
 
@@ -97,12 +97,13 @@ struct Part {
 };
 
 // The take must outlive them.
-std::vector<Part> parts_of(const Recording& recording, const Take& take, const std::string& name) {
-  const Stage& stage = recording.stage;
+std::vector<Part> parts_of(const Recording& recording, const FilmRun& take,
+                           const std::string& name) {
+  const FilmScene& stage = recording.stage;
   std::vector<Part> parts{
       {name, stage, false, [&take](std::size_t frame) { return take.frames[frame]; }}};
   if (stage.body.empty()) return parts;
-  Stage body;
+  FilmScene body;
   body.triangles = stage.body_triangles;
   parts.push_back({name + "-body", body, stage.body_poses.empty(),
                    [&stage](std::size_t frame) { return body_at(stage, frame); }});
@@ -126,7 +127,7 @@ std::string pc2_bytes(const Part& part, std::size_t frames) {
 
 }  // namespace
 
-std::vector<std::string> write_obj(const Recording& recording, const Take& take,
+std::vector<std::string> write_obj(const Recording& recording, const FilmRun& take,
                                    const std::string& folder, const std::string& name) {
   std::vector<std::string> paths;
   for (const Part& part : parts_of(recording, take, name)) {
@@ -137,7 +138,7 @@ std::vector<std::string> write_obj(const Recording& recording, const Take& take,
   return paths;
 }
 
-std::vector<std::string> write_vtk(const Recording& recording, const Take& take,
+std::vector<std::string> write_vtk(const Recording& recording, const FilmRun& take,
                                    const std::string& folder, const std::string& name) {
   const std::vector<Part> parts = parts_of(recording, take, name);
   std::ostringstream play;
@@ -156,7 +157,7 @@ std::vector<std::string> write_vtk(const Recording& recording, const Take& take,
   return {written(folder + "/" + name + ".pvd", play.str())};
 }
 
-std::vector<std::string> write_pc2(const Recording& recording, const Take& take,
+std::vector<std::string> write_pc2(const Recording& recording, const FilmRun& take,
                                    const std::string& folder, const std::string& name) {
   std::vector<std::string> paths;
   for (const Part& part : parts_of(recording, take, name)) {

@@ -23,8 +23,9 @@ namespace {
 constexpr int legend_end = 4;       // strain over its limit
 constexpr double line_spacing = 7;  // pixels between lines of yarns, at least
 
-// Of each vertex, by the largest strain of its edges.
-Eigen::Matrix3Xd colours_of(const Stage& stage, const inextensible::Positions& x, double limit) {
+// Color of each vertex, by the largest strain of its edges.
+Eigen::Matrix3Xd colours_of(const FilmScene& stage, const inextensible::Positions& x,
+                            double limit) {
   const std::vector<double> most = strains_of_vertices(stage, x);
   Eigen::Matrix3Xd colours(3, x.cols());
   for (Eigen::Index v = 0; v < x.cols(); ++v) colours.col(v) = strain_colour(most[v] / limit);
@@ -86,8 +87,8 @@ void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& wor
 
 Shot shot_of(const Recording& recording, const View& view, std::size_t take, std::size_t frame,
              int width) {
-  const Stage& stage = recording.stage;
-  const Take& shown = recording.takes.at(take);
+  const FilmScene& stage = recording.stage;
+  const FilmRun& shown = recording.takes.at(take);
   Shot shot;
   shot.cloth = shown.frames.at(frame);
   shot.triangles = stage.triangles;

@@ -18,8 +18,8 @@ namespace {
 
 using inextensible::State;
 
-Stage stage_of(const Scene& scene) {
-  Stage stage;
+FilmScene stage_of(const Scene& scene) {
+  FilmScene stage;
   stage.triangles = oriented(scene.triangles);
   for (const auto [a, b] : scene.problem->edges()) stage.edges.push_back({a, b});
   stage.rest_length = scene.problem->rest_length();
@@ -38,7 +38,8 @@ inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contes
   const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
   const int size = static_cast<int>(spec.parameters.at(find_scene(spec.scene)->resolution));
   inextensible::Settings settings = contestant.settings_for(size, limit);
-  if (backend.knob != inextensible::Knob::stiffness || settings.contains("stiffness"))
+  if (backend.strain_control != inextensible::StrainControl::stiffness ||
+      settings.contains("stiffness"))
     return settings;
   PointSpec point;
   point.sweep = "strain";
@@ -79,9 +80,9 @@ std::string gave_up(double time, const std::string& why) {
 // Records one run.
 class Recorder {
  public:
-  Recorder(const Scene& scene, const Stage& stage, const inextensible::Stepper& stepper,
-           inextensible::Velocities velocities, double energy_bound, Take& take,
-           const std::function<void(const Take&)>& told)
+  Recorder(const Scene& scene, const FilmScene& stage, const inextensible::Stepper& stepper,
+           inextensible::Velocities velocities, double energy_bound, FilmRun& take,
+           const std::function<void(const FilmRun&)>& told)
       : scene_(scene),
         stage_(stage),
         stepper_(stepper),
@@ -101,7 +102,7 @@ class Recorder {
   }
 
   // Whether to go on.
-  bool after(const State& at, const Driven& driven) {
+  bool after(const State& at, const DriveState& driven) {
     const double seconds = since(begin_);
     energy_.after(at, driven.last);
     judge_energy();
@@ -127,12 +128,12 @@ class Recorder {
   }
 
   const Scene& scene_;
-  const Stage& stage_;
+  const FilmScene& stage_;
   const inextensible::Stepper& stepper_;
   EnergyRecord energy_;
   double energy_bound_;
-  Take& take_;
-  const std::function<void(const Take&)>& told_;
+  FilmRun& take_;
+  const std::function<void(const FilmRun&)>& told_;
   Clock::time_point begin_;
 };
 
@@ -140,17 +141,17 @@ class Recorder {
 struct FilmSetup {
   const FilmSpec& spec;
   const Scene& scene;
-  const Stage& stage;
+  const FilmScene& stage;
   double energy_bound;
   const std::function<bool()>& interrupted;
-  const std::function<void(const Take&)>& told;
+  const std::function<void(const FilmRun&)>& told;
 };
 
 // Ends early where energy is gained, unless `to_the_end`.
-Take take_of(const FilmSetup& setup, const Contestant& contestant, double limit, double step,
-             bool to_the_end) {
+FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double limit, double step,
+                bool to_the_end) {
   const double rate = setup.spec.frames_per_second;
-  Take take;
+  FilmRun take;
   take.solver = contestant.name;
   take.label = label_of(contestant);
   take.strain_limit = limit;
@@ -165,24 +166,25 @@ Take take_of(const FilmSetup& setup, const Contestant& contestant, double limit,
                     take, setup.told);
   recorder.keep(state);
   const long steps = take.steps_per_frame * (static_cast<long>(frames_in(setup.spec)) - 1);
-  const Driven driven =
+  const DriveState driven =
       drive(*stepper, state, {take.step, steps, most_halvings},
-            [&](const State& at, const Driven& so_far) {
+            [&](const State& at, const DriveState& so_far) {
               return recorder.after(at, so_far) && (to_the_end || take.energy_gained.empty());
             },
             {.interrupted = setup.interrupted});
-  if (driven.end == Driven::End::refused) take.detail = gave_up(state.time, driven.result.detail);
+  if (driven.end == DriveState::End::refused)
+    take.detail = gave_up(state.time, driven.result.detail);
   recorder.finish();
   return take;
 }
 
 // At the first of the default step and its halves at which the run passes; where none does, at the
 // one that goes well for longest.
-Take take_of_default_step(const FilmSetup& setup, const Contestant& contestant, double limit) {
+FilmRun take_of_default_step(const FilmSetup& setup, const Contestant& contestant, double limit) {
   double step = default_step, longest_step = step;
   std::size_t longest = 0;
   for (int halved = 0; halved <= most_refinements; ++halved) {
-    Take take = take_of(setup, contestant, limit, step, false);
+    FilmRun take = take_of(setup, contestant, limit, step, false);
     if (take.detail.empty() && take.energy_gained.empty()) return take;
     if (take.frames.size() > longest) longest_step = take.step;
     longest = std::max(longest, take.frames.size());
@@ -193,7 +195,7 @@ Take take_of_default_step(const FilmSetup& setup, const Contestant& contestant, 
 
 // A body that moves does work: it can throw cloth at twice its own speed at most, as an elastic
 // impact does, and lift it as far as it rises itself.
-double energy_bound_of(const Scene& scene, const Stage& stage, double frames_per_second) {
+double energy_bound_of(const Scene& scene, const FilmScene& stage, double frames_per_second) {
   if (std::isfinite(scene.energy_bound)) return scene.energy_bound;
   const auto at = [&](std::size_t frame, Eigen::Index i) {
     const inextensible::Pose& pose = stage.body_poses[frame];
@@ -221,7 +223,7 @@ std::size_t frames_in(const FilmSpec& spec) {
 }
 
 Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
-                 const std::function<void(const Take&, std::size_t, std::size_t)>& told) {
+                 const std::function<void(const FilmRun&, std::size_t, std::size_t)>& told) {
   const Scene scene = find_scene(spec.scene)->build(spec.parameters);
   Recording recording;
   recording.spec = spec;
@@ -232,7 +234,7 @@ Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
       recording.stage.body_poses.push_back(
           motion(scene.start.time + static_cast<double>(i) / spec.frames_per_second));
   }
-  const std::function<void(const Take&)> tell = [&](const Take& take) {
+  const std::function<void(const FilmRun&)> tell = [&](const FilmRun& take) {
     told(take, take.frames.size(), frames);
   };
   const double energy_bound = energy_bound_of(scene, recording.stage, spec.frames_per_second);

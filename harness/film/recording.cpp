@@ -15,7 +15,7 @@ constexpr double strain_unit = 1.0 / 60;  // of a take's limit; colours end at f
 
 }  // namespace
 
-std::vector<double> strains(const Stage& stage, const inextensible::Positions& x) {
+std::vector<double> strains(const FilmScene& stage, const inextensible::Positions& x) {
   std::vector<double> all;
   all.reserve(stage.edges.size());
   for (std::size_t k = 0; k < stage.edges.size(); ++k) {
@@ -25,7 +25,7 @@ std::vector<double> strains(const Stage& stage, const inextensible::Positions& x
   return all;
 }
 
-std::vector<double> strains_of_vertices(const Stage& stage, const inextensible::Positions& x) {
+std::vector<double> strains_of_vertices(const FilmScene& stage, const inextensible::Positions& x) {
   std::vector<double> most(static_cast<std::size_t>(x.cols()), 0);
   const std::vector<double> all = strains(stage, x);
   for (std::size_t k = 0; k < all.size(); ++k)
@@ -33,7 +33,7 @@ std::vector<double> strains_of_vertices(const Stage& stage, const inextensible::
   return most;
 }
 
-inextensible::Positions body_at(const Stage& stage, std::size_t frame) {
+inextensible::Positions body_at(const FilmScene& stage, std::size_t frame) {
   const inextensible::Pose pose =
       stage.body_poses.empty() ? inextensible::Pose{} : stage.body_poses.at(frame);
   inextensible::Positions x(3, stage.body.size());
@@ -44,9 +44,9 @@ inextensible::Positions body_at(const Stage& stage, std::size_t frame) {
 
 namespace {
 
-// Of each mark, at each frame: how far below the height where it would hang if nothing stretched,
-// m.
-nlohmann::json sags(const Stage& stage, const Take& take) {
+// Sag of each mark at each frame: how far below the height where it would hang if nothing
+// stretched, m.
+nlohmann::json sags(const FilmScene& stage, const FilmRun& take) {
   nlohmann::json all = nlohmann::json::object();
   for (const Scene::Mark& mark : stage.marks) {
     nlohmann::json& sag = all[mark.name] = nlohmann::json::array();
@@ -58,7 +58,7 @@ nlohmann::json sags(const Stage& stage, const Take& take) {
 nlohmann::json film_header(const Recording& recording) {
   nlohmann::json takes = nlohmann::json::array(), body = nlohmann::json::array(),
                  poses = nlohmann::json::array();
-  for (const Take& take : recording.takes)
+  for (const FilmRun& take : recording.takes)
     takes.push_back({{"solver", take.solver},
                      {"label", take.label},
                      {"strain_limit", take.strain_limit},
@@ -91,7 +91,7 @@ nlohmann::json film_header(const Recording& recording) {
 
 std::string film_strains(const Recording& recording) {
   std::string bytes;
-  for (const Take& take : recording.takes) {
+  for (const FilmRun& take : recording.takes) {
     for (const inextensible::Positions& frame : take.frames) {
       for (const double strain : strains_of_vertices(recording.stage, frame))
         bytes += static_cast<char>(static_cast<unsigned char>(
@@ -104,7 +104,7 @@ std::string film_strains(const Recording& recording) {
 std::string film_positions(const Recording& recording) {
   static_assert(std::endian::native == std::endian::little);
   std::string bytes;
-  for (const Take& take : recording.takes) {
+  for (const FilmRun& take : recording.takes) {
     for (const inextensible::Positions& frame : take.frames) {
       const Eigen::Matrix3Xf single = frame.cast<float>();
       bytes.append(reinterpret_cast<const char*>(single.data()),

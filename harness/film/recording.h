@@ -27,7 +27,7 @@ inline constexpr double default_step = 0.01;  // s
 inline constexpr int most_refinements = 4;    // of it
 
 // One run.
-struct Take {
+struct FilmRun {
   std::string solver, label;
   double strain_limit = 0;
   double step = 0;  // s
@@ -41,7 +41,7 @@ struct Take {
 };
 
 // What there is to see besides vertices.
-struct Stage {
+struct FilmScene {
   std::vector<std::array<int, 3>> triangles;  // of a cloth; none of a chain
   std::vector<std::array<int, 2>> edges;      // warp and weft
   std::vector<double> rest_length;            // m
@@ -53,11 +53,12 @@ struct Stage {
 
 struct Recording {
   FilmSpec spec;
-  Stage stage;
-  std::vector<Take> takes;
+  FilmScene stage;
+  std::vector<FilmRun> takes;
 };
 
-// Of the whole film: the one at the start, and as many as the scene's duration has.
+// Number of frames of the whole film: the one at the start, and as many as the scene's duration
+// has.
 std::size_t frames_in(const FilmSpec& spec);
 
 // Springs get the stiffness that keeps the limit. Where no step is given, each run takes the first
@@ -66,16 +67,16 @@ std::size_t frames_in(const FilmSpec& spec);
 // Interrupted.
 Recording record(
     const FilmSpec& spec, const std::function<bool()>& interrupted,
-    const std::function<void(const Take&, std::size_t frame, std::size_t frames)>& told);
+    const std::function<void(const FilmRun&, std::size_t frame, std::size_t frames)>& told);
 
 // Where the body's corners are at a frame.
-inextensible::Positions body_at(const Stage& stage, std::size_t frame);
+inextensible::Positions body_at(const FilmScene& stage, std::size_t frame);
 
 // |strain| of every edge of the stage.
-std::vector<double> strains(const Stage& stage, const inextensible::Positions& x);
+std::vector<double> strains(const FilmScene& stage, const inextensible::Positions& x);
 
-// Of every vertex, the largest of its edges.
-std::vector<double> strains_of_vertices(const Stage& stage, const inextensible::Positions& x);
+// Largest strain of each vertex's edges.
+std::vector<double> strains_of_vertices(const FilmScene& stage, const inextensible::Positions& x);
 
 // Into a folder that is there. film.json: all but what is of vertices (poses as the rows of [turn
 // way]). film.f32: 32-bit floats, little-endian, x y z of every vertex of every frame of every take

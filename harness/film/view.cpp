@@ -46,7 +46,7 @@ Positions near(const Positions& x, const Vector3d& middle, double followed) {
 // All that the camera must see.
 std::vector<Positions> in_sight(const Recording& recording,
                                 const std::vector<std::size_t>& frames) {
-  const Stage& stage = recording.stage;
+  const FilmScene& stage = recording.stage;
   const Positions& start = recording.takes.at(0).frames.at(0);
   const bool body = !stage.body.empty();
   const Positions body_start = body ? body_at(stage, 0) : start;
@@ -55,7 +55,7 @@ std::vector<Positions> in_sight(const Recording& recording,
   const double followed = (body ? near_body : near_start) *
                           std::max(reach(start, about.middle()), reach(body_start, about.middle()));
   std::vector<Positions> all;
-  for (const Take& take : recording.takes) {
+  for (const FilmRun& take : recording.takes) {
     for (const std::size_t shown : frames) {
       const std::size_t frame = std::min(shown, take.frames.size() - 1);
       Vector3d middle = about.middle();

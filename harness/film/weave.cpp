@@ -18,7 +18,7 @@ using Quad = std::array<int, 4>;  // corners in turn
 Side side(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 // Two triangles with a common side that is no edge are a quad of the cloth.
-std::vector<Quad> quads_of(const Stage& stage, const std::set<Side>& edges) {
+std::vector<Quad> quads_of(const FilmScene& stage, const std::set<Side>& edges) {
   std::map<Side, int> opposite;  // of a diagonal, the corner of its first triangle
   std::vector<Quad> quads;
   for (const auto& t : stage.triangles) {
@@ -34,7 +34,7 @@ std::vector<Quad> quads_of(const Stage& stage, const std::set<Side>& edges) {
 
 using Cells = std::vector<std::optional<Cell>>;
 
-// Of the quad beyond the side from corner k of `quad` to the next: its other corners lie as far
+// The quad beyond the side from corner k of `quad` to the next: its other corners lie as far
 // beyond that side as those of `quad` lie before it.
 void number_beyond(const Quad& quad, std::size_t k, const Quad& beyond, Cells& cells) {
   const int a = quad[k], b = quad[(k + 1) % 4];
@@ -98,7 +98,7 @@ bool on_drawn_yarn(const std::optional<Cell>& a, const std::optional<Cell>& b, i
 
 }  // namespace
 
-std::vector<std::uint8_t> drawn_sides(const Stage& stage, int every) {
+std::vector<std::uint8_t> drawn_sides(const FilmScene& stage, int every) {
   std::set<Side> edges;
   int last = -1;
   for (const auto& [a, b] : stage.edges) {
@@ -125,7 +125,7 @@ std::vector<std::uint8_t> drawn_sides(const Stage& stage, int every) {
   return sides;
 }
 
-double mean_edge(const Stage& stage) {
+double mean_edge(const FilmScene& stage) {
   if (stage.rest_length.empty()) return 0;
   return std::accumulate(stage.rest_length.begin(), stage.rest_length.end(), 0.0) /
          static_cast<double>(stage.rest_length.size());

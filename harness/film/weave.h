@@ -10,11 +10,11 @@
 
 namespace harness {
 
-// Of each triangle, one bit a side: 1 from corner 0 to 1, 2 from 1 to 2, 4 from 2 to 0. `every`:
+// One bit for each side of a triangle: 1 from corner 0 to 1, 2 from 1 to 2, 4 from 2 to 0. `every`:
 // one of so many yarns is drawn; above 1, only those of a cloth of quads.
-std::vector<std::uint8_t> drawn_sides(const Stage& stage, int every);
+std::vector<std::uint8_t> drawn_sides(const FilmScene& stage, int every);
 
-// Of the cloth, m; 0 without edges.
-double mean_edge(const Stage& stage);
+// The cloth's mean edge length, m; 0 without edges.
+double mean_edge(const FilmScene& stage);
 
 }  // namespace harness

@@ -1,4 +1,4 @@
-// Drives a scene: where a method starts it, and its steps to the end, for whatever looks on.
+// Drives a scene: where a method starts it, and its steps to the end, for any observer.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +39,7 @@ struct DriveLimits {
 };
 
 // A drive so far, and how it ended.
-struct Driven {
+struct DriveState {
   enum class End { arrived, stopped, refused, timed_out };
   End end = End::arrived;
   long steps = 0;                        // of the pace, whole ones
@@ -49,51 +49,51 @@ struct Driven {
   double last, smallest, next;           // s, of those taken and of the next one
 };
 
-// What looks on at a drive, and hides what it needs of this.
-struct Onlooker {
+// Observes a drive; a derived class hides the functions that it needs.
+struct Observer {
   // How many steps to take before `after`. May change the state.
-  int before(inextensible::State& /*state*/, const Driven& /*driven*/) { return 1; }
+  int before(inextensible::State& /*state*/, const DriveState& /*driven*/) { return 1; }
   // After each of them; after all of them, and after a refusal.
-  void each(const inextensible::State& /*state*/, const Driven& /*driven*/) {}
-  void all(const inextensible::State& /*state*/, const Driven& /*driven*/) {}
+  void each(const inextensible::State& /*state*/, const DriveState& /*driven*/) {}
+  void all(const inextensible::State& /*state*/, const DriveState& /*driven*/) {}
   // Not after a refusal. Whether to go on.
-  bool after(const inextensible::State& /*state*/, const Driven& /*driven*/) { return true; }
+  bool after(const inextensible::State& /*state*/, const DriveState& /*driven*/) { return true; }
 };
 
 // Takes the steps of a pace from a state on, up to a refusal, which leaves the state as it was. The
 // limits are looked at after each `after`. Throws Interrupted.
-template <std::derived_from<Onlooker> Look>
-Driven drive(inextensible::Stepper& stepper, inextensible::State& state, const Pace& pace,
-             Look& look, const DriveLimits& limits = {}) {
+template <std::derived_from<Observer> O>
+DriveState drive(inextensible::Stepper& stepper, inextensible::State& state, const Pace& pace,
+                 O& observer, const DriveLimits& limits = {}) {
   using inextensible::StepController;
   std::optional<StepController> controller;
   if (pace.halvings > 0)
     controller.emplace(
         stepper, StepController::Settings{.largest = pace.step, .most_halvings = pace.halvings});
-  Driven driven{.last = pace.step, .smallest = pace.step, .next = pace.step};
+  DriveState driven{.last = pace.step, .smallest = pace.step, .next = pace.step};
   while (driven.steps < pace.steps) {
-    const int block = look.before(state, driven);
+    const int block = observer.before(state, driven);
     for (driven.taken = 0; driven.taken < block && driven.steps < pace.steps; ++driven.taken) {
       driven.result = controller ? controller->advance(state) : stepper.advance(state, pace.step);
       if (!driven.result) break;
       driven.whole = !controller || controller->aligned();
       if (driven.whole) ++driven.steps;
-      look.each(state, driven);
+      observer.each(state, driven);
     }
-    look.all(state, driven);
+    observer.all(state, driven);
     if (controller) {
       driven.last = controller->last();
       driven.smallest = controller->smallest();
       driven.next = controller->next();
     }
     if (!driven.result) {
-      driven.end = Driven::End::refused;
-    } else if (!look.after(state, driven)) {
-      driven.end = Driven::End::stopped;
+      driven.end = DriveState::End::refused;
+    } else if (!observer.after(state, driven)) {
+      driven.end = DriveState::End::stopped;
     } else if (limits.interrupted && limits.interrupted()) {
       throw Interrupted();
     } else if (driven.steps < pace.steps && since(limits.begin) > limits.timeout) {
-      driven.end = Driven::End::timed_out;
+      driven.end = DriveState::End::timed_out;
     } else {
       continue;
     }
@@ -102,22 +102,24 @@ Driven drive(inextensible::Stepper& stepper, inextensible::State& state, const P
   return driven;
 }
 
-inline Driven drive(inextensible::Stepper& stepper, inextensible::State& state, const Pace& pace,
-                    const DriveLimits& limits = {}) {
-  Onlooker none;
+inline DriveState drive(inextensible::Stepper& stepper, inextensible::State& state,
+                        const Pace& pace, const DriveLimits& limits = {}) {
+  Observer none;
   return drive(stepper, state, pace, none, limits);
 }
 
-// Where a function is all that looks on: called after each step, it returns whether to go on.
-template <std::predicate<const inextensible::State&, const Driven&> After>
-Driven drive(inextensible::Stepper& stepper, inextensible::State& state, const Pace& pace,
-             After after, const DriveLimits& limits = {}) {
-  struct Look : Onlooker {
+// With a function as the observer: called after each step, it returns whether to go on.
+template <std::predicate<const inextensible::State&, const DriveState&> After>
+DriveState drive(inextensible::Stepper& stepper, inextensible::State& state, const Pace& pace,
+                 After after, const DriveLimits& limits = {}) {
+  struct Calling : Observer {
     After& call;
-    explicit Look(After& a) : call(a) {}
-    bool after(const inextensible::State& now, const Driven& driven) { return call(now, driven); }
-  } look(after);
-  return drive(stepper, state, pace, look, limits);
+    explicit Calling(After& a) : call(a) {}
+    bool after(const inextensible::State& now, const DriveState& driven) {
+      return call(now, driven);
+    }
+  } observer(after);
+  return drive(stepper, state, pace, observer, limits);
 }
 
 }  // namespace harness

@@ -38,7 +38,7 @@ struct ShapeError {
   double kinetic_ratio = unknown;   // kinetic energy over the ensemble's, means over times
   double kinetic_spread = unknown;  // three standard deviations of that
 };
-// Of a run over its first samples, all or fewer; times: the reference's. Unknown without a sample.
+// Shape error of a run over its first samples; times: the reference's. Unknown without a sample.
 ShapeError shape_error(const Ensemble& ensemble, const std::vector<double>& times,
                        const ShapeSeries& run);
 

@@ -17,9 +17,9 @@ struct EnsemblePlan {
 };
 constexpr int fewest_runs = 8;  // of an ensemble, of both routes together
 
-// Of a scene of cloth, at these times, by the routes of its reference. A run that fails, or whose
-// energy rises beyond the scene's bound, is left out; with fewer than the fewest runs there is no
-// ensemble, with a reason. tell, keep: as of compute_reference.
+// Ensemble of a scene of cloth at these times, by the routes of its reference. A run that fails, or
+// whose energy rises beyond the scene's bound, is left out; with fewer than the fewest runs there
+// is no ensemble, with a reason. tell, keep: as of compute_reference.
 Ensemble compute_ensemble(const Scene& scene, const std::vector<double>& times,
                           const EnsemblePlan& plan, const Tell& tell, const KeepRun& keep);
 

@@ -68,8 +68,8 @@ std::string shelf_key(const std::string& name, const SceneParameters& complete) 
 
 }  // namespace
 
-std::shared_ptr<const Reference> ReferenceShelf::find(const std::string& scene,
-                                                      const SceneParameters& complete) {
+std::shared_ptr<const Reference> ReferenceFolder::find(const std::string& scene,
+                                                       const SceneParameters& complete) {
   const std::string name = reference_name(scene, complete);
   auto [place, fresh] = known_.try_emplace(shelf_key(name, complete), nullptr);
   if (fresh) place->second = exact_reference(scene, complete);
@@ -84,12 +84,12 @@ std::shared_ptr<const Reference> ReferenceShelf::find(const std::string& scene,
   return place->second;
 }
 
-void ReferenceShelf::put(std::shared_ptr<const Reference> reference) {
+void ReferenceFolder::put(std::shared_ptr<const Reference> reference) {
   const std::string key = shelf_key(reference->name(), reference->parameters);
   known_[key] = std::move(reference);
 }
 
-json ReferenceShelf::summaries() const {
+json ReferenceFolder::summaries() const {
   json list = json::array();
   for (const auto& [name, reference] : known_)
     if (reference) list.push_back(summary_of(*reference));

@@ -24,16 +24,16 @@ struct Reference {
   // its own run at half as many steps, and of the first one from itself with starts moved a little.
   std::vector<double> gap;
   std::vector<double> gap_max;  // the same in the maximum norm
-  // What the gap is the largest of; empty in older files.
+  // The parts whose largest is the gap; empty in references made without them.
   std::map<std::string, std::vector<double>> gap_parts;
   double valid_until = 0;   // s: the last sample before the gap exceeds 1 % of the scene's size
   double energy_drift = 0;  // of the first route, where the scene conserves energy
-  // Of the route that steps, under step halving, and what theory expects of smooth motion. They
+  // Order of the stepping route under step halving, and theory's for smooth motion. They
   // explain a reference and decide nothing: kinks of contact lower an order and leave paths close.
   double observed_order = 0;
   double expected_order = 1;
   bool exact = false;  // no route: the scene's motion is known
-  Ensemble ensemble;   // of cloth, up to the last of the times; older files have none
+  Ensemble ensemble;   // of cloth, up to the last of the times; chains have none
 
   double duration() const { return times.empty() ? 0 : times.back(); }
   // How many sample times count at a level of error: those at which 3 gap is at most the level.
@@ -61,9 +61,9 @@ std::shared_ptr<const Reference> exact_reference(const std::string& scene,
                                                  const SceneParameters& complete);
 
 // The references of a folder, read when they are asked for, and exact ones.
-class ReferenceShelf {
+class ReferenceFolder {
  public:
-  explicit ReferenceShelf(std::string folder) : folder_(std::move(folder)) {}
+  explicit ReferenceFolder(std::string folder) : folder_(std::move(folder)) {}
   // Null if there is none. Not thread safe.
   std::shared_ptr<const Reference> find(const std::string& scene, const SceneParameters& complete);
   // One that has no file.

@@ -19,8 +19,6 @@ using nlohmann::json;
 namespace {
 
 constexpr const char* reference_schema = "inextensible-reference/2";
-// Without an ensemble, and with shape statistics of the routes, which are passed over.
-constexpr const char* older_schema = "inextensible-reference/1";
 
 double rounded(double value, double scale = 1e12) { return std::round(value * scale) / scale; }
 
@@ -140,9 +138,6 @@ json to_json(const Reference& r) {
 }
 
 json with_ensemble(json document, const Ensemble& ensemble) {
-  document["schema"] = reference_schema;
-  document.erase("shape");
-  document.erase("shape_gap");
   document["ensemble"] = ensemble_json(ensemble);
   return document;
 }
@@ -166,7 +161,7 @@ Reference read_reference(const std::string& path) {
 
 Reference reference_of(const json& document, const std::string& path) {
   try {
-    if (document.at("schema") != reference_schema && document.at("schema") != older_schema)
+    if (document.at("schema") != reference_schema)
       throw UsageError("'" + path + "': schema is " + value_text(document.at("schema")) +
                        ", must be \"" + reference_schema + "\"");
     Reference r;
@@ -177,11 +172,10 @@ Reference reference_of(const json& document, const std::string& path) {
     r.valid_until = document.at("valid_until").get<double>();
     r.energy_drift = document.at("energy_drift").get<double>();
     r.observed_order = number_of(document.at("observed_order"));
-    r.expected_order = document.value("expected_order", expected_order(find_scene(r.scene).get()));
+    r.expected_order = document.at("expected_order").get<double>();
     r.times = document.at("times").get<std::vector<double>>();
     r.gap = document.at("gap").get<std::vector<double>>();
-    // Older files know one norm: nothing in the other one is sure then.
-    r.gap_max = document.value("gap_max", std::vector<double>(r.gap.size(), unknown));
+    r.gap_max = document.at("gap_max").get<std::vector<double>>();
     r.gap_parts = document.value("gap_parts", r.gap_parts);
     if (document.contains("ensemble")) r.ensemble = read_ensemble(document.at("ensemble"));
     for (const json& row : document.at("positions")) {

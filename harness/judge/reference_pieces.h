@@ -13,7 +13,7 @@
 
 namespace harness {
 
-// Of one route at one step from one start.
+// Run of one route at one step from one start.
 struct RouteRun {
   std::vector<inextensible::Positions> path;  // at the sample times, up to where it fails
   double energy_drift = 0;  // over weight times size, where the scene conserves energy

@@ -22,10 +22,10 @@ constexpr int moved_start_count = 2;               // how many disturbed starts 
 constexpr double surely_known = 0.01 / sure_gaps;  // gap up to which an order is looked for
 constexpr double pendulum_tolerance = 1e-13;
 
-// This is the one place that names methods: whom to trust for a scene is the maintainer's
+// This is the one place that names methods: which to trust for a scene is the maintainer's
 // judgement, which no property of a row can replace.
 //
-// Of a pendulum, beside its angles.
+// Second route of a pendulum, beside its angles.
 Route smooth_route() { return {"rattle", 1e-12, 2}; }
 // Where a collider makes kinks anyway. RATTLE does not survive a J W J^T that is singular at the
 // start (a row straight between its pins: the patch); BDF2 takes its place then, at a limit that

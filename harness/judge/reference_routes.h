@@ -11,7 +11,7 @@
 
 namespace harness {
 
-// Of a scene that is no pendulum, in steps of h seconds.
+// Route of a scene that is no pendulum, in steps of h seconds.
 std::pair<Route, Route> contact_routes(const Scene& scene, double h);
 
 // Computes the reference of a scene by both routes. finest: the smallest step of step halving, s; 0

@@ -19,7 +19,7 @@ class ResidualProbe final : public inextensible::IterateObserver {
   };
   // Looks at the next step, until it is asked for its residuals; else iterates pass unseen.
   void watch();
-  // Of the step since watch(), once it was accepted. Nothing if it needed no iteration.
+  // Residual of the step since watch(), once accepted. Nothing if it needed no iteration.
   std::optional<Residuals> residuals();
 
   void iterate(const inextensible::EdgeConstraints& edges, int j, const inextensible::Positions& x,

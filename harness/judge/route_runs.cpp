@@ -23,7 +23,7 @@ constexpr double parted = 1e-2;  // gap at which a reference ends, over the scen
 }  // namespace
 
 void follow(const Scene& scene, const inextensible::State& start, const Route& route, double h,
-            const std::vector<double>& times, const Tell& tell, const Look& look) {
+            const std::vector<double>& times, const Tell& tell, const SampleVisitor& visit) {
   const std::string& solver = route.solver;
   const auto stepper =
       inextensible::make_stepper(solver, scene.problem, {route.limit, 1, route.settings});
@@ -33,12 +33,12 @@ void follow(const Scene& scene, const inextensible::State& start, const Route& r
   const long per_sample = std::lround(sample_interval / h);
   tell(run + "...");
   const Pace pace{h, per_sample * static_cast<long>(times.size())};
-  const Driven driven =
-      drive(*stepper, state, pace, [&](const inextensible::State& now, const Driven& so_far) {
-        look(now, so_far.steps % per_sample == 0);
+  const DriveState driven =
+      drive(*stepper, state, pace, [&](const inextensible::State& now, const DriveState& so_far) {
+        visit(now, so_far.steps % per_sample == 0);
         return true;
       });
-  if (driven.end == Driven::End::refused)
+  if (driven.end == DriveState::End::refused)
     tell(run + "stopped before t = " + number_text(times[driven.steps / per_sample]) +
          " s: " + inextensible::to_string(driven.result.status) + ", " + driven.result.detail);
 }

@@ -22,12 +22,12 @@ using Tell = std::function<void(const std::string&)>;
 using Path = std::vector<inextensible::Positions>;  // at the sample times
 
 // After each step; sampled: whether it ends at a sample time.
-using Look = std::function<void(const inextensible::State& state, bool sampled)>;
+using SampleVisitor = std::function<void(const inextensible::State& state, bool sampled)>;
 
 // A route's run to the last of the sample times, or up to where it fails; h divides the sample
 // interval.
 void follow(const Scene& scene, const inextensible::State& start, const Route& route, double h,
-            const std::vector<double>& times, const Tell& tell, const Look& look);
+            const std::vector<double>& times, const Tell& tell, const SampleVisitor& visit);
 
 // Starts off the scene's by at most so many metres a coordinate, at random; pinned vertices stay.
 std::vector<inextensible::State> moved_starts(const Scene& scene, double by, int count);

@@ -31,7 +31,7 @@ inline constexpr std::array shape_statistic_infos{
 
 bool is_cloth(const Scene& scene);  // it has shape statistics
 
-// Of positions, m.
+// The statistics of positions, m.
 ShapeStatistics shape_statistics(const Scene& scene, const inextensible::Positions& x);
 
 // The statistics of a run at sample times. Velocities that belong to the middle of a step are

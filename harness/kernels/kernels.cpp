@@ -55,7 +55,7 @@ void register_all() {
 
 int main(int argc, char** argv) try {
   harness::use_one_thread();
-  // Of the other programs that take times; Google Benchmark does not know it.
+  // An option of all programs that take times, which Google Benchmark does not know.
   char** const end = std::remove_if(
       argv + 1, argv + argc, [](const char* word) { return std::string(word) == "--no-wait"; });
   const bool wait = end == argv + argc;

@@ -66,8 +66,6 @@ struct Measures {
 
 inline constexpr FieldTraits number_or_null{.nullable = true};
 inline constexpr FieldTraits error_or_null{.inside = "error", .nullable = true};
-inline constexpr FieldTraits later_error_or_null{
-    .inside = "error", .later = true, .nullable = true};
 
 // "scene's size": over it, so that scenes compare.
 inline constexpr std::tuple measure_fields{
@@ -84,22 +82,22 @@ inline constexpr std::tuple measure_fields{
           number_or_null),
     field("delivered_strain_p99", &Measures::delivered_strain_p99, "",
           "as p99_strain, after the collision filter; without a collider the same",
-          {.later = true, .nullable = true}),
+          number_or_null),
     field("delivered_strain_rms", &Measures::delivered_strain_rms, "",
           "as rms_strain, after the collision filter; without a collider the same",
-          {.later = true, .nullable = true}),
+          number_or_null),
     field("kinetic_energy_mean", &Measures::kinetic_energy_mean, "J",
           "kinetic energy, mean over sampled instants", number_or_null),
     field("energy_drift", &Measures::energy_drift, "weight times size",
           "largest |E - E_0|, over all steps, where nothing dissipates", error_or_null),
     field("energy_gain", &Measures::energy_gain, "weight times size",
           "largest E - E_0, over all steps; negative: energy was lost throughout",
-          later_error_or_null),
+          error_or_null),
     field("energy_gain_time", &Measures::energy_gain_time, "s", "when that was",
-          later_error_or_null),
+          error_or_null),
     field("energy_rise", &Measures::energy_rise, "weight times size",
           "sum of all rises of E between means over 0.01 s, where energy can only fall",
-          later_error_or_null),
+          error_or_null),
     field("symmetry_defect", &Measures::symmetry_defect, "scene's size",
           "largest distance to the mirror image", error_or_null),
     field("reference", &Measures::reference, "",
@@ -114,35 +112,35 @@ inline constexpr std::tuple measure_fields{
     field("gap", &Measures::gap, "scene's size",
           "the reference's own uncertainty, over the same samples", error_or_null),
     field("error_samples", &Measures::error_samples, "samples", "how many these are",
-          {.inside = "error", .later = true}),
+          {.inside = "error"}),
     field("error_until", &Measures::error_until, "s", "time of the last of them",
-          later_error_or_null),
+          error_or_null),
     field("unknown_because", &Measures::unknown_because, "", "why there is no trajectory error",
-          later_error_or_null),
+          error_or_null),
     field("error_series", &Measures::error_series, "s, then scene's size",
           "at each sample: time, distance to the reference as root mean square and as maximum, gap "
           "in both norms",
-          {.inside = "error", .later = true}),
+          {.inside = "error"}),
     field("moved", &Measures::moved, "",
           "distance from the start over the reference's, root mean square over vertices and "
           "samples; 0: it did not move",
-          later_error_or_null),
+          error_or_null),
     field("valid_until", &Measures::valid_until, "s",
           "up to here the reference is known to 1 % of the scene's size", error_or_null),
     field("shape", &Measures::shape, "",
           "shape error: the most by which potential energy or kinetic energy (over weight times "
           "size), corner height (over size) or shadow (over size squared) deviates from the "
           "ensemble's mean, beyond three standard deviations; null: see shape_unknown_because",
-          later_error_or_null),
+          error_or_null),
     field("shape_statistic", &Measures::shape_statistic, "", "which of these deviates so",
-          later_error_or_null),
-    field("shape_time", &Measures::shape_time, "s", "at which sample time", later_error_or_null),
+          error_or_null),
+    field("shape_time", &Measures::shape_time, "s", "at which sample time", error_or_null),
     field("shape_unknown_because", &Measures::shape_unknown_because, "",
-          "why there is no shape error", later_error_or_null),
+          "why there is no shape error", error_or_null),
     field("kinetic_ratio", &Measures::kinetic_ratio, "",
-          "kinetic energy over the ensemble's, means over sample times", later_error_or_null),
+          "kinetic energy over the ensemble's, means over sample times", error_or_null),
     field("kinetic_spread", &Measures::kinetic_spread, "",
-          "three standard deviations of that ratio in the ensemble", later_error_or_null),
+          "three standard deviations of that ratio in the ensemble", error_or_null),
     field("residual_first", &Measures::residual_first, "m",
           "fast projection's mean |F| over vertices and sampled steps, after the first iteration",
           error_or_null),
@@ -154,12 +152,11 @@ inline constexpr std::tuple measure_fields{
           {.inside = "error"}),
     field("sag", &Measures::sag, "m",
           "how far the vertices that the scene marks are below where they would hang if nothing "
-          "stretched, mean over the last third of the run",
-          {.later = true}),
+          "stretched, mean over the last third of the run"),
     field("rest_speed", &Measures::rest_speed, "m/s",
           "root mean square over vertices (by mass) and the last third of the run, of scenes that "
           "mark vertices: 0 at rest",
-          {.later = true, .nullable = true})};
+          number_or_null)};
 
 // The distance to the reference at a level: over the sample times at which 3 gap is at most the
 // level. These are the same for all runs, so that "within an error of 1 %" means one thing.

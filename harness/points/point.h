@@ -63,7 +63,7 @@ struct PointResult {
   double peak_rss_bytes = 0;
   bool best = false;                   // the fastest of its search, whatever its motion
   std::vector<double> best_at_errors;  // levels of error that it is the fastest within
-  // Of a best point: "coarsest" or "finest" where a step beyond the ladder might be better still.
+  // For a best point: "coarsest" or "finest" where a step beyond the ladder might be better still.
   std::string at_ladder_end;
 
   bool ok() const { return status == PointStatus::ok; }

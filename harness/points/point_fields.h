@@ -61,14 +61,14 @@ inline constexpr std::tuple spec_fields{
     field("scene", &PointSpec::scene, "", "see `bench list scenes`"),
     field("scene_parameters", &PointSpec::scene_parameters, "", "all of the scene's"),
     field("contestant", &PointSpec::contestant, "",
-          "the solver, or its name where it is in the run several times", {.later = true}),
+          "the solver, or its name where it is in the run several times"),
     field("solver", &PointSpec::solver, "", "see `bench list solvers`"),
-    field("settings", &PointSpec::settings, "", "the solver's settings as given", {.later = true}),
+    field("settings", &PointSpec::settings, "", "the solver's settings as given"),
     field("strain_limit", &PointSpec::strain_limit, "", "permissible |strain|, 0.01 is 1 %",
           {.positive = true}),
     field("step", &PointSpec::step, "s", "adaptive: the largest one", {.positive = true}),
     field("adaptive", &PointSpec::adaptive, "",
-          "a step controller halves the step where the solver refuses it", {.later = true}),
+          "a step controller halves the step where the solver refuses it"),
     field("seed", &PointSpec::seed, "", "of random orders")};
 
 // What follows from the scene's parameters.
@@ -85,37 +85,33 @@ inline constexpr std::tuple result_fields{
     field("status_detail", &PointResult::detail, "", "of a failure: step, time, reason"),
     field("cpu_seconds_per_simulated_second", &PointResult::cpu_samples, "",
           "processor time of the thread in the runs of each sample of "
-          "seconds_per_simulated_second",
-          {.later = true}),
+          "seconds_per_simulated_second"),
     field("runs_per_sample", &PointResult::sample_runs, "runs",
-          "that each of these samples is the mean of; older files: one", {.later = true}),
+          "that each of these samples is the mean of"),
     field("retaken", &PointResult::retaken, "samples",
-          "taken again because a fixed piece of work beside them took too long", {.later = true}),
+          "taken again because a fixed piece of work beside them took too long"),
     field("setup_seconds", &PointResult::setup_seconds, "s", "wall time before the first step"),
     field("calibration_seconds", &PointResult::calibration_seconds, "s",
           "wall time of the search for a stiffness"),
     field("calibration_runs", &PointResult::calibration_runs, "runs",
-          "of the search for a stiffness", {.inside = "work", .later = true}),
+          "of the search for a stiffness", {.inside = "work"}),
     field("calibration_guess", &PointResult::calibration_guess, "N",
           "the stiffness that the search began with, from a neighbouring point; null: an estimate",
-          {.later = true, .nullable = true}),
+          {.nullable = true}),
     field("smallest_step", &PointResult::smallest_step, "s", "of the accepted ones; adaptive only",
-          {.later = true, .nullable = true}),
+          {.nullable = true}),
     field("frame_times", &PointResult::frame_times, "frames a second, then s",
           "of one run of the fastest sample, at each rate of pictures that steps are fine enough "
-          "for: the rate, and the wall time of a frame, median, 99 % and worst",
-          {.later = true}),
+          "for: the rate, and the wall time of a frame, median, 99 % and worst"),
     field("steps_planned", &PointResult::steps_planned, "steps",
-          "that the duration takes at this step; older files: to be computed", {.later = true}),
+          "that the duration takes at this step"),
     field("peak_rss_bytes", &PointResult::peak_rss_bytes, "bytes", "largest resident memory"),
     field("best", &PointResult::best, "",
           "the fastest step of its contestant at its place on the axis, whatever its motion"),
     field("best_at_errors", &PointResult::best_at_errors, "scene's size",
-          "levels of error within which it is the fastest step of its contestant at its place",
-          {.later = true}),
+          "levels of error within which it is the fastest step of its contestant at its place"),
     field("at_ladder_end", &PointResult::at_ladder_end, "",
-          "of a best point: 'coarsest' or 'finest' where its step is that end of the ladder",
-          {.later = true})};
+          "of a best point: 'coarsest' or 'finest' where its step is that end of the ladder")};
 
 inline constexpr FieldTraits in_phases{.inside = "phases"};
 inline constexpr std::tuple phase_fields{
@@ -127,9 +123,9 @@ inline constexpr std::tuple phase_fields{
           "wall time of the same run in the collision filter", in_phases),
     field("contact", &inextensible::PhaseSeconds::contact, "s",
           "what of these three goes to friction, to finding contacts and to planes",
-          {.inside = "phases", .later = true}),
+          in_phases),
     field("copy", &inextensible::PhaseSeconds::copy, "s",
           "wall time of the same run in copying the state into an engine and out of it",
-          {.inside = "phases", .later = true})};
+          in_phases)};
 
 }  // namespace harness

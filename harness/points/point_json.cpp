@@ -1,6 +1,5 @@
 #include "harness/points/point_json.h"
 
-#include <cmath>
 
 #include "harness/base/statistics.h"
 #include "harness/points/point_fields.h"
@@ -169,7 +168,6 @@ json to_json(const inextensible::WorkCounters& work) {
 inextensible::WorkCounters work_of(const json& object) {
   inextensible::WorkCounters work;
   for (const auto& counter : inextensible::work_counters) {
-    if (counter.later && !object.contains(counter.name)) continue;
     std::visit([&](const auto member) { object.at(counter.name).get_to(work.*member); },
                counter.member);
   }
@@ -207,18 +205,20 @@ json to_json(const Repetition& repetition) {
 }
 
 Repetition repetition_of(const json& object) {
-  const auto numbers = [&object](const char* key) {
-    return object.value(key, std::vector<double>());
-  };
-  Repetition repetition{object.at("seconds").get<std::vector<double>>(), numbers("cpu"),
-                        numbers("filter"), object.value("runs", std::vector<int>()),
-                        object.value("retaken", 0)};
-  if (const auto frames = object.find("frame_times"); frames != object.end())
-    FieldCodec<std::vector<FrameTime>>::read(*frames, repetition.frame_times, false);
+  Repetition repetition;
+  object.at("seconds").get_to(repetition.samples);
+  object.at("cpu").get_to(repetition.cpu_samples);
+  object.at("filter").get_to(repetition.filter_samples);
+  object.at("runs").get_to(repetition.sample_runs);
+  object.at("retaken").get_to(repetition.retaken);
+  FieldCodec<std::vector<FrameTime>>::read(object.at("frame_times"), repetition.frame_times, false);
   return repetition;
 }
 
-PointSpec spec_of(const json& object) {
+PointSpec spec_of(const json& given) {
+  // A point that is typed by hand may leave these out.
+  json object{{"contestant", ""}, {"settings", json::object()}, {"adaptive", false}};
+  object.update(given);
   PointSpec spec;
   read_fields(object, spec_fields, spec);
   read_fields(object, size_fields, spec);
@@ -232,15 +232,12 @@ PointResult point_of(const json& object) {
   point.spec = spec_of(object);
   if (!(point.spec.step > 0)) throw json::other_error::create(504, "a point without step", nullptr);
   point.work = work_of(object.at("work"));
-  point.steps_planned =
-      static_cast<int>(std::lround(object.at("duration").get<double>() / point.spec.step));
   read_fields(object, result_fields, point);
   read_fields(object, phase_fields, point.phases);
   read_fields(object, measure_fields, point.measures);
   if (const json& seconds = object.at("seconds_per_simulated_second"); !seconds.is_null())
     seconds.at("samples").get_to(point.samples);
-  if (const json seconds = object.value("filter_seconds_per_simulated_second", json());
-      !seconds.is_null())
+  if (const json& seconds = object.at("filter_seconds_per_simulated_second"); !seconds.is_null())
     seconds.at("samples").get_to(point.filter_samples);
   const json& options = object.at("options");
   if (options.contains("stiffness") && !point.spec.settings.contains("stiffness"))

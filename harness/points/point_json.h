@@ -17,7 +17,7 @@ nlohmann::json to_json(const Repetition& repetition);
 // they read.
 inextensible::WorkCounters work_of(const nlohmann::json& work);
 PointResult point_of(const nlohmann::json& point);
-Repetition repetition_of(const nlohmann::json& repetition);  // older journals: seconds alone
+Repetition repetition_of(const nlohmann::json& repetition);
 PointSpec spec_of(const nlohmann::json& point);
 
 // All of a point that is not measured: two runs of one key may stand for each other.

@@ -11,7 +11,7 @@
 namespace harness {
 
 // context: machine_context() as it was before the sweep ran. references:
-// ReferenceShelf::summaries().
+// ReferenceFolder::summaries().
 nlohmann::json result_document(nlohmann::json context, const Suite& suite,
                                const std::vector<std::string>& command, bool complete,
                                const std::vector<PointResult>& points,
@@ -29,7 +29,7 @@ nlohmann::json read_result(const std::string& path);
 nlohmann::json parse_result(const std::string& text, const std::string& path);
 // The same of what is parsed already.
 void check_result(const nlohmann::json& document, const std::string& path);
-// Of `bench answers`: schema inextensible-answers/1.
+// A result of `bench answers`: schema inextensible-answers/1.
 nlohmann::json read_answers(const std::string& path);
 // Either of them, so that results/*.json may be given.
 nlohmann::json read_result_or_answers(const std::string& path);

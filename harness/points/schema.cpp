@@ -39,9 +39,13 @@ const char* word_of(inextensible::Origin origin) {
   return "elsewhere";
 }
 
-void add(ordered_json& object, const char* name, ordered_json schema, bool later) {
-  if (!later) object["required"].push_back(name);
+void add_optional(ordered_json& object, const char* name, ordered_json schema) {
   object["properties"][name] = std::move(schema);
+}
+
+void add(ordered_json& object, const char* name, ordered_json schema) {
+  object["required"].push_back(name);
+  add_optional(object, name, std::move(schema));
 }
 
 template <class Table>
@@ -51,10 +55,10 @@ void add_fields(ordered_json& object, const Table& table) {
     ordered_json schema = FieldCodec<Value>::schema(row.traits);
     schema["description"] = described(row);
     const char* inside = row.traits.inside;
-    if (!*inside) return add(object, row.name, schema, row.traits.later);
+    if (!*inside) return add(object, row.name, schema);
     if (inside == std::string("work")) return;  // work_schema's
-    if (!object["properties"].contains(inside)) add(object, inside, closed_object(), false);
-    add(object["properties"][inside], row.name, schema, row.traits.later);
+    if (!object["properties"].contains(inside)) add(object, inside, closed_object());
+    add(object["properties"][inside], row.name, schema);
   });
 }
 
@@ -71,31 +75,19 @@ ordered_json work_schema() {
     add(work, counter.name,
         {{"type", whole ? "integer" : "number"},
          {"minimum", 0},
-         {"description", described(counter)}},
-        counter.later);
+         {"description", described(counter)}});
   }
   for_each_field(result_fields, [&work](const auto& row) {
     if (row.traits.inside == std::string("work"))
-      add(work, row.name, {{"type", "integer"}, {"minimum", 0}, {"description", described(row)}},
-          row.traits.later);
+      add(work, row.name, {{"type", "integer"}, {"minimum", 0}, {"description", described(row)}});
   });
   return work;
-}
-
-// What older files have instead of a shape error: differences from one reference.
-void add_older_shapes(ordered_json& error) {
-  for (const char* name : {"shape_potential_energy", "shape_corner_height", "shape_shadow"})
-    add(error, name,
-        {{"type", {"number", "null"}},
-         {"description", "older files: against one reference, root mean square after valid_until"}},
-        true);
 }
 
 ordered_json point_schema() {
   ordered_json point = closed_object();
   add(point, "id",
-      {{"type", "string"}, {"description", "scene/contestant/n:vertices/strain:limit/h:step"}},
-      false);
+      {{"type", "string"}, {"description", "scene/contestant/n:vertices/strain:limit/h:step"}});
   add_fields(point, spec_fields);
   point["properties"]["sweep"] = {{"enum", sweep_kinds()}};
   const auto values_of = [&point](const char* name, ordered_json type) {
@@ -105,27 +97,21 @@ ordered_json point_schema() {
   point["properties"]["scene_parameters"]["required"] = {"duration"};
   values_of("settings", {"number", "string"});
   add_fields(point, size_fields);
-  add(point, "duration", {{"type", "number"}, {"exclusiveMinimum", 0}, {"description", "s"}},
-      false);
+  add(point, "duration", {{"type", "number"}, {"exclusiveMinimum", 0}, {"description", "s"}});
   add(point, "options",
       {{"type", "object"},
        {"description",
         "the solver's settings as given, the stiffness that was found (N), the linear solver in "
-        "use"}},
-      false);
+        "use"}});
   values_of("options", {"number", "string"});
   point["properties"]["options"]["properties"] = {{"linear_solver", {{"type", "string"}}},
                                                   {"stiffness", {{"type", "number"}}}};
   add_fields(point, result_fields);
-  add(point, "best_at_error",
-      {{"type", "boolean"}, {"description", "older files: the fastest step within max_error"}},
-      true);
-  add(point, "seconds_per_simulated_second", reference_to("seconds"), false);
-  add(point, "filter_seconds_per_simulated_second", reference_to("seconds"), true);
+  add(point, "seconds_per_simulated_second", reference_to("seconds"));
+  add(point, "filter_seconds_per_simulated_second", reference_to("seconds"));
   add_fields(point, phase_fields);
   add_fields(point, measure_fields);
-  add_older_shapes(point["properties"]["error"]);
-  add(point, "work", reference_to("work"), false);
+  add(point, "work", reference_to("work"));
   return point;
 }
 
@@ -138,7 +124,7 @@ ordered_json answer_row_schema() {
 // A list of objects with these entries.
 ordered_json list_of(const std::vector<std::pair<const char*, const char*>>& entries) {
   ordered_json item = closed_object();
-  for (const auto& [name, type] : entries) add(item, name, {{"type", type}}, false);
+  for (const auto& [name, type] : entries) add(item, name, {{"type", type}});
   return {{"type", "array"}, {"items", item}};
 }
 
@@ -148,25 +134,20 @@ ordered_json legend_schema() {
       list_of({{"name", "string"},
                {"label", "string"},
                {"family", "string"},
-               {"contestant", "boolean"}}),
-      false);
+               {"contestant", "boolean"}}));
   ordered_json& item = schema["properties"]["solvers"]["items"];
-  add(item, "origin",
+  add_optional(item, "origin",
       {{"type", "string"},
-       {"description", "who offers the method: paper, project, literature, engine or elsewhere"}},
-      true);
-  add(item, "method", {{"type", "string"}}, true);
-  add(item, "stepper", {{"type", "string"}, {"description", "the time stepper that it stands in"}},
-      true);
-  add(item, "stepper_origin", {{"type", "string"}, {"description", "who offers the stepper"}},
-      true);
-  add(item, "solver",
-      {{"type", "string"}, {"description", "of a contestant that is not it under its own name"}},
-      true);
-  add(item, "hollow",
-      {{"type", "boolean"}, {"description", "beside the ranking, drawn with hollow marks"}}, true);
+       {"description", "origin of the method: paper, project, literature, engine or elsewhere"}});
+  add_optional(item, "method", {{"type", "string"}});
+  add_optional(item, "stepper", {{"type", "string"}, {"description", "its time stepper"}});
+  add_optional(item, "stepper_origin", {{"type", "string"}, {"description", "origin of the stepper"}});
+  add_optional(item, "solver",
+      {{"type", "string"}, {"description", "the solver of a contestant with another name"}});
+  add_optional(item, "hollow",
+      {{"type", "boolean"}, {"description", "beside the ranking, drawn with hollow marks"}});
   add(schema, "statuses",
-      list_of({{"name", "string"}, {"letter", "string"}, {"meaning", "string"}}), false);
+      list_of({{"name", "string"}, {"letter", "string"}, {"meaning", "string"}}));
   return schema;
 }
 

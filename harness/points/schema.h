@@ -25,7 +25,7 @@ std::vector<std::string> generated_schemas();
 // that are it under another name, and of statuses.
 nlohmann::ordered_json legend(const Contestants& contestants = {});
 
-// Of `work` in a result file.
+// Schema of `work` in a result file.
 std::vector<std::string> counter_names();
 
 }  // namespace harness

@@ -11,7 +11,7 @@
 
 namespace harness {
 
-// Of a run; more is a mistake in the step.
+// Most steps of a run; more is a mistake in the step.
 constexpr double most_steps = 1e8;
 
 // A frame of film: no simulation makes longer steps, s.
@@ -52,7 +52,7 @@ struct Suite {
 std::vector<std::string> sweep_kinds();
 // Levels of error that best steps are sought for, loose to tight.
 std::vector<double> levels_of(const Suite& suite);
-// Of all sweeps, each name once.
+// Contestants of all sweeps, each name once.
 Contestants contestants_of(const Suite& suite);
 
 // Throws UsageError, naming file, key and value, for anything that is not a suite. What "tuned",

@@ -17,8 +17,8 @@ constexpr double repeated_of_a_search = 2;
 // Over the timed part of a short run: making the solver, and looks at the machine.
 constexpr double around_a_run = 1.3;
 
-// Of simulating a second; the time-out where no step is taken, nothing where the solver does not
-// take the problem.
+// Time of simulating a second; the time-out where no step is taken, nothing where the solver does
+// not take the problem.
 double seconds_per_second(const Search& search, double step, double timeout) {
   PointSpec spec = search.base;
   spec.step = step;
@@ -40,7 +40,8 @@ Estimate estimate(const Suite& suite, const std::vector<Search>& searches) {
     const double run =
         std::min(duration * seconds_per_second(middle, step, suite.timeout), suite.timeout);
     const auto* backend = inextensible::find_backend(middle.base.solver);
-    const bool calibrated = backend && backend->knob == inextensible::Knob::stiffness;
+    const bool calibrated =
+        backend && backend->strain_control == inextensible::StrainControl::stiffness;
     for (const Search* search : members) {
       const double tried = search->every_step ? static_cast<double>(search->ladder.size())
                                               : std::min(static_cast<double>(search->ladder.size()),

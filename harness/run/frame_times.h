@@ -8,7 +8,7 @@
 
 namespace harness {
 
-// Of film, television and games, pictures a second.
+// Frames a second of film, television and games.
 inline constexpr std::array frame_rates{24.0, 30.0, 60.0};
 
 class FrameTimes {
@@ -20,7 +20,7 @@ class FrameTimes {
   // A step belongs to the frame in which it ends.
   void add(int steps, double step, double time, double seconds);
 
-  // Of the frames that are whole; a rate without any is left out.
+  // Times of whole frames; a rate without any is left out.
   std::vector<FrameTime> summary() const;
 
  private:

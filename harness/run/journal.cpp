@@ -33,8 +33,8 @@ void learn_line(const json& line, Memory& memory) {
   }
 }
 
-// Leaves a point of a result file its first sample. Lists that have not an entry for each sample,
-// as in older files, stay whole.
+// Leaves a point of a result file its first sample. Lists without an entry for each sample stay
+// whole.
 std::deque<Repetition> cut_off_repetitions(PointResult& point) {
   const std::size_t samples = point.samples.size();
   std::deque<Repetition> repetitions(samples > 1 ? samples - 1 : 0);

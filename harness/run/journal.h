@@ -26,7 +26,7 @@ struct Memory {
   };
   std::map<std::string, Known> points;
 
-  // Of a result file: as if its runs had just been made.
+  // Takes over a result file's runs, as if they had just been made.
   void learn(const nlohmann::json& result);
   void forget_failures();
 };

@@ -190,7 +190,8 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
     point.steps_planned = runner.steps();
     inextensible::Settings settings = spec.settings;
     const bool needs_stiffness =
-        runner.backend().knob == inextensible::Knob::stiffness && !settings.contains("stiffness");
+        runner.backend().strain_control == inextensible::StrainControl::stiffness &&
+        !settings.contains("stiffness");
     if (needs_stiffness && !calibrate(point, runner, settings, guess)) return point;
     measure(point, runner, settings, limits);
   } catch (const std::bad_alloc&) {

@@ -1,5 +1,5 @@
-// Runs one point: makes the scene and the solver, finds the solver's knob where it has one, steps,
-// judges.
+// Runs one point: makes the scene and the solver, finds the stiffness where the solver needs one,
+// steps, judges.
 #pragma once
 
 #include <functional>
@@ -25,11 +25,11 @@ struct RunLimits {
   // s of stepping after which a run cannot be the best any more; of a calibration's run nominal
   // ones, so that a stiffness is found or not whatever else the machine does
   double hopeless = 1e300;
-  std::function<bool()> interrupted = nullptr;           // asked after every step
-  std::shared_ptr<ReferenceShelf> references = nullptr;  // null: no errors against references
-  Heartbeat* heartbeat = nullptr;                        // told of every step; see child_process.h
-  int most_retaken = 3;                                  // times that a sample may be taken again
-  bool timed = true;  // false: times are not used, and one run is a sample
+  std::function<bool()> interrupted = nullptr;            // asked after every step
+  std::shared_ptr<ReferenceFolder> references = nullptr;  // null: no errors against references
+  Heartbeat* heartbeat = nullptr;  // notified of every step; see child_process.h
+  int most_retaken = 3;            // times that a sample may be taken again
+  bool timed = true;               // false: times are not used, and one run is a sample
 };
 
 // One judged run, and a first sample of its time. guess: a stiffness to begin calibration from,

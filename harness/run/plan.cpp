@@ -82,7 +82,8 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
         base.adaptive = sweep.adaptive;
         // Without a limit of its own a solver does the same at all of them.
         const auto* backend = inextensible::find_backend(contestant.solver);
-        const bool limited = !backend || backend->knob != inextensible::Knob::none;
+        const bool limited =
+            !backend || backend->strain_control != inextensible::StrainControl::none;
         const std::vector<double> own_limits =
             limited ? limits : std::vector<double>(limits.begin(), limits.begin() + 1);
         for (const double limit : own_limits) {

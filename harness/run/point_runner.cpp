@@ -71,10 +71,10 @@ Judge::Options PointRunner::judging(bool errors) const {
 }
 
 // Judges the steps of a run, and times them.
-class PointRunner::Look : public Onlooker {
+class PointRunner::RunObserver : public Observer {
  public:
   // judge: null leaves all time to the steps.
-  Look(const PointRunner& runner, Judge* judge, double stop_at, bool by_work, Run& run)
+  RunObserver(const PointRunner& runner, Judge* judge, double stop_at, bool by_work, Run& run)
       : runner_(runner),
         judge_(judge),
         stop_at_(stop_at),
@@ -82,16 +82,18 @@ class PointRunner::Look : public Onlooker {
         run_(run),
         frames_(runner.spec_.step) {}
 
-  int before(const State& state, const Driven& /*driven*/) {
+  int before(const State& state, const DriveState& /*driven*/) {
     if (judge_) judge_->before(state, runner_.spec_.step);
     cpu_begin_ = thread_seconds();
     begin_ = Clock::now();
     return block_;
   }
 
-  void each(const State& state, const Driven& driven) { runner_.beat(driven.steps, state.time); }
+  void each(const State& state, const DriveState& driven) {
+    runner_.beat(driven.steps, state.time);
+  }
 
-  void all(const State& state, const Driven& driven) {
+  void all(const State& state, const DriveState& driven) {
     const double seconds = since(begin_);
     run_.seconds += seconds;
     const double cpu_seconds = thread_seconds() - cpu_begin_;
@@ -104,7 +106,7 @@ class PointRunner::Look : public Onlooker {
     if (!judge_ && seconds < shortest_block) block_ *= 2;
   }
 
-  bool after(const State& state, const Driven& driven) {
+  bool after(const State& state, const DriveState& driven) {
     if (runner_.spec_.adaptive) run_.smallest_step = driven.smallest;
     if (judge_) {
       const double strain =
@@ -136,23 +138,24 @@ class PointRunner::Look : public Onlooker {
 };
 
 bool PointRunner::overstrained(double strain, double stop_at, Run& run) const {
-  if (backend_.knob == inextensible::Knob::none || strain <= stop_at) return false;
+  if (backend_.strain_control == inextensible::StrainControl::none || strain <= stop_at)
+    return false;
   run.status = !(strain <= diverged_strain) ? PointStatus::diverged : PointStatus::strain_missed;
   run.detail = "strain " + std::to_string(strain) + " at step " +
                std::to_string(run.stepper->work().steps - 1);
   return true;
 }
 
-void PointRunner::tell_end(const Driven& driven, double time, Run& run) const {
-  if (driven.end == Driven::End::arrived || run.status != PointStatus::ok) return;
-  if (driven.end == Driven::End::refused) {
+void PointRunner::tell_end(const DriveState& driven, double time, Run& run) const {
+  if (driven.end == DriveState::End::arrived || run.status != PointStatus::ok) return;
+  if (driven.end == DriveState::End::refused) {
     run.status = driven.result.status == Status::not_finite ? PointStatus::diverged
                                                             : PointStatus::not_converged;
     run.detail = refusal(driven.result, run.stepper->work().steps, time);
     if (spec_.adaptive) run.detail += "; at the smallest step, " + number_text(driven.next) + " s";
     return;
   }
-  const bool slow = driven.end == Driven::End::stopped;
+  const bool slow = driven.end == DriveState::End::stopped;
   run.status = PointStatus::timeout;
   std::ostringstream text;
   text << "longer than " << (slow ? limits_.hopeless : limits_.timeout) << " s"
@@ -176,15 +179,15 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
   }
   State state = first_state_;
   beat(0, 0);
-  Look look(*this, judge ? &*judge : nullptr, stop_at, by_work, run);
+  RunObserver observer(*this, judge ? &*judge : nullptr, stop_at, by_work, run);
   // Between blocks there is little but reads of the clock; the judge takes longer than steps do.
   const double cpu_begin = thread_seconds();
-  const Driven driven =
-      drive(*run.stepper, state, {spec_.step, steps_, spec_.adaptive ? usual_halvings : 0}, look,
+  const DriveState driven =
+      drive(*run.stepper, state, {spec_.step, steps_, spec_.adaptive ? usual_halvings : 0}, observer,
             {limits_.timeout, start_, limits_.interrupted});
   if (!judged) run.cpu_seconds = thread_seconds() - cpu_begin;
   tell_end(driven, state.time, run);
-  run.frame_times = look.frame_times();
+  run.frame_times = observer.frame_times();
   if (judge) {
     run.stepper->observe(nullptr);
     run.measures = judge->finish();
@@ -195,7 +198,7 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
 
 void PointRunner::decide(const Judge& judge, Run& run) const {
   const Measures& found = run.measures;
-  if (backend_.knob != inextensible::Knob::none &&
+  if (backend_.strain_control != inextensible::StrainControl::none &&
       !(found.max_strain <= spec_.strain_limit * (1 + 1e-9))) {
     run.status = PointStatus::strain_missed;
     run.detail = "maximum strain " + told_apart(found.max_strain, spec_.strain_limit) + " above " +

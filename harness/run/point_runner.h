@@ -25,7 +25,7 @@ struct Run {
   std::vector<FrameTime> frame_times;
 };
 
-// Scenes are the same for every run of a point; the stepper is made anew each time.
+// Scenes are the same for every run of a point; the stepper is constructed each time.
 class PointRunner {
  public:
   // Both must outlive this. Throws std::invalid_argument for a scene that makes no problem.
@@ -54,9 +54,9 @@ class PointRunner {
   // The status of a run that reached its end: what kept it from being one of this motion.
   void decide(const Judge& judge, Run& run) const;
   Judge::Options judging(bool errors) const;  // errors: and what is measured beside them
-  class Look;
+  class RunObserver;
   // Says in the run's status why its drive ended before the scene did.
-  void tell_end(const Driven& driven, double time, Run& run) const;
+  void tell_end(const DriveState& driven, double time, Run& run) const;
   // Whether the strain of a step ends the run; if so, says it in its status.
   bool overstrained(double strain, double stop_at, Run& run) const;
   void beat(long step, double time) const;

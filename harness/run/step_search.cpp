@@ -168,7 +168,7 @@ double StepSearch::longest_useful() const {
   return fastest ? hopeless_factor * *fastest : std::numeric_limits<double>::infinity();
 }
 
-// Of a walk to finer steps whose time has risen twice in a row.
+// Whether a walk to finer steps has ended whose time has risen twice in a row.
 bool StepSearch::done(std::size_t rung, const PointResult& point) {
   if (!goal_ || error_stays_ >= 2 || gave_up(point)) return true;
   if (!point.ok()) return failures_ >= 2;

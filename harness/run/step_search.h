@@ -84,7 +84,7 @@ class StepSearch {
   std::size_t rungs_, stride_;
   Run run_, again_;
   std::vector<double> levels_;
-  // The finest level that errors can be told at; none before the first error, or without one.
+  // The finest level at which errors are known; none before the first error, or without one.
   std::optional<double> goal_;
   std::size_t lowest_ = 0, highest_ = 0;  // of the rungs that were tried
   std::set<std::size_t> sampled_;         // rungs that had their samples_when_close

@@ -178,7 +178,7 @@ struct Sweep {
   }
 
   const PointResult& add(PointResult point, std::size_t search) {
-    // Of what no judge has seen: it was skipped, or its process ended early.
+    // A point that no judge has seen: it was skipped, or its process ended early.
     Measures& measures = point.measures;
     if (std::isnan(measures.trajectory) && measures.unknown_because.empty())
       measures.unknown_because = "no run came to an end that could be judged";

@@ -36,7 +36,7 @@ struct SweepRunners {
   std::function<PointResult(const PointSpec&, const RunLimits&, std::optional<double>)> run =
       run_point;
   std::function<void(PointResult&, const RunLimits&)> repeat = repeat_point;
-  std::shared_ptr<ReferenceShelf> references = nullptr;  // null: no errors against references
+  std::shared_ptr<ReferenceFolder> references = nullptr;  // null: no errors against references
 };
 
 SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,

@@ -81,7 +81,7 @@ class DimensionedSearch {
   }
 
   // The best set so far with each setting moved at the given probability, at least one of them.
-  // Rounding may bring it back to what was tried: then anew.
+  // Rounding may lead back to what was tried: then draw again.
   Values neighbor(double probability) {
     std::bernoulli_distribution moves(std::clamp(probability, 0.0, 1.0));
     std::uniform_int_distribution<std::size_t> any(0, numbers_.size() - 1);

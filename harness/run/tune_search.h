@@ -39,7 +39,7 @@ struct TuneRules {
 
 struct TuneOutcome {
   Values values;        // the initial ones if nothing is better by enough
-  double gain = 1;      // seconds of the initial values over these, measured anew
+  double gain = 1;      // seconds of the initial values over these, measured again
   int evaluations = 0;  // the first one included; at most the budget
 };
 

@@ -15,7 +15,7 @@ struct ClothMesh {
   std::vector<std::array<int, 3>> triangles;  // what is left
 };
 
-// Of a file's faces: triangles are joined to quads where two make one whose angles are within
+// Quads of a file's faces: triangles are joined to quads where two make one whose angles are within
 // `most_oblique` of right ones, the best first. Vertices that no face has are left out. Throws
 // UsageError, naming file and vertices (counted from 1), for faces of more corners, sides without
 // length, and sides of more than two faces.
@@ -34,7 +34,7 @@ std::vector<Side> sides_of_triangles(const ClothMesh& mesh);
 // each other. Where yarns end or five sides meet there are none.
 std::vector<std::array<int, 3>> yarns_of(const ClothMesh& mesh);
 
-// Of each vertex what falls to it of the faces around it.
+// Each vertex's share of the faces around it.
 std::vector<double> areas(const ClothMesh& mesh);
 
 }  // namespace harness

@@ -17,8 +17,8 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-// Of the body, from the lower end to the upper: half an ellipsoid, a cosine from the hips to the
-// waist and one on to the chest, half an ellipsoid. The waist is at y = 0.
+// The body's profile, from the lower end to the upper: half an ellipsoid, a cosine from the hips to
+// the waist and one on to the chest, half an ellipsoid. The waist is at y = 0.
 std::vector<Ring> profile(const SceneParameters& p) {
   constexpr int cap = 8, wave = 14;           // rings
   constexpr double below = 1.6, above = 0.7;  // heights of the ends, of the drop

@@ -53,7 +53,7 @@ struct Scene {
     double height;  // m, at which it would hang if nothing stretched
   };
   std::vector<Mark> marks;
-  // Of a cloth, for shape statistics: its corners, and triangles that cover it.
+  // For shape statistics of a cloth: its corners, and triangles that cover it.
   std::vector<int> corners;
   std::vector<std::array<int, 3>> triangles;
 };

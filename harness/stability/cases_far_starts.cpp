@@ -30,7 +30,7 @@ Mesh hung_cloth() {
 
 Trial ten_seconds(Mesh mesh) { return trial_of(std::move(mesh), 1.0 / 100, 1000); }
 
-const Expectation no_drift{everyone, survives, "each step begins anew: no drift"};
+const Expectation no_drift{everyone, survives, "each step begins afresh: no drift"};
 
 void add_scaled_chains(std::vector<HardCase>& cases, const std::vector<double>& scales) {
   // The release throws the ends at 50 m/s past the places where they belong, and back again.

@@ -73,7 +73,7 @@ void add_large(std::vector<HardCase>& cases, const HardCaseValues& values) {
     const double passes = std::max(100.0, 2e8 / trial.scene.problem->constraints());
     for (const auto& backend : inextensible::backends()) {
       if (!inextensible::is_built_in(backend.name) ||
-          backend.knob != inextensible::Knob::strain_limit)
+          backend.strain_control != inextensible::StrainControl::strain_limit)
         continue;
       if (backend.direction == strain_limiting || multipliers.contains(backend.name))
         trial.settings[backend.name] = {{"max_iterations", std::min(1e5, std::floor(passes))}};

@@ -23,11 +23,11 @@ class CellJournal {
   std::size_t cells() const { return cells_.size(); }
   const nlohmann::json& identity() const { return identity_; }  // null: new, or its header is lost
 
-  // Of a result file that is not complete: as if its cells had just been run.
+  // Takes over the cells of an incomplete result file, as if they had just been run.
   void learn(const nlohmann::json& result);
   void forget() { cells_.clear(); }
 
-  // Writes it anew, with the cells that it knows. This and add throw FileError.
+  // Rewrites the file with the cells that it has. This and add throw FileError.
   void start(const nlohmann::json& identity);
   std::optional<TrialResult> find(const std::string& hard_case, const std::string& solver) const;
   void add(const std::string& hard_case, const std::string& solver, const TrialResult& result);

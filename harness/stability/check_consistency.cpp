@@ -5,14 +5,14 @@
 
 namespace harness {
 
-using inextensible::Knob;
 using inextensible::Positions;
 using inextensible::State;
+using inextensible::StrainControl;
 
 Findings check_consistency(const Examinee& solver) {
   const char* check = "consistency";
   constexpr int links = 7;
-  // Of the fine run, h = 0.00025 s, over the scene's size: five times g t h / 2, by which
+  // Tolerance of the fine run, h = 0.00025 s, over the scene's size: five times g t h / 2, by which
   // symplectic Euler's free fall is off after 0.32 s.
   constexpr double largest_error = 2e-3;
   // Distances from a run of h/16: (1/2 - 1/16) / (1 - 1/16) = 0.47 for a method of first order, 1
@@ -31,8 +31,8 @@ Findings check_consistency(const Examinee& solver) {
     fine.limit = 1e-6;
     const auto stepper = solver.stepper(fine, settings);
     State state = c.scene.start;
-    const Driven driven = drive(*stepper, state, {c.step / refinement, refinement * c.steps});
-    if (driven.end == Driven::End::refused)
+    const DriveState driven = drive(*stepper, state, {c.step / refinement, refinement * c.steps});
+    if (driven.end == DriveState::End::refused)
       return {
           judged(false, check,
                  text("not measured: refuses h = 1/", 250 * refinement,
@@ -48,7 +48,8 @@ Findings check_consistency(const Examinee& solver) {
       "what a step changes must vanish with h: look for a damping, a relaxation or an offset a "
       "step that does not know h";
   const bool converges = half <= vanishing * coarse || coarse < 1e-9;
-  if (solver.backend.knob == Knob::none) return {judged(converges, check, measured, advice)};
+  if (solver.backend.strain_control == StrainControl::none)
+    return {judged(converges, check, measured, advice)};
   Pendulum exact({std::vector<double>(links, 1.0 / (links + 1)),
                   std::vector<double>(links, 1.0 / links), 9.81},
                  std::vector<double>(links, 0.0));

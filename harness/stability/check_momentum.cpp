@@ -24,8 +24,8 @@ constexpr double momentum_limit = 1e-5;
 constexpr double momentum_tolerance = 1e-9;
 // What edges may do within their limit has no order in the step: a hundredth of it is let pass.
 constexpr double spin_tolerance = 0.01 * momentum_limit;
-// Of a quarter of the step: 1/4 for an error of first order in h, 1 for one that steps do not
-// lessen; between the two, on a logarithmic scale.
+// Defect at a quarter of the step over this one: 1/4 for an error of first order in h, 1 for one
+// that steps do not lessen; between the two, on a logarithmic scale.
 constexpr double vanishing = 0.5;
 
 // Raises `linear` to the largest relative change of linear momentum in a step; infinite if refused.
@@ -38,13 +38,14 @@ double loss_of_spin(const Examinee& solver, const Case& c, double step, double& 
   for (Eigen::Index i = 0; i < state.v.cols(); ++i)
     scale += problem.mass()[i] * state.v.col(i).norm();
   Vector3d before = linear_momentum(problem, state.v);
-  const auto look = [&](const State& now, const Driven& /*driven*/) {
+  const auto look = [&](const State& now, const DriveState& /*driven*/) {
     const Vector3d after = linear_momentum(problem, now.v);
     linear = std::max(linear, (after - std::exchange(before, after)).norm() / scale);
     return true;
   };
-  const Driven driven = drive(*stepper, state, {step, std::lround(momentum_duration / step)}, look);
-  if (driven.end == Driven::End::refused) return std::numeric_limits<double>::infinity();
+  const DriveState driven =
+      drive(*stepper, state, {step, std::lround(momentum_duration / step)}, look);
+  if (driven.end == DriveState::End::refused) return std::numeric_limits<double>::infinity();
   return (angular_momentum(problem, state) - start).norm() / (scale * c.scene.size);
 }
 

@@ -8,16 +8,16 @@
 
 namespace harness {
 
-using inextensible::Knob;
 using inextensible::Positions;
 using inextensible::Problem;
 using inextensible::State;
 using inextensible::Stepper;
+using inextensible::StrainControl;
 using inextensible::WorkCounters;
 
 namespace {
 
-// Those that only grow: of a factorization's size the last one is told.
+// Counters that only grow; a factorization's size is that of the last one.
 std::vector<std::int64_t> counts_of(const WorkCounters& w) {
   std::vector<std::int64_t> counts;
   counts.reserve(inextensible::work_counters.size());
@@ -62,7 +62,7 @@ void take_steps(const Examinee& solver, const Case& c, Ordinary& all) {
   State state = c.scene.start;
   std::int64_t accepted = 0;
   std::vector<std::int64_t> before = counts_of(stepper->work());
-  const auto look_on = [&](const State& now, const Driven& driven) {
+  const auto look_on = [&](const State& now, const DriveState& driven) {
     ++accepted;
     ++all.steps;
     if (driven.last < c.step) ++all.smaller;
@@ -77,8 +77,8 @@ void take_steps(const Examinee& solver, const Case& c, Ordinary& all) {
     before = after;
     return true;
   };
-  const Driven driven = drive(*stepper, state, {c.step, c.steps, 10}, look_on);
-  if (driven.end == Driven::End::refused)
+  const DriveState driven = drive(*stepper, state, {c.step, c.steps, 10}, look_on);
+  if (driven.end == DriveState::End::refused)
     all.stopped = text(c.name, " at t = ", state.time, " s, steps down to ", driven.next,
                        " s: ", to_string(driven.result.status), ", ", driven.result.detail);
 }
@@ -118,7 +118,7 @@ Findings check_ordinary_runs(const Examinee& solver) {
             "(EdgeConstraints::permissible), before the collision filter; refuse otherwise"));
   } else {
     findings.push_back(
-        not_applicable("limit", text(solver.backend.knob == Knob::stiffness
+        not_applicable("limit", text(solver.backend.strain_control == StrainControl::stiffness
                                          ? "no limit of its own, sweeps search its stiffness"
                                          : "promises no limit",
                                      "; here ", number_text(all.worst, 4), " of it")));

@@ -21,8 +21,6 @@ Findings check_permissible_candidate(const Examinee& solver);
 Findings check_determinism(const Examinee& solver);
 // Smaller steps, smaller error, towards the right motion.
 Findings check_consistency(const Examinee& solver);
-// Not counted from outside; says how to.
-Findings check_allocations(const Examinee& solver);
 // Every hard case of the profile "quick".
 Findings check_hard_cases(const Examinee& solver);
 

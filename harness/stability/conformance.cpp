@@ -26,7 +26,6 @@ constexpr Check checks[] = {
     {"permissible candidate", check_permissible_candidate},
     {"determinism", check_determinism},
     {"consistency", check_consistency},
-    {"allocations", check_allocations},
     {"hard cases", check_hard_cases, 3600},
 };
 
@@ -80,13 +79,6 @@ std::vector<Finding> examine(const std::string& solver, const ConformanceOptions
     }
   }
   return findings;
-}
-
-Findings check_allocations(const Examinee& /*solver*/) {
-  return {
-      not_applicable("allocations",
-                     "not counted here; tests/solvers/methods/no_allocation_test.cpp shows how: "
-                     "none in a step after the first")};
 }
 
 bool conforms(const std::vector<Finding>& findings) {

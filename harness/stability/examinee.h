@@ -36,11 +36,13 @@ struct Examinee {
   const inextensible::Backend& backend;
   const ConformanceOptions& options;
 
-  bool keeps_a_limit() const { return backend.knob == inextensible::Knob::strain_limit; }
+  bool keeps_a_limit() const {
+    return backend.strain_control == inextensible::StrainControl::strain_limit;
+  }
   // Throws NotTaken.
   std::unique_ptr<inextensible::Stepper> stepper(const Case& c,
                                                  const inextensible::Settings& settings = {}) const;
-  // Of a drape of n x n, without the parts that the solver does not take.
+  // Makes a drape of n x n without the parts that the solver does not take.
   SceneParameters drape(int n) const;
 };
 

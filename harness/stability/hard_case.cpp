@@ -43,7 +43,7 @@ void check_values(const HardCaseValues& values) {
 // A method that promises no limit need not notice that there is no solution within it.
 void admit_who_promises_nothing(HardCase& hard_case) {
   for (const auto& backend : inextensible::backends()) {
-    if (backend.knob != inextensible::Knob::time_step) continue;
+    if (backend.strain_control != inextensible::StrainControl::time_step) continue;
     const auto expected =
         std::find_if(hard_case.expectations.begin(), hard_case.expectations.end(),
                      [&](const Expectation& e) { return e.solvers.contains(backend.name); });

@@ -69,7 +69,8 @@ std::vector<SameFrameScene> same_frame_scenes() {
   return scenes;
 }
 
-SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed, ReferenceShelf& references) {
+SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed,
+                     ReferenceFolder& references) {
   const Scene scene = case_parts::scene_of(wanted.scene.c_str(), {{"n", wanted.side}});
   const auto reference = references.find(
       wanted.scene,

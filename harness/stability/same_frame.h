@@ -39,11 +39,11 @@ struct SameFrame {
   std::vector<double> times;       // s
   std::vector<FrameDistance> icd;  // from fast projection to ICD
   std::vector<FrameDistance> moved;  // to fast projection from the moved start
-  // Of the runs of the reference's ensemble, at its sample times; else unknown.
+  // Standard deviations of the reference's ensemble at its sample times; else unknown.
   ShapeSeries deviation;
   std::string stopped;  // empty: all three ran to the end
 };
 
-SameFrame same_frame(const SameFrameScene& scene, std::uint64_t seed, ReferenceShelf& references);
+SameFrame same_frame(const SameFrameScene& scene, std::uint64_t seed, ReferenceFolder& references);
 
 }  // namespace harness

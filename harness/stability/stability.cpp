@@ -150,7 +150,7 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
       for (const Freedom& f : degrees_of_freedom(n)) outcome.freedom.push_back(f);
     }
   }
-  ReferenceShelf references(source_path("results/references"));
+  ReferenceFolder references(source_path("results/references"));
   for (const SameFrameScene& scene : plan.frames) {
     if (events.interrupted()) {
       outcome.complete = false;

@@ -18,13 +18,14 @@ inextensible::Settings settings_of(const Trial& trial, const inextensible::Backe
   inextensible::Settings settings;
   if (const auto own = trial.settings.find(backend.name); own != trial.settings.end())
     settings = own->second;
-  if (backend.knob == inextensible::Knob::stiffness && std::isfinite(trial.stiffness))
+  if (backend.strain_control == inextensible::StrainControl::stiffness &&
+      std::isfinite(trial.stiffness))
     settings.try_emplace("stiffness", trial.stiffness);
   return settings;
 }
 
 // Disturbs and judges the steps of an attempt.
-struct TrialLook : Onlooker {
+struct TrialObserver : Observer {
   const Trial& trial;
   const inextensible::Stepper& stepper;
   TrialJudge& judge;
@@ -32,14 +33,14 @@ struct TrialLook : Onlooker {
   std::optional<Outcome> outcome = {};
   std::int64_t factorizations = 0;  // before the step
 
-  int before(State& state, const Driven& driven) {
+  int before(State& state, const DriveState& driven) {
     if (trial.disturb && driven.whole) trial.disturb(state, static_cast<int>(driven.steps));
     judge.before(state);
     factorizations = stepper.work().factorizations;
     return 1;
   }
 
-  bool after(const State& state, const Driven& driven) {
+  bool after(const State& state, const DriveState& driven) {
     if (stepper.work().factorizations > factorizations) {
       const double condition = stepper.reciprocal_condition();
       if (!(condition >= result.reciprocal_condition)) result.reciprocal_condition = condition;
@@ -65,20 +66,20 @@ Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::u
       backend.name, trial.scene.problem, {trial.strain_limit, seed, settings_of(trial, backend)});
   State state = trial.scene.start;
   TrialJudge judge(trial, backend);
-  TrialLook look{{}, trial, *stepper, judge, result};
-  const Driven driven = drive(*stepper, state, {trial.step, trial.steps, smaller ? 10 : 0}, look,
-                              {smaller ? trial.timeout_smaller : trial.timeout, begin});
+  TrialObserver observer{{}, trial, *stepper, judge, result};
+  const DriveState driven = drive(*stepper, state, {trial.step, trial.steps, smaller ? 10 : 0},
+                                  observer, {smaller ? trial.timeout_smaller : trial.timeout, begin});
   result.work = stepper->work();
   if (smaller) result.smallest_step = driven.smallest;
-  if (driven.end == Driven::End::refused) {
+  if (driven.end == DriveState::End::refused) {
     result.detail = refusal(driven.result, result.work.steps);
     return Outcome::refused;
   }
-  if (driven.end == Driven::End::timed_out) {
+  if (driven.end == DriveState::End::timed_out) {
     result.detail = "stopped after " + std::to_string(result.work.steps) + " steps";
     return Outcome::timeout;
   }
-  if (look.outcome) return *look.outcome;
+  if (observer.outcome) return *observer.outcome;
   return judge.finish(result).value_or(Outcome::survived);
 }
 

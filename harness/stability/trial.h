@@ -28,7 +28,7 @@ struct Trial {
   double step = 0.01;  // s
   int steps = 1;
   double strain_limit = 0.01;
-  // N, of methods whose knob is the stiffness: as they promise no limit, one that would keep it.
+  // N, of methods controlled by stiffness: as they promise no limit, one that would keep it.
   // Their own default where this is unknown.
   double stiffness = unknown;
   std::map<std::string, inextensible::Settings> settings;  // by solver

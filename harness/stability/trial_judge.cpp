@@ -28,7 +28,7 @@ Outcome fail(TrialResult& result, Outcome outcome, const std::string& why) {
 TrialJudge::TrialJudge(const Trial& trial, const inextensible::Backend& backend)
     : trial_(trial),
       problem_(*trial.scene.problem),
-      limit_promised_(backend.knob == inextensible::Knob::strain_limit),
+      limit_promised_(backend.strain_control == inextensible::StrainControl::strain_limit),
       mass_(problem_.total_mass()),
       free_(backend.conserves_momentum && problem_.pinned().empty() && !problem_.collider()),
       energy_(problem_, energy_scale(trial.scene), backend.velocities) {

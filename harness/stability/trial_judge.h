@@ -21,7 +21,7 @@ class TrialJudge {
   void before(const inextensible::State& state);
   std::optional<Outcome> after(const inextensible::Positions& filtered,
                                const inextensible::State& state, double h, TrialResult& result);
-  // After the last one, if no step told an outcome.
+  // After the last step, if none decided the outcome.
   std::optional<Outcome> finish(TrialResult& result);
 
  private:

@@ -37,7 +37,7 @@ bool is_stability(const json& document) { return document.contains("matrix"); }
 
 LimitTable::LimitTable(const json& document, const std::string& scene) {
   if (is_stability(document)) return;
-  const Cast cast(document);
+  const ContestantRoles cast(document);
   for (const json& p : document.at("points")) {
     if (p.at("sweep") != "strain" || p.value("adaptive", false) || p.at("scene") != scene) continue;
     const Point point(p);

@@ -26,7 +26,7 @@ bool is_stability(const nlohmann::json& document);
 // The fastest runs of a scene's contestants over the strain limit.
 class LimitTable {
  public:
-  // Of strain sweeps of one scene and size in a file: the runs that it marked as fastest.
+  // Reads the runs that a file marked as fastest in strain sweeps of one scene and size.
   LimitTable(const nlohmann::json& document, const std::string& scene);
 
   bool empty() const { return limits_.empty(); }

@@ -11,7 +11,7 @@ using nlohmann::json;
 
 namespace {
 
-// Of a |log ratio|: by how much the longer time is longer.
+// Excess of the longer time over the shorter one, from |log ratio|.
 std::string noise_cell(const json& noise, const char* key) {
   return noise.is_object() && noise.contains(key) && noise.at(key).is_number()
              ? percent(std::expm1(noise.at(key).get<double>()))

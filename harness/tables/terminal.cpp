@@ -108,7 +108,7 @@ void print_rows(std::ostream& out, const Plane& plane, bool sizes, const Setting
   }
 }
 
-// Of the fastest runs in the column "any", where their shape errors are known.
+// Shape errors of the fastest runs in the column "any", where they are known.
 void print_shapes(std::ostream& out, const Plane& plane) {
   const char* before = "shape errors of the fastest, whatever their motion: ";
   for (const Cell& cell : plane.cells) {

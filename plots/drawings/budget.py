@@ -84,7 +84,7 @@ def _shade(limit: float, limits: list[float]) -> str:
 
 
 def _reached(row: Json) -> Reached:
-    """Of runs whose motion is right, the first at each limit: shortest frames first, ever less strain."""
+    """The first run at each limit within the motion error: shortest frames first, then less strain."""
     found: Reached = []
     for stair in row["stairs"]:
         if stair["right"] and (not found or stair["strain_limit"] < found[-1][1]):

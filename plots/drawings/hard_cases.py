@@ -26,7 +26,7 @@ OUTCOMES = {
     "wrong": Status("W", "wrong: claimed success, and a check says otherwise"),
     "crashed": Status("C", "took its process with it"),
 }
-# Of the mildest outcome to the gravest: told apart by letter and by lightness, so that grey prints read as well.
+# From the mildest outcome to the gravest: distinguished by letter and by lightness, for gray prints.
 COLORS = ("#FFFFFF", "#DCEBF7", "#B8D0E6", "#F2D38B", "#C2553B", ALARM, "#5C1A00")
 DARK = COLORS[4:]
 CELL_WIDTH, CELL_HEIGHT = 1.0, 0.22

@@ -12,7 +12,7 @@ from parts.legend import Legend
 from parts.result_file import Json, contestant_of, is_number, time_in, spread_in, object_in, points_of
 from parts.style import styles_for
 
-# Of a point, in this order; the scripts know them by these names.
+# Fields of a point in this order; the scripts know them by these names.
 COLUMNS = ("file", "id", "scene", "sweep", "vertices", "limit", "step", "solver", "status", "detail", "seconds", "low", "high",
            "filter", "strain", "delivered", "error", "energy", "iterations", "factorizations", "projections", "runs", "best",
            "adaptive")

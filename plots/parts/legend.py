@@ -58,7 +58,7 @@ class Legend:
         return self.solvers[solver].label if solver in self.solvers else clean(solver.replace("_", " "))
 
     def letter(self, status: str) -> str:
-        """Of a run that is not shown. One that ended well has no letter of its own."""
+        """Letter of a run that is not shown. One that ended well has none."""
         return NOT_CHOSEN if status == OK else self.statuses[status].letter
 
     def key(self, letters: Iterable[str], more: dict[str, str] = MEANINGS) -> str:
@@ -84,7 +84,7 @@ def legend_of(document: Json) -> Legend:
 
 
 def merged(legends: Iterable[Legend]) -> Legend:
-    """Of several files: the first one's, then what only later ones know."""
+    """Legend of several files: the first one's, then what only later ones have."""
     solvers: dict[str, Solver] = {}
     statuses: dict[str, Status] = {}
     for legend in legends:
@@ -115,6 +115,6 @@ def _status(entry: Json) -> Status:
 
 
 def made_up(name: str) -> Status:
-    """Of a status that no legend explains."""
+    """Letter of a status that no legend explains."""
     words = clean(name.replace("_", " "))
     return Status(words[:1].upper() or NOT_CHOSEN, words)

@@ -10,7 +10,7 @@ from parts.result_file import ResultError
 
 
 def exit_code(run: Callable[[list[str]], None]) -> int:
-    """Of the command line: 2, and a line on stderr, for a file that cannot be used."""
+    """Exit code of the command line: 2, and a line on stderr, for a file that cannot be used."""
     try:
         run(sys.argv[1:])
     except ResultError as error:

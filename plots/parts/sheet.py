@@ -131,7 +131,7 @@ def _spread(tops: list[float], heights: list[float], tall: float) -> list[float]
 
 
 def clean_sentence(text: str) -> str:
-    """Of the program's own words, which are longer than a name may be."""
+    """The program's own words, which are longer than a name may be."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 

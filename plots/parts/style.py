@@ -62,7 +62,7 @@ SPARE_LOOKS = (
     Look(">", (7, 1.5, 3, 1.5)), Look("d", (2, 2)), Look("H", (10, 3)),
 )
 
-# Of those that neither lead nor are the paper's: how captions call them, colour and line by who offers them.
+# Contestants that neither lead nor are the paper's: their caption, color and line by origin.
 RECEDING: dict[str, tuple[str, str, Dashes]] = {
     "project": ("Blue, pale: this project's", PALE_BLUE, ()),
     "literature": ("Brown, dashed: other published methods", PALE_BROWN, (4, 1.5)),

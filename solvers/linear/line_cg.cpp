@@ -43,8 +43,8 @@
 namespace inextensible {
 namespace {
 
-// Of sqrt(a_kk a_ll): collinear neighbours of one mass and length have 1/2, those at 60 degrees
-// 1/4.
+// In units of sqrt(a_kk a_ll): collinear neighbours of one mass and length have 1/2, those at 60
+// degrees 1/4.
 constexpr double strong = 0.25;
 
 }  // namespace

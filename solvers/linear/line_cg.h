@@ -74,7 +74,7 @@ class LineCgSolver final : public SpdSolver {
     std::vector<double> value;
     void gather(const double* values);
   } across_, among_;
-  // Of CG, on kept rows; the last on eliminated ones.
+  // Vectors of CG on kept rows; the last on eliminated ones.
   std::vector<double> solution_, residual_, direction_, line_direction_, product_, beyond_;
   std::int64_t iterations_ = 0;
   int most_iterations_ = 1000;

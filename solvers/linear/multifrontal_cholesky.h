@@ -44,7 +44,7 @@ class MultifrontalCholesky final : public SpdSolver {
   // supernodes.
   double factor_nonzeros() const override { return nonzeros_; }
   double factor_flops() const override { return flops_; }
-  // Of the last successful factorization: the smallest pivot over the diagonal entry that it came
+  // From the last successful factorization: the smallest pivot over the diagonal entry that it came
   // from. Unlike reciprocal_condition() it does not see how rows are scaled, as the solve's
   // accuracy does not.
   double least_relative_pivot() const;

@@ -14,7 +14,7 @@ class QuasiDefiniteSolver {
   double* values() { return matrix_.valuePtr(); }  // in the pattern's order
   bool factor();                                   // false: a pivot is zero or not finite
   void solve(double* rhs) const;                   // overwritten by the solution
-  // Of the last factorization: the matrix's negative eigenvalues (Sylvester's law of inertia).
+  // From the last factorization: the matrix's negative eigenvalues (Sylvester's law of inertia).
   int negative_pivots() const { return negative_pivots_; }
   double reciprocal_condition() const;  // smallest over largest pivot
   double factor_nonzeros() const;

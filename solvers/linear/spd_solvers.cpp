@@ -24,7 +24,7 @@ constexpr auto lower = SymmetricPattern::Triangle::lower;
 constexpr auto upper = SymmetricPattern::Triangle::upper;
 constexpr bool direct = true, iterative = false, fills = true, as_is = false;
 
-// Of a problem without constraints, or without free vertices: libraries do not all take nothing.
+// For a problem without constraints or free vertices: not all libraries accept empty matrices.
 class NoEquations : public SpdSolver {
  public:
   double* values() override { return nullptr; }

@@ -111,7 +111,7 @@ SettingFields<AugmentedVbd::Settings> AugmentedVbd::fields() {
 Backend augmented_vbd_row() {
   return {.name = "augmented_vbd",
           .summary = "hard lengths by the method of multipliers, in passes over single vertices",
-          .knob = Knob::strain_limit,
+          .strain_control = StrainControl::strain_limit,
           .contestant = true,
           .settings = setting_infos(AugmentedVbd::fields()),
           .make_filter = make_filter<AugmentedVbd>,

@@ -60,7 +60,7 @@ struct BackendOptions {
 
 // What the harness may turn to make a run keep its strain limit: the limit itself, which the method
 // then promises; a stiffness; the time step alone. none: no run is asked to keep one.
-enum class Knob { strain_limit, stiffness, none, time_step };
+enum class StrainControl { strain_limit, stiffness, none, time_step };
 
 // Where a method's constraint forces take their direction from: each edge from its own ends in turn
 // (local), the gradient at the start of the step, at the current iterate (or halfway to it), from
@@ -83,11 +83,11 @@ enum class Origin { paper, project, literature, engine, elsewhere };
 struct Backend {
   const char* name;     // a-z, 0-9 and _; in another stepper than the published one, method@stepper
   const char* summary;  // one line
-  Knob knob;
+  StrainControl strain_control;
   bool contestant;  // appears in figures and rankings
   std::vector<SettingInfo> settings;
   // A velocity filter has `make_filter` and stands in any stepper; where its corrections point, it
-  // is told only if it `takes_middle`. Other methods have `make`: a time step of their own.
+  // is passed only if it `takes_middle`. Other methods have `make`: a time step of their own.
   std::unique_ptr<Stepper> (*make)(std::shared_ptr<const Problem>, const BackendOptions&) = nullptr;
   std::unique_ptr<VelocityFilter> (*make_filter)(const Problem&, const BackendOptions&,
                                                  Along along) = nullptr;

@@ -102,7 +102,7 @@ StepResult DenseOracle::apply(const Positions& /*x_start*/, double /*h*/, Iterat
 Backend oracle_row() {
   return {.name = "oracle",
           .summary = "dense Newton to 1e-12, small problems: what tests compare with",
-          .knob = Knob::none,
+          .strain_control = StrainControl::none,
           .contestant = false,
           .settings = {},
           .make_filter = [](const Problem& problem, const BackendOptions&, Along)

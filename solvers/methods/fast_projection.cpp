@@ -235,7 +235,7 @@ Backend fast_projection_row() {
           .summary =
               "the paper's Algorithm 1: repeated projections, constraint directions from the "
               "current iterate",
-          .knob = Knob::strain_limit,
+          .strain_control = StrainControl::strain_limit,
           .contestant = true,
           .settings = setting_infos(FastProjection::fields()),
           .make_filter = make_filter<FastProjection>,

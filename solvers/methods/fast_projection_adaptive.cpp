@@ -252,7 +252,7 @@ Backend fast_projection_adaptive_row() {
           .summary =
               "projection of every yarn, and of the whole cloth where that converges too "
               "slowly",
-          .knob = Knob::strain_limit,
+          .strain_control = StrainControl::strain_limit,
           .contestant = true,
           .settings = setting_infos(FastProjectionAdaptive::fields()),
           .make_filter = make_filter<FastProjectionAdaptive>,

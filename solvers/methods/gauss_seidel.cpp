@@ -143,7 +143,7 @@ StepResult GaussSeidel::apply(const Positions& x_start, double /*h*/, Iterate x,
 Backend gauss_seidel_row() {
   return {.name = "gauss_seidel",
           .summary = "strain limiting: edge after edge, in random order",
-          .knob = Knob::strain_limit,
+          .strain_control = StrainControl::strain_limit,
           .contestant = true,
           .settings = setting_infos(GaussSeidel::fields()),
           .make_filter = make_filter<GaussSeidel>,

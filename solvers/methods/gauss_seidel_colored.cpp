@@ -28,7 +28,7 @@ class GaussSeidelColored final : public PassLimiter<StrainPasses::Order::in_turn
 Backend gauss_seidel_colored_row() {
   return {.name = "gauss_seidel_colored",
           .summary = "strain limiting: edges that share no vertex side by side in vectors",
-          .knob = Knob::strain_limit,
+          .strain_control = StrainControl::strain_limit,
           .contestant = true,
           .settings = setting_infos(GaussSeidelColored::fields()),
           .make_filter = make_filter<GaussSeidelColored>,

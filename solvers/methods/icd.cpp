@@ -217,7 +217,7 @@ SettingFields<Icd::Settings> Icd::fields() {
 Backend icd_row() {
   return {.name = "icd",
           .summary = "Lagrange multipliers, constraint directions from the end of the step",
-          .knob = Knob::strain_limit,
+          .strain_control = StrainControl::strain_limit,
           .contestant = true,
           .settings = setting_infos(Icd::fields()),
           .make_filter = make_filter<Icd>,

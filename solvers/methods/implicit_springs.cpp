@@ -231,7 +231,7 @@ SettingFields<ImplicitSprings::Settings> ImplicitSprings::fields() {
 Backend implicit_springs_row() {
   return {.name = "implicit_springs",
           .summary = "stiff springs, by Newton with line search",
-          .knob = Knob::stiffness,
+          .strain_control = StrainControl::stiffness,
           .contestant = true,
           .settings = setting_infos(ImplicitSprings::fields()),
           .make = make_step<ImplicitSprings>,

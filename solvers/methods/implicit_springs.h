@@ -2,7 +2,7 @@
 // springs.
 //
 // Edge k has stiffness EA / l_k, so strain = tension / EA at any resolution. The method has no
-// strain limit of its own: EA is its knob, and the harness finds the one that keeps a run within
+// strain limit of its own: EA controls the strain, and the harness finds the one that keeps a run within
 // the limit.
 #pragma once
 

@@ -46,7 +46,7 @@ class Jacobi final : public PassLimiter<StrainPasses::Order::at_once> {
 Backend jacobi_row() {
   return {.name = "jacobi",
           .summary = "strain limiting: all edges corrected at once, averaged",
-          .knob = Knob::strain_limit,
+          .strain_control = StrainControl::strain_limit,
           .contestant = true,
           .settings = setting_infos(Jacobi::fields(), {.relaxation = 1.8}),
           .make_filter = make_filter<Jacobi>,

@@ -19,7 +19,7 @@ class Unconstrained final : public VelocityFilter {
 Backend null_row() {
   return {.name = "null",
           .summary = "unconstrained step only: what the scene and the harness cost",
-          .knob = Knob::none,
+          .strain_control = StrainControl::none,
           .contestant = false,
           .settings = {},
           .make_filter = [](const Problem&, const BackendOptions&, Along)

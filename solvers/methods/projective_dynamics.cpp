@@ -254,7 +254,7 @@ void ProjectiveDynamics::solve(Positions& x, WorkCounters& work) {
     x.col(free_vertex_[f]) = rhs_.row(static_cast<Eigen::Index>(f)).transpose();
 }
 
-// Of x within the limit: takes vertices out of their planes, if edges bear it.
+// Moves vertices out of the obstacle; returns whether edges are still within the limit.
 bool ProjectiveDynamics::ends(Iterate x) const {
   const Contacts* contacts = x.contacts();
   for (int c = 0; c < x.contact_count(); ++c) {
@@ -309,7 +309,7 @@ SettingFields<ProjectiveDynamics::Settings> ProjectiveDynamics::fields() {
 Backend projective_dynamics_row() {
   return {.name = "projective_dynamics",
           .summary = "hard lengths by ADMM: single edges, then one constant linear system",
-          .knob = Knob::strain_limit,
+          .strain_control = StrainControl::strain_limit,
           .contestant = true,
           .settings = setting_infos(ProjectiveDynamics::fields()),
           .make_filter = make_filter<ProjectiveDynamics>,

@@ -75,7 +75,7 @@ Backend rattle_row() {
   return {.name = "rattle",
           .summary =
               "SHAKE with velocities projected as well (Andersen 1983): second order, no damping",
-          .knob = Knob::strain_limit,
+          .strain_control = StrainControl::strain_limit,
           .contestant = true,
           .settings = setting_infos(Shake::fields(), defaults),
           .make = [](std::shared_ptr<const Problem> problem,

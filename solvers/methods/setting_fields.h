@@ -116,13 +116,13 @@ constexpr const char* least_iterations =
     "projections a step even where the candidate is permissible; 1 keeps slack from building up";
 constexpr SearchRange tunable_least_iterations{0, 2};
 
-// Of methods that solve for all edges at once. Below 1, or they would only come closer and closer
-// to the limit.
+// Target of methods that solve for all edges at once. Below 1, or they would only come closer and
+// closer to the limit.
 constexpr const char* projection_target =
     "strained edges are brought to this fraction of the strain limit, those below it are kept";
 constexpr Range below_limit{0, 0.99};
 constexpr SearchRange tunable_below_limit{0, 0.9};
-// Of linear solvers that iterate.
+// Tolerance of iterative linear solvers.
 constexpr Range forcing_range{0, 1, true};
 constexpr SearchRange tunable_forcing{1e-4, 0.3};
 constexpr Range relaxation_range{0, 2, true};

@@ -179,7 +179,7 @@ SettingFields<Shake::Settings> Shake::fields() {
 Backend shake_row() {
   return {.name = "shake",
           .summary = "Lagrange multipliers, constraint directions from the start of the step",
-          .knob = Knob::strain_limit,
+          .strain_control = StrainControl::strain_limit,
           .contestant = true,
           .settings = setting_infos(Shake::fields()),
           .make_filter = make_filter<Shake>,

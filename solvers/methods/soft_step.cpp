@@ -134,7 +134,7 @@ SettingFields<SoftStep::Settings> SoftStep::fields() {
 Backend soft_step_row() {
   return {.name = "soft_step",
           .summary = "velocities by Gauss-Seidel, positions by soft springs: small steps do it",
-          .knob = Knob::time_step,
+          .strain_control = StrainControl::time_step,
           .contestant = true,
           .settings = setting_infos(SoftStep::fields()),
           .make = make_step<SoftStep>,

@@ -89,7 +89,7 @@ SettingFields<Strips::Settings> Strips::fields() {
 Backend strips_row() {
   return {.name = "strips",
           .summary = "every yarn projected as a whole, passes of colored Gauss-Seidel between",
-          .knob = Knob::strain_limit,
+          .strain_control = StrainControl::strain_limit,
           .contestant = true,
           .settings = setting_infos(Strips::fields()),
           .make_filter = make_filter<Strips>,

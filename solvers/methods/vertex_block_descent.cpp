@@ -146,7 +146,7 @@ SettingFields<VertexBlockDescent::Settings> VertexBlockDescent::fields() {
 Backend vertex_block_descent_row() {
   return {.name = "vertex_block_descent",
           .summary = "stiff springs, a number of passes over single vertices",
-          .knob = Knob::stiffness,
+          .strain_control = StrainControl::stiffness,
           .contestant = true,
           .settings = setting_infos(VertexBlockDescent::fields()),
           .make = make_step<VertexBlockDescent>,

@@ -111,7 +111,7 @@ void XpbdSmallSteps::attach_straight(const Problem& problem, const Positions& re
   }
 }
 
-// Of each vertex that is free; by vertex, nearest first.
+// Keeps the nearest attachments of each free vertex; sorted by vertex, nearest first.
 void XpbdSmallSteps::keep_nearest(const Problem& problem) {
   std::erase_if(attachments_,
                 [&](const Attachment& a) { return problem.inverse_mass()[a.vertex] == 0; });
@@ -162,7 +162,7 @@ Backend xpbd_small_steps_row() {
   return {
       .name = "xpbd_small_steps",
       .summary = "PBD with substeps (XPBD without compliance): a fixed number of passes, no test",
-      .knob = Knob::time_step,
+      .strain_control = StrainControl::time_step,
       .contestant = true,
       .settings = setting_infos(XpbdSmallSteps::fields()),
       .make_filter = [](const Problem& problem, const BackendOptions& options,

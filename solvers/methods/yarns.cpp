@@ -22,7 +22,7 @@ bool share_a_face(const Neighbours& at, int v, int a, int b) {
                      [&](const auto& n) { return n.vertex != v && joined(at, n.vertex, b); });
 }
 
-// Of each edge the one that goes on at its ends a and b, -1: none.
+// The edges that continue each edge at its ends a and b; -1: none.
 std::vector<std::array<int, 2>> continuations(const Problem& problem, const Neighbours& at) {
   std::vector<std::array<int, 2>> next(problem.constraints(), {-1, -1});
   const auto end_of = [&](int edge, int v) { return problem.edges()[edge].a == v ? 0 : 1; };

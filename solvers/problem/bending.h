@@ -19,7 +19,7 @@ struct BendingStencil {
 };
 using Bending = std::vector<BendingStencil>;
 
-// Of a yarn that goes through the vertices a, b, c in links of the lengths l_ab and l_bc (m),
+// Stencil of a yarn through the vertices a, b, c in links of the lengths l_ab and l_bc (m),
 // with the flexural rigidity EI (N m^2): energy EI / 2 times squared curvature times the length
 // that falls to b.
 BendingStencil yarn_bending(int a, int b, int c, double l_ab, double l_bc, double rigidity);

@@ -23,7 +23,7 @@ class Collider {
   Collider& operator=(const Collider&) = delete;
   virtual ~Collider() = default;
 
-  // Of each vertex, what the collider remembers from one call to the next; -1 at first. It makes
+  // What the collider remembers of each vertex between calls; -1 at first. It makes
   // calls cheaper, and changes no answer.
   using Memory = std::vector<int>;
 

@@ -9,13 +9,14 @@ namespace {
 // A depth that no picture shows and no strain notices, over the shortest rest length; without
 // edges, m.
 constexpr double invisible = 1e-5, invisible_point = 1e-9;
-// Of the shortest rest length: a vertex on its plane that is so far from the obstacle has left it.
+// In shortest rest lengths: a vertex on its plane this far from the obstacle has left it.
 // With less, planes keep changing at the corners of a polygonal obstacle.
 constexpr double margin = 0.5;
-// Of the same, for every vertex: what edges within their limits may be away from the closest point.
+// The same unit, for every vertex: what edges within their limits may be away from the closest
+// point.
 constexpr double room = 0.1;
-// Of what edges did in the last step, in what they are expected to press with; of a vertex that
-// goes past several edges in a step, less: more of it lets friction and edges drive each other.
+// Weight of the last step's push by edges in the expected one; less for a vertex that passes
+// several edges in a step. A larger weight lets friction and edges drive each other.
 constexpr double newest = 0.1;
 
 }  // namespace

@@ -111,7 +111,7 @@ class Contacts {
   bool holds(int contact) const { return push_[contact] > 0; }
   double push(int contact) const { return push_[contact]; }  // m, along the normal
   void set_push(int contact, double push) { push_[contact] = push; }
-  // Of its vertex at x: m above the plane.
+  // Height of its vertex at x above the plane, m.
   double gap(int contact, const Eigen::Vector3d& x) const {
     return normal(contact).dot(x) - value(offset, contact);
   }
@@ -142,7 +142,7 @@ class Contacts {
   mutable double* seconds_ = nullptr;
   double tolerance_ = 0, margin_ = 0, slack_ = 0, friction_;
   const Positions* start_ = nullptr;
-  // Of an obstacle that moves: what it does during the step, and how long that is, s.
+  // Motion of the obstacle during the step, and the step's length, s.
   Pose carry_;
   double h_ = 0;
   int count_ = 0;

@@ -25,7 +25,7 @@ class Obstacle {
 
   const Problem& problem_;
   Collider::Memory memory_;
-  // Of a body that moves only.
+  // For a body that moves.
   Pose pose_;
   Positions seen_;  // x as the body sees it
 };

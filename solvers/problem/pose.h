@@ -19,7 +19,7 @@ struct Pose {
   }
 };
 
-// Of a time, s. Does not depend on what was asked before.
+// Pose at a time, s. Does not depend on earlier calls.
 using BodyMotion = std::function<Pose(double time)>;
 
 }  // namespace inextensible

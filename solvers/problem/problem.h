@@ -93,7 +93,7 @@ class Problem {
   double shortest_rest_length_ = 0, longest_rest_length_ = 0, total_mass_ = 0;
 };
 
-// Of each vertex, in the order of the edges.
+// A neighbor of a vertex and the edge to it; a vertex lists them in the order of the edges.
 struct Neighbour {
   int vertex, edge;
 };

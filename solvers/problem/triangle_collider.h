@@ -62,7 +62,7 @@ class TriangleCollider final : public Collider {
   void check_orientation();
   void lay_out_grid();
   void refine(const Eigen::Vector3i& cell, int size, const std::vector<int>& candidates);
-  // Of a cell: its triangles.
+  // Triangles of one cell.
   struct List {
     int first, count;
   };

@@ -34,7 +34,6 @@ struct WorkCounterInfo {
   std::variant<std::int64_t WorkCounters::*, double WorkCounters::*> member;
   const char* unit;
   const char* meaning;
-  bool later = false;  // absent in older files, which did not count it
 };
 
 inline constexpr std::array work_counters{
@@ -49,7 +48,7 @@ inline constexpr std::array work_counters{
     WorkCounterInfo{"back_solves", &WorkCounters::back_solves, "right-hand sides",
                     "forward and back substitutions, one right-hand side each"},
     WorkCounterInfo{"linear_iterations", &WorkCounters::linear_iterations, "iterations",
-                    "of iterative linear solvers, in all back_solves", true},
+                    "of iterative linear solvers, in all back_solves"},
     WorkCounterInfo{"edge_projections", &WorkCounters::edge_projections, "edges",
                     "single edges corrected (strain limiting)"},
     WorkCounterInfo{"line_search_steps", &WorkCounters::line_search_steps, "steps",
@@ -61,7 +60,7 @@ inline constexpr std::array work_counters{
     WorkCounterInfo{"contacts", &WorkCounters::contacts, "vertices",
                     "moved by the collision filter"},
     WorkCounterInfo{"force_solves", &WorkCounters::force_solves, "right-hand sides",
-                    "of the system of implicit shear, bending and drag, a coordinate each", true},
+                    "of the system of implicit shear, bending and drag, a coordinate each"},
     WorkCounterInfo{"factor_nonzeros", &WorkCounters::factor_nonzeros, "entries",
                     "of L (LU: of L + U), last factorization"},
     WorkCounterInfo{"factor_flops", &WorkCounters::factor_flops, "operations",

@@ -21,7 +21,7 @@ class Bdf2Stepper final : public Stepper {
   double reciprocal_condition() const override { return filter_->reciprocal_condition(); }
   void observe(IterateObserver* observer) override { filter_->observe(observer); }
 
-  // How often the whole history was made anew: first step, foreign state, step grown more than
+  // How often the whole history was restarted: first step, foreign state, step grown more than
   // twofold.
   std::int64_t restarts() const { return history_.restarts(); }
 

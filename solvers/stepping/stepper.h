@@ -60,7 +60,7 @@ class Stepper {
   void measure_phases(bool wanted);
   // The linear solver in use, "" for methods without one.
   virtual const char* linear_solver() const { return ""; }
-  // Of the last linear system that was factored, an estimate from its pivots; 1 for methods without
+  // Estimate for the last linear system factored, from its pivots; 1 for methods without
   // one. Meaningful after a step that counted a factorization and did not end `singular`.
   virtual double reciprocal_condition() const { return 1; }
   // From the next step on; null: none. Methods that show no iterates do nothing. The observer
@@ -91,7 +91,7 @@ class Stepper {
   WorkCounters work_;
   PhaseSeconds phases_;
   bool phases_wanted_ = false;  // for Stopwatch
-  // Of the present step; null without a collider.
+  // Contacts of the present step; null without a collider.
   std::unique_ptr<Contacts> contacts_;
   // The same where methods take them into account, else null.
   Contacts* contacts_inside() const {

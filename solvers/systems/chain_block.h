@@ -16,7 +16,7 @@
 
 namespace inextensible::chain {
 
-// Of A across g, over its norm squared.
+// Smallest determinant of A across g, over its norm squared.
 constexpr double least_determinant = 1e-14;
 
 struct Vector {

@@ -9,7 +9,7 @@ namespace inextensible {
 //   J W J^T lambda = J W f + J' v,
 // in m/s^2; 0 for pinned vertices. Where J W J^T is singular, a keeps as much of C'' = 0 as there
 // is a force for. Collisions are left out. The state fits the problem and is finite. Not for time
-// steps: it builds and factors J W J^T anew, and allocates.
+// steps: it builds and factors J W J^T each time, and allocates.
 Positions constrained_acceleration(const Problem& problem, const State& state);
 
 // The state with its velocities half a step earlier, v - h/2 a: where methods start whose velocity

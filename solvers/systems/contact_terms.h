@@ -13,7 +13,7 @@ namespace inextensible {
 
 class ContactTerms {
  public:
-  // Of a matrix with these compressed columns, rows ascending in each: a triangle of J W J^T, or
+  // For a matrix with these compressed columns, rows ascending in each: a triangle of J W J^T, or
   // the whole of J(left) W J(right)^T.
   ContactTerms(const EdgeConstraints& edges, int vertices, const std::vector<int>& column_start,
                const std::vector<int>& row_index);

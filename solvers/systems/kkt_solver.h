@@ -42,7 +42,7 @@ class KktSolver {
   virtual bool solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
                      WorkCounters& work) = 0;
 
-  // Of the last factorization, from its pivots.
+  // Estimate for the last factorization, from its pivots.
   virtual double reciprocal_condition() const = 0;
 
   double mean_mass() const { return mean_mass_; }

@@ -20,7 +20,8 @@
 
 namespace inextensible {
 
-// Of J D^-1 J^T: what a projection leaves of J p, the next Newton step takes up.
+// Accuracy of solves with J D^-1 J^T: the next Newton step corrects what a projection leaves of J
+// p.
 constexpr double projection_tolerance = 1e-4;
 
 std::vector<int> elimination_order(const Problem& problem) {

@@ -54,7 +54,7 @@ SpringHessian::SpringHessian(const Problem& problem, double stiffness, std::stri
   solver = make_spd_solver(linear_solver, std::move(pattern));
 }
 
-// Of free vertices, by place.
+// Coupled pairs of free vertices, by their place among these.
 std::vector<Edge> SpringHessian::coupled_pairs(const Problem& problem) const {
   std::vector<Edge> pairs;
   const auto add = [&](int a, int b) {

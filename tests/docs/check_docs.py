@@ -2,30 +2,21 @@
 """Checks that the documents say what is in the tree.
 
     tests/docs/check_docs.py          names everything that is wrong, exit code 1
-    tests/docs/check_docs.py --fix    first brings line numbers, paths of files that have moved, and measured numbers up to date
+    tests/docs/check_docs.py --fix    first renews line numbers, paths of files that have moved, and generated blocks
 
 A document may quote code as
 
     `path/to/file.cpp:12`: `text of that line`
 
-and the text must then stand in that line of that file. A paragraph may say where its numbers come from,
+and that line of that file must then contain the text. Generated blocks end with <!-- end of list --> and begin with one of
 
-    <!-- results/paper-strain-chain.json strain chain 0.01: jacobi / fast_projection = 3.5 -->
+    <!-- references -->                         the committed references (ends with <!-- end of references -->)
+    <!-- bench list NAME -->                    what `bench list NAME` prints
+    <!-- folders of solvers -->                 which folders each folder of solvers/CMakeLists.txt uses
+    <!-- bench budget RESULT.json ... -->       what a frame's time buys
+    <!-- methods HEADLINE, RESULT.json LIMIT, ... -->   each method's time as published and in its best stepper, within that error
 
-and the number must then be in the paragraph and follow from the file, to its last digit; --fix brings both up to date where only
-digits change. `jacobi` and `fast_projection` are contestants. `strain` (with a limit) and `resolution` (with a number of vertices)
-mean the time of a best point, `error` (with a largest error) the least time within it, `delivered` (with a largest strain after
-collisions) the same, `after collision` (with a limit) the strain of a best point, `right motion` (with a limit) the fastest at it or a tighter one within an error of 2 %; the unit is s, ms or %, none for a ratio or s.
-A ratio may say more:
-
-    = 3.5 (3.3-3.8)           its 95 % interval, which the paragraph must give as well
-    = 3.5 within interval     the number need only lie in the interval; --fix leaves it alone while it does
-    = 3.5 above 1             the whole interval must lie there (or below), as it must where words say faster or slower
-
-A table of the committed references stands between <!-- references --> and <!-- end of references -->, and follows from their files.
-What the program lists stands between <!-- bench list NAME --> and <!-- end of list -->, and follows from `bench list NAME`; the
-folders' directions between <!-- folders of solvers --> and <!-- end of list --> follow from solvers/CMakeLists.txt. --fix makes these
-anew, and what stands after <!-- bench budget RESULT.json ... --> in the same way. A paragraph may repeat words of a list:
+--fix renews them. No other measured number belongs in a document. A paragraph may repeat words of a list:
 
     <!-- bench list suites: about six minutes -->
 
@@ -39,16 +30,12 @@ from __future__ import annotations
 
 import functools
 import json
+import math
 import os
 import re
 import subprocess
 import sys
 from pathlib import Path
-
-sys.dont_write_bytecode = True  # nothing of this test stays in the source tree
-
-import measured_numbers
-from measured_numbers import points_of
 
 ROOT = Path(__file__).resolve().parents[2]
 QUOTE = re.compile(r"`([\w./-]+\.\w+):(\d+)`: `([^`]+)`")
@@ -57,8 +44,9 @@ BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
 NAMED_DOCUMENT = re.compile(r"[\w/.-]*\w\.md\b")
 REFERENCES = re.compile(r"(<!-- references -->\n).*?(<!-- end of references -->)", re.DOTALL)
-LISTS = re.compile(r"(<!-- (bench list (\w+)|bench budget ([^>]+?)|folders of (\w+)) -->\n\n?).*?(<!-- end of list -->)", re.DOTALL)
+LISTS = re.compile(r"<!-- ((bench list|bench budget|folders of|methods) ([^>:]+?)) -->\n\n?.*?(<!-- end of list -->)", re.DOTALL)
 REPEATED = re.compile(r"<!-- bench list (\w+): (.*?) -->")
+SURE = 3  # gaps of a reference
 SOURCES = ("solvers", "harness", "tests", "plots", "cmake", "configs")
 SOURCE_SUFFIXES = {".cpp", ".h", ".py", ".sh", ".cmake", ".txt", ".json"}
 
@@ -109,7 +97,7 @@ def references() -> str:
     for path in sorted((ROOT / "results/references").glob("*.json"), key=lambda p: (p.name.split("-n")[0], number_of(p), p.name)):
         file = json.loads(path.read_text(encoding="utf-8"))
         known = list(zip(file["times"], file["gap"]))[:len(file["positions"])]
-        until = (max((t for t, gap in known if measured_numbers.SURE * gap <= level), default=0) for level in levels)
+        until = (max((t for t, gap in known if SURE * gap <= level), default=0) for level in levels)
         rows.append(f"| `{path.stem}` | " + " | ".join(f"{t:g}" for t in until)
                     + f" | {file.get('ensemble', {}).get('runs', '-')} |\n")
     return "".join(rows)
@@ -151,13 +139,47 @@ def folders_of(tree: str) -> str:
     return "| folder | uses |\n|---|---|\n" + "".join(f"| `{tree}/{name}` | {', '.join(used) or '-'} |\n" for name, used in uses) + "\n"
 
 
+@functools.cache
+def planes_of(file: str) -> list[dict]:
+    return json.loads(output_of("show", file, "--json"))["planes"]
+
+
+def methods_of(words: str) -> str:
+    """A row for each method: milliseconds in its published stepper, then in its best one where that is faster."""
+    headline, *columns = (part.split() for part in words.split(","))
+    level, titles, times = float(headline[0]), [], []  # times: of each column, of each contestant
+    for file, limit in columns:
+        plane = next(p for p in planes_of(file) if p["sweep"] != "resolution" and float(limit) in p["strain_limits"])
+        cell = next(c for c in plane["cells"] if (c["strain_limit"], c["error_level"]) == (float(limit), level))
+        titles.append(f"{plane['scene'].replace('_', ' ')} {plane['resolution']}, {100 * float(limit):g} %")
+        times.append({entry["row"]: 1e3 * entry["seconds"] for entry in cell["entries"] if entry["counts"]})
+
+    def in_steppers(column: dict[str, float], method: str) -> dict[str, float]:
+        return {row: time for row, time in column.items() if row.partition("@")[0] == method}
+
+    def text(column: dict[str, float], method: str) -> str:
+        own = in_steppers(column, method)
+        if not own:
+            return "-"
+        best = min(own, key=own.__getitem__)
+        fastest = {row.partition("@")[0]: time for row, time in column.items() if time <= min(column.values())}
+        shown = f"{own[method]:.3g}" if method in own else "-"
+        if best != method:
+            shown += f", {own[best]:.3g} @{best.partition('@')[2]}"
+        return f"**{shown}**" if method in fastest else shown
+
+    methods = {row.partition("@")[0] for column in times for row in column}
+    order = sorted(methods, key=lambda m: [min(in_steppers(column, m).values(), default=math.inf) for column in reversed(times)])
+    head = "| method | " + " | ".join(titles) + " |\n" + "|---" * (1 + len(titles)) + "|\n"
+    return head + "".join(f"| `{m}` | " + " | ".join(text(column, m) for column in times) + " |\n" for m in order) + "\n"
+
+
+BLOCKS = {"bench list": table_of, "bench budget": lambda words: budgets_of(words.split()), "folders of": folders_of, "methods": methods_of}
+
+
 def with_tables(text: str) -> str:
     text = REFERENCES.sub(lambda match: match[1] + references() + match[2], text)
-    def table(match: re.Match[str]) -> str:
-        made = table_of(match[3]) if match[3] else budgets_of(match[4].split()) if match[4] else folders_of(match[5])
-        return f"<!-- {match[2]} -->\n\n" + made + match[6]
-
-    return LISTS.sub(table, text)
+    return LISTS.sub(lambda match: f"<!-- {match[1]} -->\n\n" + BLOCKS[match[2]](match[3]) + match[4], text)
 
 
 def fix() -> None:
@@ -168,7 +190,7 @@ def fix() -> None:
             place = found_again(match[1], int(match[2]), match[3])
             return f"`{place[0]}:{place[1]}`: `{match[3]}`" if place else match[0]
 
-        new = "".join(map(measured_numbers.renewed_paragraph, measured_numbers.paragraphs(QUOTE.sub(renewed, with_tables(text)))))
+        new = QUOTE.sub(renewed, with_tables(text))
         if new != text:
             document.write_text(new, encoding="utf-8")
             print(f"{document.relative_to(ROOT)}: brought up to date")
@@ -195,7 +217,7 @@ def tables(document: Path) -> list[str]:
 def repeated(document: Path) -> list[str]:
     """Words that a paragraph repeats from a list are in both."""
     errors = []
-    for paragraph in measured_numbers.paragraphs(document.read_text(encoding="utf-8")):
+    for paragraph in re.split(r"\n(?=\* |\n)", document.read_text(encoding="utf-8")):
         words = re.sub(r"\s+", " ", re.sub(r"<!--.*?-->", "", paragraph, flags=re.DOTALL)).lower()
         for name, text in REPEATED.findall(paragraph):
             if text not in json.dumps(listed(name)):
@@ -203,10 +225,6 @@ def repeated(document: Path) -> list[str]:
             if text not in words:
                 errors.append(f"no '{text}' beside the comment that it is from bench list {name}")
     return errors
-
-
-def numbers(document: Path) -> list[str]:
-    return measured_numbers.errors_in(without_blocks(document.read_text(encoding="utf-8")))
 
 
 def heading_anchors(document: Path) -> set[str]:
@@ -269,9 +287,11 @@ def names_in(value: object) -> set[str]:
 
 
 def measured() -> list[str]:
-    fields = set().union(*(names_in(points_of(file)[0]) for file in ("results/paper-strain-chain.json", "results/paper-step-chain.json")))
+    fields = set()
+    for file in ("results/paper-strain-chain.json", "results/paper-step-chain.json"):
+        fields |= names_in(json.loads((ROOT / file).read_text(encoding="utf-8"))["points"][0])
     schema = json.loads((ROOT / "configs/result.schema.json").read_text(encoding="utf-8"))
-    fields = (fields | set(schema["definitions"]["point"]["properties"])) - {"best_at_error"}  # of older files
+    fields |= set(schema["definitions"]["point"]["properties"])
     explained = set(BACKTICKS.findall((ROOT / "docs/measuring.md").read_text(encoding="utf-8")))
     return [f"docs/measuring.md does not explain `{name}`" for name in sorted(fields - explained - {"error", "work"})]
 
@@ -307,7 +327,7 @@ def main() -> int:
     if "--fix" in sys.argv[1:]:
         fix()
     errors = [f"{document.relative_to(ROOT)}: {error}" for document in documents()
-              for check in (quotes, numbers, tables, repeated, links, paths) for error in check(document)]
+              for check in (quotes, tables, repeated, links, paths) for error in check(document)]
     errors += named_documents() + measured() + exit_codes() + pictures()
     for error in errors:
         print(error)

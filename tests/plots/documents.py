@@ -183,7 +183,7 @@ def axes_with(figure: Figure, xlabel: str = "", ylabel: str = "") -> Axes:
 
 
 def legend_labels(figure: Figure) -> list[str]:
-    """Of legends, and beside the ends of curves."""
+    """Labels of legends and beside the ends of curves."""
     legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
     beside = [text for text in figure.texts if str(text.get_gid()).startswith("label-")]
     return [" ".join(text.get_text().split()) for text in [*(text for box in legends for text in box.get_texts()), *beside]]

@@ -30,6 +30,7 @@ inline json point(const std::string& scene, const std::string& sweep, const std:
   return {{"id", id.str()},
           {"scene", scene},
           {"sweep", sweep},
+          {"contestant", solver},
           {"solver", solver},
           {"status", "ok"},
           {"best", true},

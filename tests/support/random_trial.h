@@ -54,7 +54,7 @@ struct Attempt {
 // A few steps of the trial.
 inline Attempt attempt(const Trial& trial, const std::string& backend, const Settings& settings) {
   Attempt result;
-  const bool limited = find_backend(backend)->knob == Knob::strain_limit;
+  const bool limited = find_backend(backend)->strain_control == StrainControl::strain_limit;
   const auto stepper =
       make_stepper(backend, trial.scene.problem, {trial.strain_limit, 1, settings});
   harness::TrialJudge judge(trial, *find_backend(backend));

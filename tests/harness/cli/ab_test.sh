@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # bench ab: a program against itself raises no alarm in 10 runs on a busy machine (the load comes and goes, so that it does not fall
-# on all runs alike; tests/attack does this for as long as one likes). One that is three times as slow in one solver is never the
+# on all runs alike). One that is three times as slow in one solver is never the
 # same; how small a slowdown is found is asked with a fake clock (pairs_test.cpp), for a busy machine may leave it open (exit code 6).
 # A solver that fails and an extra iteration are found.
 rm -rf -- ./*  # of the last time

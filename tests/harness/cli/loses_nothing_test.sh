@@ -79,7 +79,7 @@ let_go() {
 
 "${bench[@]}" --out whole.json >/dev/null 2>&1 || fail "undisturbed run: exit $?"
 [[ ! -e whole.json.journal ]] || fail "a journal is left of a run that was finished"
-# Of its journal: a header, the points, the repetitions of those that may be best.
+# The journal has a header, the points, the repetitions of those that may be best.
 whole=$(python3 -c 'import json; p = json.load(open("whole.json"))["points"]
 print(1 + len(p) + sum(len((q["seconds_per_simulated_second"] or {"samples": [0]})["samples"]) - 1 for q in p))')
 

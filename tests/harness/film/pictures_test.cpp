@@ -25,7 +25,7 @@ constexpr int width = 96;
 Recording flat_square(int n, std::size_t takes = 1) {
   Recording recording;
   recording.spec.scene = "test";
-  Take take;
+  FilmRun take;
   take.strain_limit = 0.01;
   Positions x(3, n * n);
   for (int v = 0; v < n * n; ++v)
@@ -59,7 +59,7 @@ void add_body(Recording& recording, const Vector3d& middle, double radius) {
 
 View view_of_all(const Recording& recording) {
   std::size_t most = 0;
-  for (const Take& take : recording.takes) most = std::max(most, take.frames.size());
+  for (const FilmRun& take : recording.takes) most = std::max(most, take.frames.size());
   std::vector<std::size_t> frames;
   for (std::size_t i = 0; i < most; ++i) frames.push_back(i);
   return view_of(recording, frames);
@@ -197,7 +197,7 @@ TEST(Orientation, MakesNormalsPointOneWay) {
     EXPECT_LT((x.col(t[1]) - x.col(t[0])).cross(x.col(t[2]) - x.col(t[0])).y(), 0);
 }
 
-// Of a square of 7 x 7: the middle of each drawn side lies on a line of an even number.
+// In a square of 7 x 7 the middle of each drawn side lies on a line of an even number.
 TEST(Weave, DrawsEverySecondYarnWhole) {
   const Recording recording = flat_square(7);
   const Positions& x = recording.takes[0].frames[0];

@@ -51,7 +51,7 @@ def close(a: np.ndarray, b: np.ndarray) -> bool:
 
 
 def shown(folder: Path) -> list[tuple[float, int, str]]:
-    """Of the collection for ParaView: time, part and file."""
+    """Entries of the collection for ParaView: time, part and file."""
     return [(float(item.get("timestep")), int(item.get("part")), item.get("file"))
             for item in xml.parse(folder / "it.pvd").getroot().iter("DataSet")]
 

@@ -7,8 +7,8 @@
 namespace harness {
 namespace {
 
-Take filmed(const std::string& scene, const SceneParameters& given, const Contestant& contestant,
-            double limit, std::optional<double> step) {
+FilmRun filmed(const std::string& scene, const SceneParameters& given, const Contestant& contestant,
+               double limit, std::optional<double> step) {
   FilmSpec spec;
   spec.scene = scene;
   spec.parameters = complete_parameters(*find_scene(scene), given);
@@ -34,7 +34,7 @@ const bool thrower_is_there = [] {
   const inextensible::Backend row{
       .name = "thrower",
       .summary = "adds energy in long steps",
-      .knob = inextensible::Knob::none,
+      .strain_control = inextensible::StrainControl::none,
       .contestant = false,
       .settings = {},
       .make_filter = [](const inextensible::Problem&, const inextensible::BackendOptions&,
@@ -50,7 +50,7 @@ TEST(Films, TakeAStepAtWhichNoEnergyIsGainedUnlessOneIsGiven) {
   const auto chain = [](std::optional<double> step) {
     return filmed("chain", {{"n", 13}}, {"thrower", "thrower"}, 0.01, step);
   };
-  const Take given = chain(default_step), chosen = chain({});
+  const FilmRun given = chain(default_step), chosen = chain({});
   EXPECT_DOUBLE_EQ(given.step, 1.0 / 120);
   ASSERT_NE(given.energy_gained, "") << "a step that is given is taken, and the run is marked";
   EXPECT_EQ(chosen.energy_gained, "");
@@ -65,17 +65,17 @@ TEST(Films, JudgeEnergyBesideABodyThatMoves) {
     return filmed("garment", {{"n", 40}, {"duration", 1}}, {"strips@bdf2", "strips@bdf2"}, 0.01,
                   step);
   };
-  const Take chosen = garment({});
+  const FilmRun chosen = garment({});
   EXPECT_EQ(chosen.energy_gained + chosen.detail, "");
-  const Take fine = garment(0.001);
+  const FilmRun fine = garment(0.001);
   EXPECT_EQ(fine.energy_gained + fine.detail, "");
-  const auto mean_height = [](const Take& take) { return take.frames.back().row(1).mean(); };
+  const auto mean_height = [](const FilmRun& take) { return take.frames.back().row(1).mean(); };
   EXPECT_NEAR(mean_height(chosen), mean_height(fine), 0.04) << "m; the skirt is 0.4 long";
 }
 
 // Each step takes a hundred thousand passes: by default it would be refused, halved and so on.
 TEST(Films, EndRunsWhoseStepsTakeTooMuchWork) {
-  const Take take =
+  const FilmRun take =
       filmed("chain", {{"n", 80}}, {"jacobi", "jacobi", {{"max_iterations", 1e9}}}, 1e-8, 0.01);
   EXPECT_NE(take.detail.find("iterations for"), std::string::npos) << take.detail;
   EXPECT_LT(take.frames.size(), 31U);

@@ -15,7 +15,7 @@ using inextensible::Positions;
 using inextensible::State;
 using inextensible::StepResult;
 using testing::build;
-using End = Driven::End;
+using End = DriveState::End;
 
 constexpr double whole_step = 0.01;
 
@@ -41,18 +41,18 @@ struct Driving {
 };
 
 TEST(Drive, TakesTheStepsOfItsPaceInBlocks) {
-  struct : Onlooker {
+  struct : Observer {
     std::vector<int> blocks;
     std::vector<long> counted;
     int looks = 0;
-    int before(State& /*state*/, const Driven& /*driven*/) { return 3; }
-    void each(const State& /*state*/, const Driven& driven) { counted.push_back(driven.steps); }
-    void all(const State& /*state*/, const Driven& driven) { blocks.push_back(driven.taken); }
-    bool after(const State& /*state*/, const Driven& /*driven*/) { return ++looks > 0; }
+    int before(State& /*state*/, const DriveState& /*driven*/) { return 3; }
+    void each(const State& /*state*/, const DriveState& driven) { counted.push_back(driven.steps); }
+    void all(const State& /*state*/, const DriveState& driven) { blocks.push_back(driven.taken); }
+    bool after(const State& /*state*/, const DriveState& /*driven*/) { return ++looks > 0; }
   } look;
   Driving d;
   Picky stepper(d.scene, 1);
-  const Driven driven = drive(stepper, d.state, {whole_step, 7}, look);
+  const DriveState driven = drive(stepper, d.state, {whole_step, 7}, look);
   EXPECT_EQ(driven.end, End::arrived);
   EXPECT_EQ(look.blocks, (std::vector<int>{3, 3, 1}));
   EXPECT_EQ(look.counted, (std::vector<long>{1, 2, 3, 4, 5, 6, 7}));
@@ -64,7 +64,7 @@ TEST(Drive, EndsWithARefusalThatNobodyLooksAt) {
   Driving d;
   Picky stepper(d.scene, 1, 2.5 * whole_step);
   int looks = 0;
-  const Driven driven =
+  const DriveState driven =
       drive(stepper, d.state, {whole_step, 7}, [&](auto&&...) { return ++looks > 0; });
   EXPECT_EQ(driven.end, End::refused);
   EXPECT_EQ(driven.result.status, inextensible::Status::not_converged);
@@ -78,13 +78,13 @@ TEST(Drive, HalvesStepsAsOftenAsItMay) {
     Driving d;
     Picky stepper(d.scene, whole_step / 4);
     int part = 0;
-    const Driven driven =
-        drive(stepper, d.state, {whole_step, 2, halvings}, [&](const State&, const Driven& so_far) {
-          ++part;
-          EXPECT_EQ(so_far.whole, part % 4 == 0);
-          EXPECT_EQ(so_far.steps, part / 4);
-          return true;
-        });
+    const DriveState driven = drive(stepper, d.state, {whole_step, 2, halvings},
+                                    [&](const State&, const DriveState& so_far) {
+                                      ++part;
+                                      EXPECT_EQ(so_far.whole, part % 4 == 0);
+                                      EXPECT_EQ(so_far.steps, part / 4);
+                                      return true;
+                                    });
     EXPECT_EQ(driven.end, halvings == 1 ? End::refused : End::arrived);
     EXPECT_EQ(part, halvings == 1 ? 0 : 8);
     if (halvings == 1) {
@@ -97,9 +97,9 @@ TEST(Drive, HalvesStepsAsOftenAsItMay) {
 TEST(Drive, StopsWhereItIsToldTo) {
   Driving d;
   Picky stepper(d.scene, 1);
-  const auto three = [](const State&, const Driven& driven) { return driven.steps < 3; };
+  const auto three = [](const State&, const DriveState& driven) { return driven.steps < 3; };
   EXPECT_EQ(drive(stepper, d.state, {whole_step, 7}, three).end, End::stopped);
-  const Driven late = drive(stepper, d.state, {whole_step, 7}, {.timeout = -1});
+  const DriveState late = drive(stepper, d.state, {whole_step, 7}, {.timeout = -1});
   EXPECT_EQ(late.end, End::timed_out);
   EXPECT_EQ(late.steps, 1);
   EXPECT_EQ(drive(stepper, d.state, {whole_step, 1}, {.timeout = -1}).end, End::arrived);

@@ -204,7 +204,7 @@ TEST(Reference, SurvivesItsFile) {
   const std::string folder = ::testing::TempDir() + "references";
   std::filesystem::create_directories(folder);
   std::ofstream(folder + "/" + reference_name("chain", parameters)) << to_json(r);
-  ReferenceShelf shelf(folder);
+  ReferenceFolder shelf(folder);
   const auto again = shelf.find("chain", parameters);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->times, r.times);
@@ -219,9 +219,9 @@ TEST(Reference, SurvivesItsFile) {
   // A file under the name of parameters that it is not of does not stand for them.
   const auto five = complete_parameters(type, {{"n", 5}, {"duration", 0.2}});
   std::ofstream(folder + "/" + reference_name("chain", five)) << to_json(r);
-  EXPECT_FALSE(ReferenceShelf(folder).find("chain", five));
+  EXPECT_FALSE(ReferenceFolder(folder).find("chain", five));
 
-  std::ofstream(folder + "/broken.json") << "{\"schema\": \"inextensible-reference/1\"}";
+  std::ofstream(folder + "/broken.json") << "{\"schema\": \"inextensible-reference/2\"}";
   EXPECT_THROW(static_cast<void>(read_reference(folder + "/broken.json")), UsageError);
 }
 
@@ -229,7 +229,7 @@ TEST(Reference, ThatIsCommittedIsTheOneThisProgramComputes) {
   const auto found_type = find_scene("chain");
   const SceneType& type = *found_type;
   const auto parameters = complete_parameters(type, {});
-  ReferenceShelf shelf(std::string(SOURCE_DIR) + "/results/references");
+  ReferenceFolder shelf(std::string(SOURCE_DIR) + "/results/references");
   const auto stored = shelf.find("chain", parameters);
   ASSERT_TRUE(stored);
   Pendulum pendulum(uniform_links(79, 1, 1), std::vector<double>(79, 0.0));

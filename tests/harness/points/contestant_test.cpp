@@ -62,7 +62,7 @@ double setting(const Search& search, const char* name) {
   return std::get<double>(search.base.settings.at(name));
 }
 
-// Of the suites that name none; those that a suite names stand there whatever they take.
+// Suites that name no solvers; named ones are listed whatever parts they take.
 TEST(Contestants, TakeEveryPartOfTheScene) {
   for (const char* scene : {"chain", "patch", "drape", "fabric_drape"}) {
     const auto type = find_scene(scene);

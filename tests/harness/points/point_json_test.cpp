@@ -130,31 +130,23 @@ TEST(PointJson, LosesNothing) {
   }
 }
 
-TEST(PointJson, RepetitionsComeBackAndOlderJournalsHaveSecondsAlone) {
+TEST(PointJson, RepetitionsComeBack) {
   PointResult point = Random(1).point();
   const Repetition before = samples_of(point),
                    more{{1, 2}, {0.5, 0.75}, {0.1}, {7, 8}, 3, {{60, 0.001, 0.002, 0.003}}};
   append(repetition_of(to_json(more)), point);
   EXPECT_EQ(to_json(added_since(before, point)), to_json(more));
   EXPECT_EQ(point.frame_times, more.frame_times);
-  const Repetition older = repetition_of(json::parse(R"({"seconds": [1.5]})"));
-  EXPECT_EQ(older.samples, std::vector<double>{1.5});
-  EXPECT_TRUE(older.sample_runs.empty());
 }
 
 // Every key but those made for readers has been read: one that is changed is seen.
 TEST(PointJson, ReadsWhatItWrites) {
   const json written = to_json(Random(1).point());
-  const PointResult plain = point_of(written);
   for (const char* name : {"status", "step", "max_strain", "work", "phases", "error"}) {
     json without = written;
     without.erase(name);
     EXPECT_THROW(point_of(without), json::exception) << name;
   }
-  json older = written;
-  older.erase("steps_planned");
-  older["duration"] = 7 * plain.spec.step;
-  EXPECT_EQ(point_of(older).steps_planned, 7);
 }
 
 }  // namespace

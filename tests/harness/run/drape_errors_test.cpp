@@ -12,7 +12,7 @@ namespace harness {
 namespace {
 
 PointResult drape(const std::string& solver, double permitted, double h,
-                  std::shared_ptr<ReferenceShelf> references) {
+                  std::shared_ptr<ReferenceFolder> references) {
   const auto found_type = find_scene("drape");
   PointSpec spec;
   spec.sweep = "strain";
@@ -34,7 +34,7 @@ class DrapeErrors : public ::testing::TestWithParam<const char*> {};
 // never comes back.
 TEST_P(DrapeErrors, FallWithTheStepToTheReferencesGap) {
   const auto references =
-      std::make_shared<ReferenceShelf>(std::string(SOURCE_DIR) + "/results/references");
+      std::make_shared<ReferenceFolder>(std::string(SOURCE_DIR) + "/results/references");
   double before = 1;
   for (const double h : {0.02, 0.01, 0.005, 0.0025, 0.00125}) {
     const PointResult point = drape(GetParam(), 0.001, h, references);

@@ -55,7 +55,7 @@ TEST(PointRunner, ARunThatHangsOrShakesHasLostItsMotion) {
     for (double& d : other.ensemble.kinetic_deviation) d += deviation;
     std::ofstream(folder + "/" + reference_name("drape", spec.scene_parameters)) << to_json(other);
     RunLimits limits;
-    limits.references = std::make_shared<ReferenceShelf>(folder);
+    limits.references = std::make_shared<ReferenceFolder>(folder);
     return run_point(spec, limits);
   };
   const PointResult good = against(1, 0);

@@ -52,7 +52,8 @@ TEST(Drape, IsDeliveredWithinTheLimitAndOutsideTheBallByEveryMethod) {
       dynamic_cast<const inextensible::TriangleCollider&>(*drape.problem->collider());
   const double scale = energy_scale(drape), before = total_energy(*drape.problem, drape.start);
   for (const inextensible::Backend& backend : inextensible::backends()) {
-    if (!backend.contestant || backend.knob != inextensible::Knob::strain_limit) continue;
+    if (!backend.contestant || backend.strain_control != inextensible::StrainControl::strain_limit)
+      continue;
     SCOPED_TRACE(backend.name);
     const auto stepper = inextensible::make_stepper(backend.name, drape.problem, {limit, 1, {}});
     State state = drape.start;

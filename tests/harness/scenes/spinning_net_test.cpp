@@ -59,7 +59,7 @@ double error_after_a_second(const char* solver, double h) {
   const Scene scene = net();
   const auto stepper = inextensible::make_stepper(solver, scene.problem, {1e-11, 1, {}});
   State state = start_of(scene, *inextensible::find_backend(solver), h);
-  if (drive(*stepper, state, {h, std::lround(1 / h)}).end != Driven::End::arrived)
+  if (drive(*stepper, state, {h, std::lround(1 / h)}).end != DriveState::End::arrived)
     return std::nan("");
   return rms_distance(scene, state.x, find_scene("spinning_net")->exact(parameters(), 1));
 }

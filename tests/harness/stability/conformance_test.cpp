@@ -116,7 +116,7 @@ std::unique_ptr<Stepper> make(std::shared_ptr<const Problem> problem, const Back
 
 template <class Fault>
 Backend row(const char* name) {
-  return {name, "fast projection, corrupted", Knob::strain_limit, true, {}, make<Fault>};
+  return {name, "fast projection, corrupted", StrainControl::strain_limit, true, {}, make<Fault>};
 }
 
 std::unique_ptr<Stepper> over_relaxed(std::shared_ptr<const Problem> problem,
@@ -156,7 +156,7 @@ class BrokenSolvers : public ::testing::Test {
                                     row<GivesUp>("gives_up"),
                                     {"over_relaxed",
                                      "Gauss-Seidel, corrections times 1.3",
-                                     Knob::strain_limit,
+                                     StrainControl::strain_limit,
                                      true,
                                      {},
                                      over_relaxed}};

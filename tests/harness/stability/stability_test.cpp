@@ -318,7 +318,7 @@ TEST(Stability, StrainIsKeptOfTheFirstAndTheLastSecond) {
 // ICD is within the slack of the limit.
 TEST(SameFrame, RunsAgreeBeforeContactAndAreComparedAfterIt) {
   const harness::SameFrameScene scene{"drape", 9, 0.01, 1.0 / 200, 1e-10};
-  harness::ReferenceShelf none("no folder");
+  harness::ReferenceFolder none("no folder");
   const auto found = harness::same_frame(scene, 1, none);
   EXPECT_EQ(found.stopped, "");
   EXPECT_GT(found.first_contact, 0.01);  // 1 mm above the sphere

@@ -89,16 +89,6 @@ TEST(ResultsPage, PiecesAreOneTable) {
   EXPECT_LT(text.find("| 10 % | "), text.find("| 1 % | "));
 }
 
-TEST(ResultsPage, OlderFilesAreRead) {
-  json result = sweep(0.01);
-  for (json& p : result["points"]) {
-    for (const char* key : {"contestant", "best_at_errors"}) p.erase(key);
-  }
-  result["points"].erase(result["points"].begin() + 1);
-  result["context"].erase("noise");
-  has(page(result), "| 1 % | **`fast_projection`** 1000 ms");
-}
-
 // A mean over a third of the run says nothing of its end.
 TEST(ResultsPage, SaysUpToWhenErrorsCountUnlessItIsTheWholeRun) {
   const auto with = [](double last) {

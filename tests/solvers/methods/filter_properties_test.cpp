@@ -37,9 +37,11 @@ std::vector<std::string> steppers() {
 }
 
 bool limits_strain(const std::string& name) {
-  return find_backend(name)->knob == Knob::strain_limit;
+  return find_backend(name)->strain_control == StrainControl::strain_limit;
 }
-bool is_elastic(const std::string& name) { return find_backend(name)->knob == Knob::stiffness; }
+bool is_elastic(const std::string& name) {
+  return find_backend(name)->strain_control == StrainControl::stiffness;
+}
 
 // What a momentum is compared with: the sum of |m v|, which does not cancel.
 double momentum_scale(const Problem& p, const Positions& v) {
@@ -261,7 +263,8 @@ TEST_P(Steppers, SurviveOverflowAndGoOnAsIfNothingHadBeen) {
 // A triangle of rest lengths 1, 1 and 3 does not exist.
 TEST_P(Steppers, RefuseAProblemWithoutSolutionAndNameAnEdge) {
   if (is_elastic(GetParam())) GTEST_SKIP() << "springs stretch instead";
-  if (find_backend(GetParam())->knob == Knob::time_step) GTEST_SKIP() << "promises no limit";
+  if (find_backend(GetParam())->strain_control == StrainControl::time_step)
+    GTEST_SKIP() << "promises no limit";
   ProblemParts parts;
   parts.gravity.setZero();
   parts.mass = {1, 0.3, 2};

@@ -27,7 +27,7 @@ constexpr int seeds = 8;
 std::vector<std::string> filters() {
   std::vector<std::string> names;
   for (const Backend& backend : backends()) {
-    if (backend.knob == Knob::strain_limit) names.emplace_back(backend.name);
+    if (backend.strain_control == StrainControl::strain_limit) names.emplace_back(backend.name);
   }
   names.emplace_back("oracle");
   return names;
@@ -434,7 +434,7 @@ TEST(ImplicitSprings, SayWhereChainsAreNeeded) {
 
 TEST(Stepper, ReadsNoClockUnlessPhasesAreWanted) {
   for (const Backend& backend : backends()) {
-    if (backend.knob != Knob::strain_limit) continue;
+    if (backend.strain_control != StrainControl::strain_limit) continue;
     SCOPED_TRACE(backend.name);
     Random random(2);
     const RandomMesh mesh = random_mesh(random, 1, 9, 1);

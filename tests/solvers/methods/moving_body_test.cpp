@@ -124,7 +124,8 @@ TEST_P(EveryMethod, SeesNoSteadyMotionThatItShares) {
       State state{mesh.x, Positions::Zero(3, mesh.x.cols()), 0};
       if (moves) state.v.colwise() += velocity;
       Settings settings;
-      if (find_backend(GetParam())->knob == Knob::stiffness) settings["stiffness"] = 2000.0;
+      if (find_backend(GetParam())->strain_control == StrainControl::stiffness)
+        settings["stiffness"] = 2000.0;
       const auto stepper = make_stepper(GetParam(), std::make_shared<const Problem>(parts),
                                         {0.01, 1, settings, &state});
       for (int step = 0; step < 56; ++step) EXPECT_TRUE(stepper->advance(state, tick));

@@ -149,7 +149,7 @@ TEST(VertexBlockDescent, StartsWhereTheLastStepSaysThatItWillEnd) {
     State state{x, Positions::Zero(3, links + 1), 0};
     ASSERT_TRUE(stepper->advance(state, h));
     EXPECT_GT((state.x - x).cwiseAbs().maxCoeff(), 1e-6);
-    state = {x, Positions::Zero(3, links + 1), 0};
+    state = {x, Positions::Zero(3, links + 1), h};  // at rest, a step later
     ASSERT_TRUE(stepper->advance(state, h));
     EXPECT_LT((state.x - x).cwiseAbs().maxCoeff(), 1e-12);
   }

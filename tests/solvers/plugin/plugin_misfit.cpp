@@ -26,7 +26,7 @@ constexpr const char* name = "misfit";
 
 extern "C" const InextensiblePlugin* inextensible_plugin() {
   static const std::vector<Backend> rows{
-      {name, "does nothing", Knob::strain_limit, true, {}, make}};
+      {name, "does nothing", StrainControl::strain_limit, true, {}, make}};
   static InextensiblePlugin plugin = inextensible_plugin_of("1.0", rows);
 #if defined(MISFIT_another_version)
   plugin.abi = 999;

@@ -71,7 +71,8 @@ std::unique_ptr<Stepper> make(std::shared_ptr<const Problem> problem,
 }
 
 Backend row() {
-  Backend backend{"sound", "fast projection once more", Knob::strain_limit, true, {}, make};
+  Backend backend{"sound", "fast projection once more", StrainControl::strain_limit, true, {},
+                  make};
 #if defined(KIND_bare)
   backend.takes_shear = backend.takes_collider = false;
 #endif

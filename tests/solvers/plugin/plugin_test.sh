@@ -92,7 +92,6 @@ use() {
     ab) words=("$bench" "$bench" --scene chain --solver fast_projection --filter 'strain:0.1/' --pairs 4 --sample-seconds 0.001) ;;
     tune) words=(--scene chain --solver icd --out tuned.json) ;;  # there already
     reference) words=(--profile quick --scene chain) ;;           # there already
-    emit) words=(parallel --shards 2 --sweep strain --profile quick) ;;
     merge) words=(shard.json --out merged.json --plugin "$plugin") ;;
   esac
   "$bench" "$1" "${words[@]}" <point.txt

@@ -122,7 +122,8 @@ std::vector<std::string> pairs_of_second_order() {
   std::vector<std::string> names;
   for (const inextensible::Backend& row : inextensible::backends()) {
     const std::string name = row.name;
-    if (name.find('@') != name.npos && row.knob == inextensible::Knob::strain_limit)
+    if (name.find('@') != name.npos &&
+        row.strain_control == inextensible::StrainControl::strain_limit)
       names.push_back(name);
   }
   return names;

@@ -62,7 +62,7 @@ extern "C" const InextensiblePlugin* inextensible_plugin() {
   static const std::vector<inextensible::Backend> rows{
       {"symmetric_sweeps",
        "strain limiting, edges in the order of the mesh, forwards and backwards in turn",
-       inextensible::Knob::strain_limit,
+       inextensible::StrainControl::strain_limit,
        true,
        {{"max_iterations", 1e5, "sweeps a step before it is refused"}},
        make}};
