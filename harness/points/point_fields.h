@@ -122,8 +122,7 @@ inline constexpr std::tuple phase_fields{
     field("collision", &inextensible::PhaseSeconds::collision, "s",
           "wall time of the same run in the collision filter", in_phases),
     field("contact", &inextensible::PhaseSeconds::contact, "s",
-          "what of these three goes to friction, to finding contacts and to planes",
-          in_phases),
+          "what of these three goes to friction, to finding contacts and to planes", in_phases),
     field("copy", &inextensible::PhaseSeconds::copy, "s",
           "wall time of the same run in copying the state into an engine and out of it",
           in_phases)};

@@ -1,6 +1,5 @@
 #include "harness/points/point_json.h"
 
-
 #include "harness/base/statistics.h"
 #include "harness/points/point_fields.h"
 

@@ -136,15 +136,19 @@ ordered_json legend_schema() {
                {"family", "string"},
                {"contestant", "boolean"}}));
   ordered_json& item = schema["properties"]["solvers"]["items"];
-  add_optional(item, "origin",
+  add_optional(
+      item, "origin",
       {{"type", "string"},
        {"description", "origin of the method: paper, project, literature, engine or elsewhere"}});
   add_optional(item, "method", {{"type", "string"}});
   add_optional(item, "stepper", {{"type", "string"}, {"description", "its time stepper"}});
-  add_optional(item, "stepper_origin", {{"type", "string"}, {"description", "origin of the stepper"}});
-  add_optional(item, "solver",
+  add_optional(item, "stepper_origin",
+               {{"type", "string"}, {"description", "origin of the stepper"}});
+  add_optional(
+      item, "solver",
       {{"type", "string"}, {"description", "the solver of a contestant with another name"}});
-  add_optional(item, "hollow",
+  add_optional(
+      item, "hollow",
       {{"type", "boolean"}, {"description", "beside the ranking, drawn with hollow marks"}});
   add(schema, "statuses",
       list_of({{"name", "string"}, {"letter", "string"}, {"meaning", "string"}}));

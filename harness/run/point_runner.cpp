@@ -183,8 +183,8 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
   // Between blocks there is little but reads of the clock; the judge takes longer than steps do.
   const double cpu_begin = thread_seconds();
   const DriveState driven =
-      drive(*run.stepper, state, {spec_.step, steps_, spec_.adaptive ? usual_halvings : 0}, observer,
-            {limits_.timeout, start_, limits_.interrupted});
+      drive(*run.stepper, state, {spec_.step, steps_, spec_.adaptive ? usual_halvings : 0},
+            observer, {limits_.timeout, start_, limits_.interrupted});
   if (!judged) run.cpu_seconds = thread_seconds() - cpu_begin;
   tell_end(driven, state.time, run);
   run.frame_times = observer.frame_times();

@@ -67,8 +67,9 @@ Outcome attempt(const Trial& trial, const inextensible::Backend& backend, std::u
   State state = trial.scene.start;
   TrialJudge judge(trial, backend);
   TrialObserver observer{{}, trial, *stepper, judge, result};
-  const DriveState driven = drive(*stepper, state, {trial.step, trial.steps, smaller ? 10 : 0},
-                                  observer, {smaller ? trial.timeout_smaller : trial.timeout, begin});
+  const DriveState driven =
+      drive(*stepper, state, {trial.step, trial.steps, smaller ? 10 : 0}, observer,
+            {smaller ? trial.timeout_smaller : trial.timeout, begin});
   result.work = stepper->work();
   if (smaller) result.smallest_step = driven.smallest;
   if (driven.end == DriveState::End::refused) {

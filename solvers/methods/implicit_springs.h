@@ -2,8 +2,8 @@
 // springs.
 //
 // Edge k has stiffness EA / l_k, so strain = tension / EA at any resolution. The method has no
-// strain limit of its own: EA controls the strain, and the harness finds the one that keeps a run within
-// the limit.
+// strain limit of its own: EA controls the strain, and the harness finds the one that keeps a run
+// within the limit.
 #pragma once
 
 #include <array>
