@@ -68,6 +68,7 @@ void read_fields(const nlohmann::json& from, const Table& table, Object& object)
   for_each_field(table, [&](const auto& row) {
     using Value = typename std::decay_t<decltype(row)>::Type;
     const nlohmann::json& place = *row.traits.inside ? from.at(row.traits.inside) : from;
+    if (row.traits.nullable && !place.contains(row.name)) return;  // as null
     FieldCodec<Value>::read(place.at(row.name), object.*row.member, row.traits.nullable);
   });
 }

@@ -39,13 +39,16 @@ const char* word_of(inextensible::Origin origin) {
   return "elsewhere";
 }
 
-void add_optional(ordered_json& object, const char* name, ordered_json schema) {
+enum class Presence { required, optional };
+
+void add(ordered_json& object, const char* name, ordered_json schema,
+         Presence presence = Presence::required) {
+  if (presence == Presence::required) object["required"].push_back(name);
   object["properties"][name] = std::move(schema);
 }
 
-void add(ordered_json& object, const char* name, ordered_json schema) {
-  object["required"].push_back(name);
-  add_optional(object, name, std::move(schema));
+void add_optional(ordered_json& object, const char* name, ordered_json schema) {
+  add(object, name, std::move(schema), Presence::optional);
 }
 
 template <class Table>
@@ -55,10 +58,12 @@ void add_fields(ordered_json& object, const Table& table) {
     ordered_json schema = FieldCodec<Value>::schema(row.traits);
     schema["description"] = described(row);
     const char* inside = row.traits.inside;
-    if (!*inside) return add(object, row.name, schema);
+    // May be absent, as null.
+    const Presence presence = row.traits.nullable ? Presence::optional : Presence::required;
+    if (!*inside) return add(object, row.name, schema, presence);
     if (inside == std::string("work")) return;  // work_schema's
     if (!object["properties"].contains(inside)) add(object, inside, closed_object());
-    add(object["properties"][inside], row.name, schema);
+    add(object["properties"][inside], row.name, schema, presence);
   });
 }
 

@@ -142,7 +142,7 @@ TEST(PointJson, RepetitionsComeBack) {
 // Every key but those made for readers has been read: one that is changed is seen.
 TEST(PointJson, ReadsWhatItWrites) {
   const json written = to_json(Random(1).point());
-  for (const char* name : {"status", "step", "max_strain", "work", "phases", "error"}) {
+  for (const char* name : {"status", "step", "best", "work", "phases", "error"}) {
     json without = written;
     without.erase(name);
     EXPECT_THROW(point_of(without), json::exception) << name;
