@@ -118,7 +118,7 @@ int MobilizerChain::internal_steps() const { return parts_->integrator->getNumSt
 
 MobilizerChain::Point MobilizerChain::end_of(int link) const {
   const SimTK::State& state = parts_->integrator->getState();
-  parts_->system.realize(state, SimTK::FilmScene::Velocity);
+  parts_->system.realize(state, SimTK::Stage::Velocity);
   SimTK::Vec3 place, velocity;
   parts_->bodies[link].findStationLocationAndVelocityInGround(state, parts_->ends[link], place,
                                                               velocity);
