@@ -9,9 +9,8 @@ namespace harness {
 
 struct FieldTraits {
   const char* inside = "";  // the nested object of the file that holds it
-  bool nullable =
-      false;  // null in files, or absent: a number that is not known, a text that is empty
-  bool positive = false;  // a number above 0, not merely of at least 0
+  bool nullable = false;    // may be null or absent in files: an unknown number, an empty text
+  bool positive = false;    // a number above 0, not merely of at least 0
 };
 
 template <class Object, class Value>

@@ -70,7 +70,10 @@ std::vector<PointSpec> read_specs(std::istream& in) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const std::string where = "point on line " + std::to_string(number);
     try {
-      specs.push_back(spec_of(parse_line(line, where)));
+      // A point that is typed by hand may leave these out.
+      json object{{"contestant", ""}, {"settings", json::object()}, {"adaptive", false}};
+      object.update(parse_line(line, where));
+      specs.push_back(spec_of(object));
     } catch (const json::exception& error) {
       throw UsageError(where + ": " + error.what());
     }

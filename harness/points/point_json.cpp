@@ -214,10 +214,7 @@ Repetition repetition_of(const json& object) {
   return repetition;
 }
 
-PointSpec spec_of(const json& given) {
-  // A point that is typed by hand may leave these out.
-  json object{{"contestant", ""}, {"settings", json::object()}, {"adaptive", false}};
-  object.update(given);
+PointSpec spec_of(const json& object) {
   PointSpec spec;
   read_fields(object, spec_fields, spec);
   read_fields(object, size_fields, spec);

@@ -47,10 +47,6 @@ void add(ordered_json& object, const char* name, ordered_json schema,
   object["properties"][name] = std::move(schema);
 }
 
-void add_optional(ordered_json& object, const char* name, ordered_json schema) {
-  add(object, name, std::move(schema), Presence::optional);
-}
-
 template <class Table>
 void add_fields(ordered_json& object, const Table& table) {
   for_each_field(table, [&object](const auto& row) {
@@ -141,20 +137,19 @@ ordered_json legend_schema() {
                {"family", "string"},
                {"contestant", "boolean"}}));
   ordered_json& item = schema["properties"]["solvers"]["items"];
-  add_optional(
-      item, "origin",
-      {{"type", "string"},
-       {"description", "origin of the method: paper, project, literature, engine or elsewhere"}});
-  add_optional(item, "method", {{"type", "string"}});
-  add_optional(item, "stepper", {{"type", "string"}, {"description", "its time stepper"}});
-  add_optional(item, "stepper_origin",
-               {{"type", "string"}, {"description", "origin of the stepper"}});
-  add_optional(
-      item, "solver",
-      {{"type", "string"}, {"description", "the solver of a contestant with another name"}});
-  add_optional(
-      item, "hollow",
-      {{"type", "boolean"}, {"description", "beside the ranking, drawn with hollow marks"}});
+  const auto may_add = [&item](const char* name, ordered_json type) {
+    add(item, name, std::move(type), Presence::optional);
+  };
+  may_add("origin", {{"type", "string"},
+                     {"description",
+                      "origin of the method: paper, project, literature, engine or elsewhere"}});
+  may_add("method", {{"type", "string"}});
+  may_add("stepper", {{"type", "string"}, {"description", "its time stepper"}});
+  may_add("stepper_origin", {{"type", "string"}, {"description", "origin of the stepper"}});
+  may_add("solver",
+          {{"type", "string"}, {"description", "the solver of a contestant with another name"}});
+  may_add("hollow",
+          {{"type", "boolean"}, {"description", "beside the ranking, drawn with hollow marks"}});
   add(schema, "statuses",
       list_of({{"name", "string"}, {"letter", "string"}, {"meaning", "string"}}));
   return schema;
