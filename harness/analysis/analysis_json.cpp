@@ -128,13 +128,12 @@ json findings_json(const std::vector<Plane>& planes) {
   return findings;
 }
 
-json analysis_of(const json& document) { return analysis_of(planes_of(document), {&document}); }
-
-json analysis_of(const std::vector<Plane>& planes, const std::vector<const json*>& documents) {
+json analysis_of(const json& document) {
+  const std::vector<Plane> planes = planes_of(document);
   json list = json::array(), growth = json::array(), budgets = json::array();
   for (const Plane& plane : planes) list.push_back(plane_json(plane));
   for (const Growth& each : growth_in(planes)) growth.push_back(growth_json(each));
-  for (const BudgetTable& each : budget_tables(documents, {})) budgets.push_back(budget_json(each));
+  for (const BudgetTable& each : budget_tables(document, {})) budgets.push_back(budget_json(each));
   return {{"schema", "inextensible-analysis/1"}, {"headline_error", headline_error},
           {"findings", findings_json(planes)},   {"planes", std::move(list)},
           {"growth", std::move(growth)},         {"budgets", std::move(budgets)}};

@@ -11,10 +11,7 @@ namespace harness::analysis {
 
 // document: of schema inextensible-bench/1.
 nlohmann::json analysis_of(const nlohmann::json& document);
-// Analysis of planes, which may come from several documents.
-nlohmann::json analysis_of(const std::vector<Plane>& planes,
-                           const std::vector<const nlohmann::json*>& documents);
-// Its part "findings", of planes that may be of several documents.
+// Its part "findings".
 nlohmann::json findings_json(const std::vector<Plane>& planes);
 
 }  // namespace harness::analysis

@@ -95,15 +95,12 @@ BudgetTable table_of(const std::vector<const Run*>& runs, const std::vector<doub
 
 }  // namespace
 
-std::vector<BudgetTable> budget_tables(const std::vector<const json*>& documents,
-                                       const std::vector<double>& budgets) {
+std::vector<BudgetTable> budget_tables(const json& document, const std::vector<double>& budgets) {
   std::vector<Run> runs;
-  for (const json* document : documents) {
-    const ContestantRoles cast(*document);
-    const double noise = pair_noise_of(*document);
-    for (const json& p : document->at("points")) {
-      if (auto run = run_of(p, cast, noise)) runs.push_back(std::move(*run));
-    }
+  const ContestantRoles cast(document);
+  const double noise = pair_noise_of(document);
+  for (const json& p : document.at("points")) {
+    if (auto run = run_of(p, cast, noise)) runs.push_back(std::move(*run));
   }
   const auto place_of = [](const Run& run) {
     const json& p = run.reach.point.document();

@@ -37,9 +37,9 @@ struct BudgetTable {
   std::vector<Budgeted> rows;
 };
 
-// documents: of schema inextensible-bench/1, which must outlive the tables; pieces of one scene and
-// size make one table. Runs with a step controller do not take part.
-std::vector<BudgetTable> budget_tables(const std::vector<const nlohmann::json*>& documents,
+// document: of schema inextensible-bench/1, which must outlive the tables. Runs with a step
+// controller do not take part.
+std::vector<BudgetTable> budget_tables(const nlohmann::json& document,
                                        const std::vector<double>& budgets);
 
 }  // namespace harness::analysis

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "harness/analysis/plane.h"
-#include "harness/base/fit.h"
+#include "harness/base/statistics.h"
 
 namespace harness::analysis {
 

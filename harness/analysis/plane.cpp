@@ -5,7 +5,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "harness/analysis/paper_methods.h"
+#include "harness/analysis/words.h"
 #include "harness/base/in_order.h"
 #include "harness/base/text.h"
 #include "harness/points/suite.h"
@@ -260,55 +260,6 @@ std::vector<Plane> planes_of(const json& document) {
     planes.push_back(plane_of(here, document, cast));
   }
   return planes;
-}
-
-namespace {
-
-// Rows that `cell` does not have yet: pieces may have other contestants.
-void add_rows(Cell& cell, const Cell& more) {
-  const std::vector<Entry> own = cell.entries;
-  for (const Entry& entry : more.entries) {
-    if (std::none_of(own.begin(), own.end(), [&](const Entry& e) { return e.row == entry.row; }))
-      cell.entries.push_back(entry);
-  }
-  std::stable_sort(cell.entries.begin(), cell.entries.end(), [](const Entry& a, const Entry& b) {
-    return a.point.seconds() < b.point.seconds();
-  });
-  cell.known_until = std::max(cell.known_until, more.known_until);
-  if (!cell.entries.empty()) cell.empty_because.clear();
-}
-
-}  // namespace
-
-std::vector<Plane> merged(const std::vector<Plane>& planes) {
-  std::vector<Plane> all;
-  for (const Plane& plane : planes) {
-    const auto same = std::find_if(all.begin(), all.end(), [&](const Plane& other) {
-      return std::tie(other.scene, other.sweep, other.scene_parameters, other.vertices,
-                      other.levels) == std::tie(plane.scene, plane.sweep, plane.scene_parameters,
-                                                plane.vertices, plane.levels);
-    });
-    if (same == all.end()) {
-      all.push_back(plane);
-      continue;
-    }
-    for (const Cell& cell : plane.cells) {
-      const auto place = std::find_if(same->cells.begin(), same->cells.end(), [&](const Cell& c) {
-        return c.strain_limit == cell.strain_limit && c.level == cell.level;
-      });
-      if (place == same->cells.end()) {
-        same->cells.push_back(cell);
-      } else {
-        add_rows(*place, cell);
-      }
-    }
-    std::stable_sort(same->cells.begin(), same->cells.end(), [](const Cell& a, const Cell& b) {
-      return a.strain_limit > b.strain_limit;  // levels stay in their order
-    });
-    same->limits = in_order(same->cells, [](const Cell& cell) { return cell.strain_limit; });
-  }
-  for (Plane& plane : all) take_tighter_runs(plane.cells, plane.levels.size());
-  return all;
 }
 
 }  // namespace harness::analysis

@@ -81,8 +81,4 @@ struct Plane {
 // part.
 std::vector<Plane> planes_of(const nlohmann::json& document);
 
-// Planes of several documents: those of one scene and size with limits of their own are one. A
-// limit that two have is the first one's.
-std::vector<Plane> merged(const std::vector<Plane>& planes);
-
 }  // namespace harness::analysis

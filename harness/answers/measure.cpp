@@ -6,10 +6,11 @@
 #include <map>
 #include <utility>
 
-#include "harness/base/child_answer.h"
+#include "harness/base/child_process.h"
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/fields_json.h"
+#include "harness/base/interrupt.h"
 #include "harness/base/json_text.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
@@ -141,7 +142,9 @@ Ending ending_of(const nlohmann::json& object) {
   return ending;
 }
 
-Ending run_apart(const KnownAnswer& answer, const Backend& backend, double step, double timeout) {
+// Throws Interrupted.
+Ending run_apart(const KnownAnswer& answer, const Backend& backend, double step, double timeout,
+                 const std::function<bool()>& interrupted) {
   // Springs need several runs to find their stiffness.
   const double all_runs = timeout * (Calibration::run_limit + 2);
   ChildOutcome child = run_in_child(
@@ -149,7 +152,8 @@ Ending run_apart(const KnownAnswer& answer, const Backend& backend, double step,
         heartbeat.restart();
         return compact(to_json(run_calibrated(answer, backend, step, timeout)));
       },
-      {all_runs, 0, nullptr});
+      {all_runs, 0, interrupted});
+  if (child.end == ChildOutcome::End::interrupted) throw Interrupted();
   if (const auto ending = harness::answer(child, ending_of)) return *ending;
   Ending lost;
   lost.detail = child.end == ChildOutcome::End::timed_out ? "a step did not end" : ending(child);
@@ -178,21 +182,24 @@ std::vector<AnswerRun> plan_answers(const AnswerSelection& selection) {
 
 double exact_value(const KnownAnswer& answer) { return answer.exact(Built(answer).at); }
 
-AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
-                          const AnswerEvents& events) {
-  AnswerOutcome outcome;
+namespace {
+
+// Throws Interrupted, with the rows so far.
+void run_rows(const std::vector<AnswerRun>& plan, double timeout, const AnswerEvents& events,
+              std::vector<AnswerRow>& rows) {
   std::size_t all = 0;
   for (const AnswerRun& run : plan) all += run.answer->steps.size();
   for (const AnswerRun& run : plan) {
     const double exact = exact_value(*run.answer);
     Order order(run.answer->continuum, run.answer->strain_limit);
     for (const double step : run.answer->steps) {
-      if (events.interrupted()) {
-        outcome.complete = false;
-        return outcome;
-      }
-      const Ending ending =
-          run_apart(*run.answer, *inextensible::find_backend(run.solver), step, timeout);
+      if (events.interrupted()) throw Interrupted();
+      const std::string key =
+          std::string(run.answer->name) + "/" + run.solver + "/" + step_text(step);
+      const Ending ending = ending_of(events.once(key, [&] {
+        return to_json(run_apart(*run.answer, *inextensible::find_backend(run.solver), step,
+                                 timeout, events.interrupted));
+      }));
       AnswerRow row;
       row.answer = run.answer->name;
       row.solver = run.solver;
@@ -201,9 +208,21 @@ AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
       row.deviation = exact == 0 ? row.value : row.value / exact - 1;
       row.order = order.next(row.deviation);
       row.detail = ending.detail;
-      outcome.rows.push_back(row);
-      events.row(row, outcome.rows.size(), all);
+      rows.push_back(row);
+      events.row(row, rows.size(), all);
     }
+  }
+}
+
+}  // namespace
+
+AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
+                          const AnswerEvents& events) {
+  AnswerOutcome outcome;
+  try {
+    run_rows(plan, timeout, events, outcome.rows);
+  } catch (const Interrupted&) {
+    outcome.complete = false;
   }
   return outcome;
 }

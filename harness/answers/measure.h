@@ -22,6 +22,10 @@ struct AnswerSelection {
 struct AnswerEvents {
   std::function<void(const AnswerRow&, std::size_t done, std::size_t all)> row = [](auto&&...) {};
   std::function<bool()> interrupted = [] { return false; };
+  // Gives what is known of a run, or what `compute` returns (Journal::once).
+  std::function<nlohmann::json(const std::string& key,
+                               const std::function<nlohmann::json()>& compute)>
+      once = [](const std::string&, const auto& compute) { return compute(); };
 };
 
 // A solver's runs at all steps of an answer, each in a child process, the coarsest step first.

@@ -5,7 +5,10 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <type_traits>
 
 namespace harness {
 
@@ -49,5 +52,21 @@ std::string ending(const ChildOutcome& outcome);
 
 // "SIGSEGV (Segmentation fault)"
 std::string signal_text(int signal);
+
+// What `read` makes of the answer; none where there is none. An answer that cannot be read (a
+// solver's counter that is not a number, say) is how the child ended: outcome.end is then `threw`.
+template <class Read>
+auto answer(ChildOutcome& outcome, const Read& read)
+    -> std::optional<std::invoke_result_t<Read, const nlohmann::json&>> {
+  if (outcome.end != ChildOutcome::End::returned) return std::nullopt;
+  try {
+    return read(nlohmann::json::parse(outcome.text));
+  } catch (const nlohmann::json::exception& error) {
+    outcome.end = ChildOutcome::End::threw;
+    outcome.text =
+        std::string("its result cannot be read, is a number not finite? ") + error.what();
+    return std::nullopt;
+  }
+}
 
 }  // namespace harness

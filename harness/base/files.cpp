@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -173,6 +175,48 @@ void write_atomically(const std::string& path, const std::string& text) {
   Beside beside(place);
   if (beside.file() < 0 || !write_whole(beside.file(), text) || !beside.replace(place))
     throw FileError(path, "write");
+}
+
+TemporaryFolder::TemporaryFolder(const std::string& purpose) {
+  namespace fs = std::filesystem;
+  const std::string stem = "bench-" + purpose + "-" + std::to_string(getuid()) + "-";
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(fs::temp_directory_path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(stem)) continue;
+    const pid_t owner = std::atoi(name.c_str() + stem.size());
+    if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH) fs::remove_all(entry, ignored);
+  }
+  std::string name =
+      (fs::temp_directory_path() / (stem + std::to_string(getpid()) + "-XXXXXX")).string();
+  if (!mkdtemp(name.data())) throw FileError(name, "make");
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+namespace {
+
+flock whole_file() {
+  flock region{};
+  region.l_type = F_WRLCK;
+  region.l_whence = SEEK_SET;
+  return region;
+}
+
+}  // namespace
+
+bool try_lock(int file) {
+  flock region = whole_file();
+  return fcntl(file, F_SETLK, &region) == 0;
+}
+
+pid_t lock_holder(int file) {
+  flock region = whole_file();
+  return fcntl(file, F_GETLK, &region) == 0 && region.l_type != F_UNLCK ? region.l_pid : 0;
 }
 
 }  // namespace harness

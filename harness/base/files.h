@@ -2,6 +2,9 @@
 // for journals, which are written a line at a time.
 #pragma once
 
+#include <sys/types.h>
+
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 
@@ -37,5 +40,25 @@ void check_writable(const std::string& path);
 // half of one, and a link to it stays a link. Devices and pipes are written to; "-" is standard
 // output. Throws FileError.
 void write_atomically(const std::string& path, const std::string& text);
+
+class TemporaryFolder {
+ public:
+  // purpose: a word of its name. Throws FileError.
+  explicit TemporaryFolder(const std::string& purpose);
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::string path() const { return path_.string(); }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// Whether the lock is held now; does not wait.
+bool try_lock(int file);
+// The process that holds it; 0 if none does, or it cannot be seen from here.
+pid_t lock_holder(int file);
 
 }  // namespace harness

@@ -75,4 +75,12 @@ std::string duration_text(double seconds) {
   return std::to_string(whole / 60) + " min " + std::to_string(whole % 60) + " s";
 }
 
+std::string fnv1a(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const unsigned char c : text) hash = (hash ^ c) * 0x100000001b3ULL;
+  std::ostringstream hex;
+  hex << std::hex << hash;
+  return hex.str();
+}
+
 }  // namespace harness

@@ -27,4 +27,7 @@ std::string step_text(double step);
 // "12 ms", "1.5 s", "2 min 5 s".
 std::string duration_text(double seconds);
 
+// A short hash (FNV-1a, 64 bits) that is the same on every machine, in hexadecimal.
+std::string fnv1a(const std::string& text);
+
 }  // namespace harness

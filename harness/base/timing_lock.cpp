@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "harness/base/errors.h"
-#include "harness/base/file_lock.h"
+#include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 
 namespace harness {

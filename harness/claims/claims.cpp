@@ -3,12 +3,7 @@
 #include <algorithm>
 
 #include "harness/base/errors.h"
-#include "harness/claims/accuracy.h"
-#include "harness/claims/contests.h"
-#include "harness/claims/robustness.h"
-#include "harness/claims/sag.h"
-#include "harness/claims/slip.h"
-#include "harness/claims/steps.h"
+#include "harness/claims/judging.h"
 #include "harness/points/result_file.h"
 
 namespace harness {

@@ -1,5 +1,4 @@
-#include "harness/claims/robustness.h"
-
+// C4, C9, C10 and C14: what works at all.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,8 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "harness/analysis/paper_methods.h"
+#include "harness/analysis/words.h"
 #include "harness/base/text.h"
+#include "harness/claims/judging.h"
 
 namespace harness::claims {
 

@@ -11,9 +11,9 @@
 
 #include "harness/base/child_program.h"
 #include "harness/base/errors.h"
+#include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
-#include "harness/base/temporary_folder.h"
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/compare_options.h"

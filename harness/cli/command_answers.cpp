@@ -1,11 +1,9 @@
 // bench answers: what solvers make of figures that theory knows.
 #include <unistd.h>
 
-#include <filesystem>
 #include <iostream>
 
 #include "harness/answers/measure.h"
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/cli/exit_codes.h"
@@ -18,6 +16,8 @@
 
 namespace harness {
 namespace {
+
+using nlohmann::json;
 
 struct AnswersOptions : OutputOptions {
   std::string solver, answer;
@@ -35,11 +35,22 @@ int answers(const AnswersOptions& given, const std::vector<std::string>& command
   if (!given.answer.empty()) selection.answer = Pattern("--answer", given.answer);
   const auto plan = plan_answers(selection);
   const std::string out = chosen_output(given, "answers");
-  if (!given.force && std::filesystem::exists(out))
-    throw UsageError("'" + out + "' exists: --force replaces it, another --out keeps both");
   check_writable(out);
+  json context = machine_context();
+  context["selection"] = {
+      {"solver", given.solver}, {"answer", given.answer}, {"timeout", given.timeout}};
+  Journal journal(out);
+  if (begin_journal(given, out, journal,
+                    {identity(context, {}, context["selection"]), context, "rows", "runs"})
+          .finished) {
+    std::cout << out << " is complete already\n";
+    return success;
+  }
   catch_interrupts();
   AnswerEvents events;
+  events.once = [&journal](const auto& key, const auto& compute) {
+    return journal.once(key, compute);
+  };
   events.interrupted = interrupted;
   const bool terminal = isatty(STDERR_FILENO) == 1;
   events.row = [&](const AnswerRow& row, std::size_t done, std::size_t all) {
@@ -51,11 +62,12 @@ int answers(const AnswersOptions& given, const std::vector<std::string>& command
     }
   };
   const AnswerOutcome outcome = run_answers(plan, given.timeout, events);
-  const nlohmann::json document = answers_document(machine_context(), plan, outcome, command);
+  const json document = answers_document(context, plan, outcome, command);
   write_atomically(out, result_text(document));
   print_answers(std::cout, document);
   std::cout << "\nwritten:\n" << out << std::endl;
-  if (!outcome.complete) return interrupted_exit;
+  if (!outcome.complete) return tell_interrupted();
+  journal.remove();
   if (!given.no_plots && draw({out}) != 0) std::cerr << "bench: the figure could not be drawn\n";
   return success;
 }
@@ -73,7 +85,7 @@ Verb answers_verb() {
             command.option("--out", given->out, "result file; default: results/local/answers.json",
                            "FILE");
             add_no_plots(command, given->no_plots);
-            command.flag("--force", given->force, "replace a result that exists");
+            add_output_rules(command, *given);
             return [given, command] { return answers(*given, command.words()); };
           }};
 }

@@ -6,6 +6,7 @@
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/shared_options.h"
 #include "harness/cli/verbs.h"
+#include "harness/points/joined.h"
 #include "harness/points/result_file.h"
 #include "harness/tables/results_page.h"
 
@@ -13,17 +14,17 @@ namespace harness {
 namespace {
 
 int print_budgets_of(const std::vector<std::string>& files, const std::vector<double>& ms) {
-  std::vector<nlohmann::json> results;
-  std::vector<const nlohmann::json*> sweeps;
-  results.reserve(files.size());
+  std::vector<nlohmann::json> sweeps;
   for (const std::string& file : files) {
-    results.push_back(read_result_or_answers(file));
-    if (results.back().at("schema") == "inextensible-bench/1") sweeps.push_back(&results.back());
+    nlohmann::json document = read_result_or_answers(file);
+    if (document.at("schema") == "inextensible-bench/1") sweeps.push_back(std::move(document));
   }
   std::vector<double> seconds;
   seconds.reserve(ms.size());
   for (const double budget : ms) seconds.push_back(1e-3 * budget);
-  const auto tables = analysis::budget_tables(sweeps, seconds);
+  const nlohmann::json table = sweeps.empty() ? nlohmann::json() : joined(sweeps);
+  const auto tables = sweeps.empty() ? std::vector<analysis::BudgetTable>()
+                                     : analysis::budget_tables(table, seconds);
   if (tables.empty())
     throw UsageError("'" + files.front() +
                      "' has no times of frames; sweeps of at least one second have them");

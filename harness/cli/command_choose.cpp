@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <iostream>
 
-#include "harness/base/child_answer.h"
+#include "harness/base/child_process.h"
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/interrupt.h"
@@ -16,10 +16,10 @@
 #include "harness/cli/verbs.h"
 #include "harness/judge/reference_file.h"
 #include "harness/judge/reference_routes.h"
-#include "harness/points/tuning_rule.h"
+#include "harness/points/tuned.h"
+#include "harness/run/choose.h"
 #include "harness/run/frame_times.h"
 #include "harness/run/isolation.h"
-#include "harness/run/screening.h"
 
 namespace harness {
 namespace {

@@ -7,7 +7,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/claims/claims.h"
-#include "harness/claims/verdicts.h"
+#include "harness/claims/judging.h"
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/verbs.h"
 #include "harness/points/result_file.h"

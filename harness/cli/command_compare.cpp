@@ -19,7 +19,7 @@ struct CompareCommand : CompareOptions {
   std::vector<std::string> next;
 };
 
-std::string joined(const std::vector<std::string>& words) {
+std::string with_spaces(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
   return text;
@@ -39,7 +39,7 @@ int run_compare(const CompareCommand& options) {
         "that is noise: take more --reps, or use bench ab, which times in pairs");
   } catch (const NotComparable& reason) {
     std::cerr << "bench: " << reason.what() << "; a new baseline: bench baseline "
-              << joined(options.next) << " --out "
+              << with_spaces(options.next) << " --out "
               << (base.baseline ? options.base : "baseline.json") << '\n';
     return not_comparable;
   }

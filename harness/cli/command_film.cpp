@@ -13,7 +13,6 @@
 #include "harness/base/paths.h"
 #include "harness/base/pattern.h"
 #include "harness/base/statistics.h"
-#include "harness/base/temporary_folder.h"
 #include "harness/base/text.h"
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/figures.h"
@@ -22,7 +21,7 @@
 #include "harness/film/exports.h"
 #include "harness/film/pictures.h"
 #include "harness/points/suite.h"
-#include "harness/points/tuning_rule.h"
+#include "harness/points/tuned.h"
 
 namespace harness {
 namespace {

@@ -68,9 +68,7 @@ class PendingReference {
                        {"scene_parameters", parameters},
                        {"finest", finest},
                        {"build", machine_context().at("fingerprint")}}) {
-    if (pieces_.dropped()) tell("runs of another build or --finest are dropped");
-    if (pieces_.taken_up() > 0)
-      tell("continues after " + std::to_string(pieces_.taken_up()) + " runs that are done");
+    for (const std::string& line : pieces_.news()) tell(line);
   }
 
   void tell(const std::string& line) const { std::cerr << name_ << ": " << line << '\n'; }

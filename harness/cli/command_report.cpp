@@ -5,14 +5,13 @@
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/json_text.h"
-#include "harness/base/temporary_folder.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/figures.h"
 #include "harness/cli/verbs.h"
 #include "harness/film/recording.h"
-#include "harness/points/named_result.h"
+#include "harness/points/joined.h"
 #include "harness/points/result_file.h"
-#include "harness/points/tuning_rule.h"
+#include "harness/points/tuned.h"
 
 namespace harness {
 namespace {
@@ -32,14 +31,18 @@ nlohmann::json claims_json(const std::vector<ClaimVerdict>& claims) {
 // all, those of pieces of one sweep taken together.
 nlohmann::json analyses_json(const std::vector<NamedResult>& results) {
   nlohmann::json of = nlohmann::json::object();
-  std::vector<analysis::Plane> planes;
+  std::vector<nlohmann::json> sweeps;
   for (const NamedResult& result : results) {
     if (!result.document.contains("points")) continue;
-    const std::vector<analysis::Plane> own = analysis::planes_of(result.document);
-    of[result.name] = analysis::analysis_of(own, {&result.document});
-    planes.insert(planes.end(), own.begin(), own.end());
+    of[result.name] = analysis::analysis_of(result.document);
+    sweeps.push_back(result.document);
   }
-  return {{"findings", analysis::findings_json(analysis::merged(planes))}, {"of", std::move(of)}};
+  nlohmann::json findings = nlohmann::json::array();
+  if (!sweeps.empty()) {
+    const nlohmann::json table = joined(sweeps);
+    findings = analysis::findings_json(analysis::planes_of(table));
+  }
+  return {{"findings", std::move(findings)}, {"of", std::move(of)}};
 }
 
 // By three methods at 1 %, small enough for a page.

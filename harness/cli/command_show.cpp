@@ -13,6 +13,7 @@
 #include "harness/base/text.h"
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/verbs.h"
+#include "harness/points/joined.h"
 #include "harness/points/noise.h"
 #include "harness/points/result_file.h"
 #include "harness/tables/terminal.h"
@@ -31,7 +32,8 @@ void print_head(std::ostream& out, const json& document, const std::string& file
       << (build.value("dirty", false) ? " with changes" : "") << ", "
       << build.at("compiler").get<std::string>() << '\n';
   if (document.contains("warning")) out << document.at("warning").get<std::string>() << '\n';
-  if (!document.value("complete", true)) out << "not complete: the run was interrupted\n";
+  if (!document.value("complete", true))
+    out << "not complete: a run was interrupted, or a shard is missing\n";
   if (!is_timed(document)) out << "made with --untimed: its times mean nothing\n";
 }
 
@@ -82,18 +84,23 @@ void print_whole(std::ostream& out, const json& document, const std::string& fil
         << file << " --out report.html\n";
 }
 
-int show(const std::string& file, bool all) {
+// Several files are one table; a file of known answers is printed by itself.
+json read_shown(const std::vector<std::string>& files) {
+  return files.size() == 1 ? read_result_or_answers(files.front()) : read_results(files);
+}
+
+int show(const std::vector<std::string>& files, bool all) {
   std::ostringstream text;
-  print_whole(text, read_result_or_answers(file), file, all);
+  print_whole(text, read_shown(files), files.front(), all);
   std::cout << fitted(text.str(), output_columns());
   return success;
 }
 
 // The analysis of the sweep's points, for programs.
-int show_json(const std::string& file) {
-  const json document = read_result_or_answers(file);
+int show_json(const std::vector<std::string>& files) {
+  const json document = read_shown(files);
   if (document.at("schema") != "inextensible-bench/1")
-    throw UsageError("'" + file +
+    throw UsageError("'" + files.front() +
                      "' has no strain limits and errors to be analyzed; --json is for "
                      "sweeps over strain, resolution and step");
   std::cout << analysis::analysis_of(document).dump(1) << '\n';
@@ -103,23 +110,25 @@ int show_json(const std::string& file) {
 }  // namespace
 
 Verb show_verb() {
-  return {"show", "print a result file: which method is fastest within each strain limit and error",
-          [](const Command& command) -> Action {
-            struct Given {
-              std::string file;
-              bool as_json = false, all = false;
-            };
-            const auto given = std::make_shared<Given>();
-            command.option("result", given->file, "result file", "RESULT.json").required();
-            command.flag("--json", given->as_json,
-                         "as JSON: which contestant is fastest within each strain limit and error");
-            command.flag("--all", given->all, "every contestant, and how runs failed");
-            return [given] {
-              if (given->as_json && given->all)
-                throw UsageError("--json has all contestants already: leave out --all");
-              return given->as_json ? show_json(given->file) : show(given->file, given->all);
-            };
-          }};
+  return {
+      "show", "print a result file: which method is fastest within each strain limit and error",
+      [](const Command& command) -> Action {
+        struct Given {
+          std::vector<std::string> files;
+          bool as_json = false, all = false;
+        };
+        const auto given = std::make_shared<Given>();
+        command.option("results", given->files, "result files; several count as one", "RESULT.json")
+            .required();
+        command.flag("--json", given->as_json,
+                     "as JSON: which contestant is fastest within each strain limit and error");
+        command.flag("--all", given->all, "every contestant, and how runs failed");
+        return [given] {
+          if (given->as_json && given->all)
+            throw UsageError("--json has all contestants already: leave out --all");
+          return given->as_json ? show_json(given->files) : show(given->files, given->all);
+        };
+      }};
 }
 
 }  // namespace harness

@@ -52,12 +52,9 @@ Verb sweep_verb() {
                        "result file; default: results/local/<profile>-<axis>.json", "FILE");
         add_measurement(command, options);
         command.byte_count("--memory", options.memory, "address space a point may have, e.g. 4G");
-        command.flag("--resume", options.resume, "continue an interrupted run of the same --out");
+        add_output_rules(command, options);
         command.flag("--rerun-failed", options.rerun_failed,
                      "as --resume, also after a finished run, and run again what failed");
-        command.flag(
-            "--force", options.force,
-            "discard an interrupted run; with --resume: continue a run of another build or suite");
         command.flag("--in-process", options.in_process,
                      "run points in this process, for debuggers and profilers");
         command.option("--shard", options.shard,

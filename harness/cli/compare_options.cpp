@@ -4,7 +4,7 @@
 
 #include "harness/base/files.h"
 #include "harness/cli/exit_codes.h"
-#include "harness/compare/comparison_report.h"
+#include "harness/compare/comparison.h"
 
 namespace harness {
 

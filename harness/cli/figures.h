@@ -11,8 +11,8 @@ int draw(const std::vector<std::string>& arguments, const std::string& script = 
 // The figures of a result file, with the analysis that they are drawn from. Throws UsageError for a
 // file that is none.
 int draw_result(const std::string& file, const std::vector<std::string>& more = {});
-// Those of several files that are pieces of one sweep, drawn as one: their points together, the
-// largest noise of any, all else from the first. name: what their pictures' names begin with.
+// Those of several files that are pieces of one sweep, drawn as one (points/joined.h). name: what
+// their pictures' names begin with.
 int draw_pieces(const std::vector<std::string>& files, const std::string& name,
                 const std::vector<std::string>& more);
 

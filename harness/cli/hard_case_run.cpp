@@ -15,10 +15,9 @@
 #include "harness/cli/figures.h"
 #include "harness/cli/sweep_run.h"
 #include "harness/points/context.h"
-#include "harness/points/identity.h"
 #include "harness/points/result_file.h"
-#include "harness/stability/cell_journal.h"
 #include "harness/stability/stability.h"
+#include "harness/stability/trial.h"
 
 namespace harness {
 namespace {
@@ -69,45 +68,30 @@ void tell_plan(const StabilityPlan& plan) {
             << " for frames side by side\n";
 }
 
-// Takes up what an earlier run left in its journal or, interrupted, in its result, and begins the
-// journal of this one. False: that run was finished, so there is nothing to do.
-bool take_up(const SweepCommand& options, const std::string& out, const nlohmann::json& mine,
-             CellJournal& journal) {
-  check_unfinished(options, {journal.path(), journal.damage(), journal.cells(), "cells"});
-  nlohmann::json was = journal.identity();
-  if (options.resume && journal.cells() == 0 && std::filesystem::exists(out)) {
-    const nlohmann::json result = read_result(out);
-    if (!result.contains("matrix"))
-      throw UsageError("'" + out + "' is no result of a stability sweep: nothing to resume");
-    if (result.at("complete").get<bool>()) return false;
-    journal.learn(result);
-    const nlohmann::json& c = result.at("context");
-    was = identity(c, {}, c.value("selection", nlohmann::json::object()));
-  }
-  if (options.resume) {
-    check_same(options, journal.path(), was, mine);
-  } else {
-    check_unwritten(options, out);
-    journal.forget();
-  }
-  journal.start(mine);
-  return true;
+std::string key_of(const HardCase& hard_case, const std::string& solver) {
+  return hard_case.name + "/" + solver;
+}
+
+void add_cells_of(const nlohmann::json& result, Journal& journal) {
+  for (const nlohmann::json& row : result.at("matrix"))
+    journal.add(row.at("case").get<std::string>() + "/" + row.at("solver").get<std::string>(),
+                to_json(trial_result_of(row)));
 }
 
 // Cells go into the journal, and a terminal sees each of them.
-StabilityEvents events_for(CellJournal& journal) {
+StabilityEvents events_for(Journal& journal) {
   StabilityEvents events;
   events.interrupted = interrupted;
   events.known = [&journal](const HardCase& c, const std::string& solver) {
-    return journal.find(c.name, solver);
+    const nlohmann::json* known = journal.find(key_of(c, solver));
+    return known ? std::optional(trial_result_of(*known)) : std::nullopt;
   };
   const bool terminal = isatty(STDERR_FILENO) == 1;
   events.cell = [&journal, terminal](const StabilityCell& cell, std::size_t done, std::size_t all) {
-    const std::string& name = cell.hard_case->name;
-    if (!journal.find(name, cell.solver)) journal.add(name, cell.solver, cell.result);
+    const std::string key = key_of(*cell.hard_case, cell.solver);
+    if (!journal.find(key)) journal.add(key, to_json(cell.result));
     if (terminal) {
-      std::cerr << "\r\033[K[" << done << '/' << all << "] " << name << '/' << cell.solver
-                << (done == all ? "\n" : "");
+      std::cerr << "\r\033[K[" << done << '/' << all << "] " << key << (done == all ? "\n" : "");
     } else if (done % 100 == 0 || done == all) {
       std::cerr << '[' << done << '/' << all << "]\n";
     }
@@ -141,8 +125,11 @@ int run_hard_cases(const SweepCommand& options, const std::vector<std::string>& 
                           {"values", values},
                           {"seed", options.seed},
                           {"shard", options.shard}};
-  CellJournal journal(out);
-  if (!take_up(options, out, identity(context, {}, context["selection"]), journal)) {
+  Journal journal(out);
+  if (begin_journal(options, out, journal,
+                    {identity(context, {}, context["selection"]), context, "matrix", "cells",
+                     [](const Journal& j) { return j.known().size(); }, add_cells_of})
+          .finished) {
     std::cout << out << " is complete already\n";
     return success;
   }
@@ -152,10 +139,7 @@ int run_hard_cases(const SweepCommand& options, const std::vector<std::string>& 
   write_atomically(out, result_text(stability_document(context, outcome, seed, command)));
   print_stability(std::cout, outcome, output_columns());
   std::cout << "\nwritten:\n" << out << std::endl;
-  if (!outcome.complete) {
-    std::cerr << "bench: interrupted; the same command with --resume continues from here\n";
-    return interrupted_exit;
-  }
+  if (!outcome.complete) return tell_interrupted();
   journal.remove();
   if (!options.no_plots && draw({out}) != 0) std::cerr << "bench: the figure could not be drawn\n";
   return outcome.nothing_new() ? success : unexpected_outcome;

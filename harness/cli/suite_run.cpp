@@ -18,15 +18,13 @@
 #include "harness/cli/sweep_run.h"
 #include "harness/judge/reference_file.h"
 #include "harness/points/context.h"
-#include "harness/points/identity.h"
 #include "harness/points/noise.h"
 #include "harness/points/result_file.h"
-#include "harness/run/estimate.h"
 #include "harness/run/isolation.h"
-#include "harness/run/journal.h"
+#include "harness/run/journaled.h"
 #include "harness/run/measure_point.h"
 #include "harness/run/noise_probe.h"
-#include "harness/run/overhead.h"
+#include "harness/run/plan.h"
 #include "harness/run/quiet_samples.h"
 #include "harness/tables/terminal.h"
 #include "solvers/registry.h"
@@ -67,53 +65,6 @@ nlohmann::json selection(const SweepCommand& options) {
                            {"shard", options.shard}};
   if (options.untimed) chosen["untimed"] = true;  // no part of it may be taken up as timed
   return chosen;
-}
-
-// What is known already: from the journal of a run that did not finish, or from the result of one
-// that did.
-struct Past {
-  Memory memory;
-  nlohmann::json identity, context;  // null: there is none
-  bool finished = false, in_journal = false;
-};
-
-Past look_back(const SweepCommand& options, const std::string& out, const Journal& journal) {
-  const bool again = options.resume || options.rerun_failed;
-  check_unfinished(options, {journal.path(), journal.damage(), journal.points(), "points"});
-  if (journal.points() > 0) {
-    if (again && !journal.header().is_object()) return {journal.memory(), {}, {}, false, false};
-    if (again)
-      return {journal.memory(), journal.header().at("identity"), journal.header().at("context"),
-              false, journal.damage().empty()};
-  } else if (again && std::filesystem::exists(out)) {
-    const nlohmann::json result = read_result(out);
-    if (result.at("schema") != "inextensible-bench/1")
-      throw UsageError("'" + out + "' is the result of a stability sweep: nothing to resume");
-    Past past;
-    past.memory.learn(result);
-    past.context = result.at("context");
-    past.identity = identity(past.context, past.context.at("suite"),
-                             past.context.value("selection", nlohmann::json::object()));
-    past.finished = result.at("complete");
-    return past;
-  } else {
-    check_unwritten(options, out);
-  }
-  return {};
-}
-
-// The journal then holds what `memory` does.
-void begin_journal(Journal& journal, const Past& past, const Memory& memory,
-                   const nlohmann::json& header) {
-  if (!past.in_journal) journal.start(header);
-  for (const auto& [key, known] : past.memory.points) {
-    if (past.in_journal) {
-      if (!memory.points.contains(key)) journal.forget(key);
-    } else if (memory.points.contains(key)) {
-      journal.add(known.point);
-      for (const Repetition& more : known.repetitions) journal.add_repetition(key, more);
-    }
-  }
 }
 
 SweepRunners watched(const SweepRunners& inner, NoiseProbe& noise_probe, bool timed) {
@@ -193,7 +144,7 @@ void tell_overhead(const nlohmann::json& overhead) {
 // Runs the sweep, with progress on stderr and each run in the journal, and writes into the context
 // how quiet the machine was.
 SweepOutcome measured(const Suite& suite, const std::vector<Search>& searches,
-                      const SweepRunners& runners, Journal& journal, Memory memory, bool timed,
+                      const SweepRunners& runners, Journal& journal, bool timed,
                       nlohmann::json& context) {
   Progress progress(std::cerr, isatty(STDERR_FILENO) == 1);
   SweepEvents events;
@@ -206,8 +157,7 @@ SweepOutcome measured(const Suite& suite, const std::vector<Search>& searches,
   noise_probe.sample();
   const ProcessorTicks ticks = processor_ticks();
   SweepOutcome outcome =
-      run_sweep(suite, searches, events,
-                journaled(watched(runners, noise_probe, timed), journal, std::move(memory)));
+      run_sweep(suite, searches, events, journaled(watched(runners, noise_probe, timed), journal));
   progress.finish();
   noise_probe.sample();
   context["sentinel"] = noise_probe.to_json();
@@ -239,14 +189,13 @@ int run_suite(const SweepCommand& options, const std::vector<std::string>& comma
   context["selection"] = selection(options);
   const nlohmann::json mine = identity(context, to_json(suite), context["selection"]);
   Journal journal(out);
-  const Past past = look_back(options, out, journal);
-  check_same(options, past.in_journal ? journal.path() : out, past.identity, mine);
-  if (past.finished && !options.rerun_failed) {
+  const Past past = begin_journal(options, out, journal,
+                                  {mine, context, "points", "points", points_in, add_runs_of});
+  if (past.finished) {
     std::cout << out << " is complete already\n";
     return success;
   }
-  Memory memory = past.memory;
-  if (options.rerun_failed) memory.forget_failures();
+  if (options.rerun_failed) forget_failures(journal);
   SweepRunners runners;
   const auto shelf = std::make_shared<ReferenceFolder>(source_path("results/references"));
   runners.references = shelf;
@@ -260,24 +209,17 @@ int run_suite(const SweepCommand& options, const std::vector<std::string>& comma
   }
   context["timed"] = !options.untimed;
   if (!options.untimed) warn_if_busy(context);
-  if (!past.identity.is_null())
-    context["resumed"] = {{"from", past.context.at("date")},
-                          {"points", memory.points.size()},
-                          {"difference", difference(past.identity, mine)}};
-  begin_journal(journal, past, memory,
-                {{"pid", getpid()}, {"identity", mine}, {"context", context}});
+  if (past.context.is_object())
+    context["resumed"] = {{"from", past.context.at("date")}, {"points", points_in(journal)}};
 
   if (!options.in_process) runners = isolated(runners, options.memory);
   const SweepOutcome outcome =
-      measured(suite, searches, runners, journal, std::move(memory), !options.untimed, context);
+      measured(suite, searches, runners, journal, !options.untimed, context);
   const nlohmann::json document = result_document(context, suite, command, outcome.complete,
                                                   outcome.points, shelf->summaries());
   write_atomically(out, result_text(document));
   print_document(document, out);
-  if (!outcome.complete) {
-    std::cerr << "bench: interrupted; the same command with --resume continues from here\n";
-    return interrupted_exit;
-  }
+  if (!outcome.complete) return tell_interrupted();
   journal.remove();
   if (!options.no_plots && !options.untimed && draw_result(out) != 0)
     std::cerr << "bench: the figures could not be drawn\n";

@@ -25,7 +25,6 @@ namespace harness {
   VERB(ab)                  \
   VERB(tune)                \
   VERB(reference)           \
-  VERB(merge)               \
   VERB(point)               \
   VERB(list)
 

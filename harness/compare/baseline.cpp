@@ -7,7 +7,7 @@
 #include "harness/compare/gate.h"
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
-#include "harness/points/schema_check.h"
+#include "harness/points/schema.h"
 
 namespace harness {
 namespace {

@@ -2,6 +2,7 @@
 // rustc-perf and asv put together: a rank test and two ratios, all of which must agree.
 #pragma once
 
+#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -79,5 +80,15 @@ class NotComparable : public std::runtime_error {
 };
 
 Comparison compare(const ComparedResult& base, const ComparedResult& next, const Gate& gate);
+
+// A table of the points that are not SAME, the notes, and how many there are of each kind of
+// change.
+void print_comparison(std::ostream& out, const Comparison& comparison);
+
+// JUnit XML: one test case a point; regressions and failures are its failures. name: the suite's.
+std::string junit_xml(const Comparison& comparison, const std::string& name);
+
+// The same table for a pull request or a job summary. title: its heading.
+std::string markdown_table(const Comparison& comparison, const std::string& title);
 
 }  // namespace harness

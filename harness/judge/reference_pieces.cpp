@@ -32,28 +32,28 @@ RouteRun run_of(const json& line) {
 
 }  // namespace
 
-ReferencePieces::ReferencePieces(const std::string& out, json header) : journal_(out) {
-  bool same = false;
-  journal_.read([&](const json& line, std::size_t number) {
-    if (number == 1) {
-      same = line == header;
-    } else if (same) {
-      known_.insert_or_assign(line.at("run").get<std::string>(), run_of(line));
-    } else {
-      dropped_ = true;
-    }
-  });
-  taken_up_ = known_.size();
-  if (!same) journal_.start(header);
+ReferencePieces::ReferencePieces(const std::string& out, const json& header) : journal_(out) {
+  if (!journal_.damage().empty())
+    news_.push_back(journal_.path() + ", " + journal_.damage() + ": what is damaged is run again");
+  if (journal_.header() != header) {
+    if (!journal_.known().empty())
+      news_.emplace_back("runs of another build or --finest are dropped");
+    journal_.start(header);
+  } else if (!journal_.known().empty()) {
+    news_.push_back("continues after " + std::to_string(journal_.known().size()) +
+                    " runs that are done");
+  }
 }
 
 const RouteRun& ReferencePieces::run(const std::string& name,
                                      const std::function<RouteRun()>& compute) {
   if (const auto known = known_.find(name); known != known_.end()) return known->second;
+  if (const json* kept = journal_.find(name))
+    return known_.emplace(name, run_of(*kept)).first->second;
   const RouteRun& run = known_.emplace(name, compute()).first->second;
-  json line = {{"run", name}, {"energy_drift", run.energy_drift}, {"path", path_json(run)}};
-  if (!run.shape.empty()) line["shape"] = to_json(run.shape);
-  journal_.append(line);
+  json value = {{"energy_drift", run.energy_drift}, {"path", path_json(run)}};
+  if (!run.shape.empty()) value["shape"] = to_json(run.shape);
+  journal_.add(name, std::move(value));
   return run;
 }
 

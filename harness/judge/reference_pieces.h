@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/line_journal.h"
+#include "harness/base/journal.h"
 #include "harness/judge/shape.h"
 #include "harness/scenes/scene.h"
 
@@ -24,22 +24,22 @@ struct RouteRun {
 using KeepRun = std::function<const RouteRun&(const std::string& name,
                                               const std::function<RouteRun()>& compute)>;
 
+// Runs that are kept in a journal beside the reference's file.
 class ReferencePieces {
  public:
   // out: the reference's file. header: what the runs depend on; kept runs of another one are
   // dropped. Throws UsageError if another process computes this reference.
-  ReferencePieces(const std::string& out, nlohmann::json header);
+  ReferencePieces(const std::string& out, const nlohmann::json& header);
 
   const RouteRun& run(const std::string& name, const std::function<RouteRun()>& compute);
-  std::size_t taken_up() const { return taken_up_; }  // runs of an earlier process
-  bool dropped() const { return dropped_; }           // there were some, of another header
-  void remove() { journal_.remove(); }                // the reference is written
+  // What has become of an earlier process's runs, a line each for people.
+  const std::vector<std::string>& news() const { return news_; }
+  void remove() { journal_.remove(); }  // the reference is written
 
  private:
-  LineJournal journal_;
+  Journal journal_;
   std::map<std::string, RouteRun> known_;  // references to its entries stay valid
-  std::size_t taken_up_ = 0;
-  bool dropped_ = false;
+  std::vector<std::string> news_;
 };
 
 }  // namespace harness

@@ -21,6 +21,8 @@
 
 #include "build_info.h"  // made by CMake
 #include "harness/base/files.h"
+#include "harness/base/json_reader.h"
+#include "harness/base/text.h"
 #include "harness/points/plugins.h"
 
 extern "C" {  // OpenBLAS; its own header clashes with GSL's
@@ -109,14 +111,6 @@ json libraries_json() {
 
 }  // namespace
 
-std::string fnv1a(const std::string& text) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const unsigned char c : text) hash = (hash ^ c) * 0x100000001b3ULL;
-  std::ostringstream hex;
-  hex << std::hex << hash;
-  return hex.str();
-}
-
 const char* version() { return INEXTENSIBLE_VERSION; }
 
 void use_one_thread() {
@@ -180,6 +174,30 @@ json machine_context() {
                                   {"optimized", plugin.optimized}});
   }
   return context;
+}
+
+using nlohmann::json;
+
+json identity(const json& build_context, const json& suite, const json& selection) {
+  const json& build = build_context.at("build");
+  return {{"processor", build_context.at("cpu_model")},
+          {"compiler", build.at("compiler")},
+          {"compiler flags", build.at("flags")},
+          {"program", build.value("binary", build.at("git").get<std::string>())},
+          {"libraries", build_context.at("libraries")},
+          {"suite", suite},
+          {"selection", selection}};
+}
+
+std::string difference(const json& was, const json& is) {
+  const json patch = json::diff(was, is);
+  if (patch.empty()) return "";
+  const json::json_pointer place(patch.at(0).at("path").get<std::string>());
+  const auto text = [&place](const json& document) {
+    return document.contains(place) ? value_text(document.at(place)) : std::string("not there");
+  };
+  std::string name = place.to_string().substr(1);
+  return name + " is " + text(is) + ", was " + text(was);
 }
 
 }  // namespace harness

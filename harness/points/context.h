@@ -19,9 +19,13 @@ std::string counters_fingerprint();
 // ask for four): a comparison of methods, not of thread pools.
 void use_one_thread();
 
-// A short hash (FNV-1a, 64 bits) that is the same on every machine, in hexadecimal.
-std::string fnv1a(const std::string& text);
-
 const char* version();
+
+// What must agree for one run to go on where another stopped. build_context: machine_context();
+// selection: options that choose points.
+nlohmann::json identity(const nlohmann::json& build_context, const nlohmann::json& suite,
+                        const nlohmann::json& selection);
+// The first difference, in words: "compiler is 'GNU 13', was 'GNU 12'"; "" if there is none.
+std::string difference(const nlohmann::json& was, const nlohmann::json& is);
 
 }  // namespace harness

@@ -7,7 +7,6 @@
 #include "harness/points/noise.h"
 #include "harness/points/point_json.h"
 #include "harness/points/schema.h"
-#include "harness/points/schema_check.h"
 
 namespace harness {
 namespace {

@@ -35,4 +35,10 @@ nlohmann::json read_answers(const std::string& path);
 nlohmann::json read_result_or_answers(const std::string& path);
 bool is_answers(const nlohmann::json& document);
 
+// A result, and what messages and tables call it.
+struct NamedResult {
+  std::string name;
+  nlohmann::json document;
+};
+
 }  // namespace harness

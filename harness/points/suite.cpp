@@ -11,7 +11,6 @@
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 #include "harness/points/tuned.h"
-#include "harness/points/tuning_rule.h"
 
 namespace harness {
 namespace {

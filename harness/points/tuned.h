@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/points/contestant.h"
+#include "harness/points/suite.h"
 
 namespace harness {
 
@@ -52,5 +53,23 @@ nlohmann::ordered_json tuned_document(const std::vector<TunedEntry>& entries);
 // <name>_untuned.
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
           const std::map<std::string, inextensible::Settings>& given, bool untuned);
+
+// The scenes that settings are searched on, one a kind, each at two sizes and three limits. No
+// reported result has these sizes. Without contestants.
+const std::vector<SweepSpec>& tuning_scenes();
+
+// Where a solver takes too long at one of a scene's sizes, it is tuned at the first of these that
+// is smaller and does not take too long.
+std::vector<int> smaller_sizes(const std::string& scene);
+
+// All that a search depends on but for the programs that it times: the scene with all its
+// parameters, sizes, limits, ladder and level of error, and the solver's settings with their
+// defaults and ranges.
+nlohmann::json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver);
+
+// Whether an entry was found by today's rule.
+bool up_to_date(const TunedEntry& entry);
+// read_tuned(), and UsageError for the first entry that was not, which says what has changed.
+Tuned read_tuned_up_to_date(const std::string& file);
 
 }  // namespace harness

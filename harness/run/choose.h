@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "harness/run/measure_point.h"
 #include "harness/run/sweep.h"
 
 namespace harness {
@@ -79,5 +80,13 @@ Recommendation recommend(const std::vector<PointResult>& points, const Wish& wis
 
 // Why a contestant has no run within strain limit and error; empty: it has one.
 std::string why_not(const std::string& contestant, const Trials& trials, const Wish& wish);
+
+inline constexpr double usual_look = 0.1;  // s
+
+// Takes steps for about limits.hopeless seconds. The point's one sample is their time, where one
+// step succeeded, and its status is ok if they met the strain limit. Springs have the stiffness
+// that a calibration begins with; their strain says nothing yet and counts as met.
+PointResult screen_point(const PointSpec& spec, const RunLimits& limits,
+                         std::optional<double> guess = {});
 
 }  // namespace harness

@@ -1,6 +1,6 @@
 #include "harness/run/isolation.h"
 
-#include "harness/base/child_answer.h"
+#include "harness/base/child_process.h"
 #include "harness/base/json_text.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"

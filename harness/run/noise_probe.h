@@ -52,4 +52,8 @@ struct ProcessorTicks {
 ProcessorTicks processor_ticks();
 double stolen_share(const ProcessorTicks& before, const ProcessorTicks& after);  // 0 to 1
 
+// What a timed step costs beyond the step, in seconds: the runner's time for steps of the solver
+// `null` on two vertices, less the time of the same steps called one after the other.
+double harness_seconds_per_step();
+
 }  // namespace harness

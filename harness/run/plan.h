@@ -37,4 +37,14 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters);
 // not depend on the part it is in.
 std::vector<Search> shard(std::vector<Search> searches, const Shard& part);
 
+struct Estimate {
+  double seconds = 0;  // of the sweep
+  int timed = 0;       // (scene, size, contestant)s, a few steps of each
+};
+
+// Times a few steps of each contestant at each size, at the middle limit and a middle step, and
+// takes every search for what most searches are: a handful of runs, and repetitions of one. Within
+// a factor of three, mostly. Takes a second or so for each ten contestants and sizes.
+Estimate estimate(const Suite& suite, const std::vector<Search>& searches);
+
 }  // namespace harness

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "harness/points/suite.h"
-#include "harness/points/tuning_rule.h"
+#include "harness/points/tuned.h"
 #include "harness/run/sweep.h"
 #include "harness/run/tune_search.h"
 

@@ -1,5 +1,4 @@
-#include "harness/scenes/cape_scenes.h"
-
+// A cape that a body wears while it walks and turns.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 #include <string>
 
 #include "harness/scenes/cloth_draft.h"
+#include "harness/scenes/rows.h"
 #include "harness/scenes/turned_body.h"
 
 namespace harness {

@@ -1,11 +1,11 @@
-#include "harness/scenes/cloth_scenes.h"
-
+// Scenes of a square of cloth.
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
 
 #include "harness/scenes/fabrics.h"
 #include "harness/scenes/meshes.h"
+#include "harness/scenes/rows.h"
 #include "solvers/problem/triangle_collider.h"
 
 namespace harness {

@@ -1,10 +1,10 @@
-#include "harness/scenes/disc_scenes.h"
-
+// Cusick's drape test: a disc of cloth on a smaller round table.
 #include <cmath>
 #include <stdexcept>
 
 #include "harness/scenes/cloth_draft.h"
 #include "harness/scenes/fabrics.h"
+#include "harness/scenes/rows.h"
 
 namespace harness {
 namespace {

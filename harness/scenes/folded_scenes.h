@@ -7,12 +7,7 @@
 // of links follows this to O(link / L), as long as several links move.
 #pragma once
 
-#include "harness/scenes/scene.h"
-
 namespace harness {
-
-SceneType folded_chain_scene();
-SceneType whip_scene();
 
 // s, after which the free end has fallen this part of the length.
 double folded_fall_time(double part, double length, double gravity);

@@ -1,5 +1,4 @@
-#include "harness/scenes/garment_scenes.h"
-
+// A garment that a body holds by nothing but its shape.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 #include <string>
 
 #include "harness/scenes/cloth_draft.h"
+#include "harness/scenes/rows.h"
 #include "harness/scenes/turned_body.h"
 #include "solvers/problem/triangle_collider.h"
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "harness/scenes/meshes.h"
+#include "harness/scenes/rows.h"
 
 namespace harness {
 namespace {

@@ -2,13 +2,7 @@
 // that whirls about the vertical.
 #pragma once
 
-#include "harness/scenes/scene.h"
-
 namespace harness {
-
-SceneType hanging_chain_scene();
-SceneType catenary_scene();
-SceneType whirling_chain_scene();
 
 // omega_k, rad/s, k from 1 on, of the small oscillations of N equal masses on links of length l (m)
 // that hang from a point: omega_k^2 = (g / l) x_k, x_k the k-th zero of the Laguerre polynomial L_N

@@ -1,6 +1,6 @@
-#include "harness/scenes/line_scenes.h"
-
+// Scenes of vertices on a line.
 #include "harness/scenes/meshes.h"
+#include "harness/scenes/rows.h"
 
 namespace harness {
 namespace {

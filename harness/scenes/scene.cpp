@@ -4,29 +4,16 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
-#include "harness/scenes/cape_scenes.h"
-#include "harness/scenes/cloth_scenes.h"
-#include "harness/scenes/disc_scenes.h"
-#include "harness/scenes/folded_scenes.h"
-#include "harness/scenes/garment_scenes.h"
-#include "harness/scenes/hanging_scenes.h"
-#include "harness/scenes/line_scenes.h"
 #include "harness/scenes/mesh_scenes.h"
-#include "harness/scenes/spinning_scenes.h"
+#include "harness/scenes/rows.h"
 
 namespace harness {
 namespace {
 
-// A scene is a function that returns its SceneType, and a line here.
 const std::vector<SceneType>& table() {
-  static const std::vector<SceneType> rows = {
-      chain_scene(),         drape_scene(),          folded_drape_scene(),    fabric_drape_scene(),
-      cotton_drape_scene(),  wool_drape_scene(),     polyester_drape_scene(), cusick_scene(),
-      garment_scene(),       cape_scene(),           patch_scene(),           hung_patch_scene(),
-      spinning_net_scene(),  taut_row_scene(),       baton_scene(),           hoop_scene(),
-      hanging_chain_scene(), whirling_chain_scene(), catenary_scene(),        folded_chain_scene(),
-      whip_scene(),
-  };
+#define HARNESS_ROW(name) name##_scene(),
+  static const std::vector<SceneType> rows{HARNESS_SCENES(HARNESS_ROW)};
+#undef HARNESS_ROW
   return rows;
 }
 

@@ -1,10 +1,11 @@
-#include "harness/scenes/spinning_scenes.h"
-
+// What spins in its plane, free and without weight: each a rigid rotation for ever, held by its
+// edges against the centrifugal force.
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
 #include "harness/scenes/meshes.h"
+#include "harness/scenes/rows.h"
 
 namespace harness {
 namespace {

@@ -4,6 +4,7 @@
 #include <random>
 #include <vector>
 
+#include "harness/stability/hard_case.h"
 #include "harness/stability/trial.h"
 
 namespace harness::case_parts {
@@ -46,5 +47,21 @@ constexpr double closest_point_energy = 3;
 // Displaces every vertex that is not pinned by up to `size` m in each coordinate.
 void add_noise(inextensible::Positions& x, const std::vector<int>& pinned, double size,
                std::mt19937_64& random);
+
+// Solvers, by where they take the constraint direction.
+constexpr auto current_direction = inextensible::Direction::current;
+constexpr auto end_direction = inextensible::Direction::end;
+constexpr auto start_direction = inextensible::Direction::start;
+constexpr auto strain_limiting = inextensible::Direction::local;
+constexpr auto springs = inextensible::Direction::springs;
+inline const Solvers everyone;
+// Methods of multipliers: the direction of the end, but each edge's multiplier grows by itself, by
+// `multiplier_penalty` times its elongation over its ends' inertia in a pass. No matrix of J is
+// solved.
+inline const Solvers multipliers{"augmented_vbd", "projective_dynamics"};
+constexpr double multiplier_penalty = 10;
+
+constexpr Outcome survives = Outcome::survived;
+constexpr Outcome refuses = Outcome::refused;
 
 }  // namespace harness::case_parts

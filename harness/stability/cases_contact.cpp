@@ -1,8 +1,7 @@
 // Cloth on a ball, with contact inside the solve: what lies on it must keep its lengths and stay
 // outside in the same step.
-#include "harness/stability/case_expectations.h"
 #include "harness/stability/case_parts.h"
-#include "harness/stability/hard_case_families.h"
+#include "harness/stability/hard_case.h"
 
 namespace harness {
 

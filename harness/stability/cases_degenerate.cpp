@@ -1,7 +1,6 @@
 // Collapsed and degenerate starts.
-#include "harness/stability/case_expectations.h"
 #include "harness/stability/case_parts.h"
-#include "harness/stability/hard_case_families.h"
+#include "harness/stability/hard_case.h"
 
 namespace harness {
 

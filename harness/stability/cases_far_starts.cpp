@@ -3,9 +3,8 @@
 #include <random>
 
 #include "harness/base/text.h"
-#include "harness/stability/case_expectations.h"
 #include "harness/stability/case_parts.h"
-#include "harness/stability/hard_case_families.h"
+#include "harness/stability/hard_case.h"
 
 namespace harness {
 

@@ -2,9 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/stability/case_expectations.h"
 #include "harness/stability/case_parts.h"
-#include "harness/stability/hard_case_families.h"
+#include "harness/stability/hard_case.h"
 
 namespace harness {
 

@@ -2,9 +2,8 @@
 #include <cmath>
 
 #include "harness/base/text.h"
-#include "harness/stability/case_expectations.h"
 #include "harness/stability/case_parts.h"
-#include "harness/stability/hard_case_families.h"
+#include "harness/stability/hard_case.h"
 
 namespace harness {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "harness/base/child_answer.h"
+#include "harness/base/child_process.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/json_text.h"
 #include "harness/base/text.h"

@@ -5,7 +5,6 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
-#include "harness/stability/hard_case_families.h"
 
 namespace harness {
 namespace {

@@ -65,4 +65,14 @@ HardCaseValues hard_case_values(const std::string& profile);
 // values: all of the above. Throws UsageError, naming it, for a value that makes no scene.
 std::vector<HardCase> hard_cases(const HardCaseValues& values);
 
+void add_failure_configurations(std::vector<HardCase>& cases, const HardCaseValues& values);
+void add_taut(std::vector<HardCase>& cases, const HardCaseValues& values);
+void add_degenerate(std::vector<HardCase>& cases, const HardCaseValues& values);
+void add_mass_ratios(std::vector<HardCase>& cases, const HardCaseValues& values);
+void add_whip(std::vector<HardCase>& cases, const HardCaseValues& values);
+void add_large(std::vector<HardCase>& cases, const HardCaseValues& values);
+void add_contact(std::vector<HardCase>& cases, const HardCaseValues& values);
+void add_far_starts(std::vector<HardCase>& cases, const HardCaseValues& values);
+void add_impossible_numbers(std::vector<HardCase>& cases, const HardCaseValues& values);
+
 }  // namespace harness

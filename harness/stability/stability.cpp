@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "harness/base/errors.h"
+#include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
 #include "harness/points/contestant.h"
-#include "harness/stability/trial_isolation.h"
+#include "harness/stability/case_parts.h"
+#include "harness/stability/trial.h"
 #include "solvers/registry.h"
 
 namespace harness {
@@ -21,8 +23,8 @@ const Expectation& expectation_of(const HardCase& hard_case, const std::string& 
 
 // The largest step at which the scene's second is survived: down the powers of two to the first one
 // that is, then bisection (on a logarithmic scale) against the one above.
-LargestStep largest_step(const StabilityScene& scene, const std::string& solver,
-                         std::uint64_t seed) {
+LargestStep largest_step(const StabilityScene& scene, const std::string& solver, std::uint64_t seed,
+                         const std::function<bool()>& interrupted) {
   LargestStep found{scene.name, solver, unknown, unknown, ""};
   const auto survives = [&](double step) {
     const TrialResult result = run_isolated_trial(
@@ -32,7 +34,7 @@ LargestStep largest_step(const StabilityScene& scene, const std::string& solver,
           trial.timeout = trial.timeout_smaller = 2;
           return trial;
         },
-        solver, seed);
+        solver, seed, interrupted);
     if (result.fixed != Outcome::survived)
       found.detail = to_string(result.fixed) + (": " + result.detail);
     return result.fixed == Outcome::survived;
@@ -117,18 +119,22 @@ void StabilityPlan::keep(const Shard& part) {
   freedom = freedom && part.index == 1;
 }
 
-StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
-                               const StabilityEvents& events) {
-  StabilityOutcome outcome;
+namespace {
+
+// Throws Interrupted, with what there is so far.
+void run_plan(const StabilityPlan& plan, std::uint64_t seed, const StabilityEvents& events,
+              StabilityOutcome& outcome) {
+  const auto stop_if_asked = [&events] {
+    if (events.interrupted()) throw Interrupted();
+  };
   for (const HardCase* c : plan.cases) {
     for (const std::string& solver : plan.solvers) {
-      if (events.interrupted()) {
-        outcome.complete = false;
-        return outcome;
-      }
+      stop_if_asked();
       const auto known = events.known(*c, solver);
-      StabilityCell cell{c, solver, known ? *known : run_isolated_trial(c->build, solver, seed),
-                         &expectation_of(*c, solver)};
+      StabilityCell cell{
+          c, solver,
+          known ? *known : run_isolated_trial(c->build, solver, seed, events.interrupted),
+          &expectation_of(*c, solver)};
       cell.expected = acceptable(*cell.expectation, solver, cell.result);
       if (!cell.expected) cell.known = known_difference(c->name, solver, cell.result);
       outcome.cells.push_back(std::move(cell));
@@ -137,11 +143,8 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
   }
   for (const StabilityScene& scene : plan.scenes) {
     for (const std::string& solver : plan.solvers) {
-      if (events.interrupted()) {
-        outcome.complete = false;
-        return outcome;
-      }
-      outcome.largest_steps.push_back(largest_step(scene, solver, seed));
+      stop_if_asked();
+      outcome.largest_steps.push_back(largest_step(scene, solver, seed, events.interrupted));
       events.largest_step(outcome.largest_steps.back());
     }
   }
@@ -152,14 +155,34 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
   }
   ReferenceFolder references(source_path("results/references"));
   for (const SameFrameScene& scene : plan.frames) {
-    if (events.interrupted()) {
-      outcome.complete = false;
-      return outcome;
-    }
+    stop_if_asked();
     outcome.same_frames.push_back(same_frame(scene, seed, references));
     events.same_frame(outcome.same_frames.back());
   }
+}
+
+}  // namespace
+
+StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
+                               const StabilityEvents& events) {
+  StabilityOutcome outcome;
+  try {
+    run_plan(plan, seed, events, outcome);
+  } catch (const Interrupted&) {
+    outcome.complete = false;
+  }
   return outcome;
+}
+
+std::vector<StabilityScene> stability_scenes() {
+  const auto scene = [](const char* name, const SceneParameters& given) {
+    return
+        [=](double step) { return case_parts::trial_of(case_parts::scene_of(name, given), step); };
+  };
+  return {{"chain of 20", scene("chain", {{"n", 20}}), 0.25, 1.0 / 6400},
+          {"drape 11 x 11", scene("drape", {{"n", 11}}), 0.25, 1.0 / 3200},
+          {"patch 11 x 11", scene("patch", {{"n", 11}}), 0.25, 1.0 / 3200},
+          {"taut row of 30", scene("taut_row", {{"n", 31}}), 0.25, 1.0 / 6400}};
 }
 
 }  // namespace harness

@@ -2,9 +2,12 @@
 // degrees of freedom that constraints leave, and the same frames from fast projection and ICD.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
+#include <string>
+#include <vector>
 
 #include "harness/base/pattern.h"
 #include "harness/base/shard.h"
@@ -12,7 +15,7 @@
 #include "harness/stability/hard_case.h"
 #include "harness/stability/known_differences.h"
 #include "harness/stability/same_frame.h"
-#include "harness/stability/stability_scenes.h"
+#include "harness/stability/trial.h"
 
 namespace harness {
 
@@ -48,6 +51,14 @@ struct StabilityFilters {
   std::optional<Pattern> hard_case;  // must be found in a row's or a case's name
   std::optional<Pattern> but_case;   // must not
 };
+
+// The scenes in which the largest stable step is searched.
+struct StabilityScene {
+  std::string name;
+  std::function<Trial(double step)> build;  // one simulated second
+  double largest, smallest;                 // s
+};
+std::vector<StabilityScene> stability_scenes();
 
 // What will be run.
 struct StabilityPlan {

@@ -11,7 +11,7 @@
 #include "harness/points/result_file.h"
 #include "harness/points/schema.h"
 #include "harness/stability/stability.h"
-#include "harness/stability/trial_json.h"
+#include "harness/stability/trial.h"
 
 namespace harness {
 namespace {

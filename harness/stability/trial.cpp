@@ -3,9 +3,15 @@
 #include <cmath>
 #include <optional>
 #include <sstream>
+#include <string>
 
+#include "harness/base/child_process.h"
 #include "harness/base/clock.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/json_text.h"
+#include "harness/base/text.h"
 #include "harness/judge/drive.h"
+#include "harness/points/point_json.h"
 #include "harness/stability/trial_judge.h"
 #include "solvers/registry.h"
 
@@ -132,6 +138,61 @@ TrialResult run_trial(const std::function<Trial()>& build, const std::string& so
     result.detail = "an allocation failed";
   }
   result.seconds = since(begin);
+  return result;
+}
+
+using nlohmann::json;
+
+json FieldCodec<Outcome>::write(Outcome outcome, bool /*nullable*/) { return to_string(outcome); }
+
+void FieldCodec<Outcome>::read(const json& from, Outcome& outcome, bool /*nullable*/) {
+  const std::string text = from.get<std::string>();
+  for (const Outcome each :
+       {Outcome::survived, Outcome::survived_smaller, Outcome::refused, Outcome::diverged,
+        Outcome::wrong, Outcome::timeout, Outcome::crashed}) {
+    if (text == to_string(each)) {
+      outcome = each;
+      return;
+    }
+  }
+  throw json::other_error::create(502, "'" + text + "' is no outcome of a trial", nullptr);
+}
+
+json to_json(const TrialResult& result) {
+  json object;
+  write_fields(object, trial_fields, result);
+  object["work"] = to_json(result.work);
+  return object;
+}
+
+TrialResult trial_result_of(const json& object) {
+  TrialResult result;
+  read_fields(object, trial_fields, result);
+  result.work = work_of(object.at("work"));
+  return result;
+}
+
+namespace {
+
+using End = ChildOutcome::End;
+
+// A trial looks at its own clock between steps; this is for steps that do not end.
+constexpr double longest_trial = 150;  // s, both attempts
+
+}  // namespace
+
+TrialResult run_isolated_trial(const std::function<Trial()>& build, const std::string& solver,
+                               std::uint64_t seed, const std::function<bool()>& interrupted) {
+  ChildOutcome child =
+      run_in_child([&](Heartbeat&) { return compact(to_json(run_trial(build, solver, seed))); },
+                   {longest_trial, 0, interrupted});
+  if (child.end == End::interrupted) throw Interrupted();
+  if (const auto result = answer(child, trial_result_of)) return *result;
+  TrialResult result;
+  const bool stuck = child.end == End::timed_out;
+  result.fixed = result.outcome = stuck ? Outcome::timeout : Outcome::crashed;
+  result.detail =
+      stuck ? "a step did not end within " + number_text(longest_trial) + " s" : ending(child);
   return result;
 }
 

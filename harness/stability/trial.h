@@ -4,8 +4,10 @@
 
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 
+#include "harness/base/fields_json.h"
 #include "harness/points/point.h"
 #include "harness/scenes/scene.h"
 
@@ -68,5 +70,39 @@ struct TrialResult {
 // out of it (an impossible problem) is a refusal at the door.
 TrialResult run_trial(const std::function<Trial()>& build, const std::string& solver,
                       std::uint64_t seed);
+
+// run_trial() in a child; Outcome::crashed if it does not come back. Throws Interrupted.
+TrialResult run_isolated_trial(const std::function<Trial()>& build, const std::string& solver,
+                               std::uint64_t seed,
+                               const std::function<bool()>& interrupted = nullptr);
+
+template <>
+struct FieldCodec<Outcome> {
+  static nlohmann::json write(Outcome outcome, bool nullable);
+  // Throws json::exception for what is no outcome.
+  static void read(const nlohmann::json& from, Outcome& outcome, bool nullable);
+};
+
+inline constexpr std::tuple trial_fields{
+    field("outcome", &TrialResult::outcome, "", "with smaller steps where its own was refused"),
+    field("at_fixed_step", &TrialResult::fixed, "", "at the trial's own step"),
+    field("detail", &TrialResult::detail, "", "of a failure: step, reason, worst edge"),
+    field("smallest_step", &TrialResult::smallest_step, "s", "accepted by the step controller",
+          {.nullable = true}),
+    field("max_strain", &TrialResult::max_strain, "",
+          "after any accepted step, before the collision filter", {.nullable = true}),
+    field("strain_first_second", &TrialResult::strain_first_second, "",
+          "the same within the first simulated second", {.nullable = true}),
+    field("strain_last_second", &TrialResult::strain_last_second, "",
+          "the same within the last one", {.nullable = true}),
+    field("energy_gain", &TrialResult::energy_gain, "scale", "largest E - E_0", {.nullable = true}),
+    field("momentum_defect", &TrialResult::momentum_defect, "", "largest, relative",
+          {.nullable = true}),
+    field("reciprocal_condition", &TrialResult::reciprocal_condition, "",
+          "worst of the linear systems", {.nullable = true}),
+    field("seconds", &TrialResult::seconds, "s", "wall, both attempts")};
+
+nlohmann::json to_json(const TrialResult& result);
+TrialResult trial_result_of(const nlohmann::json& object);
 
 }  // namespace harness

@@ -7,6 +7,7 @@
 #include "harness/analysis/words.h"
 #include "harness/base/in_order.h"
 #include "harness/base/text.h"
+#include "harness/points/joined.h"
 #include "harness/tables/page.h"
 
 namespace harness::tables {
@@ -113,13 +114,13 @@ void print_attribution(std::ostream& out, const Plane& plane) {
 }  // namespace
 
 void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
-  std::vector<Plane> all;
+  std::vector<nlohmann::json> sweeps;
   for (const NamedResult& result : results) {
-    if (is_stability(result.document)) continue;
-    const std::vector<Plane> own = planes_of(result.document);
-    all.insert(all.end(), own.begin(), own.end());
+    if (!is_stability(result.document)) sweeps.push_back(result.document);
   }
-  all = merged(all);
+  if (sweeps.empty()) return;
+  const nlohmann::json table = joined(sweeps);
+  std::vector<Plane> all = planes_of(table);
   std::erase_if(all, [](const Plane& plane) { return !has_rivals(plane); });
   const std::vector<Finding> findings = findings_of(all);
   for (const std::string& title : in_order(all, title_of)) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "harness/analysis/budget.h"
-#include "harness/points/named_result.h"
+#include "harness/points/result_file.h"
 
 namespace harness {
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/points/joined.h"
 #include "support/invented_runs.h"
 
 namespace harness::analysis {
@@ -43,7 +44,8 @@ TEST(Budget, HoldsTheTightestStrainWhoseMotionIsRightWithinAFrame) {
   json bare = run("jacobi", 0.1, 0.02, 1, 0.001);  // no frames were timed
   bare["frame_times"] = json::array();
   const json second = document({failed, bare, framed(run("strips", 0.001, 0.02, 1, 0.01), 16e-3)});
-  const auto tables = budget_tables({&first, &second}, {1e-3, 4e-3, 16e-3});
+  const json pieces = joined({first, second});
+  const auto tables = budget_tables(pieces, {1e-3, 4e-3, 16e-3});
   ASSERT_EQ(tables.size(), 1u) << "two pieces of one scene and size";
   const BudgetTable& table = tables.front();
   ASSERT_EQ(table.rows.size(), 2u);
@@ -67,7 +69,7 @@ TEST(Budget, ClimbsStairsOfRunsThatReachMoreThanAllFasterOnes) {
       framed(run("strips", 0.1, 0.04, 1, 0.5), 1e-3),    // wrong, but the first
       framed(run("strips", 0.001, 0.01, 2, 0.3), 5e-3),  // wrong, where others are right
   });
-  const auto tables = budget_tables({&result}, {});
+  const auto tables = budget_tables(result, {});
   ASSERT_EQ(tables.at(0).rows.size(), 1u);
   std::vector<double> frames;
   for (const Reach& reach : tables[0].rows[0].stairs) frames.push_back(reach.frame_seconds);
@@ -76,7 +78,7 @@ TEST(Budget, ClimbsStairsOfRunsThatReachMoreThanAllFasterOnes) {
 
 TEST(Budget, HasNoRunThatIsTooSlow) {
   const json result = document({framed(run("strips", 0.1, 0.02, 1, 0.01), 2e-3)});
-  const auto tables = budget_tables({&result}, {1e-3, 2e-3});
+  const auto tables = budget_tables(result, {1e-3, 2e-3});
   ASSERT_EQ(tables.size(), 1u);
   EXPECT_EQ(reached(tables[0], "strips", 0), "none");
   EXPECT_EQ(reached(tables[0], "strips", 1), "strips/n:80/strain:0.1/h:0.02");

@@ -8,10 +8,11 @@
 #include <filesystem>
 
 #include "harness/analysis/analysis_json.h"
-#include "harness/analysis/paper_methods.h"
+#include "harness/analysis/words.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
-#include "harness/points/schema_check.h"
+#include "harness/points/joined.h"
+#include "harness/points/schema.h"
 #include "solvers/registry.h"
 #include "support/invented_runs.h"
 
@@ -102,10 +103,8 @@ TEST(Plane, TakesARunAtATighterLimitWhereThatIsFaster) {
   const json loose = run("icd", 0.1, 0.01, 5, 0.01), slow = run("strips", 0.1, 0.01, 4, 0.01),
              tight = run("icd", 0.01, 0.02, 3, 0.01), wrong = run("strips", 0.01, 0.02, 1, 0.06);
   const json whole = document({loose, slow, tight, wrong});
-  const json piece = document({loose, slow}), other = document({tight, wrong});
-  std::vector<Plane> pieces = planes_of(piece);
-  for (Plane& plane : planes_of(other)) pieces.push_back(std::move(plane));
-  for (const auto& planes : {planes_of(whole), merged(pieces)}) {
+  const json pieces = joined({document({loose, slow}), document({tight, wrong})});
+  for (const auto& planes : {planes_of(whole), planes_of(pieces)}) {
     ASSERT_EQ(planes.size(), 1U);
     const Cell& cell = planes[0].cell(0.1, 0.02);
     EXPECT_EQ(winner(cell), "chain/icd/n:80/strain:0.01/h:0.02");
@@ -168,43 +167,26 @@ TEST(Plane, IsWrittenAsItIs) {
   EXPECT_EQ(cell.at("entries").size(), 2u);
 }
 
-// A limit a file: the plane of all is that of one file with all limits.
-TEST(Plane, OfPiecesIsThatOfTheWhole) {
-  std::vector<json> all;
-  std::vector<json> pieces;
+// A limit in each file, and engines in a file of their own: their table is that of one file.
+TEST(Plane, OfSeveralFilesIsThatOfTheWhole) {
+  std::vector<json> all, pieces;
   for (const double limit : {0.01, 0.1, 0.001}) {  // in any order
-    const std::vector<json> runs{run("strips", limit, 0.04, 1e-3 / limit, 0.008),
-                                 run("icd", limit, 0.04, 3e-3, 0.03)};
-    all.insert(all.end(), runs.begin(), runs.end());
-    pieces.push_back(document(runs));
+    const json strips = run("strips", limit, 0.04, 1e-3 / limit, 0.008),
+               icd = run("icd", limit, 0.04, 3e-3, 0.03);
+    all.insert(all.end(), {strips, icd});
+    pieces.push_back(document({strips}));
+    pieces.push_back(document({icd}));
   }
-  pieces.push_back(pieces.front());  // again: counts once
-  const json whole = document(all);
-  std::vector<Plane> parts;
-  for (const json& piece : pieces) parts.push_back(planes_of(piece).at(0));
-  const auto joined = merged(parts);
-  ASSERT_EQ(joined.size(), 1u);
-  const Plane expected = planes_of(whole).at(0);
-  EXPECT_EQ(joined[0].limits, expected.limits);
-  ASSERT_EQ(joined[0].cells.size(), expected.cells.size());
+  json slower = run("strips", 0.01, 0.02, 7, 0.008);
+  pieces.push_back(document({slower}));  // searched already: counts once
+  const json table = joined(pieces), whole = document(all);
+  EXPECT_EQ(table.at("points").size(), all.size());
+  const Plane plane = planes_of(table).at(0), expected = planes_of(whole).at(0);
+  EXPECT_EQ(plane.limits, expected.limits);
+  ASSERT_EQ(plane.cells.size(), expected.cells.size());
   for (std::size_t i = 0; i < expected.cells.size(); ++i) {
-    EXPECT_EQ(winner(joined[0].cells[i]), winner(expected.cells[i]));
-    EXPECT_EQ(joined[0].cells[i].level, expected.cells[i].level);
-  }
-}
-
-// Engines are measured beside the solvers, in a file of their own.
-TEST(Plane, OfPiecesWithUnlikeContestantsHasAllOfThem) {
-  const json strips = run("strips", 0.1, 0.04, 2e-3, 0.008),
-             icd = run("icd", 0.1, 0.04, 1e-3, 0.03);
-  const json whole = document({strips, icd}), one = document({strips}), other = document({icd});
-  const auto joined = merged({planes_of(one).at(0), planes_of(other).at(0)});
-  ASSERT_EQ(joined.size(), 1u);
-  const Plane expected = planes_of(whole).at(0);
-  ASSERT_EQ(joined[0].cells.size(), expected.cells.size());
-  for (std::size_t i = 0; i < expected.cells.size(); ++i) {
-    EXPECT_EQ(winner(joined[0].cells[i]), winner(expected.cells[i]));
-    EXPECT_EQ(joined[0].cells[i].entries.size(), expected.cells[i].entries.size());
+    EXPECT_EQ(winner(plane.cells[i]), winner(expected.cells[i]));
+    EXPECT_EQ(plane.cells[i].entries.size(), expected.cells[i].entries.size());
   }
 }
 

@@ -12,8 +12,6 @@
 #include <csignal>
 #include <thread>
 
-#include "harness/base/child_answer.h"
-
 namespace harness {
 namespace {
 

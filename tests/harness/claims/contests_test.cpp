@@ -1,10 +1,9 @@
 // Claims on which method is fast: verdicts only where intervals lie on one side.
-#include "harness/claims/contests.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "harness/claims/judging.h"
 #include "support/invented_points.h"
 
 namespace harness {

@@ -1,10 +1,9 @@
 // Claim C12 and the figure that it is compared with.
-#include "harness/claims/sag.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "harness/claims/judging.h"
 #include "support/invented_points.h"
 
 namespace harness {

@@ -1,8 +1,7 @@
 // Whether a garment holds.
-#include "harness/claims/slip.h"
-
 #include <gtest/gtest.h>
 
+#include "harness/claims/judging.h"
 #include "support/invented_points.h"
 
 namespace harness {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The recipe of docs/using.md for many machines, run by GNU parallel on a sweep of three sizes: the merged shards are the whole sweep, and
+# The recipe of docs/using.md for many machines, run by GNU parallel on a sweep of three sizes: the shards are the whole sweep, and
 # finished shards are not run again.
 rm -rf -- ./*  # of the last time
 set -euo pipefail
@@ -14,9 +14,6 @@ for time in first again; do
   [[ $time == again ]] || sha256sum results/local/shard-*.json >sums.txt
 done
 sha256sum --quiet -c sums.txt
-/usr/bin/python3 - <<'PYTHON'
-import json
-document = json.load(open("results/local/all.json"))
-assert document["complete"]
-assert {p["vertices"] for p in document["points"]} == {20, 40, 80}, [p["id"] for p in document["points"]]
-PYTHON
+./bench show results/local/shard-*.json --json | /usr/bin/python3 -c '
+import json, sys
+assert {plane["vertices"] for plane in json.load(sys.stdin)["planes"]} == {20, 40, 80}'

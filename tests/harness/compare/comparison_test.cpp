@@ -13,7 +13,6 @@
 #include "harness/base/files.h"
 #include "harness/base/json_text.h"
 #include "harness/base/statistics.h"
-#include "harness/compare/comparison_report.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
 #include "harness/points/result_file.h"

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "harness/base/temporary_folder.h"
+#include "harness/base/files.h"
 #include "harness/film/colours.h"
 #include "harness/film/orientation.h"
 #include "harness/film/weave.h"

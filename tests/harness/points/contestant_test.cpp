@@ -10,7 +10,7 @@
 #include "harness/base/errors.h"
 #include "harness/points/noise.h"
 #include "harness/points/suite.h"
-#include "harness/points/tuning_rule.h"
+#include "harness/points/tuned.h"
 #include "harness/run/plan.h"
 
 namespace harness {

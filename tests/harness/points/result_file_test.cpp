@@ -24,7 +24,7 @@
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
 #include "harness/points/schema.h"
-#include "harness/points/tuning_rule.h"
+#include "harness/points/tuned.h"
 #include "harness/run/sweep.h"
 #include "harness/stability/stability.h"
 

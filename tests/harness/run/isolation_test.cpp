@@ -13,7 +13,7 @@
 #include "harness/base/child_process.h"
 #include "harness/points/point_json.h"
 #include "harness/stability/hard_case.h"
-#include "harness/stability/trial_isolation.h"
+#include "harness/stability/trial.h"
 
 namespace harness {
 namespace {

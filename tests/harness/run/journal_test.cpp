@@ -1,6 +1,4 @@
 // Journals and shards: whatever a sweep is cut into, its parts are the whole.
-#include "harness/run/journal.h"
-
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,10 +9,11 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/points/identity.h"
+#include "harness/points/context.h"
+#include "harness/points/joined.h"
 #include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
-#include "harness/run/merge.h"
+#include "harness/run/journaled.h"
 
 namespace harness {
 namespace {
@@ -82,9 +81,8 @@ class JournalTest : public ::testing::Test {
   json run(const Suite& suite, int& runs) {
     Journal journal(out());
     if (journal.header().is_null()) journal.start(header_of(suite));
-    const Memory memory = journal.memory();
     return points_json(
-        run_sweep(suite, plan(suite, {}), {}, journaled(fake(runs), journal, memory)).points);
+        run_sweep(suite, plan(suite, {}), {}, journaled(fake(runs), journal)).points);
   }
 
  private:
@@ -116,16 +114,16 @@ TEST_F(JournalTest, CutAnywhereTheRestIsRunAndTheResultIsTheSame) {
 TEST_F(JournalTest, ACorruptedLineInTheMiddleIsToldByNumberAndTheOthersStand) {
   int runs = 0;
   run(suite_of("strain"), runs);
-  const std::size_t points = Journal(out()).points();
+  const std::size_t points = points_in(Journal(out()));
   std::string text = read_file(journal(), "journal");
   const std::size_t second = text.find('\n') + 1;
-  text[second + 1] = '}';
+  text[text.find("\"status\":\"", second) + 12] ^= 1;  // still JSON
   std::ofstream(journal(), std::ios::trunc) << text;
   Journal journal(out());
   EXPECT_EQ(journal.damage().rfind("line 2: ", 0), 0u) << journal.damage();
-  EXPECT_EQ(journal.points(), points - 1) << "the other lines are as good as before";
+  EXPECT_EQ(points_in(journal), points - 1) << "the other lines are as good as before";
   EXPECT_TRUE(journal.header().is_object());
-  journal.start(journal.header());
+  journal.go_on(journal.header());
   EXPECT_EQ(journal.damage(), "");
 }
 
@@ -136,14 +134,12 @@ TEST_F(JournalTest, ForgottenFailuresAreRunAgainAndNothingElse) {
   const auto failures = std::count_if(whole.begin(), whole.end(),
                                       [](const json& p) { return p.at("status") != "ok"; });
   ASSERT_GT(failures, 0);
-  Journal journal(out());
-  Memory memory = journal.memory();
-  memory.forget_failures();
+  {
+    Journal journal(out());
+    forget_failures(journal);
+  }
   runs = 0;
-  EXPECT_EQ(
-      points_json(
-          run_sweep(suite, plan(suite, {}), {}, journaled(fake(runs), journal, memory)).points),
-      whole);
+  EXPECT_EQ(run(suite, runs), whole);
   EXPECT_EQ(runs, failures);
 }
 
@@ -151,14 +147,13 @@ TEST_F(JournalTest, AResultFileRemembersAsMuch) {
   const Suite suite = suite_of("strain");
   int runs = 0;
   const json whole = run(suite, runs);
-  Memory memory;
-  memory.learn({{"points", whole}});
-  Journal journal(out());
+  {
+    Journal journal(out());
+    journal.start(header_of(suite));
+    add_runs_of({{"points", whole}}, journal);
+  }
   runs = 0;
-  EXPECT_EQ(
-      points_json(
-          run_sweep(suite, plan(suite, {}), {}, journaled(fake(runs), journal, memory)).points),
-      whole);
+  EXPECT_EQ(run(suite, runs), whole);
   EXPECT_EQ(runs, 0);
 }
 
@@ -186,7 +181,7 @@ TEST_F(JournalTest, ThatIsRemovedMeanwhileIsMissedAtOnce) {
   Journal journal(out());
   journal.start(header_of(suite_of("strain")));
   fs::remove(this->journal());
-  EXPECT_THROW(journal.forget("x"), FileError);
+  EXPECT_THROW(journal.add("x", 1), FileError);
 }
 
 TEST(Difference, NamesTheFirstThingThatDiffers) {
@@ -214,7 +209,7 @@ json context_of(const std::string& shard) {
 
 class ShardTest : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(ShardTest, MergedAreTheWhole) {
+TEST_P(ShardTest, JoinedAreTheWhole) {
   const Suite suite = suite_of(GetParam());
   const auto searches = plan(suite, {});
   int runs = 0;
@@ -224,66 +219,32 @@ TEST_P(ShardTest, MergedAreTheWhole) {
   };
   const json whole = result(searches, "");
   for (std::size_t count = 1; count <= 8; ++count) {
-    std::vector<NamedResult> parts;
+    std::vector<json> parts;
     std::map<std::string, std::size_t> owner;  // of a scene and size
-    for (std::size_t i = count; i >= 1; --i) {
+    for (std::size_t i = 1; i <= count; ++i) {
       const auto some = shard(searches, {i, count});
       for (const Search& s : some) {
         const std::string size = s.base.scene + std::to_string(s.base.resolution);
         EXPECT_EQ(owner.emplace(size, i).first->second, i) << size << " is in two shards";
       }
-      parts.push_back({"part " + std::to_string(i),
-                       result(some, std::to_string(i) + "/" + std::to_string(count))});
+      parts.push_back(result(some, std::to_string(i) + "/" + std::to_string(count)));
     }
-    if (count > 1) {
-      const std::vector<NamedResult> without(parts.begin() + 1, parts.end());
-      EXPECT_THROW(merge(without, {}), UsageError) << "a shard is missing";
-      EXPECT_EQ(merge(without, {.partial = true}).at("complete"), false);
-    }
-    const json joined = merge(parts, {});
-    EXPECT_EQ(joined.at("complete"), true);
-    EXPECT_EQ(joined.at("points"), whole.at("points")) << count << " shards";
-    EXPECT_EQ(joined.at("benchmarks"), whole.at("benchmarks")) << count << " shards";
-    EXPECT_EQ(joined.at("context").at("merged").size(), count);
+    const json table = joined(parts);
+    EXPECT_EQ(table.at("complete"), true);
+    const auto sorted = [](const json& document) {
+      std::vector<std::string> lines;
+      for (const json& point : document.at("points")) lines.push_back(point.dump());
+      std::ranges::sort(lines);
+      return lines;
+    };
+    EXPECT_TRUE(sorted(table) == sorted(whole)) << count << " shards";
+    parts.erase(parts.begin());
+    if (count == 1) continue;
+    EXPECT_EQ(joined(parts).at("complete"), false) << "a shard is missing";
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Sweeps, ShardTest, ::testing::Values("strain", "resolution"));
-
-TEST(Merge, RefusesWhatDoesNotBelongTogether) {
-  const Suite suite = suite_of("strain");
-  const auto searches = plan(suite, {});
-  int runs = 0;
-  const auto part = [&](std::size_t i) {
-    return NamedResult{
-        "part" + std::to_string(i),
-        result_document(context_of(""), suite, {"bench"}, true,
-                        run_sweep(suite, shard(searches, {i, 2}), {}, fake(runs)).points)};
-  };
-  const auto complaint = [](const std::vector<NamedResult>& parts, bool allow_mixed = false) {
-    try {
-      merge(parts, {.mixed = allow_mixed});
-      return std::string();
-    } catch (const UsageError& error) {
-      return std::string(error.what());
-    }
-  };
-  EXPECT_EQ(complaint({part(1), part(2)}), "");
-  EXPECT_NE(complaint({part(1), part(1)}).find("is in 'part1' and in 'part1'"), std::string::npos);
-  NamedResult other = part(2);
-  other.document["context"]["fingerprint"] = "another";
-  other.document["context"]["cpu_model"] = "another";
-  EXPECT_NE(complaint({part(1), other}).find("processor is \"another\", was \"c\""),
-            std::string::npos)
-      << complaint({part(1), other});
-  EXPECT_EQ(complaint({part(1), other}, true), "");
-  other = part(2);
-  other.document["complete"] = false;
-  EXPECT_NE(complaint({part(1), other}).find("'part2' is not complete"), std::string::npos);
-  other = part(2);
-  other.document["context"]["suite"]["timeout"] = 1;
-  EXPECT_NE(complaint({part(1), other}, true).find("suite"), std::string::npos);
-}
 
 }  // namespace
 }  // namespace harness

@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "harness/stability/case_expectations.h"
+#include "harness/stability/case_parts.h"
 #include "harness/stability/trial_judge.h"
 
 namespace {

@@ -70,7 +70,6 @@ grep -q '</html>' page.html || fail "the page has no end"
 
 # ---- Every verb of an installed bench ----
 tiny --solver fast_projection --no-plots --out small.json >sweep.txt 2>&1 || fail "a small sweep: $(cat sweep.txt)"
-tiny --solver fast_projection --no-plots --shard 1/1 --out shard.json >sweep.txt 2>&1 || fail "a shard: $(cat sweep.txt)"
 /usr/bin/python3 -c 'import json; print(json.dumps(json.load(open("small.json"))["points"][0]))' >point.txt
 cp installed/share/inextensible/configs/tuned.json .
 
@@ -92,7 +91,6 @@ use() {
     ab) words=("$bench" "$bench" --scene chain --solver fast_projection --filter 'strain:0.1/' --pairs 4 --sample-seconds 0.001) ;;
     tune) words=(--scene chain --solver icd --out tuned.json) ;;  # there already
     reference) words=(--profile quick --scene chain) ;;           # there already
-    merge) words=(shard.json --out merged.json --plugin "$plugin") ;;
   esac
   "$bench" "$1" "${words[@]}" <point.txt
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "harness/base/fit.h"
+#include "harness/base/statistics.h"
 #include "harness/judge/reference.h"
 #include "harness/scenes/pendulum.h"
 #include "harness/scenes/scene.h"

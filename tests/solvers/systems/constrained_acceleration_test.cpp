@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include "harness/base/fit.h"
+#include "harness/base/statistics.h"
 #include "harness/scenes/pendulum.h"
 #include "solvers/registry.h"
 #include "support/random_graph.h"

@@ -1,0 +1,150 @@
+#include "harness/base/journal.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/json_reader.h"
+#include "harness/base/json_text.h"
+#include "harness/base/text.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+
+// Not by opening the file again: closing that would give up the lock.
+std::string content(int file) {
+  std::string text;
+  std::array<char, 65536> buffer{};
+  for (ssize_t count;
+       (count = pread(file, buffer.data(), buffer.size(), static_cast<off_t>(text.size()))) > 0;)
+    text.append(buffer.data(), static_cast<std::size_t>(count));
+  return text;
+}
+
+std::string check_of(const json& line) { return fnv1a(compact(line)); }
+
+// A line without its check. Throws where it does not pass.
+json checked(const std::string& text) {
+  json line = parse_line(text, "no JSON");
+  const json check = line.value("check", json());
+  line.erase("check");
+  if (check != check_of(line)) throw UsageError("it is not as it was written");
+  return line;
+}
+
+}  // namespace
+
+Journal::Journal(const std::string& out) : path_(out + ".journal") {
+  lock(out);
+  read();
+}
+
+Journal::~Journal() {
+  if (file_ < 0) return;
+  if (length_ == 0) unlink(path_.c_str());  // nothing has come of it
+  close(file_);
+}
+
+void Journal::lock(const std::string& out) {
+  for (;;) {
+    file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+    if (file_ < 0) throw UsageError("cannot write '" + path_ + "': " + std::strerror(errno));
+    if (!try_lock(file_)) {
+      const pid_t other = lock_holder(file_);
+      close(file_);
+      throw UsageError("another bench" +
+                       (other > 0 ? " (process " + std::to_string(other) + ")" : std::string()) +
+                       " is writing '" + out + "'; give another --out");
+    }
+    struct stat status {};
+    if (fstat(file_, &status) == 0 && status.st_nlink > 0) return;
+    close(file_);  // its owner has just finished and removed it
+  }
+}
+
+void Journal::read() {
+  const std::string text = content(file_);
+  std::size_t number = 0;
+  // A last line without its end was being written when the program ended.
+  for (std::size_t end; (end = text.find('\n', length_)) != std::string::npos; length_ = end + 1) {
+    ++number;
+    try {
+      json line = checked(text.substr(length_, end - length_));
+      if (line.contains("header")) {
+        header_ = line["header"];
+        damage_.clear();
+      } else if (line.contains("forget")) {
+        known_.erase(line.at("forget").get<std::string>());
+      } else {
+        known_[line.at("key").get<std::string>()] = std::move(line.at("value"));
+      }
+    } catch (const std::exception& error) {
+      if (damage_.empty())
+        damage_ = "line " + std::to_string(number) + ": " + shortened(error.what());
+    }
+  }
+}
+
+const json* Journal::find(const std::string& key) const {
+  const auto place = known_.find(key);
+  return place == known_.end() ? nullptr : &place->second;
+}
+
+void Journal::start(const json& header) {
+  if (ftruncate(file_, 0) != 0) throw FileError(path_, "empty");
+  length_ = 0;
+  known_.clear();
+  go_on(header);
+}
+
+void Journal::go_on(const json& header) {
+  header_ = header;
+  damage_.clear();
+  append({{"header", header}});
+}
+
+const json& Journal::add(const std::string& key, json value) {
+  append({{"key", key}, {"value", value}});
+  return known_[key] = std::move(value);
+}
+
+const json& Journal::once(const std::string& key, const std::function<json()>& compute) {
+  const json* known = find(key);
+  return known ? *known : add(key, compute());
+}
+
+void Journal::forget(const std::string& key) {
+  if (known_.erase(key) > 0) append({{"forget", key}});
+}
+
+void Journal::append(json line) {
+  struct stat status {};
+  if (fstat(file_, &status) != 0 || status.st_nlink == 0)
+    throw FileError(path_, "continue", "it has been removed meanwhile");
+  line["check"] = check_of(line);
+  const std::string text = compact(line) + "\n";
+  if (lseek(file_, static_cast<off_t>(length_), SEEK_SET) < 0 || !write_whole(file_, text) ||
+      fdatasync(file_) != 0) {
+    const std::string reason = std::strerror(errno);
+    if (ftruncate(file_, static_cast<off_t>(length_)) != 0) {
+    }  // a torn last line is understood, too
+    throw FileError(path_, "write", reason + "; its lines are safe, --resume continues from there");
+  }
+  length_ += text.size();
+}
+
+void Journal::remove() {
+  unlink(path_.c_str());
+  close(file_);
+  file_ = -1;
+}
+
+}  // namespace harness

@@ -1,0 +1,55 @@
+// The journal beside an output: what has been computed, each result by its key, synced one line of
+// JSON at a time, so that whatever ends the program costs one result at most.
+//
+// A line is {"header": ...}, {"key": ..., "value": ...} or {"forget": key}, each with "check", a
+// hash of the rest. The last header counts, and forgives what was damaged before it.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace harness {
+
+class Journal {
+ public:
+  // Opens or makes the journal of the output file `out`, reads it, and holds it against other
+  // processes until the destructor, which removes it if it is empty. Throws UsageError if another
+  // process is writing this output.
+  explicit Journal(const std::string& out);
+  ~Journal();
+  Journal(const Journal&) = delete;
+  Journal& operator=(const Journal&) = delete;
+
+  const std::string& path() const { return path_; }
+  const std::string& damage() const { return damage_; }     // "": every whole line is sound
+  const nlohmann::json& header() const { return header_; }  // null: there is none
+  const std::map<std::string, nlohmann::json>& known() const { return known_; }
+  // Null: not known. Valid until the key is added again or forgotten.
+  const nlohmann::json* find(const std::string& key) const;
+
+  // The following throw FileError where the disk is full or the file has been removed meanwhile;
+  // what was written before is then still whole.
+  void start(const nlohmann::json& header);  // drops what is known
+  void go_on(const nlohmann::json& header);  // keeps it
+  const nlohmann::json& add(const std::string& key, nlohmann::json value);
+  // What is known, or else what `compute` returns, added.
+  const nlohmann::json& once(const std::string& key,
+                             const std::function<nlohmann::json()>& compute);
+  void forget(const std::string& key);
+  void remove();  // the output is written: nothing to go on with
+
+ private:
+  void lock(const std::string& out);
+  void read();
+  void append(nlohmann::json line);
+
+  std::string path_, damage_;
+  nlohmann::json header_;
+  std::map<std::string, nlohmann::json> known_;
+  int file_ = -1;
+  std::size_t length_ = 0;  // bytes, whole lines
+};
+
+}  // namespace harness
