@@ -66,7 +66,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("result", type=Path, help="result file of the bench program (JSON)")
     parser.add_argument("--analysis", type=Path, metavar="FILE",
                         help="what `bench show RESULT.json --json` says of it; without it planes are not drawn")
-    parser.add_argument("--out", type=Path, help="folder for the figures (default: the result file's folder)")
+    parser.add_argument("--out", type=Path, required=True, help="folder for the figures")
     return parser.parse_args(arguments)
 
 
@@ -78,14 +78,9 @@ def run(arguments: list[str]) -> None:
     figures = all_figures(document)
     if not figures:
         raise ResultError(f"{options.result}: no points to draw")
-    folder = options.out or options.result.parent
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ResultError(f"cannot make folder {folder}: {error.strerror}") from error
     with matplotlib.rc_context(RC):
         for name, draw in figures.items():
-            path = folder / f"{options.result.stem}-{name}.svg"
+            path = options.out / f"{options.result.stem}-{name}.svg"
             save(draw(), path)
             print(path, flush=True)
 

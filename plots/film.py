@@ -220,7 +220,7 @@ def write(film: Film, out: Path) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(prog="film.py", description="Puts the pictures of bench film together.")
     parser.add_argument("folder", type=Path)
-    parser.add_argument("out", type=Path)
+    parser.add_argument("--out", type=Path, required=True)
     given = parser.parse_args()
     try:
         if given.out.suffix == ".mp4" and not shutil.which("ffmpeg"):

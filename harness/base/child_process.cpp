@@ -21,6 +21,7 @@
 #include <stdexcept>
 
 #include "harness/base/files.h"
+#include "harness/base/interrupt.h"
 #include "harness/base/standard_streams.h"
 
 namespace harness {
@@ -210,6 +211,43 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
     outcome.text.erase(0, 1);
   }
   return outcome;
+}
+
+int supervised(const std::function<int()>& work) {
+  constexpr double patience = 0.7;  // s, for a child that was asked to end
+  std::cout.flush();
+  std::fflush(stdout);
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child < 0) fail("fork");
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(1);  // it died before that
+    const int code = work();
+    std::cout.flush();
+    std::fflush(stdout);
+    _exit(code);  // no destructors: objects are the parent's
+  }
+  catch_interrupts();
+  double asked = 0;
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    poll(nullptr, 0, 20);  // ms
+    if (!interrupted()) continue;
+    if (asked == 0) {
+      asked = now();
+      kill(child, SIGTERM);
+    } else if (now() > asked + patience) {
+      kill(child, SIGKILL);
+    }
+  }
+  remove_left_folders();
+  if (WIFEXITED(status)) return WEXITSTATUS(status);
+  constexpr int interrupted_code = 130, crashed_code = 1;
+  if (interrupted() || WTERMSIG(status) == SIGTERM) return interrupted_code;
+  if (WTERMSIG(status) == SIGPIPE) return 128 + SIGPIPE;  // nobody reads what it prints
+  std::cerr << "bench: the program was ended by " << signal_text(WTERMSIG(status)) << '\n';
+  return crashed_code;
 }
 
 std::string ending(const ChildOutcome& outcome) {

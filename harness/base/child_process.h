@@ -47,6 +47,12 @@ struct ChildOutcome {
 ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
                           const ChildLimits& limits);
 
+// Runs the rest of the program, whose exit code it returns, in a child that an interruption ends
+// within a second, wherever it is: it may end itself, and is killed where it does not (in a step
+// that hangs, say). The exit code is 130 then, and 1 where the child crashes, which is said on
+// stderr. Temporary folders of a child that was killed are removed.
+int supervised(const std::function<int()>& work);
+
 // What became of a child that ended by itself, or was ended by others, without a result.
 std::string ending(const ChildOutcome& outcome);
 

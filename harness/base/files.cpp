@@ -177,9 +177,14 @@ void write_atomically(const std::string& path, const std::string& text) {
     throw FileError(path, "write");
 }
 
-TemporaryFolder::TemporaryFolder(const std::string& purpose) {
-  namespace fs = std::filesystem;
-  const std::string stem = "bench-" + purpose + "-" + std::to_string(getuid()) + "-";
+namespace {
+
+std::string temporary_stem() { return "bench-" + std::to_string(getuid()) + "-"; }
+
+}  // namespace
+
+void remove_left_folders() {
+  const std::string stem = temporary_stem();
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(fs::temp_directory_path(), ignored)) {
     const std::string name = entry.path().filename().string();
@@ -187,8 +192,13 @@ TemporaryFolder::TemporaryFolder(const std::string& purpose) {
     const pid_t owner = std::atoi(name.c_str() + stem.size());
     if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH) fs::remove_all(entry, ignored);
   }
-  std::string name =
-      (fs::temp_directory_path() / (stem + std::to_string(getpid()) + "-XXXXXX")).string();
+}
+
+TemporaryFolder::TemporaryFolder(const std::string& purpose) {
+  remove_left_folders();
+  std::string name = (fs::temp_directory_path() /
+                      (temporary_stem() + std::to_string(getpid()) + "-" + purpose + "-XXXXXX"))
+                         .string();
   if (!mkdtemp(name.data())) throw FileError(name, "make");
   path_ = name;
 }

@@ -41,6 +41,9 @@ void check_writable(const std::string& path);
 // output. Throws FileError.
 void write_atomically(const std::string& path, const std::string& text);
 
+// Removes temporary folders whose process is gone.
+void remove_left_folders();
+
 class TemporaryFolder {
  public:
   // purpose: a word of its name. Throws FileError.

@@ -5,7 +5,7 @@
 
 namespace harness {
 
-// SIGINT and SIGTERM become a flag from here on; whether one has come.
+// SIGINT, SIGTERM and SIGHUP become a flag from here on; whether one has come.
 void catch_interrupts();
 bool interrupted();
 

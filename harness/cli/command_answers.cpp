@@ -62,13 +62,14 @@ int answers(const AnswersOptions& given, const std::vector<std::string>& command
     }
   };
   const AnswerOutcome outcome = run_answers(plan, given.timeout, events);
+  if (!outcome.complete) return tell_interrupted();
   const json document = answers_document(context, plan, outcome, command);
   write_atomically(out, result_text(document));
   print_answers(std::cout, document);
   std::cout << "\nwritten:\n" << out << std::endl;
-  if (!outcome.complete) return tell_interrupted();
   journal.remove();
-  if (!given.no_plots && draw({out}) != 0) std::cerr << "bench: the figure could not be drawn\n";
+  if (!given.no_plots && draw_result(out) != 0)
+    std::cerr << "bench: the figure could not be drawn\n";
   return success;
 }
 

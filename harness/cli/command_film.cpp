@@ -119,7 +119,8 @@ int draw_pictures(const FilmOptions& given, const Recording& recording, bool sti
   spec.samples = still ? still_samples : film_samples;
   write_film_header(folder.path(), recording);
   write_pictures(folder.path(), recording, spec, interrupted, tell_picture);
-  return draw({folder.path(), given.out}, "film.py");
+  const std::filesystem::path out(given.out);
+  return draw("film.py", {folder.path()}, out.parent_path().string(), out.filename().string());
 }
 
 using Writer = std::vector<std::string> (*)(const Recording&, const FilmRun&, const std::string&,

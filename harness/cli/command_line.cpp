@@ -104,8 +104,10 @@ CommandLine::CommandLine(const std::string& description, const std::vector<Verb>
   for (const Verb& verb : verbs) {
     const bool first = &verb == &verbs.front();
     CLI::App* app = first ? app_.get() : app_->add_subcommand(verb.name, verb.summary);
-    app->callback([this, app, action = verb.add(Command(app, &invocation_))] {
-      if (app->get_subcommands().empty()) invocation_.action = action;  // else a verb is meant
+    app->callback([this, app, name = verb.name, action = verb.add(Command(app, &invocation_))] {
+      if (!app->get_subcommands().empty()) return;  // a verb is meant
+      invocation_.verb = name;
+      invocation_.action = action;
     });
   }
 }

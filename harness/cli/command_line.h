@@ -23,6 +23,7 @@ using Action = std::function<int()>;  // returns an ExitCode; throws UsageError
 // What was typed: all words, for the record, and the action of the verb among them.
 struct Invocation {
   std::vector<std::string> words;
+  std::string verb;
   Action action;
 };
 
@@ -98,6 +99,7 @@ class CommandLine {
   // to do: help was printed, or a word is wrong, which is said on stderr.
   std::optional<int> read(int argc, char** argv);
   int run() const { return invocation_.action(); }
+  const std::string& verb() const { return invocation_.verb; }  // that was typed
 
  private:
   std::unique_ptr<CLI::App> app_;

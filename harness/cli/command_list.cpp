@@ -101,6 +101,8 @@ json metrics_json() {
   const auto add = [&list](const auto& table) {
     for_each_field(table, [&list](const auto& each) { list.push_back(field_row(each)); });
   };
+  add(spec_fields);
+  add(size_fields);
   add(measure_fields);
   add(result_fields);
   add(phase_fields);

@@ -34,10 +34,8 @@ Verb plot_verb() {
               std::string out = given->out;
               if (several && out.empty())
                 out = std::filesystem::path(given->files.front()).parent_path().string();
-              std::vector<std::string> more;
-              if (!out.empty()) more = {"--out", out};
-              if (several) return draw_pieces(given->files, given->name, more);
-              return draw_result(given->files.front(), more);
+              if (several) return draw_pieces(given->files, given->name, out);
+              return draw_result(given->files.front(), out);
             };
           }};
 }

@@ -84,8 +84,8 @@ int report(const ReportOptions& given) {
   const TemporaryFolder folder("report");
   std::vector<std::string> words = given.results;
   words.insert(words.end(), given.answers.begin(), given.answers.end());
-  words.insert(words.end(), {"--out", given.out, "--claims", folder.file("claims.json"),
-                             "--analyses", folder.file("analyses.json")});
+  words.insert(words.end(), {"--claims", folder.file("claims.json"), "--analyses",
+                             folder.file("analyses.json")});
   write_atomically(folder.file("claims.json"),
                    compact(claims_json(judge_claims(documents))) + "\n");
   write_atomically(folder.file("analyses.json"), compact(analyses_json(results)) + "\n");
@@ -94,7 +94,8 @@ int report(const ReportOptions& given) {
     words.push_back(record_into(folder.file("drape"), motion("drape", {{"n", 31}})));
     words.push_back(record_into(folder.file("patch"), motion("patch", {{"n", 25}})));
   }
-  return draw(words, "report.py");
+  const std::filesystem::path out(given.out);
+  return draw("report.py", words, out.parent_path().string(), out.filename().string());
 }
 
 }  // namespace

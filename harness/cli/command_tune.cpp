@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
+#include <limits>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
@@ -25,7 +26,7 @@ namespace {
 using nlohmann::json;
 
 struct TuneCommand {
-  std::string solver, scene, out;
+  std::string solver, scene, n, limits, out;
   int trials = 0;  // 0: the rule's
   double timeout = TuneOptions{}.timeout;
   bool no_wait = false, quiet = false, again = false;
@@ -63,6 +64,17 @@ bool stands(const std::vector<TunedEntry>& entries, const std::string& kind,
   return std::any_of(entries.begin(), entries.end(), [&](const TunedEntry& e) {
     return e.kind == kind && e.solver == solver && up_to_date(e);
   });
+}
+
+// Adds what was found at places of the user's own, or takes it instead of what was found there
+// before.
+void add_places(TunedEntry& entry, const std::vector<TunedPlace>& found) {
+  for (const TunedPlace& place : found) {
+    std::erase_if(entry.places, [&](const TunedPlace& p) {
+      return p.resolution == place.resolution && p.limit == place.limit;
+    });
+    entry.places.push_back(place);
+  }
 }
 
 // In the order of scenes and solvers, whatever was tuned first.
@@ -111,7 +123,18 @@ void print(const TunedEntry& entry) {
 }
 
 int run_tune(const TuneCommand& options) {
-  const auto scenes = chosen_scenes(options.scene);
+  auto scenes = chosen_scenes(options.scene);
+  const bool own_places = !options.n.empty() || !options.limits.empty();
+  if (own_places && scenes.size() != 1)
+    throw UsageError("--n and --limit go with --scene: of which scene is the place?");
+  if (own_places) scenes.front().scene_parameters.clear();  // the scene that results report
+  if (!options.n.empty()) {
+    scenes.front().resolutions.clear();
+    for (const double n : numbers_of("--n", options.n, Bounds::whole_number(2)))
+      scenes.front().resolutions.push_back(static_cast<int>(n));
+  }
+  if (!options.limits.empty())
+    scenes.front().limits = numbers_of("--limit", options.limits, Bounds::strain());
   if (!options.solver.empty()) check_solver_pattern(options.solver);
   if (std::all_of(scenes.begin(), scenes.end(), [&options](const SweepSpec& scene) {
         return chosen_solvers(options.solver, scene).empty();
@@ -128,6 +151,7 @@ int run_tune(const TuneCommand& options) {
   if (options.trials > 0) tuning.rules.budget = tuning.trials_each = options.trials;
   tuning.timeout = options.timeout;
   tuning.interrupted = interrupted;
+  if (own_places) tuning.longest_run = std::numeric_limits<double>::infinity();
   if (!options.quiet) tuning.tell = [](const std::string& line) { std::cerr << line << '\n'; };
   SweepRunners runners;
   runners.references = std::make_shared<ReferenceFolder>(source_path("results/references"));
@@ -135,6 +159,19 @@ int run_tune(const TuneCommand& options) {
   std::cout << "kind          solver                             size  limit   gain   settings\n";
   for (const SweepSpec& scene : scenes) {
     for (const std::string& solver : chosen_solvers(options.solver, scene)) {
+      if (own_places) {
+        const auto known = std::find_if(entries.begin(), entries.end(), [&](const TunedEntry& e) {
+          return e.kind == scene.scene && e.solver == solver;
+        });
+        if (known == entries.end() || !up_to_date(*known))
+          throw UsageError(solver + " has no settings by today's rule yet: bench tune --scene " +
+                           scene.scene + " --solver " + solver);
+        TunedEntry found = tune_solver(solver, scene, tuning, runners, &*known);
+        print(found);
+        add_places(*known, found.places);
+        write_atomically(out, document_text(tuned_document(entries)));
+        continue;
+      }
       if (!options.again && stands(entries, find_scene(scene.scene)->kind(), solver)) continue;
       TunedEntry entry = tune_solver(solver, scene, tuning, runners);
       entry.context = context_of(options);
@@ -158,6 +195,9 @@ Verb tune_verb() {
         add_solver(command, options.solver);
         command.option("--scene", options.scene,
                        "chain, drape, patch or spinning_net; default: all", "SCENE");
+        command.option("--n", options.n, "sizes of your own, whose settings are added", "N,...");
+        command.option("--limit", options.limits,
+                       "strain limits of your own, whose settings are added", "STRAIN,...");
         command
             .option("--trials", options.trials,
                     "sets of settings to try for each solver, size and limit; default: 10 for each "

@@ -1,65 +1,39 @@
 #include "harness/cli/figures.h"
 
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
+#include <filesystem>
 #include <iostream>
+#include <set>
 
 #include "harness/analysis/analysis_json.h"
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
 #include "harness/base/paths.h"
+#include "harness/base/standard_streams.h"
 #include "harness/cli/exit_codes.h"
 #include "harness/points/joined.h"
 #include "harness/points/result_file.h"
 
 namespace harness {
-
 namespace {
 
-int draw_analysed(const std::string& file, const nlohmann::json& analysis,
-                  const std::vector<std::string>& more) {
-  const TemporaryFolder folder("analysis");
-  write_atomically(folder.file("analysis.json"), analysis.dump());
-  std::vector<std::string> arguments{file};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  arguments.insert(arguments.end(), {"--analysis", folder.file("analysis.json")});
-  return draw(arguments);
-}
+namespace fs = std::filesystem;
 
-}  // namespace
-
-int draw_pieces(const std::vector<std::string>& files, const std::string& name,
-                const std::vector<std::string>& more) {
-  const nlohmann::json table = read_results(files);
-  if (!table.contains("points"))
-    throw UsageError("'" + files.front() +
-                     "' is no sweep: pieces of sweeps alone are drawn as one");
-  const TemporaryFolder folder("pieces");
-  write_atomically(folder.file(name + ".json"), table.dump());
-  return draw_analysed(folder.file(name + ".json"), analysis::analysis_of(table), more);
-}
-
-int draw_result(const std::string& file, const std::vector<std::string>& more) {
-  const nlohmann::json document = parse_document(read_file(file, "result file"), file);
-  if (!document.is_object() ||
-      document.value("schema", nlohmann::json()) != "inextensible-bench/1") {
-    std::vector<std::string> arguments{file};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return draw(arguments);
-  }
-  check_result(document, file);
-  return draw_analysed(file, analysis::analysis_of(document), more);
-}
-
-int draw(const std::vector<std::string>& arguments, const std::string& script) {
+// Its exit code. What it prints on stdout goes nowhere.
+int run_script(const std::string& script, const std::vector<std::string>& arguments) {
   std::cout.flush();
   const pid_t child = fork();
   if (child == 0) {
-    std::vector<char*> argv;
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    send_output_to_error();
     std::vector<std::string> words{"/usr/bin/python3", source_path("plots/" + script)};
     words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
     argv.reserve(words.size() + 1);
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
@@ -73,6 +47,53 @@ int draw(const std::vector<std::string>& arguments, const std::string& script) {
     std::cerr << "bench: figures need /usr/bin/python3 with matplotlib (Debian: "
                  "python3-matplotlib)\n";
   return code;
+}
+
+int draw_analysed(const std::string& file, const nlohmann::json& analysis,
+                  const std::string& folder) {
+  const TemporaryFolder scratch("analysis");
+  write_atomically(scratch.file("analysis.json"), analysis.dump());
+  return draw("figures.py", {file, "--analysis", scratch.file("analysis.json")}, folder);
+}
+
+}  // namespace
+
+int draw(const std::string& script, std::vector<std::string> arguments, const std::string& folder,
+         const std::string& name) {
+  const TemporaryFolder scratch("draw");
+  arguments.insert(arguments.end(), {"--out", name.empty() ? scratch.path() : scratch.file(name)});
+  if (const int code = run_script(script, arguments); code != 0) return code;
+  std::set<fs::path> drawn;
+  for (const auto& entry : fs::directory_iterator(scratch.path())) drawn.insert(entry.path());
+  const fs::path to = folder.empty() ? fs::path(".") : fs::path(folder);
+  std::error_code error;
+  fs::create_directories(to, error);
+  for (const fs::path& file : drawn) {
+    const std::string place = (to / file.filename()).lexically_normal().string();
+    write_atomically(place, read_file(file.string(), "drawing"));
+    std::cout << place << std::endl;
+  }
+  return success;
+}
+
+int draw_pieces(const std::vector<std::string>& files, const std::string& name,
+                const std::string& folder) {
+  const nlohmann::json table = read_results(files);
+  if (!table.contains("points"))
+    throw UsageError("'" + files.front() +
+                     "' is no sweep: pieces of sweeps alone are drawn as one");
+  const TemporaryFolder scratch("pieces");
+  write_atomically(scratch.file(name + ".json"), table.dump());
+  return draw_analysed(scratch.file(name + ".json"), analysis::analysis_of(table), folder);
+}
+
+int draw_result(const std::string& file, std::string folder) {
+  if (folder.empty()) folder = fs::path(file).parent_path().string();
+  const nlohmann::json document = parse_document(read_file(file, "result file"), file);
+  if (!document.is_object() || document.value("schema", nlohmann::json()) != "inextensible-bench/1")
+    return draw("figures.py", {file}, folder);
+  check_result(document, file);
+  return draw_analysed(file, analysis::analysis_of(document), folder);
 }
 
 }  // namespace harness

@@ -1,4 +1,4 @@
-// Figures of result files, drawn by the scripts of plots/.
+// Figures, films and reports, drawn by the scripts of plots/.
 #pragma once
 
 #include <string>
@@ -6,14 +6,18 @@
 
 namespace harness {
 
-// Runs a script of plots/ on result files; its paths go to stdout as they are. Its exit code.
-int draw(const std::vector<std::string>& arguments, const std::string& script = "figures.py");
-// The figures of a result file, with the analysis that they are drawn from. Throws UsageError for a
-// file that is none.
-int draw_result(const std::string& file, const std::vector<std::string>& more = {});
+// Runs a script of plots/ with these arguments and --out <a folder of its own>, or --out <that
+// folder>/<name> with a name. What it has written there takes its place in `folder`, file by file
+// and each whole, and is named on stdout. Its exit code; where that is not 0, nothing is touched.
+int draw(const std::string& script, std::vector<std::string> arguments, const std::string& folder,
+         const std::string& name = {});
+
+// The figures of a result file, with the analysis that they are drawn from. folder: "" for that of
+// the file. Throws UsageError for a file that is none.
+int draw_result(const std::string& file, std::string folder = {});
 // Those of several files that are pieces of one sweep, drawn as one (points/joined.h). name: what
 // their pictures' names begin with.
 int draw_pieces(const std::vector<std::string>& files, const std::string& name,
-                const std::vector<std::string>& more);
+                const std::string& folder);
 
 }  // namespace harness

@@ -141,7 +141,8 @@ int run_hard_cases(const SweepCommand& options, const std::vector<std::string>& 
   std::cout << "\nwritten:\n" << out << std::endl;
   if (!outcome.complete) return tell_interrupted();
   journal.remove();
-  if (!options.no_plots && draw({out}) != 0) std::cerr << "bench: the figure could not be drawn\n";
+  if (!options.no_plots && draw_result(out) != 0)
+    std::cerr << "bench: the figure could not be drawn\n";
   return outcome.nothing_new() ? success : unexpected_outcome;
 }
 

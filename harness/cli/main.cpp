@@ -2,6 +2,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "harness/base/child_process.h"
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
@@ -49,6 +50,37 @@ void load(const std::vector<std::string>& plugins) {
   }
 }
 
+// What goes wrong is said in a line on stderr, and is an exit code.
+int guarded(const std::function<int()>& work) {
+  try {
+    const int code = work();
+    check_standard_output();
+    send_output_to_error();  // what plug-ins print as they are unloaded
+    return code;
+  } catch (const UsageError& error) {
+    std::cerr << "bench: " << error.what() << '\n';
+    return usage_error;
+  } catch (const nlohmann::json::exception& error) {
+    // Schemas are checked where files are read; what a schema leaves open is reported here.
+    std::cerr << "bench: a value in a file has the wrong type: " << error.what() << '\n';
+    return usage_error;
+  } catch (const Interrupted&) {
+    return interrupted_exit;
+  } catch (const FileError& error) {
+    std::cerr << "bench: " << error.what() << '\n';
+    return internal_error;
+  } catch (const std::exception& error) {
+    std::cerr << "bench: internal error: " << error.what() << '\n';
+    return internal_error;
+  }
+}
+
+// Whether a verb computes in children of its own, and answers an interruption itself: with what
+// was done until then.
+bool has_children(const std::string& verb) {
+  return verb == "sweep" || verb == "answers" || verb == "tune";
+}
+
 int run(int argc, char** argv) {
   CommandLine line(description, verbs(), version_text);
   std::vector<std::string> plugins;
@@ -56,8 +88,13 @@ int run(int argc, char** argv) {
       "--plugin", plugins,
       "load solvers of your own from a shared library (solvers/plugin.h); repeatable", "FILE");
   if (const std::optional<int> done = line.read(argc, argv)) return *done;
-  load(plugins);
-  return line.run();
+  const auto act = [&] {
+    return guarded([&] {
+      load(plugins);
+      return line.run();
+    });
+  };
+  return has_children(line.verb()) ? act() : supervised(act);
 }
 
 }  // namespace
@@ -66,25 +103,5 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   harness::open_standard_streams();
   harness::use_one_thread();
-  try {
-    const int code = harness::run(argc, argv);
-    harness::check_standard_output();
-    harness::send_output_to_error();  // what plug-ins print as they are unloaded
-    return code;
-  } catch (const harness::UsageError& error) {
-    std::cerr << "bench: " << error.what() << '\n';
-    return harness::usage_error;
-  } catch (const nlohmann::json::exception& error) {
-    // Schemas are checked where files are read; what a schema leaves open is reported here.
-    std::cerr << "bench: a value in a file has the wrong type: " << error.what() << '\n';
-    return harness::usage_error;
-  } catch (const harness::Interrupted&) {
-    return harness::interrupted_exit;
-  } catch (const harness::FileError& error) {
-    std::cerr << "bench: " << error.what() << '\n';
-    return harness::internal_error;
-  } catch (const std::exception& error) {
-    std::cerr << "bench: internal error: " << error.what() << '\n';
-    return harness::internal_error;
-  }
+  return harness::guarded([&] { return harness::run(argc, argv); });
 }

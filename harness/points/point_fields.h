@@ -20,39 +20,61 @@ struct FieldCodec<PointStatus> {
   static nlohmann::ordered_json schema(const FieldTraits& traits);
 };
 
-template <>
-struct FieldCodec<std::vector<ResidualSample>> {
-  static nlohmann::json write(const std::vector<ResidualSample>& series, bool nullable);
-  static void read(const nlohmann::json& from, std::vector<ResidualSample>& series, bool nullable);
-  static nlohmann::ordered_json schema(const FieldTraits& traits);
+// A list of rows, each a list of a struct's numbers.
+template <class Row, double Row::*... members>
+struct RowsCodec {
+  static nlohmann::json write(const std::vector<Row>& rows, bool /*nullable*/) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const Row& row : rows) list.push_back(nlohmann::json::array({number(row.*members)...}));
+    return list;
+  }
+  static void read(const nlohmann::json& from, std::vector<Row>& rows, bool /*nullable*/) {
+    rows.clear();
+    for (const nlohmann::json& row : from) {
+      std::size_t column = 0;
+      rows.push_back({});
+      ((rows.back().*members = number_of(row.at(column++))), ...);
+    }
+  }
+  static nlohmann::ordered_json schema(const FieldTraits& /*traits*/) {
+    constexpr int columns = sizeof...(members);
+    return {{"type", "array"},
+            {"items",
+             {{"type", "array"},
+              {"minItems", columns},
+              {"maxItems", columns},
+              {"items", {{"$ref", "#/definitions/figure"}}}}}};
+  }
 };
 
 template <>
-struct FieldCodec<std::vector<ErrorSample>> {
-  static nlohmann::json write(const std::vector<ErrorSample>& series, bool nullable);
-  static void read(const nlohmann::json& from, std::vector<ErrorSample>& series, bool nullable);
-  static nlohmann::ordered_json schema(const FieldTraits& traits);
-};
-
+struct FieldCodec<std::vector<ResidualSample>>
+    : RowsCodec<ResidualSample, &ResidualSample::time, &ResidualSample::first,
+                &ResidualSample::last> {};
 template <>
-struct FieldCodec<std::vector<double>> {
-  static nlohmann::json write(const std::vector<double>& numbers, bool nullable);
-  static void read(const nlohmann::json& from, std::vector<double>& numbers, bool nullable);
-  static nlohmann::ordered_json schema(const FieldTraits& traits);
-};
-
+struct FieldCodec<std::vector<ErrorSample>>
+    : RowsCodec<ErrorSample, &ErrorSample::time, &ErrorSample::error, &ErrorSample::worst,
+                &ErrorSample::gap, &ErrorSample::worst_gap> {};
 template <>
-struct FieldCodec<std::vector<int>> {
-  static nlohmann::json write(const std::vector<int>& counts, bool nullable);
-  static void read(const nlohmann::json& from, std::vector<int>& counts, bool nullable);
-  static nlohmann::ordered_json schema(const FieldTraits& traits);
-};
+struct FieldCodec<std::vector<FrameTime>>
+    : RowsCodec<FrameTime, &FrameTime::rate, &FrameTime::median, &FrameTime::slow,
+                &FrameTime::worst> {};
 
-template <>
-struct FieldCodec<std::vector<FrameTime>> {
-  static nlohmann::json write(const std::vector<FrameTime>& rates, bool nullable);
-  static void read(const nlohmann::json& from, std::vector<FrameTime>& rates, bool nullable);
-  static nlohmann::ordered_json schema(const FieldTraits& traits);
+// Positive numbers, counts among them.
+template <class Number>
+requires std::is_arithmetic_v<Number>
+struct FieldCodec<std::vector<Number>> {
+  static nlohmann::json write(const std::vector<Number>& numbers, bool /*nullable*/) {
+    return numbers;
+  }
+  static void read(const nlohmann::json& from, std::vector<Number>& numbers, bool /*nullable*/) {
+    from.get_to(numbers);
+  }
+  static nlohmann::ordered_json schema(const FieldTraits& /*traits*/) {
+    if constexpr (std::is_integral_v<Number>)
+      return {{"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 1}}}};
+    return {{"type", "array"}, {"items", {{"type", "number"}, {"exclusiveMinimum", 0}}}};
+  }
 };
 
 // What is run: two runs that agree in these may stand for each other.

@@ -10,15 +10,6 @@ using nlohmann::ordered_json;
 
 namespace {
 
-ordered_json rows_schema(int columns) {
-  return {{"type", "array"},
-          {"items",
-           {{"type", "array"},
-            {"minItems", columns},
-            {"maxItems", columns},
-            {"items", {{"$ref", "#/definitions/figure"}}}}}};
-}
-
 json seconds_json(const std::vector<double>& samples) {
   if (samples.empty()) return nullptr;
   return {{"median", quantile(samples, 0.5)},
@@ -74,83 +65,6 @@ void FieldCodec<PointStatus>::read(const json& from, PointStatus& status, bool) 
 
 ordered_json FieldCodec<PointStatus>::schema(const FieldTraits&) {
   return {{"$ref", "#/definitions/status"}};
-}
-
-json FieldCodec<std::vector<ResidualSample>>::write(const std::vector<ResidualSample>& series,
-                                                    bool) {
-  json list = json::array();
-  for (const ResidualSample& r : series)
-    list.push_back({number(r.time), number(r.first), number(r.last)});
-  return list;
-}
-
-void FieldCodec<std::vector<ResidualSample>>::read(const json& from,
-                                                   std::vector<ResidualSample>& series, bool) {
-  series.clear();
-  for (const json& r : from)
-    series.push_back({number_of(r.at(0)), number_of(r.at(1)), number_of(r.at(2))});
-}
-
-ordered_json FieldCodec<std::vector<ResidualSample>>::schema(const FieldTraits&) {
-  return rows_schema(3);
-}
-
-json FieldCodec<std::vector<ErrorSample>>::write(const std::vector<ErrorSample>& series, bool) {
-  json list = json::array();
-  for (const ErrorSample& e : series)
-    list.push_back(
-        {number(e.time), number(e.error), number(e.worst), number(e.gap), number(e.worst_gap)});
-  return list;
-}
-
-void FieldCodec<std::vector<ErrorSample>>::read(const json& from, std::vector<ErrorSample>& series,
-                                                bool) {
-  series.clear();
-  for (const json& e : from)
-    series.push_back({number_of(e.at(0)), number_of(e.at(1)), number_of(e.at(2)),
-                      number_of(e.at(3)), number_of(e.at(4))});
-}
-
-ordered_json FieldCodec<std::vector<ErrorSample>>::schema(const FieldTraits&) {
-  return rows_schema(5);
-}
-
-json FieldCodec<std::vector<double>>::write(const std::vector<double>& numbers, bool) {
-  return numbers;
-}
-
-void FieldCodec<std::vector<double>>::read(const json& from, std::vector<double>& numbers, bool) {
-  from.get_to(numbers);
-}
-
-ordered_json FieldCodec<std::vector<double>>::schema(const FieldTraits&) {
-  return {{"type", "array"}, {"items", {{"type", "number"}, {"exclusiveMinimum", 0}}}};
-}
-
-json FieldCodec<std::vector<int>>::write(const std::vector<int>& counts, bool) { return counts; }
-
-void FieldCodec<std::vector<int>>::read(const json& from, std::vector<int>& counts, bool) {
-  from.get_to(counts);
-}
-
-ordered_json FieldCodec<std::vector<int>>::schema(const FieldTraits&) {
-  return {{"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 1}}}};
-}
-
-json FieldCodec<std::vector<FrameTime>>::write(const std::vector<FrameTime>& rates, bool) {
-  json list = json::array();
-  for (const FrameTime& f : rates) list.push_back({f.rate, f.median, f.slow, f.worst});
-  return list;
-}
-
-void FieldCodec<std::vector<FrameTime>>::read(const json& from, std::vector<FrameTime>& rates,
-                                              bool) {
-  rates.clear();
-  for (const json& f : from) rates.push_back({f.at(0), f.at(1), f.at(2), f.at(3)});
-}
-
-ordered_json FieldCodec<std::vector<FrameTime>>::schema(const FieldTraits&) {
-  return rows_schema(4);
 }
 
 json to_json(const inextensible::Settings& settings) {

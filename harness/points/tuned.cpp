@@ -68,21 +68,21 @@ TunedEntry read_entry(const json& object, const std::string& where) {
   return entry;
 }
 
-std::vector<SettingsAt> settings_of(const TunedEntry& entry) {
-  std::vector<SettingsAt> all;
-  for (const TunedPlace& p : entry.places) all.push_back({p.resolution, p.limit, p.settings});
-  return all;
-}
-
 // Two files with the same settings are the same to a sweep, whenever they were found.
 std::string hash_of(const std::vector<TunedEntry>& entries) {
   std::map<std::string, json> settings;
   for (const TunedEntry& entry : entries)
-    settings[entry.kind + "/" + entry.solver] = to_json(settings_of(entry));
+    settings[entry.kind + "/" + entry.solver] = to_json(entry.settings_at());
   return fnv1a(json(settings).dump());
 }
 
 }  // namespace
+
+std::vector<SettingsAt> TunedEntry::settings_at() const {
+  std::vector<SettingsAt> all;
+  for (const TunedPlace& p : places) all.push_back({p.resolution, p.limit, p.settings});
+  return all;
+}
 
 const TunedEntry* Tuned::find(const std::string& kind, const std::string& solver) const {
   const auto place = std::find_if(entries.begin(), entries.end(), [&](const TunedEntry& e) {
@@ -148,7 +148,7 @@ void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
     if (!entry) continue;
     Contestant before = all[i];
     const auto fixed = given.find(before.solver);
-    all[i].settings_at = settings_of(*entry);
+    all[i].settings_at = entry->settings_at();
     bool differs = false;
     for (SettingsAt& at : all[i].settings_at) {
       std::erase_if(at.settings, [&](const auto& setting) {

@@ -31,6 +31,8 @@ struct TunedEntry {
   std::vector<TunedPlace> places;
   nlohmann::json rule;     // tuning_rule() of when it was found
   nlohmann::json context;  // date, commit and machine
+
+  std::vector<SettingsAt> settings_at() const;
 };
 
 struct Tuned {

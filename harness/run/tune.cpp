@@ -38,8 +38,12 @@ struct Found {
 class Tuner {
  public:
   Tuner(const SweepSpec& scene, const TuneOptions& options, const SweepRunners& runners,
-        const std::vector<TunedNumber>& numbers)
-      : options_(options), runners_(runners), scene_(scene), numbers_(numbers) {
+        const std::vector<TunedNumber>& numbers, Values start)
+      : options_(options),
+        runners_(runners),
+        scene_(scene),
+        numbers_(numbers),
+        start_(std::move(start)) {
     place_ = place_at(scene.resolutions.front());
   }
 
@@ -51,8 +55,10 @@ class Tuner {
     const auto seconds = [this](const Values& values, double hopeless) {
       return evaluate(values, hopeless);
     };
-    const TuneOutcome outcome = tune_values(numbers_, seconds, options_.rules, guess);
-    const auto was = last_.find(initial()), is = last_.find(outcome.values);
+    std::vector<TunedNumber> from = numbers_;
+    for (std::size_t i = 0; i < from.size(); ++i) from[i].initial = start_[i];
+    const TuneOutcome outcome = tune_values(from, seconds, options_.rules, guess);
+    const auto was = last_.find(start_), is = last_.find(outcome.values);
     if (was == last_.end() || is == last_.end()) return {};
     guess = outcome.values;
     const Found &before = was->second, &now = is->second;
@@ -75,12 +81,6 @@ class Tuner {
     return {.search = plan(suite, {}).front()};
   }
 
-  Values initial() const {
-    Values values;
-    for (const TunedNumber& number : numbers_) values.push_back(number.initial);
-    return values;
-  }
-
   inextensible::Settings settings_of(const Values& values) const {
     inextensible::Settings settings;
     for (std::size_t i = 0; i < numbers_.size(); ++i)
@@ -101,7 +101,7 @@ class Tuner {
     return point;
   }
 
-  // The ladder's best step with the settings that the solver has by itself, at a smaller size where
+  // The ladder's best step with the settings that the search begins with, at a smaller size where
   // that takes too long, and longer with `guess` too: a default must not decide at which size a
   // method is tuned.
   void begin(const Values& guess) {
@@ -129,7 +129,7 @@ class Tuner {
     double best = most_seconds / duration() / give_up_at;
     const auto run = [&](std::size_t rung) -> const PointResult& {
       const auto [at, fresh] = known.try_emplace(rung);
-      if (fresh) at->second = run_once(rung, {}, give_up_at * best);
+      if (fresh) at->second = run_once(rung, settings_of(start_), give_up_at * best);
       if (counts(at->second)) best = std::min(best, at->second.seconds());
       return at->second;
     };
@@ -201,14 +201,28 @@ class Tuner {
   const SweepRunners& runners_;
   const SweepSpec& scene_;  // one size and limit
   const std::vector<TunedNumber>& numbers_;
+  const Values start_;  // what the search begins with, and must better
   Place place_;
   std::map<Values, Found> last_;  // of the last time that it was measured
 };
 
 }  // namespace
 
+namespace {
+
+Values values_of(const inextensible::Settings& settings, const std::vector<TunedNumber>& numbers) {
+  Values values;
+  for (const TunedNumber& number : numbers) {
+    const auto given = settings.find(number.name);
+    values.push_back(given == settings.end() ? number.initial : std::get<double>(given->second));
+  }
+  return values;
+}
+
+}  // namespace
+
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOptions options,
-                       const SweepRunners& runners) {
+                       const SweepRunners& runners, const TunedEntry* known) {
   const inextensible::Backend& backend = *inextensible::find_backend(solver);
   const std::vector<TunedNumber> numbers = tunable_numbers(backend);
   options.rules.budget =
@@ -220,6 +234,8 @@ TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOp
                    .rule = tuning_rule(scene, backend),
                    .context = {}};
   if (numbers.empty()) return entry;
+  Contestant there{.name = solver, .solver = solver};
+  if (known) there.settings_at = known->settings_at();
   Values guess;
   for (const int size : scene.resolutions) {
     for (const double limit : scene.limits) {
@@ -228,7 +244,9 @@ TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOp
       here.refine = false;
       here.resolutions = {size};
       here.limits = {limit};
-      if (auto place = Tuner(here, options, runners, numbers).run(guess))
+      if (auto place = Tuner(here, options, runners, numbers,
+                             values_of(there.settings_for(size, limit), numbers))
+                           .run(guess))
         entry.places.push_back(std::move(*place));
     }
   }

@@ -24,8 +24,9 @@ struct TuneOptions {
 };
 
 // Without `context`. A place has no settings where nothing is gained, and is left out where the
-// solver fails as it is. Throws Interrupted.
+// solver fails as it is. known: settings of other places; each search begins with those of the
+// nearest one instead of the solver's own, and must better them. Throws Interrupted.
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOptions options,
-                       const SweepRunners& runners = {});
+                       const SweepRunners& runners = {}, const TunedEntry* known = nullptr);
 
 }  // namespace harness

@@ -13,7 +13,6 @@ and that line of that file must then contain the text. Generated blocks end with
     <!-- references -->                         the committed references (ends with <!-- end of references -->)
     <!-- bench list NAME -->                    what `bench list NAME` prints
     <!-- folders of solvers -->                 which folders each folder of solvers/CMakeLists.txt uses
-    <!-- bench budget RESULT.json ... -->       what a frame's time buys
     <!-- methods HEADLINE, RESULT.json LIMIT, ... -->   each method's time as published and in its best stepper, within that error
 
 --fix renews them. No other measured number belongs in a document. A paragraph may repeat words of a list:
@@ -22,8 +21,7 @@ and that line of that file must then contain the text. Generated blocks end with
 
 The program is BENCH_BINARY if that is set, else that of build/release; with --fix `./bench`, which builds it first.
 
-Links between documents and paths in backticks must exist, Markdown files that comments name too. docs/measuring.md must name every
-field of a point, docs/using.md every exit code. Pictures of results and docs/results.md must be of the commits that the results in the tree are of.
+Links between documents and paths in backticks must exist, Markdown files that comments name too. docs/using.md must name every exit code. Pictures of results and docs/results.md must be of the commits that the results in the tree are of.
 """
 
 from __future__ import annotations
@@ -44,7 +42,7 @@ BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
 NAMED_DOCUMENT = re.compile(r"[\w/.-]*\w\.md\b")
 REFERENCES = re.compile(r"(<!-- references -->\n).*?(<!-- end of references -->)", re.DOTALL)
-LISTS = re.compile(r"<!-- ((bench list|bench budget|folders of|methods) ([^>:]+?)) -->\n\n?.*?(<!-- end of list -->)", re.DOTALL)
+LISTS = re.compile(r"<!-- ((bench list|folders of|methods) ([^>:]+?)) -->\n\n?.*?(<!-- end of list -->)", re.DOTALL)
 REPEATED = re.compile(r"<!-- bench list (\w+): (.*?) -->")
 SURE = 3  # gaps of a reference
 SOURCES = ("solvers", "harness", "tests", "plots", "cmake", "configs")
@@ -113,10 +111,6 @@ def listed(name: str) -> list[dict]:
     return json.loads(output_of("list", name, "--json"))
 
 
-def budgets_of(files: list[str]) -> str:
-    return output_of("budget", *files)
-
-
 def table_of(name: str) -> str:
     """Of a list of the program: the columns that its rows have."""
     rows = [{**row, "meaning": row.get("meaning", row.get("summary", row.get("description")))} for row in listed(name)]
@@ -174,7 +168,7 @@ def methods_of(words: str) -> str:
     return head + "".join(f"| `{m}` | " + " | ".join(text(column, m) for column in times) + " |\n" for m in order) + "\n"
 
 
-BLOCKS = {"bench list": table_of, "bench budget": lambda words: budgets_of(words.split()), "folders of": folders_of, "methods": methods_of}
+BLOCKS = {"bench list": table_of, "folders of": folders_of, "methods": methods_of}
 
 
 def with_tables(text: str) -> str:
@@ -276,26 +270,6 @@ def named_documents() -> list[str]:
     return errors
 
 
-def names_in(value: object) -> set[str]:
-    """Keys of all objects in it, but of those whose keys a suite or a scene chooses."""
-    if isinstance(value, list):
-        return set().union(*map(names_in, value))
-    if not isinstance(value, dict):
-        return set()
-    chosen = {"settings", "options", "scene_parameters"}
-    return set(value).union(*(names_in(part) for name, part in value.items() if name not in chosen))
-
-
-def measured() -> list[str]:
-    fields = set()
-    for file in ("results/paper-strain-chain.json", "results/paper-step-chain.json"):
-        fields |= names_in(json.loads((ROOT / file).read_text(encoding="utf-8"))["points"][0])
-    schema = json.loads((ROOT / "configs/result.schema.json").read_text(encoding="utf-8"))
-    fields |= set(schema["definitions"]["point"]["properties"])
-    explained = set(BACKTICKS.findall((ROOT / "docs/measuring.md").read_text(encoding="utf-8")))
-    return [f"docs/measuring.md does not explain `{name}`" for name in sorted(fields - explained - {"error", "work"})]
-
-
 def exit_codes() -> list[str]:
     codes = set(re.findall(r" = (\d+)", (ROOT / "harness/cli/exit_codes.h").read_text(encoding="utf-8")))
     explained = set(re.findall(r"^\| (\d+) \|", (ROOT / "docs/using.md").read_text(encoding="utf-8").partition("## Exit codes")[2].partition("\n## ")[0],
@@ -328,7 +302,7 @@ def main() -> int:
         fix()
     errors = [f"{document.relative_to(ROOT)}: {error}" for document in documents()
               for check in (quotes, tables, repeated, links, paths) for error in check(document)]
-    errors += named_documents() + measured() + exit_codes() + pictures()
+    errors += named_documents() + exit_codes() + pictures()
     for error in errors:
         print(error)
     return 1 if errors else 0

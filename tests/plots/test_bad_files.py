@@ -120,7 +120,7 @@ def test_a_bad_file_is_one_line_and_exit_code_2(what: str, tmp_path: Path, capsy
     content, message = BAD[what]
     path = tmp_path / "bad.json"
     path.write_text(content if isinstance(content, str) else json.dumps(content))
-    monkeypatch.setattr(sys, "argv", ["figures.py", str(path)])
+    monkeypatch.setattr(sys, "argv", ["figures.py", str(path), "--out", str(tmp_path)])
     assert exit_code(figures.run) == 2
     said = capsys.readouterr()
     assert said.out == "" and said.err.count("\n") == 1 and said.err.startswith("figures.py: ") and len(said.err) < 500
@@ -168,6 +168,8 @@ def test_whatever_one_field_holds_the_file_is_drawn_or_refused(sweep: str, tmp_p
 
 def test_the_program_names_the_files_it_wrote_and_writes_the_same_twice(tmp_path: Path) -> None:
     path = written(strain_sweep(), tmp_path)
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
     first, second = run(SCRIPT, path, "--out", tmp_path / "one"), run(SCRIPT, path, "--out", tmp_path / "two")
     assert (first.returncode, first.stderr) == (0, "")
     name = "result-figure4a.svg"
@@ -177,7 +179,7 @@ def test_the_program_names_the_files_it_wrote_and_writes_the_same_twice(tmp_path
 
 
 def test_the_programs_refuse_what_they_cannot_do(tmp_path: Path) -> None:
-    missing = run(SCRIPT, tmp_path / "none.json")
+    missing = run(SCRIPT, tmp_path / "none.json", "--out", tmp_path)
     assert missing.returncode == 2 and missing.stderr.count("\n") == 1 and "cannot read" in missing.stderr
 
 

@@ -57,8 +57,8 @@ def pictured(folder: Path, frames: list[int], ends: int = 3) -> Path:
     return folder
 
 
-def run(*arguments: object) -> subprocess.CompletedProcess:
-    return subprocess.run([sys.executable, str(SCRIPT), *map(str, arguments)], capture_output=True, text=True, check=False)
+def run(folder: Path, out: Path) -> subprocess.CompletedProcess:
+    return subprocess.run([sys.executable, str(SCRIPT), str(folder), "--out", str(out)], capture_output=True, text=True, check=False)
 
 
 def pixels(picture: Image.Image) -> np.ndarray:
@@ -161,7 +161,7 @@ def test_words_are_wrapped_and_none_is_lost() -> None:
 
 
 def test_what_is_missing_is_said_in_a_line(tmp_path: Path) -> None:
-    done = subprocess.run([sys.executable, str(SCRIPT), str(pictured(tmp_path, [0])), str(tmp_path / "x.mp4")], capture_output=True,
+    done = subprocess.run([sys.executable, str(SCRIPT), str(pictured(tmp_path, [0])), "--out", str(tmp_path / "x.mp4")], capture_output=True,
                           text=True, check=False, env={"PATH": "/nowhere"})
     assert done.returncode == 2
     assert done.stderr.startswith("film.py: ffmpeg missing") and done.stderr.count("\n") == 1

@@ -86,19 +86,5 @@ TEST(Growth, IntervalsHoldTheTruthAsOftenAsTheySay) {
   EXPECT_LT(inside, 400);
 }
 
-TEST(Growth, LeavesOutFailuresAndRowsOfOneSize) {
-  std::vector<json> points;
-  for (const int n : {101, 201, 317}) points.push_back(resolution_run("icd", n, 1e-6 * n * n));
-  points.push_back(resolution_run("icd", 1001, 1));
-  points.back()["status"] = "timeout";
-  points.push_back(resolution_run("strips", 101, 1));
-  const json result = document(points);
-  const auto found = growth_in(planes_of(result));
-  ASSERT_EQ(found.at(0).rows.size(), 1u);
-  EXPECT_EQ(found[0].rows[0].exponent.points, 3);
-  EXPECT_NEAR(found[0].rows[0].exponent.value, 1, 1e-9);
-  EXPECT_EQ(sentence_of(found[0]), "") << "one row is no comparison";
-}
-
 }  // namespace
 }  // namespace harness::analysis

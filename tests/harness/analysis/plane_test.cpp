@@ -151,22 +151,6 @@ TEST(Plane, IsThereOfEveryCommittedSweep) {
   EXPECT_GE(sweeps, 5);
 }
 
-// What programs read is what was analysed.
-TEST(Plane, IsWrittenAsItIs) {
-  const json result =
-      document({run("strips", 0.1, 0.04, 1e-3, 0.008), run("icd", 0.1, 0.04, 3e-3, 0.03),
-                run("shake", 0.1, 0.02, 2e-3, 0.01)});
-  const json analysis = analysis_of(result);
-  EXPECT_NO_THROW(check_schema(analysis, "analysis", "analysis"));
-  const json& cell = analysis.at("planes").at(0).at("cells").at(3);
-  EXPECT_EQ(cell.at("error_level"), 0.02);
-  EXPECT_EQ(cell.at("first"), "strips");
-  EXPECT_EQ(cell.at("paper_best"), "shake");
-  EXPECT_EQ(cell.at("clear"), true);
-  EXPECT_NEAR(cell.at("lead_over_paper_best").at("value").get<double>(), 2, 1e-12);
-  EXPECT_EQ(cell.at("entries").size(), 2u);
-}
-
 // A limit in each file, and engines in a file of their own: their table is that of one file.
 TEST(Plane, OfSeveralFilesIsThatOfTheWhole) {
   std::vector<json> all, pieces;

@@ -36,13 +36,5 @@ TEST(Pattern, NonsenseAndGiantsAreRefusedInALine) {
   }
 }
 
-TEST(Pattern, AlternativesAreTold) {
-  using Words = std::vector<std::string>;
-  EXPECT_EQ(alternatives("fast|shake|icd"), (Words{"fast", "shake", "icd"}));
-  EXPECT_EQ(alternatives("(a|b)c|d"), (Words{"(a|b)c", "d"}));
-  EXPECT_EQ(alternatives(R"([|]x|a\|b)"), (Words{"[|]x", R"(a\|b)"}));
-  EXPECT_EQ(alternatives("one"), (Words{"one"}));
-}
-
 }  // namespace
 }  // namespace harness

@@ -140,15 +140,6 @@ TEST(Pictures, ShowClothThatLiesOnABodyWhole) {
     EXPECT_NEAR(pixel(pixels, at)[k], pixel(bare, at)[k], 12) << "cloth, not the body";
 }
 
-TEST(Pictures, OfARopeShowIt) {
-  Recording recording = flat_square(3);
-  recording.stage.triangles.clear();
-  const View view = view_of_all(recording);
-  const Pixels pixels = trace(shot_of(recording, view, 0, 0, width), view, width, 2);
-  EXPECT_LT(pixel(pixels, view.seen({0.25, 0, 0.5}))[2], 200);
-  EXPECT_GT(pixel(pixels, view.seen({0.25, 0, 0.25}))[2], 240) << "nothing between ropes";
-}
-
 TEST(View, StaysOnTheBodyWhenClothFallsOff) {
   Recording recording = flat_square(5);
   add_body(recording, {0.5, -0.4, 0.5}, 0.4);
@@ -173,28 +164,6 @@ TEST(View, SeesTheBodyInAllItsPoses) {
     for (const auto& corner : body.colwise())
       EXPECT_LE(view.seen(corner).cwiseAbs().maxCoeff(), 1) << "frame " << frame;
   }
-}
-
-TEST(View, SeesAllTakes) {
-  Recording recording = flat_square(5, 2);
-  recording.takes[1].frames.push_back(recording.takes[1].frames[0].colwise() -
-                                      Vector3d(0.3, 0.8, 0));
-  const View view = view_of_all(recording);
-  for (const auto& point : recording.takes[1].frames[1].colwise())
-    EXPECT_LE(view.seen(point).cwiseAbs().maxCoeff(), 1);
-}
-
-TEST(View, IsOfTheFramesThatAreShown) {
-  Recording recording = flat_square(5);
-  recording.takes[0].frames.push_back(0.1 * recording.takes[0].frames[0]);
-  EXPECT_LT(view_of(recording, {1}).size, 0.2 * view_of(recording, {0, 1}).size);
-}
-
-TEST(Orientation, MakesNormalsPointOneWay) {
-  const Recording recording = flat_square(6);
-  const Positions& x = recording.takes[0].frames[0];
-  for (const auto& t : recording.stage.triangles)
-    EXPECT_LT((x.col(t[1]) - x.col(t[0])).cross(x.col(t[2]) - x.col(t[0])).y(), 0);
 }
 
 // In a square of 7 x 7 the middle of each drawn side lies on a line of an even number.

@@ -135,33 +135,6 @@ TEST(ResultFile, TheSchemaRefusesAWrongStatusAndAnUnknownCounter) {
   EXPECT_NE(misfits(bad, "configs/result.schema.json"), "");
 }
 
-// Settings may be words or numbers; these two are one of them.
-TEST(ResultFile, WhoseLinearSolverIsANumberIsNone) {
-  const Suite suite = tiny_suite();
-  PointResult point;
-  point.spec = plan(suite, {}).front().base;
-  point.linear_solver = "tridiagonal";
-  point.stiffness = 3;
-  json document = result_document(machine_context(), suite, {"bench"}, true, {point});
-  for (const auto& [key, wrong] :
-       {std::pair("linear_solver", json(0)), {"stiffness", json("much")}}) {
-    json corrupted = document;
-    corrupted["points"][0]["options"][key] = wrong;
-    EXPECT_NE(misfits(corrupted, "configs/result.schema.json").find(key), std::string::npos) << key;
-  }
-}
-
-TEST(ResultFile, NamesItsPlugins) {
-  json document = result_document(machine_context(), tiny_suite(), {"bench"}, true, {});
-  EXPECT_FALSE(document["context"].contains("plugins"));
-  json plugin = {{"file", "libx.so"}, {"version", "1.0"}, {"solvers", {"x"}}, {"optimized", true}};
-  document["context"]["plugins"] = {plugin};
-  EXPECT_EQ(misfits(document, "configs/result.schema.json"), "");
-  plugin.erase("version");
-  document["context"]["plugins"] = {plugin};
-  EXPECT_NE(misfits(document, "configs/result.schema.json"), "");
-}
-
 TEST(ResultFile, OfAnUntimedRunIsNotReadForItsTimes) {
   json document = result_document(machine_context(), tiny_suite(), {"bench"}, true, {});
   EXPECT_TRUE(is_timed(document)) << "older files do not say";
@@ -190,16 +163,6 @@ TEST(ResultFile, CommittedResultsFitTheSchema) {
                                                                     : "answers";
     EXPECT_EQ(misfits(document, "configs/" + schema + ".schema.json"), "") << entry.path();
   }
-}
-
-TEST(Schemas, SayWhatTheTablesSay) {
-  for (const std::string& name : generated_schemas()) {
-    const std::string file = "configs/" + name + ".schema.json";
-    EXPECT_EQ(read_file(source(file), "schema"), schema_text(name))
-        << "write it anew: bench list " << name << ".schema > new.json && mv new.json " << file;
-  }
-  const nlohmann::ordered_json stale = {{"definitions", {{"status", {{"enum", {"fine"}}}}}}};
-  EXPECT_EQ(with_tables(stale)["definitions"]["status"]["enum"].size(), point_statuses.size());
 }
 
 TEST(ResultFile, IsOnePointALineAndNamesWhatFiguresShow) {

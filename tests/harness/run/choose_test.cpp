@@ -43,12 +43,6 @@ TEST(Choose, WhatABudgetBuysIsTheLeastErrorOfThoseThatKeepIt) {
   EXPECT_FALSE(most_accurate(measured_runs, {}, 1.0 / 60));
 }
 
-TEST(Choose, WhatFailedIsNoChoice) {
-  std::vector<PointResult> all = measured_runs;
-  all[1].status = PointStatus::strain_missed;
-  EXPECT_EQ(fastest(all, {.error = 0.02})->point->spec.solver, "b");
-}
-
 TEST(Choose, ABudgetIsKeptByTheFramesAndNotByTheMean) {
   std::vector<PointResult> all = measured_runs;  // frames of "b": 3 / 60 s, 99 % below 6 / 60 s
   all[1].frame_times = {{60, 2.0 / 60, 9.0 / 60, 9.0 / 60}};

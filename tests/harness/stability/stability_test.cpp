@@ -142,31 +142,6 @@ TEST(HardCases, HaveUniqueNamesAndAnExpectationForEverySolver) {
   }
 }
 
-TEST(HardCases, ExpectOneOutcomeInMostCells) {
-  int strict = 0, all = 0;
-  for (const HardCase& c : harness::hard_cases(harness::hard_case_values("default"))) {
-    for (const auto& backend : inextensible::backends()) {
-      if (!backend.contestant) continue;
-      const auto e = std::find_if(
-          c.expectations.begin(), c.expectations.end(),
-          [&](const auto& expectation) { return expectation.solvers.contains(backend.name); });
-      ASSERT_NE(e, c.expectations.end());
-      ++all;
-      strict += e->other ? 0 : 1;
-    }
-  }
-  EXPECT_GE(strict, 0.85 * all) << strict << " of " << all;
-}
-
-// Their numbers of passes follow from it.
-TEST(HardCases, KnowThePenaltyOfMethodsOfMultipliers) {
-  for (const std::string& name : harness::case_parts::multipliers.names()) {
-    const auto settings = inextensible::complete_settings(*inextensible::find_backend(name), {});
-    EXPECT_EQ(std::get<double>(settings.at("penalty")), harness::case_parts::multiplier_penalty)
-        << name;
-  }
-}
-
 TEST(HardCases, ExpectARefusalOfContactWhereNoObstacleIsTaken) {
   for (const HardCase& c : harness::hard_cases(harness::hard_case_values("quick"))) {
     if (c.row != "contact") continue;

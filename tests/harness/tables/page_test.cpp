@@ -57,21 +57,6 @@ TEST(ResultsPage, OnlyTheClearlyFastestIsBoldAndRatiosHaveIntervals) {
   has(noisy, "fast_projection and icd are the fastest, too close to tell apart");
 }
 
-TEST(ResultsPage, WithoutIntervalsNothingIsBold) {
-  json result = sweep();
-  for (json& p : result["points"])
-    p["seconds_per_simulated_second"] = timing(p["seconds_per_simulated_second"]["min"], 3);
-  result["context"].erase("noise");
-  EXPECT_EQ(page(result).find("**"), std::string::npos);
-}
-
-TEST(ResultsPage, TheDoubleIsNoContestant) {
-  const std::string text = page(sweep(0.01));
-  EXPECT_EQ(text.find("fast_projection_again"), std::string::npos);
-  EXPECT_EQ(text.find(" 500 ms"), std::string::npos) << "the double's time";
-  has(text, "| `file.json` | x | x | abc | `fast_projection` | 20 | - | 1.01 % |");
-}
-
 TEST(ResultsPage, ASolverStandsThereWithTheFasterOfItsTunedAndUntunedSettings) {
   const std::string lost = page(sweep(0.01, 0.1));
   has(lost, "| 1 % | **`icd` `u`** 100 ms");
@@ -115,27 +100,6 @@ TEST(ResultsPage, ErrorsCountWhereTheReferenceIsSure) {
   EXPECT_FALSE(tables::Point(p).within_error(0.009));
   p["error"]["error_series"] = {{0.1, 0.01, 0.02, 0.05, 0.05}};
   EXPECT_FALSE(tables::Point(p).within_error(0.1));  // 3 gaps are more
-}
-
-TEST(ResultsPage, ThePlaneHasShapeErrorsWhereTheyAreKnown) {
-  json result = sweep(0.01);
-  json p = point("drape", "strain", "icd", 0.01, 441, 0.01, 1);
-  p["error"] = {{"trajectory", 0.05}};
-  json rival = point("drape", "strain", "fast_projection", 0.01, 441, 0.01, 2);
-  rival["error"] = p["error"];
-  result["points"] = {p, rival};
-  EXPECT_EQ(page(result).find("hape"), std::string::npos);
-  p["error"]["shape"] = 0.031;
-  result["points"] = {p, rival};
-  has(page(result), "shape by 3.1 %");
-  has(page(result), "Shape errors are deviations beyond the ensemble's spread.");
-}
-
-// What one contestant did alone is no contest.
-TEST(ResultsPage, APlaneWithoutRivalsIsLeftOut) {
-  json result = sweep(0.01);
-  result["points"] = {point("drape", "strain", "icd", 0.01, 441, 0.01, 1)};
-  EXPECT_EQ(page(result).find("### drape"), std::string::npos);
 }
 
 }  // namespace

@@ -48,22 +48,6 @@ TEST(Terminal, IsNoWiderThanItMayBeAndLosesNoWord) {
   }
 }
 
-TEST(Terminal, TellsTheShapeErrorsOfTheFastest) {
-  std::vector<json> runs;
-  for (const double limit : {0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0002, 0.0001}) {
-    runs.push_back(run("strips", limit, 0.04, 1e-3, 0.008));
-    runs.back()["error"]["shape"] = limit;
-  }
-  const json result = document(runs);
-  std::ostringstream out;
-  print_sweep(out, result);
-  EXPECT_NE(out.str().find("shape errors of the fastest, whatever their motion: 10 %: 10 %, 5 %"),
-            std::string::npos)
-      << out.str();
-  std::istringstream lines(out.str());
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
-}
-
 TEST(Terminal, NamesPluginsAndTheCostOfCopying) {
   json engine = run("engine", 0.1, 0.04, 1e-3, 0.008), other = run("filter", 0.1, 0.04, 2e-3, 0.01);
   engine["phases"] = {{"unconstrained", 0.1}, {"filter", 0.7}, {"collision", 0}, {"copy", 0.2}};
@@ -82,27 +66,6 @@ TEST(Terminal, NamesPluginsAndTheCostOfCopying) {
       std::string::npos)
       << with.str();
   EXPECT_NE(with.str().find("plug-in filter: 3\n"), std::string::npos) << with.str();
-}
-
-TEST(Terminal, HasEverybodyIfAskedFor) {
-  json failed = run("shake", 0.1, 0.02, 2e-3, 0.01);
-  failed["status"] = "diverged";
-  const json result = document(
-      {run("strips", 0.1, 0.04, 1e-3, 0.008), run("icd", 0.1, 0.04, 3e-3, 0.03),
-       run("icd_untuned", 0.1, 0.04, 4e-3, 0.03), run("null", 0.1, 0.04, 1e-4, 0), failed});
-  std::ostringstream brief, all;
-  print_sweep(brief, result);
-  print_sweep(all, result, true);
-  EXPECT_EQ(brief.str().find("icd_untuned"), std::string::npos);
-  EXPECT_NE(brief.str().find(
-                "1 of 5 trial runs failed (coarse steps are tried until they do): diverged 1"),
-            std::string::npos)
-      << brief.str();
-  for (const char* words : {"icd_untuned", "slower settings", "no strain limit",
-                            "chain, shake: diverged x 1", "3.00 (2.99-3.01)"})
-    EXPECT_NE(all.str().find(words), std::string::npos) << words << "\nin\n" << all.str();
-  std::istringstream lines(all.str());
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
 }
 
 }  // namespace

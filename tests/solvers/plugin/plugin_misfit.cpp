@@ -1,5 +1,7 @@
-// Plug-ins that bench must refuse, by MISFIT_..., and one that it must find broken; plugin_test.sh
-// loads them.
+// Plug-ins that bench must refuse, by MISFIT_..., one that it must find broken (plugin_test.sh
+// loads them), and one that never ends a step (interrupts_test.sh).
+#include <unistd.h>
+
 #include <stdexcept>
 
 #include "solvers/plugin.h"
@@ -9,7 +11,12 @@ namespace {
 using namespace inextensible;
 
 struct Nothing final : VelocityFilter {
-  StepResult apply(const Positions&, double, Iterate, WorkCounters&) override { return {}; }
+  StepResult apply(const Positions&, double, Iterate, WorkCounters&) override {
+#if defined(MISFIT_hangs)
+    for (;;) pause();
+#endif
+    return {};
+  }
 };
 
 std::unique_ptr<Stepper> make(std::shared_ptr<const Problem> problem, const BackendOptions&) {

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Every verb that computes answers Ctrl-C, SIGTERM and SIGHUP within a second, even inside a step that never ends: exit code 130, a file
+# that was there stays as it was, and no process and no temporary file is left.
+rm -rf -- ./*  # of the last time
+set -u
+plugin=$BUILD_FOLDER/tests/libplugin_hangs.so
+export TMPDIR=$PWD/tmp
+failures=0
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+
+mkdir tmp
+"$BENCH_BINARY" --sweep strain --scene chain --n 5 --limit 0.1 --solver shake --reps 1 --no-plots --out small.json >/dev/null 2>&1
+/usr/bin/python3 -c '
+import json
+print(json.dumps({**json.load(open("small.json"))["points"][0], "solver": "misfit", "contestant": "misfit", "settings": {}}))' >point.txt
+
+# words_of VERB: what makes it compute with the solver that hangs; its output is old.*
+words_of() {
+  case $1 in
+    film) echo film --scene chain --set n=5 --solver misfit --out old.png ;;
+    point) echo point ;;
+    choose) echo choose --scene chain --n 5 --solver misfit --no-wait ;;
+    check) echo check --solver misfit ;;
+    sweep) echo --sweep strain --scene chain --n 5 --limit 0.1 --solver misfit --no-plots --no-wait --force --out old.json ;;
+    stability) echo --sweep stability --solver misfit --no-plots --force --out old.json ;;
+    answers) echo answers --solver misfit --no-plots --force --out old.json ;;
+  esac
+}
+
+for verb in film point choose check sweep stability answers; do
+  for signal in INT TERM HUP; do
+    echo old >old.json
+    echo old >old.png
+    read -ra words <<<"$(words_of $verb)"
+    "$BENCH_BINARY" --plugin "$plugin" "${words[@]}" <point.txt >out.txt 2>err.txt &
+    pid=$!
+    sleep 1
+    kill -0 $pid 2>/dev/null || { fail "$verb ended by itself: $(tail -1 err.txt)"; continue; }
+    begin=$(date +%s%N)
+    kill -s $signal $pid
+    wait $pid
+    code=$?
+    took=$((($(date +%s%N) - begin) / 1000000))
+    ((code == 130)) || fail "$verb, SIG$signal: exit $code, $(tail -1 err.txt)"
+    ((took < 1000)) || ((SANITIZED)) || fail "$verb, SIG$signal: took $took ms"
+    [[ $(cat old.png) == old ]] || fail "$verb, SIG$signal: the old picture is gone"
+    pgrep -f -- "$plugin" >/dev/null && fail "$verb, SIG$signal: a process is left" && pkill -9 -f -- "$plugin"
+    [[ -z $(find tmp . -maxdepth 1 -name 'bench-*' -o -maxdepth 1 -name 'old.*.??????') ]] || fail "$verb, SIG$signal: $(ls tmp .)"
+  done
+done
+exit $((failures > 0))
