@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the figures of a result file: cost over permissible strain and over resolution, each solver at its best step; who is
+"""Draws the figures of a result file: cost over strain limit and over resolution, each solver at its best step; who is
 fastest within a strain limit and an error; for step sweeps time against error, and the residual that a solver leaves; for a
 stability sweep the matrix of hard cases; for known answers the deviations from them.
 

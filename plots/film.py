@@ -84,7 +84,7 @@ def caption(film: Film, take: int, frame: int) -> list[str]:
     of = film.takes[take]
     frame = min(frame, of["frames"] - 1)
     lines = [of["label"], f"steps of 1/{1 / of['step']:.6g} s: {status(of)}",
-             f"permitted strain {percent(of['strain_limit'])}, largest so far {percent(max(of['largest_strain'][:frame + 1]))}"]
+             f"strain limit {percent(of['strain_limit'])}, largest so far {percent(max(of['largest_strain'][:frame + 1]))}"]
     if of["seconds"]:
         seconds = statistics.median(of["seconds"]) * film.header["frames_per_second"] / FRAME_RATE
         lines.append(f"{1000 * seconds:.3g} ms for a frame of 1/{FRAME_RATE} s")

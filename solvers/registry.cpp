@@ -24,15 +24,15 @@ std::vector<Backend> built_in() {
       icd_row(),
       fast_projection_row(),
       rattle_row(),
-      strips_row(),
+      yarn_projection_row(),
       fast_projection_adaptive_row(),
-      xpbd_small_steps_row(),
+      pbd_substeps_row(),
       vertex_block_descent_row(),
       augmented_vbd_row(),
-      projective_dynamics_row(),
+      admm_row(),
       soft_step_row(),
       null_row(),
-      oracle_row(),
+      dense_newton_row(),
   };
 }
 

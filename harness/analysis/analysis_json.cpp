@@ -25,7 +25,7 @@ json ratio_json(const std::optional<Ratio>& ratio) {
 json entry_json(const Entry& entry) {
   return {{"contestant", entry.role.name},
           {"row", entry.row},
-          {"hollow", entry.role.hollow},
+          {"unranked", entry.role.unranked},
           {"counts", entry.counts},
           {"id", entry.point.id()},
           {"seconds", number(entry.point.seconds())},

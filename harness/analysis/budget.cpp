@@ -30,14 +30,14 @@ struct Run {
   Reach reach;
 };
 
-std::optional<Run> run_of(const json& document, const ContestantRoles& cast, double noise) {
+std::optional<Run> run_of(const json& document, const ContestantRoles& roles, double noise) {
   const Point point(document, noise);
   if (document.value("adaptive", false) || !point.ok()) return std::nullopt;
-  const Role role = cast.of(point.contestant());
+  const Role role = roles.of(point.contestant());
   const double frame = frame_seconds(point);
   if (!role.competes || role.again || !(frame > 0)) return std::nullopt;
   const double error = point.error_at(headline_error).distance;
-  return Run{cast.at_any_settings(point.contestant()),
+  return Run{roles.at_any_settings(point.contestant()),
              role.family,
              {point.number("strain_limit"), error, frame, error <= headline_error, point}};
 }
@@ -97,10 +97,10 @@ BudgetTable table_of(const std::vector<const Run*>& runs, const std::vector<doub
 
 std::vector<BudgetTable> budget_tables(const json& document, const std::vector<double>& budgets) {
   std::vector<Run> runs;
-  const ContestantRoles cast(document);
+  const ContestantRoles roles(document);
   const double noise = pair_noise_of(document);
   for (const json& p : document.at("points")) {
-    if (auto run = run_of(p, cast, noise)) runs.push_back(std::move(*run));
+    if (auto run = run_of(p, roles, noise)) runs.push_back(std::move(*run));
   }
   const auto place_of = [](const Run& run) {
     const json& p = run.reach.point.document();

@@ -1,5 +1,5 @@
 // The question of plane.h the other way round: what strain and what error does a method reach
-// within so much time of each frame?
+// within a frame budget?
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ struct Reach {
 };
 
 struct Budgeted {
-  std::string row;  // a hollow contestant's is its solver's
+  std::string row;  // an unranked contestant's is its solver's
   std::string family;
   std::vector<Reach> stairs;  // runs that reach more than every run with shorter frames
   std::vector<std::optional<Reach>> reached;  // one for each budget; none: no run is that fast

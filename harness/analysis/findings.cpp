@@ -14,7 +14,7 @@ constexpr double headline_limit = 0.01;  // strain
 constexpr double vague_exponent = 1;
 
 std::string name_words(const Entry& entry) {
-  return entry.row + (entry.role.hollow ? " with untuned settings" : "");
+  return entry.row + (entry.role.unranked ? " with untuned settings" : "");
 }
 
 // "a", "a and b", "a, b, c and 2 more".
@@ -32,10 +32,10 @@ std::string joined(const std::vector<const Entry*>& entries) {
 
 std::string leader_words(const Cell& cell, const std::vector<const Entry*>& equals) {
   const std::string first = name_words(*cell.first());
-  if (!cell.counting(1)) return first + " alone has an answer";
-  if (equals.size() > 1) return joined(equals) + " are the fastest, too close to tell apart";
+  if (!cell.counting(1)) return "only " + first + " has a run";
+  if (equals.size() > 1) return joined(equals) + " are the fastest, too close to rank";
   if (cell.clear()) return first + " is the fastest";
-  return first + " has the least time, of too few samples to be sure";
+  return first + " is fastest so far, with too few samples to rank";
 }
 
 // What it costs to take another one.
@@ -106,9 +106,10 @@ Finding finding_of(const Plane& plane) {
 }  // namespace
 
 std::string sentence_of(const Cell& cell) {
-  const std::string place = "At " + percent(cell.strain_limit) + " strain, " +
-                            (cell.level == any_motion ? std::string("whatever the motion")
-                                                      : "right to " + percent(cell.level));
+  const std::string place =
+      "At " + percent(cell.strain_limit) + " strain, " +
+      (cell.level == any_motion ? std::string("whatever the motion")
+                                : "motion error at most " + percent(cell.level));
   const Entry* first = cell.first();
   if (!first) return place + ", there is no answer: " + cell.empty_because + ".";
   const auto equals = cell.equals();

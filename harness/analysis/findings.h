@@ -20,8 +20,9 @@ struct Finding {
   std::vector<std::string> sentences;
 };
 
-// "At 1 % strain, right to 2 %, x is the fastest: 41.3 ms a simulated second with steps of 1/200 s
-// and an error of 1.4 %; y, the best of the paper's six, takes 2.1 (1.9-2.3) times as long."
+// "At 1 % strain, motion error at most 2 %, x is the fastest: 41.3 ms a simulated second with steps
+// of 1/200 s and an error of 1.4 %; y, the best of the paper's six, takes 2.1 (1.9-2.3) times as
+// long."
 std::string sentence_of(const Cell& cell);
 // "From 441 to 10201 vertices the time of a step grows least with x, as their number to the power
 // 1.1 (1.0 to 1.2), and most with y, 1.6 (1.5 to 1.7)." Of rows that have all sizes; "" for less

@@ -78,7 +78,7 @@ ContestantRoles::ContestantRoles(const json& document) {
                                     .family = entry.value("family", name),
                                     .solver = entry.value("solver", name),
                                     .competes = entry.value("contestant", true),
-                                    .hollow = entry.value("hollow", false)});
+                                    .unranked = entry.value("unranked", false)});
     }
   }
   const json noise = document.value("context", json::object()).value("noise", json());
@@ -99,7 +99,7 @@ Role ContestantRoles::of(const std::string& contestant) const {
 
 std::string ContestantRoles::at_any_settings(const std::string& contestant) const {
   const Role role = of(contestant);
-  return role.hollow && !role.again ? role.solver : contestant;
+  return role.unranked && !role.again ? role.solver : contestant;
 }
 
 void ContestantRoles::add(const ContestantRoles& other) {

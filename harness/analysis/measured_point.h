@@ -74,9 +74,9 @@ struct Role {
   std::string name, family;
   std::string solver;  // that it is, with settings of its own
   bool competes = true;
-  bool hollow = false;  // shown beside its tuned self, not ranked
-  bool again = false;   // the second of an A/A pair
-  bool ranked() const { return competes && !hollow && !again; }
+  bool unranked = false;  // shown beside its tuned self, not ranked
+  bool again = false;     // the second of an A/A pair
+  bool ranked() const { return competes && !unranked && !again; }
 };
 
 // One file's legend and noise; contestants that it does not name are their own family.
@@ -85,7 +85,7 @@ class ContestantRoles {
   ContestantRoles() = default;
   explicit ContestantRoles(const nlohmann::json& document);
   Role of(const std::string& contestant) const;
-  // Whose row a contestant's points stand in where any settings may be chosen: a hollow one's in
+  // Whose row a contestant's points stand in where any settings may be chosen: an unranked one's in
   // its solver's, but for the second of an A/A pair, which would give the first a second chance.
   std::string at_any_settings(const std::string& contestant) const;
   void add(const ContestantRoles& other);  // what is known already stays

@@ -31,7 +31,8 @@ std::string level_text(double level) { return number_text(100 * level) + " %"; }
 std::string why_empty(const std::vector<const Point*>& here, double level, double known_until) {
   const auto any = [&](auto has) { return std::any_of(here.begin(), here.end(), has); };
   if (!any([](const Point* p) { return may_answer(*p); })) return "no run keeps the strain limit";
-  if (known_until > 0) return "no run that was tried is right to " + level_text(level);
+  if (known_until > 0)
+    return "no run that was tried has a motion error of at most " + level_text(level);
   const auto has = [&](const char* key) {
     return any([key](const Point* p) {
       const auto place = p->document().at("error").find(key);
@@ -43,7 +44,7 @@ std::string why_empty(const std::vector<const Point*>& here, double level, doubl
                              : "the file has no errors";
 }
 
-// A hollow contestant and its solver are one row, of which the fastest counts.
+// An unranked contestant and its solver are one row, of which the fastest counts.
 void rank(std::vector<Entry>& entries) {
   std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.point.seconds() < b.point.seconds();
@@ -57,7 +58,7 @@ void rank(std::vector<Entry>& entries) {
 }
 
 Cell cell_of(const std::vector<const Point*>& here, double limit, double level,
-             const ContestantRoles& cast) {
+             const ContestantRoles& roles) {
   Cell cell;
   cell.strain_limit = limit;
   cell.level = level;
@@ -73,7 +74,7 @@ Cell cell_of(const std::vector<const Point*>& here, double limit, double level,
     }
     const Point* entry = fastest_of(own, level);
     if (!entry) continue;
-    cell.entries.push_back({cast.of(name), cast.at_any_settings(name), false, *entry,
+    cell.entries.push_back({roles.of(name), roles.at_any_settings(name), false, *entry,
                             entry->error_at(level).distance});
   }
   rank(cell.entries);
@@ -115,7 +116,7 @@ std::vector<double> levels_in(const json& document) {
 }
 
 Plane plane_of(const std::vector<const Point*>& points, const json& document,
-               const ContestantRoles& cast) {
+               const ContestantRoles& roles) {
   const Point& one = *points.front();
   Plane plane;
   plane.scene = one.text("scene");
@@ -132,7 +133,7 @@ Plane plane_of(const std::vector<const Point*>& points, const json& document,
       if (p->number("strain_limit") == limit) here.push_back(p);
     }
     for (const double level : plane.levels)
-      plane.cells.push_back(cell_of(here, limit, level, cast));
+      plane.cells.push_back(cell_of(here, limit, level, roles));
   }
   take_tighter_runs(plane.cells, plane.levels.size());
   return plane;
@@ -240,7 +241,7 @@ std::vector<std::string> Plane::leaders() const {
 }
 
 std::vector<Plane> planes_of(const json& document) {
-  const ContestantRoles cast(document);
+  const ContestantRoles roles(document);
   const double noise = pair_noise_of(document);
   std::vector<Point> points;
   for (const json& p : document.at("points")) {
@@ -257,7 +258,7 @@ std::vector<Plane> planes_of(const json& document) {
     for (const Point& p : points) {
       if (place_of(p) == place) here.push_back(&p);
     }
-    planes.push_back(plane_of(here, document, cast));
+    planes.push_back(plane_of(here, document, roles));
   }
   return planes;
 }

@@ -1,5 +1,5 @@
 // The question of docs/measuring.md, answered from a result file: which method is fastest such that
-// no edge is strained by more than a limit and the motion is right to within a level of error.
+// no edge is strained by more than a limit and the motion error is within a level.
 // Computed here once; tables, figures and pages print it.
 #pragma once
 
@@ -21,7 +21,7 @@ const Point* fastest_of(const std::vector<const Point*>& points, double level);
 // tighter one, which keeps the cell's as well.
 struct Entry {
   Role role;
-  std::string row;      // whose row it stands in: a hollow contestant's is its solver's
+  std::string row;      // whose row it stands in: an unranked contestant's is its solver's
   bool counts = false;  // the fastest of its row; not of the second of an A/A pair
   Point point;
   double error = unknown;  // at the cell's level; of any motion at the headline's

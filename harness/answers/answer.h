@@ -22,7 +22,7 @@ class Reading {
   virtual bool done() const { return false; }
   // After the last step; NaN if the run does not tell.
   virtual double value() const = 0;
-  // What the solver is to be observed by; null: nothing.
+  // Observes the solver; null: nothing does.
   virtual inextensible::IterateObserver* observer() { return nullptr; }
 };
 
@@ -44,7 +44,7 @@ struct KnownAnswer {
   double (*exact)(const AnswerScene&);
   std::unique_ptr<Reading> (*reading)(const AnswerScene&);
   bool needs_multipliers = false;  // of methods that show their iterates alone (Stepper::observe)
-  bool continuum = false;  // exact for ever more vertices: runs tend to something else nearby
+  bool continuum = false;  // exact in the limit of many vertices: runs tend to something nearby
 };
 
 std::span<const KnownAnswer> known_answers();

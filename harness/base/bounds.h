@@ -16,7 +16,7 @@ struct Bounds {
   bool whole = false;
 
   static Bounds positive() { return {.least = 0, .above = true}; }
-  // A permissible strain: at 1 an edge may vanish.
+  // A strain limit: at 1 an edge may vanish.
   static Bounds strain() { return {.least = 0, .above = true, .most = 1, .below = true}; }
   static Bounds at_least(double least) { return {.least = least}; }
   // One that fits into an int.

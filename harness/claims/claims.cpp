@@ -20,7 +20,7 @@ struct Row {
 
 constexpr Row rows[] = {
     {"C1", "Fig. 4a",
-     "chain: as the permitted strain falls, fast projection is asymptotically better than implicit "
+     "chain: as the strain limit falls, fast projection is asymptotically better than implicit "
      "springs",
      claims::chain_time_over_strain},
     {"C2", "Fig. 4b",

@@ -169,7 +169,8 @@ std::string ahead_from(const Curve& fast, const std::vector<Curve>& others) {
   return from;
 }
 
-// The fastest of all contestants, at each place of fast projection's curve: "strips at 10 %, 1
+// The fastest of all contestants, at each place of fast projection's curve: "yarn_projection at 10
+// %, 1
 // %; icd at 0.1 %".
 std::string first_of_all(const Points& points, const std::string& sweep, const Curve& fast,
                          double level, const std::function<std::string(double)>& words,

@@ -71,7 +71,7 @@ Points::Points(const std::vector<json>& results) {
   using Key = std::tuple<std::string, std::string, std::string, bool>;
   std::set<Key> seen;
   for (const json& result : results) {
-    cast_.add(ContestantRoles(result));
+    roles_.add(ContestantRoles(result));
     if (result.value("schema", "") == "inextensible-stability/1") {
       for (const json& cell : result.at("matrix")) matrix_.push_back(&cell);
       for (const json& mesh : result.at("degrees_of_freedom")) freedom_.push_back(&mesh);
@@ -124,7 +124,7 @@ Curve Points::best(const std::string& scene, const std::string& sweep,
   const char* axis = sweep == "strain" ? "strain_limit" : "vertices";
   std::map<std::pair<double, std::string>, std::vector<const Point*>> places;
   for (const Point& p : all_) {
-    if (of(p, scene, sweep, vertices) && cast_.at_any_settings(p.contestant()) == contestant)
+    if (of(p, scene, sweep, vertices) && roles_.at_any_settings(p.contestant()) == contestant)
       places[{p.number(axis), p.contestant()}].push_back(&p);
   }
   Curve curve;
@@ -137,7 +137,7 @@ Curve Points::best(const std::string& scene, const std::string& sweep,
 Curve Points::best_at_errors(const std::string& scene, const std::string& contestant) const {
   Curve curve;
   for (const Point& p : where([&](const Point& q) {
-         return of(q, scene, "step") && cast_.at_any_settings(q.contestant()) == contestant &&
+         return of(q, scene, "step") && roles_.at_any_settings(q.contestant()) == contestant &&
                 q.ok() && q.timed();
        })) {
     for (const double level : error_levels) {

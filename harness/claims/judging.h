@@ -82,12 +82,12 @@ class Points {
   // settings, of the largest size in step sweeps.
   Curve best_at_errors(const std::string& scene, const std::string& contestant) const;
 
-  Role about(const std::string& contestant) const { return cast_.of(contestant); }
+  Role about(const std::string& contestant) const { return roles_.of(contestant); }
   // Those with points in a sweep of a scene that are ranked, in the files' order.
   std::vector<Role> ranked(const std::string& scene, const std::string& sweep,
                            std::optional<double> vertices = {}) const;
   bool same_family(const std::string& a, const std::string& b) const {
-    return cast_.of(a).family == cast_.of(b).family;
+    return roles_.of(a).family == roles_.of(b).family;
   }
 
  private:
@@ -96,7 +96,7 @@ class Points {
 
   std::vector<Point> all_;
   bool repeated_ = false;
-  ContestantRoles cast_;
+  ContestantRoles roles_;
   // Vertices, by scene and sweep.
   std::map<std::pair<std::string, std::string>, std::set<double, std::greater<>>> sizes_;
   std::vector<const nlohmann::json*> matrix_, freedom_, same_frame_;

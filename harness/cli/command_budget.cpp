@@ -1,4 +1,4 @@
-// bench budget: what strain and error methods reach within so much time a frame.
+// bench budget: strain and error of each method within a frame budget.
 #include <iostream>
 
 #include "harness/analysis/budget.h"
@@ -36,7 +36,7 @@ int print_budgets_of(const std::vector<std::string>& files, const std::vector<do
 
 Verb budget_verb() {
   return {
-      "budget", "what strain and error each method reaches within so much time a frame",
+      "budget", "strain and error of each method within a frame budget",
       [](const Command& command) -> Action {
         struct Given {
           std::vector<std::string> files;

@@ -90,10 +90,10 @@ Suite suite_of(const ChooseCommand& given, double rate) {
   return suite;
 }
 
-// A kept reference, or a finer run made now, which is on the shelf then. Null: neither.
-std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, ReferenceFolder& shelf,
+// A kept reference, or a finer run made now, which is then among `references`. Null: neither.
+std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, ReferenceFolder& references,
                                                const ChooseLimits& limits) {
-  if (auto kept = shelf.find(sweep.scene, sweep.scene_parameters)) return kept;
+  if (auto kept = references.find(sweep.scene, sweep.scene_parameters)) return kept;
   std::cerr << "this scene has no reference: making a finer run in its place ...\n";
   const auto stop = [&limits] {
     return limits.interrupted() || limits.elapsed() > reference_share * limits.seconds;
@@ -108,7 +108,7 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
   if (const auto made = answer(outcome, [](const json& document) {
         return std::make_shared<const Reference>(reference_of(document, "the finer run"));
       })) {
-    shelf.put(*made);
+    references.put(*made);
     return *made;
   }
   std::cerr << "bench: no finer run, so errors are unknown: "
@@ -121,7 +121,7 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
 }
 
 Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
-               std::shared_ptr<ReferenceFolder> shelf) {
+               std::shared_ptr<ReferenceFolder> references) {
   SweepEvents events;
   events.point = [](const PointResult& point, std::size_t search, std::size_t all) {
     std::cerr << '[' << search + 1 << '/' << all << "] " << point.spec.name() << " at "
@@ -131,7 +131,7 @@ Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
               << std::endl;
   };
   SweepRunners inner;
-  inner.references = std::move(shelf);
+  inner.references = std::move(references);
   ChooseRunners runners{isolated(inner, 0), {}};
   inner.run = screen_point;
   runners.screen = isolated(inner, 0).run;
@@ -147,10 +147,10 @@ int choose(const ChooseCommand& given) {
   const TimingLock lock(!given.no_wait);
   const auto begin = Clock::now();
   const ChooseLimits limits{given.seconds, [begin] { return since(begin); }, interrupted};
-  const auto shelf = std::make_shared<ReferenceFolder>(source_path("results/references"));
-  const auto reference = reference_for(sweep, *shelf, limits);
+  const auto references = std::make_shared<ReferenceFolder>(source_path("results/references"));
+  const auto reference = reference_for(sweep, *references, limits);
   if (!reference) wish.error = any_motion;
-  const Trials trials = measure(suite, wish, limits, shelf);
+  const Trials trials = measure(suite, wish, limits, references);
   const ChoiceReport report{sweep, wish, trials, since(begin), reference ? reference->method : ""};
   if (given.as_json) {
     std::cout << to_json(report).dump(1) << '\n';

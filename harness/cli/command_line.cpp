@@ -75,13 +75,28 @@ Option Command::option(const std::string& name, std::int64_t& value, const std::
                        const std::string& type) const {
   return add(app_, name, value, help, type);
 }
+namespace {
+
+// Names of version 0.2, which --solver takes for one more version.
+std::string renamed(std::string text) {
+  for (const auto& [was, is] :
+       {std::pair("strips", "yarn_projection"), std::pair("oracle", "dense_newton"),
+        std::pair("projective_dynamics", "admm"), std::pair("xpbd_small_steps", "pbd_substeps")}) {
+    for (std::size_t at = 0; (at = text.find(was, at)) != std::string::npos;)
+      text.replace(at, std::string(was).size(), is);
+  }
+  return text;
+}
+
+}  // namespace
+
 Option Command::alternatives(const std::string& name, std::string& value,
                              const std::string& help) const {
   return Option(app_->add_option(name, value, help)
                     ->type_name("REGEX")
                     ->transform([](std::string text) {
                       std::replace(text.begin(), text.end(), ',', '|');
-                      return text;
+                      return renamed(std::move(text));
                     })
                     ->delimiter('|')  // they are joined by it again
                     ->multi_option_policy(CLI::MultiOptionPolicy::Join));

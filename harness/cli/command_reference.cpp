@@ -173,12 +173,12 @@ int make_references(const ReferenceOptions& given) {
   const bool one_scene = !options.n.empty() || !parameters_of(options).empty() ||
                          options.scene.starts_with("mesh:");  // of no suite
   const std::string folder = source_path("results/references");
-  ReferenceFolder shelf(folder);
+  ReferenceFolder references(folder);
   bool nothing = true;
   for (const auto& [scene, parameters] :
        one_scene ? given_scenes(options) : scenes_of_suite(options)) {
     const std::string path = folder + "/" + reference_name(scene, parameters);
-    const auto stored = shelf.find(scene, parameters);
+    const auto stored = references.find(scene, parameters);
     if (!given.ensemble && (!stored || given.again)) {
       make_reference(path, scene, parameters, given.finest);
     } else if (stored && wants_ensemble(*stored, given.again)) {

@@ -57,15 +57,15 @@ SceneParameters complete_parameters_of(const SceneOptions& options) {
 }
 
 Option add_solver(const Command& to, std::string& solver) {
-  return to.alternatives("--solver", solver,
-                         "only contestants whose whole name matches, e.g. shake,icd or 'strips.*'; "
-                         "repeatable");
+  return to.alternatives(
+      "--solver", solver,
+      "only contestants whose whole name matches, e.g. shake,icd or 'yarn_projection.*'; "
+      "repeatable");
 }
 
 void add_limits(const Command& to, std::string& limits, const std::string& standard) {
   to.option("--limit", limits,
-            "permitted strain, one or several, e.g. 0.01,0.001; default: " + standard,
-            "STRAIN,...");
+            "strain limit, one or several, e.g. 0.01,0.001; default: " + standard, "STRAIN,...");
 }
 
 void add_filters(const Command& to, std::string& filter, std::string& exclude) {

@@ -42,8 +42,8 @@ void dry_run(const Suite& suite, const std::vector<Search>& searches) {
 }
 
 void tell_missing_references(const SweepCommand& options, const std::vector<Search>& searches,
-                             ReferenceFolder& shelf) {
-  const auto missing = without_reference(searches, shelf);
+                             ReferenceFolder& references) {
+  const auto missing = without_reference(searches, references);
   if (missing.empty()) return;
   std::string names;
   for (const auto& [scene, parameters] : missing) {
@@ -197,9 +197,9 @@ int run_suite(const SweepCommand& options, const std::vector<std::string>& comma
   }
   if (options.rerun_failed) forget_failures(journal);
   SweepRunners runners;
-  const auto shelf = std::make_shared<ReferenceFolder>(source_path("results/references"));
-  runners.references = shelf;
-  tell_missing_references(options, searches, *shelf);
+  const auto references = std::make_shared<ReferenceFolder>(source_path("results/references"));
+  runners.references = references;
+  tell_missing_references(options, searches, *references);
   catch_interrupts();
   std::optional<TimingLock> lock;
   if (!options.untimed) lock.emplace(!options.no_wait);
@@ -216,7 +216,7 @@ int run_suite(const SweepCommand& options, const std::vector<std::string>& comma
   const SweepOutcome outcome =
       measured(suite, searches, runners, journal, !options.untimed, context);
   const nlohmann::json document = result_document(context, suite, command, outcome.complete,
-                                                  outcome.points, shelf->summaries());
+                                                  outcome.points, references->summaries());
   write_atomically(out, result_text(document));
   print_document(document, out);
   if (!outcome.complete) return tell_interrupted();

@@ -227,11 +227,11 @@ SweepFilters make_filters(const SweepOptions& options) {
 }
 
 std::vector<std::pair<std::string, SceneParameters>> without_reference(
-    const std::vector<Search>& searches, ReferenceFolder& shelf) {
+    const std::vector<Search>& searches, ReferenceFolder& references) {
   std::map<std::string, std::pair<std::string, SceneParameters>> missing;
   for (const Search& search : searches) {
     const auto& [scene, parameters] = std::pair(search.base.scene, search.base.scene_parameters);
-    if (!shelf.find(scene, parameters))
+    if (!references.find(scene, parameters))
       missing[reference_name(scene, parameters)] = {scene, parameters};
   }
   std::vector<std::pair<std::string, SceneParameters>> list;

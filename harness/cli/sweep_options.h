@@ -32,6 +32,6 @@ Suite load_suite(const SweepOptions& options);
 SweepFilters make_filters(const SweepOptions& options);
 // Scenes of the plan without a reference: their points carry no trajectory error.
 std::vector<std::pair<std::string, SceneParameters>> without_reference(
-    const std::vector<Search>& searches, ReferenceFolder& shelf);
+    const std::vector<Search>& searches, ReferenceFolder& references);
 
 }  // namespace harness

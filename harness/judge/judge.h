@@ -16,7 +16,7 @@ namespace harness {
 class Judge {
  public:
   struct Options {
-    int sample_every = 1;  // full statistics are taken at every so manieth step
+    int sample_every = 1;  // full statistics are taken at every n-th step
     std::shared_ptr<const Reference> reference = nullptr;
     inextensible::Velocities velocities = inextensible::Velocities::half_step;  // the method's
     bool residual = false;         // is measured where the solver shows its iterates (observer())
@@ -24,7 +24,7 @@ class Judge {
   };
   Judge(const Scene& scene, const Options& options);
 
-  // What the stepper is to be observed by; null: nothing. Valid as long as the judge.
+  // Observes the stepper; null: nothing does. Valid as long as the judge.
   inextensible::IterateObserver* observer() { return probe_ ? &*probe_ : nullptr; }
 
   // Before and after each accepted step of h seconds. filtered: positions before the collision

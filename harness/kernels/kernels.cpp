@@ -36,8 +36,8 @@ void register_drape(int n) {
   register_collision("drape", n, at);
   register_strain_passes(n, at);
   register_schur_complement("drape", n, at,
-                            {"cholmod_simplicial", "cholmod_supernodal", "fixed_pattern",
-                             "fixed_pattern_mixed", "line_cg"});
+                            {"cholmod_simplicial", "cholmod_supernodal", "multifrontal",
+                             "multifrontal_mixed", "line_cg"});
   register_saddle_point(n, at, {"projected_cg", "quasi_definite"});
 }
 
@@ -46,8 +46,8 @@ void register_all() {
   for (const int n : {80, 1000, 100000, 1000000}) register_chain(n);
   for (const int n : {15, 31, 71, 101}) register_drape(n);
   for (const int n : {15, 31, 71, 101, 201, 501})
-    register_whole_systems(n, {"cholmod_simplicial", "cholmod_supernodal", "fixed_pattern",
-                               "fixed_pattern_mixed", "line_cg"});
+    register_whole_systems(n, {"cholmod_simplicial", "cholmod_supernodal", "multifrontal",
+                               "multifrontal_mixed", "line_cg"});
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ void whole_system(benchmark::State& state, const std::string& name, int n) {
 // includes refinement, or the conjugate gradients to ICD's own tolerance.
 void kkt(benchmark::State& state, const std::string& solver, bool solve, int n) {
   const Moment& m = moment("drape", n);
-  const Linearized l(m, "fixed_pattern");
+  const Linearized l(m, "multifrontal");
   const EdgeConstraints& edges = l.system.edges();
   std::unique_ptr<KktSolver> system;
   if (solver == "projected_cg") {

@@ -49,7 +49,7 @@ void strain_pass(benchmark::State& state, const char* method, int n) {
 }  // namespace
 
 void register_strain_passes(int n, const std::string& at) {
-  for (const char* method : {"gauss_seidel", "gauss_seidel_colored", "jacobi", "strips"}) {
+  for (const char* method : {"gauss_seidel", "gauss_seidel_colored", "jacobi", "yarn_projection"}) {
     add("strain_pass/" + std::string(method) + at, [=](benchmark::State& state) {
       strain_pass(state, method, n);
     })->UseManualTime();

@@ -169,7 +169,7 @@ Contestant read_contestant(const json& entry, const std::string& where) {
   if (const json* places = reader.find("settings_at"))
     contestant.settings_at = read_settings_at(*places, where + ": 'settings_at'", backend);
   contestant.label = reader.text("label", "");
-  contestant.hollow = reader.flag("hollow", false);
+  contestant.unranked = reader.flag("unranked", false);
   reader.finish();
   check_name(contestant, where);
   return contestant;
@@ -218,7 +218,7 @@ json to_json(const Contestant& contestant) {
                  {"solver", contestant.solver},
                  {"settings", to_json(contestant.settings)}};
   if (!contestant.label.empty()) object["label"] = contestant.label;
-  if (contestant.hollow) object["hollow"] = true;
+  if (contestant.unranked) object["unranked"] = true;
   if (!contestant.settings_at.empty()) object["settings_at"] = to_json(contestant.settings_at);
   return object;
 }
@@ -239,7 +239,7 @@ void add_double(Contestants& all, const std::string& name) {
   Contestant again = *place;
   again.name = double_of(name);
   again.label = label_of(*place) + " again";
-  again.hollow = true;
+  again.unranked = true;
   all.insert(place + 1, std::move(again));
 }
 

@@ -25,7 +25,7 @@ struct Contestant {
   std::string solver;  // see `bench list solvers`
   inextensible::Settings settings = {};  // given ones only
   std::string label = "";                // in figures; empty: the solver's, or the name in words
-  bool hollow = false;                   // beside the ranking, drawn with hollow marks
+  bool unranked = false;                 // beside the ranking, drawn with hollow marks
   // Further settings, of which those of the nearest place hold (by the ratios of sizes and limits).
   std::vector<SettingsAt> settings_at = {};
 
@@ -39,7 +39,7 @@ using Contestants = std::vector<Contestant>;
 Contestants::iterator find_contestant(Contestants& all, const std::string& name);
 std::string label_of(const Contestant& contestant);
 
-// "icd", or {"name": "icd_loose", "solver": "icd", "settings": {...}, "label": "...", "hollow":
+// "icd", or {"name": "icd_loose", "solver": "icd", "settings": {...}, "label": "...", "unranked":
 // true}. All throw UsageError, naming `where`, key and value.
 Contestant read_contestant(const nlohmann::json& entry, const std::string& where);
 // The solvers of suites that name none: all that compete and take every part of the scene, on a

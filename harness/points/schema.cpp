@@ -156,7 +156,7 @@ ordered_json legend_schema() {
   may_add("stepper_origin", {{"type", "string"}, {"description", "origin of the stepper"}});
   may_add("solver",
           {{"type", "string"}, {"description", "the solver of a contestant with another name"}});
-  may_add("hollow",
+  may_add("unranked",
           {{"type", "boolean"}, {"description", "beside the ranking, drawn with hollow marks"}});
   add(schema, "statuses",
       list_of({{"name", "string"}, {"letter", "string"}, {"meaning", "string"}}));
@@ -210,7 +210,7 @@ ordered_json legend(const Contestants& contestants) {
       if (c.own_name() || c.solver != backend.name) continue;
       ordered_json more = entry(backend, c.name, label_of(c));
       more["solver"] = c.solver;
-      more["hollow"] = c.hollow;
+      more["unranked"] = c.unranked;
       solvers.push_back(std::move(more));
     }
   }

@@ -10,7 +10,7 @@
 
 namespace harness {
 
-// The schema with those of its definitions made anew that follow from tables: "status", "counter",
+// The schema with those of its definitions replaced that follow from tables: "status", "counter",
 // "work", "point", "legend", "answer_row".
 nlohmann::ordered_json with_tables(nlohmann::ordered_json schema);
 

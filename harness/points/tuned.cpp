@@ -161,7 +161,7 @@ void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
     before.name += "_untuned";
     if (!untuned || !differs || find_contestant(all, before.name) != all.end()) continue;
     before.label = label_of(all[i]) + ", untuned";
-    before.hollow = true;
+    before.unranked = true;
     all.insert(all.begin() + static_cast<std::ptrdiff_t>(i) + 1, std::move(before));
     ++i;
   }
@@ -246,7 +246,7 @@ Tuned read_tuned_up_to_date(const std::string& file) {
     const std::string is = difference.contains("value") ? difference.at("value").dump() : "missing";
     throw UsageError("tuned settings '" + tuned.file + "': those of " + entry.solver + " for the " +
                      entry.kind + " were found with " + path.substr(1) + " = " + was +
-                     ", which is " + is + " now; find them anew: bench tune --scene " + entry.kind +
+                     ", which is " + is + " now; search again: bench tune --scene " + entry.kind +
                      " --solver " + entry.solver);
   }
   return tuned;

@@ -28,7 +28,7 @@ constexpr int sampled_instants = 100;  // a run, for statistics that need sortin
 
 // A read of the clock takes tens of nanoseconds, the step of a short chain a few hundred. So steps
 // are timed in blocks of at least this length where the judge need not look in between, and a run
-// whose judged steps are shorter is made again without him, for its time.
+// whose judged steps are shorter is run again without the judge, for its time.
 constexpr double shortest_block = 2e-5;  // s
 
 // Nominal times are right within a factor of two: work that is a few times too much is hopeless.

@@ -58,7 +58,7 @@ inline const Solvers everyone;
 // Methods of multipliers: the direction of the end, but each edge's multiplier grows by itself, by
 // `multiplier_penalty` times its elongation over its ends' inertia in a pass. No matrix of J is
 // solved.
-inline const Solvers multipliers{"augmented_vbd", "projective_dynamics"};
+inline const Solvers multipliers{"augmented_vbd", "admm"};
 constexpr double multiplier_penalty = 10;
 
 constexpr Outcome survives = Outcome::survived;

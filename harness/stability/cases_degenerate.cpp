@@ -19,7 +19,7 @@ void add_degenerate(std::vector<HardCase>& cases, const HardCaseValues& /*values
          return trial_of(std::move(mesh), 0.01, 3);
        },
        {{springs, survives, "a spring without direction pulls nowhere, and nothing else does"},
-        {{"projective_dynamics"},
+        {{"admm"},
          refuses,
          "the edge has no direction to grow along",
          {{survives,

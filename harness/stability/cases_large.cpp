@@ -27,7 +27,7 @@ std::vector<Expectation> long_chain(int links) {
             start,
             {strain_limiting, survives, "an edge a pass, squared: some thousand passes at most"},
             {everyone, survives, "an edge an iteration: 30 of the 200 allowed at most"}};
-  const Expectation small_steps{{"xpbd_small_steps"},
+  const Expectation small_steps{{"pbd_substeps"},
                                 Outcome::diverged,
                                 "a sweep carries a load by some edges: the first link follows the "
                                 "pin's pull alone, and is torn to several times its length"};

@@ -61,7 +61,7 @@ std::vector<Expectation> light_between(double ratio) {
             implicit_end,
             implicit_springs,
             {strain_limiting, refuses, "passes grow with the ratio, beyond the 1e5 allowed"},
-            {{"strips@bdf2", "fast_projection_adaptive@bdf2"},
+            {{"yarn_projection@bdf2", "fast_projection_adaptive@bdf2"},
              refuses,
              "as for everyone below",
              {{survives,

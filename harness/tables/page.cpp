@@ -37,11 +37,11 @@ bool is_stability(const json& document) { return document.contains("matrix"); }
 
 LimitTable::LimitTable(const json& document, const std::string& scene) {
   if (is_stability(document)) return;
-  const ContestantRoles cast(document);
+  const ContestantRoles roles(document);
   for (const json& p : document.at("points")) {
     if (p.at("sweep") != "strain" || p.value("adaptive", false) || p.at("scene") != scene) continue;
     const Point point(p);
-    if (!point.ok() || !point.flag("best") || !cast.of(point.contestant()).ranked()) continue;
+    if (!point.ok() || !point.flag("best") || !roles.of(point.contestant()).ranked()) continue;
     contestants_.push_back(point.contestant());
     limits_.push_back(point.number("strain_limit"));
     cells_.try_emplace({point.contestant(), limits_.back()}, point);

@@ -1,4 +1,4 @@
-// What strain and error methods reach within so much time a frame.
+// Strain and error of each method within a frame budget.
 #include <algorithm>
 #include <cmath>
 

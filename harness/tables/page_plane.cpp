@@ -13,11 +13,11 @@
 namespace harness::tables {
 namespace {
 
-// "`strips` 8.1 ms, 1/100 s, 1.7 (1.5-1.8) `icd`": bold if it is ahead beyond the noise.
+// "`yarn_projection` 8.1 ms, 1/100 s, 1.7 (1.5-1.8) `icd`": bold if it is ahead beyond the noise.
 std::string cell_text(const Cell& cell) {
   const Entry* first = cell.first();
   if (!first) return cell.empty_because;
-  const std::string name = quoted(first->row) + (first->role.hollow ? " `u`" : "");
+  const std::string name = quoted(first->row) + (first->role.unranked ? " `u`" : "");
   std::string text = (cell.clear() ? bold(name) : name) + " " +
                      plain(1e3 * first->point.seconds(), 3) + " ms, " +
                      step_text(first->point.number("step"));

@@ -65,7 +65,7 @@ void print_entry(std::ostream& out, const Entry& entry, const std::string& name,
       << percent_or_unknown(entry.error);
 }
 
-std::string name_of(const Entry& entry) { return entry.row + (entry.role.hollow ? " u" : ""); }
+std::string name_of(const Entry& entry) { return entry.row + (entry.role.unranked ? " u" : ""); }
 
 void print_cells(std::ostream& out, const std::string& limit, const Cell& loosest,
                  const Cell& tightest, const Setting& set) {
@@ -129,7 +129,8 @@ void print_everybody(std::ostream& out, const Plane& plane, const Setting& set) 
     out << '\n'
         << analysis::scene_words(plane.scene) << " of " << plane.vertices << " vertices at "
         << percent(cell.strain_limit) << " strain, "
-        << (cell.level == any_motion ? "any motion" : "right to " + percent(cell.level)) << '\n'
+        << (cell.level == any_motion ? "any motion" : "motion error at most " + percent(cell.level))
+        << '\n'
         << std::left << std::setw(set.name_width) << "" << std::setw(time_width)
         << (set.seconds ? "s" : "ms") << std::setw(step_width) << "step, s"
         << std::setw(error_width) << "error" << std::setw(error_width) << "strain"

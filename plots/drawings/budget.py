@@ -41,7 +41,7 @@ def draw(place: Json, document: Json, legend: Legend) -> Figure:
     rows = {row["row"]: reached for row in place["rows"] if (reached := _reached(row))}
     never = [clean(legend.label(row["row"])) for row in place["rows"] if row["row"] not in rows]
     caption = [f"A mark: from this time a frame of 1/60 s on, in 99 of 100 frames, one core keeps the strain limit of its "
-               f"colour, with a motion that is right to {percent(HEADLINE)}. Lines: "
+               f"colour, with a motion error of at most {percent(HEADLINE)}. Lines: "
                f"{', '.join(str(ms) for ms in BUDGETS)} ms.",
                f"With no run that is right: {', '.join(never)}." if never else "", origin_sentence(document)]
     found = [sentence for sweep in ("strain", "step") for sentence in finding_in(document, place["scene"], sweep, place["vertices"])]

@@ -1,4 +1,4 @@
-"""Cost over permissible strain (the paper's Figures 4a and 5a), at any motion and where the motion is right."""
+"""Cost over strain limit (the paper's Figures 4a and 5a), at any motion and where the motion is right."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from parts.cost_sheet import Axis, draw
 from parts.legend import Legend
 from parts.result_file import Json
 
-PERMITTED = Axis("permissible strain (%)", 100)
+PERMITTED = Axis("strain limit (%)", 100)
 
 
 def figures_of(document: Json, legend: Legend) -> list[tuple[str, Callable[[], Figure]]]:

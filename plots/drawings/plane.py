@@ -46,7 +46,7 @@ def draw(plane: Json, document: Json, legend: Legend) -> Figure:
     axes.set_yticks([k + 0.5 for k in range(len(limits))], [percent(limit) for limit in limits])
     axes.xaxis.tick_top()
     axes.tick_params(length=0)
-    axes.set_ylabel("permissible strain")
+    axes.set_ylabel("strain limit")
     axes.set_xlabel("error over the scene's size")
     axes.xaxis.set_label_position("bottom")
     for spine in axes.spines.values():

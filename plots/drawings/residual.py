@@ -46,7 +46,7 @@ def draw(data: RunsData, document: Json, legend: Legend, solver: str, limit: flo
     by_step = data.residuals[solver][limit]
     style = styles_of(data, legend)[solver]
     words = [scene_sentence(data.scene, f"{data.vertices:,.0f} vertices", data.points),
-             f"{style.label[:1].upper()}{style.label[1:]}, permissible strain {percent(limit)}: what is left of the implicit "
+             f"{style.label[:1].upper()}{style.label[1:]}, strain limit {percent(limit)}: what is left of the implicit "
              "constraint direction's equation F = 0 (in metres, mean over the vertices), after the "
              "first iteration of a step and after the last, for samples in which a step needed an iteration at all. Right: "
              "mean over those samples; the lines are fitted over all steps shown (bench claims: with confidence interval).",

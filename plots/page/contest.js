@@ -77,7 +77,7 @@
         drawn("text", {x: left - 6, y: y(10 ** power) + 4, "text-anchor": "end"}, timeText(10 ** power * (1 + 1e-9))));
     }
     chart.append(drawn("text", {x: (left + right) / 2, y: bottom + 40, "text-anchor": "middle"},
-      all[0].sweep === "strain" ? "permitted strain" : "vertices"));
+      all[0].sweep === "strain" ? "strain limit" : "vertices"));
     for (const number of [...new Set(all.map((point) => point.solver))].sort((a, b) => a - b)) {
       const solver = data.solvers[number];
       const own = all.filter((point) => point.solver === number).sort((a, b) => axis(a) - axis(b));

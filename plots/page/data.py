@@ -27,7 +27,7 @@ def document_data(documents: dict[Path, Json], legend: Legend) -> Json:
         "columns": COLUMNS,
         "files": [{"name": path.name, "command": repeat_command(document)} for path, document in documents.items()],
         "solvers": [{"name": name, "label": styles[name].label, "color": styles[name].color, "dashes": styles[name].dashes, "marker": styles[name].marker,
-                     "hollow": styles[name].hollow, "ranked": legend.ranked(name)} for name in order],
+                     "unranked": styles[name].hollow, "ranked": legend.ranked(name)} for name in order],
         "statuses": {name: status.meaning for name, status in legend.statuses.items()},
         "points": rows,
     }

@@ -16,7 +16,7 @@ SUBJECTS = {"drape": "drape over a sphere"}
 
 
 def title_of(figure: FigureData) -> str:
-    axis = "permissible strain" if figure.sweep == "strain" else "resolution"
+    axis = "strain limit" if figure.sweep == "strain" else "resolution"
     number = number_in_paper(figure.scene, figure.sweep)
     title = f"{SUBJECTS.get(figure.scene, scene_words(figure.scene))}: cost over {axis}"
     return f"Figure {number} - {title}" if number else title
@@ -44,7 +44,7 @@ def _scene_sentence(figure: FigureData) -> str:
     else:
         sizes = sorted({point["vertices"] for point in figure.points})
         several = f"{sizes[0]:,.0f} to " if len(sizes) > 1 else ""
-        size = f"{several}{sizes[-1]:,.0f} vertices, permissible strain {percent(figure.fixed)}"
+        size = f"{several}{sizes[-1]:,.0f} vertices, strain limit {percent(figure.fixed)}"
     return scene_sentence(figure.scene, size, figure.points)
 
 

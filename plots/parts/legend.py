@@ -105,7 +105,7 @@ def _solver(entry: Json) -> Solver:
     name, label, family = entry["name"], entry.get("label"), entry.get("family")
     return Solver(name, clean(label if label else name.replace("_", " ")), family if isinstance(family, str) else name,
                   entry.get("contestant") is not False, entry["solver"] if isinstance(entry.get("solver"), str) else "",
-                  entry.get("hollow") is True, entry["origin"] if isinstance(entry.get("origin"), str) else "elsewhere")
+                  entry.get("unranked") is True, entry["origin"] if isinstance(entry.get("origin"), str) else "elsewhere")
 
 
 def _status(entry: Json) -> Status:

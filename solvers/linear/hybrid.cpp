@@ -89,7 +89,7 @@ void HybridSpdSolver::prepare_factorization() {
     ordered.row_index[i] = entries[i].row;
     place_[entries[i].from] = static_cast<int>(i);
   }
-  direct_ = std::make_unique<FixedPatternCholesky>(std::move(ordered));
+  direct_ = std::make_unique<MultifrontalCholesky<double>>(std::move(ordered));
 }
 
 bool HybridSpdSolver::factor_wholly() {

@@ -44,7 +44,7 @@ class HybridSpdSolver final : public SpdSolver {
 
   // Once prepared: the matrix in elimination order.
   std::vector<int> order_, place_;  // of rows; of entries in direct_->values()
-  std::unique_ptr<FixedPatternCholesky> direct_;
+  std::unique_ptr<MultifrontalCholesky<double>> direct_;
 };
 
 }  // namespace inextensible

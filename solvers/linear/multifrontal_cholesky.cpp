@@ -321,7 +321,7 @@ template <class Real>
 MultifrontalCholesky<Real>::MultifrontalCholesky(SymmetricPattern pattern)
     : pattern_(std::move(pattern)), values_(pattern_.entries()), pivots_(pattern_.n) {
   if (pattern_.triangle != SymmetricPattern::Triangle::lower)
-    throw std::invalid_argument("fixed_pattern reads the lower triangle");
+    throw std::invalid_argument("multifrontal reads the lower triangle");
   find_fronts();
   place_entries();
   link_fronts();

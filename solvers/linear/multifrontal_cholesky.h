@@ -88,6 +88,4 @@ class MultifrontalCholesky final : public SpdSolver {
   int failed_column_ = -1;
 };
 
-using FixedPatternCholesky = MultifrontalCholesky<double>;
-
 }  // namespace inextensible

@@ -73,14 +73,14 @@ StepResult AugmentedVbd::apply(const Positions& /*x_start*/, double h, Iterate x
   passes_.set_planes(contacts);
   passes_.tensions() = h * h * tension_;
   passes_.follow_tensions();
-  bool anew = false;
+  bool again = false;
   for (int j = 1; j <= max_iterations_; ++j) {
     const bool still = passes_.visit_all(1) <= most_ * most_;
     work.edge_projections += problem_.constraints();
     const bool ends = passes_.update_tensions(strain_limit_) && still;
     if (!ends && (j % 64 != 0 || passes_.finite())) continue;
-    if (!ends && !anew) {
-      anew = true;
+    if (!ends && !again) {
+      again = true;
       passes_.load(x, target_, problem_.mass());
       passes_.tensions().setZero();
       continue;

@@ -1,5 +1,6 @@
-// Strips while they converge quickly, fast projection's step for the whole cloth where they do not:
-// a yarn carries corrections along itself at once, but across yarns they travel by passes.
+// Yarn projection while it converges quickly, fast projection's step for the whole cloth where it
+// does not: a yarn carries corrections along itself at once, but across yarns they travel by
+// passes.
 //
 // A round is a pass over all yarns (yarn_pass.h), then passes over edges, until nothing is left to
 // correct or their number is reached. A step takes rounds alone, or a projection of the whole cloth

@@ -13,14 +13,14 @@ Backend shake_row();
 Backend icd_row();
 Backend fast_projection_row();
 Backend rattle_row();
-Backend strips_row();
+Backend yarn_projection_row();
 Backend fast_projection_adaptive_row();
-Backend xpbd_small_steps_row();
+Backend pbd_substeps_row();
 Backend vertex_block_descent_row();
 Backend augmented_vbd_row();
-Backend projective_dynamics_row();
+Backend admm_row();
 Backend soft_step_row();
 Backend null_row();
-Backend oracle_row();
+Backend dense_newton_row();
 
 }  // namespace inextensible

@@ -1,4 +1,4 @@
-// Yarns of the cloth (yarns.h), each projected as a whole: what strips and
+// Yarns of the cloth (yarns.h), each projected as a whole: what yarn_projection and
 // fast_projection_adaptive share.
 #pragma once
 

@@ -46,7 +46,7 @@ class TriangleCollider final : public Collider {
   // By way of the grid inside the mesh's box; exact. Outside the box the answer comes from all
   // triangles.
   Nearest nearest(const Eigen::Vector3d& p) const;
-  // The slow, obvious route: over all triangles. The oracle of the tests.
+  // The slow, obvious route: over all triangles. What the tests compare with.
   Nearest nearest_by_all(const Eigen::Vector3d& p) const;
 
  private:

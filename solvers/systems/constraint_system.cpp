@@ -13,7 +13,7 @@ std::string choose(std::string_view wanted, const SymmetricPattern& pattern,
   if (wanted != "auto") return std::string(wanted);
   if (pattern.entries() == 2 * pattern.n - 1 && pattern.tridiagonal()) return "tridiagonal";
   if (pattern.n >= ConstraintSystem::hybrid_rows) return "hybrid";
-  return digits == ConstraintSystem::Digits::few ? "fixed_pattern_mixed" : "fixed_pattern";
+  return digits == ConstraintSystem::Digits::few ? "multifrontal_mixed" : "multifrontal";
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ namespace inextensible {
 class ConstraintSystem {
  public:
   // linear_solver: a name of make_spd_solver, or "auto": tridiagonal for a chain, else
-  // fixed_pattern, which is the fastest factorization from some 200 rows on (kernels measures it),
-  // or fixed_pattern_mixed where solves are going to ask for few digits, and from hybrid_rows on
+  // multifrontal, which is the fastest factorization from some 200 rows on (kernels measures it),
+  // or multifrontal_mixed where solves are going to ask for few digits, and from hybrid_rows on
   // hybrid. For direct solvers edges are renumbered once, so that no factorization has to permute.
   enum class Digits { all, few };
   ConstraintSystem(const Problem& problem, double strain_limit, std::string_view linear_solver,
@@ -26,7 +26,7 @@ class ConstraintSystem {
   const EdgeConstraints& edges() const { return *edges_; }
   const SchurComplement& schur() const { return *schur_; }
   // Rows from which on `hybrid` is used, a grid of about 101 x 101. Measured on the drape,
-  // processor time of fast projection with hybrid over that with fixed_pattern: the first 0.2 s of
+  // processor time of fast projection with hybrid over that with multifrontal: the first 0.2 s of
   // the fall, 0.24 to 0.33 from 31 vertices a side on; 0.6 s at 1/500 s and 0.1 %, in whose last
   // third warp and weft become parallel, 0.69, 0.80 and 0.71 at 101, 141 and 201 a side.
   static constexpr int hybrid_rows = 20'000;

@@ -76,7 +76,7 @@ ImplicitForces::ImplicitForces(const Problem& problem) : problem_(problem) {
       entries_.push_back(entry);
     }
   }
-  solver_ = make_spd_solver("fixed_pattern", std::move(pattern));
+  solver_ = make_spd_solver("multifrontal", std::move(pattern));
   force_.resize(3, problem.vertices());
   row_.resize(n);
 }

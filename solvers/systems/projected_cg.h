@@ -19,7 +19,7 @@ class ProjectedCg final : public KktSolver {
   struct Settings {
     double tolerance = 0.1;  // of the step, in the norm of the preconditioner
     int max_iterations = 100;
-    std::string_view linear_solver = "fixed_pattern_mixed";  // for J D^-1 J^T
+    std::string_view linear_solver = "multifrontal_mixed";  // for J D^-1 J^T
   };
   // edges: best in elimination_order.
   ProjectedCg(const Problem& problem, const EdgeConstraints& edges, const Settings& settings);

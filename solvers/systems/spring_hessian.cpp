@@ -35,11 +35,11 @@ SpringHessian::SpringHessian(const Problem& problem, double stiffness, std::stri
   const int n = static_cast<int>(free_vertex.size());
   std::vector<Edge> pairs = coupled_pairs(problem);
   // Instructions of a second of plain Newton, in 1e6: on the chain of 80, block_tridiagonal 23,
-  // fixed_pattern 54, cholmod_simplicial 79; on the drape of 21 x 21, fixed_pattern 3400,
+  // multifrontal 54, cholmod_simplicial 79; on the drape of 21 x 21, multifrontal 3400,
   // cholmod_supernodal 5100, cholmod_simplicial 10000.
   linear_solver = wanted != "auto" ? std::string(wanted)
                   : chains(pairs)  ? "block_tridiagonal"
-                                   : "fixed_pattern";
+                                   : "multifrontal";
   if (spd_solver(linear_solver).takes == Takes::block_tridiagonal) {
     // Where one chain ends and the next begins the matrix holds zeros.
     for (int f = 1; f < n; ++f) pairs.push_back({f - 1, f});

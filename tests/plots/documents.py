@@ -30,7 +30,7 @@ SOLVERS = (
     ("fast_projection@bdf2", "fast projection in BDF2", "fast_projection", True),
     ("rattle", "RATTLE (SHAKE with velocities)", "shake", True),
     ("null", "scene without inextensibility", "null", False),
-    ("oracle", "oracle (no contestant)", "oracle", False),
+    ("dense_newton", "dense Newton (no contestant)", "dense_newton", False),
 )
 STATUSES = (("ok", "", "ran"), ("strain_missed", "S", "strain limit missed"), ("not_converged", "N", "not converged"),
             ("diverged", "D", "diverged"), ("timeout", "T", "timeout"), ("skipped", "K", "skipped"))
@@ -81,13 +81,13 @@ def two_questions() -> Json:
               point("fast_projection", step=0.02, seconds=0.3, id="fast", error={"trajectory": 0.015})]
 
     def entry(name: str, which: str, seconds: float, error: float) -> Json:
-        return {"contestant": name, "row": name, "hollow": False, "counts": True, "id": which, "seconds": seconds, "step": 0.01,
+        return {"contestant": name, "row": name, "unranked": False, "counts": True, "id": which, "seconds": seconds, "step": 0.01,
                 "error": error}
 
     def cell(limit: float, level: float | None, entries: list[Json], lead: float | None) -> Json:
         paper = next((e["row"] for e in entries if e["row"] != "icd"), None)
         return {"strain_limit": limit, "error_level": level, "known_until": 1.0, "entries": entries, "clear": bool(lead),
-                "empty_because": "" if entries else "no run that was tried is right to 2 %", "first": entries[0]["row"] if entries else None,
+                "empty_because": "" if entries else "no run that was tried has a motion error of at most 2 %", "first": entries[0]["row"] if entries else None,
                 "paper_best": paper, "lead_over_paper_best": {"value": lead, "low": None, "high": None} if lead else None}
 
     cells = [cell(0.01, None, [entry("shake", "shake coarse", 0.1, 0.2), entry("jacobi", "jacobi coarse", 0.2, 0.5),
@@ -105,7 +105,7 @@ def two_questions() -> Json:
         {"row": "icd", "stairs": [stair(0.5e-3, 0.01, False), stair(2e-3, 0.01, True), stair(3e-3, 0.01, True), stair(8e-3, 0.001, True)]},
         {"row": "jacobi", "stairs": [stair(1e-3, 0.01, False)]}]}
     finding = {"scene": "chain", "sweep": "strain", "vertices": 80, "subject": "chain of 80 vertices",
-               "sentences": ["At 1 % strain, right to 2 %, icd is the fastest.", "A second sentence."]}
+               "sentences": ["At 1 % strain, motion error at most 2 %, icd is the fastest.", "A second sentence."]}
     return {**document(points), "analysis": {"schema": "inextensible-analysis/1", "headline_error": 0.02, "findings": [finding], "planes": [plane],
                                              "growth": [], "budgets": [budget]}}
 

@@ -43,11 +43,11 @@ def test_no_words_run_out_of_a_figure(name: str) -> None:
 # ---- numbers of the paper -------------------------------------------------------------------------------------------
 
 @pytest.mark.parametrize("make, scene, name, title", [
-    (strain_sweep, "chain", "figure4a", "Figure 4a - chain: cost over permissible strain"),
+    (strain_sweep, "chain", "figure4a", "Figure 4a - chain: cost over strain limit"),
     (resolution_sweep, "chain", "figure4b", "Figure 4b - chain: cost over resolution"),
-    (strain_sweep, "drape", "figure5a", "Figure 5a - drape over a sphere: cost over permissible strain"),
+    (strain_sweep, "drape", "figure5a", "Figure 5a - drape over a sphere: cost over strain limit"),
     (resolution_sweep, "drape", "figure5b", "Figure 5b - drape over a sphere: cost over resolution"),
-    (strain_sweep, "flag", "flag-strain", "flag: cost over permissible strain"),
+    (strain_sweep, "flag", "flag-strain", "flag: cost over strain limit"),
     (resolution_sweep, "flag", "flag-resolution", "flag: cost over resolution"),
 ])
 def test_figures_have_the_papers_numbers(make, scene: str, name: str, title: str) -> None:
@@ -65,7 +65,7 @@ def test_two_sizes_of_a_scene_are_two_figures() -> None:
 
 def test_cost_over_strain() -> None:
     figure = drawn(strain_sweep())["figure4a"]
-    main, steps = axes_with(figure, ylabel="wall seconds per simulated second"), axes_with(figure, "permissible strain (%)")
+    main, steps = axes_with(figure, ylabel="wall seconds per simulated second"), axes_with(figure, "strain limit (%)")
     assert (main.get_xscale(), main.get_yscale(), steps.get_yscale()) == ("log", "log", "log")
     assert steps.get_ylabel() == "best time step (s)"
     assert sorted(legend_labels(figure)) == sorted(["Jacobi strain limiting", "SHAKE", "fast projection"])
@@ -163,7 +163,7 @@ def test_the_two_questions_stand_side_by_side_with_one_legend() -> None:
 def test_a_figure_says_what_it_finds_and_who_does_not_lead_recedes() -> None:
     result = two_questions()
     figure = drawn(result)["figure4a"]
-    assert "At 1 % strain, right to 2 %, icd is the fastest." in words_of(figure) and "A second sentence." not in words_of(figure)
+    assert "At 1 % strain, motion error at most 2 %, icd is the fastest." in words_of(figure) and "A second sentence." not in words_of(figure)
     assert "Grey:" not in words_of(figure)
     result["analysis"]["planes"][0]["leaders"] = ["shake", "fast_projection"]
     figure = drawn(result)["figure4a"]
@@ -192,7 +192,7 @@ def test_the_plane_has_the_fastest_and_its_lead_in_each_cell() -> None:
     texts = [" ".join(text.get_text().split()) for text in axes.texts]
     assert texts[:2] == ["SHAKE", "100 ms, off by 20 % one of the paper's six"]
     assert texts[2:4] == ["ICD (implicit constraint direction)", "200 ms, off by 1.2 % 1.5 x: fast projection"]
-    assert texts[4:] == ["no run that was tried is right to 2 %"] * 2
+    assert texts[4:] == ["no run that was tried has a motion error of at most 2 %"] * 2
     assert [text.get_fontweight() for text in axes.texts[:4:2]] == ["normal", "bold"]
 
 
@@ -247,7 +247,7 @@ def test_cost_over_resolution() -> None:
     assert len(curves(main)) == 3
     assert sorted(legend_labels(figure)) == sorted(["SHAKE", "ICD (implicit constraint direction)", "fast projection"])
     assert [marks(strip) for strip in strips(figure)] == [["N"]]
-    assert "permissible strain 1 %" in words_of(figure) and "100 to 1,600 vertices" in words_of(figure)
+    assert "strain limit 1 %" in words_of(figure) and "100 to 1,600 vertices" in words_of(figure)
 
 
 def test_growth_has_slopes_in_its_legend() -> None:
@@ -297,7 +297,7 @@ def test_residual_of_whoever_has_one() -> None:
     assert len(over_time.lines) == 4 and {line.get_color() for line in over_time.lines} == {"#009E73"}
     assert [text.get_text() for text in over_step.get_legend().get_texts()] == ["first iteration: slope 2.00",
                                                                                 "last iteration: slope 3.00"]
-    assert "permissible strain 0.01 %" in words_of(figure), "the tightest limit"
+    assert "strain limit 0.01 %" in words_of(figure), "the tightest limit"
 
 
 def test_two_solvers_with_residuals_have_a_figure_each() -> None:

@@ -141,10 +141,10 @@ def test_captions_tell_strain_so_far_time_and_sag(tmp_path: Path) -> None:
     made = film.load(pictured(tmp_path, [0, 1, 2]))
     made.takes[0]["largest_strain"] = [0.0, 0.0099, 0.005]
     made.takes[0]["seconds"] = [0.01, 0.03]
-    assert film.caption(made, 0, 0)[2] == "permitted strain 1 %, largest so far below 0.001 %"
+    assert film.caption(made, 0, 0)[2] == "strain limit 1 %, largest so far below 0.001 %"
     lines = film.caption(made, 0, 2)
     assert lines[0] == "one"
-    assert lines[2] == "permitted strain 1 %, largest so far 0.99 %"
+    assert lines[2] == "strain limit 1 %, largest so far 0.99 %"
     assert lines[3] == "6.67 ms for a frame of 1/30 s"  # 20 ms for a tenth of a second
     assert lines[4] == "sag: lower edge 22.0 mm"
 

@@ -48,7 +48,7 @@ def with_untuned() -> Json:
         place = next(number for number, row in enumerate(more["solvers"]) if row["name"] == solver)
         parent = more["solvers"][place]
         more["solvers"].insert(place + 1, {**parent, "name": name, "label": name.replace("_", " "), "solver": solver,
-                                           "hollow": hollow})
+                                           "unranked": hollow})
     return more
 
 

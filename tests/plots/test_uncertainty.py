@@ -96,7 +96,7 @@ def test_untuned_contestants_are_hollow_beside_their_tuned_selves_and_absent_whe
         result = make()
         result["points"] += [{**made, "contestant": "shake_untuned"} for made in result["points"] if made["solver"] == "shake"]
         result["legend"]["solvers"].append({"name": "shake_untuned", "label": "SHAKE, untuned", "family": "shake",
-                                            "contestant": True, "solver": "shake", "hollow": True})
+                                            "contestant": True, "solver": "shake", "unranked": True})
         figure = drawn(result)[name]
         green = [line for line in curves(axes_with(figure, ylabel="wall seconds"), GREEN)]
         hollow = [line.get_markerfacecolor() == "none" for line in green]

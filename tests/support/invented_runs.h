@@ -43,9 +43,9 @@ inline json document(const std::vector<json>& points) {
           {"context", {{"suite", {{"finest_error", 0.01}}}}},
           {"legend",
            {{"solvers",
-             {{{"name", "strips"}, {"family", "strips"}},
+             {{{"name", "yarn_projection"}, {"family", "yarn_projection"}},
               {{"name", "icd"}, {"family", "icd"}},
-              {{"name", "icd_untuned"}, {"solver", "icd"}, {"family", "icd"}, {"hollow", true}},
+              {{"name", "icd_untuned"}, {"solver", "icd"}, {"family", "icd"}, {"unranked", true}},
               {{"name", "shake"}, {"family", "shake"}},
               {{"name", "null"}, {"family", "none"}, {"contestant", false}}}}}},
           {"points", points}};

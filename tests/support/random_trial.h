@@ -13,11 +13,11 @@ using harness::Trial;
 
 // The backend's own sweep limit is meant for real problems; here most of them are hopeless.
 inline Settings impatient(const std::string& backend) {
-  if (backend.starts_with("strips") || backend.starts_with("fast_projection_adaptive"))
+  if (backend.starts_with("yarn_projection") || backend.starts_with("fast_projection_adaptive"))
     return {{"max_iterations", 20.0}};
   if (backend.starts_with("jacobi") || backend.starts_with("gauss_seidel"))
     return {{"max_iterations", 300.0}};
-  if (backend.starts_with("projective_dynamics") || backend.starts_with("augmented_vbd"))
+  if (backend.starts_with("admm") || backend.starts_with("augmented_vbd"))
     return {{"max_iterations", 3000.0}};
   return {};
 }

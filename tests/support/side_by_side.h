@@ -16,7 +16,7 @@ struct Contender {
   BackendOptions options;
 };
 
-// Theorem 1 of Goldenthal et al. 2007, by the dense Newton of the oracle, whatever the penalty.
+// Theorem 1 of Goldenthal et al. 2007, by dense Newton, whatever the penalty.
 inline void expect_closest_point(const char* solver, std::initializer_list<double> penalties,
                                  double tolerance) {
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
@@ -24,7 +24,7 @@ inline void expect_closest_point(const char* solver, std::initializer_list<doubl
       SCOPED_TRACE("seed " + std::to_string(seed) + ", penalty " + std::to_string(penalty));
       Random random(seed);
       const RandomMesh mesh = random_mesh(random, 4, 4, static_cast<int>(seed % 2));
-      const auto oracle = make_stepper("oracle", mesh.problem, {1e-10, 1, {}});
+      const auto oracle = make_stepper("dense_newton", mesh.problem, {1e-10, 1, {}});
       const auto examined = make_stepper(solver, mesh.problem, {1e-10, 1, {{"penalty", penalty}}});
       State state = moving_state(random, mesh, 1);
       for (int step = 0; step < 5; ++step) {

@@ -30,7 +30,7 @@ json resolution_run(const std::string& solver, int n, double seconds_a_step) {
 TEST(Growth, RecoversAKnownExponent) {
   std::vector<json> points;
   for (const int n : {1001, 101, 317}) {
-    points.push_back(resolution_run("strips", n, 3e-7 * std::pow(n * n, 1.25)));
+    points.push_back(resolution_run("yarn_projection", n, 3e-7 * std::pow(n * n, 1.25)));
     points.push_back(resolution_run("icd", n, 3e-9 * std::pow(n * n, 1.5)));
     if (n < 1000) points.push_back(resolution_run("shake", n, 1));  // at two sizes, all the same
   }
@@ -41,13 +41,14 @@ TEST(Growth, RecoversAKnownExponent) {
   ASSERT_EQ(found[0].rows.size(), 3u);
   EXPECT_EQ(found[0].rows[0].row, "shake") << "the slowest growth first";
   const RowGrowth& strips = found[0].rows[1];
-  EXPECT_EQ(strips.row, "strips");
+  EXPECT_EQ(strips.row, "yarn_projection");
   EXPECT_NEAR(strips.exponent.value, 1.25, 1e-9);
   EXPECT_LT(strips.exponent.half_width, 1e-6);
   EXPECT_EQ(strips.smallest.number("resolution"), 101);
   EXPECT_EQ(strips.largest.number("resolution"), 1001);
   EXPECT_EQ(sentence_of(found[0]),
-            "From 10201 to 1002001 vertices the time of a step grows least with strips, as their "
+            "From 10201 to 1002001 vertices the time of a step grows least with yarn_projection, "
+            "as their "
             "number to the power 1.25 (1.25 to 1.25), and most with icd, 1.5 (1.5 to 1.5).");
 }
 
@@ -57,7 +58,7 @@ TEST(Growth, IsToldWhereIntervalsAreApart) {
     std::vector<json> points;
     for (const int n : {101, 317, 1001}) {
       const double off = n == 317 ? scatter : 1 / scatter;
-      points.push_back(resolution_run("strips", n, off * 3e-7 * std::pow(n * n, strips)));
+      points.push_back(resolution_run("yarn_projection", n, off * 3e-7 * std::pow(n * n, strips)));
       points.push_back(resolution_run("icd", n, 3e-9 / off * std::pow(n * n, 1.5)));
     }
     const json result = document(points);

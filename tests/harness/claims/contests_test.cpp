@@ -245,7 +245,7 @@ TEST(Claims, RivalsHaveTheFasterOfTheirTunedAndUntunedSettings) {
     result["legend"]["solvers"] = {{{"name", "gauss_seidel_untuned"},
                                     {"solver", "gauss_seidel"},
                                     {"family", "gauss_seidel"},
-                                    {"hollow", true}}};
+                                    {"unranked", true}}};
     return verdict_in("C6", result);
   };
   EXPECT_EQ(with(3).verdict, "reproduced");

@@ -46,7 +46,7 @@ TEST(Claims, C12HoldsTheLowerEdgesSagAgainstOnePercentOfTheSide) {
   for (const json& p : all("fast_projection", 0.05, 0.05, 0.05)) points.push_back(p);
   EXPECT_EQ(verdict("C12", points).verdict, "changed");
   // Who is not the paper's does not count.
-  EXPECT_EQ(verdict("C12", all("strips", 0.3, 0.1, 0.05)).verdict, "not yet measured");
+  EXPECT_EQ(verdict("C12", all("yarn_projection", 0.3, 0.1, 0.05)).verdict, "not yet measured");
 }
 
 }  // namespace

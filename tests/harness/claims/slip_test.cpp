@@ -28,7 +28,7 @@ TEST(Claims, C16WantsTheRimAboveTheHipsAtOnePercentAndBelowThemAtTen) {
   EXPECT_EQ(verdict("C16", both("icd", 0.5, 0.3)).verdict, "not reproduced");
   for (const json& p : both("icd", 0.19, 0.1)) points.push_back(p);
   EXPECT_EQ(verdict("C16", points).verdict, "changed");
-  EXPECT_EQ(verdict("C16", both("strips", 0.5, 0.1)).verdict, "not yet measured")
+  EXPECT_EQ(verdict("C16", both("yarn_projection", 0.5, 0.1)).verdict, "not yet measured")
       << "who is not the paper's does not count";
 }
 

@@ -38,11 +38,11 @@ answers() {
 }
 answers 6 'no run ended within its strain limit in this time' --scene drape --n 71 --seconds 0.5
 ! grep -q '^take' out.txt || fail "a solver to take, without any run"
-chain=(--scene chain --n 10 --error 0.5 --seconds 10 --solver 'fast_projection|strips@midpoint')
+chain=(--scene chain --n 10 --error 0.5 --seconds 10 --solver 'fast_projection|yarn_projection@midpoint')
 answers 0 '^take' "${chain[@]}" --budget 10s
 answers 6 'no solver that was tried keeps the budget' "${chain[@]}" --budget 0.000001us
 ! grep -q '^take' out.txt || fail "a solver to take, above the budget: $(cat out.txt)"
-for name in fast_projection strips@midpoint; do
+for name in fast_projection yarn_projection@midpoint; do
   grep -q "$name" out.txt || fail "$name was named and is nowhere: $(cat out.txt)"
 done
 echo ok

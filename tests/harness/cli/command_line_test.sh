@@ -179,7 +179,7 @@ with open("curtain.obj", "w") as file:
     file.writelines(f"v {i / (n - 1)} {1 - j / (n - 1)} 0\n" for j in range(n) for i in range(n))
     file.writelines(f"f {a} {a + 1} {a + n + 1} {a + n}\n" for j in range(n - 1) for a in range(j * n + 1, j * n + n))
 PYTHON
-"$BENCH_BINARY" choose --scene mesh:curtain.obj --pins 'y > 0.99 and x < 0.02' --solver 'strips|fast_projection' --seconds 20 \
+"$BENCH_BINARY" choose --scene mesh:curtain.obj --pins 'y > 0.99 and x < 0.02' --solver 'yarn_projection|fast_projection' --seconds 20 \
   >chosen.txt 2>err.txt || fail "choose for a mesh: exit $?, $(tail -1 err.txt)"
 grep -q '^curtain.obj, 49 vertices' chosen.txt && grep -q '^take  .* error [0-9.e-]* %' chosen.txt || fail "choose for a mesh: $(cat chosen.txt)"
 

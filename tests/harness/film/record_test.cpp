@@ -62,8 +62,8 @@ TEST(Films, TakeAStepAtWhichNoEnergyIsGainedUnlessOneIsGiven) {
 // skirt gains nine times what the body can do.
 TEST(Films, JudgeEnergyBesideABodyThatMoves) {
   const auto garment = [](std::optional<double> step) {
-    return filmed("garment", {{"n", 40}, {"duration", 1}}, {"strips@bdf2", "strips@bdf2"}, 0.01,
-                  step);
+    return filmed("garment", {{"n", 40}, {"duration", 1}},
+                  {"yarn_projection@bdf2", "yarn_projection@bdf2"}, 0.01, step);
   };
   const FilmRun chosen = garment({});
   EXPECT_EQ(chosen.energy_gained + chosen.detail, "");

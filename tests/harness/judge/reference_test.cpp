@@ -204,17 +204,17 @@ TEST(Reference, SurvivesItsFile) {
   const std::string folder = ::testing::TempDir() + "references";
   std::filesystem::create_directories(folder);
   std::ofstream(folder + "/" + reference_name("chain", parameters)) << to_json(r);
-  ReferenceFolder shelf(folder);
-  const auto again = shelf.find("chain", parameters);
+  ReferenceFolder references(folder);
+  const auto again = references.find("chain", parameters);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->times, r.times);
   ASSERT_EQ(again->positions.size(), r.positions.size());
   for (std::size_t i = 0; i < r.positions.size(); ++i)
     EXPECT_LT((again->positions[i] - r.positions[i]).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_FALSE(shelf.find("chain", complete_parameters(type, {{"n", 5}})));
+  EXPECT_FALSE(references.find("chain", complete_parameters(type, {{"n", 5}})));
   // Another mass is another scene, another duration is not.
-  EXPECT_FALSE(shelf.find("chain", complete_parameters(type, {{"n", 4}, {"mass", 2}})));
-  EXPECT_TRUE(shelf.find("chain", complete_parameters(type, {{"n", 4}})));
+  EXPECT_FALSE(references.find("chain", complete_parameters(type, {{"n", 4}, {"mass", 2}})));
+  EXPECT_TRUE(references.find("chain", complete_parameters(type, {{"n", 4}})));
 
   // A file under the name of parameters that it is not of does not stand for them.
   const auto five = complete_parameters(type, {{"n", 5}, {"duration", 0.2}});
@@ -229,8 +229,8 @@ TEST(Reference, ThatIsCommittedIsTheOneThisProgramComputes) {
   const auto found_type = find_scene("chain");
   const SceneType& type = *found_type;
   const auto parameters = complete_parameters(type, {});
-  ReferenceFolder shelf(std::string(SOURCE_DIR) + "/results/references");
-  const auto stored = shelf.find("chain", parameters);
+  ReferenceFolder references(std::string(SOURCE_DIR) + "/results/references");
+  const auto stored = references.find("chain", parameters);
   ASSERT_TRUE(stored);
   Pendulum pendulum(uniform_links(79, 1, 1), std::vector<double>(79, 0.0));
   const Scene scene = type.build(parameters);

@@ -90,7 +90,7 @@ TEST(Contestants, TakeEveryPartOfTheScene) {
 
 TEST(Contestants, HaveTheirOwnNamesAndSettings) {
   const Suite suite = suite_with("", R"("solvers": ["jacobi", {"name": "jacobi_slow",
-      "solver": "jacobi", "settings": {"relaxation": 1.2}, "hollow": true}],
+      "solver": "jacobi", "settings": {"relaxation": 1.2}, "unranked": true}],
       "solver_options": {"jacobi": {"relaxation": 1.5, "target": 0.5}})");
   const auto searches = plan(suite, {});
   ASSERT_EQ(searches.size(), 2u);
@@ -112,11 +112,11 @@ TEST(Contestants, ThatAreAnotherOneOnAChainAreLeftOutThereUnlessTheyAreNamed) {
     const auto all = names(suite_with("", solvers + R"("steps": {"finest": 0.001})", scene));
     return std::find(all.begin(), all.end(), name) != all.end();
   };
-  EXPECT_FALSE(stands("", "chain", "strips@bdf2"));
-  EXPECT_FALSE(stands("", "whip", "strips@bdf2"));
-  EXPECT_TRUE(stands("", "drape", "strips@bdf2"));
+  EXPECT_FALSE(stands("", "chain", "yarn_projection@bdf2"));
+  EXPECT_FALSE(stands("", "whip", "yarn_projection@bdf2"));
+  EXPECT_TRUE(stands("", "drape", "yarn_projection@bdf2"));
   EXPECT_TRUE(stands("", "chain", "fast_projection_adaptive@bdf2"));
-  EXPECT_TRUE(stands(R"("solvers": ["strips@bdf2"], )", "chain", "strips@bdf2"));
+  EXPECT_TRUE(stands(R"("solvers": ["yarn_projection@bdf2"], )", "chain", "yarn_projection@bdf2"));
   for (const auto& backend : inextensible::backends()) {
     if (*backend.same_on_chains) {
       EXPECT_TRUE(inextensible::find_backend(backend.same_on_chains)) << backend.name;
@@ -134,7 +134,8 @@ TEST(Contestants, ThatAreWrongAreRefusedByName) {
   says(complaint("", R"("solvers": [{"name": "x", "solver": "idc"}])"), "did you mean 'icd'");
   says(complaint("", R"("solvers": [{"name": "x", "solver": "icd", "settings": {"relax": 1}}])"),
        "no setting of solver icd 'relax'");
-  says(complaint("", R"("solvers": [{"name": "x", "solver": "icd", "hollow": 1}])"), "'hollow'");
+  says(complaint("", R"("solvers": [{"name": "x", "solver": "icd", "unranked": 1}])"),
+       "'unranked'");
   says(complaint("", R"("solvers": [5])"), "solvers' names");
   says(complaint(R"("same": "idc", )", R"("solvers": ["icd"])"), "did you mean 'icd'");
   says(complaint(R"("untuned": true, )", R"("solvers": ["icd"])"), "goes with 'tuned'");
@@ -152,7 +153,7 @@ TEST(Tuned, SettingsAreUsedForTheirKindOfSceneAndBelowWhatASuiteSays) {
   const auto searches = plan(drape, {});
   EXPECT_EQ(setting(searches[0], "relaxation"), 1.6);
   EXPECT_TRUE(searches[1].base.settings.empty());
-  EXPECT_TRUE(drape.sweeps[0].contestants[1].hollow);
+  EXPECT_TRUE(drape.sweeps[0].contestants[1].unranked);
   EXPECT_EQ(names(suite_with(tuned, both, "folded_drape")), names(drape)) << "it is like a drape";
   EXPECT_EQ(names(suite_with(tuned, both)), (std::vector<std::string>{"jacobi", "icd"}));
   EXPECT_EQ(names(suite_with(tuned, both + R"(, "untuned": false)", "drape")),

@@ -239,7 +239,7 @@ TEST(ResultFile, SaysWhereItsSettingsAreFromWhoIsWhoAndHowNoisyItIs) {
   const auto again = std::find_if(known.begin(), known.end(),
                                   [](const json& s) { return s["name"] == "icd_again"; });
   ASSERT_NE(again, known.end());
-  EXPECT_EQ((*again)["hollow"], true);
+  EXPECT_EQ((*again)["unranked"], true);
   EXPECT_EQ((*(again - 1))["name"], "icd");
 }
 

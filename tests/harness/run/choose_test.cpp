@@ -86,8 +86,8 @@ TEST(Choose, LaddersFollowWhatScreeningSaw) {
 class InventedMachine {
  public:
   std::map<std::string, double> seconds{
-      {"fast_projection", 5}, {"jacobi", 40}, {"gauss_seidel", 30},
-      {"strips@bdf2", 0.2},   {"icd", 20},    {"implicit_springs", 10}};
+      {"fast_projection", 5},        {"jacobi", 40}, {"gauss_seidel", 30},
+      {"yarn_projection@bdf2", 0.2}, {"icd", 20},    {"implicit_springs", 10}};
   std::vector<std::string> calls;  // "screen icd", "run icd", "repeat icd"
   double clock = 0;                // s
   double interrupt_at = 1e300;
@@ -149,7 +149,7 @@ TEST(Choose, ScreensEveryContestantBeforeTheFirstLadder) {
   machine.choose(60);
   for (std::size_t i = 0; i < 6; ++i)
     EXPECT_TRUE(machine.calls[i].starts_with("screen")) << machine.calls[i];
-  EXPECT_EQ(machine.calls[6], "run strips@bdf2") << "the fastest when screened";
+  EXPECT_EQ(machine.calls[6], "run yarn_projection@bdf2") << "the fastest when screened";
 }
 
 TEST(Choose, FindsTheFastestWhateverTheOrderOfTheList) {
@@ -157,14 +157,14 @@ TEST(Choose, FindsTheFastestWhateverTheOrderOfTheList) {
   const Trials trials = machine.choose(60);
   const Recommendation found = recommend(trials.points, {});
   ASSERT_TRUE(found.best);
-  EXPECT_EQ(found.best->point->spec.solver, "strips@bdf2");
+  EXPECT_EQ(found.best->point->spec.solver, "yarn_projection@bdf2");
   EXPECT_EQ(found.best->point->samples.size(), 7u) << "sampled again at the end";
 }
 
 TEST(Choose, StopsARunInProgressWhenTheTimeIsOver) {
   for (const double seconds : {0.3, 1.0, 6.0, 20.0}) {
     InventedMachine machine;
-    machine.seconds["strips@bdf2"] = 3;
+    machine.seconds["yarn_projection@bdf2"] = 3;
     const Trials trials = machine.choose(seconds);
     EXPECT_LE(machine.latest, 1.02 * seconds + 0.01);
     EXPECT_EQ(trials.screened.size(), 6u);

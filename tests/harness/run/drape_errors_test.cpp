@@ -53,9 +53,10 @@ TEST_P(DrapeErrors, FallWithTheStepToTheReferencesGap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ContactMethods, DrapeErrors,
-                         ::testing::Values("fast_projection", "icd", "strips", "strips@bdf2",
-                                           "strips@midpoint", "fast_projection_adaptive@bdf2",
-                                           "gauss_seidel_colored", "jacobi", "implicit_springs"),
+                         ::testing::Values("fast_projection", "icd", "yarn_projection",
+                                           "yarn_projection@bdf2", "yarn_projection@midpoint",
+                                           "fast_projection_adaptive@bdf2", "gauss_seidel_colored",
+                                           "jacobi", "implicit_springs"),
                          inextensible::names::contestant_name);
 
 // Edges that shake between limits of 10 % bring energy back step by step.

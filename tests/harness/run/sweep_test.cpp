@@ -129,7 +129,7 @@ TEST(Repetitions, GoOnUntilTheMedianIsKnown) {
 }
 
 // Two contestants, one 100 times as fast as the other one: that one is stopped at 30 times, at each
-// limit anew, and none is called hopeless for it.
+// limit again, and none is called hopeless for it.
 TEST(StepSearch, StopsWhoIsFarBehindTheFastestOfAPlace) {
   Suite suite = one_family();
   suite.sweeps[0].contestants = {{"fast_projection", "fast_projection"}, {"jacobi", "jacobi"}};

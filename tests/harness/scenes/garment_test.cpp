@@ -26,7 +26,8 @@ Scene garment(const SceneParameters& given) {
 State after(const Scene& scene, double limit, double seconds) {
   const double h = 1.0 / 400;
   State state = scene.start;
-  const auto stepper = inextensible::make_stepper("strips", scene.problem, {limit, 1, {}, &state});
+  const auto stepper =
+      inextensible::make_stepper("yarn_projection", scene.problem, {limit, 1, {}, &state});
   inextensible::StepController controller(*stepper, {.largest = h});
   while (state.time < seconds - 1e-9) {
     const auto result = controller.advance(state);

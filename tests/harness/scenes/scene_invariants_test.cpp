@@ -80,7 +80,7 @@ TEST(Drape, OfFullSizeKeepsItsMirrorSymmetryUntilFirstContact) {
     inextensible::BackendOptions options{0.001, 1, {}};
     // The defaults of both factor in single precision.
     if (solver == std::string("fast_projection"))
-      options.settings["linear_solver"] = std::string("fixed_pattern");
+      options.settings["linear_solver"] = std::string("multifrontal");
     if (solver == std::string("icd"))
       options.settings["linear_solver"] = std::string("quasi_definite");
     const auto stepper = inextensible::make_stepper(solver, drape.problem, options);

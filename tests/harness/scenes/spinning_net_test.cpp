@@ -103,7 +103,7 @@ TEST(SpinningNet, LosesSpeedByAnExactLawWhereDirectionsAreOfTheEndOfTheStep) {
 
 // The same by methods that go edge by edge, as far as they converge.
 TEST(SpinningNet, IsDampedAlikeByStrainLimiting) {
-  for (const char* solver : {"gauss_seidel", "gauss_seidel_colored", "jacobi", "strips"}) {
+  for (const char* solver : {"gauss_seidel", "gauss_seidel_colored", "jacobi", "yarn_projection"}) {
     const std::vector<double> angles = step_angles(solver, 0.01);
     ASSERT_EQ(angles.size(), 100u) << solver;
     EXPECT_NEAR(angles.back() / 0.01 / turn, 0.747, 0.01) << solver;

@@ -29,7 +29,7 @@ json sweep(double noise = 0, double untuned_icd = 4.0) {
   result["legend"]["solvers"] = {
       {{"name", "fast_projection"}, {"family", "fast_projection"}},
       {{"name", "icd"}, {"family", "icd"}},
-      {{"name", "icd_untuned"}, {"solver", "icd"}, {"family", "icd"}, {"hollow", true}}};
+      {{"name", "icd_untuned"}, {"solver", "icd"}, {"family", "icd"}, {"unranked", true}}};
   for (const char* key : {"date", "cpu_model"}) result["context"][key] = "x";
   result["context"]["build"]["git"] = "abc";
   return result;
@@ -54,7 +54,7 @@ TEST(ResultsPage, OnlyTheClearlyFastestIsBoldAndRatiosHaveIntervals) {
       "fast_projection is the fastest: 1 s a simulated second with steps of 1/100 s and an "
       "error of 1 %; icd, the next, takes 2.00 (1.98-2.02) times as long.");
   has(noisy, "| 1 % | `fast_projection` 1000 ms, 1/100");
-  has(noisy, "fast_projection and icd are the fastest, too close to tell apart");
+  has(noisy, "fast_projection and icd are the fastest, too close to rank");
 }
 
 TEST(ResultsPage, ASolverStandsThereWithTheFasterOfItsTunedAndUntunedSettings) {

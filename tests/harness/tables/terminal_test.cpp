@@ -17,12 +17,12 @@ using nlohmann::json;
 
 TEST(Terminal, PrintsThePlane) {
   const json result =
-      document({run("strips", 0.1, 0.04, 1e-3, 0.008), run("icd", 0.1, 0.04, 3e-3, 0.03),
+      document({run("yarn_projection", 0.1, 0.04, 1e-3, 0.008), run("icd", 0.1, 0.04, 3e-3, 0.03),
                 run("shake", 0.1, 0.02, 2e-3, 0.01)});
   std::ostringstream out;
   print_sweep(out, result);
   EXPECT_NE(out.str().find("chain of 80 vertices"), std::string::npos);
-  EXPECT_NE(out.str().find("10 %     any          strips"), std::string::npos) << out.str();
+  EXPECT_NE(out.str().find("yarn_projection"), std::string::npos) << out.str();
   EXPECT_NE(out.str().find("2.00 (1.99-2.01) by shake"), std::string::npos) << out.str();
   std::istringstream lines(out.str());
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;

@@ -24,7 +24,7 @@ namespace {
 using testing::Random;
 using testing::random_graph;
 constexpr std::uint64_t seeds = 20;
-const std::vector<std::string> general_solvers = {"fixed_pattern", "cholmod_simplicial",
+const std::vector<std::string> general_solvers = {"multifrontal", "cholmod_simplicial",
                                                   "cholmod_supernodal"};
 
 Eigen::MatrixXd dense_symmetric(const SymmetricPattern& pattern, const double* values) {
@@ -114,16 +114,16 @@ void expect_any_order_to_agree_with_a_dense_factorization(double tolerance) {
   }
 }
 
-TEST(FixedPatternCholesky, TakesAnyOrderAndAgreesWithADenseFactorization) {
+TEST(MultifrontalCholesky, TakesAnyOrderAndAgreesWithADenseFactorization) {
   expect_any_order_to_agree_with_a_dense_factorization<double>(1e-13);
 }
 
-TEST(FixedPatternCholesky, InSinglePrecisionAgreesToSixDigits) {
+TEST(MultifrontalCholesky, InSinglePrecisionAgreesToSixDigits) {
   expect_any_order_to_agree_with_a_dense_factorization<float>(1e-5);
 }
 
 // A pivot of 1e-6 of its diagonal entry is noise in single precision.
-TEST(FixedPatternCholesky, InSinglePrecisionRefusesPivotsWithoutDigits) {
+TEST(MultifrontalCholesky, InSinglePrecisionRefusesPivotsWithoutDigits) {
   MultifrontalCholesky<float> solver({2, SymmetricPattern::Triangle::lower, {0, 2, 3}, {0, 1, 1}});
   for (const double pivot : {1e-3, 1e-6, 0.0, -1e-6}) {
     const double values[] = {1, 1, 1 + pivot};
@@ -133,7 +133,7 @@ TEST(FixedPatternCholesky, InSinglePrecisionRefusesPivotsWithoutDigits) {
 }
 
 // What is left of a refused matrix, NaN included, must not reach the next one: fronts share memory.
-TEST(FixedPatternCholesky, ForgetsAMatrixThatItRefused) {
+TEST(MultifrontalCholesky, ForgetsAMatrixThatItRefused) {
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -142,7 +142,7 @@ TEST(FixedPatternCholesky, ForgetsAMatrixThatItRefused) {
     const SchurComplement schur(edges, 60, SymmetricPattern::Triangle::lower);
     Eigen::Matrix3Xd u(3, edges.count());
     edges.gradient(graph.x, u);
-    FixedPatternCholesky used(schur.pattern()), fresh(schur.pattern());
+    MultifrontalCholesky<double> used(schur.pattern()), fresh(schur.pattern());
     for (int bad = edges.count() - 1; bad > 0; bad /= 2) {
       schur.assemble(u, used.values());
       const int diagonal = schur.pattern().diagonal(bad);
@@ -176,7 +176,7 @@ TEST(MixedCholesky, KeepsWhatItIsAskedForInWhicheverPrecisionItTakes) {
       Eigen::Matrix3Xd u(3, edges.count());
       edges.gradient(x, u);
       MixedCholesky solver(schur.pattern());
-      FixedPatternCholesky exact(schur.pattern());
+      MultifrontalCholesky<double> exact(schur.pattern());
       schur.assemble(u, solver.values());
       schur.assemble(u, exact.values());
       ASSERT_EQ(solver.factor(), exact.factor());
@@ -199,7 +199,7 @@ TEST(MixedCholesky, KeepsWhatItIsAskedForInWhicheverPrecisionItTakes) {
 // A positive diagonal does not make a matrix positive definite: [1 2; 2 1] has eigenvalue -1.
 TEST(SpdSolver, RefusesAnIndefiniteMatrixWithAPositiveDiagonal) {
   for (const char* name : {"tridiagonal", "cholmod_simplicial", "cholmod_supernodal",
-                           "fixed_pattern", "fixed_pattern_mixed"}) {
+                           "multifrontal", "multifrontal_mixed"}) {
     SCOPED_TRACE(name);
     SymmetricPattern pattern;
     pattern.n = 3;
@@ -367,7 +367,7 @@ TEST(ChainSolvers, TakeTheirPatternOnly) {
 // diagonal entry, and estimates the condition by it.
 TEST(SpdSolver, RefusesPivotsThatLostTheirDigitsWhereToldTo) {
   for (const char* name :
-       {"tridiagonal", "cholmod_simplicial", "cholmod_supernodal", "fixed_pattern"}) {
+       {"tridiagonal", "cholmod_simplicial", "cholmod_supernodal", "multifrontal"}) {
     SCOPED_TRACE(name);
     const bool upper = triangle_of(name) == SymmetricPattern::Triangle::upper;
     const SymmetricPattern pattern{2, triangle_of(name),
@@ -633,7 +633,7 @@ TEST(ProjectedCg, SolvesTheSaddlePointSystemAndKeepsTheConstraintsWhereItIsIndef
         edges.gradient(graph.x, u);
         const Eigen::VectorXd mu = Eigen::VectorXd::NullaryExpr(
             m, [&](Eigen::Index) { return size * testing::uniform(random, lowest, 1); });
-        ProjectedCg cg(problem, edges, {1e-12, 500, "fixed_pattern"});
+        ProjectedCg cg(problem, edges, {1e-12, 500, "multifrontal"});
         WorkCounters work;
         ASSERT_TRUE(cg.factor(u, mu, nullptr, false, work));
         Positions r(3, n), p(3, n);

@@ -34,7 +34,7 @@ std::string text_of(const Settings& settings) {
 }
 
 TEST(WithoutEdges, EverySolverWithEveryLinearSolverLetsVerticesFall) {
-  const double h = 0.01;
+  const double step = 0.01;
   int runs = 0;
   for (const Backend& backend : backends()) {
     for (const Settings& settings : variants(backend)) {
@@ -57,16 +57,16 @@ TEST(WithoutEdges, EverySolverWithEveryLinearSolverLetsVerticesFall) {
         }
         ++runs;
         for (int i = 0; i < 4; ++i) {
-          const StepResult result = stepper->advance(state, h);
+          const StepResult result = stepper->advance(state, step);
           ASSERT_TRUE(result) << result.detail;
         }
         for (int i = 0; i < mesh.vertices; ++i) {
           const bool pinned =
               std::find(mesh.pinned.begin(), mesh.pinned.end(), i) != mesh.pinned.end();
           // Steps of order one fall between these two, second-order ones in their middle.
-          const double fallen = start(1, i) - state.x(1, i), t = 4 * h;
+          const double fallen = start(1, i) - state.x(1, i), t = 4 * step;
           EXPECT_NEAR(fallen, pinned ? 0 : 0.5 * 9.81 * t * t,
-                      pinned ? 0 : 0.5 * 9.81 * t * h * 1.01);
+                      pinned ? 0 : 0.5 * 9.81 * t * step * 1.01);
           EXPECT_NEAR(state.x(0, i), start(0, i), pinned ? 0 : 1e-14);
         }
       }

@@ -27,7 +27,7 @@ using testing::random_mesh;
 using testing::same_bits;
 constexpr std::uint64_t examples = 8;
 
-// Every backend that holds edges: those with a strain limit, implicit springs and the oracle.
+// Every backend that holds edges: those with a strain limit, implicit springs and the dense Newton.
 std::vector<std::string> steppers() {
   std::vector<std::string> names;
   for (const Backend& backend : backends()) {

@@ -29,7 +29,7 @@ std::vector<std::string> filters() {
   for (const Backend& backend : backends()) {
     if (backend.strain_control == StrainControl::strain_limit) names.emplace_back(backend.name);
   }
-  names.emplace_back("oracle");
+  names.emplace_back("dense_newton");
   return names;
 }
 
@@ -76,7 +76,7 @@ TEST_P(Filters, ConserveLinearMomentumAndTheirAngularMomentum) {
       EXPECT_LT(
           (angular_momentum(p, before.x, state.v) - angular_momentum(p, before.x, before.v)).norm(),
           1e-9 * scale);
-    } else if (GetParam() == "icd" || GetParam() == "oracle") {
+    } else if (GetParam() == "icd" || GetParam() == "dense_newton") {
       const double direction =
           GetParam() == "icd" ? 0.1 * 0.005 / h : 1e-10;  // as far as F = 0 is solved
       EXPECT_LT(
@@ -96,9 +96,9 @@ TEST_P(Filters, LeaveTheStateUntouchedWhenTheyRefuse) {
   Random random(11);
   const auto mesh = random_mesh(random, 4, 4, 1);
   BackendOptions options{1e-13, 1, {}};
-  if (GetParam() != "oracle") options.settings["max_iterations"] = 1.0;
+  if (GetParam() != "dense_newton") options.settings["max_iterations"] = 1.0;
   const auto stepper = make_stepper(GetParam(), mesh.problem, options);
-  State state = moving_state(random, mesh, GetParam() == "oracle" ? 1e300 : 10);
+  State state = moving_state(random, mesh, GetParam() == "dense_newton" ? 1e300 : 10);
   state.time = 3;
   const State before = state;
   const StepResult result = stepper->advance(state, h);
@@ -144,7 +144,7 @@ TEST(FastProjection, FirstIterationIsIcdsFirstNewtonIteration) {
     WorkCounters work;
     Positions fast = candidate, icd = candidate;
     FastProjection::Settings exact{limit};
-    exact.linear_solver = "fixed_pattern";
+    exact.linear_solver = "multifrontal";
     FastProjection fast_projection(*mesh.problem, exact);
     Icd::Settings settings{limit};
     settings.direction_tolerance =
@@ -240,7 +240,7 @@ TEST(Icd, SolutionIsTheClosestPointOfTheManifold) {
     Positions icd = candidate, oracle = candidate;
     Icd::Settings settings{1e-10};
     ASSERT_TRUE(Icd(p, settings).apply(mesh.x, h, icd, work));
-    ASSERT_TRUE(make_velocity_filter("oracle", p, {})->apply(mesh.x, h, oracle, work));
+    ASSERT_TRUE(make_velocity_filter("dense_newton", p, {})->apply(mesh.x, h, oracle, work));
     EXPECT_LT((icd - oracle).norm(), 1e-7);
 
     const auto distance = [&](const Positions& x) {
@@ -426,7 +426,7 @@ TEST(ImplicitSprings, SayWhereChainsAreNeeded) {
   Random random(1);
   const RandomMesh cloth = random_mesh(random, 3, 3, 1);
   EXPECT_STREQ(make_stepper("implicit_springs", cloth.problem, {})->linear_solver(),
-               "fixed_pattern");
+               "multifrontal");
   EXPECT_THROW(make_stepper("implicit_springs", cloth.problem,
                             {0.01, 1, {{"linear_solver", std::string("block_tridiagonal")}}}),
                std::invalid_argument);

@@ -158,9 +158,9 @@ TEST_P(Friction, OfARopeRoundAPostGrowsAsTheCapstanEquationSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Friction,
-                         ::testing::Values("implicit_springs", "augmented_vbd",
-                                           "projective_dynamics", "gauss_seidel_colored", "shake",
-                                           "icd", "fast_projection", "strips"));
+                         ::testing::Values("implicit_springs", "augmented_vbd", "admm",
+                                           "gauss_seidel_colored", "shake", "icd",
+                                           "fast_projection", "yarn_projection"));
 
 }  // namespace
 }  // namespace inextensible

@@ -74,16 +74,17 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"chain", 80, "implicit_springs", 0.005}, Case{"drape", 15, "fast_projection", 0.005},
         Case{"drape", 15, "fast_projection", 0.005, "hybrid"}, Case{"drape", 15, "jacobi", 0.005},
         Case{"drape", 15, "gauss_seidel", 0.005}, Case{"drape", 15, "gauss_seidel_colored", 0.005},
-        Case{"drape", 15, "strips", 0.005}, Case{"drape", 15, "strips@bdf2", 0.005},
-        Case{"drape", 15, "strips@midpoint", 0.005},
+        Case{"drape", 15, "yarn_projection", 0.005},
+        Case{"drape", 15, "yarn_projection@bdf2", 0.005},
+        Case{"drape", 15, "yarn_projection@midpoint", 0.005},
         Case{"drape", 15, "fast_projection_adaptive", 0.005},
         Case{"drape", 15, "fast_projection_adaptive@bdf2", 0.005},
         Case{"drape", 15, "shake", 0.001}, Case{"drape", 15, "icd", 0.005},
         Case{"drape", 15, "implicit_springs", 0.005},
         Case{"chain", 80, "vertex_block_descent", 0.005},
         Case{"drape", 15, "vertex_block_descent", 0.005}, Case{"chain", 80, "augmented_vbd", 0.005},
-        Case{"drape", 15, "augmented_vbd", 0.005}, Case{"chain", 80, "projective_dynamics", 0.005},
-        Case{"drape", 15, "projective_dynamics", 0.005}, Case{"chain", 80, "soft_step", 0.001}),
+        Case{"drape", 15, "augmented_vbd", 0.005}, Case{"chain", 80, "admm", 0.005},
+        Case{"drape", 15, "admm", 0.005}, Case{"chain", 80, "soft_step", 0.001}),
     [](const auto& i) {
       return std::string(i.param.scene) + "_" + inextensible::names::plain(i.param.solver) + "_" +
              i.param.linear_solver;

@@ -53,7 +53,7 @@ TEST(VertexPasses, MoveOneVertexAfterTheOtherInColors) {
     passes.load(x, y, problem.mass());
     for (int i = 0; i < 3; ++i) {
       passes.visit_all(1);
-      // Colors alternate from each end of the row, and start anew behind a pin.
+      // Colors alternate from each end of the row, and start again behind a pin.
       for (const int color : {0, 1}) {
         for (int v = 0; v < n; ++v) {
           const bool pinned = !problem.pinned().empty() && v == first;

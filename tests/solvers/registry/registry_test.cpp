@@ -96,7 +96,7 @@ TEST(Registry, SettingsOutOfRangeAreRefusedByName) {
   EXPECT_NE(refusal("shake", "max_iterations", 0.0), "");
   EXPECT_NE(refusal("gauss_seidel", "target", 1.01), "");
   EXPECT_EQ(refusal("gauss_seidel", "target", 1.0), "");
-  EXPECT_NE(refusal("strips@midpoint", "spectral_radius", 1.01), "");
+  EXPECT_NE(refusal("yarn_projection@midpoint", "spectral_radius", 1.01), "");
   EXPECT_NE(refusal("icd", "cg_tolerance", std::nan("")), "");
   EXPECT_EQ(refusal("icd", "cg_tolerance", std::string("low")),
             "solver 'icd': setting 'cg_tolerance' must be a number");

@@ -219,8 +219,8 @@ TEST(Energy, OfATurningNetIsKeptByDirectionsOfTheMiddle) {
   std::vector<double> steps, errors;
   for (double h = 0.02; steps.size() < 3; h /= 2) {
     steps.push_back(h);
-    errors.push_back(std::abs(lost("strips@midpoint", conserving, h)));
-    EXPECT_LT(errors.back(), 0.05 * lost("strips", {}, h)) << "h = " << h;
+    errors.push_back(std::abs(lost("yarn_projection@midpoint", conserving, h)));
+    EXPECT_LT(errors.back(), 0.05 * lost("yarn_projection", {}, h)) << "h = " << h;
   }
   EXPECT_GT(log_log_slope(steps, errors).value, 1.8);
 }

@@ -210,7 +210,7 @@ TEST_P(SpdSolvers, RefuseWhatIsNotPositiveDefinite) {
 
 INSTANTIATE_TEST_SUITE_P(All, SpdSolvers,
                          ::testing::Values("tridiagonal", "cholmod_simplicial",
-                                           "cholmod_supernodal", "fixed_pattern"));
+                                           "cholmod_supernodal", "multifrontal"));
 
 TEST(UnsymmetricSolver, LeavesASmallResidualAndSeesSingularMatrices) {
   for (const bool tridiagonal : {true, false}) {

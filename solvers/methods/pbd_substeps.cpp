@@ -1,6 +1,7 @@
-// XPBD with small steps (Macklin et al. 2016, 2019): a fixed number of passes a step, one as a
-// rule, without a test of convergence. It promises no strain limit: strain falls as h^2, and the
-// step is what buys it.
+// PBD with substeps, which is XPBD with small steps (Macklin et al. 2016, 2019) without compliance:
+// a fixed number of passes a step, one as a rule, without a test of convergence. It promises no
+// strain limit. On a hanging yarn strain falls as h^2; on large cloth in contact more passes help
+// where shorter steps do not.
 //
 // Compliance is 0, so that with one pass from lambda = 0 an edge's multiplier is its correction
 // (Macklin et al. 2016, eq. 18), and no multiplier is read again: every edge is brought to its rest
@@ -23,7 +24,7 @@
 namespace inextensible {
 namespace {
 
-class XpbdSmallSteps final : public VelocityFilter {
+class PbdSubsteps final : public VelocityFilter {
  public:
   // Long-range attachments (Kim, Chentanez and Mueller 2012): no vertex is farther from a pinned
   // one than its rest distance, along edges, which inextensible edges imply, or straight, which
@@ -36,8 +37,8 @@ class XpbdSmallSteps final : public VelocityFilter {
   static SettingFields<Settings> fields();
   // rest: positions (3 x n) at rest, for straight attachments; null where they are not known.
   // Throws std::invalid_argument if they are needed.
-  XpbdSmallSteps(const Problem& problem, const Settings& settings, const Positions* rest,
-                 Along along = Along::edges);
+  PbdSubsteps(const Problem& problem, const Settings& settings, const Positions* rest,
+              Along along = Along::edges);
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
 
  private:
@@ -79,8 +80,8 @@ std::vector<double> distances_from(int start, const Problem& problem,
   return distance;
 }
 
-XpbdSmallSteps::XpbdSmallSteps(const Problem& problem, const Settings& settings,
-                               const Positions* rest, Along along)
+PbdSubsteps::PbdSubsteps(const Problem& problem, const Settings& settings, const Positions* rest,
+                         Along along)
     : most_(settings.sweeps),
       along_(along),
       passes_(StrainPasses::by_mass(problem, {0, 0}, settings.relaxation)) {
@@ -91,7 +92,7 @@ XpbdSmallSteps::XpbdSmallSteps(const Problem& problem, const Settings& settings,
   }
 }
 
-void XpbdSmallSteps::attach_along_edges(const Problem& problem) {
+void PbdSubsteps::attach_along_edges(const Problem& problem) {
   const auto neighbours = neighbours_of(problem);
   for (const int pin : problem.pinned()) {
     const std::vector<double> distance = distances_from(pin, problem, neighbours);
@@ -103,7 +104,7 @@ void XpbdSmallSteps::attach_along_edges(const Problem& problem) {
   }
 }
 
-void XpbdSmallSteps::attach_straight(const Problem& problem, const Positions& rest) {
+void PbdSubsteps::attach_straight(const Problem& problem, const Positions& rest) {
   for (const int pin : problem.pinned()) {
     for (int v = 0; v < problem.vertices(); ++v)
       attachments_.push_back({v, pin, (rest.col(v) - rest.col(pin)).norm()});
@@ -112,7 +113,7 @@ void XpbdSmallSteps::attach_straight(const Problem& problem, const Positions& re
 }
 
 // Keeps the nearest attachments of each free vertex; sorted by vertex, nearest first.
-void XpbdSmallSteps::keep_nearest(const Problem& problem) {
+void PbdSubsteps::keep_nearest(const Problem& problem) {
   std::erase_if(attachments_,
                 [&](const Attachment& a) { return problem.inverse_mass()[a.vertex] == 0; });
   std::stable_sort(attachments_.begin(), attachments_.end(),
@@ -127,8 +128,8 @@ void XpbdSmallSteps::keep_nearest(const Problem& problem) {
   });
 }
 
-StepResult XpbdSmallSteps::apply(const Positions& x_start, double /*h*/, Iterate iterate,
-                                 WorkCounters& work) {
+StepResult PbdSubsteps::apply(const Positions& x_start, double /*h*/, Iterate iterate,
+                              WorkCounters& work) {
   passes_.load(iterate);
   if (along_ == Along::middle) passes_.take_middle_from(x_start);
   for (int i = 0; i < most_; ++i) work.edge_projections += passes_.in_turn();
@@ -145,7 +146,7 @@ StepResult XpbdSmallSteps::apply(const Positions& x_start, double /*h*/, Iterate
   return {Status::ok, most_};
 }
 
-SettingFields<XpbdSmallSteps::Settings> XpbdSmallSteps::fields() {
+SettingFields<PbdSubsteps::Settings> PbdSubsteps::fields() {
   using S = Settings;
   return {
       {"sweeps", &S::sweeps, "colored Gauss-Seidel passes a step", at_least_one,
@@ -158,18 +159,18 @@ SettingFields<XpbdSmallSteps::Settings> XpbdSmallSteps::fields() {
 
 }  // namespace
 
-Backend xpbd_small_steps_row() {
+Backend pbd_substeps_row() {
   return {
-      .name = "xpbd_small_steps",
+      .name = "pbd_substeps",
       .summary = "PBD with substeps (XPBD without compliance): a fixed number of passes, no test",
       .strain_control = StrainControl::time_step,
       .contestant = true,
-      .settings = setting_infos(XpbdSmallSteps::fields()),
+      .settings = setting_infos(PbdSubsteps::fields()),
       .make_filter = [](const Problem& problem, const BackendOptions& options,
                         Along along) -> std::unique_ptr<VelocityFilter> {
         // The start is taken for the shape at rest.
-        return std::make_unique<XpbdSmallSteps>(problem, settings_of<XpbdSmallSteps>(options),
-                                                options.start ? &options.start->x : nullptr, along);
+        return std::make_unique<PbdSubsteps>(problem, settings_of<PbdSubsteps>(options),
+                                             options.start ? &options.start->x : nullptr, along);
       },
       .takes_middle = true,
       .direction = Direction::local,

@@ -1,6 +1,6 @@
-// Registered as `oracle`, no contestant: the M-closest point of {C = 0} (ICD = SAP, Goldenthal
-// et al. 2007, Theorem 1) to 1e-12, by dense Newton with full pivoting. Slow and obvious:
-// what tests compare with, for small n.
+// Registered as `dense_newton`, no contestant: the M-closest point of {C = 0} (ICD = SAP,
+// Goldenthal et al. 2007, Theorem 1) to 1e-12, by dense Newton with full pivoting. Slow and
+// obvious: what tests compare with, for small n.
 #include <Eigen/Dense>
 #include <stdexcept>
 #include <string>
@@ -12,9 +12,9 @@
 namespace inextensible {
 namespace {
 
-class DenseOracle final : public VelocityFilter {
+class DenseNewton final : public VelocityFilter {
  public:
-  explicit DenseOracle(const Problem& problem);
+  explicit DenseNewton(const Problem& problem);
   StepResult apply(const Positions& x_start, double h, Iterate iterate,
                    WorkCounters& work) override;
 
@@ -38,15 +38,15 @@ Eigen::MatrixXd dense_jacobian(const EdgeConstraints& edges, const Positions& x)
   return jacobian;
 }
 
-DenseOracle::DenseOracle(const Problem& problem) : problem_(problem), edges_(problem, tolerance) {
+DenseNewton::DenseNewton(const Problem& problem) : problem_(problem), edges_(problem, tolerance) {
   if (problem.vertices() > largest_problem) {
-    throw std::invalid_argument("solver 'oracle' is dense, for at most " +
+    throw std::invalid_argument("solver 'dense_newton' is dense, for at most " +
                                 std::to_string(largest_problem) + " vertices; this problem has " +
                                 std::to_string(problem.vertices()));
   }
 }
 
-StepResult DenseOracle::apply(const Positions& /*x_start*/, double /*h*/, Iterate iterate,
+StepResult DenseNewton::apply(const Positions& /*x_start*/, double /*h*/, Iterate iterate,
                               WorkCounters& work) {
   Positions& x = iterate;
   const Eigen::Index n3 = 3 * x.cols(), m = edges_.count();
@@ -99,16 +99,16 @@ StepResult DenseOracle::apply(const Positions& /*x_start*/, double /*h*/, Iterat
 
 }  // namespace
 
-Backend oracle_row() {
-  return {.name = "oracle",
+Backend dense_newton_row() {
+  return {.name = "dense_newton",
           .summary = "dense Newton to 1e-12, small problems: what tests compare with",
           .strain_control = StrainControl::none,
           .contestant = false,
           .settings = {},
           .make_filter = [](const Problem& problem, const BackendOptions&, Along)
-              -> std::unique_ptr<VelocityFilter> { return std::make_unique<DenseOracle>(problem); },
+              -> std::unique_ptr<VelocityFilter> { return std::make_unique<DenseNewton>(problem); },
           .citation = "Goldenthal et al. 2007",
-          .label = "oracle (no contestant)"};
+          .label = "dense Newton (no contestant)"};
 }
 
 }  // namespace inextensible

@@ -52,17 +52,17 @@ TEST(Yarns, OfAChainAreOne) {
   EXPECT_EQ(yarns.size(), 1U);
 }
 
-TEST(Strips, OnAChainAreFastProjection) {
+TEST(YarnProjection, OnAChainAreFastProjection) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     testing::Random random(seed);
     const auto chain = testing::random_mesh(random, 1, 2 + static_cast<int>(random() % 40), 1);
-    const auto strips = make_velocity_filter("strips", *chain.problem,
-                                             {1e-3, 1, {{"sweeps", 0.0}, {"target", 0.0}}});
+    const auto yarns = make_velocity_filter("yarn_projection", *chain.problem,
+                                            {1e-3, 1, {{"sweeps", 0.0}, {"target", 0.0}}});
     FastProjection projection(*chain.problem, {.strain_limit = 1e-3});
     Positions x = testing::perturbed(random, chain, 0.05), y = x;
     WorkCounters work;
-    const StepResult mine = strips->apply(chain.x, 0.01, x, work);
+    const StepResult mine = yarns->apply(chain.x, 0.01, x, work);
     const StepResult wanted = projection.apply(chain.x, 0.01, y, work);
     ASSERT_TRUE(mine) << mine.detail;
     ASSERT_TRUE(wanted) << wanted.detail;
@@ -72,7 +72,7 @@ TEST(Strips, OnAChainAreFastProjection) {
 }
 
 // Yarns side by side in the lanes of a vector, of unequal lengths, do not feel each other.
-TEST(Strips, OnSeveralChainsAreFastProjectionOnEach) {
+TEST(YarnProjection, OnSeveralChainsAreFastProjectionOnEach) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     testing::Random random(seed);
@@ -91,7 +91,7 @@ TEST(Strips, OnSeveralChainsAreFastProjectionOnEach) {
                                chain.rest_length().end());
     }
     const Problem all(parts);
-    const auto strips = make_velocity_filter("strips", all, {1e-3, 1, {{"target", 0.0}}});
+    const auto yarns = make_velocity_filter("yarn_projection", all, {1e-3, 1, {{"target", 0.0}}});
     Positions x(3, all.vertices()), wanted = x, start = x;
     WorkCounters work;
     for (Eigen::Index at = 0; const testing::RandomMesh& chain : chains) {
@@ -104,55 +104,55 @@ TEST(Strips, OnSeveralChainsAreFastProjectionOnEach) {
       wanted.middleCols(at, n) = y;
       at += n;
     }
-    ASSERT_TRUE(strips->apply(start, 0.01, x, work));
+    ASSERT_TRUE(yarns->apply(start, 0.01, x, work));
     EXPECT_LE((x - wanted).cwiseAbs().maxCoeff(), 1e-10);
   }
 }
 
 // Where yarns do not cross, the projection of the whole has nothing to add.
-TEST(FastProjectionAdaptive, OnAChainIsStrips) {
+TEST(FastProjectionAdaptive, OnAChainIsYarnProjection) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     testing::Random random(seed);
     const auto chain = testing::random_mesh(random, 1, 2 + static_cast<int>(random() % 40), 1);
-    const auto strips = make_velocity_filter("strips", *chain.problem, {1e-3});
+    const auto yarns = make_velocity_filter("yarn_projection", *chain.problem, {1e-3});
     const auto adaptive = make_velocity_filter("fast_projection_adaptive", *chain.problem, {1e-3});
     Positions x = testing::perturbed(random, chain, 0.05), y = x;
     WorkCounters work, same_work;
-    ASSERT_TRUE(strips->apply(chain.x, 0.01, x, work));
+    ASSERT_TRUE(yarns->apply(chain.x, 0.01, x, work));
     ASSERT_TRUE(adaptive->apply(chain.x, 0.01, y, same_work));
     EXPECT_TRUE((x.array() == y.array()).all());
   }
 }
 
-// What strips need many rounds for, cloth stretched as a whole, the projection of the whole does in
-// a few; where strips are quick nothing is factored.
-TEST(FastProjectionAdaptive, ProjectsTheWholeWhereStripsAreSlowAndNotWhereTheyAreQuick) {
+// What yarns need many rounds for, cloth stretched as a whole, the projection of the whole does in
+// a few; where yarns are quick nothing is factored.
+TEST(FastProjectionAdaptive, ProjectsTheWholeWhereYarnsAreSlowAndNotWhereTheyAreQuick) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     testing::Random random(seed);
     const auto cloth = testing::random_mesh(random, 50, 50, 1);
     const int pin = cloth.problem->pinned().front();
     for (const double limit : {0.1, 1e-5}) {
-      const auto strips = make_velocity_filter("strips", *cloth.problem, {limit});
+      const auto yarns = make_velocity_filter("yarn_projection", *cloth.problem, {limit});
       const auto adaptive =
           make_velocity_filter("fast_projection_adaptive", *cloth.problem, {limit});
       const EdgeConstraints edges(*cloth.problem, limit);
-      WorkCounters work, strips_work;
-      int rounds = 0, strips_rounds = 0;
+      WorkCounters work, yarns_work;
+      int rounds = 0, yarns_rounds = 0;
       for (int step = 0; step < 5; ++step) {
         Positions x = testing::perturbed(random, cloth, limit < 1e-3 ? 1e-6 : 0.005);
         if (limit < 1e-3) x = (1.03 * (x.colwise() - x.col(pin))).colwise() + x.col(pin).eval();
         Positions y = x;
         const StepResult mine = adaptive->apply(cloth.x, 0.01, x, work);
-        const StepResult theirs = strips->apply(cloth.x, 0.01, y, strips_work);
+        const StepResult theirs = yarns->apply(cloth.x, 0.01, y, yarns_work);
         ASSERT_TRUE(mine && theirs) << mine.detail;
         EXPECT_TRUE(edges.permissible(x));
         rounds += mine.iterations;
-        strips_rounds += theirs.iterations;
+        yarns_rounds += theirs.iterations;
       }
       if (limit < 1e-3) {
-        EXPECT_LT(2 * rounds, strips_rounds);
+        EXPECT_LT(2 * rounds, yarns_rounds);
         EXPECT_GT(work.factor_flops, 0);
       } else {
         EXPECT_EQ(work.factor_flops, 0);

@@ -1,7 +1,7 @@
-// Strips (Bender and Bayer 2008, "Parallel simulation of inextensible cloth"): every yarn of the
-// cloth is projected as a whole, all yarns of one color (warp or weft, on a grid) before the next.
-// Departures from the paper: one Newton step on positions for each yarn, and colored Gauss-Seidel
-// passes over all edges between two rounds.
+// Yarn projection (Bender and Bayer 2008, "Parallel simulation of inextensible cloth", whose strips
+// these are): every yarn of the cloth is projected as a whole, all yarns of one color (warp or
+// weft, on a grid) before the next. Departures from the paper: one Newton step on positions for
+// each yarn, and colored Gauss-Seidel passes over all edges between two rounds.
 //
 // Loops: two passes over links forwards and one back a yarn (yarn_pass.cpp), then passes
 // (strain_passes.cpp).
@@ -15,7 +15,7 @@
 namespace inextensible {
 namespace {
 
-class Strips final : public VelocityFilter {
+class YarnProjection final : public VelocityFilter {
  public:
   // What each is for stands in fields(). With targets of 0, over-relaxed passes throw edges to the
   // other side of the band, and runs gain energy.
@@ -29,7 +29,7 @@ class Strips final : public VelocityFilter {
   };
   static SettingFields<Settings> fields();
   // Passes act along edges as they are.
-  Strips(const Problem& problem, const Settings& settings, Along along = Along::edges);
+  YarnProjection(const Problem& problem, const Settings& settings, Along along = Along::edges);
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
 
  private:
@@ -41,7 +41,7 @@ class Strips final : public VelocityFilter {
   Along along_;
 };
 
-Strips::Strips(const Problem& problem, const Settings& settings, Along along)
+YarnProjection::YarnProjection(const Problem& problem, const Settings& settings, Along along)
     : edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
       passes_(StrainPasses::by_mass(problem, {settings.strain_limit, settings.sweep_target},
@@ -50,7 +50,8 @@ Strips::Strips(const Problem& problem, const Settings& settings, Along along)
       passes_between_(yarns_.crossing() ? settings.sweeps : 0),
       along_(along) {}
 
-StepResult Strips::apply(const Positions& x_start, double /*h*/, Iterate x, WorkCounters& work) {
+StepResult YarnProjection::apply(const Positions& x_start, double /*h*/, Iterate x,
+                                 WorkCounters& work) {
   if (edges_.permissible(x)) return {Status::ok, 0};
   passes_.begin(x);
   if (along_ == Along::middle) yarns_.take_middle_from(x_start);
@@ -69,7 +70,7 @@ StepResult Strips::apply(const Positions& x_start, double /*h*/, Iterate x, Work
   }
 }
 
-SettingFields<Strips::Settings> Strips::fields() {
+SettingFields<YarnProjection::Settings> YarnProjection::fields() {
   using S = Settings;
   return {{"max_iterations", &S::max_iterations,
            "passes over all yarns a step before it is refused", at_least_one},
@@ -86,18 +87,18 @@ SettingFields<Strips::Settings> Strips::fields() {
 
 }  // namespace
 
-Backend strips_row() {
-  return {.name = "strips",
+Backend yarn_projection_row() {
+  return {.name = "yarn_projection",
           .summary = "every yarn projected as a whole, passes of colored Gauss-Seidel between",
           .strain_control = StrainControl::strain_limit,
           .contestant = true,
-          .settings = setting_infos(Strips::fields()),
-          .make_filter = make_filter<Strips>,
+          .settings = setting_infos(YarnProjection::fields()),
+          .make_filter = make_filter<YarnProjection>,
           .takes_middle = true,
           .direction = Direction::current,
           .citation = "Bender and Bayer 2008",
           .origin = Origin::project,
-          .label = "strips",
+          .label = "yarn projection",
           .same_on_chains = "fast_projection_adaptive"};
 }
 

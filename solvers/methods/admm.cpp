@@ -31,7 +31,7 @@
 namespace inextensible {
 namespace {
 
-class ProjectiveDynamics final : public VelocityFilter {
+class Admm final : public VelocityFilter {
  public:
   struct Settings {
     double strain_limit = 0.01;
@@ -42,10 +42,10 @@ class ProjectiveDynamics final : public VelocityFilter {
     // A step ends when no edge's z moves by more than this times strain_limit times its length,
     // over the penalty: so much of what pulls at vertices is not yet what edges do.
     double direction_tolerance = 1;
-    std::string_view linear_solver = "auto";  // tridiagonal on chains, else fixed_pattern
+    std::string_view linear_solver = "auto";  // tridiagonal on chains, else multifrontal
   };
   static SettingFields<Settings> fields();
-  ProjectiveDynamics(const Problem& problem, const Settings& settings);
+  Admm(const Problem& problem, const Settings& settings);
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
   const char* linear_solver() const override { return linear_solver_.c_str(); }
   double reciprocal_condition() const override { return solver_->reciprocal_condition(); }
@@ -83,7 +83,7 @@ class ProjectiveDynamics final : public VelocityFilter {
 
 constexpr double contact_weight = 1;  // of a vertex's own term, times its mass
 
-ProjectiveDynamics::ProjectiveDynamics(const Problem& problem, const Settings& settings)
+Admm::Admm(const Problem& problem, const Settings& settings)
     : problem_(problem),
       edges_(problem, settings.strain_limit),
       max_iterations_(settings.max_iterations),
@@ -107,7 +107,7 @@ ProjectiveDynamics::ProjectiveDynamics(const Problem& problem, const Settings& s
 }
 
 // Which vertices of `order` share an edge, as a matrix in that order.
-SymmetricPattern ProjectiveDynamics::graph_of(const std::vector<int>& order, bool one_chain) {
+SymmetricPattern Admm::graph_of(const std::vector<int>& order, bool one_chain) {
   free_vertex_ = order;
   std::vector<Edge> pairs;
   for (int f = 0; f < static_cast<int>(order.size()); ++f) {
@@ -121,7 +121,7 @@ SymmetricPattern ProjectiveDynamics::graph_of(const std::vector<int>& order, boo
   return vertex_graph(static_cast<int>(order.size()), pairs);
 }
 
-void ProjectiveDynamics::choose_solver(std::string_view wanted) {
+void Admm::choose_solver(std::string_view wanted) {
   std::vector<int> order;
   for (int v = 0; v < problem_.vertices(); ++v) {
     if (problem_.inverse_mass()[v] > 0) order.push_back(v);
@@ -129,7 +129,7 @@ void ProjectiveDynamics::choose_solver(std::string_view wanted) {
   SymmetricPattern graph = graph_of(order, true);
   linear_solver_ = wanted != "auto"      ? std::string(wanted)
                    : graph.tridiagonal() ? "tridiagonal"
-                                         : "fixed_pattern";
+                                         : "multifrontal";
   if (spd_solver(linear_solver_).fills) {
     const std::vector<int> elimination = fill_reducing_order(graph_of(order, false));
     for (std::size_t f = 0; f < order.size(); ++f) order[f] = free_vertex_[elimination[f]];
@@ -141,7 +141,7 @@ void ProjectiveDynamics::choose_solver(std::string_view wanted) {
 }
 
 // M + D^T r D, once.
-bool ProjectiveDynamics::factor(WorkCounters& work) {
+bool Admm::factor(WorkCounters& work) {
   if (factored_) return true;
   double* value = solver_->values();
   std::fill(value, value + pattern_.entries(), 0.0);
@@ -175,13 +175,13 @@ bool ProjectiveDynamics::factor(WorkCounters& work) {
 }
 
 // z_k towards x_b - x_a + u_k. Without a direction it keeps the one that it had.
-void ProjectiveDynamics::project_edge(int k, const Eigen::Vector3d& sum) {
+void Admm::project_edge(int k, const Eigen::Vector3d& sum) {
   const double l = edges_.rest_length[k], norm = sum.norm();
   if (norm > 0) z_.col(k) = std::clamp(norm, shortest_ * l, longest_ * l) / norm * sum;
 }
 
 // z and u; whether all edges of x keep the limit, and z has come to rest.
-bool ProjectiveDynamics::project_edges(const Positions& x) {
+bool Admm::project_edges(const Positions& x) {
   int violations = 0;
   for (int k = 0; k < edges_.count(); ++k) {
     const Eigen::Vector3d d = x.col(edges_.b[k]) - x.col(edges_.a[k]), before = z_.col(k),
@@ -197,7 +197,7 @@ bool ProjectiveDynamics::project_edges(const Positions& x) {
 }
 
 // u from the last accepted step's forces, and x where these would take the candidate.
-void ProjectiveDynamics::start(double h, Iterate iterate) {
+void Admm::start(double h, Iterate iterate) {
   Positions& x = iterate;
   u_ = h * h * last_u_;
   for (int k = 0; k < edges_.count(); ++k) {
@@ -213,7 +213,7 @@ void ProjectiveDynamics::start(double h, Iterate iterate) {
 
 // anchor_ and contacts' pushes: u_v = -push / contact_weight along the normal. Whether pushes have
 // come to rest.
-bool ProjectiveDynamics::project_vertices(Iterate x) {
+bool Admm::project_vertices(Iterate x) {
   Contacts* contacts = x.contacts();
   if (!contacts) return true;
   const Contacts::Timing measured = contacts->timing();
@@ -232,7 +232,7 @@ bool ProjectiveDynamics::project_vertices(Iterate x) {
   return rest;
 }
 
-void ProjectiveDynamics::solve(Positions& x, WorkCounters& work) {
+void Admm::solve(Positions& x, WorkCounters& work) {
   for (std::size_t f = 0; f < free_vertex_.size(); ++f) {
     const int v = free_vertex_[f];
     auto row = rhs_.row(static_cast<Eigen::Index>(f));
@@ -255,7 +255,7 @@ void ProjectiveDynamics::solve(Positions& x, WorkCounters& work) {
 }
 
 // Moves vertices out of the obstacle; returns whether edges are still within the limit.
-bool ProjectiveDynamics::ends(Iterate x) const {
+bool Admm::ends(Iterate x) const {
   const Contacts* contacts = x.contacts();
   for (int c = 0; c < x.contact_count(); ++c) {
     auto at = x.positions().col(contacts->vertex(c));
@@ -264,8 +264,7 @@ bool ProjectiveDynamics::ends(Iterate x) const {
   return edges_.permissible(x);
 }
 
-StepResult ProjectiveDynamics::apply(const Positions& /*x_start*/, double h, Iterate x,
-                                     WorkCounters& work) {
+StepResult Admm::apply(const Positions& /*x_start*/, double h, Iterate x, WorkCounters& work) {
   if (edges_.permissible(x)) return {Status::ok, 0};
   if (!factor(work)) return refuse(Status::singular, 0, edges_, x, "the matrix is singular");
   x.without_pushes(target_);
@@ -283,7 +282,7 @@ StepResult ProjectiveDynamics::apply(const Positions& /*x_start*/, double h, Ite
   return refuse(Status::not_converged, max_iterations_, edges_, x, "iteration limit");
 }
 
-SettingFields<ProjectiveDynamics::Settings> ProjectiveDynamics::fields() {
+SettingFields<Admm::Settings> Admm::fields() {
   using S = Settings;
   std::vector<const char*> solvers{"auto"};
   for (const SpdSolverRow& row : spd_solvers()) {
@@ -306,13 +305,13 @@ SettingFields<ProjectiveDynamics::Settings> ProjectiveDynamics::fields() {
 
 }  // namespace
 
-Backend projective_dynamics_row() {
-  return {.name = "projective_dynamics",
+Backend admm_row() {
+  return {.name = "admm",
           .summary = "hard lengths by ADMM: single edges, then one constant linear system",
           .strain_control = StrainControl::strain_limit,
           .contestant = true,
-          .settings = setting_infos(ProjectiveDynamics::fields()),
-          .make_filter = make_filter<ProjectiveDynamics>,
+          .settings = setting_infos(Admm::fields()),
+          .make_filter = make_filter<Admm>,
           .direction = Direction::end,
           .citation = "Liu et al. 2013; Narain, Overby and Brown 2016",
           .origin = Origin::literature,

@@ -28,7 +28,7 @@ Positions swept(const Problem& problem, Positions x, double relaxation) {
   return x;
 }
 
-TEST(XpbdSmallSteps, AreAGivenNumberOfSweeps) {
+TEST(PbdSubsteps, AreAGivenNumberOfSweeps) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     testing::Random random(seed);
@@ -37,7 +37,7 @@ TEST(XpbdSmallSteps, AreAGivenNumberOfSweeps) {
     const int sweeps = 1 + static_cast<int>(random() % 3);
     const double relaxation = testing::uniform(random, 0.5, 1.5);
     const auto filter = make_velocity_filter(
-        "xpbd_small_steps", *mesh.problem,
+        "pbd_substeps", *mesh.problem,
         {.settings = {{"sweeps", static_cast<double>(sweeps)}, {"relaxation", relaxation}}});
     Positions x = testing::perturbed(random, mesh, 0.05), wanted = x;
     for (int i = 0; i < sweeps; ++i) wanted = swept(*mesh.problem, wanted, relaxation);
@@ -64,7 +64,7 @@ struct Hanging {
     for (int i = 0; i <= links; ++i) start.x(1, i) = -i * length;
     BackendOptions options{.settings = {{"attachments", std::move(attachments)}}};
     options.start = &start;
-    const auto stepper = make_stepper("xpbd_small_steps", problem, options);
+    const auto stepper = make_stepper("pbd_substeps", problem, options);
     state = start;
     for (double t = 0; t < seconds; t += step) EXPECT_TRUE(stepper->advance(state, step));
   }
@@ -79,7 +79,7 @@ struct Hanging {
 // ... from the pin before 1, 3, ..., a yarn rests where each vertex is lifted by the g h^2 that
 // it falls: the links of the last color have their rest length, and link k of N of the first is
 // longer by 2 (N - k + 1) g h^2. (A sweep from the pin downwards leaves (N - k) g h^2 in link k.)
-TEST(XpbdSmallSteps, LeaveAHangingYarnTheStrainOfTheory) {
+TEST(PbdSubsteps, LeaveAHangingYarnTheStrainOfTheory) {
   for (const double step : {0.004, 0.002, 0.001, 0.0005}) {
     const Hanging yarn(step, "none", 20);
     const double fall = Hanging::gravity * step * step;
@@ -91,7 +91,7 @@ TEST(XpbdSmallSteps, LeaveAHangingYarnTheStrainOfTheory) {
   }
 }
 
-TEST(XpbdSmallSteps, AttachmentsHoldAHangingYarnAtItsLength) {
+TEST(PbdSubsteps, AttachmentsHoldAHangingYarnAtItsLength) {
   for (const char* attachments : {"edges", "straight"}) {
     SCOPED_TRACE(attachments);
     const Hanging yarn(0.002, attachments);
@@ -103,7 +103,7 @@ TEST(XpbdSmallSteps, AttachmentsHoldAHangingYarnAtItsLength) {
 }
 
 // The way along edges, here around a corner of a net.
-TEST(XpbdSmallSteps, AttachmentsFollowEdgesOrGoStraight) {
+TEST(PbdSubsteps, AttachmentsFollowEdgesOrGoStraight) {
   testing::Random random(1);
   ProblemParts parts;
   parts.gravity.setZero();
@@ -118,14 +118,14 @@ TEST(XpbdSmallSteps, AttachmentsFollowEdgesOrGoStraight) {
        {std::pair<std::string_view, double>{"edges", 2}, {"straight", std::sqrt(2.0)}}) {
     const State start{rest, 0 * rest, 0};
     const auto filter =
-        make_velocity_filter("xpbd_small_steps", square,
+        make_velocity_filter("pbd_substeps", square,
                              {.settings = {{"attachments", std::string(kind)}}, .start = &start});
     Positions x = 1000 * rest;
     WorkCounters work;
     ASSERT_TRUE(filter->apply(rest, 0.01, x, work));
     EXPECT_NEAR(x.col(3).norm(), distance, 1e-9) << kind;
   }
-  EXPECT_THROW(make_velocity_filter("xpbd_small_steps", square,
+  EXPECT_THROW(make_velocity_filter("pbd_substeps", square,
                                     {.settings = {{"attachments", std::string("straight")}}}),
                std::invalid_argument);
 }
