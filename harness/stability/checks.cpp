@@ -425,7 +425,7 @@ Findings check_consistency(const Examinee& solver) {
   constexpr double largest_error = 2e-3;
   // Distances from a run of h/16: (1/2 - 1/16) / (1 - 1/16) = 0.47 for a method of first order, 1
   // for what does not vanish with h; between the two, on a logarithmic scale.
-  constexpr double vanishing = 0.68;
+  constexpr double not_vanishing = 0.68;
   const Case c = scene_case("chain of 8", "chain", {{"n", links + 1}}, 0.32 / 80, 80);
   // How far a step is iterated is a tolerance, not a part of the formula: it must not be what
   // shows.
@@ -451,11 +451,11 @@ Findings check_consistency(const Examinee& solver) {
   const double coarse = rms_distance(c.scene, ends[0], ends[2]),
                half = rms_distance(c.scene, ends[1], ends[2]);
   const std::string measured = text("halving h takes the distance to its own fine run from ",
-                                    coarse, " to ", half, " (allowed ", vanishing * coarse, ")");
+                                    coarse, " to ", half, " (allowed ", not_vanishing * coarse, ")");
   const char* advice =
       "what a step changes must vanish with h: look for a damping, a relaxation or an offset a "
       "step that does not know h";
-  const bool converges = half <= vanishing * coarse || coarse < 1e-9;
+  const bool converges = half <= not_vanishing * coarse || coarse < 1e-9;
   if (solver.backend.strain_control == StrainControl::none)
     return {judged(converges, check, measured, advice)};
   Pendulum exact({std::vector<double>(links, 1.0 / (links + 1)),
