@@ -14,6 +14,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -217,10 +218,17 @@ int supervised(const std::function<int()>& work) {
   constexpr double patience = 0.7;  // s, for a child that was asked to end
   std::cout.flush();
   std::fflush(stdout);
+  // With SIGCHLD blocked, sigtimedwait returns as soon as the child ends or a signal comes: nothing
+  // polls beside a measurement.
+  sigset_t child_ended, before;
+  sigemptyset(&child_ended);
+  sigaddset(&child_ended, SIGCHLD);
+  sigprocmask(SIG_BLOCK, &child_ended, &before);
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0) fail("fork");
   if (child == 0) {
+    sigprocmask(SIG_SETMASK, &before, nullptr);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(1);  // it died before that
     const int code = work();
@@ -232,7 +240,8 @@ int supervised(const std::function<int()>& work) {
   double asked = 0;
   int status = 0;
   while (waitpid(child, &status, WNOHANG) == 0) {
-    poll(nullptr, 0, 20);  // ms
+    constexpr timespec look_again{0, 200'000'000};
+    sigtimedwait(&child_ended, nullptr, &look_again);
     if (!interrupted()) continue;
     if (asked == 0) {
       asked = now();
@@ -241,6 +250,7 @@ int supervised(const std::function<int()>& work) {
       kill(child, SIGKILL);
     }
   }
+  sigprocmask(SIG_SETMASK, &before, nullptr);
   remove_left_folders();
   if (WIFEXITED(status)) return WEXITSTATUS(status);
   constexpr int interrupted_code = 130, crashed_code = 1;
