@@ -1,6 +1,4 @@
 // C7, C8, C12, C13 and C16: residuals, shapes and strains.
-#include "harness/claims/judging.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +8,7 @@
 
 #include "harness/analysis/words.h"
 #include "harness/base/errors.h"
+#include "harness/claims/judging.h"
 
 namespace harness::claims {
 namespace {

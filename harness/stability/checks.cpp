@@ -450,8 +450,9 @@ Findings check_consistency(const Examinee& solver) {
   }
   const double coarse = rms_distance(c.scene, ends[0], ends[2]),
                half = rms_distance(c.scene, ends[1], ends[2]);
-  const std::string measured = text("halving h takes the distance to its own fine run from ",
-                                    coarse, " to ", half, " (allowed ", not_vanishing * coarse, ")");
+  const std::string measured =
+      text("halving h takes the distance to its own fine run from ", coarse, " to ", half,
+           " (allowed ", not_vanishing * coarse, ")");
   const char* advice =
       "what a step changes must vanish with h: look for a damping, a relaxation or an offset a "
       "step that does not know h";
