@@ -1,6 +1,9 @@
 #include "harness/analysis/analysis_json.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "harness/analysis/budget.h"
 #include "harness/analysis/findings.h"
@@ -120,6 +123,92 @@ json finding_json(const Finding& finding) {
           {"sentences", finding.sentences}};
 }
 
+// ---- curves of cost ----
+
+// The least sample, and the median of three or more: between them lies what disturbed the runs.
+// Null: not timed.
+json time_json(const json& timing) {
+  if (!timing.is_object()) return nullptr;
+  const std::vector<double> samples = timing.at("samples");
+  const double least = time_of(samples);
+  if (!(least > 0)) return nullptr;
+  return {least, samples.size() < 3 ? least : quantile(samples, 0.5)};
+}
+
+json best_json(double x, const Point& point, bool adaptive) {
+  const json& p = point.document();
+  const double mean = point.number("duration") / point.work("steps");
+  return {{"x", x},
+          {"time", time_json(p.at("seconds_per_simulated_second"))},
+          {"filter", time_json(p.value("filter_seconds_per_simulated_second", json()))},
+          {"step", number(adaptive ? mean : point.number("step"))},
+          {"ladder_end", p.value("at_ladder_end", "")}};
+}
+
+// Why none of a contestant's runs counts: the letters of their statuses, from the coarsest step to
+// the finest. "": one does count, perhaps at a tighter limit. runs: of one plane, coarsest first.
+std::string failure_letters(const std::vector<const Point*>& runs, double limit, double level,
+                            const std::map<std::string, std::string>& letters) {
+  std::string found;
+  for (const Point* run : runs) {
+    const double kept = run->number("strain_limit");
+    if (kept > limit) continue;
+    if (run->ok() && !(run->error("trajectory") > level)) return "";
+    const std::string letter = run->ok() ? "X" : letters.at(run->text("status"));
+    if (kept == limit && found.find(letter) == found.npos) found += letter;
+  }
+  return found;
+}
+
+// A figure for each scene and sweep, and for what the sweep leaves fixed: vertices, or the limit.
+json curves_json(const json& document, const std::vector<Plane>& planes, bool adaptive) {
+  std::map<std::string, std::string> letters;
+  for (const json& status : document.at("legend").at("statuses"))
+    letters.emplace(status.at("name"), status.at("letter"));
+  const ContestantRoles roles(document);
+  std::vector<Point> points;
+  for (const json& p : document.at("points")) {
+    if (!p.value("adaptive", false)) points.emplace_back(p);
+  }
+  std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
+    return a.number("step") > b.number("step");
+  });
+  std::map<std::tuple<std::string, std::string, double>, json> figures;
+  for (const Plane& plane : planes) {
+    const bool sizes = plane.sweep == "resolution";
+    if (!sizes && plane.sweep != "strain") continue;
+    std::map<std::string, std::vector<const Point*>> runs;
+    for (const Point& p : points) {
+      if (p.is("scene", plane.scene) && p.is("sweep", plane.sweep) &&
+          p.number("vertices") == plane.vertices && !roles.of(p.contestant()).again)
+        runs[p.contestant()].push_back(&p);
+    }
+    for (const double limit : plane.limits) {
+      const double fixed = sizes ? limit : plane.vertices, x = sizes ? plane.vertices : limit;
+      json& figure = figures[{plane.scene, plane.sweep, fixed}];
+      for (const auto& [panel, level] :
+           {std::pair("any", any_motion), {"within", headline_error}}) {
+        json& curves = figure[panel];
+        for (const Entry& entry : plane.cell(limit, level).entries) {
+          if (!entry.role.again)
+            curves[entry.role.name]["best"].push_back(best_json(x, entry.point, adaptive));
+        }
+        for (const auto& [name, own] : runs) {
+          const std::string why = failure_letters(own, limit, level, letters);
+          if (!why.empty()) curves[name]["failures"].push_back({x, why});
+        }
+      }
+    }
+  }
+  json list = json::array();
+  for (auto& [place, figure] : figures) {
+    std::tie(figure["scene"], figure["sweep"], figure["fixed"]) = place;
+    figure["adaptive"] = adaptive;
+    list.push_back(std::move(figure));
+  }
+  return list;
+}
+
 }  // namespace
 
 json findings_json(const std::vector<Plane>& planes) {
@@ -134,9 +223,15 @@ json analysis_of(const json& document) {
   for (const Plane& plane : planes) list.push_back(plane_json(plane));
   for (const Growth& each : growth_in(planes)) growth.push_back(growth_json(each));
   for (const BudgetTable& each : budget_tables(document, {})) budgets.push_back(budget_json(each));
+  // Runs with a step controller have figures of their own.
+  json curves = curves_json(document, planes, false), adaptive = document;
+  for (json& p : adaptive.at("points")) p["adaptive"] = !p.value("adaptive", false);
+  for (json& figure : curves_json(adaptive, planes_of(adaptive), true))
+    curves.push_back(std::move(figure));
   return {{"schema", "inextensible-analysis/1"}, {"headline_error", headline_error},
           {"findings", findings_json(planes)},   {"planes", std::move(list)},
-          {"growth", std::move(growth)},         {"budgets", std::move(budgets)}};
+          {"curves", std::move(curves)},         {"growth", std::move(growth)},
+          {"budgets", std::move(budgets)}};
 }
 
 }  // namespace harness::analysis

@@ -13,8 +13,8 @@
 #include "harness/analysis/analysis_json.h"
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/base/json_reader.h"
 #include "harness/base/paths.h"
+#include "harness/claims/claims.h"
 #include "harness/cli/exit_codes.h"
 #include "harness/points/joined.h"
 #include "harness/points/result_file.h"
@@ -50,11 +50,15 @@ int run_script(const std::string& script, const std::vector<std::string>& argume
   return code;
 }
 
-int draw_analysed(const std::string& file, const nlohmann::json& analysis,
-                  const std::string& folder) {
-  const TemporaryFolder scratch("analysis");
-  write_atomically(scratch.file("analysis.json"), analysis.dump());
-  return draw("figures.py", {file, "--analysis", scratch.file("analysis.json")}, folder);
+// Pictures whose names begin with `name`.
+int draw_document(nlohmann::json document, const std::string& name, const std::string& folder) {
+  if (document.contains("points")) {
+    check_timed(document);
+    document["analysis"] = analysis::analysis_of(document);
+  }
+  const TemporaryFolder scratch("figures");
+  write_atomically(scratch.file(name + ".json"), document.dump());
+  return draw("figures.py", {scratch.file(name + ".json")}, folder);
 }
 
 }  // namespace
@@ -79,22 +83,17 @@ int draw(const std::string& script, std::vector<std::string> arguments, const st
 
 int draw_pieces(const std::vector<std::string>& files, const std::string& name,
                 const std::string& folder) {
-  const nlohmann::json table = read_results(files);
+  nlohmann::json table = read_results(files);
   if (!table.contains("points"))
     throw UsageError("'" + files.front() +
                      "' is no sweep: pieces of sweeps alone are drawn as one");
-  const TemporaryFolder scratch("pieces");
-  write_atomically(scratch.file(name + ".json"), table.dump());
-  return draw_analysed(scratch.file(name + ".json"), analysis::analysis_of(table), folder);
+  return draw_document(std::move(table), name, folder);
 }
 
 int draw_result(const std::string& file, std::string folder) {
-  if (folder.empty()) folder = fs::path(file).parent_path().string();
-  const nlohmann::json document = parse_document(read_file(file, "result file"), file);
-  if (!document.is_object() || document.value("schema", nlohmann::json()) != "inextensible-bench/1")
-    return draw("figures.py", {file}, folder);
-  check_result(document, file);
-  return draw_analysed(file, analysis::analysis_of(document), folder);
+  const fs::path path(file);
+  if (folder.empty()) folder = path.parent_path().string();
+  return draw_document(read_result_or_answers(file), path.stem().string(), folder);
 }
 
 }  // namespace harness
