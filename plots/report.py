@@ -2,149 +2,177 @@
 """One page that tells what result files found: findings in words, charts to hide solvers in and tables to sort, every figure,
 the paper's claims, and scenes in motion. It needs nothing but a browser, and no network.
 
-    plots/report.py results/*.json --out report.html [--analyses FILE] [--claims claims.json] [--motion FOLDER ...]
+    plots/report.py report.json --out report.html [--motion FOLDER ...]
 
-page/ has one file a part: data.py, findings.py, pictures.py and motion.py for what is computed here, .css and .js for the browser.
-`bench report` runs it with the claims decided and scenes recorded. Needs Debian's python3-matplotlib and python3-numpy.
+`bench report` runs it: report.json has the results with their analyses, the findings of all, and the claims decided; the folders are
+recordings. page/ has what the browser runs. Needs Debian's python3-matplotlib and python3-numpy.
 """
 
 from __future__ import annotations
 
 import argparse
+import base64
+import csv
+import io
 import json
 import sys
+from collections import Counter
 from html import escape
 from pathlib import Path
+from typing import Callable, Iterable
 
 sys.dont_write_bytecode = True
 
-try:
-    import matplotlib
-except ImportError:
-    print("report.py: matplotlib is missing (Debian: apt-get install python3-matplotlib)", file=sys.stderr)
-    sys.exit(2)
+from figures import all_figures  # complains where matplotlib is missing
 
-from figures import all_figures
-from page.data import document_data, embedded
-from page.findings import findings
-from page.motion import recorded
-from page.pictures import Picture, picture
-from parts.legend import legend_of, merged
-from parts.program import exit_code
-from parts.result_file import Json, ResultError, load, object_in
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from parts.embedded import embedded, script_text
+from parts.result import Json, Result
 from parts.style import RC
 
 PAGE = Path(__file__).parent / "page"
 SCRIPTS = ("document.js", "contest.js", "table.js", "motion.js")
+FIRST = ("drape", "strain")  # the question that most readers come with
 
 
-def parse(arguments: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="report.py", description="One page that tells what result files found.")
-    parser.add_argument("results", type=Path, nargs="+", metavar="RESULT.json")
-    parser.add_argument("--out", type=Path, required=True, metavar="report.html")
-    parser.add_argument("--analyses", type=Path, metavar="FILE", help="what bench found: findings, and the analysis of each result")
-    parser.add_argument("--claims", type=Path, metavar="claims.json", help="verdicts on the paper's claims")
-    parser.add_argument("--motion", type=Path, nargs="*", default=[], metavar="FOLDER", help="recordings of bench film")
-    return parser.parse_args(arguments)
+def table(head: Iterable[str], rows: Iterable[Iterable[str]], headed: bool = False) -> str:
+    """Scrolled sideways where it is wide; headed: the first cell of a row names it."""
+    def cells(row: Iterable[str]) -> str:
+        return "".join(f'<th scope="row">{escape(cell)}</th>' if headed and number == 0 else f"<td>{escape(cell)}</td>"
+                       for number, cell in enumerate(row))
+    return ('<div class="wide" tabindex="0"><table><thead><tr>' + "".join(f'<th scope="col">{name}</th>' for name in head)
+            + "</tr></thead><tbody>\n" + "".join(f"<tr>{cells(row)}</tr>\n" for row in rows) + "</tbody></table></div>")
 
 
-def section(name: str, title: str, body: str) -> str:
-    return f'<section id="{name}" aria-labelledby="{name}-title">\n<h2 id="{name}-title">{title}</h2>\n{body}\n</section>\n' if body else ""
+# ---- findings ---------------------------------------------------------------------------------------------------------
+
+def findings(found: list[Json], results: Iterable[Result]) -> list[tuple[str, list[str]]]:
+    """The program's own, the largest drape over strain before all others, then counts of hard cases and known answers."""
+    def rank(one: Json) -> tuple[bool, int]:
+        first = (one["scene"], one["sweep"]) == FIRST
+        return not first, -one["vertices"] if first else 0
+
+    said = [(f"{one['subject'].replace('_', ' ').capitalize()}, over {one['sweep']}:", one["sentences"]) for one in sorted(found, key=rank)]
+    for document in (result.document for result in results):
+        if cells := document.get("matrix"):
+            outcomes = Counter(cell["outcome"].replace("_", " ") for cell in cells).most_common()
+            said.append((f"Hard cases: {len(cells)} runs of {len({cell['row'] for cell in cells})} cases, "
+                         f"{sum(not cell['as_expected'] for cell in cells)} not as theory expects; "
+                         + ", ".join(f"{count} {name}" for name, count in outcomes) + ".", []))
+        if rows := document.get("rows"):
+            said.append((f"Known answers: {len(document['answers'])} figures that theory or measurement knows, {len(rows)} runs, of which "
+                         f"{sum(row['deviation'] is not None for row in rows)} gave a figure.", []))
+    return said
 
 
-def findings_part(told: list[Json], documents: list[Json]) -> str:
+def findings_part(said: list[tuple[str, list[str]]]) -> str:
     """The answer that most readers come for is first, and large."""
     def items(texts: list[str]) -> str:
         return "<ul>\n" + "".join(f"<li>{text}</li>\n" for text in texts) + "</ul>" if texts else ""
-    found = findings(told, documents)
-    if not found:
-        return ""
     answer = ""
-    if found[0].parts:
-        answer = f'<p class="answer">{escape(found[0].text)} {escape(" ".join(found[0].parts))}</p>\n'
-        found = found[1:]
-    return answer + items([escape(one.text) + items([escape(part) for part in one.parts]) for one in found])
+    if said and said[0][1]:
+        answer = f'<p class="answer">{escape(" ".join([said[0][0], *said[0][1]]))}</p>\n'
+        said = said[1:]
+    return answer + items([escape(text) + items([escape(part) for part in parts]) for text, parts in said])
 
 
-def pictures_of(documents: dict[Path, Json]) -> list[Picture]:
-    with matplotlib.rc_context(RC):
-        return [picture(f"{path.stem}-{name}", draw) for path, document in documents.items()
-                for name, draw in all_figures(document).items()]
+# ---- figures ----------------------------------------------------------------------------------------------------------
 
-
-def picture_part(item: Picture) -> str:
-    name, title = escape(item.name), escape(item.title)
-    return (f'<figure id="figure-{name}"><img src="{item.svg}" alt="{title}" loading="lazy">'
+def picture(name: str, draw: Callable[[], Figure]) -> str:
+    """A figure as SVG that cannot run anything, and as the numbers that it draws."""
+    figure, svg = draw(), io.StringIO()
+    figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
+    title = escape(" ".join(figure.texts[0].get_text().split()) if figure.texts else name)
+    name = escape(name)
+    return (f'<figure id="figure-{name}"><img src="{_address("image/svg+xml", svg.getvalue())}" alt="{title}" loading="lazy">'
             f'<figcaption>{title} <a download="{name}.svg" data-of="figure-{name}" href="#figure-{name}">SVG</a> '
-            f'<a download="{name}.csv" href="{item.csv}">CSV</a></figcaption></figure>\n')
+            f'<a download="{name}.csv" href="{_address("text/csv", numbers(figure))}">CSV</a></figcaption></figure>\n')
 
 
-def claims_part(claims: list[Json]) -> str:
-    if not claims:
-        return ""
-    rows = "".join(f'<tr><th scope="row">{escape(c["id"])}</th><td>{escape(c["statement"])}</td>'
-                   f'<td class="verdict">{escape(c["verdict"])}</td><td>{escape(c["measured"])}</td><td>{escape(c["rule"])}</td></tr>\n'
-                   for c in claims)
-    return ('<div class="wide" tabindex="0"><table><thead><tr><th scope="col">Claim</th><th scope="col">Says</th><th scope="col">Verdict'
-            f'</th><th scope="col">Measured</th><th scope="col">Rule</th></tr></thead><tbody>\n{rows}</tbody></table></div>')
+def numbers(figure: Figure) -> str:
+    """A line a drawn point: panel, what its axes are, series, x, y; of a picture made of cells: column, row, value."""
+    out = io.StringIO()
+    writer = csv.writer(out)
+    writer.writerow(("panel", "x axis", "y axis", "series", "x", "y", "value"))
+
+    def series(artist: object) -> str:
+        return "" if str(artist.get_label()).startswith("_") else str(artist.get_label())
+
+    for number, axes in enumerate(figure.axes):
+        panel = [" ".join(text.split()) for text in (axes.get_title() or axes.get_title(loc="left") or str(number + 1),
+                                                     axes.get_xlabel(), axes.get_ylabel())]
+        for line in axes.get_lines():
+            if series(line) or len(line.get_xdata()) > 1:
+                writer.writerows((*panel, series(line), x, y, "") for x, y in zip(line.get_xdata(), line.get_ydata()))
+        for collection in axes.collections:
+            values = np.ravel(collection.get_array()) if collection.get_array() is not None else []
+            for index, (x, y) in enumerate(np.asarray(collection.get_offsets())):
+                writer.writerow((*panel, series(collection), x, y, values[index] if index < len(values) else ""))
+    return out.getvalue()
 
 
-def machine_part(documents: dict[Path, Json]) -> str:
-    def row(path: Path, document: Json) -> str:
-        context = object_in(document, "context")
-        build = object_in(context, "build")
-        cells = (path.name, context.get("date", ""), context.get("cpu_model", ""), context.get("num_cpus", ""),
-                 str(build.get("git", ""))[:12] + (" with changes" if build.get("dirty") else ""), build.get("compiler", ""),
-                 build.get("flags", ""))
-        return "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in cells) + "</tr>\n"
-    return ('<div class="wide" tabindex="0"><table><thead><tr>' + "".join(f'<th scope="col">{name}</th>' for name in (
-        "File", "Date", "Processor", "Cores", "Commit", "Compiler", "Flags")) + "</tr></thead><tbody>\n"
-        + "".join(row(path, document) for path, document in documents.items()) + "</tbody></table></div>")
+def _address(kind: str, text: str) -> str:
+    return f"data:{kind};base64,{base64.b64encode(text.encode()).decode()}"
 
 
-def page(documents: dict[Path, Json], told: list[Json], claims: list[Json], motions: list[Json]) -> str:
-    legend = merged(legend_of(document) for document in documents.values() if "legend" in document)
-    data = document_data(documents, legend)
-    parts = [("findings", "Findings", findings_part(told, list(documents.values())))]
-    if data["points"]:
-        parts += [("contest", "Who is fastest", (PAGE / "contest.html").read_text(encoding="utf-8")),
-                  ("points", "All points", (PAGE / "table.html").read_text(encoding="utf-8"))]
-    if motions:
-        parts.append(("motion", "In motion", (PAGE / "motion.html").read_text(encoding="utf-8")))
-    parts += [("figures", "Figures", "".join(picture_part(item) for item in pictures_of(documents))),
-              ("claims", "The paper's claims", claims_part(claims)),
-              ("machine", "Machine and build", machine_part(documents))]
-    parts = [part for part in parts if part[2]]
+# ---- the page ---------------------------------------------------------------------------------------------------------
+
+def machine_row(path: Path, result: Result) -> list[str]:
+    context, build = result.context, result.context["build"]
+    commit = build["git"][:12] + (" with changes" if build["dirty"] else "")
+    return [path.name, *(str(context[key]) for key in ("date", "cpu_model", "num_cpus")), commit, build["compiler"], build["flags"]]
+
+
+def page(results: dict[Path, Result], found: list[Json], claims: list[Json], motions: list[Path]) -> str:
+    def file(name: str) -> str:
+        return (PAGE / name).read_text(encoding="utf-8")
+
+    data = embedded(results, motions)
+    with matplotlib.rc_context(RC):
+        pictures = "".join(picture(f"{path.stem}-{name}", draw) for path, result in results.items()
+                           for name, draw in all_figures(result).items())
+    verdicts = [[claim[key] for key in ("id", "statement", "verdict", "measured", "rule")] for claim in claims]
+    parts = [(name, title, body) for name, title, body in (
+        ("findings", "Findings", findings_part(findings(found, results.values()))),
+        ("contest", "Who is fastest", file("contest.html") if data["points"] else ""),
+        ("points", "All points", file("table.html") if data["points"] else ""),
+        ("motion", "In motion", file("motion.html") if motions else ""),
+        ("figures", "Figures", pictures),
+        ("claims", "The paper's claims", table(("Claim", "Says", "Verdict", "Measured", "Rule"), verdicts, headed=True) if claims else ""),
+        ("machine", "Machine and build", table(("File", "Date", "Processor", "Cores", "Commit", "Compiler", "Flags"),
+                                               (machine_row(path, result) for path, result in results.items()))),
+    ) if body]
     links = "".join(f'<a href="#{name}">{title}</a>' for name, title, _ in parts)
-    script = "\n".join((PAGE / name).read_text(encoding="utf-8") for name in SCRIPTS)
+    sections = "".join(f'<section id="{name}" aria-labelledby="{name}-title">\n<h2 id="{name}-title">{title}</h2>\n{body}\n</section>\n'
+                       for name, title, body in parts)
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<title>Inextensible cloth: which solver, at which strain</title>\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'; "
         "script-src 'unsafe-inline'\">\n"
-        f'<style>\n{(PAGE / "page.css").read_text(encoding="utf-8")}</style>\n</head>\n<body>\n'
+        f'<style>\n{file("page.css")}</style>\n</head>\n<body>\n'
         "<header><h1>Which solver keeps cloth from stretching, how fast, how well</h1>\n"
-        f'<nav aria-label="Parts of this page">{links}</nav></header>\n<main>\n'
-        + "".join(section(*part) for part in parts)
-        + f'</main>\n<script type="application/json" id="data">{embedded({**data, "motions": motions})}</script>\n'
-        f"<script>\n{script}</script>\n</body>\n</html>\n")
+        f'<nav aria-label="Parts of this page">{links}</nav></header>\n<main>\n{sections}</main>\n'
+        f'<script type="application/json" id="data">{script_text(data)}</script>\n'
+        f'<script>\n{chr(10).join(map(file, SCRIPTS))}</script>\n</body>\n</html>\n')
 
 
-def run(arguments: list[str]) -> None:
-    options = parse(arguments)
-    documents = {path: load(path) for path in options.results}
-    claims = json.loads(options.claims.read_text(encoding="utf-8")) if options.claims else []
-    analyses = json.loads(options.analyses.read_text(encoding="utf-8")) if options.analyses else {"findings": [], "of": {}}
-    for path, document in documents.items():
-        if str(path) in analyses["of"]:
-            document["analysis"] = analyses["of"][str(path)]
-    text = page(documents, analyses["findings"], claims, [recorded(folder) for folder in options.motion])
-    try:
-        options.out.write_text(text, encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise ResultError(f"cannot write {options.out}: {error.strerror}") from error
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="report.py", description="One page that tells what result files found.")
+    parser.add_argument("report", type=Path, metavar="report.json", help="results, findings and claims, as bench report gives them")
+    parser.add_argument("--out", type=Path, required=True, metavar="report.html")
+    parser.add_argument("--motion", type=Path, nargs="*", default=[], metavar="FOLDER", help="recordings of bench film")
+    options = parser.parse_args()
+    given = json.loads(options.report.read_text(encoding="utf-8"))
+    results = {Path(entry["name"]): Result(entry["document"]) for entry in given["results"]}
+    text = page(results, given["findings"], given["claims"], options.motion)
+    options.out.write_text(text, encoding="utf-8", errors="replace")
     print(options.out)
+    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(exit_code(run))
+    sys.exit(main())

@@ -4,7 +4,6 @@
 #include "harness/analysis/analysis_json.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
-#include "harness/base/json_text.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/figures.h"
 #include "harness/cli/verbs.h"
@@ -16,33 +15,29 @@
 namespace harness {
 namespace {
 
-nlohmann::json claims_json(const std::vector<ClaimVerdict>& claims) {
-  nlohmann::json rows = nlohmann::json::array();
-  for (const ClaimVerdict& claim : claims)
-    rows.push_back({{"id", claim.id},
-                    {"statement", claim.statement},
-                    {"verdict", claim.verdict},
-                    {"measured", claim.measured},
-                    {"rule", claim.rule}});
-  return rows;
-}
-
-// What the page says and draws: the analysis of each sweep by its file's name, and the findings of
-// all, those of pieces of one sweep taken together.
-nlohmann::json analyses_json(const std::vector<NamedResult>& results) {
-  nlohmann::json of = nlohmann::json::object();
-  std::vector<nlohmann::json> sweeps;
-  for (const NamedResult& result : results) {
-    if (!result.document.contains("points")) continue;
-    of[result.name] = analysis::analysis_of(result.document);
-    sweeps.push_back(result.document);
+// What the page says and draws: every file with its analysis, the verdicts on the claims, and the
+// findings of all sweeps, those of pieces of one sweep taken together.
+nlohmann::json page_json(const std::vector<NamedResult>& files) {
+  std::vector<nlohmann::json> documents, sweeps;
+  nlohmann::json results = nlohmann::json::array(), claims = results, findings = results;
+  for (const auto& [name, document] : files) {
+    if (!is_answers(document)) documents.push_back(document);
+    if (document.contains("points")) sweeps.push_back(document);
+    results.push_back({{"name", name}, {"document", with_analysis(document)}});
   }
-  nlohmann::json findings = nlohmann::json::array();
+  for (const ClaimVerdict& claim : judge_claims(documents))
+    claims.push_back({{"id", claim.id},
+                      {"statement", claim.statement},
+                      {"verdict", claim.verdict},
+                      {"measured", claim.measured},
+                      {"rule", claim.rule}});
   if (!sweeps.empty()) {
     const nlohmann::json table = joined(sweeps);
     findings = analysis::findings_json(analysis::planes_of(table));
   }
-  return {{"findings", std::move(findings)}, {"of", std::move(of)}};
+  return {{"results", std::move(results)},
+          {"findings", std::move(findings)},
+          {"claims", std::move(claims)}};
 }
 
 // By three methods at 1 %, small enough for a page.
@@ -72,23 +67,13 @@ struct ReportOptions {
 
 int report(const ReportOptions& given) {
   check_writable(given.out);
-  std::vector<NamedResult> results;
-  for (const std::string& file : given.results) {
-    NamedResult result{file, read_result_or_answers(file)};
-    if (!is_answers(result.document)) results.push_back(std::move(result));
-  }
-  for (const std::string& file : given.answers) (void)read_answers(file);
-  std::vector<nlohmann::json> documents;
-  documents.reserve(results.size());
-  for (const NamedResult& result : results) documents.push_back(result.document);
+  std::vector<NamedResult> files;
+  for (const std::string& file : given.results)
+    files.push_back({file, read_result_or_answers(file)});
+  for (const std::string& file : given.answers) files.push_back({file, read_answers(file)});
   const TemporaryFolder folder("report");
-  std::vector<std::string> words = given.results;
-  words.insert(words.end(), given.answers.begin(), given.answers.end());
-  words.insert(words.end(), {"--claims", folder.file("claims.json"), "--analyses",
-                             folder.file("analyses.json")});
-  write_atomically(folder.file("claims.json"),
-                   compact(claims_json(judge_claims(documents))) + "\n");
-  write_atomically(folder.file("analyses.json"), compact(analyses_json(results)) + "\n");
+  write_atomically(folder.file("report.json"), page_json(files).dump());
+  std::vector<std::string> words{folder.file("report.json")};
   if (!given.no_motion) {
     words.emplace_back("--motion");
     words.push_back(record_into(folder.file("drape"), motion("drape", {{"n", 31}})));

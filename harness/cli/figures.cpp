@@ -52,16 +52,20 @@ int run_script(const std::string& script, const std::vector<std::string>& argume
 
 // Pictures whose names begin with `name`.
 int draw_document(nlohmann::json document, const std::string& name, const std::string& folder) {
-  if (document.contains("points")) {
-    check_timed(document);
-    document["analysis"] = analysis::analysis_of(document);
-  }
   const TemporaryFolder scratch("figures");
-  write_atomically(scratch.file(name + ".json"), document.dump());
+  write_atomically(scratch.file(name + ".json"), with_analysis(std::move(document)).dump());
   return draw("figures.py", {scratch.file(name + ".json")}, folder);
 }
 
 }  // namespace
+
+nlohmann::json with_analysis(nlohmann::json document) {
+  if (document.contains("points")) {
+    check_timed(document);
+    document["analysis"] = analysis::analysis_of(document);
+  }
+  return document;
+}
 
 int draw(const std::string& script, std::vector<std::string> arguments, const std::string& folder,
          const std::string& name) {

@@ -1,6 +1,7 @@
 // Figures, films and reports, drawn by the scripts of plots/.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace harness {
 // and each whole, and is named on stdout. Its exit code; where that is not 0, nothing is touched.
 int draw(const std::string& script, std::vector<std::string> arguments, const std::string& folder,
          const std::string& name = {});
+
+// A result as plots/ reads it: a sweep with its analysis. Throws UsageError where nothing was timed.
+nlohmann::json with_analysis(nlohmann::json document);
 
 // The figures of a result file, with the analysis that they are drawn from. folder: "" for that of
 // the file. Throws UsageError for a file that is none.

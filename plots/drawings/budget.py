@@ -1,5 +1,4 @@
-"""What a frame costs: from which time a frame on each method keeps each strain limit with the right motion. Drawn from the program's
-analysis alone."""
+"""What a frame costs: from which time a frame on each method keeps each strain limit with the right motion."""
 
 from __future__ import annotations
 
@@ -7,57 +6,51 @@ from functools import partial
 from typing import Callable
 
 from matplotlib import colormaps
-from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from parts.best_points import HEADLINE
-from parts.caption import SUBJECTS, origin_sentence, percent, warnings_of
+from parts.axes import grid
 from parts.colors import DARK_GREY, LIGHT_GREY
-from parts.legend import Legend
-from parts.result_file import Json, finding_in
-from parts.sheet import RIGHT, grid, make_sheet
-from parts.words import clean, place_part, scene_words, shorten
+from parts.result import Json, Result
+from parts.sheet import RIGHT, make_sheet
+from parts.words import percent, place_part, shorten, subject
 
 BUDGETS = (1, 4, 16)  # ms of a frame of 1/60 s, as in `bench budget`
 WIDTH, ROW, NAMES = 6.0, 0.24, 2.6
 
-Reached = list[tuple[float, float]]  # ms a frame, strain limit
+
+def figures_of(result: Result) -> list[tuple[str, Callable[[], Figure]]]:
+    places = [place for place in result.analysis.get("budgets", []) if len(_limits(place)) > 1]
+    return [(f"budget-{place_part(place, places)}", partial(draw, place, result)) for place in places]
 
 
-def figures_of(document: Json, legend: Legend) -> list[tuple[str, Callable[[], Figure]]]:
-    analysis = document.get("analysis")
-    if not isinstance(analysis, dict):
-        return []
-    places = [place for place in analysis.get("budgets", []) if len(_limits(place)) > 1]
-    return [(f"budget-{place_part(place, places)}", partial(draw, place, document, legend)) for place in places]
-
-
-def draw(place: Json, document: Json, legend: Legend) -> Figure:
-    scene = SUBJECTS.get(place["scene"], scene_words(place["scene"]))
-    limits = _limits(place)
+def draw(place: Json, result: Result) -> Figure:
+    limits, scene, vertices = _limits(place), place["scene"], place["vertices"]
     rows = {row["row"]: reached for row in place["rows"] if (reached := _reached(row))}
-    never = [clean(legend.label(row["row"])) for row in place["rows"] if row["row"] not in rows]
+    never = [result.label(row["row"]) for row in place["rows"] if row["row"] not in rows]
     caption = [f"A mark: from this time a frame of 1/60 s on, in 99 of 100 frames, one core keeps the strain limit of its "
-               f"colour, with a motion error of at most {percent(HEADLINE)}. Lines: "
-               f"{', '.join(str(ms) for ms in BUDGETS)} ms.",
-               f"With no run that is right: {', '.join(never)}." if never else "", origin_sentence(document)]
-    found = [sentence for sweep in ("strain", "step") for sentence in finding_in(document, place["scene"], sweep, place["vertices"])]
-    sheet = make_sheet(f"{scene}, {place['vertices']:,} vertices: which strain a frame's time buys", warnings_of(document),
-                       [words for words in caption if words], NAMES + WIDTH + RIGHT, ROW * (len(rows) + 0.6) + 0.25,
+               f"colour, with a motion error of at most {percent(result.analysis['headline_error'])}. Lines: "
+               f"{', '.join(str(ms) for ms in BUDGETS)} ms."] + ([f"With no run that is right: {', '.join(never)}."] if never else [])
+    found = result.finding(scene, "strain", vertices) or result.finding(scene, "step", vertices)
+    height = ROW * (len(rows) + 0.6)
+    sheet = make_sheet(result, f"{subject(scene, vertices)}: which strain a frame's time buys", caption, NAMES + WIDTH + RIGHT, height + 0.25,
                        finding=" ".join(found[:1]))
-    axes = sheet.axes(NAMES, sheet.bottom, WIDTH, ROW * (len(rows) + 0.6))
+    axes = sheet.axes(NAMES, sheet.bottom, WIDTH, height)
     axes.set_xscale("log")
     axes.set(ylim=(len(rows) - 0.4, -1), xlabel="ms a frame of 1/60 s, in 99 of 100 frames")
     for budget in BUDGETS:
         axes.axvline(budget, color=DARK_GREY, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
+    shades = {limit: to_hex(colormaps["Blues"](0.25 + 0.75 * k / (len(limits) - 1))) for k, limit in enumerate(limits)}  # darker: less strain
     for number, reached in enumerate(rows.values()):
-        _draw_row(axes, number, reached, limits)
-    axes.legend(handles=[_mark(_shade(limit, limits), percent(limit)) for limit in limits], loc="lower left", frameon=False, fontsize=8,
+        axes.plot([ms for ms, _ in reached], [number] * len(reached), color=LIGHT_GREY, linewidth=3, zorder=2)
+        for ms, limit in reached:
+            axes.add_line(_mark(shades[limit], [ms], [number], zorder=3))
+        axes.autoscale_view(scaley=False)
+    axes.legend(handles=[_mark(shades[limit], [], [], label=percent(limit)) for limit in limits], loc="lower left", frameon=False, fontsize=8,
                 bbox_to_anchor=(0, 1), borderaxespad=0, ncol=len(limits), handletextpad=0.1, columnspacing=1.2)
-    axes.set_yticks(range(len(rows)), [shorten(clean(legend.label(name)), NAMES - 0.2, 8) for name in rows])
+    axes.set_yticks(range(len(rows)), [shorten(result.label(name), NAMES - 0.2, 8) for name in rows])
     axes.xaxis.set_major_formatter(FuncFormatter(lambda ms, _: f"{ms:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
     axes.tick_params(axis="y", length=0)
@@ -65,27 +58,13 @@ def draw(place: Json, document: Json, legend: Legend) -> Figure:
     return sheet.figure
 
 
-def _draw_row(axes: Axes, number: int, reached: Reached, limits: list[float]) -> None:
-    axes.plot([ms for ms, _ in reached], [number] * len(reached), color=LIGHT_GREY, linewidth=3, zorder=2)
-    for ms, limit in reached:
-        mark = _mark(_shade(limit, limits))
-        mark.set(xdata=[ms], ydata=[number], zorder=3)
-        axes.add_line(mark)
-    axes.autoscale_view(scaley=False)
+def _mark(color: str, x: list[float], y: list[float], **more: object) -> Line2D:
+    return Line2D(x, y, marker="o", markersize=6, linestyle="none", color=color, markeredgecolor="white", markeredgewidth=0.5, **more)
 
 
-def _mark(color: str, label: str = "") -> Line2D:
-    return Line2D([], [], marker="o", markersize=6, linestyle="none", color=color, markeredgecolor="white", markeredgewidth=0.5, label=label)
-
-
-def _shade(limit: float, limits: list[float]) -> str:
-    """Darker: less strain."""
-    return to_hex(colormaps["Blues"](0.25 + 0.75 * limits.index(limit) / max(1, len(limits) - 1)))
-
-
-def _reached(row: Json) -> Reached:
-    """The first run at each limit within the motion error: shortest frames first, then less strain."""
-    found: Reached = []
+def _reached(row: Json) -> list[tuple[float, float]]:
+    """ms a frame and strain limit of the first run at each limit within the motion error: shortest frames first, then less strain."""
+    found: list[tuple[float, float]] = []
     for stair in row["stairs"]:
         if stair["right"] and (not found or stair["strain_limit"] < found[-1][1]):
             found.append((1e3 * stair["frame_seconds"], stair["strain_limit"]))

@@ -5,16 +5,13 @@ from __future__ import annotations
 from functools import partial
 from typing import Callable
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from parts.caption import origin_sentence, warnings_of
-from parts.colors import GREY
-from parts.curves import Styles, line_of
-from parts.legend import Legend
-from parts.result_file import ANSWERS_SCHEMA, Json, positive
-from parts.scales import log_log, step_axis
-from parts.sheet import LEFT, LEGEND_WIDTH, X_LABEL, add_legend, grid, legend_height, make_sheet
-from parts.style import styles_for
+from parts.axes import draw_slopes, grid, log_log, steps_on_x
+from parts.result import Json, Result
+from parts.sheet import LEFT, LEGEND_WIDTH, X_LABEL, add_legend, legend_height, make_sheet
+from parts.style import Styles, line_of, styles_for
 from parts.words import clean, wrap
 
 COLUMNS = 3
@@ -23,28 +20,31 @@ ACROSS, DOWN = 0.75, 0.95  # between panels
 TITLE_SIZE = 7.5
 
 
-def figures_of(document: Json, legend: Legend) -> list[tuple[str, Callable[[], Figure]]]:
-    if document["schema"] != ANSWERS_SCHEMA or not document["answers"]:
-        return []
-    return [("deviations", partial(draw, document, legend))]
+def figures_of(result: Result) -> list[tuple[str, Callable[[], Figure]]]:
+    return [("deviations", partial(draw, result))] if _answers(result) else []
 
 
-def draw(document: Json, legend: Legend) -> Figure:
-    answers = document["answers"]
-    styles = styles_for((row["solver"] for row in document["rows"]), legend)
-    rows = -(-len(answers) // COLUMNS)
-    columns = min(COLUMNS, len(answers))
+def _answers(result: Result) -> list[Json]:
+    """Those with a deviation to show."""
+    found = {row["answer"] for row in result.document.get("rows", []) if row["deviation"]}
+    return [answer for answer in result.document.get("answers", []) if answer["name"] in found]
+
+
+def draw(result: Result) -> Figure:
+    answers = _answers(result)
+    styles = styles_for([row["solver"] for row in result.document["rows"]], result)
+    rows, columns = -(-len(answers) // COLUMNS), min(COLUMNS, len(answers))
     panels = rows * HEIGHT + (rows - 1) * DOWN + 0.45
-    words = ["Deviation of what was read off a run from the exact value (over it, unless it is 0), at ever smaller steps. An order of "
-             "accuracy is a slope (dotted: 1 and 2). Where the answer is a continuum's, curves end at the distance of the "
-             "chain or net from it. A solver without a mark at a step refused it or took too long.", origin_sentence(document)]
-    sheet = make_sheet("Known answers: how far off each solver is", warnings_of(document), words,
+    caption = ("Deviation of what was read off a run from the exact value (over it, unless it is 0), at ever smaller steps. An order of "
+               "accuracy is a slope (dotted: 1 and 2). Where the answer is a continuum's, curves end at the distance of the "
+               "chain or net from it. A solver without a mark at a step refused it or took too long.")
+    sheet = make_sheet(result, "Known answers: how far off each solver is", [caption],
                        LEFT + columns * WIDTH + (columns - 1) * ACROSS + LEGEND_WIDTH, panels,
                        max(X_LABEL, legend_height(styles) - panels))
     for number, answer in enumerate(answers):
         row, column = divmod(number, COLUMNS)
         axes = sheet.axes(LEFT + column * (WIDTH + ACROSS), sheet.bottom + (rows - 1 - row) * (HEIGHT + DOWN), WIDTH, HEIGHT)
-        _draw_answer(axes, answer, document["rows"], styles)
+        _draw_answer(axes, answer, [row for row in result.document["rows"] if row["answer"] == answer["name"]], styles)
         if column == 0:
             axes.set_ylabel("|deviation|")
         axes.set_xlabel("time step (s)")
@@ -53,19 +53,14 @@ def draw(document: Json, legend: Legend) -> Figure:
     return sheet.figure
 
 
-def _draw_answer(axes, answer: Json, rows: list[Json], styles: Styles) -> None:
-    mine = [row for row in rows if row["answer"] == answer["name"]]
-    found = [row for row in mine if positive(abs(row["deviation"] or 0))]
-    log_log(axes, [row["step"] for row in mine], [abs(row["deviation"]) for row in found])
-    step_axis(axes, [row["step"] for row in mine])
+def _draw_answer(axes: Axes, answer: Json, rows: list[Json], styles: Styles) -> None:
+    found = sorted((row for row in rows if row["deviation"]), key=lambda row: row["step"])
+    log_log(axes, [row["step"] for row in rows], [abs(row["deviation"]) for row in found])
+    steps_on_x(axes, [row["step"] for row in rows])
     for order, (solver, style) in enumerate(styles.items()):
-        path = sorted((row for row in found if row["solver"] == solver), key=lambda row: row["step"])
-        axes.add_line(line_of(style, [row["step"] for row in path], [abs(row["deviation"]) for row in path],
-                              zorder=10 + len(styles) - order))
-    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-    for power in (1, 2):
-        end = max(left, right * (low / high) ** (1 / power))
-        axes.plot([end, right], [high * (end / right) ** power, high], color=GREY, linewidth=0.6, linestyle=(0, (1, 3)), zorder=1)
+        own = [(row["step"], abs(row["deviation"])) for row in found if row["solver"] == solver]
+        axes.add_line(line_of(style, [x for x, _ in own], [y for _, y in own], zorder=10 + len(styles) - order))
+    draw_slopes(axes, from_right=True)
     title = wrap(f"{clean(answer['scene'])}: {clean(answer['quantity'])}", WIDTH + 0.4, TITLE_SIZE)
     axes.set_title("\n".join(title[:3]), fontsize=TITLE_SIZE, loc="left")
     grid(axes)

@@ -61,7 +61,7 @@
     chart.replaceChildren();
     rank(all);
     if (!all.length) return;
-    const xs = all.map(axis), ys = all.flatMap((point) => [point.low ?? point.seconds, point.high ?? point.seconds]);
+    const xs = all.map(axis), ys = all.flatMap((point) => [point.seconds, point.high ?? point.seconds]);
     const scale = (low, high, from, to) => {
       const begin = Math.log10(low), span = Math.log10(high) - begin || 1;
       return (value) => from + (Math.log10(value) - begin) / span * (to - from);
@@ -84,8 +84,8 @@
       chart.append(drawn("polyline", {points: own.map((point) => `${x(axis(point))},${y(point.seconds)}`).join(" "), fill: "none",
         stroke: solver.color, "stroke-width": solver.hollow ? 1 : 2, "stroke-dasharray": solver.dashes.join(" ")}));
       for (const point of own) {
-        if (point.low !== null) {
-          chart.append(drawn("line", {stroke: solver.color, x1: x(axis(point)), x2: x(axis(point)), y1: y(point.low), y2: y(point.high)}));
+        if (point.high !== null) {
+          chart.append(drawn("line", {stroke: solver.color, x1: x(axis(point)), x2: x(axis(point)), y1: y(point.seconds), y2: y(point.high)}));
         }
         const mark = drawn("path", {class: "mark", d: outline(solver.marker), stroke: solver.color, tabindex: 0,
           transform: `translate(${x(axis(point))} ${y(point.seconds)})`, "stroke-width": 1.5, fill: solver.hollow ? "transparent" : solver.color, role: "button",
@@ -104,7 +104,7 @@
     const here = all.filter((point) => String(axis(point)) === place.value).sort((a, b) => a.seconds - b.seconds);
     ranks.replaceChildren(...here.map((point, index) => {
       const cells = [index + 1, data.solvers[point.solver].label, timeText(point.seconds),
-        point.low === null ? "" : `${timeText(point.low)} to ${timeText(point.high)}`, (point.seconds / here[0].seconds).toPrecision(3),
+        point.high === null ? "" : `${timeText(point.seconds)} to ${timeText(point.high)}`, (point.seconds / here[0].seconds).toPrecision(3),
         stepText(point.step), percent(point.delivered ?? point.strain), point.error === null ? "" : point.error.toPrecision(3)];
       return element("tr", {}, ...cells.map((cell, number) => element("td", {className: number === 1 ? "" : "number"}, String(cell))));
     }));

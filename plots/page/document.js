@@ -1,7 +1,6 @@
 "use strict";
 // What all parts share: the data, and elements made without ever reading text as markup.
 const data = JSON.parse(document.getElementById("data").textContent);
-const column = Object.fromEntries(data.columns.map((name, index) => [name, index]));
 const points = data.points.map((row) => Object.fromEntries(data.columns.map((name, index) => [name, row[index]])));
 const hidden = new Set();  // solvers, by number
 const onHide = [];         // what is to be done when it changes
@@ -44,7 +43,7 @@ function tell(place, point) {
   const parts = [solver.label, point.id];
   if (point.seconds !== null) {
     parts.push(`${timeText(point.seconds)} a simulated second` +
-      (point.low === null ? "" : ` (${timeText(point.low)} to ${timeText(point.high)}, ${point.runs} runs)`));
+      (point.high === null ? "" : ` (${timeText(point.seconds)} to ${timeText(point.high)}, ${point.runs} runs)`));
   }
   if (point.status !== "ok") parts.push(`${point.status}: ${point.detail}`);
   for (const name of ["iterations", "factorizations", "projections"]) {

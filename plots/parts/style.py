@@ -7,33 +7,17 @@ their order, comes from the result file's legend: a solver that is added at a fa
 
 from __future__ import annotations
 
-import zlib
 from dataclasses import dataclass, replace
 from typing import Any, Iterable
 
+from matplotlib.lines import Line2D
+
 from parts.colors import (BLACK, BLUE, BROWN, GREEN, GREY, ORANGE, PALE_BLUE, PALE_BROWN, PALE_GREEN, PALE_GREY, PURPLE, SKY,
                           TEAL, VERMILLION, VIOLET)
-from parts.legend import Legend, Solver
+from parts.result import Result, Solver
 from parts.words import FONT, clean
 
 Dashes = tuple[float, ...]  # on, off, on, off ... in points; () is a solid line
-
-
-@dataclass(frozen=True)
-class SolverStyle:
-    """Look of one solver. `contestant` is false for backends that the figures show but do not rank; `hollow` marks have no
-    face."""
-
-    label: str
-    color: str
-    marker: str
-    dashes: Dashes
-    width: float = 1.3
-    size: float = 5.5
-    contestant: bool = True
-    hollow: bool = False
-    leads: bool = True  # else thin and pale: neither first anywhere nor one of the paper's
-    origin: str = "elsewhere"  # who offers it, as in the legend
 
 
 @dataclass(frozen=True)
@@ -43,6 +27,26 @@ class Look:
     width: float = 1.3
     size: float = 6
 
+
+@dataclass(frozen=True)
+class SolverStyle:
+    """Look of one solver. `contestant` is false for backends that the figures show but do not rank; `hollow` marks have no
+    face; those that do not lead are thin and pale, being neither first anywhere nor of the paper."""
+
+    label: str
+    color: str
+    look: Look
+    contestant: bool = True
+    hollow: bool = False
+    leads: bool = True
+    origin: str = "elsewhere"
+
+    @property
+    def prominent(self) -> bool:
+        return self.contestant and self.leads
+
+
+Styles = dict[str, SolverStyle]
 
 # A family by its number: its colour, and the looks of its solvers in their order.
 FAMILIES: tuple[tuple[str, tuple[Look, ...]], ...] = (
@@ -56,7 +60,7 @@ FAMILIES: tuple[tuple[str, tuple[Look, ...]], ...] = (
 )
 MORE_COLORS = (VERMILLION, VIOLET, BROWN, TEAL)
 
-# For families and members beyond these, and for solvers that no legend knows.
+# For families and members beyond these.
 SPARE_LOOKS = (
     Look("P", (2, 1, 2, 4)), Look("*", (6, 1, 1, 1, 1, 1), size=7.5), Look("p", (1, 3)), Look("<", (4, 4)),
     Look(">", (7, 1.5, 3, 1.5)), Look("d", (2, 2)), Look("H", (10, 3)),
@@ -67,8 +71,8 @@ RECEDING: dict[str, tuple[str, str, Dashes]] = {
     "project": ("Blue, pale: this project's", PALE_BLUE, ()),
     "literature": ("Brown, dashed: other published methods", PALE_BROWN, (4, 1.5)),
     "engine": ("Green, dotted: engines", PALE_GREEN, (1, 1)),
+    "elsewhere": ("Grey", PALE_GREY, ()),
 }
-RECEDING_REST = ("Grey", PALE_GREY, ())
 
 # Those that do not compete, all of them grey.
 NEUTRAL_LOOKS = (Look("", (), 0.8), Look("+", (1, 2), 0.8), Look("x", (4, 2), 0.8), Look("1", (6, 3), 0.8))
@@ -83,106 +87,65 @@ RC: dict[str, Any] = {
 }
 
 
-def styles_for(solvers: Iterable[str], legend: Legend) -> dict[str, SolverStyle]:
-    """Style of each solver in the order of the legend: variants right after their parent, strangers after all contestants,
-    those that do not compete last."""
-    names = sorted(set(solvers))
-    known = _of_legend(legend)
-    styles = {name: known[name] for name in names if name in known}
-    free = list(range(len(SPARE_LOOKS) * len(MORE_COLORS)))
-    for name in names:
-        if name not in known:
-            styles[name] = _of_stranger(name, known, free)
-    ranks = list(known)
+def styles_for(names: Iterable[str], result: Result, leaders: set[str] | None = None) -> Styles:
+    """Style of each solver in the order of the legend, those that do not compete last. A variant comes after its family's solvers;
+    an unranked one looks as the solver that it is, but hollow. leaders: all other contestants recede."""
+    wanted = set(names)
+    solvers = {**result.solvers, **{name: result.known(name) for name in sorted(wanted - result.solvers.keys())}}
 
-    def rank(name: str) -> tuple[bool, int, str]:
-        parent = name if name in known else parent_of(name, known)
-        return (not styles[name].contestant, ranks.index(parent) if parent else len(ranks), "" if name in known else name)
+    def original(solver: Solver) -> Solver:
+        other = solvers.get(solver.solver)
+        return other if solver.unranked and other and not other.solver else solver
 
-    return {name: styles[name] for name in sorted(styles, key=rank)}
+    families: dict[str, list[Solver]] = {}
+    neutral = [solver for solver in solvers.values() if not solver.contestant]
+    for solver in sorted(solvers.values(), key=lambda solver: bool(solver.solver)):
+        if solver.contestant and original(solver) is solver:
+            families.setdefault(solver.family, []).append(solver)
+
+    def style(solver: Solver) -> SolverStyle:
+        like = original(solver)
+        if like.contestant:
+            color, look = _look_in(list(families).index(like.family), families[like.family].index(like))
+        else:
+            color, look = GREY, NEUTRAL_LOOKS[neutral.index(like) % len(NEUTRAL_LOOKS)]
+        if like is not solver:
+            look = replace(look, width=0.8)
+        made = SolverStyle(clean(solver.label), color, look, like.contestant, solver.unranked, origin=like.origin)
+        if leaders is None or solver.name in leaders or not made.contestant:
+            return made
+        _, color, dashes = _receding(made)
+        return replace(made, color=color, look=replace(look, marker="", dashes=dashes, width=0.8), leads=False)
+
+    styles = {name: style(solver) for name, solver in solvers.items() if name in wanted}
+    return dict(sorted(styles.items(), key=lambda entry: not entry[1].contestant))
 
 
-def with_leaders(styles: dict[str, SolverStyle], leaders: set[str] | None) -> dict[str, SolverStyle]:
-    """All but the leaders, and all with untuned settings, recede. None: the file does not say who leads."""
-    if leaders is None:
-        return styles
-    return {name: style if name in leaders or not style.contestant else
-            _receding(style) for name, style in styles.items()}
+def line_of(style: SolverStyle, x: list[float], y: list[float], **more: Any) -> Line2D:
+    """Line with the solver's look; the thin white rim keeps markers apart where curves run on top of one another."""
+    look = style.look
+    line = Line2D(x, y, color=style.color, marker=look.marker, markersize=look.size, linewidth=look.width, **more)
+    line.set_linestyle((0, look.dashes) if look.dashes else "-")
+    if style.hollow:
+        line.set(markerfacecolor="none", markeredgecolor=style.color, markeredgewidth=0.9)
+    elif look.marker not in ("+", "x", "1"):  # these have no face that a rim could surround
+        line.set(markeredgecolor="white", markeredgewidth=0.5)
+    return line
 
 
 def receding_sentences(styles: Iterable[SolverStyle]) -> list[str]:
     """Which methods the pale lines are, a sentence for each kind."""
-    kinds: dict[str, list[str]] = {}
-    for style in styles:
-        if not style.leads:
-            kinds.setdefault(RECEDING.get(style.origin, RECEDING_REST)[0], []).append(style.label)
-    order = [words for words, _, _ in (*RECEDING.values(), RECEDING_REST)]
-    return [f"{words}: {', '.join(kinds[words])}." for words in order if words in kinds]
+    kinds = {words: [style.label for style in styles if not style.leads and _receding(style)[0] == words] for words, *_ in RECEDING.values()}
+    return [f"{words}: {', '.join(labels)}." for words, labels in kinds.items() if labels]
 
 
-def _receding(style: SolverStyle) -> SolverStyle:
-    _, color, dashes = RECEDING.get(style.origin, RECEDING_REST)
-    return replace(style, color=color, marker="", dashes=dashes, width=0.8, leads=False)
-
-
-def parent_of(solver: str, known: Iterable[str]) -> str | None:
-    """The solver of the legend that `solver` is a variant of ("shake_lazy", "jacobi:target=0.5"): the longest name that it
-    starts with."""
-    parents = [name for name in known if solver.startswith((name + ":", name + "_", name + "-"))]
-    return max(parents, key=len, default=None)
-
-
-def _of_legend(legend: Legend) -> dict[str, SolverStyle]:
-    """Colour by the family's number, in order of first appearance; the look by the place within the family. Hollow ones
-    look like the solver that they are, but hollow; other variants of a solver come after the family's solvers."""
-    members: dict[str, list[Solver]] = {}
-    for solver in sorted(legend.solvers.values(), key=lambda solver: bool(solver.solver)):
-        if solver.contestant and not _copies(solver, legend):
-            members.setdefault(solver.family, []).append(solver)
-    neutral = [solver for solver in legend.solvers.values() if not solver.contestant]
-    families = list(members)
-    styles: dict[str, SolverStyle] = {}
-    for solver in legend.solvers.values():
-        if _copies(solver, legend):
-            continue
-        if solver.contestant:
-            family = families.index(solver.family)
-            color, look = _look_in(family, members[solver.family].index(solver))
-        else:
-            color, look = GREY, NEUTRAL_LOOKS[neutral.index(solver) % len(NEUTRAL_LOOKS)]
-        styles[solver.name] = SolverStyle(solver.label, color, look.marker, look.dashes, look.width, look.size,
-                                          solver.contestant, solver.hollow, origin=solver.origin)
-    for solver in legend.solvers.values():
-        if _copies(solver, legend):
-            styles[solver.name] = replace(styles[solver.solver], label=solver.label, hollow=True, width=0.8)
-    return {name: styles[name] for name in legend.solvers}
-
-
-def _copies(solver: Solver, legend: Legend) -> bool:
-    """Whether it takes the look of another."""
-    return solver.hollow and solver.solver in legend.solvers and not legend.solvers[solver.solver].solver
+def _receding(style: SolverStyle) -> tuple[str, str, Dashes]:
+    return RECEDING.get(style.origin, RECEDING["elsewhere"])
 
 
 def _look_in(family: int, place: int) -> tuple[str, Look]:
     if family < len(FAMILIES):
         color, looks = FAMILIES[family]
-        return color, (looks[place] if place < len(looks) else SPARE_LOOKS[(place - len(looks)) % len(SPARE_LOOKS)])
+        return color, (looks + SPARE_LOOKS * (1 + place // len(SPARE_LOOKS)))[place]
     family -= len(FAMILIES)
     return MORE_COLORS[family % len(MORE_COLORS)], SPARE_LOOKS[(family + place) % len(SPARE_LOOKS)]
-
-
-def _of_stranger(name: str, known: dict[str, SolverStyle], free: list[int]) -> SolverStyle:
-    """Starts from a hash of the name and steps on to the next free look, so that a name looks the same in most files and
-    no two in one figure look alike. A variant keeps its parent's colour."""
-    slots = len(SPARE_LOOKS) * len(MORE_COLORS)
-    wanted = zlib.crc32(name.encode(errors="replace")) % slots
-    slot = min(free, key=lambda slot: (slot - wanted) % slots, default=wanted)
-    if free:
-        free.remove(slot)
-    look, color = SPARE_LOOKS[slot % len(SPARE_LOOKS)], MORE_COLORS[slot % len(MORE_COLORS)]
-    parent = parent_of(name, known)
-    if not parent:
-        return SolverStyle(clean(name.replace("_", " ")), color, look.marker, look.dashes, look.width, look.size)
-    words = clean(name[len(parent) + 1:].replace("_", " "))
-    marker = look.marker if known[parent].marker else ""  # a variant of a plain line stays one
-    return replace(known[parent], label=f"{known[parent].label}, {words}", marker=marker, dashes=look.dashes, size=look.size)

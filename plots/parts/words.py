@@ -14,15 +14,42 @@ LONGEST = 160  # characters of one value from a file
 FILE_NAME = 60
 
 
+def printable(text: Any) -> str:
+    """One line without control characters, which no SVG may hold."""
+    return " ".join("".join(c if c.isprintable() else " " for c in str(text)).split())
+
+
 def clean(text: Any) -> str:
-    """One line of characters that can be printed: no control characters, which no SVG may hold, and no endless names."""
-    line = " ".join("".join(c if c.isprintable() else " " for c in str(text)).split())
+    """A value from a file: one line, and not endless."""
+    line = printable(text)
     return line if len(line) <= LONGEST else line[:LONGEST - 1] + ELLIPSIS
+
+
+def plain(value: Any) -> str:
+    """A value as a reader wants it. Of anything that looks like a path only the last part is shown."""
+    if isinstance(value, list):
+        return clean(" x ".join(plain(item) for item in value))
+    text = clean(f"{value:g}" if isinstance(value, float) else value)
+    return text.rstrip("/").rsplit("/", 1)[-1] if text.startswith(("/", "~", "./", "../")) else text
+
+
+def percent(fraction: float) -> str:
+    return f"{100 * fraction:.4g} %"
+
+
+def step_name(step: float) -> str:
+    return f"1/{1 / step:.6g}" if step < 1 else f"{step:g}"
 
 
 def scene_words(scene: str) -> str:
     """As people call it: of a mesh its file's name."""
     return clean(scene[5:].split(",")[0].rsplit("/", 1)[-1] if scene.startswith("mesh:") else scene)
+
+
+def subject(scene: str, vertices: int | None = None) -> str:
+    """A scene in a title."""
+    name = "drape over a sphere" if scene == "drape" else scene_words(scene)
+    return name if vertices is None else f"{name}, {vertices:,} vertices"
 
 
 def file_part(text: str) -> str:
@@ -54,17 +81,13 @@ def shorten(text: str, width: float, size: float, weight: str = "normal") -> str
 def wrap(text: str, width: float, size: float, weight: str = "normal") -> list[str]:
     """Lines at most `width` inches wide, broken between words, and within those that are wider alone."""
     lines: list[str] = []
-    line = ""
     for word in text.split():
-        longer = f"{line} {word}" if line else word
-        if inches(longer, size, weight) <= width:
-            line = longer
+        if lines and inches(f"{lines[-1]} {word}", size, weight) <= width:
+            lines[-1] += f" {word}"
             continue
-        if line:
-            lines.append(line)
-        line = word
-        while len(line) > 1 and inches(line, size, weight) > width:
-            end = next(end for end in range(len(line) - 1, 0, -1) if end == 1 or inches(line[:end], size, weight) <= width)
-            lines.append(line[:end])
-            line = line[end:]
-    return lines + [line] if line else lines
+        lines.append("")
+        for letter in word:
+            if lines[-1] and inches(lines[-1] + letter, size, weight) > width:
+                lines.append("")
+            lines[-1] += letter
+    return lines

@@ -1,0 +1,199 @@
+"""What a simulated second costs over the strain limit or the resolution (the paper's Figures 4 and 5), of any motion and, where errors
+are known, beside it of motion that is right; beneath it the best steps and, where a collider takes part, the filter's own time. And
+what a step costs as cloth gets finer. The paper's axes are linear; with methods that differ a hundredfold such axes show the slowest
+alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Callable
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from parts.axes import draw_slopes, grid, log_x, log_y
+from parts.caption import sampling, scene_sentence, settings_of_the_run
+from parts.curves import (Curve, Curves, Rows, add_strip, all_best, curves_in, draw_curves, draw_noise, draw_steps, ends_of,
+                          failed_rows, letters_in)
+from parts.result import Json, Result
+from parts.sheet import (BETWEEN, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, STEPS_HEIGHT, TIME_LABEL, Sheet,
+                         label_ends, labels_height, make_sheet)
+from parts.style import Styles, receding_sentences, styles_for
+from parts.words import file_part, percent, scene_words, subject
+
+NUMBERS_OF_THE_PAPER = {("chain", "strain"): "4a", ("chain", "resolution"): "4b", ("drape", "strain"): "5a", ("drape", "resolution"): "5b"}
+AXIS_LABELS = {"strain": "strain limit (%)", "resolution": "vertices (dotted: slopes 1 and 2)"}
+HEADING = 0.22  # inches, above two columns
+
+
+def figures_of(result: Result) -> list[tuple[str, Callable[[], Figure]]]:
+    figures = []
+    for figure in result.analysis.get("curves", []):
+        name = _name(figure, result.analysis["curves"])
+        figures.append((name, partial(draw, figure, result)))
+        if figure["sweep"] == "resolution":
+            figures.append((f"{name}-growth", partial(draw_growth, figure, result)))
+    return figures
+
+
+def _name(figure: Json, all_figures: list[Json]) -> str:
+    """"figure4a" for the scenes of the paper, "<scene>-<sweep>" for others; the fixed value only where two would clash."""
+    number = NUMBERS_OF_THE_PAPER.get((figure["scene"], figure["sweep"]))
+    name = f"figure{number}" if number else f"{file_part(scene_words(figure['scene']))}-{figure['sweep']}"
+    if sum(all(other[key] == figure[key] for key in ("scene", "sweep", "adaptive")) for other in all_figures) > 1:
+        name += f"-{'n' if figure['sweep'] == 'strain' else 'strain'}{figure['fixed']:g}"
+    return name + ("-adaptive" if figure["adaptive"] else "")
+
+
+@dataclass(frozen=True)
+class Column:
+    curves: Curves
+    filter: Curves  # {}: no panel
+    rows: Rows
+    left: float
+    heading: str
+    strip: str  # the title of its failures
+
+
+def draw(figure: Json, result: Result) -> Figure:
+    scene, sweep, points = figure["scene"], figure["sweep"], _points(figure, result)
+    styles = styles_for(figure["any"], result, result.leaders(scene, sweep))
+    columns = _columns(figure, points, styles, percent(result.analysis["headline_error"]))
+    strip = ROW_HEIGHT * max(len(column.rows) for column in columns)
+    panels_height = _main_bottom(columns[0]) + MAIN_HEIGHT
+    number = NUMBERS_OF_THE_PAPER.get((scene, sweep))
+    title = f"{subject(scene)}: cost over {'strain limit' if sweep == 'strain' else 'resolution'}"
+    sheet = make_sheet(result, f"Figure {number} - {title}" if number else title,
+                       [*receding_sentences(styles.values()), *_caption(figure, points, result, columns)],
+                       columns[-1].left + MAIN_WIDTH + LEGEND_WIDTH, panels_height + strip + (HEADING if len(columns) > 1 else 0),
+                       labels_height(styles) - panels_height,
+                       " ".join(result.finding(scene, sweep, figure["fixed"] if sweep == "strain" else None)[:1]))
+    mains = [_draw_column(sheet, column, styles, figure) for column in columns]
+    low, high = min(main.get_ylim()[0] for main in mains), max(main.get_ylim()[1] for main in mains)
+    for column, main in zip(columns, mains):
+        main.set_ylim(low, high)  # the same scale, so that both columns compare
+        draw_noise(main, result.noise_factor)
+        if sweep == "resolution":
+            draw_slopes(main)
+        add_strip(sheet, main, column.rows, styles, column.strip)
+        box = main.get_position()
+        if len(columns) > 1:
+            sheet.figure.text(box.x0, box.y1 + (strip + 0.17) / sheet.height, column.heading, fontsize=9, fontweight="bold",
+                              va="bottom")
+    mains[0].set_ylabel(TIME_LABEL)
+    label_ends(sheet, mains[-1], ends_of(columns[-1].curves), styles)
+    return sheet.figure
+
+
+def _points(figure: Json, result: Result) -> list[Json]:
+    fixed = "vertices" if figure["sweep"] == "strain" else "strain_limit"
+    return [point for point in result.points if (point["scene"], point["sweep"], point[fixed]) ==
+            (figure["scene"], figure["sweep"], figure["fixed"])]
+
+
+def _columns(figure: Json, points: list[Json], styles: Styles, level: str) -> list[Column]:
+    """Any motion, and motion that is right where it is known of some run."""
+    collides = any(point["max_strain_after_collision"] is not None for point in points)
+    columns = []
+    for panel, left, heading, strip in (
+            ("any", LEFT, "any motion: the paper's question", "failed at every step"),
+            ("within", 2 * LEFT + MAIN_WIDTH, f"error at most {level} of the scene's size", "failed or too wrong at every step")):
+        factor = 100 if figure["sweep"] == "strain" else 1
+        curves, of_filter = (curves_in(figure[panel] or {}, factor, time) for time in ("time", "filter"))
+        if panel == "any" or all_best(curves):
+            columns.append(Column(curves, of_filter if collides and all_best(of_filter) else {}, failed_rows(curves, styles), left, heading,
+                                  strip))
+    return columns
+
+
+def _main_bottom(column: Column) -> float:
+    return (STEPS_HEIGHT + BETWEEN) * (2 if column.filter else 1)
+
+
+def _draw_column(sheet: Sheet, column: Column, styles: Styles, figure: Json) -> Axes:
+    """Returns the main panel."""
+    steps = sheet.axes(column.left, sheet.bottom, MAIN_WIDTH, STEPS_HEIGHT)
+    main = sheet.axes(column.left, sheet.bottom + _main_bottom(column), MAIN_WIDTH, MAIN_HEIGHT, sharex=steps)
+    log_x(main, _xs(column.curves), MAIN_WIDTH)
+    panels = [(main, column.curves)]
+    if column.filter:
+        panels.append((sheet.axes(column.left, sheet.bottom + STEPS_HEIGHT + BETWEEN, MAIN_WIDTH, STEPS_HEIGHT, sharex=steps), column.filter))
+        panels[-1][0].set_ylabel("filter alone (s)")
+    for axes, curves in panels:
+        log_y(axes, _times(curves))
+        draw_curves(axes, curves, styles)
+        axes.tick_params(axis="x", which="both", labelbottom=False)
+    draw_steps(steps, column.curves, styles)
+    steps.set(xlabel=AXIS_LABELS[figure["sweep"]], ylabel="mean time step (s)" if figure["adaptive"] else "best time step (s)")
+    for axes in (*(axes for axes, _ in panels), steps):
+        grid(axes)
+    return main
+
+
+def _xs(curves: Curves) -> list[float]:
+    return sorted({best.x for best in all_best(curves)} | {x for curve in curves.values() for x, _ in curve.failures})
+
+
+def _times(curves: Curves) -> list[float]:
+    return [time for best in all_best(curves) for time in (best.seconds, best.median)]
+
+
+def _caption(figure: Json, points: list[Json], result: Result, columns: list[Column]) -> list[str]:
+    sizes = sorted({point["vertices"] for point in points})
+    size = f"{sizes[0]:,.0f} to {sizes[-1]:,.0f} vertices" if len(sizes) > 1 else f"{sizes[-1]:,.0f} vertices"
+    if figure["sweep"] == "resolution":
+        size += f", strain limit {percent(figure['fixed'])}"
+    steps = "Each solver at its own best time step" + (" (panel of best steps)" if columns[0].heading else "")
+    if figure["adaptive"]:
+        steps = "Adaptive steps: from the coarsest one on, halved where the solver refuses it (panel of mean steps)"
+    elif len(columns) > 1:
+        steps = ("Each solver at its fastest time step, of any motion on the left, and on the right of those whose error is at most "
+                 f"{percent(result.analysis['headline_error'])} of the scene's size (panels of best steps)")
+    best = [best for column in columns for best in all_best(column.curves)]
+    bars = any(b.median > b.seconds for b in best)
+    method = "; ".join([steps, sampling(result) + (", bars: up to their median" if bars else ""), *filter(None, settings_of_the_run(result))])
+    marks = []
+    if result.noise_factor is not None:
+        marks.append("Bar in the corner: how far apart one solver is from itself under another name (A/A pair, 95 %); "
+                     "points closer than that do not differ.")
+    elif not bars:
+        marks.append("No A/A pair: small differences mean nothing.")
+    if any(result.known(name).contestant and result.known(name).unranked for name in figure["any"]):
+        marks.append("Hollow marks: untuned settings, not ranked.")
+    if any(b.ladder_end for b in best):
+        marks.append("Arrow at a step: it is the coarsest (up) or the finest (down) that was tried, a better one may lie beyond.")
+    letters = {letter for column in columns for letter in letters_in(column.rows)}
+    failures = ("A mark above the axes: no step tried gave a run that counts there, nor at a tighter limit; the letters say why, from the "
+                f"coarsest step to the finest: {result.key(letters)}.")
+    return [scene_sentence(figure["scene"], size, points), " ".join([f"{method}.", *marks]), *([failures] if letters else [])]
+
+
+# ---- growth -----------------------------------------------------------------------------------------------------------
+
+def draw_growth(figure: Json, result: Result) -> Figure:
+    """Time of a step over vertices, exponents in the labels, whatever steps and motion."""
+    scene, sweep = figure["scene"], figure["sweep"]
+    curves = {solver: Curve([replace(b, seconds=b.seconds * b.step, median=b.median * b.step, ladder_end="") for b in curve.best],
+                            curve.failures) for solver, curve in curves_in(figure["any"]).items()}
+    slopes = {row["row"]: row["exponent"] for growth in result.analysis["growth"]
+              if (growth["scene"], growth["strain_limit"]) == (scene, figure["fixed"]) for row in growth["rows"] if row["sizes"] > 2}
+    styles = {name: replace(style, label=f"{style.label}: {slopes[name]:.2f}") if name in slopes and style.leads else style
+              for name, style in styles_for(curves, result, result.leaders(scene, sweep)).items()}
+    column = Column(curves, {}, failed_rows(curves, styles), LEFT, "", "failed at every step")
+    sheet = make_sheet(result, f"{scene_words(scene)}: growth of a step's time with vertices",
+                       [*receding_sentences(styles.values()), *_caption(figure, _points(figure, result), result, [column])],
+                       LEFT + MAIN_WIDTH + LEGEND_WIDTH, MAIN_HEIGHT + ROW_HEIGHT * len(column.rows),
+                       labels_height(styles) - MAIN_HEIGHT,
+                       " ".join(words for words in result.finding(scene, sweep) if words.startswith("From ")))
+    main = sheet.axes(LEFT, sheet.bottom, MAIN_WIDTH, MAIN_HEIGHT)
+    log_x(main, _xs(curves), MAIN_WIDTH)
+    log_y(main, _times(curves))
+    draw_slopes(main)
+    draw_curves(main, curves, styles)
+    draw_noise(main, result.noise_factor)
+    main.set(xlabel="vertices (log axes; dotted: slopes 1 and 2)", ylabel="wall seconds of a step")
+    grid(main)
+    add_strip(sheet, main, column.rows, styles, column.strip)
+    label_ends(sheet, main, ends_of(curves), styles)
+    return sheet.figure

@@ -1,0 +1,98 @@
+"""Logarithmic axes: where they end, which values have ticks and words, and lines of known slope to read curves against."""
+
+from __future__ import annotations
+
+import math
+
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.ticker import FixedLocator, FuncFormatter, Locator, LogLocator, NullFormatter, NullLocator
+
+from parts.colors import GREY
+from parts.words import step_name
+
+COARSEST_STEP = 1 / 25  # the ladder of steps starts here (docs/measuring.md)
+
+
+def _ticks(axis: Axis, major: Locator, minor: Locator, text=lambda value: f"{value:g}") -> None:
+    axis.set_major_locator(major)
+    axis.set_minor_locator(minor)
+    axis.set_major_formatter(FuncFormatter(lambda value, _: text(value)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def log_x(axes: Axes, ticks: list[float], inches: float) -> None:
+    """Log axis with a tick at each value that was measured, as far as their labels have room."""
+    axes.set_xscale("log")
+    low, high = min(ticks), max(ticks)
+    pad = max((high / low) ** 0.06, 1.15)
+    axes.set_xlim(low / pad, high * pad)
+    scale = inches / math.log10(high * pad * pad / low)
+    kept: list[float] = []  # from the largest value down, each whose label does not touch the one before it
+    for tick in sorted(ticks, reverse=True):
+        if not kept or math.log10(kept[-1] / tick) * scale >= 0.07 * len(f"{tick:.7g}") + 0.08:
+            kept.append(tick)
+    _ticks(axes.xaxis, FixedLocator(kept), FixedLocator(ticks), lambda x: f"{x:.7g}")
+
+
+def log_y(axes: Axes, values: list[float]) -> None:
+    axes.set_yscale("log")
+    low, high = (min(values), max(values)) if values else (0.1, 10.0)
+    axes.set_ylim(low / 1.6, high * 1.6)
+    decades = math.log10(high / low)
+    _ticks(axes.yaxis, LogLocator(subs=(1.0,) if decades > 2 else (1.0, 2.0, 5.0)), LogLocator(subs=range(2, 10)))
+
+
+def log_log(axes: Axes, xs: list[float], ys: list[float]) -> None:
+    axes.set(xscale="log", yscale="log")
+    axes.set_xlim(min(xs) / 1.5, max(xs) * 1.5)
+    axes.set_ylim(min(ys) / 1.5, max(ys) * 1.5)
+    for axis in (axes.xaxis, axes.yaxis):
+        _ticks(axis, LogLocator(), LogLocator(subs=range(2, 10)))
+
+
+def steps_on_x(axes: Axes, steps: list[float]) -> None:
+    """A tick at each step that differs from the one before it, as far as there is room."""
+    ladder: list[float] = []
+    for step in sorted(set(steps), reverse=True):
+        if not ladder or step < 0.95 * ladder[-1]:
+            ladder.append(step)
+    _ticks(axes.xaxis, FixedLocator(ladder[::math.ceil(len(ladder) / 6)]), NullLocator(), step_name)
+
+
+def log_steps_on_y(axes: Axes, steps: list[float]) -> None:
+    axes.set_yscale("log")
+    low, high = (min(steps), max(steps)) if steps else (COARSEST_STEP, COARSEST_STEP)
+    room = math.exp(max(0.6, 0.13 * math.log(high / low)))  # for arrows, which are as long however many steps there are
+    axes.set_ylim(low / room, high * room)
+    rungs = range(math.floor(math.log2(COARSEST_STEP / high)), math.ceil(math.log2(COARSEST_STEP / low)) + 1)
+    _ticks(axes.yaxis, FixedLocator([COARSEST_STEP / 2.0**k for k in rungs[::math.ceil(len(rungs) / 8)]]), NullLocator(), step_name)
+
+
+def gap(axes: Axes, left: float, right: float) -> float:
+    """Distance of two x values as a fraction of the axes' width."""
+    to_axes = axes.transData + axes.transAxes.inverted()
+    return to_axes.transform((right, 0))[0] - to_axes.transform((left, 0))[0]
+
+
+def points_wide(axes: Axes) -> float:
+    return axes.get_figure().get_figwidth() * axes.get_position().width * 72
+
+
+def grid(axes: Axes) -> None:
+    axes.grid(which="major", color="#DDDDDD", linewidth=0.5)
+    axes.set_axisbelow(True)
+    axes.spines["top"].set_visible(False)
+
+
+def draw_slopes(axes: Axes, from_right: bool = False) -> None:
+    """Faint lines of slope 1 and 2 through the lower left corner, or through the upper right one, to read the curves' slopes against."""
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    for power in (1, 2):
+        if from_right:
+            end = max(left, right * (low / high) ** (1 / power))
+            line = [end, right], [high * (end / right) ** power, high]
+        else:
+            end = min(right, left * (high / low) ** (1 / power))
+            line = [left, end], [low, low * (end / left) ** power]
+        axes.plot(*line, color=GREY, linewidth=0.6, linestyle=(0, (1, 3)), zorder=1)
