@@ -1,6 +1,7 @@
 // Figures that theory knows of a scene: what a run makes of them, and what they should be.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -26,12 +27,12 @@ class Reading {
   virtual inextensible::IterateObserver* observer() { return nullptr; }
 };
 
-// What a reading may use: the scene is built from these parameters.
 struct AnswerScene {
-  const SceneType& type;
-  SceneParameters parameters;  // complete
-  const Scene& scene;
+  std::shared_ptr<const SceneType> type;
+  SceneParameters parameters;  // complete: the scene is built from these
+  Scene scene;
 };
+AnswerScene answer_scene(std::string_view name, const SceneParameters& given);
 
 struct KnownAnswer {
   const char* name;  // a-z and _
@@ -41,8 +42,8 @@ struct KnownAnswer {
   const char* source;         // formula, author, year
   double strain_limit;        // of the runs: permissible |strain|
   std::vector<double> steps;  // s, each half of the one before
-  double (*exact)(const AnswerScene&);
-  std::unique_ptr<Reading> (*reading)(const AnswerScene&);
+  std::function<double(const AnswerScene&)> exact;
+  std::function<std::unique_ptr<Reading>(const AnswerScene&)> reading;
   bool needs_multipliers = false;  // of methods that show their iterates alone (Stepper::observe)
   bool continuum = false;  // exact in the limit of many vertices: runs tend to something nearby
 };

@@ -6,12 +6,10 @@
 #include <map>
 #include <utility>
 
-#include "harness/base/child_process.h"
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/fields_json.h"
-#include "harness/base/interrupt.h"
-#include "harness/base/json_text.h"
+#include "harness/base/small_runs.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
@@ -25,43 +23,21 @@ namespace {
 using inextensible::Backend;
 using inextensible::State;
 
-// An answer's scene, built.
-struct Built {
-  explicit Built(const KnownAnswer& answer)
-      : scene(make(answer)),
-        at{*find_scene(answer.scene), complete_parameters(*find_scene(answer.scene), answer.given),
-           scene} {}
-  Built(const Built&) = delete;
-  Built& operator=(const Built&) = delete;
-
-  static Scene make(const KnownAnswer& answer) {
-    const auto found_type = find_scene(answer.scene);
-    const SceneType& type = *found_type;
-    return type.build(complete_parameters(type, answer.given));
-  }
-
-  Scene scene;
-  AnswerScene at;
-};
-
-// One run, and how it ended.
-struct Ending {
-  PointStatus status = PointStatus::ok;
-  double strain = 0;  // the largest
-  double seconds = 0;
+struct Ending : Calibration::Trial {
   double value = unknown;
-  std::string detail;
 };
 
-Ending run_once(const KnownAnswer& answer, const Built& built, const Backend& backend,
+AnswerScene scene_of(const KnownAnswer& answer) { return answer_scene(answer.scene, answer.given); }
+
+Ending run_once(const KnownAnswer& answer, const AnswerScene& at, const Backend& backend,
                 const inextensible::Settings& settings, double step, double timeout) {
   Ending ending;
   const auto begin = Clock::now();
-  const Scene& scene = built.scene;
+  const Scene& scene = at.scene;
   State state = start_of(scene, backend, step), before = state;
   const auto stepper = inextensible::make_stepper(backend.name, scene.problem,
                                                   {answer.strain_limit, 1, settings, &state});
-  const auto reading = answer.reading(built.at);
+  const auto reading = answer.reading(at);
   stepper->observe(reading->observer());
   const auto look = [&](const State& after, const DriveState& /*driven*/) {
     reading->after(before, after, step);
@@ -94,21 +70,17 @@ Ending run_once(const KnownAnswer& answer, const Built& built, const Backend& ba
 
 Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double step,
                       double timeout) {
-  const Built built(answer);
+  const AnswerScene at = scene_of(answer);
   if (backend.strain_control != inextensible::StrainControl::stiffness)
-    return run_once(answer, built, backend, {}, step, timeout);
-  Ending best;
-  best.status = PointStatus::skipped;
+    return run_once(answer, at, backend, {}, step, timeout);
   std::map<double, Ending> endings;
-  Calibration calibration(answer.strain_limit, [&](double stiffness) -> Calibration::Trial {
-    const Ending& e = endings[stiffness] =
-        run_once(answer, built, backend, {{"stiffness", stiffness}}, step, timeout);
-    return {e.status, e.strain, e.seconds, e.detail};
+  Calibration calibration(answer.strain_limit, [&](double stiffness) {
+    return endings[stiffness] =
+               run_once(answer, at, backend, {{"stiffness", stiffness}}, step, timeout);
   });
-  const auto found = calibration.find(first_stiffness(built.scene, answer.strain_limit));
+  const auto found = calibration.find(first_stiffness(at.scene, answer.strain_limit));
   if (found) return endings.at(*found);
-  best.detail = calibration.detail();
-  return best;
+  return {{.detail = calibration.detail()}};
 }
 
 // The order of accuracy that deviations show, from step to step of half the size.
@@ -147,17 +119,17 @@ Ending run_apart(const KnownAnswer& answer, const Backend& backend, double step,
                  const std::function<bool()>& interrupted) {
   // Springs need several runs to find their stiffness.
   const double all_runs = timeout * (Calibration::run_limit + 2);
-  ChildOutcome child = run_in_child(
+  return in_child(
+      {all_runs, 0, interrupted},
       [&](Heartbeat& heartbeat) {
         heartbeat.restart();
-        return compact(to_json(run_calibrated(answer, backend, step, timeout)));
+        return to_json(run_calibrated(answer, backend, step, timeout));
       },
-      {all_runs, 0, interrupted});
-  if (child.end == ChildOutcome::End::interrupted) throw Interrupted();
-  if (const auto ending = harness::answer(child, ending_of)) return *ending;
-  Ending lost;
-  lost.detail = child.end == ChildOutcome::End::timed_out ? "a step did not end" : ending(child);
-  return lost;
+      ending_of,
+      [](const ChildOutcome& child) {
+        const bool stuck = child.end == ChildOutcome::End::timed_out;
+        return Ending{{.detail = stuck ? "a step did not end" : ending(child)}};
+      });
 }
 
 }  // namespace
@@ -166,12 +138,12 @@ std::vector<AnswerRun> plan_answers(const AnswerSelection& selection) {
   std::vector<AnswerRun> plan;
   for (const KnownAnswer& answer : known_answers()) {
     if (selection.answer && !selection.answer->matches(answer.name)) continue;
-    const Scene scene = Built::make(answer);
+    const AnswerScene at = scene_of(answer);
     for (const Backend& backend : inextensible::backends()) {
       if (!backend.contestant || (selection.solver && !matches(*selection.solver, backend.name)))
         continue;
       if (answer.needs_multipliers && !backend.shows_iterates) continue;
-      if (inextensible::part_not_taken(backend, *scene.problem)) continue;
+      if (inextensible::part_not_taken(backend, *at.scene.problem)) continue;
       plan.push_back({&answer, backend.name});
     }
   }
@@ -180,62 +152,31 @@ std::vector<AnswerRun> plan_answers(const AnswerSelection& selection) {
   return plan;
 }
 
-double exact_value(const KnownAnswer& answer) { return answer.exact(Built(answer).at); }
-
-namespace {
-
-// Throws Interrupted, with the rows so far.
-void run_rows(const std::vector<AnswerRun>& plan, double timeout, const AnswerEvents& events,
-              std::vector<AnswerRow>& rows) {
+AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
+                          const RunEvents& events) try {
+  AnswerOutcome outcome;
   std::size_t all = 0;
   for (const AnswerRun& run : plan) all += run.answer->steps.size();
   for (const AnswerRun& run : plan) {
-    const double exact = exact_value(*run.answer);
+    const double exact = run.answer->exact(scene_of(*run.answer));
     Order order(run.answer->continuum, run.answer->strain_limit);
     for (const double step : run.answer->steps) {
       if (events.interrupted()) throw Interrupted();
-      const std::string key =
-          std::string(run.answer->name) + "/" + run.solver + "/" + step_text(step);
-      const Ending ending = ending_of(events.once(key, [&] {
+      const std::string name = std::string(run.answer->name) + "/" + run.solver;
+      const Ending ending = ending_of(events.once(name + "/" + step_text(step), [&] {
         return to_json(run_apart(*run.answer, *inextensible::find_backend(run.solver), step,
                                  timeout, events.interrupted));
       }));
-      AnswerRow row;
-      row.answer = run.answer->name;
-      row.solver = run.solver;
-      row.step = step;
-      row.value = ending.value;
-      row.deviation = exact == 0 ? row.value : row.value / exact - 1;
-      row.order = order.next(row.deviation);
-      row.detail = ending.detail;
-      rows.push_back(row);
-      events.row(row, rows.size(), all);
+      const double deviation = exact == 0 ? ending.value : ending.value / exact - 1;
+      outcome.rows.push_back({run.answer->name, run.solver, step, ending.value, deviation,
+                              order.next(deviation), ending.detail});
+      events.done(name, outcome.rows.size(), all);
     }
   }
-}
-
-}  // namespace
-
-AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
-                          const AnswerEvents& events) {
-  AnswerOutcome outcome;
-  try {
-    run_rows(plan, timeout, events, outcome.rows);
-  } catch (const Interrupted&) {
-    outcome.complete = false;
-  }
   return outcome;
+} catch (const Interrupted&) {
+  return {{}, false};
 }
-
-namespace {
-
-// "" where it is null.
-std::string text_in(const nlohmann::json& object, const char* key) {
-  const nlohmann::json& value = object.at(key);
-  return value.is_string() ? value.get<std::string>() : "";
-}
-
-}  // namespace
 
 nlohmann::json answers_document(nlohmann::json context, const std::vector<AnswerRun>& plan,
                                 const AnswerOutcome& outcome,
@@ -246,13 +187,14 @@ nlohmann::json answers_document(nlohmann::json context, const std::vector<Answer
   for (const AnswerRun& run : plan) {
     if (run.answer == std::exchange(last, run.answer)) continue;
     const KnownAnswer& answer = *run.answer;
+    const AnswerScene at = scene_of(answer);
     answers.push_back({{"name", answer.name},
                        {"scene", answer.scene},
-                       {"scene_parameters", Built(answer).at.parameters},
+                       {"scene_parameters", at.parameters},
                        {"quantity", answer.quantity},
                        {"source", answer.source},
                        {"strain_limit", answer.strain_limit},
-                       {"exact", exact_value(answer)},
+                       {"exact", answer.exact(at)},
                        {"continuum", answer.continuum}});
   }
   for (const AnswerRow& row : outcome.rows) {
@@ -266,6 +208,10 @@ nlohmann::json answers_document(nlohmann::json context, const std::vector<Answer
 }
 
 void print_answers(std::ostream& out, const nlohmann::json& document) {
+  const auto text_in = [](const nlohmann::json& object, const char* key) {
+    const nlohmann::json& value = object.at(key);
+    return value.is_string() ? value.get<std::string>() : "";
+  };
   const nlohmann::json& rows = document.at("rows");
   for (const nlohmann::json& answer : document.at("answers")) {
     out << '\n'

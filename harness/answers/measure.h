@@ -10,6 +10,7 @@
 
 #include "harness/answers/answer.h"
 #include "harness/base/pattern.h"
+#include "harness/base/small_runs.h"
 #include "harness/points/answer_row.h"
 
 namespace harness {
@@ -17,15 +18,6 @@ namespace harness {
 struct AnswerSelection {
   std::optional<Pattern> answer, solver;  // must match the whole name
   double timeout = 20;                    // s of wall time, of each run
-};
-
-struct AnswerEvents {
-  std::function<void(const AnswerRow&, std::size_t done, std::size_t all)> row = [](auto&&...) {};
-  std::function<bool()> interrupted = [] { return false; };
-  // Gives what is known of a run, or what `compute` returns (Journal::once).
-  std::function<nlohmann::json(const std::string& key,
-                               const std::function<nlohmann::json()>& compute)>
-      once = [](const std::string&, const auto& compute) { return compute(); };
 };
 
 // A solver's runs at all steps of an answer, each in a child process, the coarsest step first.
@@ -41,10 +33,7 @@ struct AnswerOutcome {
   bool complete = true;  // false: interrupted
 };
 AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
-                          const AnswerEvents& events);
-
-// What the answer's figure is in its scene.
-double exact_value(const KnownAnswer& answer);
+                          const RunEvents& events);
 
 nlohmann::json answers_document(nlohmann::json context, const std::vector<AnswerRun>& plan,
                                 const AnswerOutcome& outcome,

@@ -9,6 +9,9 @@
 #include "harness/base/text.h"
 
 namespace harness::claims {
+
+using nlohmann::json;
+
 Answer above(const Ratio& ratio, double threshold) {
   if (ratio.above(threshold)) return Answer::yes;
   return ratio.below(threshold) ? Answer::no : Answer::open;
@@ -20,15 +23,14 @@ Answer above(const Slope& slope, double threshold) {
 }
 
 Answer below(const Slope& slope, double threshold) {
-  const Answer answer = above(slope, threshold);
-  return answer == Answer::open ? answer : answer == Answer::yes ? Answer::no : Answer::yes;
+  return above(Slope{-slope.value, slope.half_width, slope.points}, -threshold);
 }
 
 Answer all_of(const std::vector<Answer>& answers) {
-  const auto has = [&](Answer one) {
-    return std::find(answers.begin(), answers.end(), one) != answers.end();
-  };
-  return has(Answer::no) ? Answer::no : has(Answer::open) ? Answer::open : Answer::yes;
+  for (const Answer one : {Answer::no, Answer::open}) {
+    if (std::ranges::count(answers, one) > 0) return one;
+  }
+  return Answer::yes;
 }
 
 std::string verdict_of(Answer answer) {
@@ -46,15 +48,11 @@ std::string verdict_of_counts(int yes, int no, int all) {
 }
 
 std::string verdict_of_all(const std::vector<std::string>& verdicts) {
-  std::string common = not_measured;
-  bool open = false;
-  for (const std::string& verdict : verdicts) {
-    if (verdict == not_measured) continue;
-    open = open || verdict == undecided;
-    if (common == not_measured) common = verdict;
-    if (common != verdict) common = changed;
-  }
-  return open ? undecided : common;
+  std::set<std::string> different(verdicts.begin(), verdicts.end());
+  different.erase(not_measured);
+  if (different.empty()) return not_measured;
+  if (different.contains(undecided)) return undecided;
+  return different.size() == 1 ? *different.begin() : changed;
 }
 
 std::string text(double value, int digits) { return number_text(value, digits); }
@@ -64,19 +62,21 @@ std::string text(const Slope& slope) {
          (std::isfinite(slope.half_width) ? " ± " + text(slope.half_width, 1) : "");
 }
 
-using nlohmann::json;
+void append(std::string& list, const std::string& more, const char* separator) {
+  list += (list.empty() ? "" : separator) + more;
+}
 
 Points::Points(const std::vector<json>& results) {
   // Ids do not name the order of passes.
   using Key = std::tuple<std::string, std::string, std::string, bool>;
   std::set<Key> seen;
   for (const json& result : results) {
-    roles_.add(ContestantRoles(result));
+    roles.add(ContestantRoles(result));
     if (result.value("schema", "") == "inextensible-stability/1") {
-      for (const json& cell : result.at("matrix")) matrix_.push_back(&cell);
-      for (const json& mesh : result.at("degrees_of_freedom")) freedom_.push_back(&mesh);
+      for (const json& cell : result.at("matrix")) matrix.push_back(&cell);
+      for (const json& mesh : result.at("degrees_of_freedom")) freedom.push_back(&mesh);
       if (const auto frames = result.find("same_frame"); frames != result.end()) {
-        for (const json& frame : *frames) same_frame_.push_back(&frame);
+        for (const json& frame : *frames) same_frame.push_back(&frame);
       }
       continue;
     }
@@ -85,28 +85,32 @@ Points::Points(const std::vector<json>& results) {
       const Point point(p, pair_noise_of(result));
       if (point.flag("adaptive")) continue;
       const Key key(point.id(), point.contestant(), point.text("sweep"), point.collides_last());
-      repeated_ = repeated_ || seen.contains(key);
+      repeated = repeated || seen.contains(key);
       if (seen.contains(key)) continue;
       here.insert(key);
-      all_.push_back(point);
+      all.push_back(point);
     }
     seen.merge(here);
   }
-  for (const Point& p : all_)
-    sizes_[{p.text("scene"), p.text("sweep")}].insert(p.number("vertices"));
 }
 
-std::vector<Point> Points::where(const Filter& wanted) const {
+std::vector<Point> Points::where(const std::function<bool(const Point&)>& wanted) const {
   std::vector<Point> chosen;
-  std::copy_if(all_.begin(), all_.end(), std::back_inserter(chosen), wanted);
+  std::ranges::copy_if(all, std::back_inserter(chosen), wanted);
   return chosen;
 }
 
-const json* Points::cell(const std::string& hard_case, const std::string& solver) const {
-  const auto place = std::find_if(matrix_.begin(), matrix_.end(), [&](const json* c) {
-    return c->at("case") == hard_case && c->at("solver") == solver;
-  });
-  return place == matrix_.end() ? nullptr : *place;
+std::vector<Point> Points::in(const std::string& scene, const std::string& sweep,
+                              std::optional<double> vertices) const {
+  std::vector<Point> chosen =
+      where([&](const Point& p) { return p.is("scene", scene) && p.is("sweep", sweep); });
+  if (sweep == "resolution") return chosen;
+  double size = vertices.value_or(0);
+  for (const Point& p : chosen) {
+    if (!vertices) size = std::max(size, p.number("vertices"));
+  }
+  std::erase_if(chosen, [size](const Point& p) { return p.number("vertices") != size; });
+  return chosen;
 }
 
 namespace {
@@ -122,55 +126,28 @@ Curve Points::best(const std::string& scene, const std::string& sweep,
                    const std::string& contestant, double level,
                    std::optional<double> vertices) const {
   const char* axis = sweep == "strain" ? "strain_limit" : "vertices";
+  const std::vector<Point> points = in(scene, sweep, vertices);
   std::map<std::pair<double, std::string>, std::vector<const Point*>> places;
-  for (const Point& p : all_) {
-    if (of(p, scene, sweep, vertices) && roles_.at_any_settings(p.contestant()) == contestant)
+  for (const Point& p : points) {
+    if (roles.at_any_settings(p.contestant()) == contestant)
       places[{p.number(axis), p.contestant()}].push_back(&p);
   }
   Curve curve;
-  for (const auto& [place, points] : places) {
-    if (const Point* answer = fastest_of(points, level)) keep_faster(curve, place.first, *answer);
+  for (const auto& [place, here] : places) {
+    if (const Point* answer = fastest_of(here, level)) keep_faster(curve, place.first, *answer);
   }
   return curve;
 }
 
 Curve Points::best_at_errors(const std::string& scene, const std::string& contestant) const {
   Curve curve;
-  for (const Point& p : where([&](const Point& q) {
-         return of(q, scene, "step") && roles_.at_any_settings(q.contestant()) == contestant &&
-                q.ok() && q.timed();
-       })) {
-    for (const double level : error_levels) {
+  for (const Point& p : in(scene, "step")) {
+    if (roles.at_any_settings(p.contestant()) != contestant || !p.ok() || !p.timed()) continue;
+    for (const double level : {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003, 0.0001}) {
       if (p.within_error(level)) keep_faster(curve, level, p);
     }
   }
   return curve;
-}
-
-std::vector<Role> Points::ranked(const std::string& scene, const std::string& sweep,
-                                 std::optional<double> vertices) const {
-  std::vector<Role> all;
-  std::set<std::string> seen;
-  for (const Point& p : where([&](const Point& q) { return of(q, scene, sweep, vertices); })) {
-    if (!seen.insert(p.contestant()).second) continue;
-    if (const Role one = about(p.contestant()); one.ranked()) all.push_back(one);
-  }
-  return all;
-}
-
-std::vector<double> Points::sizes(const std::string& scene, const std::string& sweep) const {
-  const auto known = sizes_.find({scene, sweep});
-  if (known == sizes_.end()) return {};
-  return {known->second.begin(), known->second.end()};
-}
-
-// Strain and step sweeps of several sizes may come together: unless one is named, the largest
-// counts.
-bool Points::of(const Point& point, const std::string& scene, const std::string& sweep,
-                std::optional<double> vertices) const {
-  if (!point.is("scene", scene) || !point.is("sweep", sweep)) return false;
-  return sweep == "resolution" ||
-         point.number("vertices") == vertices.value_or(*sizes_.at({scene, sweep}).begin());
 }
 
 Slope slope_of(const Curve& curve) {
@@ -204,10 +181,6 @@ Slope slope_of_ratio(const Curve& a, const Curve& b) {
   return slope;
 }
 
-void cite(ClaimVerdict& claim, const Curve& curve) {
-  for (const auto& [at, point] : curve) claim.points.push_back(point.id());
-}
-
 std::optional<Point> at(const Curve& curve, double x) {
   for (const auto& [key, point] : curve) {
     if (std::abs(key / x - 1) < 1e-9) return point;
@@ -215,26 +188,32 @@ std::optional<Point> at(const Curve& curve, double x) {
   return {};
 }
 
-void Ways::add(const std::string& words, const std::string& verdict, const std::string& measured,
-               const std::vector<Curve>& evidence) {
-  claim_.measured += (verdicts_.empty() ? "" : "; ") + words + ": " + verdict +
-                     (measured.empty() ? "" : ", " + measured);
-  verdicts_.push_back(verdict);
-  if (verdict == not_measured) return;
-  for (const Curve& curve : evidence) {
-    for (const auto& entry : curve) {
-      const std::string id = entry.second.id();
-      if (std::find(claim_.points.begin(), claim_.points.end(), id) == claim_.points.end())
-        claim_.points.push_back(id);
-    }
+std::vector<std::string> ids_of(const std::vector<Curve>& curves) {
+  std::vector<std::string> ids;
+  for (const Curve& curve : curves) {
+    for (const auto& [at, point] : curve) ids.push_back(point.id());
   }
+  return ids;
 }
 
-Ways::~Ways() {
-  const bool none = std::all_of(verdicts_.begin(), verdicts_.end(),
-                                [](const std::string& verdict) { return verdict == not_measured; });
-  if (none) claim_.measured.clear();
-  if (!verdicts_.empty()) claim_.verdict = verdicts_.front();
+Verdict in_ways(const Ways& ways) {
+  Verdict all{ways.front().second.verdict, "", {}};
+  bool any = false;
+  for (const auto& [words, way] : ways) {
+    any = any || way.verdict != not_measured;
+    append(all.measured,
+           words + ": " + way.verdict + (way.measured.empty() ? "" : ", " + way.measured), "; ");
+    for (const std::string& id : way.points) {
+      if (std::ranges::count(all.points, id) == 0) all.points.push_back(id);
+    }
+  }
+  if (!any) all.measured.clear();
+  return all;
+}
+
+Ways at_levels(const std::function<Verdict(double level)>& judge) {
+  return {{"at an error of at most 2 %", judge(headline_error)},
+          {"at any motion", judge(any_motion)}};
 }
 
 }  // namespace harness::claims

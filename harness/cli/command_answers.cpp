@@ -1,6 +1,4 @@
 // bench answers: what solvers make of figures that theory knows.
-#include <unistd.h>
-
 #include <iostream>
 
 #include "harness/answers/measure.h"
@@ -47,21 +45,7 @@ int answers(const AnswersOptions& given, const std::vector<std::string>& command
     return success;
   }
   catch_interrupts();
-  AnswerEvents events;
-  events.once = [&journal](const auto& key, const auto& compute) {
-    return journal.once(key, compute);
-  };
-  events.interrupted = interrupted;
-  const bool terminal = isatty(STDERR_FILENO) == 1;
-  events.row = [&](const AnswerRow& row, std::size_t done, std::size_t all) {
-    if (terminal) {
-      std::cerr << "\r\033[K[" << done << '/' << all << "] " << row.answer << '/' << row.solver
-                << (done == all ? "\n" : "");
-    } else if (done % 100 == 0 || done == all) {
-      std::cerr << '[' << done << '/' << all << "]\n";
-    }
-  };
-  const AnswerOutcome outcome = run_answers(plan, given.timeout, events);
+  const AnswerOutcome outcome = run_answers(plan, given.timeout, journaled_events(journal));
   if (!outcome.complete) return tell_interrupted();
   const json document = answers_document(context, plan, outcome, command);
   write_atomically(out, result_text(document));

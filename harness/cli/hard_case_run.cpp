@@ -1,7 +1,4 @@
 // The matrix of hard cases: bench --sweep stability.
-#include <unistd.h>
-
-#include <filesystem>
 #include <iostream>
 #include <sstream>
 
@@ -17,7 +14,6 @@
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
 #include "harness/stability/stability.h"
-#include "harness/stability/trial.h"
 
 namespace harness {
 namespace {
@@ -68,41 +64,9 @@ void tell_plan(const StabilityPlan& plan) {
             << " for frames side by side\n";
 }
 
-std::string key_of(const HardCase& hard_case, const std::string& solver) {
-  return hard_case.name + "/" + solver;
-}
-
 void add_cells_of(const nlohmann::json& result, Journal& journal) {
   for (const nlohmann::json& row : result.at("matrix"))
-    journal.add(row.at("case").get<std::string>() + "/" + row.at("solver").get<std::string>(),
-                to_json(trial_result_of(row)));
-}
-
-// Cells go into the journal, and a terminal sees each of them.
-StabilityEvents events_for(Journal& journal) {
-  StabilityEvents events;
-  events.interrupted = interrupted;
-  events.known = [&journal](const HardCase& c, const std::string& solver) {
-    const nlohmann::json* known = journal.find(key_of(c, solver));
-    return known ? std::optional(trial_result_of(*known)) : std::nullopt;
-  };
-  const bool terminal = isatty(STDERR_FILENO) == 1;
-  events.cell = [&journal, terminal](const StabilityCell& cell, std::size_t done, std::size_t all) {
-    const std::string key = key_of(*cell.hard_case, cell.solver);
-    if (!journal.find(key)) journal.add(key, to_json(cell.result));
-    if (terminal) {
-      std::cerr << "\r\033[K[" << done << '/' << all << "] " << key << (done == all ? "\n" : "");
-    } else if (done % 100 == 0 || done == all) {
-      std::cerr << '[' << done << '/' << all << "]\n";
-    }
-  };
-  events.largest_step = [](const LargestStep& found) {
-    std::cerr << "largest step, " << found.scene << '/' << found.solver << '\n';
-  };
-  events.same_frame = [](const SameFrame& found) {
-    std::cerr << "the same frame, " << found.scene.name() << '\n';
-  };
-  return events;
+    journal.add(cell_key(row.at("case"), row.at("solver")), to_json(trial_result_of(row)));
 }
 
 }  // namespace
@@ -135,7 +99,7 @@ int run_hard_cases(const SweepCommand& options, const std::vector<std::string>& 
   }
   catch_interrupts();
   const std::uint64_t seed = options.seed < 0 ? 1 : static_cast<std::uint64_t>(options.seed);
-  const StabilityOutcome outcome = run_stability(plan, seed, events_for(journal));
+  const StabilityOutcome outcome = run_stability(plan, seed, journaled_events(journal));
   write_atomically(out, result_text(stability_document(context, outcome, seed, command)));
   print_stability(std::cout, outcome, output_columns());
   std::cout << "\nwritten:\n" << out << std::endl;

@@ -1,5 +1,7 @@
 #include "harness/cli/sweep_output.h"
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <iostream>
 
@@ -107,6 +109,25 @@ Past begin_journal(const OutputOptions& options, const std::string& out, Journal
                      "--out keeps both");
   journal.start(header);
   return {};
+}
+
+RunEvents journaled_events(Journal& journal) {
+  RunEvents events;
+  events.interrupted = interrupted;
+  events.once = [&journal](const auto& key, const auto& compute) {
+    return journal.once(key, compute);
+  };
+  events.done = [terminal = isatty(STDERR_FILENO) == 1](const std::string& key, std::size_t done,
+                                                        std::size_t all) {
+    if (all == 0) {
+      std::cerr << key << '\n';
+    } else if (terminal) {
+      std::cerr << "\r\033[K[" << done << '/' << all << "] " << key << (done == all ? "\n" : "");
+    } else if (done % 100 == 0 || done == all) {
+      std::cerr << '[' << done << '/' << all << "]\n";
+    }
+  };
+  return events;
 }
 
 }  // namespace harness

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "harness/base/journal.h"
+#include "harness/base/small_runs.h"
 #include "harness/cli/command_line.h"
 
 namespace harness {
@@ -51,5 +52,8 @@ struct Past {
 // and, without --force, for one of another build or selection and for a damaged journal.
 Past begin_journal(const OutputOptions& options, const std::string& out, Journal& journal,
                    const Undertaking& run);
+
+// Events of small runs that a journal keeps, and whose progress standard error shows.
+RunEvents journaled_events(Journal& journal);
 
 }  // namespace harness

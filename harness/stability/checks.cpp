@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <sstream>
 #include <utility>
 #include <variant>
 
@@ -14,21 +15,53 @@
 #include "harness/judge/mechanics.h"
 #include "harness/judge/reference.h"
 #include "harness/scenes/pendulum.h"
+#include "harness/stability/cases.h"
 #include "harness/stability/stability.h"
 #include "solvers/problem/forces.h"
 
 namespace harness {
+namespace {
+
+using Eigen::Vector3d;
 using inextensible::Positions;
 using inextensible::Problem;
 using inextensible::State;
+using inextensible::Stepper;
+using inextensible::StepResult;
+using inextensible::StrainControl;
+using inextensible::WorkCounters;
+using Grade = Finding::Grade;
 
-Case scene_case(const std::string& name, const char* type, const SceneParameters& given,
-                double step, int steps) {
-  const auto found_scene = find_scene(type);
-  const SceneType& scene = *found_scene;
-  return {name, scene.build(complete_parameters(scene, given)), step, steps, 0.01};
+// Some steps of one scene.
+struct Case {
+  std::string name;
+  Scene scene;
+  double step;  // s
+  int steps;
+  double limit = 0.01;  // strain
+};
+
+// All parts in a row, numbers with three digits.
+template <class... Parts>
+std::string text(const Parts&... parts) {
+  std::ostringstream stream;
+  stream.precision(3);
+  (stream << ... << parts);
+  return stream.str();
 }
 
+// What a check says; `advice` is kept for a failure only.
+Finding judged(bool passed, const std::string& check, const std::string& measured,
+               const std::string& advice) {
+  return {passed ? Grade::pass : Grade::fail, check, measured, passed ? "" : advice};
+}
+
+Finding not_applicable(const std::string& check, const std::string& why) {
+  return {Grade::not_applicable, check, why, ""};
+}
+
+// A crumpled net of n x n vertices about 1 m apart, masses over a decade, weightless; the first
+// `pins` are pinned; speeds up to `speed` m/s in each coordinate.
 Case net(std::uint64_t seed, int n, int pins, double speed, double step, int steps, double limit) {
   std::mt19937_64 random(seed);
   const auto uniform = [&random](double low, double high) {
@@ -59,36 +92,29 @@ Case net(std::uint64_t seed, int n, int pins, double speed, double step, int ste
     if (row > 0) join(v, v - n);  // both orientations occur
   }
   scene.problem = std::make_shared<const Problem>(std::move(parts));
-  return {
-      "net of " + std::to_string(n) + " x " + std::to_string(n) + ", seed " + std::to_string(seed),
-      std::move(scene), step, steps, limit};
+  return {text("net of ", n, " x ", n, ", seed ", seed), std::move(scene), step, steps, limit};
 }
 
-std::unique_ptr<inextensible::Stepper> Examinee::stepper(
-    const Case& c, const inextensible::Settings& settings) const {
+// The drape without the parts that the solver does not take.
+Case drape(const inextensible::Backend& solver, double step, int steps) {
+  SceneParameters given{{"n", 9}};
+  if (!solver.takes_shear) given["shear"] = 0;
+  if (!solver.takes_collider) given["radius"] = 0;
+  return {"drape of 9 x 9", cases::scene_of("drape", given), step, steps};
+}
+
+bool keeps_a_limit(const inextensible::Backend& solver) {
+  return solver.strain_control == StrainControl::strain_limit;
+}
+
+std::unique_ptr<Stepper> stepper_for(const Examinee& solver, const Case& c,
+                                     const inextensible::Settings& settings = {}) {
   try {
-    return inextensible::make_stepper(backend.name, c.scene.problem,
-                                      {c.limit, options.seed, settings});
+    return inextensible::make_stepper(solver.backend.name, c.scene.problem,
+                                      {c.limit, solver.options.seed, settings});
   } catch (const std::invalid_argument& error) {
     throw NotTaken(error.what());
   }
-}
-
-SceneParameters Examinee::drape(int n) const {
-  SceneParameters given{{"n", n}};
-  if (!backend.takes_shear) given["shear"] = 0;
-  if (!backend.takes_collider) given["radius"] = 0;
-  return given;
-}
-
-Finding judged(bool passed, const std::string& check, const std::string& measured,
-               const std::string& advice) {
-  if (passed) return {Finding::Grade::pass, check, measured, ""};
-  return {Finding::Grade::fail, check, measured, advice};
-}
-
-Finding not_applicable(const std::string& check, const std::string& why) {
-  return {Finding::Grade::not_applicable, check, why, ""};
 }
 
 bool same_bits(const Positions& a, const Positions& b) {
@@ -102,19 +128,11 @@ bool same_bits(const State& a, const State& b) {
   return same_bits(a.x, b.x) && same_bits(a.v, b.v) && a.time == b.time;
 }
 
-using inextensible::Positions;
-using inextensible::Problem;
-using inextensible::State;
-using inextensible::Stepper;
-using inextensible::StrainControl;
-using inextensible::WorkCounters;
-
-namespace {
+// ---- Pins, limit and counters of ordinary scenes at ordinary steps ----
 
 // Counters that only grow; a factorization's size is that of the last one.
 std::vector<std::int64_t> counts_of(const WorkCounters& w) {
   std::vector<std::int64_t> counts;
-  counts.reserve(inextensible::work_counters.size());
   for (const auto& counter : inextensible::work_counters) {
     if (const auto* member = std::get_if<std::int64_t WorkCounters::*>(&counter.member))
       counts.push_back(w.**member);
@@ -131,105 +149,92 @@ struct Ordinary {
   double worst = 0;  // strain over limit
   std::string worst_place;
   std::string wrong_count;
+
+  void look(const Case& c, const Stepper& stepper, const State& state);
+  void take_steps(const Examinee& solver, const Case& c);
 };
 
-void look(const Case& c, const Stepper& stepper, const State& state, Ordinary& all) {
+void Ordinary::look(const Case& c, const Stepper& stepper, const State& state) {
   const Problem& problem = *c.scene.problem;
   const std::string place = text(c.name, ", step ", stepper.work().steps);
   for (const int pin : problem.pinned()) {
-    ++all.places;
+    ++places;
     const Positions now = state.x.col(pin), start = c.scene.start.x.col(pin);
-    if (same_bits(now, start)) continue;
-    if (all.moved_pins++ == 0)
-      all.first_moved =
+    if (!same_bits(now, start) && moved_pins++ == 0)
+      first_moved =
           text("vertex ", pin, " is pinned but moved by ", (now - start).norm(), " m at ", place);
   }
-  const WorstEdge worst = worst_edge(problem, stepper.filtered_positions());
-  if (worst.strain / c.limit > all.worst) {
-    all.worst = worst.strain / c.limit;
-    all.worst_place = text("edge ", worst.edge, " at ", place);
+  const WorstEdge edge = worst_edge(problem, stepper.filtered_positions());
+  if (edge.strain / c.limit > worst) {
+    worst = edge.strain / c.limit;
+    worst_place = text("edge ", edge.edge, " at ", place);
   }
 }
 
-void take_steps(const Examinee& solver, const Case& c, Ordinary& all) {
-  const auto stepper = solver.stepper(c);
+void Ordinary::take_steps(const Examinee& solver, const Case& c) {
+  const auto stepper = stepper_for(solver, c);
   State state = c.scene.start;
   std::int64_t accepted = 0;
   std::vector<std::int64_t> before = counts_of(stepper->work());
   const auto look_on = [&](const State& now, const DriveState& driven) {
     ++accepted;
-    ++all.steps;
-    if (driven.last < c.step) ++all.smaller;
-    look(c, *stepper, now, all);
-    const std::vector<std::int64_t> after = counts_of(stepper->work());
+    ++steps;
+    if (driven.last < c.step) ++smaller;
+    look(c, *stepper, now);
+    const std::vector<std::int64_t> counts = counts_of(stepper->work());
     const bool falls =
-        !std::equal(before.begin(), before.end(), after.begin(), std::less_equal<>());
-    if (all.wrong_count.empty() &&
+        !std::equal(before.begin(), before.end(), counts.begin(), std::less_equal<>());
+    if (wrong_count.empty() &&
         (falls || stepper->work().steps != accepted || driven.result.iterations < 0))
-      all.wrong_count = text(falls ? "a counter fell" : "steps or iterations are wrong", " at ",
-                             c.name, ", step ", accepted);
-    before = after;
+      wrong_count = text(falls ? "a counter fell" : "steps or iterations are wrong", " at ", c.name,
+                         ", step ", accepted);
+    before = counts;
     return true;
   };
   const DriveState driven = drive(*stepper, state, {c.step, c.steps, 10}, look_on);
-  if (driven.end == DriveState::End::refused)
-    all.stopped = text(c.name, " at t = ", state.time, " s, steps down to ", driven.next,
-                       " s: ", to_string(driven.result.status), ", ", driven.result.detail);
+  if (driven.end == DriveState::End::refused && stopped.empty())
+    stopped = text(c.name, " at t = ", state.time, " s, steps down to ", driven.next,
+                   " s: ", to_string(driven.result.status), ", ", driven.result.detail);
 }
 
-}  // namespace
-
-Findings check_ordinary_runs(const Examinee& solver) {
-  std::vector<Case> cases{scene_case("chain of 20", "chain", {{"n", 20}}, 1.0 / 400, 80),
-                          scene_case("drape of 9 x 9", "drape", solver.drape(9), 1.0 / 400, 60)};
-  for (std::uint64_t seed = 1; seed <= 4; ++seed)
-    cases.push_back(net(seed, 5, 2, 2, 0.005, 10, 0.005));
+Findings ordinary_runs(const Examinee& solver) {
   Ordinary all;
-  std::string stopped;
-  for (const Case& c : cases) {
-    take_steps(solver, c, all);
-    if (stopped.empty()) stopped = all.stopped;
-  }
-  Findings findings;
-  findings.push_back(judged(
-      stopped.empty(), "steps",
-      stopped.empty() ? text(all.steps, " steps of a chain, a drape and nets, ", all.smaller,
-                             " of them smaller than asked for")
-                      : "it does not get through " + stopped,
-      "easy scenes: at small steps the candidate nearly meets the limit; look at the iteration "
-      "limit and at what ends the iteration"));
-  findings.push_back(judged(
-      all.moved_pins == 0, "pins",
-      text(all.moved_pins, " of ", all.places, " places of pinned vertices changed (allowed 0)"),
-      all.first_moved +
-          ": a pinned vertex's inverse mass is 0; do not write to it, rounding moves it too"));
-  if (solver.keeps_a_limit()) {
-    findings.push_back(judged(
-        all.worst <= 1 + 1e-9, "limit",
-        text("largest strain ", number_text(all.worst, 4), " of the limit (allowed 1)"),
-        all.worst_place +
-            ": return ok only where every edge keeps | |d| / l - 1 | <= strain_limit "
-            "(EdgeConstraints::permissible), before the collision filter; refuse otherwise"));
-  } else {
-    findings.push_back(
-        not_applicable("limit", text(solver.backend.strain_control == StrainControl::stiffness
-                                         ? "no limit of its own, sweeps search its stiffness"
-                                         : "promises no limit",
-                                     "; here ", number_text(all.worst, 4), " of it")));
-  }
-  findings.push_back(judged(
-      all.wrong_count.empty(), "counters",
-      all.wrong_count.empty() ? "steps are counted and no counter falls" : all.wrong_count,
-      "only add to the WorkCounters that apply() is given, and return the iterations of this "
-      "step alone"));
-  return findings;
+  all.take_steps(solver, {"chain of 20", cases::scene_of("chain", {{"n", 20}}), 1.0 / 400, 80});
+  all.take_steps(solver, drape(solver.backend, 1.0 / 400, 60));
+  for (std::uint64_t seed = 1; seed <= 4; ++seed)
+    all.take_steps(solver, net(seed, 5, 2, 2, 0.005, 10, 0.005));
+  const std::string worst = number_text(all.worst, 4);
+  return {
+      judged(all.stopped.empty(), "steps",
+             all.stopped.empty() ? text(all.steps, " steps of a chain, a drape and nets, ",
+                                        all.smaller, " of them smaller than asked for")
+                                 : "it does not get through " + all.stopped,
+             "easy scenes: at small steps the candidate nearly meets the limit; look at the "
+             "iteration limit and at what ends the iteration"),
+      judged(
+          all.moved_pins == 0, "pins",
+          text(all.moved_pins, " of ", all.places,
+               " places of pinned vertices changed (allowed 0)"),
+          all.first_moved +
+              ": a pinned vertex's inverse mass is 0; do not write to it, rounding moves it too"),
+      keeps_a_limit(solver.backend)
+          ? judged(all.worst <= 1 + 1e-9, "limit",
+                   text("largest strain ", worst, " of the limit (allowed 1)"),
+                   all.worst_place +
+                       ": return ok only where every edge keeps | |d| / l - 1 | <= strain_limit "
+                       "(EdgeConstraints::permissible), before the collision filter; refuse "
+                       "otherwise")
+          : not_applicable("limit", text(solver.backend.strain_control == StrainControl::stiffness
+                                             ? "no limit of its own, sweeps search its stiffness"
+                                             : "promises no limit",
+                                         "; here ", worst, " of it")),
+      judged(all.wrong_count.empty(), "counters",
+             all.wrong_count.empty() ? "steps are counted and no counter falls" : all.wrong_count,
+             "only add to the WorkCounters that apply() is given, and return the iterations of "
+             "this step alone")};
 }
 
-using Eigen::Vector3d;
-using inextensible::Problem;
-using inextensible::State;
-
-namespace {
+// ---- Linear and angular momentum of a free, weightless net ----
 
 constexpr double momentum_duration = 0.04;  // s
 // A hundredth of the strain that a step causes. An edge that is within its limit is not corrected:
@@ -247,7 +252,7 @@ constexpr double vanishing = 0.5;
 // Raises `linear` to the largest relative change of linear momentum in a step; infinite if refused.
 double loss_of_spin(const Examinee& solver, const Case& c, double step, double& linear) {
   const Problem& problem = *c.scene.problem;
-  const auto stepper = solver.stepper(c);
+  const auto stepper = stepper_for(solver, c);
   State state = c.scene.start;
   const Vector3d start = angular_momentum(problem, state);
   double scale = 0;
@@ -265,9 +270,7 @@ double loss_of_spin(const Examinee& solver, const Case& c, double step, double& 
   return (angular_momentum(problem, state) - start).norm() / (scale * c.scene.size);
 }
 
-}  // namespace
-
-Findings check_momentum(const Examinee& solver) {
+Findings momentum(const Examinee& solver) {
   if (!solver.backend.conserves_momentum) {
     const char* why =
         "vertices are moved one by one, or forces turn: conserved only where it has converged";
@@ -280,60 +283,50 @@ Findings check_momentum(const Examinee& solver) {
     fine += loss_of_spin(solver, c, c.step / 4, linear) / 4;
   }
   if (std::isinf(coarse + fine)) {
-    Findings refused;
-    for (const char* check : {"linear momentum", "angular momentum"})
-      refused.push_back(judged(false, check,
-                               "not measured: it refuses a step of 0.002 s of a free net",
-                               text("strain limit ", momentum_limit,
-                                    ", speeds of 0.5 m/s, edges of 1 m: a small correction")));
-    return refused;
+    const char* refuses = "not measured: it refuses a step of 0.002 s of a free net";
+    const std::string easy = text("strain limit ", momentum_limit,
+                                  ", speeds of 0.5 m/s, edges of 1 m: a small correction");
+    return {judged(false, "linear momentum", refuses, easy),
+            judged(false, "angular momentum", refuses, easy)};
   }
   const double allowed = std::max(vanishing * coarse, spin_tolerance);
   return {judged(linear <= momentum_tolerance, "linear momentum",
                  text("changes by ", linear, " of its scale in a step (allowed ",
                       momentum_tolerance, ")"),
                  "nothing outside acts: corrections of an edge's two ends, times their masses, "
-                 "must cancel "
-                 "(share by inverse mass)"),
+                 "must cancel (share by inverse mass)"),
           judged(fine <= allowed, "angular momentum",
                  text("changes by ", coarse, " of its scale at h, ", fine, " at h/4 (allowed ",
                       allowed, ": it vanishes with the step)"),
                  "corrections must act along their edge, at its direction within the step; about "
-                 "the origin "
-                 "or along fixed axes they do torque")};
+                 "the origin or along fixed axes they do torque")};
 }
 
-using inextensible::State;
-using inextensible::StepResult;
+// ---- Steps that no method can take ----
 
-Findings check_refusal(const Examinee& solver) {
-  Case torn = scene_case("a row between pins 20 % farther apart than it is long", "taut_row",
-                         {{"stretch", 1.2}, {"n", 12}}, 0.01, 1);
+Findings refusal(const Examinee& solver) {
+  const Case torn{"a row between pins 20 % farther apart than it is long",
+                  cases::scene_of("taut_row", {{"stretch", 1.2}, {"n", 12}}), 0.01, 1};
   Case overflow = net(1, 4, 1, 2, 0.01, 1, 0.005);
   overflow.name = "speeds of 1e300 m/s";
   overflow.scene.start.v *= 1e300;
   int refused = 0, accepted = 0;
   std::string wrong;
-  for (const Case* c : {&torn, &overflow}) {
+  for (const Case* c : {&torn, &std::as_const(overflow)}) {
     State state = c->scene.start;
     state.time = 2;
     const State before = state;
-    const StepResult result = solver.stepper(*c)->advance(state, c->step);
-    if (result) {
-      ++accepted;
-      if (!state.x.allFinite() || !state.v.allFinite()) {
-        wrong = c->name + ": a state that is not finite was accepted; test what you return";
-      } else if (c == &torn && solver.keeps_a_limit()) {
-        wrong = c->name + ": accepted, although no positions keep the limit";
-      }
-      continue;
-    }
-    ++refused;
-    if (!same_bits(state, before))
+    const StepResult result = stepper_for(solver, *c)->advance(state, c->step);
+    ++(result ? accepted : refused);
+    if (result && !(state.x.allFinite() && state.v.allFinite()))
+      wrong = c->name + ": a state that is not finite was accepted; test what you return";
+    else if (result && c == &torn && keeps_a_limit(solver.backend))
+      wrong = c->name + ": accepted, although no positions keep the limit";
+    else if (!result && !same_bits(state, before))
       wrong = c->name +
-              ": the refused step changed the state; work on copies, x_start is not "
-              "yours, and a step controller repeats the step from it";
-    else if (std::string(result.detail).empty())
+              ": the refused step changed the state; work on copies, x_start is not yours, and a "
+              "step controller repeats the step from it";
+    else if (!result && std::string(result.detail).empty())
       wrong = c->name + ": refused without a reason in StepResult::detail";
   }
   return {judged(wrong.empty(), "refusal",
@@ -343,18 +336,16 @@ Findings check_refusal(const Examinee& solver) {
                  wrong)};
 }
 
-using inextensible::Positions;
-using inextensible::State;
-using inextensible::WorkCounters;
+// ---- A candidate that keeps the limit already ----
 
-Findings check_permissible_candidate(const Examinee& solver) {
+Findings permissible_candidate(const Examinee& solver) {
   const char* check = "permissible candidate";
   // A setting of this name means the same in every row (setting_fields.h), plug-ins' too.
   for (const auto& setting : solver.backend.settings) {
     if (setting.name == std::string("min_iterations") && std::get<double>(setting.initial) > 0)
       return {not_applicable(check, "corrected too, by its setting min_iterations")};
   }
-  if (!solver.keeps_a_limit()) return {not_applicable(check, "no limit of its own")};
+  if (!keeps_a_limit(solver.backend)) return {not_applicable(check, "no limit of its own")};
   double moved = 0, worst = 0, worst_candidate = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Case c = net(seed, 5, 1, 0.1, 0.01, 1, 0.05);
@@ -362,7 +353,7 @@ Findings check_permissible_candidate(const Examinee& solver) {
     WorkCounters nobodys;
     Positions candidate;
     inextensible::unconstrained_step(*c.scene.problem, state, c.step, candidate, nobodys);
-    if (!solver.stepper(c)->advance(state, c.step))
+    if (!stepper_for(solver, c)->advance(state, c.step))
       return {judged(false, check, "refused", "there is nothing to correct: return ok at once")};
     moved = std::max(moved, (state.x - candidate).cwiseAbs().maxCoeff());
     worst = std::max(worst, worst_edge(*c.scene.problem, state.x).strain);
@@ -375,22 +366,21 @@ Findings check_permissible_candidate(const Examinee& solver) {
                  "a correction of what keeps the limit made it worse: test the candidate first")};
 }
 
-using inextensible::State;
+// ---- The same bits beside another instance ----
 
-Findings check_determinism(const Examinee& solver) {
+Findings determinism(const Examinee& solver) {
   const Case other = net(9, 4, 1, 2, 0.005, 1, 0.005);
   std::string difference;
   int steps = 0;
-  for (const Case& c : {net(5, 5, 2, 2, 0.0025, 20, 0.005),
-                        scene_case("drape of 9 x 9", "drape", solver.drape(9), 1.0 / 800, 40)}) {
-    const auto alone = solver.stepper(c);
+  for (const Case& c : {net(5, 5, 2, 2, 0.0025, 20, 0.005), drape(solver.backend, 1.0 / 800, 40)}) {
+    const auto alone = stepper_for(solver, c);
     std::vector<State> path;
     State state = c.scene.start;
     for (int i = 0; i < c.steps; ++i) {
       alone->advance(state, c.step);  // refusals must repeat as well
       path.push_back(state);
     }
-    const auto again = solver.stepper(c), neighbour = solver.stepper(other);
+    const auto again = stepper_for(solver, c), neighbour = stepper_for(solver, other);
     State theirs = other.scene.start;
     state = c.scene.start;
     for (std::size_t i = 0; i < path.size(); ++i, ++steps) {
@@ -413,11 +403,9 @@ Findings check_determinism(const Examinee& solver) {
       "was not initialized, no order of addresses; random numbers from BackendOptions::seed")};
 }
 
-using inextensible::Positions;
-using inextensible::State;
-using inextensible::StrainControl;
+// ---- Smaller steps, smaller error, towards the right motion ----
 
-Findings check_consistency(const Examinee& solver) {
+Findings consistency(const Examinee& solver) {
   const char* check = "consistency";
   constexpr int links = 7;
   // Tolerance of the fine run, h = 0.00025 s, over the scene's size: five times g t h / 2, by which
@@ -426,7 +414,7 @@ Findings check_consistency(const Examinee& solver) {
   // Distances from a run of h/16: (1/2 - 1/16) / (1 - 1/16) = 0.47 for a method of first order, 1
   // for what does not vanish with h; between the two, on a logarithmic scale.
   constexpr double not_vanishing = 0.68;
-  const Case c = scene_case("chain of 8", "chain", {{"n", links + 1}}, 0.32 / 80, 80);
+  const Case c{"chain of 8", cases::scene_of("chain", {{"n", links + 1}}), 0.32 / 80, 80, 1e-6};
   // How far a step is iterated is a tolerance, not a part of the formula: it must not be what
   // shows.
   inextensible::Settings settings;
@@ -435,9 +423,7 @@ Findings check_consistency(const Examinee& solver) {
   }
   std::vector<Positions> ends;
   for (const int refinement : {1, 2, 16}) {
-    Case fine = c;
-    fine.limit = 1e-6;
-    const auto stepper = solver.stepper(fine, settings);
+    const auto stepper = stepper_for(solver, c, settings);
     State state = c.scene.start;
     const DriveState driven = drive(*stepper, state, {c.step / refinement, refinement * c.steps});
     if (driven.end == DriveState::End::refused)
@@ -450,31 +436,31 @@ Findings check_consistency(const Examinee& solver) {
   }
   const double coarse = rms_distance(c.scene, ends[0], ends[2]),
                half = rms_distance(c.scene, ends[1], ends[2]);
-  const std::string measured =
-      text("halving h takes the distance to its own fine run from ", coarse, " to ", half,
-           " (allowed ", not_vanishing * coarse, ")");
-  const char* advice =
-      "what a step changes must vanish with h: look for a damping, a relaxation or an offset a "
-      "step that does not know h";
-  const bool converges = half <= not_vanishing * coarse || coarse < 1e-9;
-  if (solver.backend.strain_control == StrainControl::none)
-    return {judged(converges, check, measured, advice)};
-  Pendulum exact({std::vector<double>(links, 1.0 / (links + 1)),
-                  std::vector<double>(links, 1.0 / links), 9.81},
-                 std::vector<double>(links, 0.0));
-  exact.advance(c.step * c.steps, 1e-12);
-  const double error = rms_distance(c.scene, ends[2], exact.positions());
-  return {judged(converges && error <= largest_error, check,
-                 text(measured, ", and that is ", error, " from the exact motion (allowed ",
-                      largest_error, ")"),
-                 advice)};
+  bool passed = half <= not_vanishing * coarse || coarse < 1e-9;
+  std::string measured = text("halving h takes the distance to its own fine run from ", coarse,
+                              " to ", half, " (allowed ", not_vanishing * coarse, ")");
+  if (solver.backend.strain_control != StrainControl::none) {
+    Pendulum exact({std::vector<double>(links, 1.0 / (links + 1)),
+                    std::vector<double>(links, 1.0 / links), 9.81},
+                   std::vector<double>(links, 0.0));
+    exact.advance(c.step * c.steps, 1e-12);
+    const double error = rms_distance(c.scene, ends[2], exact.positions());
+    passed = passed && error <= largest_error;
+    measured +=
+        text(", and that is ", error, " from the exact motion (allowed ", largest_error, ")");
+  }
+  return {judged(passed, check, measured,
+                 "what a step changes must vanish with h: look for a damping, a relaxation or an "
+                 "offset a step that does not know h")};
 }
 
-Findings check_hard_cases(const Examinee& solver) {
+// ---- Every hard case of the profile "quick" ----
+
+Findings all_hard_cases(const Examinee& solver) {
   const char* check = "hard cases";
   if (!solver.options.hard_cases) return {not_applicable(check, "left out")};
   if (!solver.backend.contestant) return {not_applicable(check, "for contestants only")};
-  const auto cases = harness::hard_cases(hard_case_values("quick"));
+  const auto cases = hard_cases(hard_case_values("quick"));
   StabilityFilters filters;
   filters.solver = Pattern("solver", solver.backend.name);
   filters.but_case = Pattern("case", "^(largest step|same frame)");
@@ -500,5 +486,19 @@ Findings check_hard_cases(const Examinee& solver) {
                   known == 0 ? "" : text(", besides ", known, " known ones")),
              advice)};
 }
+
+constexpr Check table[] = {
+    {"ordinary runs", ordinary_runs},
+    {"momentum", momentum},
+    {"refusal", refusal},
+    {"permissible candidate", permissible_candidate},
+    {"determinism", determinism},
+    {"consistency", consistency},
+    {"hard cases", all_hard_cases, 3600},
+};
+
+}  // namespace
+
+std::span<const Check> checks() { return table; }
 
 }  // namespace harness

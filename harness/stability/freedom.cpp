@@ -3,13 +3,13 @@
 #include <SuiteSparseQR.hpp>
 #include <random>
 
-#include "harness/stability/case_parts.h"
+#include "harness/stability/cases.h"
 
 namespace harness {
 namespace {
 
 // Rank of the Jacobian of | d |^2 / l over all coordinates.
-int rank_of_jacobian(const case_parts::Mesh& mesh, cholmod_common& common) {
+int rank_of_jacobian(const cases::Mesh& mesh, cholmod_common& common) {
   const auto rows = mesh.parts.edges.size(), columns = 3 * mesh.parts.mass.size();
   cholmod_triplet* triplet =
       cholmod_l_allocate_triplet(rows, columns, 6 * rows, 0, CHOLMOD_REAL, &common);
@@ -44,17 +44,15 @@ std::vector<Freedom> degrees_of_freedom(int n) {
   std::vector<Freedom> list;
   cholmod_common common{};
   cholmod_l_start(&common);
-  std::pair<const char*, case_parts::Mesh> meshes[] = {
-      {"quads", case_parts::cloth(n)},
-      {"triangles", case_parts::cloth(n, true)},
-      {"midpoints", case_parts::midpoint_cloth(n)}};
-  for (auto& [name, mesh] : meshes) {
+  for (auto [name, mesh] : {std::pair("quads", cases::cloth(n)),
+                            {"triangles", cases::cloth(n, true)},
+                            {"midpoints", cases::midpoint_cloth(n)}}) {
     std::mt19937_64 random(1);
-    case_parts::add_noise(mesh.start.x, {}, 0.2 / (n - 1), random);
+    cases::add_noise(mesh.start.x, {}, 0.2 / (n - 1), random);
     const int rank = rank_of_jacobian(mesh, common);
-    const auto coordinates = static_cast<int>(3 * mesh.parts.mass.size());
-    list.push_back(
-        {name, n * n, static_cast<int>(mesh.parts.edges.size()), rank, coordinates - rank});
+    const auto edges = static_cast<int>(mesh.parts.edges.size()),
+               coordinates = static_cast<int>(3 * mesh.parts.mass.size());
+    list.push_back({name, n * n, edges, rank, coordinates - rank});
   }
   cholmod_l_finish(&common);
   return list;

@@ -5,64 +5,57 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
+#include "harness/stability/cases.h"
 
 namespace harness {
 namespace {
 
-constexpr void (*families[])(std::vector<HardCase>&, const HardCaseValues&) = {
-    add_failure_configurations,
-    add_taut,
-    add_degenerate,
-    add_mass_ratios,
-    add_whip,
-    add_large,
-    add_contact,
-    add_far_starts,
-    add_impossible_numbers,
+constexpr void (*families[])(cases::Cases&) = {
+    cases::add_failure_configurations,
+    cases::add_taut,
+    cases::add_degenerate,
+    cases::add_mass_ratios,
+    cases::add_whip,
+    cases::add_large,
+    cases::add_contact,
+    cases::add_far_starts,
+    cases::add_impossible_numbers,
 };
 
-// Throws UsageError for a value that makes no scene.
-void check_values(const HardCaseValues& values) {
-  for (const auto& [name, list] : values) {
-    const bool size = name == "links" || name == "sides";
-    for (const double value : list) {
-      const bool possible = size ? value >= 2 && value <= 1e7 && value == std::floor(value)
-                                 : value > 0 && std::isfinite(value) &&
-                                       (name != "distances" || value < 1) &&
-                                       (name != "limits" || value < 1);
-      if (!possible)
-        throw UsageError("hard cases: '" + name + "' has " + number_text(value) + ", must be " +
-                         (size                                      ? "a whole number from 2 on"
-                          : name == "distances" || name == "limits" ? "above 0 and below 1"
-                                                                    : "above 0"));
-    }
-  }
-}
-
-// A method that promises no limit need not notice that there is no solution within it.
-void admit_who_promises_nothing(HardCase& hard_case) {
-  for (const auto& backend : inextensible::backends()) {
-    if (backend.strain_control != inextensible::StrainControl::time_step) continue;
-    const auto expected =
-        std::find_if(hard_case.expectations.begin(), hard_case.expectations.end(),
-                     [&](const Expectation& e) { return e.solvers.contains(backend.name); });
-    if (expected == hard_case.expectations.end() || expected->outcome != Outcome::refused ||
-        expected->other)
-      continue;
-    Expectation own{Solvers{{backend.name}}, expected->outcome, expected->why};
-    own.other = {Outcome::survived, "no limit is promised, so that it need not be noticed"};
-    hard_case.expectations.insert(hard_case.expectations.begin(), std::move(own));
-  }
+void check_value(const std::string& name, double value) {
+  const bool size = name == "links" || name == "sides",
+             fraction = name == "distances" || name == "limits";
+  const bool possible = size ? value >= 2 && value <= 1e7 && value == std::floor(value)
+                             : value > 0 && value < (fraction ? 1.0 : HUGE_VAL);
+  if (!possible)
+    throw UsageError("hard cases: '" + name + "' has " + number_text(value) + ", must be " +
+                     (size       ? "a whole number from 2 on"
+                      : fraction ? "above 0 and below 1"
+                                 : "above 0"));
 }
 
 }  // namespace
+
+Solvers::Solvers(inextensible::Direction direction)
+    : chosen_([direction](const auto& backend) { return backend.direction == direction; }) {}
 
 bool Solvers::contains(const std::string& solver) const {
   if (everyone() || names_.contains(solver)) return true;
   const auto* backend = inextensible::find_backend(solver);
   if (!backend) return false;
-  if (direction_) return backend->direction == *direction_;
+  if (chosen_) return chosen_(*backend);
   return names_.contains(backend->method) || names_.contains(std::string("@") + backend->stepper);
+}
+
+Expectation HardCase::expectation(const std::string& solver) const {
+  Expectation expected =
+      *std::find_if(expectations.begin(), expectations.end(),
+                    [&](const Expectation& e) { return e.solvers.contains(solver); });
+  const auto* backend = inextensible::find_backend(solver);
+  if (backend && backend->strain_control == inextensible::StrainControl::time_step &&
+      expected.outcome == Outcome::refused && !expected.other)
+    expected.other = {Outcome::survived, "no limit is promised, so that it need not be noticed"};
+  return expected;
 }
 
 HardCaseValues hard_case_values(const std::string& profile) {
@@ -81,11 +74,12 @@ HardCaseValues hard_case_values(const std::string& profile) {
 }
 
 std::vector<HardCase> hard_cases(const HardCaseValues& values) {
-  check_values(values);
-  std::vector<HardCase> cases;
-  for (const auto add : families) add(cases, values);
-  for (HardCase& hard_case : cases) admit_who_promises_nothing(hard_case);
-  return cases;
+  for (const auto& [name, list] : values) {
+    for (const double value : list) check_value(name, value);
+  }
+  cases::Cases cases{values};
+  for (const auto add : families) add(cases);
+  return std::move(cases.list);
 }
 
 }  // namespace harness

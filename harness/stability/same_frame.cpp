@@ -1,12 +1,11 @@
 #include "harness/stability/same_frame.h"
 
-#include <array>
 #include <cmath>
 #include <random>
 
 #include "harness/base/text.h"
 #include "harness/judge/mechanics.h"
-#include "harness/stability/case_parts.h"
+#include "harness/stability/cases.h"
 #include "solvers/problem/forces.h"
 #include "solvers/registry.h"
 
@@ -21,13 +20,6 @@ using inextensible::Stepper;
 constexpr double densely_until = 0.05;  // s
 constexpr double at_sample = 1e-9;      // s
 
-ShapeStatistics apart(const ShapeStatistics& a, const ShapeStatistics& b) {
-  ShapeStatistics difference;
-  for (const auto& [name, member] : shape_statistic_infos)
-    difference.*member = std::abs(a.*member - b.*member);
-  return difference;
-}
-
 // Velocities of both belong to one instant: the methods that are compared share that.
 ShapeStatistics shape_of(const Scene& scene, const State& state) {
   ShapeStatistics shape = shape_statistics(scene, state.x);
@@ -36,21 +28,25 @@ ShapeStatistics shape_of(const Scene& scene, const State& state) {
   return shape;
 }
 
+void add_distance(const Scene& scene, const State& a, const State& b, FrameSeries& series) {
+  series["rms"].push_back(rms_distance(scene, a.x, b.x));
+  series["largest"].push_back(max_distance(scene, a.x, b.x));
+  const ShapeStatistics one = shape_of(scene, a), other = shape_of(scene, b);
+  for (const auto& [name, member] : shape_statistic_infos)
+    series[name].push_back(std::abs(one.*member - other.*member));
+}
+
 // The ensemble's standard deviations at a time; unknown between its sample times.
-ShapeStatistics deviation_at(const Reference* reference, double time) {
+void add_deviation(const Reference* reference, double time, FrameSeries& series) {
+  ShapeStatistics found{unknown, unknown, unknown, unknown};
   for (std::size_t i = 0; reference && i < reference->ensemble.deviation.size(); ++i) {
-    if (std::abs(reference->times[i] - time) < at_sample) return reference->ensemble.deviation[i];
+    if (std::abs(reference->times[i] - time) < at_sample) found = reference->ensemble.deviation[i];
   }
-  return {unknown, unknown, unknown, unknown};
+  for (const auto& [name, member] : shape_statistic_infos) series[name].push_back(found.*member);
 }
 
 bool at_sample_time(double time) {
   return std::abs(time - std::round(time / sample_interval) * sample_interval) < at_sample;
-}
-
-FrameDistance distance(const Scene& scene, const State& a, const State& b) {
-  return {rms_distance(scene, a.x, b.x), max_distance(scene, a.x, b.x),
-          apart(shape_of(scene, a), shape_of(scene, b))};
 }
 
 }  // namespace
@@ -71,28 +67,23 @@ std::vector<SameFrameScene> same_frame_scenes() {
 
 SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed,
                      ReferenceFolder& references) {
-  const Scene scene = case_parts::scene_of(wanted.scene.c_str(), {{"n", wanted.side}});
-  const auto reference = references.find(
-      wanted.scene,
-      complete_parameters(*find_scene(wanted.scene), {{"n", static_cast<double>(wanted.side)}}));
-  SameFrame found;
-  found.scene = wanted;
+  const auto type = find_scene(wanted.scene);
+  const auto parameters = complete_parameters(*type, {{"n", wanted.side}});
+  const Scene scene = type->build(parameters);
+  const auto reference = references.find(wanted.scene, parameters);
+  SameFrame found{.scene = wanted};
   struct Run {
     const char* solver;
     std::unique_ptr<Stepper> stepper;
     State state;
   };
-  std::array<Run, 3> runs;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    Run& run = runs[i];
-    run.solver = i == 1 ? "icd" : "fast_projection";
-    run.stepper =
-        inextensible::make_stepper(run.solver, scene.problem, {wanted.strain_limit, seed, {}});
-    run.state = scene.start;
-  }
+  std::vector<Run> runs;
+  for (const char* solver : {"fast_projection", "icd", "fast_projection"})
+    runs.push_back(
+        {solver, inextensible::make_stepper(solver, scene.problem, {wanted.strain_limit, seed, {}}),
+         scene.start});
   std::mt19937_64 random(seed);
-  case_parts::add_noise(runs[2].state.x, scene.problem->pinned(), wanted.moved * scene.size,
-                        random);
+  cases::add_noise(runs[2].state.x, scene.problem->pinned(), wanted.moved * scene.size, random);
   const long steps = std::lround(scene.duration / wanted.step);
   for (long i = 1; i <= steps; ++i) {
     for (Run& run : runs) {
@@ -107,9 +98,9 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed,
       found.first_contact = time;
     if (time > densely_until && !at_sample_time(time)) continue;
     found.times.push_back(time);
-    found.icd.push_back(distance(scene, runs[0].state, runs[1].state));
-    found.moved.push_back(distance(scene, runs[0].state, runs[2].state));
-    found.deviation.push_back(deviation_at(reference.get(), time));
+    add_distance(scene, runs[0].state, runs[1].state, found.icd);
+    add_distance(scene, runs[0].state, runs[2].state, found.moved);
+    add_deviation(reference.get(), time, found.deviation);
   }
   return found;
 }

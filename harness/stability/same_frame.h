@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -25,22 +26,20 @@ struct SameFrameScene {
 };
 std::vector<SameFrameScene> same_frame_scenes();
 
-// How far two frames are apart. RMS and largest distance over the scene's size; of the shapes,
-// |difference|.
-struct FrameDistance {
-  double rms = 0, largest = 0;
-  ShapeStatistics shape;
-};
+// Numbers over the times of frames, by name.
+using FrameSeries = std::map<std::string, std::vector<double>>;
 
+// How far frames are apart: "rms" and "largest" distance over the scene's size, and the difference
+// of each shape statistic.
 struct SameFrame {
   SameFrameScene scene;
   double first_contact = unknown;  // s, the first step's end at which the sphere moved a vertex, in
                                    // the run of fast projection; unknown where there is no sphere
   std::vector<double> times;       // s
-  std::vector<FrameDistance> icd;  // from fast projection to ICD
-  std::vector<FrameDistance> moved;  // to fast projection from the moved start
+  FrameSeries icd;                 // from fast projection to ICD
+  FrameSeries moved;               // to fast projection from the moved start
   // Standard deviations of the reference's ensemble at its sample times; else unknown.
-  ShapeSeries deviation;
+  FrameSeries deviation;
   std::string stopped;  // empty: all three ran to the end
 };
 

@@ -11,9 +11,9 @@
 
 #include "harness/base/pattern.h"
 #include "harness/base/shard.h"
+#include "harness/base/small_runs.h"
 #include "harness/stability/freedom.h"
 #include "harness/stability/hard_case.h"
-#include "harness/stability/known_differences.h"
 #include "harness/stability/same_frame.h"
 #include "harness/stability/trial.h"
 
@@ -23,11 +23,9 @@ struct StabilityCell {
   const HardCase* hard_case;
   std::string solver;
   TrialResult result;
-  const Expectation* expectation;
+  Expectation expectation;
   bool expected = true;                    // the outcome is the expected one, or admitted beside it
   const KnownDifference* known = nullptr;  // of one that is not expected
-
-  bool strict() const { return !expectation->other; }
 };
 
 // Whether a solver may end so. Theory knows nothing of a solver from outside: where others survive
@@ -41,9 +39,9 @@ struct ExpectationCounts {
 
 struct LargestStep {
   std::string scene, solver;
-  double step = unknown;     // s, the largest at which one second was survived within the limit
-  double failing = unknown;  // s, the next larger one that was tried and failed
-  std::string detail;        // why that one failed
+  double step = unknown;          // s, the largest at which one second was survived
+  double failing_step = unknown;  // s, the next larger one that was tried and failed
+  std::string detail;             // why that one failed
 };
 
 struct StabilityFilters {
@@ -52,13 +50,12 @@ struct StabilityFilters {
   std::optional<Pattern> but_case;   // must not
 };
 
-// The scenes in which the largest stable step is searched.
+// A scene in which the largest stable step is searched, for one simulated second.
 struct StabilityScene {
-  std::string name;
-  std::function<Trial(double step)> build;  // one simulated second
-  double largest, smallest;                 // s
+  const char *name, *type;
+  int n;
+  double smallest;  // s; the largest step is 1/4 s
 };
-std::vector<StabilityScene> stability_scenes();
 
 // What will be run.
 struct StabilityPlan {
@@ -87,20 +84,15 @@ struct StabilityOutcome {
   bool nothing_new() const { return counts().new_differences == 0; }
 };
 
-struct StabilityEvents {
-  std::function<void(const StabilityCell&, std::size_t done, std::size_t all)> cell =
-      [](auto&&...) {};
-  std::function<void(const LargestStep&)> largest_step = [](auto&&...) {};
-  std::function<void(const SameFrame&)> same_frame = [](auto&&...) {};
-  std::function<bool()> interrupted = [] { return false; };
-  // What an interrupted sweep has found already; none: the cell is run.
-  std::function<std::optional<TrialResult>(const HardCase&, const std::string& solver)> known =
-      [](auto&&...) { return std::nullopt; };
-};
+// The key of a cell's result.
+inline std::string cell_key(const std::string& hard_case, const std::string& solver) {
+  return hard_case + "/" + solver;
+}
 
-// The plan's cases must outlive the outcome.
+// Cells are kept under their keys; `events.done` hears of everything else too, with nothing to
+// count. The plan's cases must outlive the outcome.
 StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
-                               const StabilityEvents& events);
+                               const RunEvents& events);
 
 // At most `columns` wide: tables of more solvers go on below.
 void print_stability(std::ostream& out, const StabilityOutcome& outcome, std::size_t columns = 120);

@@ -1,68 +1,48 @@
 // What a stability sweep prints, and the document it leaves.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iomanip>
-#include <map>
 #include <sstream>
 
 #include "harness/base/in_order.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
-#include "harness/points/result_file.h"
 #include "harness/points/schema.h"
 #include "harness/stability/stability.h"
-#include "harness/stability/trial.h"
 
 namespace harness {
+
+// JSON has null for an unknown number.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExpectationCounts, cells, strict, two_admitted, not_as_expected,
+                                   new_differences)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LargestStep, scene, solver, step, failing_step, detail)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Freedom, mesh, vertices, constraints, rank, degrees_of_freedom)
+
 namespace {
 
 using nlohmann::json;
 
 constexpr double told_energy_gain = 0.05;
 
-char letter(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::survived:
-      return 'S';
-    case Outcome::survived_smaller:
-      return 's';
-    case Outcome::refused:
-      return 'R';
-    case Outcome::diverged:
-      return 'D';
-    case Outcome::wrong:
-      return 'W';
-    case Outcome::timeout:
-      return 'T';
-    case Outcome::crashed:
-      return 'C';
-  }
-  return '?';
-}
-
 // "S", or "S6 R2" where a row's cases differ; ! where one was not expected.
 std::string cell_text(const std::vector<const StabilityCell*>& cells) {
-  std::map<char, int> counts;
+  std::array<int, std::size(outcomes)> counts{};
   bool expected = true;
   double gain = 0;
   for (const StabilityCell* cell : cells) {
     if (cell->result.energy_gain > gain) gain = cell->result.energy_gain;  // false on NaN
-    ++counts[letter(cell->result.outcome)];
+    ++counts[static_cast<std::size_t>(cell->result.outcome)];
     expected = expected && cell->expected;
   }
   std::string text;
-  for (const char c : std::string("SsRTDWC")) {
-    const auto place = counts.find(c);
-    if (place == counts.end()) continue;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] == 0) continue;
     if (!text.empty()) text += ' ';
-    text += c;
-    if (counts.size() > 1) text += std::to_string(place->second);
+    text += outcomes[i].letter;
+    if (counts[i] < static_cast<int>(cells.size())) text += std::to_string(counts[i]);
   }
-  if (gain > told_energy_gain) {
-    std::ostringstream energy;
-    energy << " E" << std::setprecision(2) << gain;
-    text += energy.str();
-  }
+  if (gain > told_energy_gain) text += " E" + number_text(gain, 2);
   return text + (expected ? "" : " !");
 }
 
@@ -76,8 +56,8 @@ void print_same_frames(std::ostream& out, const std::vector<SameFrame>& frames) 
       out << ", first contact at " << number_text(f.first_contact, 3) << " s";
     for (std::size_t i = 0; i < f.times.size(); ++i) {
       if (i + 1 == f.times.size() || f.times[i] == f.first_contact)
-        out << "; " << number_text(f.times[i], 3) << " s: " << number_text(f.icd[i].rms, 2) << ", "
-            << number_text(f.moved[i].rms, 2);
+        out << "; " << number_text(f.times[i], 3) << " s: " << number_text(f.icd.at("rms")[i], 2)
+            << ", " << number_text(f.moved.at("rms")[i], 2);
     }
     out << (f.stopped.empty() ? "" : "; stopped: " + f.stopped) << '\n';
   }
@@ -95,8 +75,8 @@ void print_expectations(std::ostream& out, const StabilityOutcome& outcome) {
         << ": " << to_string(cell.result.outcome);
     if (cell.result.fixed != cell.result.outcome)
       out << " (" << to_string(cell.result.fixed) << ")";
-    out << ", expected " << to_string(cell.expectation->outcome) << "; " << cell.result.detail;
-    if (cell.known) out << "\n    " << cell.known->reason << "; " << cell.known->mends;
+    out << ", expected " << to_string(cell.expectation.outcome) << "; " << cell.result.detail;
+    if (cell.known) out << "\n    " << cell.known->cause.reason << "; " << cell.known->cause.mends;
     out << '\n';
   }
 }
@@ -104,44 +84,22 @@ void print_expectations(std::ostream& out, const StabilityOutcome& outcome) {
 json known_json(const StabilityOutcome& outcome) {
   json list = json::array();
   for (const KnownDifference& known : known_differences()) {
-    json seen = nullptr;  // not run
-    for (const auto& cell : outcome.cells) {
-      if (cell.hard_case->name == known.hard_case && cell.solver == known.solver)
-        seen = cell.known == &known;
+    for (const std::string& hard_case : known.hard_cases) {
+      json seen = nullptr;  // not run
+      for (const auto& cell : outcome.cells) {
+        if (cell.hard_case->name == hard_case && cell.solver == known.solver)
+          seen = cell.known == &known;
+      }
+      list.push_back({{"case", hard_case},
+                      {"solver", known.solver},
+                      {"at_fixed_step", to_string(known.fixed)},
+                      {"outcome", to_string(known.outcome)},
+                      {"reason", known.cause.reason},
+                      {"mends", known.cause.mends},
+                      {"seen", seen}});
     }
-    list.push_back({{"case", known.hard_case},
-                    {"solver", known.solver},
-                    {"at_fixed_step", to_string(known.fixed)},
-                    {"outcome", to_string(known.outcome)},
-                    {"reason", known.reason},
-                    {"mends", known.mends},
-                    {"seen", seen}});
   }
   return list;
-}
-
-// Null for unknown numbers.
-json by_statistic(const ShapeSeries& series) {
-  json lists;
-  for (const auto& [name, member] : shape_statistic_infos) {
-    json& list = lists[name] = json::array();
-    for (const ShapeStatistics& at : series) list.push_back(number(at.*member));
-  }
-  return lists;
-}
-
-json distances_json(const std::vector<FrameDistance>& list) {
-  json rms = json::array(), largest = json::array();
-  ShapeSeries shapes;
-  for (const FrameDistance& d : list) {
-    rms.push_back(d.rms);
-    largest.push_back(d.largest);
-    shapes.push_back(d.shape);
-  }
-  json lists = by_statistic(shapes);
-  lists["rms"] = std::move(rms);
-  lists["largest"] = std::move(largest);
-  return lists;
 }
 
 json same_frames_json(const std::vector<SameFrame>& frames) {
@@ -152,22 +110,14 @@ json same_frames_json(const std::vector<SameFrame>& frames) {
                     {"strain_limit", f.scene.strain_limit},
                     {"step", f.scene.step},
                     {"start_moved_by", f.scene.moved},
-                    {"first_contact", number(f.first_contact)},
+                    {"first_contact", f.first_contact},
                     {"times", f.times},
-                    {"icd", distances_json(f.icd)},
-                    {"moved_start", distances_json(f.moved)},
-                    {"ensemble_deviation", by_statistic(f.deviation)},
+                    {"icd", f.icd},
+                    {"moved_start", f.moved},
+                    {"ensemble_deviation", f.deviation},
                     {"stopped", f.stopped}});
   }
   return list;
-}
-
-json counts_json(const ExpectationCounts& c) {
-  return {{"cells", c.cells},
-          {"strict", c.strict},
-          {"two_admitted", c.two_admitted},
-          {"not_as_expected", c.not_as_expected},
-          {"new_differences", c.new_differences}};
 }
 
 // The first word of a row or column and its cells below or beside it.
@@ -256,46 +206,31 @@ json stability_document(json context, const StabilityOutcome& outcome, std::uint
                         const std::vector<std::string>& command) {
   context["command"] = command;
   context["seed"] = seed;
-  json matrix = json::array(), steps = json::array(), freedom = json::array();
+  json matrix = json::array();
   for (const auto& cell : outcome.cells) {
-    const TrialResult& r = cell.result;
-    const auto& other = cell.expectation->other;
-    json row = to_json(r);
+    const auto& other = cell.expectation.other;
+    json row = to_json(cell.result);
     row.update({{"row", cell.hard_case->row},
                 {"case", cell.hard_case->name},
                 {"what", cell.hard_case->what},
                 {"solver", cell.solver},
-                {"expected_at_fixed_step", to_string(cell.expectation->outcome)},
-                {"why", cell.expectation->why},
+                {"expected_at_fixed_step", to_string(cell.expectation.outcome)},
+                {"why", cell.expectation.why},
                 {"admitted_beside", other ? json(to_string(other->outcome)) : json()},
                 {"why_admitted", other ? json(other->why) : json()},
                 {"as_expected", cell.expected},
                 {"known_difference", cell.known != nullptr}});
     matrix.push_back(std::move(row));
   }
-  for (const auto& s : outcome.largest_steps) {
-    steps.push_back({{"scene", s.scene},
-                     {"solver", s.solver},
-                     {"step", number(s.step)},
-                     {"failing_step", number(s.failing)},
-                     {"detail", s.detail}});
-  }
-  for (const auto& f : outcome.freedom) {
-    freedom.push_back({{"mesh", f.mesh},
-                       {"vertices", f.vertices},
-                       {"constraints", f.constraints},
-                       {"rank", f.rank},
-                       {"degrees_of_freedom", f.degrees_of_freedom}});
-  }
   return {{"schema", "inextensible-stability/1"},
           {"complete", outcome.complete},
           {"context", context},
           {"legend", legend()},
-          {"counts", counts_json(outcome.counts())},
-          {"matrix", matrix},
+          {"counts", outcome.counts()},
+          {"matrix", std::move(matrix)},
           {"known_differences", known_json(outcome)},
-          {"largest_steps", steps},
-          {"degrees_of_freedom", freedom},
+          {"largest_steps", outcome.largest_steps},
+          {"degrees_of_freedom", outcome.freedom},
           {"same_frame", same_frames_json(outcome.same_frames)}};
 }
 

@@ -17,12 +17,22 @@ enum class Outcome {
   survived,          // every step taken at the case's own step, all checks passed
   survived_smaller,  // as before, after a step controller had halved some steps
   refused,           // a clean refusal: at the door or in a step, state untouched
-  diverged,          // positions or strains out of all proportion
-  wrong,             // claimed success, and a check says otherwise
   timeout,
-  crashed,  // took its process with it
+  diverged,  // positions or strains out of all proportion
+  wrong,     // claimed success, and a check says otherwise
+  crashed,   // took its process with it
 };
-const char* to_string(Outcome outcome);
+struct OutcomeInfo {
+  const char* name;
+  char letter;  // in tables
+};
+inline constexpr OutcomeInfo outcomes[] = {{"survived", 'S'}, {"survived_smaller", 's'},
+                                           {"refused", 'R'},  {"timeout", 'T'},
+                                           {"diverged", 'D'}, {"wrong", 'W'},
+                                           {"crashed", 'C'}};
+constexpr const char* to_string(Outcome outcome) {
+  return outcomes[static_cast<std::size_t>(outcome)].name;
+}
 
 // What is put through the solver. A trial fails nothing by itself: `judge_...` say what must hold.
 struct Trial {

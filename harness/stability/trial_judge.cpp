@@ -9,25 +9,16 @@
 #include "solvers/problem/forces.h"
 
 namespace harness {
-namespace {
 
 using inextensible::Positions;
 using inextensible::State;
 
-constexpr double time_rounding = 1e-6;     // s
-constexpr double visible_depth = 1e-6;     // in scene sizes
-constexpr double diverged_distance = 1e6;  // in scene sizes
-
-Outcome fail(TrialResult& result, Outcome outcome, const std::string& why) {
-  result.detail = why;
-  return outcome;
-}
-
-}  // namespace
-
-TrialJudge::TrialJudge(const Trial& trial, const inextensible::Backend& backend)
+TrialJudge::TrialJudge(const Trial& trial, const inextensible::Backend& backend,
+                       const inextensible::Stepper& stepper, TrialResult& result)
     : trial_(trial),
       problem_(*trial.scene.problem),
+      stepper_(stepper),
+      result_(result),
       limit_promised_(backend.strain_control == inextensible::StrainControl::strain_limit),
       mass_(problem_.total_mass()),
       free_(backend.conserves_momentum && problem_.pinned().empty() && !problem_.collider()),
@@ -38,95 +29,114 @@ TrialJudge::TrialJudge(const Trial& trial, const inextensible::Backend& backend)
   energy_.begin(trial.scene.start);
 }
 
-void TrialJudge::before(const State& state) {
-  start_ = state;
-  if (free_) momentum_ = linear_momentum(problem_, state.v);
+bool TrialJudge::fail(Outcome outcome, const std::string& why) {
+  outcome_ = outcome;
+  result_.detail = why;
+  return false;
 }
 
-std::optional<Outcome> TrialJudge::after(const Positions& filtered, const State& state, double h,
-                                         TrialResult& result) {
+int TrialJudge::before(State& state, const DriveState& driven) {
+  if (trial_.disturb && driven.whole) trial_.disturb(state, static_cast<int>(driven.steps));
+  start_ = state;
+  factorizations_ = stepper_.work().factorizations;
+  return 1;
+}
+
+bool TrialJudge::after(const State& state, const DriveState& driven) {
+  if (stepper_.work().factorizations > factorizations_) {
+    const double condition = stepper_.reciprocal_condition();
+    if (!(condition >= result_.reciprocal_condition)) result_.reciprocal_condition = condition;
+  }
+  return after(stepper_.filtered_positions(), state, driven.last);
+}
+
+bool TrialJudge::after(const Positions& filtered, const State& state, double h) {
   if (!state.x.allFinite() || !state.v.allFinite())
-    return fail(result, Outcome::wrong, "a state that is not finite was accepted");
+    return fail(Outcome::wrong, "a state that is not finite was accepted");
+  if (!judge_strain(filtered, state) || !judge_contact(state)) return false;
+  for (const int pin : problem_.pinned()) {
+    if (state.x.col(pin) != start_.x.col(pin))
+      return fail(Outcome::wrong, "pinned vertex " + std::to_string(pin) + " moved");
+  }
+  return judge_momentum(state, h) && judge_energy(state, h);
+}
+
+Outcome TrialJudge::finish() {
+  if (outcome_ == Outcome::survived && judged_ && energy_known_)
+    judge_gain(energy_.finish(), release_);
+  return outcome_;
+}
+
+bool TrialJudge::judge_strain(const Positions& filtered, const State& state) {
+  constexpr double rounding = 1e-6;          // s
+  constexpr double diverged_distance = 1e6;  // in scene sizes
   const WorstEdge worst = worst_edge(problem_, filtered);
-  raise(result.max_strain, worst.strain);
+  raise(result_.max_strain, worst.strain);
   const double time = state.time - trial_.scene.start.time, duration = trial_.steps * trial_.step;
-  if (duration > 2 - time_rounding) {
-    if (time < 1 + time_rounding) raise(result.strain_first_second, worst.strain);
-    if (time > duration - 1 + time_rounding) raise(result.strain_last_second, worst.strain);
+  if (duration > 2 - rounding) {
+    if (time < 1 + rounding) raise(result_.strain_first_second, worst.strain);
+    if (time > duration - 1 + rounding) raise(result_.strain_last_second, worst.strain);
   }
   if (worst.strain > diverged_strain ||
       state.x.cwiseAbs().maxCoeff() > diverged_distance * trial_.scene.size)
-    return fail(result, Outcome::diverged, "strain " + number_text(worst.strain));
-  if (limit_promised_ && worst.strain > trial_.strain_limit * (1 + 1e-9)) {
-    return fail(result, Outcome::wrong,
-                "success claimed, but edge " + std::to_string(worst.edge) + " is strained by " +
-                    told_apart(worst.strain, trial_.strain_limit));
-  }
-  if (problem_.contact_inside()) {
-    if (const auto outcome = judge_contact(state, result)) return outcome;
-  }
-  for (const int pin : problem_.pinned()) {
-    if (state.x.col(pin) != start_.x.col(pin))
-      return fail(result, Outcome::wrong, "pinned vertex " + std::to_string(pin) + " moved");
-  }
-  if (free_) {
-    const double defect = momentum_defect(state, h);
-    raise(result.momentum_defect, defect);
-    if (!(defect <= trial_.momentum_tolerance))
-      return fail(result, Outcome::wrong, "momentum is not conserved, by " + number_text(defect));
-  }
-  if (!judged_) return {};
-  if (!energy_known_) {
-    energy_known_ = true;
-    energy_.begin(state, std::max(energy_.scale(), total_energy(problem_, state)));
-    return {};
-  }
-  const double of_this_step = 0.5 * mass_ * std::pow(1.5 * trial_.slack / h, 2) / energy_.scale();
-  const double before = std::exchange(release_, of_this_step);
-  return judge_energy(energy_.after(state, h), std::max(before, of_this_step), result);
+    return fail(Outcome::diverged, "strain " + number_text(worst.strain));
+  return judge_limit(worst, "");
 }
 
-// What is delivered: positions after everything that a step does.
-std::optional<Outcome> TrialJudge::judge_contact(const State& state, TrialResult& result) {
-  const WorstEdge worst = worst_edge(problem_, state.x);
-  if (limit_promised_ && worst.strain > trial_.strain_limit * (1 + 1e-9)) {
-    return fail(result, Outcome::wrong,
-                "success claimed, but after the collision filter edge " +
-                    std::to_string(worst.edge) + " is strained by " +
-                    told_apart(worst.strain, trial_.strain_limit));
-  }
+bool TrialJudge::judge_limit(const WorstEdge& worst, const char* when) {
+  if (!limit_promised_ || worst.strain <= trial_.strain_limit * (1 + 1e-9)) return true;
+  return fail(Outcome::wrong, std::string("success claimed, but ") + when + "edge " +
+                                  std::to_string(worst.edge) + " is strained by " +
+                                  told_apart(worst.strain, trial_.strain_limit));
+}
+
+// Looks at what is delivered: positions after everything that a step does.
+bool TrialJudge::judge_contact(const State& state) {
+  constexpr double visible_depth = 1e-6;  // in scene sizes
+  if (!problem_.contact_inside()) return true;
+  if (!judge_limit(worst_edge(problem_, state.x), "after the collision filter ")) return false;
   inextensible::WorkCounters work;
   if (!obstacle_) obstacle_.emplace(problem_);
   obstacle_->place(state.time);
   obstacle_->find(state.x, visible_depth * trial_.scene.size, inside_, work);
-  if (inside_.empty()) return {};
-  return fail(result, Outcome::wrong,
-              "success claimed, but vertex " + std::to_string(inside_.front().vertex) +
-                  " is inside the obstacle");
+  if (inside_.empty()) return true;
+  return fail(Outcome::wrong, "success claimed, but vertex " +
+                                  std::to_string(inside_.front().vertex) +
+                                  " is inside the obstacle");
 }
 
-std::optional<Outcome> TrialJudge::finish(TrialResult& result) {
-  if (!judged_ || !energy_known_) return {};
-  return judge_energy(energy_.finish(), release_, result);
-}
-
-std::optional<Outcome> TrialJudge::judge_energy(std::optional<double> gain, double release,
-                                                TrialResult& result) const {
-  if (!gain) return {};
-  raise(result.energy_gain, *gain);
-  if (*gain <= trial_.energy_tolerance + release) return {};
-  return fail(result, Outcome::wrong,
-              "energy out of nothing, " + number_text(*gain) + " of its scale");
-}
-
-// |change of momentum - weight h| over what flows in the step; positions are known to rounding
-// only.
-double TrialJudge::momentum_defect(const State& state, double h) const {
-  const Eigen::Vector3d expected = momentum_ + h * mass_ * problem_.gravity();
+// The defect is |change of momentum - weight h| over what flows in the step; positions are known to
+// rounding only.
+bool TrialJudge::judge_momentum(const State& state, double h) {
+  if (!free_) return true;
+  const Eigen::Vector3d expected =
+      linear_momentum(problem_, start_.v) + h * mass_ * problem_.gravity();
   const double fastest = state.v.colwise().norm().maxCoeff() + start_.v.colwise().norm().maxCoeff();
   const double flow =
       mass_ * (fastest + h * problem_.gravity().norm()) + 1e-6 * mass_ * trial_.scene.size / h;
-  return (linear_momentum(problem_, state.v) - expected).norm() / flow;
+  const double defect = (linear_momentum(problem_, state.v) - expected).norm() / flow;
+  raise(result_.momentum_defect, defect);
+  return defect <= trial_.momentum_tolerance ||
+         fail(Outcome::wrong, "momentum is not conserved, by " + number_text(defect));
+}
+
+bool TrialJudge::judge_energy(const State& state, double h) {
+  if (!judged_) return true;
+  if (!energy_known_) {
+    energy_known_ = true;
+    energy_.begin(state, std::max(energy_.scale(), total_energy(problem_, state)));
+    return true;
+  }
+  const double release = 0.5 * mass_ * std::pow(1.5 * trial_.slack / h, 2) / energy_.scale();
+  const double before = std::exchange(release_, release);
+  return judge_gain(energy_.after(state, h), std::max(before, release));
+}
+
+bool TrialJudge::judge_gain(std::optional<double> gain, double release) {
+  if (!gain) return true;
+  raise(result_.energy_gain, *gain);
+  return *gain <= trial_.energy_tolerance + release ||
+         fail(Outcome::wrong, "energy out of nothing, " + number_text(*gain) + " of its scale");
 }
 
 }  // namespace harness

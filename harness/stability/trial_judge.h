@@ -4,34 +4,43 @@
 
 #include <optional>
 
+#include "harness/judge/drive.h"
 #include "harness/judge/energy.h"
 #include "harness/stability/trial.h"
 #include "solvers/problem/obstacle.h"
 
 namespace harness {
 
-class TrialJudge {
+// Disturbs the steps of a drive, judges them, and raises the figures of a result. Stops where a
+// step decides the outcome (`wrong` or `diverged`, with the reason in the result's detail).
+class TrialJudge : public Observer {
  public:
-  // The trial must outlive this.
-  TrialJudge(const Trial& trial, const inextensible::Backend& backend);
+  // All must outlive this.
+  TrialJudge(const Trial& trial, const inextensible::Backend& backend,
+             const inextensible::Stepper& stepper, TrialResult& result);
 
-  // Before and after each accepted step of h seconds. filtered: positions before the collision
-  // filter. `after` raises the figures in `result` and gives the outcome if the step tells one
-  // (`wrong` or `diverged`, with the reason in result.detail).
-  void before(const inextensible::State& state);
-  std::optional<Outcome> after(const inextensible::Positions& filtered,
-                               const inextensible::State& state, double h, TrialResult& result);
-  // After the last step, if none decided the outcome.
-  std::optional<Outcome> finish(TrialResult& result);
+  int before(inextensible::State& state, const DriveState& driven);
+  bool after(const inextensible::State& state, const DriveState& driven);
+  // The same of a step of h seconds. filtered: positions before the collision filter.
+  bool after(const inextensible::Positions& filtered, const inextensible::State& state, double h);
+  // The outcome, after the last step.
+  Outcome finish();
 
  private:
-  std::optional<Outcome> judge_energy(std::optional<double> gain, double release,
-                                      TrialResult& result) const;
-  std::optional<Outcome> judge_contact(const inextensible::State& state, TrialResult& result);
-  double momentum_defect(const inextensible::State& state, double h) const;
+  // Each returns whether nothing is wrong.
+  bool fail(Outcome outcome, const std::string& why);
+  bool judge_strain(const inextensible::Positions& filtered, const inextensible::State& state);
+  bool judge_limit(const WorstEdge& worst, const char* when);
+  bool judge_contact(const inextensible::State& state);
+  bool judge_momentum(const inextensible::State& state, double h);
+  bool judge_energy(const inextensible::State& state, double h);
+  bool judge_gain(std::optional<double> gain, double release);
 
   const Trial& trial_;
   const inextensible::Problem& problem_;
+  const inextensible::Stepper& stepper_;
+  TrialResult& result_;
+  Outcome outcome_ = Outcome::survived;
   bool limit_promised_;  // the solver claims to keep the trial's strain limit
   double mass_;
   bool free_;            // nothing outside but gravity acts
@@ -41,7 +50,7 @@ class TrialJudge {
   EnergyRecord energy_;
   double release_ = 0;  // of energy by slack in the last step
   inextensible::State start_;
-  Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero();
+  std::int64_t factorizations_ = 0;  // before the step
   // With contact inside only: where the obstacle is, and what is in it.
   std::optional<inextensible::Obstacle> obstacle_;
   std::vector<inextensible::ContactPlane> inside_;

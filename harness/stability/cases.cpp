@@ -1,11 +1,11 @@
-#include "harness/stability/case_parts.h"
+#include "harness/stability/cases.h"
 
 #include <array>
 #include <cmath>
 #include <map>
 #include <memory>
 
-namespace harness::case_parts {
+namespace harness::cases {
 
 using inextensible::Positions;
 using inextensible::Problem;
@@ -51,6 +51,12 @@ Mesh cloth(int n, bool diagonals) {
   return mesh;
 }
 
+Mesh hung_cloth(int n) {
+  Mesh mesh = cloth(n);
+  mesh.parts.pinned = {0};
+  return mesh;
+}
+
 Mesh midpoint_cloth(int n) {
   const Mesh corners = cloth(n, true);
   std::map<std::pair<int, int>, int> midpoint_of;
@@ -87,30 +93,23 @@ Trial trial_of(Scene scene, double step, int steps, double strain_limit) {
   Trial trial;
   trial.slack = strain_limit * problem.longest_rest_length();
   trial.step = step;
-  trial.steps = steps;
+  trial.steps = steps > 0 ? steps : static_cast<int>(std::lround(scene.duration / step));
   trial.strain_limit = strain_limit;
   trial.stiffness = 20 * g * problem.total_mass() / strain_limit;
   trial.scene = std::move(scene);
   return trial;
 }
 
-Trial trial_of(Scene scene, double step, double strain_limit) {
-  const int steps = static_cast<int>(std::lround(scene.duration / step));
-  return trial_of(std::move(scene), step, steps, strain_limit);
-}
-
 Trial trial_of(Mesh mesh, double step, int steps, double strain_limit) {
   Scene scene;
-  scene.size = mesh.size;
   scene.start = std::move(mesh.start);
   scene.problem = std::make_shared<const Problem>(std::move(mesh.parts));
   return trial_of(std::move(scene), step, steps, strain_limit);
 }
 
 Scene scene_of(const char* name, const SceneParameters& given) {
-  const auto found_type = find_scene(name);
-  const SceneType& type = *found_type;
-  return type.build(complete_parameters(type, given));
+  const auto type = find_scene(name);
+  return type->build(complete_parameters(*type, given));
 }
 
 void add_noise(Positions& x, const std::vector<int>& pinned, double size, std::mt19937_64& random) {
@@ -120,4 +119,4 @@ void add_noise(Positions& x, const std::vector<int>& pinned, double size, std::m
   for (const int pin : pinned) x.col(pin) = before.col(pin);
 }
 
-}  // namespace harness::case_parts
+}  // namespace harness::cases

@@ -1,20 +1,22 @@
-// What hard cases are built from: small meshes, and trials of them.
+// What hard cases are built from: small meshes, trials of them, and expectations.
 #pragma once
 
 #include <random>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/stability/hard_case.h"
 #include "harness/stability/trial.h"
 
-namespace harness::case_parts {
+namespace harness::cases {
 
 constexpr double g = 9.81;  // m/s^2, the gravity of every mesh unless it is changed
+inline const Eigen::Vector3d along(1, 0, 0), up(0, 1, 0), down(0, -1, 0);
 
 struct Mesh {
   inextensible::ProblemParts parts;
   inextensible::State start;
-  double size = 1;  // m
 };
 
 // n vertices in one place, each of `mass` kg, without edges.
@@ -22,10 +24,11 @@ Mesh points(int n, double mass);
 void join(Mesh& mesh, int a, int b, double rest_length);  // by an edge, m
 // `links` links on a line from the origin along `direction` (unit), 1 m and 1 kg in all; `pinned`
 // at the origin.
-Mesh chain(int links, const Eigen::Vector3d& direction = {1, 0, 0}, bool pinned = true);
+Mesh chain(int links, const Eigen::Vector3d& direction = along, bool pinned = true);
 // n x n vertices, 1 m wide and 0.2 kg, horizontal, without shear; pinned at two corners of one
 // edge. diagonals: one of each quad is constrained too.
 Mesh cloth(int n, bool diagonals = false);
+Mesh hung_cloth(int n);  // the same, pinned at one corner only
 // The same triangles with vertices at the midpoints of their edges, each joined to the two others
 // of its triangle at half the length of the opposite edge, and a third of the mass of its triangles
 // (English and Bridson 2008). Pinned at the outermost midpoints of one edge of the cloth.
@@ -34,9 +37,8 @@ Mesh midpoint_cloth(int n);
 // A scene of scene_types() with some parameters given.
 Scene scene_of(const char* name, const SceneParameters& given);
 
-// `steps` steps of `step` seconds; without `steps`, the scene's whole duration.
-Trial trial_of(Scene scene, double step, int steps, double strain_limit = 0.01);
-Trial trial_of(Scene scene, double step, double strain_limit = 0.01);
+// `steps` steps of `step` seconds; 0: the scene's whole duration.
+Trial trial_of(Scene scene, double step, int steps = 0, double strain_limit = 0.01);
 Trial trial_of(Mesh mesh, double step, int steps, double strain_limit = 0.01);
 
 // The closest point of the manifold is at most twice as far from the start as the candidate is, so
@@ -61,7 +63,34 @@ inline const Solvers everyone;
 inline const Solvers multipliers{"augmented_vbd", "admm"};
 constexpr double multiplier_penalty = 10;
 
-constexpr Outcome survives = Outcome::survived;
-constexpr Outcome refuses = Outcome::refused;
+constexpr Outcome survives = Outcome::survived, refuses = Outcome::refused;
 
-}  // namespace harness::case_parts
+// Cases are added to this, family by family.
+struct Cases {
+  const HardCaseValues& values;
+  std::vector<HardCase> list = {};
+
+  void add(std::string row, std::string name, std::string what, std::function<Trial()> build,
+           std::vector<Expectation> expectations) {
+    list.push_back({std::move(row), std::move(name), std::move(what), std::move(build),
+                    std::move(expectations)});
+  }
+};
+inline Expectation survive(Solvers who, std::string why) {
+  return {std::move(who), survives, std::move(why)};
+}
+inline Expectation refuse(Solvers who, std::string why) {
+  return {std::move(who), refuses, std::move(why)};
+}
+
+void add_failure_configurations(Cases& cases);
+void add_taut(Cases& cases);
+void add_degenerate(Cases& cases);
+void add_mass_ratios(Cases& cases);
+void add_whip(Cases& cases);
+void add_large(Cases& cases);
+void add_contact(Cases& cases);
+void add_far_starts(Cases& cases);
+void add_impossible_numbers(Cases& cases);
+
+}  // namespace harness::cases
