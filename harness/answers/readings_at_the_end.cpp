@@ -18,7 +18,7 @@ using inextensible::State;
 class AtTheEnd final : public Reading {
  public:
   using Value = double(const AnswerScene&, const State& end);
-  AtTheEnd(const AnswerScene& at, Value* value) : at_(at), value_(value) {}
+  AtTheEnd(const AnswerScene& at, Value* of) : at_(at), value_(of) {}
 
   void after(const State& /*before*/, const State& state, double /*h*/) override { end_ = state; }
   double value() const override { return value_(at_, end_); }

@@ -33,7 +33,7 @@ constexpr Cause newton_in_folds{
 constexpr Cause unfinished{
     "passes or iterations end before forces are those of the end of the step; backward Euler damps "
     "what that leaves, a two-step formula carries it on",
-    "not tried: more passes, or a smaller direction_tolerance"};
+    "not tried: more passes, or a in_smaller direction_tolerance"};
 constexpr Cause middle_turns{
     "the matrix has J of the middle of the step on both sides where Newton's has J(x_j) on one: it "
     "does not converge where edges turn much in a step, or are straight and at full length",
@@ -51,7 +51,7 @@ constexpr Cause stretches{
     "the chain stretches, but stays below what counts as diverged; why is not examined",
     "none is needed"};
 constexpr auto wrong = Outcome::wrong, refused = Outcome::refused, survived = Outcome::survived,
-               smaller = Outcome::survived_smaller;
+               in_smaller = Outcome::survived_smaller;
 
 const KnownDifference differences[] = {
     {"jacobi@midpoint", wrong, wrong, bounces, {"swing/chain"}},
@@ -60,23 +60,23 @@ const KnownDifference differences[] = {
     {"pbd_substeps@bdf2", wrong, wrong, no_direction, {"coincident"}},
     {"gauss_seidel_colored@midpoint", refused, refused, middle_stays, {"taut_row/0.01"}},
     {"fast_projection@midpoint", refused, wrong, middle_turns, {"taut_row/0.01"}},
-    {"fast_projection@midpoint", refused, smaller, middle_turns, {"taut_row/0.001", "jump"}},
+    {"fast_projection@midpoint", refused, in_smaller, middle_turns, {"taut_row/0.001", "jump"}},
     {"vertex_block_descent", wrong, wrong, passes_end_first, {"noise"}},
     {"vertex_block_descent@bdf2",
      wrong,
      wrong,
      unfinished,
      {"noise", "swing/chain", "swing/cloth"}},
-    {"augmented_vbd", refused, smaller, folds_of_vbd, {"drift/cloth"}},
+    {"augmented_vbd", refused, in_smaller, folds_of_vbd, {"drift/cloth"}},
     {"augmented_vbd@bdf2", wrong, wrong, unfinished, {"Q3/1e-10", "folded", "crack"}},
-    {"augmented_vbd@bdf2", refused, smaller, unfinished, {"jump", "drift/cloth", "swing/cloth"}},
-    {"admm", refused, smaller, folds_of_admm, {"drift/cloth"}},
+    {"augmented_vbd@bdf2", refused, in_smaller, unfinished, {"jump", "drift/cloth", "swing/cloth"}},
+    {"admm", refused, in_smaller, folds_of_admm, {"drift/cloth"}},
     {"admm@bdf2", wrong, wrong, unfinished, {"coincident", "folded", "plumb", "upright"}},
     {"admm@bdf2", wrong, wrong, unfinished, {"crack", "hit", "noise", "swing/chain"}},
-    {"admm@bdf2", refused, smaller, unfinished, {"drift/cloth"}},
+    {"admm@bdf2", refused, in_smaller, unfinished, {"drift/cloth"}},
     {"yarn_projection@bdf2", wrong, wrong, two_steps_gain, {"noise"}},
     {"fast_projection_adaptive@bdf2", wrong, wrong, two_steps_gain, {"noise"}},
-    {"icd", refused, smaller, newton_in_folds, {"drift/cloth"}},
+    {"icd", refused, in_smaller, newton_in_folds, {"drift/cloth"}},
     {"shake", refused, wrong, gains_first, {"swing/chain", "swing/cloth"}},
     {"rattle", refused, wrong, gains_first, {"swing/chain", "swing/cloth"}},
 };

@@ -71,7 +71,8 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed,
   const auto parameters = complete_parameters(*type, {{"n", wanted.side}});
   const Scene scene = type->build(parameters);
   const auto reference = references.find(wanted.scene, parameters);
-  SameFrame found{.scene = wanted};
+  SameFrame found;
+  found.scene = wanted;
   struct Run {
     const char* solver;
     std::unique_ptr<Stepper> stepper;

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "harness/base/text.h"
-#include "harness/judge/mechanics.h"
 #include "solvers/problem/forces.h"
 
 namespace harness {

@@ -6,6 +6,7 @@
 
 #include "harness/judge/drive.h"
 #include "harness/judge/energy.h"
+#include "harness/judge/mechanics.h"
 #include "harness/stability/trial.h"
 #include "solvers/problem/obstacle.h"
 

@@ -57,12 +57,12 @@ inline Attempt attempt(const Trial& trial, const std::string& backend, const Set
   const bool limited = find_backend(backend)->strain_control == StrainControl::strain_limit;
   const auto stepper =
       make_stepper(backend, trial.scene.problem, {trial.strain_limit, 1, settings});
-  harness::TrialJudge judge(trial, *find_backend(backend));
   harness::TrialResult judged;
+  harness::TrialJudge judge(trial, *find_backend(backend), *stepper, judged);
   State state = trial.scene.start;
   for (int i = 0; i < 4; ++i) {
     const State before = state;
-    judge.before(state);
+    judge.before(state, {});
     const StepResult step = stepper->advance(state, trial.step);
     if (!step) {
       if (!(state.x == before.x && state.v == before.v && state.time == before.time))
@@ -71,11 +71,12 @@ inline Attempt attempt(const Trial& trial, const std::string& backend, const Set
       return result;
     }
     ++result.steps;
-    const auto outcome = judge.after(stepper->filtered_positions(), state, trial.step, judged);
+    if (judge.after(stepper->filtered_positions(), state, trial.step)) continue;
+    const harness::Outcome outcome = judge.finish();
     // Springs may stretch as far as they like.
-    if (outcome && !(outcome == harness::Outcome::diverged && !limited))
-      result.defect = std::string(to_string(*outcome)) + ": " + judged.detail;
-    if (outcome) return result;
+    if (outcome != harness::Outcome::diverged || limited)
+      result.defect = std::string(to_string(outcome)) + ": " + judged.detail;
+    return result;
   }
   return result;
 }

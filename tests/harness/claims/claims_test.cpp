@@ -1,13 +1,12 @@
 // Verdicts on the paper's claims follow from points by the stated rules: invented points in, known
 // verdicts out. Those on which method is fast: contests_test.cpp.
-#include "harness/claims/claims.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include "harness/claims/judging.h"
 #include "support/invented_points.h"
 
 namespace harness {
@@ -24,7 +23,7 @@ TEST(Claims, AreSixteenAndNotMeasuredWithoutPoints) {
 }
 
 TEST(Claims, C7FitsTheOrdersOfResidualsThatTookTwoIterations) {
-  const auto with = [](double order, double change_order, bool second = true, double corrupt = 0) {
+  const auto with = [](double order, double change_order, bool second, double corrupt) {
     std::vector<json> points;
     int k = 0;
     for (const double step : {0.01, 0.005, 0.0025, 0.00125, 0.000625}) {
@@ -41,15 +40,22 @@ TEST(Claims, C7FitsTheOrdersOfResidualsThatTookTwoIterations) {
     }
     return verdict("C7", points);
   };
-  EXPECT_EQ(with(2, 1).verdict, "reproduced");
-  EXPECT_EQ(with(4, 1).verdict, "reproduced");
-  EXPECT_EQ(with(1, 1).verdict, "changed");
-  EXPECT_EQ(with(2, -0.5).verdict, "changed");
-  EXPECT_EQ(with(1, -0.5).verdict, "not reproduced");
-  EXPECT_EQ(with(2, 1, true, 1.5).verdict, "undecided");
-  EXPECT_EQ(with(2, 1, false).verdict, "not yet measured");  // no second iteration anywhere
-  EXPECT_EQ(with(2, 1).points.size(), 5u);
-  EXPECT_TRUE(says(with(2, 1), "chain at 0.1 %: slope of the first 2"));
+  const struct {
+    double order, change_order;
+    const char* verdict;
+    bool second = true;
+    double corrupt = 0;
+  } cases[] = {{2, 1, "reproduced"},
+               {4, 1, "reproduced"},
+               {1, 1, "changed"},
+               {2, -0.5, "changed"},
+               {1, -0.5, "not reproduced"},
+               {2, 1, "undecided", true, 1.5},
+               {2, 1, "not yet measured", false}};  // no second iteration anywhere
+  for (const auto& c : cases)
+    EXPECT_EQ(with(c.order, c.change_order, c.second, c.corrupt).verdict, c.verdict);
+  EXPECT_EQ(with(2, 1, true, 0).points.size(), 5u);
+  EXPECT_TRUE(says(with(2, 1, true, 0), "chain at 0.1 %: slope of the first 2"));
 }
 
 json stability(const std::vector<json>& matrix, const json& same_frame = json::array()) {
@@ -164,18 +170,15 @@ TEST(Claims, C13HoldsTheDeliveredStrainOfThePapersOrderAgainstTheLimit) {
   EXPECT_EQ(verdict("C13", {run("icd", 0.05), run("shake", 0.001, 1)}).verdict, "not reproduced");
 }
 
-json held(const char* scene, const char* solver, double step, double seconds, int vertices = 80,
-          const char* sweep = "resolution") {
-  json p = point(scene, sweep, solver, 0.01, vertices, step, seconds);
-  p["error"]["energy_gain"] = 0.001;
-  return p;
-}
-
 TEST(Claims, C15AsksForSmallerAndCheaperStepsOfRunsThatHoldTheirEnergy) {
+  const auto held = [](const char* solver, double step, double seconds) {
+    json p = point("drape", "resolution", solver, 0.01, 80, step, seconds);
+    p["error"]["energy_gain"] = 0.001;
+    return p;
+  };
+  const json icd = held("icd", 0.01, 1);
   const auto with = [&](double shake_step, double shake_seconds, double noise = 0) {
-    return verdict(
-        "C15", {held("drape", "shake", shake_step, shake_seconds), held("drape", "icd", 0.01, 1)},
-        noise);
+    return verdict("C15", {held("shake", shake_step, shake_seconds), icd}, noise);
   };
   EXPECT_EQ(with(0.001, 2).verdict, "reproduced");
   EXPECT_EQ(with(0.001, 20).verdict, "not reproduced");  // small, but expensive
@@ -183,15 +186,12 @@ TEST(Claims, C15AsksForSmallerAndCheaperStepsOfRunsThatHoldTheirEnergy) {
   EXPECT_EQ(with(0.001, 8, 0.5).verdict, "undecided");
   EXPECT_TRUE(says(with(0.001, 2), "SHAKE 1/1000 s, ICD 1/100 s, whose step takes 5.00 ("));
   // A larger step of SHAKE's that takes as long might be its best one as well.
-  json slower = held("drape", "shake", 0.01, 2.0005);
+  json slower = held("shake", 0.01, 2.0005);
   slower["best"] = false;
-  EXPECT_EQ(
-      verdict("C15", {held("drape", "shake", 0.001, 2), slower, held("drape", "icd", 0.01, 1)})
-          .verdict,
-      "undecided");
-  json unjudged = held("drape", "shake", 0.001, 2);
+  EXPECT_EQ(verdict("C15", {held("shake", 0.001, 2), slower, icd}).verdict, "undecided");
+  json unjudged = held("shake", 0.001, 2);
   unjudged["error"].erase("energy_gain");
-  EXPECT_EQ(verdict("C15", {unjudged, held("drape", "icd", 0.01, 1)}).verdict, "not yet measured");
+  EXPECT_EQ(verdict("C15", {unjudged, icd}).verdict, "not yet measured");
 }
 
 TEST(Claims, OfTwoDocumentsTheFirstCountsAndAVerdictThatFlipsIsUndecided) {
@@ -219,6 +219,73 @@ TEST(Claims, OfTwoSizesTheLargerCountsAndAdaptiveStepsDoNot) {
   adaptive["adaptive"] = true;
   points.insert(points.begin(), adaptive);
   EXPECT_EQ(verdict("C3", points).verdict, "reproduced");
+}
+
+TEST(ParabolaSag, HasAnArcLongerByTheStrain) {
+  for (const double strain : {0.5, 0.1, 0.01, 1e-4}) {
+    for (const double length : {1.0, 3.0}) {
+      const double sag = claims::parabola_sag(length, strain);
+      const auto height = [=](double s) { return -4 * sag * s * (1 - s); };
+      constexpr int parts = 20000;
+      double arc = 0;
+      for (int i = 0; i < parts; ++i) {
+        const double from = static_cast<double>(i) / parts, to = from + 1.0 / parts;
+        arc += std::hypot(length / parts, height(to) - height(from));
+      }
+      EXPECT_NEAR(arc / length, 1 + strain, 1e-6 * strain + 1e-9);
+    }
+  }
+  EXPECT_NEAR(claims::parabola_sag(1, 1e-8) / std::sqrt(3e-8 / 8), 1, 1e-3);
+}
+
+// Points of one method at limits from 10 % on down by tens, one for each of what its marks sag.
+std::vector<json> sagging(const char* scene, const std::string& solver, const json& parameters,
+                          const std::vector<json>& sags) {
+  std::vector<json> points;
+  double limit = 0.1;
+  for (const json& sag : sags) {
+    points.push_back(point(scene, "strain", solver, limit, 961, 0.01, 1));
+    points.back()["scene_parameters"].update(parameters);
+    points.back()["sag"] = sag;
+    limit /= 10;
+  }
+  return points;
+}
+
+std::vector<json> operator+(std::vector<json> a, const std::vector<json>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+TEST(Claims, C12HoldsTheLowerEdgesSagAgainstOnePercentOfTheSide) {
+  const auto hung = [](const std::string& solver, double loose, double middle, double tight) {
+    std::vector<json> sags;
+    for (const double edge : {loose, middle, tight}) sags.push_back({{"lower_edge", edge}});
+    return sagging("hung_patch", solver, {{"side", 2}}, sags);
+  };
+  const std::vector<json> sags = hung("jacobi", 0.3, 0.1, 0.05);
+  EXPECT_EQ(verdict("C12", sags).verdict, "reproduced");
+  EXPECT_TRUE(says(verdict("C12", sags), "10 % and 2.5 % of the side with Jacobi"));
+  EXPECT_EQ(verdict("C12", hung("jacobi", 0.3, 0.1, 0.09)).verdict, "not reproduced");
+  EXPECT_EQ(verdict("C12", sags + hung("fast_projection", 0.05, 0.05, 0.05)).verdict, "changed");
+  // Who is not the paper's does not count.
+  EXPECT_EQ(verdict("C12", hung("yarn_projection", 0.3, 0.1, 0.05)).verdict, "not yet measured");
+}
+
+TEST(Claims, C16WantsBothEndsOfTheRimAboveTheHipsAtOnePercentAndBelowThemAtTen) {
+  const auto worn = [](const std::string& solver, double loose, double across, double tight) {
+    return sagging(
+        "garment", solver, {{"drop", 0.2}},
+        {{{"rim", loose}, {"rim_across", across}}, {{"rim", tight}, {"rim_across", tight}}});
+  };
+  const std::vector<json> slips = worn("fast_projection", 0.5, 0.5, 0.1);
+  EXPECT_EQ(verdict("C16", slips).verdict, "reproduced");
+  EXPECT_TRUE(says(verdict("C16", slips), "fast projection 50 % at 1 %, 250 % at 10 %"));
+  EXPECT_EQ(verdict("C16", worn("icd", 0.1, 0.1, 0.1)).verdict, "not reproduced");
+  EXPECT_EQ(verdict("C16", worn("icd", 0.5, 0.5, 0.3)).verdict, "not reproduced");
+  EXPECT_EQ(verdict("C16", worn("icd", 0.5, 0.15, 0.1)).verdict, "not reproduced");  // neither
+  EXPECT_EQ(verdict("C16", slips + worn("icd", 0.19, 0.19, 0.1)).verdict, "changed");
+  EXPECT_EQ(verdict("C16", worn("yarn_projection", 0.5, 0.5, 0.1)).verdict, "not yet measured");
 }
 
 }  // namespace
