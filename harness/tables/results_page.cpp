@@ -1,10 +1,277 @@
 #include "harness/tables/results_page.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "harness/analysis/growth.h"
+#include "harness/analysis/words.h"
 #include "harness/base/errors.h"
+#include "harness/base/fields_json.h"
+#include "harness/base/in_order.h"
+#include "harness/base/statistics.h"
+#include "harness/base/text.h"
 #include "harness/claims/claims.h"
+#include "harness/claims/judging.h"
 #include "harness/tables/page.h"
 
 namespace harness {
+namespace tables {
+
+using nlohmann::json;
+
+std::string plain(double value, int digits) {
+  const bool large = value >= 1 && std::isfinite(value);
+  return number_text(value, std::max(digits, large ? static_cast<int>(std::log10(value)) + 1 : 1));
+}
+
+bool is_stability(const json& document) { return document.contains("matrix"); }
+
+namespace {
+
+constexpr auto itself = [](const auto& value) { return value; };
+std::string solver_of(const json& entry) { return entry.at("solver"); }
+
+void print_table(std::ostream& out, const std::string& introduction, const Table& table) {
+  out << introduction << ".\n\n";
+  print_markdown(out, table);
+  out << '\n';
+}
+
+void print_growth(std::ostream& out, const std::vector<NamedResult>& results) {
+  std::vector<Growth> all;
+  for (const NamedResult& result : results) {
+    if (is_stability(result.document)) continue;
+    for (Growth& growth : growth_in(planes_of(result.document))) all.push_back(std::move(growth));
+  }
+  if (all.empty()) return;
+  Table table{{"solver"}, {}};
+  std::vector<std::string> names;
+  for (const Growth& growth : all) {
+    table.head.push_back(scene_words(growth.scene) + " at " + percent(growth.strain_limit) +
+                         ", from " +
+                         number_text(growth.rows.front().smallest.number("vertices"), 7));
+    for (const RowGrowth& row : growth.rows) names.push_back(row.row);
+  }
+  for (const std::string& name : in_order(names, itself)) {
+    table.rows.push_back({quoted(name)});
+    for (const Growth& growth : all) {
+      const auto row = std::find_if(growth.rows.begin(), growth.rows.end(),
+                                    [&](const RowGrowth& each) { return each.row == name; });
+      table.rows.back().push_back(
+          row == growth.rows.end()
+              ? "-"
+              : exponent_words(row->exponent) + "; " +
+                    time_words(row->largest.seconds() * row->largest.number("step")) + " at " +
+                    number_text(row->largest.number("vertices"), 7));
+    }
+  }
+  print_table(out,
+              "## Growth\n\nThe time of a step, whatever the motion, grows as the number of "
+              "vertices to this power (95 % interval); and what a step takes at the largest size",
+              table);
+}
+
+// The fastest runs of a scene's contestants in strain sweeps, of those that are ranked.
+struct Fastest {
+  std::vector<Point> points;
+  std::vector<double> limits;  // loose to tight
+};
+
+Fastest fastest_in(const json& document, const std::string& scene) {
+  Fastest found;
+  if (is_stability(document)) return found;
+  const ContestantRoles roles(document);
+  for (const json& p : document.at("points")) {
+    const Point point(p);
+    if (point.is("sweep", "strain") && !point.flag("adaptive") && point.is("scene", scene) &&
+        point.ok() && point.flag("best") && roles.of(point.contestant()).ranked())
+      found.points.push_back(point);
+  }
+  found.limits = in_order(found.points, [](const Point& p) { return p.number("strain_limit"); });
+  std::sort(found.limits.rbegin(), found.limits.rend());
+  return found;
+}
+
+template <class Cell>
+Table table_of(const Fastest& fastest, const std::string& unit, Cell cell) {
+  Table table{{"solver"}, {}};
+  for (const double limit : fastest.limits) table.head.push_back(percent(limit) + ", " + unit);
+  const auto name = [](const Point& p) { return p.contestant(); };
+  for (const std::string& contestant : in_order(fastest.points, name)) {
+    table.rows.push_back({quoted(contestant)});
+    for (const double limit : fastest.limits) {
+      const auto found =
+          std::find_if(fastest.points.begin(), fastest.points.end(), [&](const Point& p) {
+            return p.contestant() == contestant && p.number("strain_limit") == limit;
+          });
+      table.rows.back().push_back(found == fastest.points.end() ? "-" : cell(*found));
+    }
+  }
+  return table;
+}
+
+void print_sag(std::ostream& out, const NamedResult& result) {
+  const Fastest fastest = fastest_in(result.document, "hung_patch");
+  if (fastest.points.empty()) return;
+  const double side = fastest.points.front().scene_parameter("side");
+  std::string parabolas;
+  for (const double limit : fastest.limits)
+    parabolas += (parabolas.empty() ? "" : ", ") +
+                 plain(1e3 * claims::parabola_sag(side, limit), 3) + " mm at " + percent(limit);
+  print_table(out,
+              "## Sag of the hung patch (`" + result.name +
+                  "`)\n\nHow far the middle of the top row, and that of the lower edge, hang below "
+                  "where they would if nothing stretched, mean over the last third of the run, "
+                  "each solver at its best step; in brackets how fast it still moves. A top row "
+                  "that uses up its strain and bears an even load is a parabola, which sags by " +
+                  parabolas,
+              table_of(fastest, "mm (m/s)", [](const Point& p) {
+                const json& sag = p.document().at("sag");
+                return plain(1e3 * sag.at("top_row").get<double>(), 3) + ", " +
+                       plain(1e3 * sag.at("lower_edge").get<double>(), 3) + " (" +
+                       plain(p.number("rest_speed"), 2) + ")";
+              }));
+}
+
+// Where the rim of a garment ends up.
+void print_slip(std::ostream& out, const NamedResult& result) {
+  constexpr double frame = 1.0 / 30;  // s
+  const Fastest fastest = fastest_in(result.document, "garment");
+  if (fastest.points.empty()) return;
+  print_table(out,
+              "## Slip of the garment (`" + result.name +
+                  "`)\n\nHow far the garment's rim is below the waist, where it began, mean over "
+                  "the last third of the run, of the way to the hips: above 100 % it has slipped "
+                  "past them. In brackets the time of computation for a frame of 1/30 s. Each "
+                  "solver at its best step",
+              table_of(fastest, "% (s)", [](const Point& p) {
+                const claims::Slip slip = claims::slip_of(p);
+                return plain(50 * (slip.least + slip.most), 3) + " (" +
+                       plain(frame * p.seconds(), 2) + ")";
+              }));
+}
+
+// What solvers make of figures that theory knows: a row an answer, of each solver the finest step
+// that it finished. `bench show` has each solver.
+void print_answers(std::ostream& out, const NamedResult& result) {
+  Table table{
+      {"answer", "scene, strain limit", "exact", "finished", "nearest", "farthest", "order"}, {}};
+  const json& rows = result.document.at("rows");
+  for (const json& answer : result.document.at("answers")) {
+    std::vector<json> given;
+    for (const std::string& solver : in_order(rows, solver_of)) {
+      const json* finest = nullptr;
+      for (const json& row : rows) {
+        if (row.at("answer") == answer.at("name") && row.at("solver") == solver &&
+            !row.at("value").is_null() && (!finest || row.at("step") < finest->at("step")))
+          finest = &row;
+      }
+      if (finest) given.push_back(*finest);
+    }
+    std::stable_sort(given.begin(), given.end(), [](const json& a, const json& b) {
+      return std::abs(number_of(a.at("deviation"))) < std::abs(number_of(b.at("deviation")));
+    });
+    std::vector<double> orders;
+    for (const json& row : given) {
+      if (!row.at("order").is_null()) orders.push_back(row.at("order"));
+    }
+    const double exact = answer.at("exact");
+    const auto words = [&](const json& row) {
+      return plain(row.at("value"), exact == 0 ? 2 : 4) + ", " + quoted(row.at("solver"));
+    };
+    table.rows.push_back({quoted(answer.at("name")),
+                          quoted(answer.at("scene")) + ", " + percent(answer.at("strain_limit")),
+                          number_text(exact, 6), std::to_string(given.size()),
+                          given.empty() ? "-" : words(given.front()),
+                          given.empty() ? "-" : words(given.back()),
+                          orders.empty() ? "-" : number_text(quantile(orders, 0.5), 2)});
+  }
+  print_table(out,
+              "## Known answers (`" + result.name +
+                  "`)\n\nScenes whose answer theory or measurement gives, by each solver at its "
+                  "default settings and the finest step that it finished: how many solvers "
+                  "finished, and the nearest and the farthest of their values. Order: the median "
+                  "of the orders in the step. `bench list answers` has the sources, `bench show " +
+                  result.name + "` every solver and step",
+              table);
+}
+
+// What did not end as theory expects, with the reason where one is known.
+Table differences_in(const json& document) {
+  Table table{{"case", "solver", "expected", "ended", "why"}, {}};
+  for (const json& cell : document.at("matrix")) {
+    if (cell.at("as_expected")) continue;
+    std::string reason = "not known: " + cell.at("detail").get<std::string>();
+    for (const json& known : document.at("known_differences")) {
+      if (cell.at("known_difference") && known.at("case") == cell.at("case") &&
+          known.at("solver") == cell.at("solver"))
+        reason = known.at("reason").get<std::string>() +
+                 "; would fix it: " + known.at("mends").get<std::string>();
+    }
+    const std::string fixed = cell.at("at_fixed_step"), outcome = cell.at("outcome");
+    table.rows.push_back(
+        {quoted(cell.at("case")), quoted(cell.at("solver")), cell.at("expected_at_fixed_step"),
+         fixed == outcome ? fixed : fixed + ", with smaller steps " + outcome, reason});
+  }
+  return table;
+}
+
+void print_hard_cases(std::ostream& out, const NamedResult& result) {
+  if (!is_stability(result.document)) return;
+  constexpr std::array outcomes{"survived", "survived_smaller", "refused", "diverged",
+                                "wrong",    "timeout",          "crashed"};
+  const json& matrix = result.document.at("matrix");
+  std::map<std::string, std::map<std::string, int>> count;
+  for (const json& cell : matrix) ++count[cell.at("solver")][cell.at("outcome")];
+  Table table{{"solver"}, {}};
+  for (const char* outcome : outcomes) table.head.push_back(std::string(outcome) + ", cases");
+  for (const std::string& solver : in_order(matrix, solver_of)) {
+    table.rows.push_back({quoted(solver)});
+    for (const char* outcome : outcomes)
+      table.rows.back().push_back(std::to_string(count[solver][outcome]));
+  }
+  const json& counts = result.document.at("counts");
+  print_table(out,
+              "## Hard cases (`" + result.name +
+                  "`)\n\nHow each solver ends in small scenes that are known to break solvers; "
+                  "what the outcomes mean is in [measuring.md](measuring.md#hard-cases). Of " +
+                  counts.at("cells").dump() + " cells, " + counts.at("strict").dump() +
+                  " have one expected outcome, " + counts.at("two_admitted").dump() +
+                  " admit two where theory cannot decide. Not as expected: " +
+                  counts.at("not_as_expected").dump(),
+              table);
+  const Table differences = differences_in(result.document);
+  if (differences.rows.empty()) return;
+  print_markdown(out, differences);
+  out << '\n';
+}
+
+// What the result files say of themselves: date, machine, commit and noise.
+void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
+  Table table{{"file", "date", "processor", "commit", "A/A pair", "places", "half", "95 %"}, {}};
+  for (const NamedResult& result : results) {
+    const json& context = result.document.at("context");
+    std::vector<std::string> row{quoted(result.name), context.at("date"), context.at("cpu_model"),
+                                 context.at("build").at("git")};
+    if (const auto noise = context.find("noise"); noise != context.end() && noise->is_object()) {
+      row.push_back(quoted(noise->at("pair").at(0)));
+      row.push_back(std::to_string(noise->at("places").get<int>()));
+      // Excess of the longer time over the shorter one, from |log ratio|.
+      for (const char* key : {"median", "q95"})
+        row.push_back(percent(std::expm1(noise->at(key).get<double>())));
+    }
+    row.resize(table.head.size(), "-");
+    table.rows.push_back(std::move(row));
+  }
+  out << "## Where these numbers come from\n\nA/A: how far apart the times of one solver under two "
+         "names are, in half of all places at most and in 95 % of them.\n\n";
+  print_markdown(out, table);
+}
+
+}  // namespace
+}  // namespace tables
 
 void print_results_page(std::ostream& out, const std::vector<NamedResult>& results,
                         const std::vector<NamedResult>& growth,
@@ -13,10 +280,8 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
   documents.reserve(results.size());
   for (const NamedResult& result : results) documents.push_back(result.document);
   for (const NamedResult& result : growth) check_timed(result.document);
-  std::vector<NamedResult> sweeps = results, all;
-  sweeps.insert(sweeps.end(), growth.begin(), growth.end());
-  all = sweeps;
-  all.insert(all.end(), answers.begin(), answers.end());
+  std::vector<NamedResult> all = results;
+  all.insert(all.end(), growth.begin(), growth.end());
 
   out << "## The paper's claims\n\n`bench claims` on the same files gives each rule.\n\n";
   print_claims_markdown(out, judge_claims(documents));
@@ -25,12 +290,12 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
          "six takes, if it is not of them. Bold: faster than each other one beyond the noise. "
          "`u`: with untuned settings. Errors are over the scene's size.\n\n";
   tables::print_planes(out, results);
-  tables::print_growth(out, sweeps);
+  tables::print_growth(out, all);
   for (const NamedResult& result : results) tables::print_sag(out, result);
   for (const NamedResult& result : results) tables::print_slip(out, result);
   for (const NamedResult& result : answers) tables::print_answers(out, result);
   for (const NamedResult& result : results) tables::print_hard_cases(out, result);
-  out << "## Where these numbers come from\n\n";
+  all.insert(all.end(), answers.begin(), answers.end());
   tables::print_sources(out, all);
 } catch (const nlohmann::json::exception& error) {
   throw UsageError(std::string("a result file is incomplete: ") + error.what());

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <map>
 #include <sstream>
 
 #include "harness/analysis/findings.h"
 #include "harness/analysis/words.h"
 #include "harness/base/text.h"
+#include "harness/tables/table.h"
 
 namespace harness {
 
@@ -19,15 +19,24 @@ using analysis::Plane;
 
 namespace {
 
-constexpr int limit_width = 9, level_width = 13, time_width = 9, step_width = 9, error_width = 9;
+// Seconds where something that is shown takes 20 of them, else milliseconds.
+struct Unit {
+  bool seconds = false;
 
-// How a table is set: as wide as its names need.
-struct Setting {
-  int name_width = 0;
-  bool seconds = false;  // else milliseconds
-
-  std::string time(double value) const { return number_text((seconds ? 1 : 1e3) * value, 3); }
+  std::string name() const { return seconds ? "s" : "ms"; }
+  std::string text(double time) const { return number_text((seconds ? 1 : 1e3) * time, 3); }
 };
+
+Unit unit_of(const std::vector<Plane>& planes, bool all) {
+  Unit unit;
+  for (const Plane& plane : planes) {
+    for (const Cell& cell : plane.cells) {
+      for (const Entry& entry : cell.entries)
+        unit.seconds |= (all || &entry == cell.first()) && entry.point.seconds() >= 20;
+    }
+  }
+  return unit;
+}
 
 std::string level_text(double level) { return level == any_motion ? "any" : percent(level); }
 
@@ -56,52 +65,37 @@ std::string percent_or_unknown(double fraction) {
   return std::isnan(fraction) ? "?" : number_text(100 * fraction, 2) + " %";
 }
 
-// Its name, step and time.
-void print_entry(std::ostream& out, const Entry& entry, const std::string& name,
-                 const Setting& set) {
-  out << std::setw(set.name_width) << name << std::setw(time_width)
-      << set.time(entry.point.seconds()) << std::setw(step_width)
-      << step_text(entry.point.number("step")) << std::setw(error_width)
-      << percent_or_unknown(entry.error);
+// Name, time, step and error.
+std::vector<std::string> entry_cells(const Entry& entry, const std::string& name,
+                                     const Unit& unit) {
+  return {name, unit.text(entry.point.seconds()), step_text(entry.point.number("step")),
+          percent_or_unknown(entry.error)};
 }
 
-std::string name_of(const Entry& entry) { return entry.row + (entry.role.unranked ? " u" : ""); }
-
-void print_cells(std::ostream& out, const std::string& limit, const Cell& loosest,
-                 const Cell& tightest, const Setting& set) {
-  out << std::left << std::setw(limit_width) << limit << std::setw(level_width)
-      << levels_text(loosest, tightest);
-  const Entry* first = tightest.first();
-  if (!first) {
-    out << "- " << tightest.empty_because << '\n';
-    return;
+std::vector<std::string> answer_row(const std::string& place, const Cell& loosest,
+                                    const Cell& tightest, const Unit& unit) {
+  std::vector<std::string> row{place, levels_text(loosest, tightest)};
+  if (const Entry* first = tightest.first()) {
+    const std::string name = first->row + (first->role.unranked ? " u" : "") +
+                             (tightest.counting(1) && !tightest.clear() ? " ~" : "");
+    const auto cells = entry_cells(*first, name, unit);
+    row.insert(row.end(), cells.begin(), cells.end());
+    row.push_back(lead_text(tightest));
+  } else {
+    row.push_back("- " + tightest.empty_because);
   }
-  print_entry(out, *first,
-              name_of(*first) + (tightest.counting(1) && !tightest.clear() ? " ~" : ""), set);
-  out << lead_text(tightest) << '\n';
+  return row;
 }
 
-void print_head(std::ostream& out, const Plane& plane, bool sizes, const Setting& set) {
-  out << '\n' << analysis::scene_words(plane.scene);
-  if (!sizes) out << " of " << plane.vertices << " vertices";
-  out << ", " << plane.sweep << " sweep";
-  if (sizes && plane.limits.size() == 1) out << " at " << percent(plane.limits[0]) << " strain";
-  out << ": the fastest within a strain limit and an error\n"
-      << std::left << std::setw(limit_width) << (sizes ? "vertices" : "strain")
-      << std::setw(level_width) << "error within" << std::setw(set.name_width) << "fastest"
-      << std::setw(time_width) << (set.seconds ? "s" : "ms") << std::setw(step_width) << "step, s"
-      << std::setw(error_width) << "error"
-      << "times as long: best of the paper\n";
-}
-
-void print_rows(std::ostream& out, const Plane& plane, bool sizes, const Setting& set) {
+// A row for each answer; levels of error that have the same one are one row.
+void add_answers(Table& table, const Plane& plane, bool sizes, const Unit& unit) {
   const std::size_t levels = plane.levels.size();
   for (std::size_t row = 0; row < plane.cells.size(); row += levels) {
     std::string place =
         sizes ? std::to_string(plane.vertices) : percent(plane.cells[row].strain_limit);
     for (std::size_t i = row, from = row; i < row + levels; ++i) {
       if (i + 1 < row + levels && same_answer(plane.cells[i], plane.cells[i + 1])) continue;
-      print_cells(out, place, plane.cells[from], plane.cells[i], set);
+      table.rows.push_back(answer_row(place, plane.cells[from], plane.cells[i], unit));
       place.clear();
       from = i + 1;
     }
@@ -110,105 +104,100 @@ void print_rows(std::ostream& out, const Plane& plane, bool sizes, const Setting
 
 // Shape errors of the fastest runs in the column "any", where they are known.
 void print_shapes(std::ostream& out, const Plane& plane) {
-  const char* before = "shape errors of the fastest, whatever their motion: ";
+  std::string words;
   for (const Cell& cell : plane.cells) {
     const Entry* first = cell.level == any_motion ? cell.first() : nullptr;
     const double shape = first ? first->point.error("shape") : unknown;
-    if (std::isnan(shape)) continue;
-    out << before << percent(cell.strain_limit) << ": " << number_text(100 * shape, 2) << " %";
-    before = ", ";
+    if (!std::isnan(shape))
+      words += (words.empty() ? "" : ", ") + percent(cell.strain_limit) + ": " +
+               number_text(100 * shape, 2) + " %";
   }
-  if (before == std::string(", ")) out << '\n';
+  if (!words.empty())
+    out << "shape errors of the fastest, whatever their motion: " << words << '\n';
+}
+
+// The planes of a resolution sweep are rows of one table.
+void print_planes(std::ostream& out, const std::vector<Plane>& planes, const Unit& unit) {
+  for (auto plane = planes.begin(); plane != planes.end();) {
+    const Plane& first = *plane;
+    const bool sizes = first.sweep == "resolution";
+    Table table{{sizes ? "vertices" : "strain", "error within", "fastest", unit.name(), "step, s",
+                 "error", "times as long: best of the paper"},
+                {}};
+    do {
+      add_answers(table, *plane, sizes, unit);
+    } while (++plane != planes.end() && sizes && plane->sweep == first.sweep &&
+             plane->scene == first.scene);
+    out << '\n' << analysis::scene_words(first.scene);
+    if (!sizes) out << " of " << first.vertices << " vertices";
+    out << ", " << first.sweep << " sweep";
+    if (sizes && first.limits.size() == 1) out << " at " << percent(first.limits[0]) << " strain";
+    out << ": the fastest within a strain limit and an error\n";
+    print_aligned(out, table);
+    if (!sizes) print_shapes(out, first);
+  }
 }
 
 // Everybody in the cells of any motion and of the headline's error.
-void print_everybody(std::ostream& out, const Plane& plane, const Setting& set) {
+void print_everybody(std::ostream& out, const Plane& plane, const Unit& unit) {
   for (const Cell& cell : plane.cells) {
     if (cell.entries.empty() || (cell.level != any_motion && cell.level != headline_error))
       continue;
+    Table table{{"", unit.name(), "step, s", "error", "strain", "times the fastest"}, {}};
+    for (const Entry& entry : cell.entries) {
+      const bool first = &entry == cell.first();
+      auto row = entry_cells(entry, entry.role.name, unit);
+      row.push_back(percent_or_unknown(entry.point.delivered_strain()));
+      row.push_back((first || !cell.first() ? "1" : analysis::text(*cell.lead_over(&entry))) +
+                    (entry.counts           ? ""
+                     : entry.role.again     ? ", a second time"
+                     : !entry.role.competes ? ", no strain limit"
+                                            : ", slower settings"));
+      table.rows.push_back(std::move(row));
+    }
     out << '\n'
         << analysis::scene_words(plane.scene) << " of " << plane.vertices << " vertices at "
         << percent(cell.strain_limit) << " strain, "
         << (cell.level == any_motion ? "any motion" : "motion error at most " + percent(cell.level))
-        << '\n'
-        << std::left << std::setw(set.name_width) << "" << std::setw(time_width)
-        << (set.seconds ? "s" : "ms") << std::setw(step_width) << "step, s"
-        << std::setw(error_width) << "error" << std::setw(error_width) << "strain"
-        << "times the fastest\n";
-    for (const Entry& entry : cell.entries) {
-      const bool first = &entry == cell.first();
-      print_entry(out, entry, entry.role.name, set);
-      out << std::setw(error_width) << percent_or_unknown(entry.point.delivered_strain());
-      out << (first || !cell.first() ? "1" : analysis::text(*cell.lead_over(&entry)))
-          << (entry.counts           ? ""
-              : entry.role.again     ? ", a second time"
-              : !entry.role.competes ? ", no strain limit"
-                                     : ", slower settings")
-          << '\n';
-    }
+        << '\n';
+    print_aligned(out, table);
   }
-}
-
-// As wide as its longest name, and in seconds where something takes 20 of them.
-Setting setting_of(const std::vector<Plane>& planes, bool all) {
-  Setting set;
-  std::size_t longest = 10;
-  double most = 0;
-  for (const Plane& plane : planes) {
-    for (const Cell& cell : plane.cells) {
-      for (const Entry& entry : cell.entries) {
-        const bool shown = all || &entry == cell.first();
-        if (!shown) continue;
-        longest = std::max(longest, all ? entry.role.name.size() : name_of(entry).size() + 2);
-        most = std::max(most, entry.point.seconds());
-      }
-    }
-  }
-  set.name_width = static_cast<int>(longest) + 2;
-  set.seconds = most >= 20;
-  return set;
 }
 
 void print_growth(std::ostream& out, const analysis::Growth& growth) {
-  constexpr int name_width = 32, exponent_width = 24, range_width = 20, step_time_width = 14;
-  out << '\n'
-      << analysis::scene_words(growth.scene) << " at " << percent(growth.strain_limit)
-      << " strain, any motion: the time of a step grows as the number of vertices to a power\n"
-      << std::left << std::setw(name_width) << "" << std::setw(exponent_width) << "power (95 %)"
-      << std::setw(range_width) << "vertices" << std::setw(step_time_width) << "ms a step"
-      << "GiB at the largest\n";
+  Table table{{"", "power (95 %)", "vertices", "ms a step", "GiB at the largest"}, {}};
   for (const analysis::RowGrowth& row : growth.rows) {
     const analysis::Point& largest = row.largest;
-    out << std::setw(name_width) << row.row << std::setw(exponent_width)
-        << analysis::exponent_words(row.exponent) << std::setw(range_width)
-        << number_text(row.smallest.number("vertices"), 7) + ".." +
-               number_text(largest.number("vertices"), 7)
-        << std::setw(step_time_width)
-        << number_text(1e3 * largest.seconds() * largest.number("step"), 3)
-        << number_text(largest.number("peak_rss_bytes") / (1 << 30), 3) << '\n';
+    table.rows.push_back({row.row, analysis::exponent_words(row.exponent),
+                          number_text(row.smallest.number("vertices"), 7) + ".." +
+                              number_text(largest.number("vertices"), 7),
+                          number_text(1e3 * largest.seconds() * largest.number("step"), 3),
+                          number_text(largest.number("peak_rss_bytes") / (1 << 30), 3)});
   }
+  out << '\n'
+      << analysis::scene_words(growth.scene) << " at " << percent(growth.strain_limit)
+      << " strain, any motion: the time of a step grows as the number of vertices to a power\n";
+  print_aligned(out, table);
 }
 
 // How runs that failed did so.
 void print_failures(std::ostream& out, const nlohmann::json& document, bool all) {
-  std::map<std::string, int> statuses;
-  std::map<std::string, int> of_contestants;
+  std::map<std::string, int> statuses, of_contestants;
   int failed = 0;
   for (const nlohmann::json& p : document.at("points")) {
-    const std::string status = p.at("status");
-    if (status == "ok") continue;
+    const analysis::Point point(p);
+    if (point.ok()) continue;
     ++failed;
-    ++statuses[status];
-    ++of_contestants[p.at("scene").get<std::string>() + ", " +
-                     p.value("contestant", p.at("solver").get<std::string>()) + ": " + status];
+    ++statuses[point.text("status")];
+    ++of_contestants[point.text("scene") + ", " + point.contestant() + ": " + point.text("status")];
   }
   if (failed == 0) return;
-  std::string line = "\n" + std::to_string(failed) + " of " +
-                     std::to_string(document.at("points").size()) +
-                     " trial runs failed (coarse steps are tried until they do):";
+  std::string counts;
   for (const auto& [status, count] : statuses)
-    line += (line.back() == ':' ? " " : ", ") + status + " " + std::to_string(count);
-  out << line << '\n';
+    counts += (counts.empty() ? "" : ", ") + status + " " + std::to_string(count);
+  out << '\n'
+      << failed << " of " << document.at("points").size()
+      << " trial runs failed (coarse steps are tried until they do): " << counts << '\n';
   if (!all) return;
   for (const auto& [name, count] : of_contestants) out << "  " << name << " x " << count << '\n';
 }
@@ -216,9 +205,9 @@ void print_failures(std::ostream& out, const nlohmann::json& document, bool all)
 // Which solvers came from plug-ins, of which version, and what copying states into an engine and
 // out of it took of their time.
 void print_plugins(std::ostream& out, const nlohmann::json& document) {
-  const auto context = document.value("context", nlohmann::json::object());
-  const char* before = "\n";
-  for (const auto& plugin : context.value("plugins", nlohmann::json::array())) {
+  const auto plugins = document.at("context").value("plugins", nlohmann::json::array());
+  if (!plugins.empty()) out << '\n';
+  for (const auto& plugin : plugins) {
     for (const auto& solver : plugin.at("solvers")) {
       double copy = 0, all = 0;  // s
       for (const auto& point : document.at("points")) {
@@ -228,49 +217,36 @@ void print_plugins(std::ostream& out, const nlohmann::json& document) {
         for (const char* phase : {"unconstrained", "filter", "collision", "copy"})
           all += phases.value(phase, 0.0);
       }
-      out << before << "plug-in " << solver.get<std::string>() << ": "
+      out << "plug-in " << solver.get<std::string>() << ": "
           << plugin.at("version").get<std::string>();
       if (copy > 0) out << "; copying its state takes " << percent(copy / all) << " of its time";
       out << '\n';
-      before = "";
     }
   }
-}
-
-void print_whole(std::ostream& out, const nlohmann::json& document, bool all) {
-  const auto planes = analysis::planes_of(document);
-  const Setting set = setting_of(planes, all);
-  std::string last;
-  for (const Plane& plane : planes) {
-    const bool sizes = plane.sweep == "resolution";  // rows of one table
-    if (!sizes || plane.scene != last) print_head(out, plane, sizes, set);
-    last = sizes ? plane.scene : "";
-    print_rows(out, plane, sizes, set);
-    if (!sizes) print_shapes(out, plane);
-  }
-  if (planes.empty())
-    out << "\nall of these runs chose their steps by a controller, which is not ranked: bench plot "
-           "draws them\n";
-  else
-    out << "(~: too close to the next, or too few samples, to tell; u: with untuned settings; "
-           "errors are over the scene's size)\n";
-  for (const Plane& plane : planes) {
-    if (all) print_everybody(out, plane, set);
-  }
-  for (const analysis::Growth& growth : analysis::growth_in(planes)) print_growth(out, growth);
-  for (const analysis::Finding& finding : analysis::findings_of(planes)) {
-    out << '\n' << finding.subject << ":\n";
-    for (const std::string& sentence : finding.sentences) out << sentence << '\n';
-  }
-  print_failures(out, document, all);
-  print_plugins(out, document);
 }
 
 }  // namespace
 
 void print_sweep(std::ostream& out, const nlohmann::json& document, bool all, std::size_t columns) {
   std::ostringstream text;
-  print_whole(text, document, all);
+  const auto planes = analysis::planes_of(document);
+  const Unit unit = unit_of(planes, all);
+  print_planes(text, planes, unit);
+  text << (planes.empty()
+               ? "\nall of these runs chose their steps by a controller, which is not ranked: "
+                 "bench plot draws them\n"
+               : "(~: too close to the next, or too few samples, to tell; u: with untuned "
+                 "settings; errors are over the scene's size)\n");
+  for (const Plane& plane : planes) {
+    if (all) print_everybody(text, plane, unit);
+  }
+  for (const analysis::Growth& growth : analysis::growth_in(planes)) print_growth(text, growth);
+  for (const analysis::Finding& finding : analysis::findings_of(planes)) {
+    text << '\n' << finding.subject << ":\n";
+    for (const std::string& sentence : finding.sentences) text << sentence << '\n';
+  }
+  print_failures(text, document, all);
+  print_plugins(text, document);
   out << fitted(text.str(), columns);
 }
 

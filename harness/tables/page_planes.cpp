@@ -1,4 +1,5 @@
-// The plane strain x error of each scene: the fastest method within each limit and level of error.
+// The fastest method within each strain limit and level of error, and strain and error of each
+// method within a frame budget.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,7 +19,7 @@ std::string cell_text(const Cell& cell) {
   const Entry* first = cell.first();
   if (!first) return cell.empty_because;
   const std::string name = quoted(first->row) + (first->role.unranked ? " `u`" : "");
-  std::string text = (cell.clear() ? bold(name) : name) + " " +
+  std::string text = (cell.clear() ? "**" + name + "**" : name) + " " +
                      plain(1e3 * first->point.seconds(), 3) + " ms, " +
                      step_text(first->point.number("step"));
   if (const double kept = first->point.number("strain_limit"); kept < cell.strain_limit)
@@ -73,20 +74,19 @@ std::string title_of(const Plane& plane) {
                    " vertices, over " + plane.sweep;
 }
 
-void print_table(std::ostream& out, const std::vector<const Plane*>& planes) {
+Table table_of(const std::vector<const Plane*>& planes) {
   const bool sizes = planes.front()->sweep == "resolution";
-  std::vector<std::string> row{sizes ? "vertices" : "strain"};
+  Table table{{sizes ? "vertices" : "strain"}, {}};
   for (const double level : planes.front()->levels)
-    row.push_back(level == any_motion ? "any motion" : "error <= " + percent(level));
-  print_head(out, row);
+    table.head.push_back(level == any_motion ? "any motion" : "error <= " + percent(level));
   for (const Plane* plane : planes) {
     for (const double limit : plane->limits) {
-      row = {sizes ? std::to_string(plane->vertices) : percent(limit)};
-      for (const double level : plane->levels) row.push_back(cell_text(plane->cell(limit, level)));
-      print_row(out, row);
+      table.rows.push_back({sizes ? std::to_string(plane->vertices) : percent(limit)});
+      for (const double level : plane->levels)
+        table.rows.back().push_back(cell_text(plane->cell(limit, level)));
     }
   }
-  out << '\n';
+  return table;
 }
 
 // "3.1 (3.0-3.2) `jacobi`"; first: the entry is the leader itself.
@@ -109,6 +109,15 @@ void print_attribution(std::ostream& out, const Plane& plane) {
         << lead_text(cell, cell.paper_best()) << ", in any stepper "
         << lead_text(cell, cell.paper_in_any_stepper()) << ". ";
   }
+}
+
+// "0.1 %, error 1.2 %"; in brackets where the motion is not right to the headline's error.
+std::string reach_text(const std::optional<Reach>& reach) {
+  if (!reach) return "-";
+  const std::string error =
+      std::isfinite(reach->error) ? number_text(100 * reach->error, 2) + " %" : "not known";
+  const std::string text = percent(reach->strain_limit) + ", error " + error;
+  return reach->right ? text : "(" + text + ")";
 }
 
 }  // namespace
@@ -144,8 +153,36 @@ void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
     }
     if (has_shapes(planes)) out << "Shape errors are deviations beyond the ensemble's spread.";
     out << "\n\n";
-    print_table(out, planes);
+    print_markdown(out, table_of(planes));
+    out << '\n';
   }
 }
 
 }  // namespace harness::tables
+
+namespace harness {
+
+void print_budgets(std::ostream& out, const std::vector<analysis::BudgetTable>& places) {
+  using namespace tables;
+  for (const BudgetTable& place : places) {
+    Table table{{"method"}, {}};
+    for (const double budget : place.budgets)
+      table.head.push_back(number_text(1e3 * budget) + " ms a frame");
+    std::string none;
+    for (const Budgeted& row : place.rows) {
+      std::vector<std::string> cells{quoted(row.row)};
+      for (const auto& reach : row.reached) cells.push_back(reach_text(reach));
+      if (std::any_of(row.reached.begin(), row.reached.end(), [](const auto& r) { return r; })) {
+        table.rows.push_back(std::move(cells));
+      } else {
+        none += (none.empty() ? "" : ", ") + cells.front();
+      }
+    }
+    out << "### " << scene_words(place.scene) << ", " << place.vertices << " vertices\n\n";
+    print_markdown(out, table);
+    if (!none.empty()) out << "\nNo run is that fast: " << none << ".\n";
+    out << '\n';
+  }
+}
+
+}  // namespace harness

@@ -1,0 +1,38 @@
+#include "harness/tables/table.h"
+
+#include <algorithm>
+
+namespace harness {
+namespace {
+
+void print_row(std::ostream& out, const std::vector<std::string>& cells) {
+  out << '|';
+  for (const std::string& cell : cells) out << ' ' << cell << " |";
+  out << '\n';
+}
+
+}  // namespace
+
+void print_markdown(std::ostream& out, const Table& table) {
+  print_row(out, table.head);
+  out << '|';
+  for (std::size_t i = 0; i < table.head.size(); ++i) out << "---|";
+  out << '\n';
+  for (const auto& row : table.rows) print_row(out, row);
+}
+
+void print_aligned(std::ostream& out, const Table& table) {
+  std::vector<std::vector<std::string>> rows = table.rows;
+  rows.insert(rows.begin(), table.head);
+  std::vector<std::size_t> widths(table.head.size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i + 1 < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  for (auto& row : rows) {
+    for (std::size_t i = 0; i + 1 < row.size(); ++i) row[i].resize(widths[i] + 2, ' ');
+    for (const std::string& cell : row) out << cell;
+    out << '\n';
+  }
+}
+
+}  // namespace harness
