@@ -31,7 +31,7 @@
 #include "solvers/systems/constraint_system.h"
 
 // Counts up whenever these headers change what a plug-in relies on.
-#define INEXTENSIBLE_PLUGIN_ABI 10
+#define INEXTENSIBLE_PLUGIN_ABI 11
 
 struct InextensibleStampItem {
   const char* what;

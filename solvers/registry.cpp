@@ -6,34 +6,42 @@
 #include <stdexcept>
 #include <string>
 
-#include "solvers/methods/rows.h"
 #include "solvers/methods/time_steppers.h"
 
+// All methods, in the order of tables; each has its row in its own file in solvers/methods.
+#define INEXTENSIBLE_METHODS(ROW) \
+  ROW(implicit_springs)           \
+  ROW(jacobi)                     \
+  ROW(gauss_seidel)               \
+  ROW(gauss_seidel_colored)       \
+  ROW(shake)                      \
+  ROW(icd)                        \
+  ROW(fast_projection)            \
+  ROW(rattle)                     \
+  ROW(yarn_projection)            \
+  ROW(fast_projection_adaptive)   \
+  ROW(pbd_substeps)               \
+  ROW(vertex_block_descent)       \
+  ROW(augmented_vbd)              \
+  ROW(admm)                       \
+  ROW(soft_step)                  \
+  ROW(null)                       \
+  ROW(dense_newton)
+
 namespace inextensible {
+
+#define DECLARED_ROW(method) Backend method##_row();
+INEXTENSIBLE_METHODS(DECLARED_ROW)
+#undef DECLARED_ROW
+
 namespace {
 
 using Shared = std::shared_ptr<const Problem>;
 
 std::vector<Backend> built_in() {
-  return {
-      implicit_springs_row(),
-      jacobi_row(),
-      gauss_seidel_row(),
-      gauss_seidel_colored_row(),
-      shake_row(),
-      icd_row(),
-      fast_projection_row(),
-      rattle_row(),
-      yarn_projection_row(),
-      fast_projection_adaptive_row(),
-      pbd_substeps_row(),
-      vertex_block_descent_row(),
-      augmented_vbd_row(),
-      admm_row(),
-      soft_step_row(),
-      null_row(),
-      dense_newton_row(),
-  };
+#define LISTED_ROW(method) method##_row(),
+  return {INEXTENSIBLE_METHODS(LISTED_ROW)};
+#undef LISTED_ROW
 }
 
 std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }

@@ -77,32 +77,28 @@ class BulletSoftBody final : public inextensible::Stepper {
  public:
   static constexpr const char* name = "engine_bullet";
 
-  struct Settings {
-    int iterations = 1, velocity_iterations = 0;
-    std::string_view order = "mesh";
-  };
-
-  BulletSoftBody(std::shared_ptr<const Problem> shared, const Settings& settings)
+  BulletSoftBody(std::shared_ptr<const Problem> shared, const inextensible::BackendOptions& options)
       : Stepper(std::move(shared)), world_(problem()) {
-    world_.body->m_cfg.piterations = settings.iterations;
-    world_.body->m_cfg.viterations = settings.velocity_iterations;
-    if (settings.velocity_iterations > 0)  // by default nothing is done in them
+    const int iterations = options.count("iterations"),
+              velocity_iterations = options.count("velocity_iterations");
+    world_.body->m_cfg.piterations = iterations;
+    world_.body->m_cfg.viterations = velocity_iterations;
+    if (velocity_iterations > 0)  // by default nothing is done in them
       world_.body->m_cfg.m_vsequence.push_back(btSoftBody::eVSolver::Linear);
-    if (settings.order == "random") world_.body->randomizeConstraints();
-    passes_ = settings.iterations + settings.velocity_iterations;
+    if (options.word("order") == "random") world_.body->randomizeConstraints();
+    passes_ = iterations + velocity_iterations;
     if (problem().shear() || !problem().bending().empty() || problem().has_drag())
       forces_.resize(3, problem().vertices());
   }
 
-  static inextensible::SettingFields<Settings> fields() {
-    using S = Settings;
-    return {{"iterations", &S::iterations, "passes over links that correct positions (piterations)",
+  static std::vector<inextensible::SettingInfo> settings() {
+    return {{"iterations", 1.0, "passes over links that correct positions (piterations)",
              inextensible::at_least_one, inextensible::SearchRange{1, 32}},
-            {"velocity_iterations", &S::velocity_iterations,
+            {"velocity_iterations", 0.0,
              "passes over links before them that correct velocities (viterations)",
              inextensible::count_from_zero, inextensible::SearchRange{0, 8}},
-            inextensible::word_field(
-                "order", &S::order, "of links: the mesh's, or shuffled once (randomizeConstraints)",
+            inextensible::word_setting(
+                "order", "mesh", "of links: the mesh's, or shuffled once (randomizeConstraints)",
                 {"mesh", "random"})};
   }
 

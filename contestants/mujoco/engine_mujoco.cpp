@@ -191,26 +191,22 @@ class MujocoChain final : public inextensible::Stepper {
  public:
   static constexpr const char* name = "engine_mujoco";
 
-  struct Settings {
-    std::string_view integrator = integrators[0].name;
-  };
-
-  MujocoChain(std::shared_ptr<const Problem> shared, const Settings& settings, const State* start)
+  MujocoChain(std::shared_ptr<const Problem> shared, const inextensible::BackendOptions& options)
       : Stepper(std::move(shared)),
         links_(problem()),
         poses_(links_.count()),
         v_(3, problem().vertices()) {
     for (const Integrator& one : integrators) {
-      if (settings.integrator == one.name) integrator_ = one;
+      if (options.word("integrator") == one.name) integrator_ = one;
     }
-    make(start && planar(links_, problem(), *start) ? 1 : 2);
+    make(options.start && planar(links_, problem(), *options.start) ? 1 : 2);
   }
 
-  static inextensible::SettingFields<Settings> fields() {
+  static std::vector<inextensible::SettingInfo> settings() {
     std::vector<const char*> names;
     for (const Integrator& one : integrators) names.push_back(one.name);
-    return {inextensible::word_field(
-        "integrator", &Settings::integrator,
+    return {inextensible::word_setting(
+        "integrator", integrators[0].name,
         "Runge and Kutta's of order 4, implicit in velocities, or semi-implicit", names)};
   }
 

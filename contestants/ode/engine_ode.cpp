@@ -44,42 +44,33 @@ class OdeBalls final : public inextensible::Stepper {
  public:
   static constexpr const char* name = "engine_ode";
 
-  struct Settings {
-    std::string_view solver = "direct";
-    int iterations = 20;  // as ODE's
-    double relaxation = 1.3;
-    double erp = 1;
-    double cfm = 1e-10;  // as ODE's
-    std::uint64_t seed = 1;
-  };
-
-  OdeBalls(std::shared_ptr<const Problem> shared, const Settings& settings)
+  OdeBalls(std::shared_ptr<const Problem> shared, const inextensible::BackendOptions& options)
       : Stepper(std::move(shared)),
-        settings_(settings),
-        direct_(settings.solver == "direct"),
-        random_(settings.seed) {
+        direct_(options.word("solver") == "direct"),
+        iterations_(options.count("iterations")),
+        random_(options.seed) {
     dAllocateODEDataForThread(dAllocateMaskAll);
-    build();
+    build(options);
     if (problem().shear() || !problem().bending().empty() || problem().has_drag())
       forces_.resize(3, problem().vertices());
   }
 
-  static inextensible::SettingFields<Settings> fields() {
-    using S = Settings;
-    return {inextensible::word_field("solver", &S::solver,
-                                     "a factorization (dWorldStep) or passes (dWorldQuickStep)",
-                                     {"direct", "passes"}),
-            {"iterations", &S::iterations, "passes a step", inextensible::at_least_one,
+  // iterations and cfm are ODE's own by default.
+  static std::vector<inextensible::SettingInfo> settings() {
+    return {inextensible::word_setting("solver", "direct",
+                                       "a factorization (dWorldStep) or passes (dWorldQuickStep)",
+                                       {"direct", "passes"}),
+            {"iterations", 20.0, "passes a step", inextensible::at_least_one,
              inextensible::SearchRange{1, 64}},
-            {"relaxation", &S::relaxation, "of passes", inextensible::relaxation_range,
+            {"relaxation", 1.3, "of passes", inextensible::relaxation_range,
              inextensible::SearchRange{0.5, 1.95, 2}},
-            {"erp", &S::erp, "part of an elongation that a step takes back", inextensible::fraction,
+            {"erp", 1.0, "part of an elongation that a step takes back", inextensible::fraction,
              inextensible::SearchRange{0.2, 1}},
-            {"cfm", &S::cfm, "compliance over the step, 1 / kg", inextensible::Range{}}};
+            {"cfm", 1e-10, "compliance over the step, 1 / kg"}};
   }
 
  private:
-  void build();
+  void build(const inextensible::BackendOptions& options);
   void put_in(const State& state);
   void give_forces(const State& state);
 
@@ -100,7 +91,7 @@ class OdeBalls final : public inextensible::Stepper {
   }
 
   bool take(double h);
-  int passes() const { return direct_ ? 1 : settings_.iterations; }
+  int passes() const { return direct_ ? 1 : iterations_; }
 
   StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& /*filtered*/,
                             const Positions& /*x*/, Positions& v) override {
@@ -116,8 +107,8 @@ class OdeBalls final : public inextensible::Stepper {
     return {};
   }
 
-  Settings settings_;  // but for the word, a view that does not last
   bool direct_;
+  int iterations_;  // passes
   World world_;
   std::vector<dBodyID> bodies_;   // null: pinned, which is the world to ODE
   std::vector<dJointID> joints_;  // one an edge
@@ -125,16 +116,16 @@ class OdeBalls final : public inextensible::Stepper {
   unsigned long random_, next_random_ = 0;
 };
 
-void OdeBalls::build() {
+void OdeBalls::build(const inextensible::BackendOptions& options) {
   world_.reset(dWorldCreate());
   const Eigen::Vector3d& g = problem().gravity();
   dWorldSetGravity(world_.get(), g.x(), g.y(), g.z());
-  dWorldSetERP(world_.get(), settings_.erp);
-  dWorldSetCFM(world_.get(), settings_.cfm);
+  dWorldSetERP(world_.get(), options.number("erp"));
+  dWorldSetCFM(world_.get(), options.number("cfm"));
   dWorldSetAutoDisableFlag(world_.get(), 0);
   dWorldSetDamping(world_.get(), 0, 0);
-  dWorldSetQuickStepNumIterations(world_.get(), settings_.iterations);
-  dWorldSetQuickStepW(world_.get(), settings_.relaxation);
+  dWorldSetQuickStepNumIterations(world_.get(), iterations_);
+  dWorldSetQuickStepW(world_.get(), options.number("relaxation"));
   bodies_.assign(problem().vertices(), nullptr);
   for (int i = 0; i < problem().vertices(); ++i) {
     if (problem().inverse_mass()[i] == 0) continue;

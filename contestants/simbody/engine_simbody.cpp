@@ -30,26 +30,21 @@ class SimbodyChain final : public inextensible::Stepper {
  public:
   static constexpr const char* name = "engine_simbody";
 
-  struct Settings {
-    double accuracy = 1e-3;  // Simbody's own
-    std::string_view integrator = MobilizerChain::integrators[0];
-  };
-
-  SimbodyChain(std::shared_ptr<const Problem> shared, const Settings& settings, const State* start)
+  SimbodyChain(std::shared_ptr<const Problem> shared, const inextensible::BackendOptions& options)
       : Stepper(std::move(shared)),
-        accuracy_(settings.accuracy),
-        integrator_(settings.integrator),
+        accuracy_(options.number("accuracy")),
+        integrator_(options.word("integrator")),
         links_(problem()),
         poses_(links_.count()),
         v_(3, problem().vertices()) {
-    make(start && planar(links_, problem(), *start));
+    make(options.start && planar(links_, problem(), *options.start));
   }
 
-  static inextensible::SettingFields<Settings> fields() {
-    return {{"accuracy", &Settings::accuracy, "of the internal steps, relative",
+  static std::vector<inextensible::SettingInfo> settings() {
+    return {{"accuracy", 1e-3, "of the internal steps, relative",
              inextensible::Range{1e-12, 0.5}, inextensible::SearchRange{1e-6, 0.5}},
-            inextensible::word_field(
-                "integrator", &Settings::integrator,
+            inextensible::word_setting(
+                "integrator", MobilizerChain::integrators[0],
                 "Runge, Kutta and Merson's, Fehlberg's, or Verlet's of order 2",
                 {std::begin(MobilizerChain::integrators), std::end(MobilizerChain::integrators)})};
   }

@@ -4,7 +4,7 @@
 #include "harness/kernels/hardware_peak.h"
 #include "harness/kernels/kernel.h"
 #include "solvers/linear/spd_solvers.h"
-#include "solvers/methods/icd.h"
+#include "solvers/registry.h"
 #include "solvers/systems/kkt_system.h"
 #include "solvers/systems/projected_cg.h"
 
@@ -76,8 +76,9 @@ void kkt(benchmark::State& state, const std::string& solver, bool solve, int n) 
   const EdgeConstraints& edges = l.system.edges();
   std::unique_ptr<KktSolver> system;
   if (solver == "projected_cg") {
-    system = std::make_unique<ProjectedCg>(m.problem(), edges,
-                                           ProjectedCg::Settings{Icd::Settings{}.cg_tolerance});
+    const Settings settings = complete_settings(*find_backend("icd"), {});
+    const double tolerance = std::get<double>(settings.at("cg_tolerance"));
+    system = std::make_unique<ProjectedCg>(m.problem(), edges, ProjectedCg::Settings{tolerance});
   } else {
     system = std::make_unique<KktSystem>(m.problem(), edges);
   }

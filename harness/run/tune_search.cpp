@@ -125,7 +125,7 @@ std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend,
   std::vector<TunedNumber> numbers;
   for (const auto& info : backend.settings) {
     if (!info.tunable || given.contains(info.name)) continue;
-    numbers.push_back({info.name, std::get<double>(info.initial), *info.tunable, info.whole});
+    numbers.push_back({info.name, std::get<double>(info.initial), *info.tunable, info.range.whole});
   }
   return numbers;
 }

@@ -21,10 +21,7 @@
 #include <cmath>
 #include <string>
 
-#include "solvers/linear/spd_solver.h"
-#include "solvers/linear/spd_solvers.h"
 #include "solvers/methods/rows.h"
-#include "solvers/methods/setting_fields.h"
 #include "solvers/systems/constraint_system.h"
 #include "solvers/systems/vertex_blocks.h"
 
@@ -33,19 +30,7 @@ namespace {
 
 class Admm final : public VelocityFilter {
  public:
-  struct Settings {
-    double strain_limit = 0.01;
-    int max_iterations = 100000;
-    double target = 0;    // of the strain limit; as FastProjection's
-    double penalty = 10;  // weight of an edge, times 1 / (h^2 (w_a + w_b))
-    double relaxation = 1;
-    // A step ends when no edge's z moves by more than this times strain_limit times its length,
-    // over the penalty: so much of what pulls at vertices is not yet what edges do.
-    double direction_tolerance = 1;
-    std::string_view linear_solver = "auto";  // tridiagonal on chains, else multifrontal
-  };
-  static SettingFields<Settings> fields();
-  Admm(const Problem& problem, const Settings& settings);
+  Admm(const Problem& problem, const BackendOptions& options);
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
   const char* linear_solver() const override { return linear_solver_.c_str(); }
   double reciprocal_condition() const override { return solver_->reciprocal_condition(); }
@@ -83,22 +68,24 @@ class Admm final : public VelocityFilter {
 
 constexpr double contact_weight = 1;  // of a vertex's own term, times its mass
 
-Admm::Admm(const Problem& problem, const Settings& settings)
+Admm::Admm(const Problem& problem, const BackendOptions& options)
     : problem_(problem),
-      edges_(problem, settings.strain_limit),
-      max_iterations_(settings.max_iterations),
-      relaxation_(settings.relaxation),
-      most_(settings.direction_tolerance * settings.strain_limit / settings.penalty),
-      most_push_(settings.direction_tolerance * settings.strain_limit *
+      edges_(problem, options.strain_limit),
+      max_iterations_(options.count("max_iterations")),
+      relaxation_(options.number("relaxation")),
+      most_(options.number("direction_tolerance") * options.strain_limit /
+            options.number("penalty")),
+      most_push_(options.number("direction_tolerance") * options.strain_limit *
                  problem.shortest_rest_length()),
-      shortest_(std::max(1 - settings.target * settings.strain_limit, 0.0)),
-      longest_(1 + settings.target * settings.strain_limit),
+      shortest_(std::max(1 - options.number("target") * options.strain_limit, 0.0)),
+      longest_(1 + options.number("target") * options.strain_limit),
       place_(problem.vertices(), -1),
       target_(3, problem.vertices()) {
   for (const auto [a, b] : problem.edges()) {
-    weight_.push_back(settings.penalty / (problem.inverse_mass()[a] + problem.inverse_mass()[b]));
+    weight_.push_back(options.number("penalty") /
+                      (problem.inverse_mass()[a] + problem.inverse_mass()[b]));
   }
-  choose_solver(settings.linear_solver);
+  choose_solver(options.word("linear_solver"));
   rhs_.resize(static_cast<Eigen::Index>(free_vertex_.size()), 3);
   if (problem.contact_inside()) anchor_.resize(3, problem.vertices());
   z_.resize(3, problem.constraints());
@@ -282,41 +269,30 @@ StepResult Admm::apply(const Positions& /*x_start*/, double h, Iterate x, WorkCo
   return refuse(Status::not_converged, max_iterations_, edges_, x, "iteration limit");
 }
 
-SettingFields<Admm::Settings> Admm::fields() {
-  using S = Settings;
-  std::vector<const char*> solvers{"auto"};
-  for (const SpdSolverRow& row : spd_solvers()) {
-    if (row.takes != Takes::block_tridiagonal && row.direct && row.precision == Precision::full)
-      solvers.push_back(row.name);
-  }
-  return {{"max_iterations", &S::max_iterations, "iterations a step before it is refused",
-           at_least_one},
-          {"target", &S::target, projection_target, below_limit, tunable_below_limit},
-          {"penalty", &S::penalty, "weight of an edge over that of its ends' inertia", positive,
-           SearchRange{3, 100}},
-          {"relaxation", &S::relaxation, "alpha, of the edges' differences", Range{0, 2, true},
-           SearchRange{1, 1.9}},
-          {"direction_tolerance", &S::direction_tolerance,
-           "last move of an edge's projection, times penalty, in strain limit times rest length",
-           positive, tunable_direction_tolerance},
-          word_field("linear_solver", &S::linear_solver, "factorization of the constant matrix",
-                     solvers)};
-}
-
 }  // namespace
 
 Backend admm_row() {
-  return {.name = "admm",
-          .summary = "hard lengths by ADMM: single edges, then one constant linear system",
-          .strain_control = StrainControl::strain_limit,
-          .contestant = true,
-          .settings = setting_infos(Admm::fields()),
-          .make_filter = make_filter<Admm>,
-          .direction = Direction::end,
-          .citation = "Liu et al. 2013; Narain, Overby and Brown 2016",
-          .origin = Origin::literature,
-          .label = "projective dynamics (ADMM)",
-          .conserves_momentum = false};
+  return {
+      .name = "admm",
+      .summary = "hard lengths by ADMM: single edges, then one constant linear system",
+      .settings =
+          {iteration_limit(1e5, "iterations a step before it is refused"),
+           projection_target(),
+           {"penalty", 10.0, "weight of an edge over that of its ends' inertia", positive,
+            SearchRange{3, 100}},
+           {"relaxation", 1.0, "alpha, of the edges' differences", relaxation_range,
+            SearchRange{1, 1.9}},
+           // So much of what pulls at vertices is not yet what edges do.
+           {"direction_tolerance", 1.0,
+            "last move of an edge's projection, times penalty, in strain limit times rest length",
+            positive, tunable_direction_tolerance},
+           direct_solver("factorization of the constant matrix", Takes::tridiagonal)},
+      .make_filter = make_filter<Admm>,
+      .direction = Direction::end,
+      .citation = "Liu et al. 2013; Narain, Overby and Brown 2016",
+      .origin = Origin::literature,
+      .label = "projective dynamics (ADMM)",
+      .conserves_momentum = false};
 }
 
 }  // namespace inextensible

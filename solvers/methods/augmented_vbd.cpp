@@ -14,7 +14,6 @@
 // last one for that, and passes overflow, they begin once more at the candidate, without
 // multipliers. Loops: two over vertices and the ends of their edges a pass.
 #include "solvers/methods/rows.h"
-#include "solvers/methods/setting_fields.h"
 #include "solvers/methods/vertex_passes.h"
 #include "solvers/systems/constraint_system.h"
 
@@ -23,16 +22,7 @@ namespace {
 
 class AugmentedVbd final : public VelocityFilter {
  public:
-  struct Settings {
-    double strain_limit = 0.01;
-    int max_iterations = 100000;  // passes a step
-    double penalty = 10;          // stiffness of an edge, times 1 / (h^2 (w_a + w_b))
-    // A step ends when no vertex moves by more than this times strain_limit times the shortest rest
-    // length, over the penalty: an edge answers a move of its ends by that times it.
-    double direction_tolerance = 1;
-  };
-  static SettingFields<Settings> fields();
-  AugmentedVbd(const Problem& problem, const Settings& settings);
+  AugmentedVbd(const Problem& problem, const BackendOptions& options);
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
 
  private:
@@ -53,14 +43,14 @@ Springs penalties(const Problem& problem, double penalty) {
   return springs;
 }
 
-AugmentedVbd::AugmentedVbd(const Problem& problem, const Settings& settings)
+AugmentedVbd::AugmentedVbd(const Problem& problem, const BackendOptions& options)
     : problem_(problem),
-      edges_(problem, settings.strain_limit),
-      strain_limit_(settings.strain_limit),
-      max_iterations_(settings.max_iterations),
-      most_(settings.direction_tolerance * settings.strain_limit * problem.shortest_rest_length() /
-            settings.penalty),
-      passes_(problem, penalties(problem, settings.penalty)),
+      edges_(problem, options.strain_limit),
+      strain_limit_(options.strain_limit),
+      max_iterations_(options.count("max_iterations")),
+      most_(options.number("direction_tolerance") * options.strain_limit *
+            problem.shortest_rest_length() / options.number("penalty")),
+      passes_(problem, penalties(problem, options.number("penalty"))),
       target_(3, problem.vertices()),
       tension_(passes_.tensions()) {}
 
@@ -95,25 +85,19 @@ StepResult AugmentedVbd::apply(const Positions& /*x_start*/, double h, Iterate x
   return refuse(Status::not_converged, max_iterations_, edges_, x, "pass limit");
 }
 
-SettingFields<AugmentedVbd::Settings> AugmentedVbd::fields() {
-  using S = Settings;
-  return {
-      {"max_iterations", &S::max_iterations, "passes a step before it is refused", at_least_one},
-      {"penalty", &S::penalty, "stiffness of an edge over that of its ends' inertia", positive,
-       SearchRange{1, 20}},
-      {"direction_tolerance", &S::direction_tolerance,
-       "last move of a vertex, times penalty, in strain limit times shortest rest length", positive,
-       tunable_direction_tolerance}};
-}
-
 }  // namespace
 
 Backend augmented_vbd_row() {
   return {.name = "augmented_vbd",
           .summary = "hard lengths by the method of multipliers, in passes over single vertices",
-          .strain_control = StrainControl::strain_limit,
-          .contestant = true,
-          .settings = setting_infos(AugmentedVbd::fields()),
+          .settings =
+              {iteration_limit(1e5, "passes a step before it is refused"),
+               {"penalty", 10.0, "stiffness of an edge over that of its ends' inertia", positive,
+                SearchRange{1, 20}},
+               // An edge answers a move of its ends by the penalty times that.
+               {"direction_tolerance", 1.0,
+                "last move of a vertex, times penalty, in strain limit times shortest rest length",
+                positive, tunable_direction_tolerance}},
           .make_filter = make_filter<AugmentedVbd>,
           .direction = Direction::end,
           .citation = "Giles, Diaz and Yuksel 2025",

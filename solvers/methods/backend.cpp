@@ -10,10 +10,10 @@ namespace inextensible {
 namespace {
 
 std::string fault_of(const SettingInfo& info, double number) {
-  if (info.range.contains(number) && (!info.whole || number == std::floor(number))) return {};
   const Range& range = info.range;
+  if (range.contains(number)) return {};
   std::ostringstream text;
-  text << " is " << number << ", must be " << (info.whole ? "an integer" : "finite");
+  text << " is " << number << ", must be " << (range.whole ? "an integer" : "finite");
   text << (range.open ? ", above " : ", at least ") << range.least;
   if (std::isfinite(range.largest))
     text << (range.open ? " and below " : " and at most ") << range.largest;
@@ -48,18 +48,24 @@ const char* part_not_taken(const Backend& backend, const Problem& problem) {
 }
 
 bool Range::contains(double number) const {
-  if (!std::isfinite(number)) return false;
+  if (!std::isfinite(number) || (whole && number != std::floor(number))) return false;
   return open ? number > least && number < largest : number >= least && number <= largest;
+}
+
+double BackendOptions::number(const char* name) const {
+  return std::get<double>(settings.at(name));
+}
+
+int BackendOptions::count(const char* name) const { return static_cast<int>(number(name)); }
+
+const std::string& BackendOptions::word(const char* name) const {
+  return std::get<std::string>(settings.at(name));
 }
 
 Settings complete_settings(const Backend& backend, const Settings& given) {
   Settings all;
   for (const SettingInfo& info : backend.settings) {
-    if (const auto* text = std::get_if<const char*>(&info.initial)) {
-      all[info.name] = std::string(*text);
-    } else {
-      all[info.name] = std::get<double>(info.initial);
-    }
+    std::visit([&](auto initial) { all[info.name] = initial; }, info.initial);
   }
   for (const auto& [name, value] : given) {
     const auto info = std::find_if(backend.settings.begin(), backend.settings.end(),

@@ -1,6 +1,6 @@
-// A method as the program knows it: one row, which stands in the method's own .cpp, or in a plug-in
-// (plugin.h). What the rest of the program must know of a method it asks the row for; nothing asks
-// for a method by its name.
+// A method as the program knows it: one row, at the end of the method's own .cpp or in a plug-in
+// (plugin.h). Whatever else the program needs to know of a method it reads from the row; nothing
+// asks for a method by its name.
 #pragma once
 
 #include <cstdint>
@@ -16,46 +16,48 @@
 
 namespace inextensible {
 
-// Numbers from `least` to `largest`; `open`: without these two themselves.
+// Numbers from `least` to `largest`; `open`: without these two; `whole`: integers only.
 struct Range {
   double least = 0;
   double largest = std::numeric_limits<double>::infinity();
-  bool open = false;
+  bool open = false, whole = false;
 
   bool contains(double number) const;  // false on NaN and infinities
 };
 
-// Where a search for a setting's best value may look. What lies beyond its largest end and must not
-// be reached, if anything: then the distance to that is what matters, as that of a relaxation to 2
-// (Young 1954).
+// Where a search for a setting's best value looks. `bound`: what lies beyond the largest end and
+// must not be reached, as 2 by a relaxation (Young 1954); the distance to it is then what matters.
 struct SearchRange {
   double least = 0, largest = 0;
   std::optional<double> bound = {};
 };
 
-// A setting of one backend, with its default, what may be chosen (for words), and between which
-// numbers.
+// A setting of one backend: a number within a range, or one of several words.
 struct SettingInfo {
   const char* name;
   std::variant<double, const char*> initial;
   const char* meaning;
-  std::vector<const char*> choices = {};
   Range range = {};
-  bool whole = false;  // a count: integers only
   std::optional<SearchRange> tunable = {};
   // The setting departs from the published method: it is searched in other time steppers only.
   bool departs = false;
+  std::vector<const char*> choices = {};
 };
 
 using Settings = std::map<std::string, std::variant<double, std::string>>;
 
 struct BackendOptions {
-  double strain_limit = 0.01;  // permissible |strain|, > 0
+  double strain_limit = 0.01;  // largest |strain| permitted, > 0
   std::uint64_t seed = 1;      // of methods that draw random numbers
   Settings settings = {};      // the backend's own; missing ones take their default
   // Where the steps will begin, for methods whose set-up needs positions; null where that is not
-  // known. For the time of `make` only.
+  // known. Valid during `make` only.
   const State* start = nullptr;
+
+  // What a method's constructor reads, of complete settings.
+  double number(const char* name) const;
+  int count(const char* name) const;
+  const std::string& word(const char* name) const;
 };
 
 // What the harness may turn to make a run keep its strain limit: the limit itself, which the method
@@ -83,11 +85,11 @@ enum class Origin { paper, project, literature, engine, elsewhere };
 struct Backend {
   const char* name;     // a-z, 0-9 and _; in another stepper than the published one, method@stepper
   const char* summary;  // one line
-  StrainControl strain_control;
-  bool contestant;  // appears in figures and rankings
-  std::vector<SettingInfo> settings;
-  // A velocity filter has `make_filter` and stands in any stepper; where its corrections point, it
-  // is passed only if it `takes_middle`. Other methods have `make`: a time step of their own.
+  StrainControl strain_control = StrainControl::strain_limit;
+  bool contestant = true;  // appears in figures and rankings
+  std::vector<SettingInfo> settings = {};
+  // A velocity filter has `make_filter` and works in any stepper; where its corrections point
+  // concerns it only if it `takes_middle`. Other methods have `make`: a time step of their own.
   std::unique_ptr<Stepper> (*make)(std::shared_ptr<const Problem>, const BackendOptions&) = nullptr;
   std::unique_ptr<VelocityFilter> (*make_filter)(const Problem&, const BackendOptions&,
                                                  Along along) = nullptr;

@@ -1,6 +1,10 @@
-// Registered as `dense_newton`, no contestant: the M-closest point of {C = 0} (ICD = SAP,
+// Two rows that are no contestants.
+//
+// dense_newton: the M-closest point of {C = 0} (ICD = SAP,
 // Goldenthal et al. 2007, Theorem 1) to 1e-12, by dense Newton with full pivoting. Slow and
 // obvious: what tests compare with, for small n.
+//
+// null: the unconstrained step alone, which measures what the scene and the harness cost.
 #include <Eigen/Dense>
 #include <stdexcept>
 #include <string>
@@ -14,7 +18,7 @@ namespace {
 
 class DenseNewton final : public VelocityFilter {
  public:
-  explicit DenseNewton(const Problem& problem);
+  DenseNewton(const Problem& problem, const BackendOptions& options);
   StepResult apply(const Positions& x_start, double h, Iterate iterate,
                    WorkCounters& work) override;
 
@@ -38,7 +42,8 @@ Eigen::MatrixXd dense_jacobian(const EdgeConstraints& edges, const Positions& x)
   return jacobian;
 }
 
-DenseNewton::DenseNewton(const Problem& problem) : problem_(problem), edges_(problem, tolerance) {
+DenseNewton::DenseNewton(const Problem& problem, const BackendOptions& /*options*/)
+    : problem_(problem), edges_(problem, tolerance) {
   if (problem.vertices() > largest_problem) {
     throw std::invalid_argument("solver 'dense_newton' is dense, for at most " +
                                 std::to_string(largest_problem) + " vertices; this problem has " +
@@ -97,6 +102,14 @@ StepResult DenseNewton::apply(const Positions& /*x_start*/, double /*h*/, Iterat
   return refuse(Status::not_converged, iteration_limit, edges_, x, "iteration limit");
 }
 
+struct Unconstrained final : VelocityFilter {
+  Unconstrained(const Problem& /*problem*/, const BackendOptions& /*options*/) {}
+  StepResult apply(const Positions& /*x_start*/, double /*h*/, Iterate /*x*/,
+                   WorkCounters& /*work*/) override {
+    return {};
+  }
+};
+
 }  // namespace
 
 Backend dense_newton_row() {
@@ -104,11 +117,18 @@ Backend dense_newton_row() {
           .summary = "dense Newton to 1e-12, small problems: what tests compare with",
           .strain_control = StrainControl::none,
           .contestant = false,
-          .settings = {},
-          .make_filter = [](const Problem& problem, const BackendOptions&, Along)
-              -> std::unique_ptr<VelocityFilter> { return std::make_unique<DenseNewton>(problem); },
+          .make_filter = make_filter<DenseNewton>,
           .citation = "Goldenthal et al. 2007",
           .label = "dense Newton (no contestant)"};
+}
+
+Backend null_row() {
+  return {.name = "null",
+          .summary = "unconstrained step only: what the scene and the harness cost",
+          .strain_control = StrainControl::none,
+          .contestant = false,
+          .make_filter = make_filter<Unconstrained>,
+          .label = "scene without inextensibility"};
 }
 
 }  // namespace inextensible

@@ -1,4 +1,6 @@
-// Algorithm 1 line by line. With mu = h^2 dlambda the step h drops out of equations 5 and 7:
+// Fast projection (Goldenthal et al. 2007, Algorithm 1): steps of least M-norm towards the
+// constraint manifold, line by line. With mu = h^2 dlambda the step h drops out of equations 5 and
+// 7:
 //   (J W J^T) mu = C(x_j),   x_{j+1} = x_j - W J^T mu,   J = J(x_j).
 // Loops: one pass over edges, one assembly, one factorization, one solve and one pass over edges an
 // iteration.
@@ -15,16 +17,47 @@
 // Iterative linear solvers solve (7) to a residual of a fraction of |C(x_j)|, the forcing term of
 // an inexact Newton method: first_forcing, then as |C| has fallen, squared (Eisenstat and Walker
 // 1996, choice 2), which keeps the convergence of order two.
-#include "solvers/methods/fast_projection.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "solvers/methods/rows.h"
+#include "solvers/methods/strain_passes.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 namespace {
+
+class FastProjection final : public VelocityFilter {
+ public:
+  FastProjection(const Problem& problem, const BackendOptions& options, Along along);
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
+  const char* linear_solver() const override { return system_.solver_name().c_str(); }
+  double reciprocal_condition() const override { return system_.reciprocal_condition(); }
+
+ private:
+  bool linearize(double target, const Positions& x);
+  void correct(Iterate x);
+  void keep_best(Iterate x);
+  void restore_best(Iterate x);
+  void pass(int most, Iterate x, WorkCounters& work);
+  void show(int j, const Positions& x);
+  StepResult damped(int j, Iterate x, WorkCounters& work);
+  double damped_prediction(double damping) const;
+
+  ConstraintSystem system_;
+  Along along_;
+  int max_iterations_, min_iterations_, sweeps_before_, smoothing_sweeps_;
+  double target_, inner_band_, first_forcing_;
+  std::unique_ptr<StrainPasses> passes_;  // if any are asked for
+  Iterate::Record best_;                  // x_j of least constraint error
+  Eigen::Matrix3Xd u_;                    // gradient of C at x_j, or in the middle of the step
+  Eigen::Matrix3Xd u_start_;              // at x^n, for the middle of the step only
+  Eigen::VectorXd mu_;                    // C~(x_j), then h^2 dlambda
+  Eigen::VectorXd excess_;                // C~ of a damped iteration
+  // With an observer only: h^2 lambda at x_j and at best_.
+  Eigen::VectorXd multipliers_, best_multipliers_;
+};
 
 // Iterations without a new least |C|: Newton often recovers from a rise or two. Not, however, from
 // a rise of |C|^2 by this factor, where J W J^T was singular but for rounding, and digits are lost.
@@ -32,26 +65,6 @@ constexpr int patience = 8;
 constexpr double overshoot = 1e8, overshoot_in_contact = 100;
 constexpr double least_forcing = 1e-8, damped_forcing = 1e-4;
 constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1e8;
-
-}  // namespace
-
-FastProjection::FastProjection(const Problem& problem, const Settings& settings, Along along)
-    : system_(problem, settings.strain_limit, settings.linear_solver,
-              ConstraintSystem::Digits::few),
-      settings_(settings),
-      along_(along),
-      best_{Positions(3, problem.vertices()), {}},
-      u_(3, problem.constraints()),
-      mu_(problem.constraints()),
-      excess_(problem.constraints()) {
-  if (along == Along::middle) u_start_.resize(3, problem.constraints());
-  const bool passes = settings.smoothing_sweeps > 0 || settings.sweeps_before > 0;
-  if (passes && !system_.chain()) {
-    passes_ = std::make_unique<StrainPasses>(
-        StrainPasses::by_mass(problem, {settings.strain_limit, settings.smoothing_target},
-                              settings.smoothing_relaxation));
-  }
-}
 
 StepResult FastProjection::apply(const Positions& x_start, double /*h*/, Iterate x,
                                  WorkCounters& work) {
@@ -61,17 +74,16 @@ StepResult FastProjection::apply(const Positions& x_start, double /*h*/, Iterate
     if (passes_) passes_->take_middle_from(x_start);
   }
   double least_error = std::numeric_limits<double>::infinity();  // |C~|^2 at best_
-  double last_error = least_error, forcing = settings_.first_forcing;
+  double last_error = least_error, forcing = first_forcing_;
   for (int j = 0, best_j = 0;; ++j) {
     if (observer_) show(j, x);
-    bool permissible = linearize(settings_.target, x);
-    if (j == 0 && !permissible && settings_.sweeps_before > 0) {
-      pass(settings_.sweeps_before, x, work);
-      permissible = linearize(settings_.target, x);
+    bool permissible = linearize(target_, x);
+    if (j == 0 && !permissible && sweeps_before_ > 0) {
+      pass(sweeps_before_, x, work);
+      permissible = linearize(target_, x);
     }
-    if (permissible && j >= settings_.min_iterations) return {Status::ok, j};
-    if (j == settings_.max_iterations)
-      return refuse(Status::not_converged, j, edges, x, "iteration limit");
+    if (permissible && j >= min_iterations_) return {Status::ok, j};
+    if (j == max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
 
     const double error = mu_.squaredNorm();
     if (error == 0) return {Status::ok, j};  // nothing left to project
@@ -82,8 +94,7 @@ StepResult FastProjection::apply(const Positions& x_start, double /*h*/, Iterate
     } else if (j == 0) {
       return refuse(Status::not_finite, j, edges, x, "overflow");
     }
-    if (j > 0)
-      forcing = std::clamp(0.9 * error / last_error, least_forcing, settings_.first_forcing);
+    if (j > 0) forcing = std::clamp(0.9 * error / last_error, least_forcing, first_forcing_);
     last_error = error;
     const double most = (x.contact_count() > 0 ? overshoot_in_contact : overshoot) * least_error;
     if (j - best_j == patience || !(error < most)) return damped(j, x, work);
@@ -91,7 +102,7 @@ StepResult FastProjection::apply(const Positions& x_start, double /*h*/, Iterate
     if (!system_.factor(u_, x.contacts(), work)) return damped(j, x, work);  // J W J^T
     if (!system_.solve(mu_, work, forcing)) return damped(j, x, work);       // (7)
     correct(x);                                                              // (5)
-    pass(settings_.smoothing_sweeps, x, work);
+    pass(smoothing_sweeps_, x, work);
     x.renew_planes(work);
   }
 }
@@ -149,11 +160,10 @@ StepResult FastProjection::damped(int j, Iterate x, WorkCounters& work) {
     if (taken_back) {
       ++work.line_search_steps;
       restore_best(x);
-      linearize(settings_.inner_band, x);
+      linearize(inner_band_, x);
       error = mu_.squaredNorm();
     }
-    if (j >= settings_.max_iterations)
-      return refuse(Status::not_converged, j, edges, x, "iteration limit");
+    if (j >= max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
     excess_ = mu_;
     while (damping < largest_damping && !(system_.factor(u_, x.contacts(), work, damping) &&
                                           system_.solve(mu_, work, damped_forcing))) {
@@ -167,7 +177,7 @@ StepResult FastProjection::damped(int j, Iterate x, WorkCounters& work) {
     const double predicted_error = damped_prediction(damping);
     correct(x);
     if (observer_) show(j + 1, x);
-    if (linearize(settings_.inner_band, x)) return {Status::ok, j + 1};
+    if (linearize(inner_band_, x)) return {Status::ok, j + 1};
     const double next_error = mu_.squaredNorm();
     taken_back = !(next_error < error);
     if (taken_back) {
@@ -196,48 +206,61 @@ double FastProjection::damped_prediction(double damping) const {
   return sum;
 }
 
-SettingFields<FastProjection::Settings> FastProjection::fields() {
-  using S = Settings;
-  constexpr bool departs = true;  // Algorithm 1 has no passes
-  return {
-      {"max_iterations", &S::max_iterations, "projections a step before it is refused",
-       at_least_one},
-      {"min_iterations", &S::min_iterations, least_iterations, count_from_zero,
-       tunable_least_iterations},
-      {"target", &S::target, projection_target, below_limit, tunable_below_limit},
-      // In that configuration a straight row at full length has no neighbour with C = 0, but many
-      // permissible ones.
-      {"inner_band", &S::inner_band, "target of damped projections, where J W J^T is singular",
-       below_limit},
-      // A projection sees the whole cloth, but only to first order; most of what it leaves is
-      // local, and cheaper to correct by passes over edges.
-      {"sweeps_before", &S::sweeps_before,
-       "colored Gauss-Seidel passes before the first projection, at most; none on chains, where "
-       "a projection costs no more than some passes",
-       count_from_zero, tunable_passes, departs},
-      {"smoothing_sweeps", &S::smoothing_sweeps,
-       "the same after each projection, at most; none on chains", count_from_zero, tunable_passes,
-       departs},
-      {"smoothing_target", &S::smoothing_target,
-       "an edge that a pass corrects is brought to this fraction of the strain limit", fraction,
-       tunable_fraction, departs},
-      {"smoothing_relaxation", &S::smoothing_relaxation, "times a pass's correction",
-       relaxation_range, tunable_relaxation, departs},
-      {"first_forcing", &S::first_forcing,
-       "residual of a step's first linear solve by conjugate gradients or in mixed precision, of "
-       "the right-hand side; those of later ones are smaller",
-       Range{1e-8, 1}, tunable_forcing},
-      schur_solver_field<S>()};
+FastProjection::FastProjection(const Problem& problem, const BackendOptions& options, Along along)
+    : system_(problem, options.strain_limit, options.word("linear_solver"),
+              ConstraintSystem::Digits::few),
+      along_(along),
+      max_iterations_(options.count("max_iterations")),
+      min_iterations_(options.count("min_iterations")),
+      sweeps_before_(options.count("sweeps_before")),
+      smoothing_sweeps_(options.count("smoothing_sweeps")),
+      target_(options.number("target")),
+      inner_band_(options.number("inner_band")),
+      first_forcing_(options.number("first_forcing")),
+      best_{Positions(3, problem.vertices()), {}},
+      u_(3, problem.constraints()),
+      u_start_(3, along == Along::middle ? problem.constraints() : 0),
+      mu_(problem.constraints()),
+      excess_(problem.constraints()) {
+  if ((smoothing_sweeps_ > 0 || sweeps_before_ > 0) && !system_.chain()) {
+    passes_ = std::make_unique<StrainPasses>(
+        StrainPasses::by_mass(problem, {options.strain_limit, options.number("smoothing_target")},
+                              options.number("smoothing_relaxation")));
+  }
 }
 
+}  // namespace
+
 Backend fast_projection_row() {
+  constexpr bool departs = true;  // Algorithm 1 has no passes
   return {.name = "fast_projection",
           .summary =
               "the paper's Algorithm 1: repeated projections, constraint directions from the "
               "current iterate",
-          .strain_control = StrainControl::strain_limit,
-          .contestant = true,
-          .settings = setting_infos(FastProjection::fields()),
+          .settings = {iteration_limit(200, "projections a step before it is refused"),
+                       least_iterations(),
+                       projection_target(),
+                       // In that configuration a straight row at full length has no neighbour with
+                       // C = 0, but many permissible ones.
+                       {"inner_band", 0.6,
+                        "target of damped projections, where J W J^T is singular", below_limit},
+                       // A projection sees the whole cloth, but only to first order; most of what
+                       // it leaves is local, and cheaper to correct by passes over edges.
+                       {"sweeps_before", 0.0,
+                        "colored Gauss-Seidel passes before the first projection, at most; none on "
+                        "chains, where a projection costs no more than some passes",
+                        count_from_zero, tunable_passes, departs},
+                       {"smoothing_sweeps", 0.0,
+                        "the same after each projection, at most; none on chains", count_from_zero,
+                        tunable_passes, departs},
+                       {"smoothing_target", 0.5, pass_target, fraction, tunable_fraction, departs},
+                       {"smoothing_relaxation", 1.4, "times a pass's correction", relaxation_range,
+                        tunable_relaxation, departs},
+                       {"first_forcing", 1e-2,
+                        "residual of a step's first linear solve by conjugate gradients or in "
+                        "mixed precision, of the right-hand side; those of later ones are smaller",
+                        Range{1e-8, 1}, tunable_forcing},
+                       schur_solver()},
           .make_filter = make_filter<FastProjection>,
           .takes_middle = true,
           .direction = Direction::current,

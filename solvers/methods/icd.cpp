@@ -1,4 +1,5 @@
-// (2) and (4) are those of Goldenthal et al. 2007.
+// Implicit constraint direction (Goldenthal et al. 2007, section 4.1): constraint forces act along
+// J at the end of the step. (2) and (4) are theirs.
 //
 // Newton on F(dx, lambda) = dx + h^2 W J(x0 + dx)^T lambda = 0 and C(x0 + dx) = 0 together, mu =
 // h^2 lambda:
@@ -11,18 +12,51 @@
 // forces; if that fails, once more from zero, whose first iteration is fast projection's. The
 // linear system is solved to a few percent by projected conjugate gradients, or factored. Loops:
 // one assembly, one factorization, several solves and one or more evaluations an iteration.
-#include "solvers/methods/icd.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "solvers/methods/rows.h"
+#include "solvers/systems/active_contacts.h"
 #include "solvers/systems/chain_kkt.h"
+#include "solvers/systems/constraint_system.h"
 #include "solvers/systems/kkt_system.h"
 #include "solvers/systems/projected_cg.h"
 
 namespace inextensible {
 namespace {
+
+class Icd final : public VelocityFilter {
+ public:
+  Icd(const Problem& problem, const BackendOptions& options);
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
+  const char* linear_solver() const override { return linear_solver_.c_str(); }
+  double reciprocal_condition() const override { return kkt_->reciprocal_condition(); }
+
+ private:
+  void evaluate(const Positions& dx);
+  StepResult closest(double h, Iterate x, WorkCounters& work);
+  bool direction(const Contacts* contacts, bool convex, WorkCounters& work);
+  bool line_search(WorkCounters& work);
+  StepResult newton(double h, Iterate x, WorkCounters& work);
+
+  const Problem& problem_;
+  std::string linear_solver_;
+  EdgeConstraints edges_;
+  std::unique_ptr<KktSolver> kkt_;
+  int max_iterations_, min_iterations_;
+  double target_;
+  double direction_tolerance_;  // m
+  Eigen::VectorXd mass_;        // scaled by the mean mass, as mu is
+  ActiveContacts active_;
+
+  Positions x0_, trial_, dx_, trial_dx_, f_, dp_;  // f_ = M F = M dx + J^T mu
+  Eigen::Matrix3Xd u_;
+  Eigen::VectorXd c_, mu_, trial_mu_, dq_;  // c_: what of C lies beyond the target
+  bool permissible_ = false;
+  double largest_f_ = 0;             // m, over vertices
+  double merit_ = 0;                 // sum of |F|^2 and C^2, m^2
+  Eigen::VectorXd previous_lambda_;  // mu / h^2 of the last solve that converged
+};
 
 constexpr int line_search_limit = 12;
 constexpr int most_rounds = 20;
@@ -49,18 +83,16 @@ std::unique_ptr<KktSolver> make_kkt_solver(std::string_view name, const Problem&
   return std::make_unique<KktSystem>(problem, edges);
 }
 
-}  // namespace
-
-Icd::Icd(const Problem& problem, const Settings& settings)
+Icd::Icd(const Problem& problem, const BackendOptions& options)
     : problem_(problem),
-      linear_solver_(choose(settings.linear_solver, problem)),
-      edges_(problem, settings.strain_limit,
+      linear_solver_(choose(options.word("linear_solver"), problem)),
+      edges_(problem, options.strain_limit,
              linear_solver_ == projected_cg ? elimination_order(problem) : std::vector<int>{}),
-      kkt_(make_kkt_solver(linear_solver_, problem, edges_, settings.cg_tolerance)),
-      max_iterations_(settings.max_iterations),
-      min_iterations_(settings.min_iterations),
-      target_(settings.target),
-      direction_tolerance_(settings.direction_tolerance * settings.strain_limit *
+      kkt_(make_kkt_solver(linear_solver_, problem, edges_, options.number("cg_tolerance"))),
+      max_iterations_(options.count("max_iterations")),
+      min_iterations_(options.count("min_iterations")),
+      target_(options.number("target")),
+      direction_tolerance_(options.number("direction_tolerance") * options.strain_limit *
                            problem.shortest_rest_length()),
       mass_(Eigen::Map<const Eigen::VectorXd>(problem.mass().data(), problem.vertices()) /
             problem.total_mass() * problem.vertices()),
@@ -196,35 +228,28 @@ StepResult Icd::newton(double h, Iterate x, WorkCounters& work) {
   }
 }
 
-SettingFields<Icd::Settings> Icd::fields() {
-  using S = Settings;
-  return {
-      {"max_iterations", &S::max_iterations, "iterations a step before it is refused",
-       at_least_one},
-      {"min_iterations", &S::min_iterations, least_iterations, count_from_zero,
-       tunable_least_iterations},
-      {"target", &S::target, projection_target, below_limit, tunable_below_limit},
-      {"direction_tolerance", &S::direction_tolerance,
-       "largest |F| of a vertex, in strain limit times shortest rest length; above 1 the direction "
-       "may be that of an iterate short of the end",
-       positive, tunable_direction_tolerance},
-      {"cg_tolerance", &S::cg_tolerance, "accuracy of a Newton step by projected_cg",
-       Range{0, 1, true}, SearchRange{0.001, 0.95}},
-      word_field("linear_solver", &S::linear_solver, "of the KKT system",
-                 {"auto", "projected_cg", "quasi_definite", "block_tridiagonal"})};
-}
+}  // namespace
 
 Backend icd_row() {
-  return {.name = "icd",
-          .summary = "Lagrange multipliers, constraint directions from the end of the step",
-          .strain_control = StrainControl::strain_limit,
-          .contestant = true,
-          .settings = setting_infos(Icd::fields()),
-          .make_filter = make_filter<Icd>,
-          .direction = Direction::end,
-          .citation = "Goldenthal et al. 2007",
-          .origin = Origin::paper,
-          .label = "ICD (implicit constraint direction)"};
+  return {
+      .name = "icd",
+      .summary = "Lagrange multipliers, constraint directions from the end of the step",
+      .settings = {iteration_limit(200, "iterations a step before it is refused"),
+                   least_iterations(),
+                   projection_target(),
+                   {"direction_tolerance", 0.1,
+                    "largest |F| of a vertex, in strain limit times shortest rest length; above 1 "
+                    "the direction may be that of an iterate short of the end",
+                    positive, tunable_direction_tolerance},
+                   {"cg_tolerance", 0.03, "accuracy of a Newton step by projected_cg",
+                    forcing_range, SearchRange{0.001, 0.95}},
+                   word_setting("linear_solver", "auto", "of the KKT system",
+                                {"auto", "projected_cg", "quasi_definite", "block_tridiagonal"})},
+      .make_filter = make_filter<Icd>,
+      .direction = Direction::end,
+      .citation = "Goldenthal et al. 2007",
+      .origin = Origin::paper,
+      .label = "ICD (implicit constraint direction)"};
 }
 
 }  // namespace inextensible

@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/linear/spd_solvers.h"
 #include "solvers/methods/rows.h"
 
 namespace inextensible {
@@ -27,15 +26,16 @@ constexpr double stiff_normal = 1e6;
 
 }  // namespace
 
-ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared, const Settings& settings)
+ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared,
+                                 const BackendOptions& options)
     : Stepper(std::move(shared)),
-      hessian_(problem(), settings.stiffness, settings.linear_solver),
-      max_iterations_(settings.max_iterations),
-      step_tolerance_(settings.newton_tolerance * settings.strain_limit *
+      hessian_(problem(), options.number("stiffness"), options.word("linear_solver")),
+      max_iterations_(options.count("max_iterations")),
+      step_tolerance_(options.number("newton_tolerance") * options.strain_limit *
                       problem().shortest_rest_length()),
-      reuse_below_(settings.reuse * step_tolerance_),
-      extrapolates_(settings.start == "extrapolated"),
-      predicts_tension_(settings.tension == "linearized") {
+      reuse_below_(options.number("reuse") * step_tolerance_),
+      extrapolates_(options.word("start") == "extrapolated"),
+      predicts_tension_(options.word("tension") == "linearized") {
   const Problem& p = problem();
   if (step_tolerance_ == 0) step_tolerance_ = 1e-12;  // no edge says what is small: rounding
   for (Positions* x : {&inertial_, &trial_, &ahead_, &v_before_}) x->resize(3, p.vertices());
@@ -197,49 +197,38 @@ void ImplicitSprings::assemble_bending(const Positions& x, double h, bool matrix
   }
 }
 
-SettingFields<ImplicitSprings::Settings> ImplicitSprings::fields() {
-  using S = Settings;
-  std::vector<const char*> solvers{"auto"};
-  for (const SpdSolverRow& row : spd_solvers()) {
-    if (row.takes != Takes::tridiagonal && row.direct && row.precision == Precision::full)
-      solvers.push_back(row.name);
-  }
-  return {
-      {"stiffness", &S::stiffness, "spring stiffness EA in N; sweeps search it", positive},
-      {"max_iterations", &S::max_iterations, "Newton iterations a step before it is refused",
-       at_least_one},
-      {"newton_tolerance", &S::newton_tolerance,
-       "last Newton step, in strain limit times shortest rest length", positive,
-       SearchRange{0.01, 10}},
-      // Instructions at 1 % strain and 1/100 s, plain Newton = 1, on the chain of 80 and the drape
-      // of 21 x 21: start and tension take 0.66 and 0.77, with reuse 0.59 and 0.55. A reuse of 30
-      // takes 0.55 and 0.53 but ends steps less exactly on the chain.
-      word_field("start", &S::start,
-                 "where Newton starts: at the lowest of free flight, last positions and their "
-                 "extrapolation to second order, or of the first two",
-                 {"extrapolated", "flight"}),
-      word_field("tension", &S::tension,
-                 "which tension stiffens the Hessian across a spring: that of the last "
-                 "linearization, or of the positions",
-                 {"linearized", "current"}),
-      {"reuse", &S::reuse,
-       "a Newton step below this many tolerances keeps its factorization for the next; 0: never",
-       Range{0}, SearchRange{0, 100}},
-      word_field("linear_solver", &S::linear_solver, "factorization of the Hessian", solvers)};
-}
-
 Backend implicit_springs_row() {
-  return {.name = "implicit_springs",
-          .summary = "stiff springs, by Newton with line search",
-          .strain_control = StrainControl::stiffness,
-          .contestant = true,
-          .settings = setting_infos(ImplicitSprings::fields()),
-          .make = make_step<ImplicitSprings>,
-          .direction = Direction::springs,
-          .citation = "Baraff and Witkin 1998",
-          .origin = Origin::paper,
-          .label = "implicit springs",
-          .backward_euler = true};
+  return {
+      .name = "implicit_springs",
+      .summary = "stiff springs, by Newton with line search",
+      .strain_control = StrainControl::stiffness,
+      .settings =
+          {{"stiffness", 1e4, "spring stiffness EA in N; sweeps search it", positive},
+           iteration_limit(300, "Newton iterations a step before it is refused"),
+           {"newton_tolerance", 0.1, "last Newton step, in strain limit times shortest rest length",
+            positive, SearchRange{0.01, 10}},
+           // Instructions at 1 % strain and 1/100 s, plain Newton = 1, on the chain of 80 and the
+           // drape of 21 x 21: start and tension take 0.66 and 0.77, with reuse 0.59 and 0.55. A
+           // reuse of 30 takes 0.55 and 0.53 but ends steps less exactly on the chain.
+           word_setting("start", "extrapolated",
+                        "where Newton starts: at the lowest of free flight, last positions and "
+                        "their extrapolation to second order, or of the first two",
+                        {"extrapolated", "flight"}),
+           word_setting("tension", "linearized",
+                        "which tension stiffens the Hessian across a spring: that of the last "
+                        "linearization, or of the positions",
+                        {"linearized", "current"}),
+           {"reuse", 10.0,
+            "a Newton step below this many tolerances keeps its factorization for the next; 0: "
+            "never",
+            Range{}, SearchRange{0, 100}},
+           direct_solver("factorization of the Hessian", Takes::block_tridiagonal)},
+      .make = make_step<ImplicitSprings>,
+      .direction = Direction::springs,
+      .citation = "Baraff and Witkin 1998",
+      .origin = Origin::paper,
+      .label = "implicit springs",
+      .backward_euler = true};
 }
 
 }  // namespace inextensible

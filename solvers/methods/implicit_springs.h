@@ -10,26 +10,14 @@
 #include <limits>
 #include <string>
 
-#include "solvers/methods/setting_fields.h"
+#include "solvers/methods/backend.h"
 #include "solvers/systems/spring_hessian.h"
 
 namespace inextensible {
 
 class ImplicitSprings final : public Stepper {
  public:
-  // What each is for stands in fields().
-  struct Settings {
-    double stiffness = 1e4;
-    double strain_limit = 0.01;  // only sets the accuracy of Newton's iteration
-    int max_iterations = 300;
-    double newton_tolerance = 0.1;
-    std::string_view start = "extrapolated";
-    std::string_view tension = "linearized";
-    double reuse = 10;
-    std::string_view linear_solver = "auto";
-  };
-  static SettingFields<Settings> fields();
-  ImplicitSprings(std::shared_ptr<const Problem> problem, const Settings& settings);
+  ImplicitSprings(std::shared_ptr<const Problem> problem, const BackendOptions& options);
   const char* linear_solver() const override { return hessian_.linear_solver.c_str(); }
   double reciprocal_condition() const override { return hessian_.solver->reciprocal_condition(); }
 

@@ -18,7 +18,6 @@
 #include <stdexcept>
 
 #include "solvers/methods/rows.h"
-#include "solvers/methods/setting_fields.h"
 #include "solvers/methods/strain_passes.h"
 
 namespace inextensible {
@@ -26,28 +25,20 @@ namespace {
 
 class PbdSubsteps final : public VelocityFilter {
  public:
-  // Long-range attachments (Kim, Chentanez and Mueller 2012): no vertex is farther from a pinned
-  // one than its rest distance, along edges, which inextensible edges imply, or straight, which
-  // holds only where nothing shears. Momentum is not kept.
-  struct Settings {
-    int sweeps = 1;
-    double relaxation = 1;  // of a correction
-    std::string_view attachments = "none";
-  };
-  static SettingFields<Settings> fields();
-  // rest: positions (3 x n) at rest, for straight attachments; null where they are not known.
-  // Throws std::invalid_argument if they are needed.
-  PbdSubsteps(const Problem& problem, const Settings& settings, const Positions* rest,
-              Along along = Along::edges);
+  // The start is taken for the shape at rest, which straight attachments need. Throws
+  // std::invalid_argument if they do not have it.
+  PbdSubsteps(const Problem& problem, const BackendOptions& options, Along along);
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
 
  private:
+  // Long-range attachments (Kim, Chentanez and Mueller 2012): no vertex is farther from a pinned
+  // one than its rest distance, along edges, which inextensible edges imply, or straight, which
+  // holds only where nothing shears. Momentum is not kept.
   struct Attachment {
     int vertex, pin;
     double distance;  // m
   };
-  void attach_along_edges(const Problem& problem);
-  void attach_straight(const Problem& problem, const Positions& rest);
+  void attach(const Problem& problem, const Positions* rest);
   void keep_nearest(const Problem& problem);
 
   int most_;
@@ -80,34 +71,31 @@ std::vector<double> distances_from(int start, const Problem& problem,
   return distance;
 }
 
-PbdSubsteps::PbdSubsteps(const Problem& problem, const Settings& settings, const Positions* rest,
-                         Along along)
-    : most_(settings.sweeps),
+PbdSubsteps::PbdSubsteps(const Problem& problem, const BackendOptions& options, Along along)
+    : most_(options.count("sweeps")),
       along_(along),
-      passes_(StrainPasses::by_mass(problem, {0, 0}, settings.relaxation)) {
-  if (settings.attachments == "edges") attach_along_edges(problem);
-  if (settings.attachments == "straight") {
-    if (!rest) throw std::invalid_argument("straight attachments need the positions at rest");
-    attach_straight(problem, *rest);
-  }
+      passes_(StrainPasses::by_mass(problem, {0, 0}, options.number("relaxation"))) {
+  const std::string& attachments = options.word("attachments");
+  if (attachments == "straight" && !options.start)
+    throw std::invalid_argument("straight attachments need the positions at rest");
+  if (attachments != "none")
+    attach(problem, attachments == "straight" ? &options.start->x : nullptr);
 }
 
-void PbdSubsteps::attach_along_edges(const Problem& problem) {
+// Straight through the positions at rest, or, if these are null, along edges.
+void PbdSubsteps::attach(const Problem& problem, const Positions* rest) {
   const auto neighbours = neighbours_of(problem);
   for (const int pin : problem.pinned()) {
-    const std::vector<double> distance = distances_from(pin, problem, neighbours);
-    for (int v = 0; v < problem.vertices(); ++v) {
-      if (distance[v] < std::numeric_limits<double>::infinity())
-        attachments_.push_back({v, pin, distance[v]});
+    std::vector<double> distance(problem.vertices());
+    if (rest) {
+      for (int v = 0; v < problem.vertices(); ++v)
+        distance[v] = (rest->col(v) - rest->col(pin)).norm();
+    } else {
+      distance = distances_from(pin, problem, neighbours);
     }
-    keep_nearest(problem);
-  }
-}
-
-void PbdSubsteps::attach_straight(const Problem& problem, const Positions& rest) {
-  for (const int pin : problem.pinned()) {
-    for (int v = 0; v < problem.vertices(); ++v)
-      attachments_.push_back({v, pin, (rest.col(v) - rest.col(pin)).norm()});
+    for (int v = 0; v < problem.vertices(); ++v) {
+      if (std::isfinite(distance[v])) attachments_.push_back({v, pin, distance[v]});
+    }
     keep_nearest(problem);
   }
 }
@@ -146,17 +134,6 @@ StepResult PbdSubsteps::apply(const Positions& x_start, double /*h*/, Iterate it
   return {Status::ok, most_};
 }
 
-SettingFields<PbdSubsteps::Settings> PbdSubsteps::fields() {
-  using S = Settings;
-  return {
-      {"sweeps", &S::sweeps, "colored Gauss-Seidel passes a step", at_least_one,
-       SearchRange{1, 100}},
-      {"relaxation", &S::relaxation, "times a correction", relaxation_range, tunable_relaxation},
-      word_field("attachments", &S::attachments,
-                 "of vertices to pinned ones, at their rest distance along edges or straight",
-                 {"none", "edges", "straight"})};
-}
-
 }  // namespace
 
 Backend pbd_substeps_row() {
@@ -164,14 +141,14 @@ Backend pbd_substeps_row() {
       .name = "pbd_substeps",
       .summary = "PBD with substeps (XPBD without compliance): a fixed number of passes, no test",
       .strain_control = StrainControl::time_step,
-      .contestant = true,
-      .settings = setting_infos(PbdSubsteps::fields()),
-      .make_filter = [](const Problem& problem, const BackendOptions& options,
-                        Along along) -> std::unique_ptr<VelocityFilter> {
-        // The start is taken for the shape at rest.
-        return std::make_unique<PbdSubsteps>(problem, settings_of<PbdSubsteps>(options),
-                                             options.start ? &options.start->x : nullptr, along);
-      },
+      .settings = {{"sweeps", 1.0, "colored Gauss-Seidel passes a step", at_least_one,
+                    SearchRange{1, 100}},
+                   {"relaxation", 1.0, "times a correction", relaxation_range, tunable_relaxation},
+                   word_setting(
+                       "attachments", "none",
+                       "of vertices to pinned ones, at their rest distance along edges or straight",
+                       {"none", "edges", "straight"})},
+      .make_filter = make_filter<PbdSubsteps>,
       .takes_middle = true,
       .direction = Direction::local,
       .citation = "Macklin et al. 2016, 2019",

@@ -1,3 +1,7 @@
+// SHAKE (Ryckaert, Ciccotti and Berendsen 1977) as a global Newton method: constraint forces act
+// along the gradient at the start of the step, the matrix is built once a step and again only if
+// convergence fails (Barth et al. 1994). RATTLE follows below.
+//
 // (5) and (7) are those of Goldenthal et al. 2007, which take J at x_j where SHAKE takes J(x^n).
 //
 // Newton on C(x0 - W J(x^n)^T h^2 lambda) = 0, with mu = h^2 dlambda. Its matrix J(x_j) W J(x^n)^T
@@ -7,33 +11,75 @@
 // The equations have spurious solutions far away; the closest point of the manifold is at most
 // twice as far from x^n (on it) as x0 is, so what is farther, allowing for slack, is refused.
 // Loops: one assembly and factorization a step, one solve and two passes over edges an iteration.
-#include "solvers/methods/shake.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "solvers/linear/lu.h"
 #include "solvers/methods/rows.h"
+#include "solvers/problem/forces.h"
+#include "solvers/problem/stopwatch.h"
+#include "solvers/systems/constraint_system.h"
 
 namespace inextensible {
 namespace {
+
+class Shake final : public VelocityFilter {
+ public:
+  Shake(const Problem& problem, const BackendOptions& options);
+  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
+
+  // RATTLE's velocity stage (Andersen 1983): v -= W J^T nu with J = J(x), so that J v = 0, and
+  // nothing moves through a plane that holds it. Without contacts the factor is kept: a step that
+  // starts at this x does not build it again. contacts: null, or those of this step.
+  StepResult project_velocity(const Positions& x, const Contacts* contacts, Positions& v,
+                              WorkCounters& work);
+
+  const char* linear_solver() const override { return system_.solver_name().c_str(); }
+  double reciprocal_condition() const override { return system_.reciprocal_condition(); }
+
+ private:
+  // Which matrix stands in (7): that of the start of the step; the true one, J(x_j) W J(x^n)^T, of
+  // this iterate or of an earlier one.
+  enum class Matrix { start, here, kept };
+  // J(x_start) W J(x_start)^T, unless it is there already. False if it is not positive definite.
+  bool factor_start(const Positions& x_start, const Contacts* contacts, WorkCounters& work);
+  bool factor_here(const Contacts* contacts, WorkCounters& work);
+  bool solve(Matrix matrix, WorkCounters& work);
+  bool linearize(const Positions& x);
+  void correct(Iterate x);
+  // |x - x_start| in the norm of M.
+  double distance(const Positions& x_start, const Positions& x) const;
+
+  ConstraintSystem system_;
+  const Problem& problem_;
+  double slack_;  // M-norm of what the strain limit lets vertices drift
+  int max_iterations_, min_iterations_;
+  double target_, forcing_;
+  Eigen::Matrix3Xd u_start_, u_;
+  Positions x_factored_;  // where the factor in system_ was built; used by RATTLE only
+  bool factored_ = false;
+  Eigen::VectorXd c_, mu_;  // C~(x_j), and the step's h^2 dlambda
+  Iterate::Record best_;    // of least |C|
+  // J(x_j) W J(x^n)^T, made at the first failure to converge: most runs never need it.
+  std::unique_ptr<UnsymmetricSchurComplement> current_;
+  std::unique_ptr<UnsymmetricSolver> current_solver_;
+  std::unique_ptr<ContactTerms> current_contact_terms_;  // with contacts only
+};
 
 constexpr double shortest_step = 1e-3;  // of Newton's
 constexpr const char* no_solution =
     "the linear solver did not converge, or its multipliers grew too large";
 
-}  // namespace
-
-Shake::Shake(const Problem& problem, const Settings& settings)
-    : system_(problem, settings.strain_limit, settings.linear_solver),
+Shake::Shake(const Problem& problem, const BackendOptions& options)
+    : system_(problem, options.strain_limit, options.word("linear_solver")),
       problem_(problem),
-      slack_(settings.strain_limit * problem.longest_rest_length() *
+      slack_(options.strain_limit * problem.longest_rest_length() *
              std::sqrt(problem.total_mass())),
-      max_iterations_(settings.max_iterations),
-      min_iterations_(settings.min_iterations),
-      target_(settings.target),
-      forcing_(settings.forcing),
+      max_iterations_(options.count("max_iterations")),
+      min_iterations_(options.count("min_iterations")),
+      target_(options.number("target")),
+      forcing_(options.number("forcing")),
       u_start_(3, problem.constraints()),
       u_(3, problem.constraints()),
       c_(problem.constraints()),
@@ -163,30 +209,100 @@ bool Shake::factor_here(const Contacts* contacts, WorkCounters& work) {
   return current_solver_->factor();
 }
 
-SettingFields<Shake::Settings> Shake::fields() {
-  using S = Settings;
-  return {{"max_iterations", &S::max_iterations, "iterations a step before it is refused",
-           at_least_one},
-          {"min_iterations", &S::min_iterations, least_iterations, count_from_zero,
-           tunable_least_iterations},
-          {"target", &S::target, projection_target, below_limit, tunable_below_limit},
-          {"forcing", &S::forcing,
-           "residual of linear solves by conjugate gradients, of the right-hand side",
-           forcing_range, tunable_forcing},
-          schur_solver_field<S>()};
+// RATTLE (Andersen 1983): SHAKE's kin with velocities at the ends of steps. Second order,
+// symmetric, hence without damping:
+//   x^{n+1} = x^n + h v^n + h^2/2 (a(x^n) - W J(x^n)^T lambda)   with C(x^{n+1}) = 0  (SHAKE),
+//   v^{n+1} = (x^{n+1} - x^n)/h + h/2 a(x^{n+1}) - W J(x^{n+1})^T nu   with J(x^{n+1}) v^{n+1} = 0.
+// The matrix of the second line is the one that SHAKE needs in the next step: one factorization and
+// two solves a step.
+class Rattle final : public Stepper {
+ public:
+  Rattle(std::shared_ptr<const Problem> problem, const BackendOptions& options)
+      : Stepper(std::move(problem)), shake_(*problem_, options) {}
+  const char* linear_solver() const override { return shake_.linear_solver(); }
+  double reciprocal_condition() const override { return shake_.reciprocal_condition(); }
+
+ private:
+  StepResult solve(const State& state, double h, Positions& x) override;
+  StepResult end_velocities(const State& start, double h, const Positions& filtered,
+                            const Positions& x, Positions& v) override;
+
+  Shake shake_;
+  Positions v_half_;  // with drag only
+};
+
+StepResult Rattle::solve(const State& state, double h, Positions& x) {
+  Stopwatch stopwatch(phases_wanted_);
+  x = state.x + h * state.v;  // position stage (Andersen 1983)
+  add_acceleration(*problem_, state.x, 0.5 * h * h, x, work_);
+  if (problem_->has_drag()) add_drag(*problem_, state.v, 0.5 * h * h, x);
+  for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
+  phases_.unconstrained += stopwatch();
+  const StepResult result = apply_until_clear(shake_, contacts_inside(), state.x, h, x, work_);
+  phases_.filter += stopwatch();
+  return result;
 }
+
+StepResult Rattle::end_velocities(const State& start, double h, const Positions& /*filtered*/,
+                                  const Positions& x, Positions& v) {
+  Stopwatch stopwatch(phases_wanted_);
+  v = (x - start.x) * (1 / h);  // velocity stage
+  if (problem_->has_drag()) {   // of the velocity halfway
+    v_half_ = v;
+    add_drag(*problem_, v_half_, 0.5 * h, v);
+  }
+  add_acceleration(*problem_, x, 0.5 * h, v, work_);
+  for (const int vertex : problem_->pinned())  // 0 unless pins follow a body
+    v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
+  if (const Contacts* contacts = contacts_inside()) {  // which bear what presses on them
+    for (int c = 0; c < contacts->count(); ++c) {
+      const int vertex = contacts->vertex(c);
+      if (contacts->holds(c)) v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
+    }
+  }
+  phases_.unconstrained += stopwatch();
+  const StepResult result = shake_.project_velocity(x, contacts_inside(), v, work_);
+  phases_.filter += stopwatch();
+  return result;
+}
+
+std::vector<SettingInfo> shake_settings(double min_iterations) {
+  return {
+      iteration_limit(50, "iterations a step before it is refused"),
+      least_iterations(min_iterations),
+      projection_target(),
+      {"forcing", 1e-2, "residual of linear solves by conjugate gradients, of the right-hand side",
+       forcing_range, tunable_forcing},
+      schur_solver()};
+}
+
+}  // namespace
 
 Backend shake_row() {
   return {.name = "shake",
           .summary = "Lagrange multipliers, constraint directions from the start of the step",
-          .strain_control = StrainControl::strain_limit,
-          .contestant = true,
-          .settings = setting_infos(Shake::fields()),
+          .settings = shake_settings(0),
           .make_filter = make_filter<Shake>,
           .direction = Direction::start,
           .citation = "Ryckaert, Ciccotti and Berendsen 1977; Barth et al. 1994",
           .origin = Origin::paper,
           .label = "SHAKE",
+          .stepper = "verlet"};
+}
+
+Backend rattle_row() {
+  return {.name = "rattle",
+          .summary =
+              "SHAKE with velocities projected as well (Andersen 1983): second order, no damping",
+          .settings = shake_settings(1),
+          .make = make_step<Rattle>,
+          .direction = Direction::start,
+          .citation = "Andersen 1983",
+          .origin = Origin::literature,
+          .label = "RATTLE (SHAKE with velocities)",
+          .family = "shake",
+          .takes_implicit_forces = false,
+          .velocities = Velocities::whole_step,
           .stepper = "verlet"};
 }
 

@@ -17,7 +17,6 @@
 #include <numbers>
 
 #include "solvers/methods/rows.h"
-#include "solvers/methods/setting_fields.h"
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/problem/forces.h"
 #include "solvers/problem/stopwatch.h"
@@ -27,13 +26,7 @@ namespace {
 
 class SoftStep final : public Stepper {
  public:
-  struct Settings {
-    int passes = 1;           // over edges, of either stage
-    double frequency = 0.25;  // of the springs, in 1/h
-    double damping = 10;      // ratio, 1: critical
-  };
-  static SettingFields<Settings> fields();
-  SoftStep(std::shared_ptr<const Problem> problem, const Settings& settings);
+  SoftStep(std::shared_ptr<const Problem> problem, const BackendOptions& options);
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override;
@@ -51,10 +44,10 @@ class SoftStep final : public Stepper {
   Eigen::VectorXd last_force_;  // of the last accepted step, N
 };
 
-SoftStep::SoftStep(std::shared_ptr<const Problem> shared, const Settings& settings)
-    : Stepper(std::move(shared)), passes_(settings.passes), edges_(problem(), 0) {
-  const double angle = 2 * std::numbers::pi * settings.frequency;  // h omega
-  const double s = 2 * settings.damping + angle, c = angle * s;
+SoftStep::SoftStep(std::shared_ptr<const Problem> shared, const BackendOptions& options)
+    : Stepper(std::move(shared)), passes_(options.count("passes")), edges_(problem(), 0) {
+  const double angle = 2 * std::numbers::pi * options.number("frequency");  // h omega
+  const double s = 2 * options.number("damping") + angle, c = angle * s;
   hardness_ = c / (1 + c);
   give_ = 1 / (1 + c);
   rate_ = angle / s;
@@ -119,24 +112,18 @@ StepResult SoftStep::end_velocities(const State& start, double h, const Position
   return {};
 }
 
-SettingFields<SoftStep::Settings> SoftStep::fields() {
-  using S = Settings;
-  return {{"passes", &S::passes, "Gauss-Seidel passes of either stage", at_least_one,
-           SearchRange{1, 8}},
-          {"frequency", &S::frequency, "of an edge's spring, in 1 / step", positive,
-           SearchRange{0.05, 1}},
-          {"damping", &S::damping, "ratio of an edge's spring, 1: critical", positive,
-           SearchRange{1, 20}}};
-}
-
 }  // namespace
 
 Backend soft_step_row() {
   return {.name = "soft_step",
           .summary = "velocities by Gauss-Seidel, positions by soft springs: small steps do it",
           .strain_control = StrainControl::time_step,
-          .contestant = true,
-          .settings = setting_infos(SoftStep::fields()),
+          .settings = {{"passes", 1.0, "Gauss-Seidel passes of either stage", at_least_one,
+                        SearchRange{1, 8}},
+                       {"frequency", 0.25, "of an edge's spring, in 1 / step", positive,
+                        SearchRange{0.05, 1}},
+                       {"damping", 10.0, "ratio of an edge's spring, 1: critical", positive,
+                        SearchRange{1, 20}}},
           .make = make_step<SoftStep>,
           .direction = Direction::start,
           .citation = "Catto 2024",

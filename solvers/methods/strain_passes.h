@@ -1,6 +1,5 @@
-// Passes of strain corrections over colored edges: what jacobi, gauss_seidel_colored and the
-// projections with passes share. Jacobi adds corrections to a sum, which is added to the positions
-// at the end of a pass; the others correct the positions at once.
+// Passes of strain corrections over colored edges, for jacobi, gauss_seidel_colored, pbd_substeps
+// and the projections with passes.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +8,6 @@
 #include <vector>
 
 #include "solvers/methods/colored_edges.h"
-#include "solvers/methods/placed_contacts.h"
 #include "solvers/problem/iterate.h"
 #include "solvers/systems/constraint_system.h"
 
@@ -37,6 +35,28 @@ inline double excess_along(double q, double along, double square, double wanted)
   return strained / (along + std::sqrt(std::max(along * along - square * strained, 0.0)));
 }
 
+// The planes of a step's contacts, side by side with the places of colored edges: passes settle
+// them in vectors, without looking up a vertex. Places without a contact have a plane of no normal,
+// which moves nothing.
+class PlacedContacts {
+ public:
+  // contact: whether there may be contacts at all; else nothing is allocated.
+  PlacedContacts(const ColoredEdges& edges, bool contact);
+
+  // Reads the planes and pushes of `contacts`, needed again whenever those have changed.
+  void load(const Contacts& contacts, const ColoredEdges& edges);
+  void store(Contacts& contacts, const ColoredEdges& edges) const;  // the pushes
+  void settle(ColoredEdges::Places& x);                             // Contacts::settle(), at x
+  const ColoredEdges::Places& held_normals();  // as StrainPasses::held_normals()
+
+ private:
+  static constexpr int width = Contacts::lanes;  // places that are settled side by side
+
+  std::vector<int> blocks_;  // first places of those blocks of `width` that have a contact
+  ColoredEdges::Places normal_, held_;
+  Eigen::ArrayXd offset_, push_;
+};
+
 class StrainPasses {
  public:
   // A correction moves the ends of edge k by share_a[k] and share_b[k] of what it takes to bring
@@ -51,44 +71,23 @@ class StrainPasses {
   // Contacts of x are settled before each pass from now on, so that they hold wherever a pass finds
   // nothing to correct.
   void load(Iterate x);
+  void store(Positions& x) const;
   // load(), and saves the contacts of x for passes_alone().
   void begin(Iterate x);
-  void store(Positions& x) const;
   // From now on corrections point along the edges as they are in the middle of the step from
   // x_start (3 x n) to where they are. Until the first call they point along the edges as they are.
   void take_middle_from(const Positions& x_start);
   bool finite() const { return x_.allFinite(); }
-  // Whether to stop after so many passes: at most `most`, and no more than some with overflow.
-  bool gives_up(int passes, int most) const {
-    return passes == most || (passes % 64 == 63 && !finite());
-  }
-  // Nothing is left to correct, or passes were given up for the reason `limit` (null: they were
-  // not): ok if x, as stored, is permissible.
-  static StepResult verdict(int passes, const char* limit, const EdgeConstraints& edges,
-                            const Positions& x);
-  // Rounds of projections in contact, after which passes alone end a step: Newton's method
-  // overshoots where a step takes vertices far round an obstacle; passes do not.
-  static constexpr int most_rounds_in_contact = 100;
   ColoredEdges::Places& positions() { return x_; }
+  const ColoredEdges& edges() const { return edges_; }
   void settle_contacts();  // at positions()
   // Normals of planes that hold their vertex, by place, zero elsewhere; null: no contacts.
   const ColoredEdges::Places* held_normals();
 
-  // Passes until one finds nothing to correct, at most `most_passes`; the last one, which is the
-  // test of convergence, is not counted. Refuses x if an edge (of `edges`, in any order) is still
-  // beyond its limit.
-  enum class Order { in_turn, at_once };
-  StepResult limit(Order order, int most_passes, const EdgeConstraints& edges, Iterate x,
-                   WorkCounters& work);
-
-  // Ends a step that projections do not end: restores the contacts that begin() saved, and makes
-  // passes in turn, from x as it was stored last.
-  StepResult passes_alone(const EdgeConstraints& edges, Iterate x, WorkCounters& work);
-
   // One pass; returns how many edges it corrected. An edge of no length has no direction to be
   // corrected along and counts as none.
   std::int64_t in_turn();  // in the order of edges(), each from where the last one left its ends
-  std::int64_t at_once();  // all from the same positions
+  std::int64_t at_once();  // all from the same positions; the corrections are summed
   // Passes in turn until one corrects nothing, at most `most` of them, all counted; `left`: what
   // the last one corrected, 1 if there was none.
   struct Passed {
@@ -97,7 +96,27 @@ class StrainPasses {
   };
   Passed in_turn(int most, WorkCounters& work);
 
-  const ColoredEdges& edges() const { return edges_; }
+  // Passes until one finds nothing to correct, at most `most_passes`; the last one, which is the
+  // test of convergence, is not counted. Refuses x if an edge (of `edges`, in any order) is still
+  // beyond its limit.
+  enum class Order { in_turn, at_once };
+  StepResult limit(Order order, int most_passes, const EdgeConstraints& edges, Iterate x,
+                   WorkCounters& work);
+  // Whether to stop after so many passes: at most `most`, and no more than some with overflow.
+  bool gives_up(int passes, int most) const {
+    return passes == most || (passes % 64 == 63 && !finite());
+  }
+  // Nothing is left to correct, or passes were given up for the reason `limit` (null: they were
+  // not): ok if x, as stored, is permissible.
+  static StepResult verdict(int passes, const char* limit, const EdgeConstraints& edges,
+                            const Positions& x);
+
+  // Rounds of projections in contact, after which passes alone end a step: Newton's method
+  // overshoots where a step takes vertices far round an obstacle; passes do not.
+  static constexpr int most_rounds_in_contact = 100;
+  // Ends a step that projections do not end: restores the contacts that begin() saved, and makes
+  // passes in turn, from x as it was stored last.
+  StepResult passes_alone(const EdgeConstraints& edges, Iterate x, WorkCounters& work);
 
  private:
   void renew_planes(Iterate x, WorkCounters& work);

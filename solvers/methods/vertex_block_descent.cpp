@@ -14,7 +14,6 @@
 #include <limits>
 
 #include "solvers/methods/rows.h"
-#include "solvers/methods/setting_fields.h"
 #include "solvers/methods/vertex_passes.h"
 
 namespace inextensible {
@@ -22,13 +21,7 @@ namespace {
 
 class VertexBlockDescent final : public Stepper {
  public:
-  struct Settings {
-    double stiffness = 1e4;  // EA, N; as ImplicitSprings'
-    int iterations = 100;    // passes a step
-    double relaxation = 1;   // times a vertex's move
-  };
-  static SettingFields<Settings> fields();
-  VertexBlockDescent(std::shared_ptr<const Problem> problem, const Settings& settings);
+  VertexBlockDescent(std::shared_ptr<const Problem> problem, const BackendOptions& options);
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override;
@@ -58,11 +51,11 @@ Springs all_springs(const Problem& problem, double stiffness) {
 }
 
 VertexBlockDescent::VertexBlockDescent(std::shared_ptr<const Problem> shared,
-                                       const Settings& settings)
+                                       const BackendOptions& options)
     : Stepper(std::move(shared)),
-      iterations_(settings.iterations),
-      relaxation_(settings.relaxation),
-      passes_(problem(), all_springs(problem(), settings.stiffness)),
+      iterations_(options.count("iterations")),
+      relaxation_(options.number("relaxation")),
+      passes_(problem(), all_springs(problem(), options.number("stiffness"))),
       inertial_(3, problem().vertices()),
       inertia_(problem().mass()),
       v_before_(3, problem().vertices()) {}
@@ -131,24 +124,19 @@ StepResult VertexBlockDescent::end_velocities(const State& before, double h,
   return Stepper::end_velocities(before, h, filtered, x, v);
 }
 
-SettingFields<VertexBlockDescent::Settings> VertexBlockDescent::fields() {
-  using S = Settings;
-  return {{"stiffness", &S::stiffness, "spring stiffness EA in N; sweeps search it", positive},
-          {"iterations", &S::iterations, "passes over all vertices a step", at_least_one,
-           SearchRange{5, 500}},
-          {"relaxation", &S::relaxation,
-           "times a vertex's move; over-relaxed, where the paper has Chebyshev's acceleration",
-           relaxation_range, tunable_relaxation}};
-}
-
 }  // namespace
 
 Backend vertex_block_descent_row() {
   return {.name = "vertex_block_descent",
           .summary = "stiff springs, a number of passes over single vertices",
           .strain_control = StrainControl::stiffness,
-          .contestant = true,
-          .settings = setting_infos(VertexBlockDescent::fields()),
+          .settings =
+              {{"stiffness", 1e4, "spring stiffness EA in N; sweeps search it", positive},
+               {"iterations", 100.0, "passes over all vertices a step", at_least_one,
+                SearchRange{5, 500}},
+               {"relaxation", 1.0,
+                "times a vertex's move; over-relaxed, where the paper has Chebyshev's acceleration",
+                relaxation_range, tunable_relaxation}},
           .make = make_step<VertexBlockDescent>,
           .direction = Direction::springs,
           .citation = "Chen et al. 2024",

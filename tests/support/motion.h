@@ -1,6 +1,8 @@
 // States in motion, and what of them is compared.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
@@ -11,6 +13,34 @@
 namespace inextensible::testing {
 
 inline constexpr double h = 0.01;  // s, a time step
+
+// test(random, seed) for as many seeds; a failure names its seed.
+template <class Test>
+void for_seeds(std::uint64_t count, const Test& test) {
+  for (std::uint64_t seed = 0; seed < count; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    test(random, seed);
+  }
+}
+
+// Two vertices, an edge of length 1 between them, no gravity.
+inline std::shared_ptr<const Problem> one_edge(double mass_a, double mass_b,
+                                               std::vector<int> pinned = {}) {
+  ProblemParts parts;
+  parts.gravity.setZero();
+  parts.mass = {mass_a, mass_b};
+  parts.pinned = std::move(pinned);
+  parts.edges = {{0, 1}};
+  parts.rest_length = {1};
+  return std::make_shared<const Problem>(std::move(parts));
+}
+// At rest along x, stretched or compressed to `length`.
+inline State stretched_edge(double length) {
+  State state{Positions::Zero(3, 2), Positions::Zero(3, 2), 0};
+  state.x(0, 1) = length;
+  return state;
+}
 
 // Velocities that would stretch edges by some per cent in one step at speed 4.
 inline State moving_state(Random& random, const RandomMesh& mesh, double speed) {

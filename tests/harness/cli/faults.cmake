@@ -1,4 +1,4 @@
-# bench_with_faults: the program with a fault put into copies of three solver files, for gate_test. No hook in the solvers
+# bench_with_faults: the program with faults put into copies of two solver files, for gate_test. No hook in the solvers
 # themselves: if the text that a fault replaces is gone, configuring says so.
 
 # with_fault(FILE FROM TO): a copy of solvers/FILE with FROM replaced, appended to fault_sources.
@@ -26,8 +26,8 @@ endfunction()
 
 set(fault_sources)
 # Gauss-Seidel: three times as slow. What a call has taken is waited for twice more.
-with_fault(gauss_seidel.cpp "#include <cmath>" "#include <chrono>\n#include <cmath>")
-with_fault(gauss_seidel.cpp "namespace {\n" "namespace {
+with_fault(strain_limiting.cpp "#include <cmath>" "#include <chrono>\n#include <cmath>")
+with_fault(strain_limiting.cpp "namespace {\n" "namespace {
 struct Delay {
   using Clock = std::chrono::steady_clock;
   Clock::time_point start = Clock::now();
@@ -38,18 +38,12 @@ struct Delay {
   }
 };
 ")
-with_fault(gauss_seidel.cpp "  for (int passes = 0;; ++passes) {" "  const Delay delay;\n  for (int passes = 0;; ++passes) {")
+with_fault(strain_limiting.cpp "  for (int passes = 0;; ++passes) {" "  const Delay delay;\n  for (int passes = 0;; ++passes) {")
 # Fast projection: one iteration more than is needed.
 with_fault(fast_projection.cpp "  for (int j = 0, best_j = 0;; ++j) {" "  int extra = 0;\n  for (int j = 0, best_j = 0;; ++j) {")
-with_fault(fast_projection.cpp "j >= settings_.min_iterations)" "j >= settings_.min_iterations && extra++ > 0)")
+with_fault(fast_projection.cpp "j >= min_iterations_)" "j >= min_iterations_ && extra++ > 0)")
 # Jacobi: gives up after three sweeps.
-with_fault(jacobi.cpp "PassLimiter(problem, settings," "PassLimiter(problem, three_passes(settings),")
-with_fault(jacobi.cpp "namespace {\n" "namespace {
-LimiterSettings three_passes(LimiterSettings settings) {
-  settings.max_iterations = 3;
-  return settings;
-}
-")
+with_fault(strain_limiting.cpp "order_(order)," "order_(order == StrainPasses::Order::at_once ? (max_iterations_ = 3, order) : order),")
 
 # The copies come first, so that the archive's members of that name are not taken.
 add_executable(bench_with_faults ${fault_sources} $<TARGET_OBJECTS:bench>)

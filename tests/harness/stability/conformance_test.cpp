@@ -10,7 +10,6 @@
 #include <set>
 
 #include "harness/stability/stability.h"
-#include "solvers/methods/fast_projection.h"
 #include "solvers/registry.h"
 #include "support/param_name.h"
 
@@ -85,11 +84,11 @@ class Corrupted final : public VelocityFilter {
   Corrupted(const Problem& problem, double limit, const Fault& fault)
       : problem_(problem),
         fault_(fault),
-        filter_(problem, {.strain_limit = fault.limit_factor * limit}) {}
+        filter_(make_velocity_filter("fast_projection", problem, {fault.limit_factor * limit})) {}
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override {
     const Step step{problem_, x_start, x, work};
     if (fault_.when == When::before) fault_.act(step);
-    const StepResult result = filter_.apply(x_start, h, x, work);
+    const StepResult result = filter_->apply(x_start, h, x, work);
     if (fault_.when == When::refused && !result) fault_.act(step);
     if (fault_.when == When::corrected && result && result.iterations > 0) fault_.act(step);
     return result;
@@ -98,7 +97,7 @@ class Corrupted final : public VelocityFilter {
  private:
   const Problem& problem_;
   const Fault& fault_;
-  FastProjection filter_;
+  std::unique_ptr<VelocityFilter> filter_;
 };
 
 template <std::size_t I>

@@ -8,7 +8,7 @@
 
 #include "solvers/linear/hybrid.h"
 #include "solvers/linear/spd_solvers.h"
-#include "solvers/methods/fast_projection.h"
+#include "solvers/registry.h"
 #include "solvers/systems/schur_complement.h"
 #include "support/random_mesh.h"
 
@@ -254,16 +254,18 @@ TEST(FastProjection, KeepsTheLimitAlikeWithConjugateGradientsAndWithAFactorizati
     const Positions candidate = perturbed(random, mesh, 0.05);
     Positions expected = candidate;
     WorkCounters work;
-    FastProjection direct(*mesh.problem, {.strain_limit = limit, .linear_solver = "multifrontal"});
-    const StepResult exact = direct.apply(mesh.x, 0.01, expected, work);
+    const auto filter_with = [&](const char* name) {
+      return make_velocity_filter("fast_projection", *mesh.problem,
+                                  {limit, 1, {{"linear_solver", std::string(name)}}});
+    };
+    const StepResult exact = filter_with("multifrontal")->apply(mesh.x, 0.01, expected, work);
     ASSERT_TRUE(exact);
     EXPECT_EQ(work.linear_iterations, 0);
     for (const char* name : {"line_cg", "hybrid"}) {
       SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
       Positions x = candidate;
       WorkCounters inexact;
-      FastProjection filter(*mesh.problem, {.strain_limit = limit, .linear_solver = name});
-      const StepResult result = filter.apply(mesh.x, 0.01, x, inexact);
+      const StepResult result = filter_with(name)->apply(mesh.x, 0.01, x, inexact);
       ASSERT_TRUE(result);
       EXPECT_GT(inexact.linear_iterations, 0);
       EXPECT_LE(result.iterations, exact.iterations + 2);

@@ -96,12 +96,12 @@ TEST(MovingBody, NeedsABody) {
   EXPECT_THROW(Problem{parts}, std::invalid_argument);
 }
 
-class EveryMethod : public ::testing::TestWithParam<const char*> {};
+class MovingBodies : public ::testing::TestWithParam<const char*> {};
 
 // Cloth that falls onto a ball sees no difference between a ball at rest and both in the same
 // steady motion, but for what iterations stop at: a method that did not carry contacts along would
 // be wrong by 0.1.
-TEST_P(EveryMethod, SeesNoSteadyMotionThatItShares) {
+TEST_P(MovingBodies, SeesNoSteadyMotionThatItShares) {
   const Vector3d velocity(0.7, -0.4, 1.1);
   const Eigen::Matrix3d turned =
       Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitY()).toRotationMatrix();
@@ -145,7 +145,7 @@ std::vector<const char*> methods() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryMethod, ::testing::ValuesIn(methods()), names::contestant_name);
+INSTANTIATE_TEST_SUITE_P(All, MovingBodies, ::testing::ValuesIn(methods()), names::contestant_name);
 
 }  // namespace
 }  // namespace inextensible

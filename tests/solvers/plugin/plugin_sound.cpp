@@ -8,7 +8,6 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "solvers/methods/fast_projection.h"
 #include "solvers/plugin.h"
 
 namespace {
@@ -37,19 +36,19 @@ void print() {}
 class Repeated final : public VelocityFilter {
  public:
   Repeated(const Problem& problem, double strain_limit)
-      : inner_(problem, {.strain_limit = strain_limit}) {}
+      : inner_(make_velocity_filter("fast_projection", problem, {strain_limit})) {}
 
   StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override {
     print();
     for (int i = 0; i < in_vain; ++i) {
       copy_ = x;
-      inner_.apply(x_start, h, copy_, not_counted_);
+      inner_->apply(x_start, h, copy_, not_counted_);
     }
-    return inner_.apply(x_start, h, x, work);
+    return inner_->apply(x_start, h, x, work);
   }
 
  private:
-  FastProjection inner_;
+  std::unique_ptr<VelocityFilter> inner_;
   Positions copy_;
   WorkCounters not_counted_;
 };

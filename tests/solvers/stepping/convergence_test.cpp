@@ -9,8 +9,6 @@
 #include "harness/judge/reference.h"
 #include "harness/scenes/pendulum.h"
 #include "harness/scenes/scene.h"
-#include "solvers/methods/fast_projection.h"
-#include "solvers/methods/shake.h"
 #include "solvers/problem/forces.h"
 #include "solvers/registry.h"
 #include "solvers/stepping/bdf2_stepper.h"
@@ -85,8 +83,7 @@ TEST(Order, OfShakeInBdf2IsOne) {
   const Positions exact = pendulum_at(stretch);
   std::vector<double> steps, errors;
   for (double h = stretch / 40; steps.size() < 5; h /= 2) {
-    auto filter = std::make_unique<inextensible::Shake>(
-        *scene.problem, inextensible::Shake::Settings{.strain_limit = tight});
+    auto filter = inextensible::make_velocity_filter("shake", *scene.problem, {tight});
     inextensible::Bdf2Stepper stepper(scene.problem, std::move(filter));
     State state = scene.start;
     run(stepper, state, h);
@@ -235,8 +232,7 @@ std::shared_ptr<const inextensible::Problem> free_edge() {
 
 inextensible::Bdf2Stepper bdf2(const std::shared_ptr<const inextensible::Problem>& problem,
                                double strain_limit = 1e-12) {
-  return {problem, std::make_unique<inextensible::FastProjection>(
-                       *problem, inextensible::FastProjection::Settings{strain_limit})};
+  return {problem, inextensible::make_velocity_filter("fast_projection", *problem, {strain_limit})};
 }
 
 TEST(Bdf2, IsExactInFreeFallWhateverTheSteps) {

@@ -1,5 +1,6 @@
 // The velocity filter in a program of one's own, as one call after the program's own time step.
-#include <solvers/methods/fast_projection.h>
+#include <solvers/registry.h>
+#include <solvers/systems/constraint_system.h>
 
 #include <cstdio>
 
@@ -19,7 +20,7 @@ int main() {
     parts.rest_length.push_back(1.0 / links);
   }
   const Problem problem(parts);
-  FastProjection filter(problem, {.strain_limit = 0.001});
+  const auto filter = make_velocity_filter("fast_projection", problem, {.strain_limit = 0.001});
   const EdgeConstraints edges(problem, 0.001);
   WorkCounters work;
 
@@ -28,7 +29,7 @@ int main() {
     v.rightCols(links).row(1).array() -= 9.81 * h;  // whatever moves the vertices in your program
     Positions filtered = x + h * v;
     before = std::max(before, std::abs(edges.worst(filtered).strain));
-    if (!filter.apply(x, h, filtered, work)) return 1;  // refused: a smaller step is needed
+    if (!filter->apply(x, h, filtered, work)) return 1;  // refused: a smaller step is needed
     v = (filtered - x) / h;
     x = filtered;
     after = std::max(after, std::abs(edges.worst(x).strain));

@@ -1,0 +1,232 @@
+// Fast projection and ICD: the theorems of the paper, and where methods fail.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "solvers/problem/edge_constraints.h"
+#include "solvers/registry.h"
+#include "support/motion.h"
+
+namespace inextensible {
+namespace {
+
+using testing::for_seeds;
+using testing::h;
+using testing::Random;
+using testing::random_mesh;
+using testing::RandomMesh;
+constexpr int meshes = 8;
+
+// One call of a filter.
+struct Filtered {
+  Filtered(const char* name, const RandomMesh& mesh, const Positions& candidate,
+           const BackendOptions& options)
+      : x(candidate),
+        result(make_velocity_filter(name, *mesh.problem, options)->apply(mesh.x, h, x, work)) {
+    EXPECT_TRUE(result) << name << ": " << result.detail;
+  }
+  Positions x;
+  WorkCounters work;
+  StepResult result;
+};
+
+// Section 4.3: "The first iteration of these methods is identical."
+TEST(FastProjection, FirstIterationIsIcdsFirstNewtonIteration) {
+  for_seeds(meshes, [](Random& random, std::uint64_t) {
+    const auto mesh = random_mesh(random, 4, 5, 2);
+    const Problem& p = *mesh.problem;
+    const Positions candidate = testing::perturbed(random, mesh, 0.02);
+    // The loosest limit that one iteration reaches: candidates are off by some 0.03, the first
+    // iterate by its square.
+    const double limit = 0.004;
+    ASSERT_FALSE(EdgeConstraints(p, limit).permissible(candidate));
+    const Filtered fast("fast_projection", mesh, candidate,
+                        {limit, 1, {{"linear_solver", std::string("multifrontal")}}});
+    // ICD stops as soon as the strain is permissible, as fast projection does.
+    const Filtered icd("icd", mesh, candidate, {limit, 1, {{"direction_tolerance", 1e3}}});
+    ASSERT_EQ(fast.result.iterations, 1);
+    ASSERT_EQ(icd.result.iterations, 1);
+    EXPECT_LT((fast.x - icd.x).norm(), 1e-9 * (fast.x - candidate).norm());
+    // And both are x0 - W J^T (J W J^T)^-1 C, densely.
+    const Eigen::MatrixXd j = testing::dense_gradient(p, candidate);
+    const Eigen::MatrixXd wjt = testing::inverse_masses3(p).asDiagonal() * j.transpose();
+    Eigen::VectorXd c(p.constraints());
+    for (int k = 0; k < c.size(); ++k) {
+      const auto [a, b] = p.edges()[k];
+      const double l = p.rest_length()[k];
+      c[k] = (candidate.col(b) - candidate.col(a)).squaredNorm() / l - l;
+    }
+    const Eigen::VectorXd dx = -wjt * (j * wjt).ldlt().solve(c);
+    EXPECT_LT(
+        (fast.x - candidate - Eigen::Map<const Positions>(dx.data(), 3, fast.x.cols())).norm(),
+        1e-10);
+  });
+}
+
+// Theorem 1 and section 4.3, to first order: a candidate that is off the manifold by e is taken to
+// within O(e^2) of the closest point, which ICD finds. Corrections of single edges along themselves
+// keep to the span of W J^T, so that sweeps between projections change nothing about that order
+// (Kaczmarz 1937: from x0 they end at the closest point of linear constraints). What is off by a
+// part of its correction, however small, halves with e; this quarters.
+TEST(FastProjection, PlainOrSmoothedIsTheClosestPointToFirstOrder) {
+  constexpr double limit = 1e-9;  // C = 0 for all that matters here
+  for (const double sweeps : {0.0, 30.0}) {
+    SCOPED_TRACE("sweeps " + std::to_string(sweeps));
+    double off[2] = {0, 0};
+    for_seeds(meshes, [&](Random& random, std::uint64_t) {
+      const auto mesh = random_mesh(random, 8, 8, 2);
+      const Positions displacement = testing::perturbed(random, mesh, 1) - mesh.x;
+      for (const int halved : {0, 1}) {
+        const Positions candidate = mesh.x + (halved ? 0.005 : 0.01) * displacement;
+        const Filtered fast("fast_projection", mesh, candidate,
+                            {limit, 1, {{"smoothing_sweeps", sweeps}}}),
+            closest("icd", mesh, candidate, {limit});
+        EXPECT_EQ(fast.work.edge_projections > 0, sweeps > 0);
+        off[halved] += (fast.x - closest.x).norm();
+      }
+    });
+    EXPECT_LT(off[1], 0.3 * off[0]);  // 1/4, and 1/2 for what is of first order
+    EXPECT_GT(off[1], 1e3 * limit);   // what is measured is not the limit's slack
+  }
+}
+
+// Where sweeps pay, they replace projections: some of them after each, all of them if as many as
+// it takes come before. On chains there are none.
+TEST(FastProjection, SweepsReplaceProjectionsButOnChains) {
+  int projections = 0, smoothed_projections = 0;
+  for_seeds(meshes, [&](Random& random, std::uint64_t) {
+    for (const int rows : {12, 1}) {
+      const auto mesh = random_mesh(random, rows, 12, rows == 1 ? 1 : 2);
+      const Positions candidate = testing::perturbed(random, mesh, rows == 1 ? 0.05 : 0.2);
+      const auto projected = [&](const Settings& settings) {
+        return Filtered("fast_projection", mesh, candidate, {0.01, 1, settings});
+      };
+      const Filtered plain = projected({}), smoothed = projected({{"smoothing_sweeps", 30.0}}),
+                     swept = projected({{"sweeps_before", 1e5}});
+      EXPECT_EQ(plain.work.edge_projections, 0);
+      if (rows == 1) {
+        EXPECT_EQ(plain.work, smoothed.work);
+        EXPECT_EQ(plain.work, swept.work);
+        EXPECT_EQ(plain.x, swept.x);
+        continue;
+      }
+      projections += plain.result.iterations;
+      smoothed_projections += smoothed.result.iterations;
+      EXPECT_EQ(swept.work.factorizations, 0);
+      EXPECT_GT(swept.work.edge_projections, 0);
+      for (const Positions& x : {smoothed.x, swept.x})
+        EXPECT_TRUE(EdgeConstraints(*mesh.problem, 0.01).permissible(x));
+    }
+  });
+  EXPECT_LT(smoothed_projections, 0.8 * projections);
+}
+
+// Theorem 1: ICD's solution extremizes the M-norm distance to the candidate over {C = 0}.
+// Perturbations along the null space of J, pulled back onto the manifold, must not come closer.
+TEST(Icd, SolutionIsTheClosestPointOfTheManifold) {
+  for_seeds(meshes, [](Random& random, std::uint64_t) {
+    const auto mesh = random_mesh(random, 3, 4, 1);
+    const Problem& p = *mesh.problem;
+    const Positions candidate = testing::perturbed(random, mesh, 0.05);
+    const Filtered icd("icd", mesh, candidate, {1e-10}),
+        oracle("dense_newton", mesh, candidate, {});
+    EXPECT_LT((icd.x - oracle.x).norm(), 1e-7);
+
+    const auto distance = [&](const Positions& x) {
+      return (x - candidate)
+          .colwise()
+          .squaredNorm()
+          .dot(Eigen::Map<const Eigen::VectorXd>(p.mass().data(), p.vertices()));
+    };
+    Eigen::MatrixXd free_j = testing::dense_gradient(p, icd.x);
+    for (const int v : p.pinned()) free_j.middleCols(3 * v, 3).setZero();
+    const Eigen::MatrixXd null_space = free_j.fullPivLu().kernel();
+    for (int trial = 0; trial < 20; ++trial) {
+      const Eigen::VectorXd weights = Eigen::VectorXd::NullaryExpr(
+          null_space.cols(), [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
+      Eigen::VectorXd direction = null_space * weights;
+      for (const int v : p.pinned()) direction.segment<3>(3 * v).setZero();
+      const Positions moved =
+          icd.x +
+          1e-3 / direction.norm() * Eigen::Map<const Positions>(direction.data(), 3, icd.x.cols());
+      const Filtered back("fast_projection", {mesh.problem, icd.x}, moved, {1e-13});
+      EXPECT_GE(distance(back.x), distance(icd.x) - 1e-11);
+    }
+  });
+}
+
+// The unsteady part of C11: matrices of fast projection and ICD on the same mesh.
+TEST(Counters, FastProjectionFactorsAMuchSmallerMatrixThanIcd) {
+  Random random(5);
+  const auto mesh = random_mesh(random, 15, 15, 0);
+  const Positions x = testing::perturbed(random, mesh, 0.02);
+  const Filtered fast("fast_projection", mesh, x, {1e-6}),
+      icd("icd", mesh, x, {1e-6, 1, {{"linear_solver", std::string("quasi_definite")}}});
+  EXPECT_LT(2 * fast.work.factor_nonzeros, icd.work.factor_nonzeros);
+  EXPECT_LT(2 * fast.work.factor_flops, icd.work.factor_flops);
+}
+
+// An edge far beyond the limit, iterated to the end: what is left of C is `target` of what is
+// permissible. One within the target stays where it is.
+TEST(ProjectionMethods, BringEdgesToTheirTarget) {
+  const auto problem = testing::one_edge(1, 3);
+  const double target = 0.5;
+  for (const char* solver : {"fast_projection", "shake", "icd"}) {
+    SCOPED_TRACE(solver);
+    const auto length_from = [&](double length, double iterations) {
+      const auto stepper = make_stepper(
+          solver, problem, {0.1, 1, {{"target", target}, {"min_iterations", iterations}}});
+      State state = testing::stretched_edge(length);
+      EXPECT_TRUE(stepper->advance(state, h));
+      return (state.x.col(1) - state.x.col(0)).norm();
+    };
+    EXPECT_NEAR(length_from(1.3, 40), std::sqrt(1 + target * (1.1 * 1.1 - 1)), 1e-12);
+    // C is convex: from below Newton's first step leads beyond the target, and is the last one.
+    const double wanted = 1 + target * (0.9 * 0.9 - 1);  // length squared
+    EXPECT_NEAR(length_from(0.8, 40), (0.8 * 0.8 + wanted) / (2 * 0.8), 1e-8);
+    EXPECT_EQ(length_from(1.05, solver == std::string_view("icd") ? 0 : 1), 1.05);
+  }
+}
+
+// Figure 2 of the paper (claim C9), in one step from `start` to `candidate`, whatever h. SHAKE's
+// outcome in Q2 is no promise: its first matrix is J(x^n) W J(x^n)^T (Barth et al. 1994), which is
+// regular there although J(x0) W J(x^n)^T is not, and a solution exists.
+TEST(FailureConfigurations, StopShakeAtAnyStepAndNeitherIcdNorFastProjection) {
+  const auto one = testing::one_edge(1, 1, {0});
+  ProblemParts row;  // between two pins, straight and a little too short
+  row.gravity.setZero();
+  row.mass = {1, 1, 1};
+  row.pinned = {0, 2};
+  row.edges = {{0, 1}, {1, 2}};
+  row.rest_length = {1.02, 1.02};
+  Positions start = testing::stretched_edge(1).x, turned(3, 2), square(3, 2), straight(3, 3),
+            sagged(3, 3);
+  turned << 0, 0.5, 0, 2, 0, 0;  // no multiple of (1, 0, 0) makes (0.5, 2, 0) a unit vector
+  square << 0, 0, 0, 0.8, 0, 0;  // turned by 90 degrees: J(x0) W J(x^n)^T = 0
+  straight << 0, 1, 2, 0, 0, 0, 0, 0, 0;
+  sagged << 0, 1.01, 2, 0, -0.5, 0, 0, 0, 0;  // both gradients at x^n are along the row
+  const struct {
+    const char* name;
+    std::shared_ptr<const Problem> problem;
+    Positions start, candidate;
+    bool stops_shake;
+  } configurations[] = {{"Q1", one, start, turned, true},
+                        {"Q2", one, start, square, false},
+                        {"Q4", std::make_shared<const Problem>(row), straight, sagged, true}};
+  for (const auto& c : configurations) {
+    for (const double step : {1e-1, 1e-3, 1e-5}) {
+      SCOPED_TRACE(std::string(c.name) + ", h = " + std::to_string(step));
+      const auto outcome = [&](const char* solver) {
+        State state{c.start, (c.candidate - c.start) / step, 0};
+        return static_cast<bool>(make_stepper(solver, c.problem, {1e-6})->advance(state, step));
+      };
+      EXPECT_TRUE(outcome("fast_projection"));
+      EXPECT_TRUE(outcome("icd"));
+      EXPECT_TRUE(!c.stops_shake || !outcome("shake"));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace inextensible

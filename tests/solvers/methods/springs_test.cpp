@@ -1,0 +1,255 @@
+// Implicit springs and vertex block descent: what makes them cheap may not change what they
+// converge to.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "solvers/methods/vertex_passes.h"
+#include "solvers/registry.h"
+#include "support/hanging_rope.h"
+#include "support/motion.h"
+
+namespace inextensible {
+namespace {
+
+using testing::for_seeds;
+using testing::h;
+using testing::moving_state;
+using testing::Random;
+using testing::random_mesh;
+using testing::RandomMesh;
+
+std::unique_ptr<Stepper> springs(const RandomMesh& mesh, Settings settings) {
+  settings["stiffness"] = 1e5;
+  return make_stepper("implicit_springs", mesh.problem, {0.01, 1, settings});
+}
+
+Settings newton(const char* start, const char* tension, double reuse, double tolerance = 0.1) {
+  return {{"start", std::string(start)},
+          {"tension", std::string(tension)},
+          {"reuse", reuse},
+          {"newton_tolerance", tolerance}};
+}
+
+// However Newton starts and whatever matrix it steps with, each step ends within the tolerance of
+// where plain Newton, iterated until rounding, ends. Also where the history is of another motion.
+// Vertices move gently enough that the energy has one minimum nearby: springs buckle neither way.
+TEST(ImplicitSprings, EndEveryStepAtTheMinimumThatPlainNewtonFinds) {
+  for (const char* start : {"flight", "extrapolated"}) {
+    for (const char* tension : {"current", "linearized"}) {
+      for (const double reuse : {0.0, 10.0, 100.0}) {
+        SCOPED_TRACE(std::string(start) + ' ' + tension + ' ' + std::to_string(reuse));
+        for_seeds(8, [&](Random& random, std::uint64_t) {
+          const RandomMesh mesh = random_mesh(random, 4, 4, 2);
+          const auto plain = springs(mesh, newton("flight", "current", 0, 1e-7)),
+                     other = springs(mesh, newton(start, tension, reuse));
+          State elsewhere = moving_state(random, mesh, 0.5),
+                state = moving_state(random, mesh, 0.5);
+          ASSERT_TRUE(other->advance(elsewhere, 2 * h));
+          for (int step = 0; step < 20; ++step) {
+            State copy = state;
+            ASSERT_TRUE(plain->advance(state, h));
+            ASSERT_TRUE(other->advance(copy, h));
+            EXPECT_LE((copy.x - state.x).colwise().norm().maxCoeff(),
+                      0.1 * 0.01 * mesh.problem->shortest_rest_length())
+                << "step " << step;
+          }
+        });
+      }
+    }
+  }
+}
+
+// Each of the three must do something, or the test above would hold for nothing.
+TEST(ImplicitSprings, TakeFewerIterationsFromAPredictedStartAndTension) {
+  const auto work = [](const Settings& settings) {
+    Random random(3);
+    const RandomMesh mesh = random_mesh(random, 1, 30, 1);
+    State state = moving_state(random, mesh, 10);
+    const auto stepper = springs(mesh, settings);
+    for (int step = 0; step < 50; ++step) EXPECT_TRUE(stepper->advance(state, h));
+    return stepper->work();
+  };
+  const WorkCounters before = work(newton("flight", "current", 0));
+  EXPECT_EQ(before.factorizations, before.iterations);
+  EXPECT_LT(work(newton("flight", "linearized", 0)).iterations, before.iterations);
+  EXPECT_LT(work(newton("extrapolated", "current", 0)).iterations, before.iterations);
+  EXPECT_LT(work(newton("flight", "current", 10)).factorizations, before.factorizations);
+}
+
+// A refused step leaves the history alone too: what follows is the same to the last bit.
+TEST(ImplicitSprings, StartAgainAfterARefusalAsIfItHadNotBeen) {
+  Random random(5);
+  const RandomMesh mesh = random_mesh(random, 4, 4, 2);
+  State refused = moving_state(random, mesh, 0.5), straight = refused;
+  const auto first = springs(mesh, {}), second = springs(mesh, {});
+  for (int step = 0; step < 10; ++step) {
+    State wild = refused;
+    wild.v *= 1e300;  // its energy overflows
+    EXPECT_FALSE(first->advance(wild, h));
+    ASSERT_TRUE(first->advance(refused, h));
+    ASSERT_TRUE(second->advance(straight, h));
+    EXPECT_EQ(refused.x, straight.x) << "step " << step;
+  }
+}
+
+// Hairs of unequal length in one problem, each pinned somewhere, some springs twice.
+RandomMesh random_hairs(Random& random, int hairs) {
+  RandomMesh mesh;
+  ProblemParts parts;
+  for (int hair = 0; hair < hairs; ++hair) {
+    const int first = static_cast<int>(parts.mass.size());
+    const int length = 2 + static_cast<int>(random() % 9);
+    parts.pinned.push_back(first + static_cast<int>(random() % 3) * (length - 1) / 2);
+    for (int v = first; v < first + length; ++v) {
+      parts.mass.push_back(testing::uniform(random, 0.1, 1));
+      if (v == first) continue;
+      parts.edges.push_back(random() % 2 ? Edge{v - 1, v} : Edge{v, v - 1});
+      if (random() % 4 == 0) parts.edges.push_back({v - 1, v});
+    }
+  }
+  mesh.x = Positions::NullaryExpr(3, static_cast<Eigen::Index>(parts.mass.size()),
+                                  [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
+  for (const Edge e : parts.edges)
+    parts.rest_length.push_back((mesh.x.col(e.b) - mesh.x.col(e.a)).norm());
+  mesh.problem = std::make_shared<const Problem>(std::move(parts));
+  return mesh;
+}
+
+// The solver for chains against one that takes any matrix, in another elimination order.
+TEST(ImplicitSprings, TakeTheSameStepsByEitherFactorizationOfChains) {
+  for_seeds(24, [](Random& random, std::uint64_t seed) {
+    const RandomMesh mesh = random_hairs(random, 1 + static_cast<int>(seed % 4));
+    const State start = moving_state(random, mesh, 1);
+    const auto run = [&](const char* wanted, const char* used) {
+      const auto stepper = make_stepper(
+          "implicit_springs", mesh.problem,
+          {1e-2, 1, {{"linear_solver", std::string(wanted)}, {"newton_tolerance", 1e-6}}});
+      State state = start;
+      for (int i = 0; i < 3; ++i) EXPECT_TRUE(stepper->advance(state, h));
+      EXPECT_STREQ(stepper->linear_solver(), used);
+      return state.x;
+    };
+    const Positions chain = run("auto", "block_tridiagonal"),
+                    general = run("cholmod_simplicial", "cholmod_simplicial");
+    EXPECT_LT((chain - general).norm(), 1e-8 * general.norm());
+  });
+}
+
+// The step of Chen et al. 2024 for one vertex: x += H^-1 f.
+void move(int v, const Problem& problem, const Springs& springs, const Positions& y, Positions& x) {
+  const double m = problem.mass()[v];
+  Eigen::Vector3d f = m * (y.col(v) - x.col(v));
+  Eigen::Matrix3d hessian = m * Eigen::Matrix3d::Identity();
+  for (std::size_t k = 0; k < springs.edges.size(); ++k) {
+    const auto [a, b] = springs.edges[k];
+    if (a != v && b != v) continue;
+    const Eigen::Vector3d d = x.col(a == v ? b : a) - x.col(v), n = d.normalized();
+    const double stiffness = springs.stiffness[k], rest = springs.rest_length[k];
+    f += stiffness * (d.norm() - rest) * n;
+    const Eigen::Matrix3d along = n * n.transpose();
+    hessian += stiffness *
+               (along + std::max(0.0, 1 - rest / d.norm()) * (Eigen::Matrix3d::Identity() - along));
+  }
+  x.col(v) += hessian.llt().solve(f);
+}
+
+// A row of n vertices has the even ones first, then the odd ones; colors alternate from each end of
+// the row, and start again behind a pin.
+TEST(VertexPasses, MoveOneVertexAfterTheOtherInColors) {
+  for_seeds(8, [](Random& random, std::uint64_t seed) {
+    const int n = 2 + static_cast<int>(random() % 40);
+    const RandomMesh row = random_mesh(random, 1, n, static_cast<int>(seed % 2));
+    const Problem& problem = *row.problem;
+    const int pin = problem.pinned().empty() ? n : problem.pinned()[0];
+    Springs springs{problem.edges(), problem.rest_length(), {}};
+    for (int k = 0; k < problem.constraints(); ++k)
+      springs.stiffness.push_back(testing::uniform(random, 0, 100));
+    const Positions y = testing::perturbed(random, row, 0.2);
+    Positions x = testing::perturbed(random, row, 0.2), wanted = x;
+    VertexPasses passes(problem, springs);
+    passes.load(x, y, problem.mass());
+    for (int i = 0; i < 3; ++i) {
+      passes.visit_all(1);
+      for (const int color : {0, 1}) {
+        for (int v = 0; v < n; ++v) {
+          const int place = v < pin ? v : v - pin - 1;
+          if (v != pin && place % 2 == color) move(v, problem, springs, y, wanted);
+        }
+      }
+    }
+    passes.store(x);
+    EXPECT_LT((x - wanted).cwiseAbs().maxCoeff(), 1e-12);
+  });
+}
+
+// Under gravity, with shear springs and drag.
+TEST(VertexBlockDescent, ConvergesToTheStepOfImplicitSprings) {
+  for_seeds(8, [](Random& random, std::uint64_t seed) {
+    const RandomMesh mesh = random_mesh(random, 4, 4, static_cast<int>(seed % 3));
+    ProblemParts parts;
+    parts.mass = mesh.problem->mass();
+    parts.pinned = mesh.problem->pinned();
+    parts.edges = mesh.problem->edges();
+    parts.rest_length = mesh.problem->rest_length();
+    if (seed % 2 == 0)
+      parts.shear = Springs{{{0, 5}, {1, 4}, {5, 10}}, {1.2, 1.3, 1.4}, {30, 20, 50}};
+    if (seed % 4 < 2) parts.drag.assign(parts.mass.size(), 0.7);
+    const auto problem = std::make_shared<const Problem>(std::move(parts));
+    const auto exact = make_stepper("implicit_springs", problem, {1e-6}),
+               descent = make_stepper("vertex_block_descent", problem,
+                                      {0.01, 1, {{"iterations", 2000.0}}});
+    State state = moving_state(random, mesh, 0.5);
+    for (int step = 0; step < 10; ++step) {
+      State copy = state;
+      ASSERT_TRUE(exact->advance(state, h));
+      ASSERT_TRUE(descent->advance(copy, h));
+      EXPECT_LE((copy.x - state.x).cwiseAbs().maxCoeff(), 1e-8) << "step " << step;
+    }
+  });
+}
+
+// Each vertex moves alone: a pass gives momentum away, and convergence brings it back.
+TEST(VertexBlockDescent, ConservesMomentumAsFarAsItHasConverged) {
+  Random random(1);
+  const RandomMesh mesh = random_mesh(random, 5, 5, 0);
+  const State start = moving_state(random, mesh, 4);
+  const auto lost = [&](double iterations) {
+    const auto stepper =
+        make_stepper("vertex_block_descent", mesh.problem, {0.01, 1, {{"iterations", iterations}}});
+    State state = start;
+    EXPECT_TRUE(stepper->advance(state, h));
+    EXPECT_EQ(stepper->work().iterations, iterations);
+    return testing::linear_momentum(*mesh.problem, state.v - start.v).norm();
+  };
+  EXPECT_GT(lost(2), 1e-3);
+  EXPECT_LT(lost(20), 0.1 * lost(2));
+  EXPECT_LT(lost(2000), 1e-9);
+}
+
+// The first step starts from the free flight, later ones from as much of gravity as the last step
+// let through: a rope at rest from where it is, so that one pass leaves it there.
+TEST(VertexBlockDescent, StartsWhereTheLastStepSaysThatItWillEnd) {
+  constexpr int links = 10;
+  constexpr double stiffness = 1e4, mass = 0.1, length = 0.1;
+  const testing::HangingRope rope(links, length, mass);
+  State rest = rope.start;
+  for (int i = 0; i < links; ++i) {  // each link bears what hangs on it
+    rest.x(1, i + 1) = rest.x(1, i) - length * (1 + (links - i) * mass * rope.gravity / stiffness);
+  }
+  for (const double iterations : {1.0, 5.0}) {
+    const auto stepper =
+        make_stepper("vertex_block_descent", rope.problem,
+                     {0.01, 1, {{"stiffness", stiffness}, {"iterations", iterations}}});
+    State state = rest;
+    ASSERT_TRUE(stepper->advance(state, h));
+    EXPECT_GT((state.x - rest.x).cwiseAbs().maxCoeff(), 1e-6);
+    state = {rest.x, rest.v, h};  // at rest, a step later
+    ASSERT_TRUE(stepper->advance(state, h));
+    EXPECT_LT((state.x - rest.x).cwiseAbs().maxCoeff(), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace inextensible
