@@ -7,6 +7,7 @@
 
 #include "solvers/linear/spd_solvers.h"
 #include "solvers/methods/time_steppers.h"
+#include "solvers/problem/edge_constraints.h"
 #include "support/random_mesh.h"
 
 namespace inextensible {
