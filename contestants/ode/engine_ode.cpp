@@ -46,11 +46,11 @@ class OdeBalls final : public inextensible::Stepper {
 
   OdeBalls(std::shared_ptr<const Problem> shared, const inextensible::BackendOptions& options)
       : Stepper(std::move(shared)),
+        options_(options),
         direct_(options.word("solver") == "direct"),
-        iterations_(options.count("iterations")),
         random_(options.seed) {
     dAllocateODEDataForThread(dAllocateMaskAll);
-    build(options);
+    build();
     if (problem().shear() || !problem().bending().empty() || problem().has_drag())
       forces_.resize(3, problem().vertices());
   }
@@ -70,7 +70,7 @@ class OdeBalls final : public inextensible::Stepper {
   }
 
  private:
-  void build(const inextensible::BackendOptions& options);
+  void build();
   void put_in(const State& state);
   void give_forces(const State& state);
 
@@ -91,7 +91,7 @@ class OdeBalls final : public inextensible::Stepper {
   }
 
   bool take(double h);
-  int passes() const { return direct_ ? 1 : iterations_; }
+  int passes() const { return direct_ ? 1 : options_.count("iterations"); }
 
   StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& /*filtered*/,
                             const Positions& /*x*/, Positions& v) override {
@@ -107,8 +107,8 @@ class OdeBalls final : public inextensible::Stepper {
     return {};
   }
 
+  const inextensible::BackendOptions options_;  // `start` is that of the construction
   bool direct_;
-  int iterations_;  // passes
   World world_;
   std::vector<dBodyID> bodies_;   // null: pinned, which is the world to ODE
   std::vector<dJointID> joints_;  // one an edge
@@ -116,16 +116,16 @@ class OdeBalls final : public inextensible::Stepper {
   unsigned long random_, next_random_ = 0;
 };
 
-void OdeBalls::build(const inextensible::BackendOptions& options) {
+void OdeBalls::build() {
   world_.reset(dWorldCreate());
   const Eigen::Vector3d& g = problem().gravity();
   dWorldSetGravity(world_.get(), g.x(), g.y(), g.z());
-  dWorldSetERP(world_.get(), options.number("erp"));
-  dWorldSetCFM(world_.get(), options.number("cfm"));
+  dWorldSetERP(world_.get(), options_.number("erp"));
+  dWorldSetCFM(world_.get(), options_.number("cfm"));
   dWorldSetAutoDisableFlag(world_.get(), 0);
   dWorldSetDamping(world_.get(), 0, 0);
-  dWorldSetQuickStepNumIterations(world_.get(), iterations_);
-  dWorldSetQuickStepW(world_.get(), options.number("relaxation"));
+  dWorldSetQuickStepNumIterations(world_.get(), options_.count("iterations"));
+  dWorldSetQuickStepW(world_.get(), options_.number("relaxation"));
   bodies_.assign(problem().vertices(), nullptr);
   for (int i = 0; i < problem().vertices(); ++i) {
     if (problem().inverse_mass()[i] == 0) continue;
