@@ -214,21 +214,31 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
   return outcome;
 }
 
+ChildWatch::ChildWatch() {
+  sigemptyset(&child_ended_);
+  sigaddset(&child_ended_, SIGCHLD);
+  sigprocmask(SIG_BLOCK, &child_ended_, &before_);
+}
+
+void ChildWatch::restore() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
+
+bool ChildWatch::ended(pid_t child, int& status) const {
+  if (waitpid(child, &status, WNOHANG) != 0) return true;
+  constexpr timespec look_again{0, 200'000'000};
+  sigtimedwait(&child_ended_, nullptr, &look_again);
+  return false;
+}
+
 int supervised(const std::function<int()>& work) {
   constexpr double patience = 0.7;  // s, for a child that was asked to end
   std::cout.flush();
   std::fflush(stdout);
-  // With SIGCHLD blocked, sigtimedwait returns as soon as the child ends or a signal comes: nothing
-  // polls beside a measurement.
-  sigset_t child_ended, before;
-  sigemptyset(&child_ended);
-  sigaddset(&child_ended, SIGCHLD);
-  sigprocmask(SIG_BLOCK, &child_ended, &before);
+  const ChildWatch watch;
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0) fail("fork");
   if (child == 0) {
-    sigprocmask(SIG_SETMASK, &before, nullptr);
+    watch.restore();
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(1);  // it died before that
     const int code = work();
@@ -239,9 +249,7 @@ int supervised(const std::function<int()>& work) {
   catch_interrupts();
   double asked = 0;
   int status = 0;
-  while (waitpid(child, &status, WNOHANG) == 0) {
-    constexpr timespec look_again{0, 200'000'000};
-    sigtimedwait(&child_ended, nullptr, &look_again);
+  while (!watch.ended(child, status)) {
     if (!interrupted()) continue;
     if (asked == 0) {
       asked = now();
@@ -250,7 +258,6 @@ int supervised(const std::function<int()>& work) {
       kill(child, SIGKILL);
     }
   }
-  sigprocmask(SIG_SETMASK, &before, nullptr);
   remove_left_folders();
   if (WIFEXITED(status)) return WEXITSTATUS(status);
   constexpr int interrupted_code = 130, crashed_code = 1;

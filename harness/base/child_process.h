@@ -2,7 +2,10 @@
 // takes stay there.
 #pragma once
 
+#include <sys/types.h>
+
 #include <atomic>
+#include <csignal>
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -52,6 +55,23 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
 // that hangs, say). The exit code is 130 then, and 1 where the child crashes, which is said on
 // stderr. Temporary folders of a child that was killed are removed.
 int supervised(const std::function<int()>& work);
+
+// Watches a child that is forked while this lives: SIGCHLD is blocked, so that nothing polls beside
+// a measurement, and a wait returns as soon as the child ends or another signal comes.
+class ChildWatch {
+ public:
+  ChildWatch();
+  ~ChildWatch() { restore(); }
+  ChildWatch(const ChildWatch&) = delete;
+  ChildWatch& operator=(const ChildWatch&) = delete;
+
+  void restore() const;  // the signals as they were: in the child, before it does anything else
+  // Whether it has ended, and its status as of waitpid; if not, after at most a fifth of a second.
+  bool ended(pid_t child, int& status) const;
+
+ private:
+  sigset_t child_ended_, before_;
+};
 
 // What became of a child that ended by itself, or was ended by others, without a result.
 std::string ending(const ChildOutcome& outcome);

@@ -10,9 +10,10 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <memory>
 #include <stdexcept>
+
+#include "harness/base/child_process.h"
 
 namespace harness {
 namespace {
@@ -40,11 +41,11 @@ std::string contents(FILE* file) {
 
 // Between fork and exec, so nothing but system calls.
 [[noreturn]] void become(char* const* argv, const std::array<FILE*, 3>& files,
-                         const sigset_t& signals, pid_t parent) {
+                         const ChildWatch& watch, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);  // it died before that
   for (int i = 0; i < 3; ++i) dup2(fileno(files[i]), i);
-  sigprocmask(SIG_SETMASK, &signals, nullptr);
+  watch.restore();
   execv(argv[0], argv);
   _exit(127);
 }
@@ -67,30 +68,18 @@ ProgramResult run_program(const std::vector<std::string>& words, const std::stri
   argv.reserve(words.size() + 1);
   for (std::string& word : copies) argv.push_back(word.data());
   argv.push_back(nullptr);
-  // With SIGCHLD blocked, sigtimedwait returns the moment the child ends: no polling beside a
-  // measurement but once in a while.
-  sigset_t child_ended, before;
-  sigemptyset(&child_ended);
-  sigaddset(&child_ended, SIGCHLD);
-  sigprocmask(SIG_BLOCK, &child_ended, &before);
+  const ChildWatch watch;
   const pid_t parent = getpid(), child = fork();
-  if (child == 0) become(argv.data(), {in.get(), out.get(), err.get()}, before, parent);
+  if (child < 0) throw std::runtime_error(std::string("no process: ") + std::strerror(errno));
+  if (child == 0) become(argv.data(), {in.get(), out.get(), err.get()}, watch, parent);
   ProgramResult result;
-  int status = 0;
   const auto start = std::chrono::steady_clock::now();
-  bool killed = child < 0;
-  for (pid_t ended = 0; child > 0 && ended == 0;) {
-    constexpr timespec look_again{0, 200'000'000};
-    ended = waitpid(child, &status, killed ? 0 : WNOHANG);
-    if (ended != 0) break;
-    sigtimedwait(&child_ended, nullptr, &look_again);
+  int status = 0;
+  while (!watch.ended(child, status)) {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     result.timed_out = elapsed.count() > timeout;
-    killed = result.timed_out || interrupted();
-    if (killed) kill(child, SIGKILL);
+    if (result.timed_out || interrupted()) kill(child, SIGKILL);
   }
-  sigprocmask(SIG_SETMASK, &before, nullptr);
-  if (child < 0) throw std::runtime_error(std::string("no process: ") + std::strerror(errno));
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   result.out = contents(out.get());
   result.err = contents(err.get());

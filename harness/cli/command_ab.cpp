@@ -2,8 +2,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -18,7 +16,7 @@
 #include "harness/base/timing_lock.h"
 #include "harness/cli/compare_options.h"
 #include "harness/cli/exit_codes.h"
-#include "harness/cli/shared_options.h"
+#include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/compare/pairs.h"
 #include "harness/points/result_file.h"
@@ -30,33 +28,11 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double point_timeout = 60;  // s, of one run
+constexpr double run_timeout = 60;  // s, of one run
 constexpr double sweep_timeout = 3600;
 
-struct AbCommand : CompareOptions {
-  std::string old_binary, new_binary, profile = "quick", config, solver, scene, filter, exclude;
-  int pairs = 15, confirming = 25;
-  bool no_wait = false;
-  // s that a process measures at least, so that runs of a millisecond are seen often enough for one
-  // of them to be undisturbed, and starting the process does not dominate.
-  double least_measured = 0.05;
-
-  std::vector<std::string> old_plugins, new_plugins;
-
-  // The program of a side with its plug-ins, a command to be added.
-  std::vector<std::string> program(Side side) const {
-    std::vector<std::string> words{side == Side::old_one ? old_binary : new_binary};
-    for (const std::string& file : side == Side::old_one ? old_plugins : new_plugins)
-      words.insert(words.end(), {"--plugin", file});
-    return words;
-  }
-};
-
-ProgramResult run_or_interrupt(const std::vector<std::string>& words, const std::string& input,
-                               double timeout) {
-  ProgramResult result = run_program(words, input, timeout, interrupted);
-  if (interrupted()) throw Interrupted();
-  return result;
+bool is_program(const fs::path& file) {
+  return fs::is_regular_file(file) && access(file.c_str(), X_OK) == 0;
 }
 
 // A name without a folder is a file here, else a program on the PATH as for a shell, else, if it is
@@ -66,209 +42,181 @@ std::string program_named(const std::string& name) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path ? path : "");
   for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path file = fs::path(folder) / name;
-    if (fs::is_regular_file(file) && access(file.c_str(), X_OK) == 0) return file.string();
+    if (is_program(fs::path(folder) / name)) return fs::path(folder) / name;
   }
   const fs::path own = fs::read_symlink("/proc/self/exe");
   return own.filename() == name ? own.string() : name;
 }
 
-void check_binary(const std::string& path) {
-  if (!fs::is_regular_file(path) || access(path.c_str(), X_OK) != 0)
-    throw UsageError("'" + path + "' is no program");
-  const ProgramResult help = run_or_interrupt({path, "point", "--help"}, "", point_timeout);
-  if (help.exit_code != 0 || help.out.find("--samples") == std::string::npos)
-    throw NotComparable("'" + path +
-                        "' has no command `point`, which times single points: it was built from a "
-                        "commit before that");
-}
+// One of the two programs, with its plug-ins.
+struct Program {
+  std::string path;
+  Words plugins;
 
-std::string without_program(const std::string& said) {
-  return said.starts_with("bench: ") ? said.substr(7) : said;
-}
-
-// Plug-ins that cannot be loaded are told before anything is timed.
-void check_plugins(const AbCommand& options, Side side) {
-  std::vector<std::string> words = options.program(side);
-  if (words.size() == 1) return;
-  words.insert(words.end(), {"list", "solvers"});
-  const ProgramResult list = run_or_interrupt(words, "", point_timeout);
-  if (list.exit_code != success) throw UsageError(without_program(list.last_error_line()));
-}
-
-// What the old program finds best; the new one runs the same.
-json old_result(const AbCommand& options) {
-  const TemporaryFolder folder("ab");
-  const std::string out = folder.file("old.json");
-  std::vector<std::string> words = options.program(Side::old_one);
-  words.insert(words.end(), {"--sweep", "strain"});
-  for (const auto& [option, value] :
-       {options.config.empty() ? std::pair("--profile", options.profile)
-                               : std::pair("--config", options.config),
-        std::pair("--solver", options.solver), std::pair("--scene", options.scene),
-        std::pair("--filter", options.filter), std::pair("--exclude", options.exclude),
-        std::pair("--out", out)}) {
-    if (!value.empty()) words.insert(words.end(), {option, value});
+  ProgramResult run(const Words& arguments, double timeout = run_timeout,
+                    const std::string& input = "") const {
+    Words words{path};
+    for (const std::string& file : plugins) words.insert(words.end(), {"--plugin", file});
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    ProgramResult result = run_program(words, input, timeout, interrupted);
+    if (interrupted()) throw Interrupted();
+    return result;
   }
-  words.insert(words.end(), {"--reps", "1", "--no-plots"});
-  const ProgramResult ran = run_or_interrupt(words, "", sweep_timeout);
-  const std::string said = ran.last_error_line();
-  if (ran.exit_code == usage_error) throw UsageError(without_program(said));
-  if (ran.exit_code != success)
-    throw std::runtime_error("the sweep of '" + options.old_binary + "' did not end: " + said);
-  return read_result(out);
-}
 
-// A point of a result as what is to be run: with the stiffness that was found for it.
-json spec_json(const json& point) {
-  json spec;
-  for (const char* key :
-       {"sweep", "scene", "scene_parameters", "resolution", "vertices", "constraints", "contestant",
-        "solver", "settings", "strain_limit", "step", "adaptive", "seed"}) {
-    if (point.contains(key)) spec[key] = point.at(key);
+  // Before anything is timed: that it is one of ours, and takes its plug-ins.
+  void check() const {
+    if (!is_program(path)) throw UsageError("'" + path + "' is no program");
+    const ProgramResult help = Program{path, {}}.run({"point", "--help"});
+    if (help.exit_code != success || help.out.find("--samples") == std::string::npos)
+      throw NotComparable("'" + path +
+                          "' has no command `point`, which times single points: it was built from "
+                          "a commit before that");
+    if (plugins.empty()) return;
+    const ProgramResult list = run({"list", "solvers"});
+    if (list.exit_code != success) throw UsageError(own_words(list));
   }
-  const json& options = point.at("options");
-  if (options.contains("stiffness")) spec["settings"]["stiffness"] = options.at("stiffness");
-  return spec;
-}
 
-std::vector<PairedPoint> best_points(const json& result, double least_measured) {
-  std::vector<PairedPoint> points;
-  for (const json& point : result.at("points")) {
-    if (!point.value("best", false)) continue;
-    const double seconds = point.at("seconds_per_simulated_second").at("min").get<double>() *
-                           point.at("duration").get<double>();
-    PairedPoint paired;
-    paired.spec = spec_json(point);
-    paired.id = point.at("id");
-    paired.samples = samples_for(std::max(seconds, least_sample), least_measured);
-    points.push_back(std::move(paired));
+  static std::string own_words(const ProgramResult& ran) {
+    const std::string said = ran.last_error_line();
+    return said.starts_with("bench: ") ? said.substr(7) : said;
   }
-  return points;
+};
+
+// A point that no process has printed.
+json failed_point(json point, const ProgramResult& ran) {
+  point.update({{"status", ran.timed_out                  ? "timeout"
+                           : ran.exit_code == usage_error ? "unsupported"
+                                                          : "crashed"},
+                {"status_detail", ran.exit_code == success
+                                      ? "printed no result: '" + shortened(ran.out, 60) + "'"
+                                      : ran.last_error_line()},
+                {"seconds_per_simulated_second", nullptr},
+                {"max_strain", nullptr},
+                {"work", json::object()},
+                {"error", json::object()}});
+  return point;
 }
 
-// In place of a point that no process has printed.
-json failed_point(const PairedPoint& point, const ProgramResult& ran) {
-  json printed = point.spec;
-  printed["id"] = point.id;
-  printed["status"] = ran.timed_out                  ? "timeout"
-                      : ran.exit_code == usage_error ? "unsupported"
-                                                     : "crashed";
-  printed["status_detail"] = ran.exit_code == success
-                                 ? "printed no result: '" + shortened(ran.out, 60) + "'"
-                                 : ran.last_error_line();
-  printed["work"] = json::object();
-  printed["max_strain"] = nullptr;
-  printed["error"] = json::object();
-  return printed;
-}
-
-json run_one(const AbCommand& options, Side side, const PairedPoint& point) {
-  const double timeout = point_timeout * (point.samples + 1);
-  std::vector<std::string> words = options.program(side);
-  words.insert(words.end(), {"point", "--samples", std::to_string(point.samples)});
-  const ProgramResult ran = run_or_interrupt(words, point.spec.dump() + "\n", timeout);
+json run_one(const Program& program, const PairedPoint& point) {
+  const ProgramResult ran =
+      program.run({"point", "--samples", std::to_string(point.samples)},
+                  run_timeout * (point.samples + 1), point.spec.dump() + "\n");
   json printed = json::parse(ran.out, nullptr, false);
-  return ran.exit_code == success && printed.is_object() ? printed : failed_point(point, ran);
+  const bool good = ran.exit_code == success && printed.is_object();
+  return good ? printed : failed_point(point.spec, ran);
 }
 
-// Counters are told and fail nothing, unless a gate was asked for: here times are the question.
-Gate gate_of(const AbCommand& options) {
-  if (!options.gate.empty()) return read_gate(options.gate);
-  Gate gate = read_gate(source_path("configs/gate.json"));
-  gate.counter_rule = CounterRule::inform;
-  gate.errors.clear();
-  return gate;
-}
+struct Ab : CompareOptions {
+  Program before, after;
+  std::string profile = "quick", config, solver, scene, filter, exclude;
+  int pairs = 15, confirming = 25;
+  bool no_wait = false;
+  // s that a process measures at least, so that runs of a millisecond are seen often enough for one
+  // of them to be undisturbed, and starting the process does not dominate.
+  double least_measured = 0.05;
 
-// One process of each says whether their counters compare.
-Comparability comparability_of(const AbCommand& options, const PairedPoint& point) {
-  const auto fingerprint = [&](Side side) {
-    return run_one(options, side, point)
-        .value("counters_fingerprint", side == Side::old_one ? "" : "?");
-  };
-  Comparability can;
-  if (fingerprint(Side::old_one) != fingerprint(Side::new_one))
-    can.no_counters = "compiler, flags or libraries differ";
-  return can;
-}
-
-int run_ab(const AbCommand& options) {
-  const Gate gate = gate_of(options);
-  if (!gate.times) throw UsageError("gate '" + options.gate + "': bench ab is about times");
-  check_reports(options);
-  catch_interrupts();
-  try {
-    check_binary(options.old_binary);
-    check_binary(options.new_binary);
-    check_plugins(options, Side::old_one);
-    check_plugins(options, Side::new_one);
-    const TimingLock lock(!options.no_wait);
-    std::cerr << "looking for the best steps of " << options.old_binary << " ..." << std::endl;
-    std::vector<PairedPoint> points = best_points(old_result(options), options.least_measured);
-    if (points.empty())
-      throw NotComparable("'" + options.old_binary + "' has no point that runs to its end");
-    const Comparability can = comparability_of(options, points.front());
-    std::cerr << points.size() << " points, " << options.pairs << " pairs each ..." << std::endl;
-    const RunOne run = [&](Side side, const PairedPoint& point) {
-      return run_one(options, side, point);
-    };
-    Comparison comparison =
-        compare_in_pairs(std::move(points), options.pairs, options.confirming, gate, can, run);
-    if (!can.counters()) comparison.notes.push_back("counters not compared: " + can.no_counters);
-    return report_comparison(comparison, options, "bench ab",
-                             "some points cannot be decided (AMBIGUOUS above): take more --pairs "
-                             "and --sample-seconds, or a quieter machine");
-  } catch (const NotComparable& reason) {
-    std::cerr << "bench: " << reason.what() << '\n';
-    return not_comparable;
-  } catch (const Interrupted&) {
-    return interrupted_exit;
+  void declare(const Command& command) {
+    command.option("old", before.path, "the program before", "OLD");
+    command.option("new", after.path, "the program after", "NEW");
+    command.require({"old", "new"});
+    command.repeatable("--old-plugin", before.plugins,
+                       "a plug-in of the program before; repeatable", "FILE");
+    command.repeatable("--new-plugin", after.plugins, "a plug-in of the program after; repeatable",
+                       "FILE");
+    add_profile(command, profile);
+    add_config(command, config);
+    const Bounds number_of_pairs{.least = 4, .most = 1000, .whole = true};  // fewer prove nothing
+    command.option("--pairs", pairs, "processes of each build for a point; default: 15", "N",
+                   number_of_pairs);
+    command.option("--confirm", confirming, "pairs of the second look; default: 25", "N",
+                   number_of_pairs);
+    command.option("--sample-seconds", least_measured,
+                   "least time that a process measures, in as many runs as needed; default: 0.05",
+                   "S", {.least = 1e-3, .most = 60});
+    add_solver(command, solver);
+    command.option("--scene", scene, "one of the suite's; default: all", "SCENE");
+    add_filters(command, filter, exclude);
+    add_no_wait(command, no_wait);
+    CompareOptions::declare(command);
   }
-}
+
+  // Counters are told and fail nothing, unless a gate was asked for: here times are the question.
+  Gate gate_of() const {
+    if (gate.empty()) {
+      Gate passes = read_gate(source_path("configs/gate.json"));
+      passes.counter_rule = CounterRule::inform;
+      passes.errors.clear();
+      return passes;
+    }
+    const Gate passes = read_gate(gate);
+    if (!passes.times) throw UsageError("gate '" + gate + "': bench ab is about times");
+    return passes;
+  }
+
+  // The best points of the old program, with the stiffness that it found; the new one runs the
+  // same.
+  std::vector<PairedPoint> best_points() const {
+    const TemporaryFolder folder("ab");
+    const std::string out = folder.file("old.json");
+    Words words{"--sweep", "strain", "--reps", "1", "--no-plots", "--out", out};
+    for (const auto& [option, value] :
+         {config.empty() ? std::pair("--profile", profile) : std::pair("--config", config),
+          std::pair("--solver", solver), std::pair("--scene", scene), std::pair("--filter", filter),
+          std::pair("--exclude", exclude)}) {
+      if (!value.empty()) words.insert(words.end(), {option, value});
+    }
+    const ProgramResult ran = before.run(words, sweep_timeout);
+    if (ran.exit_code == usage_error) throw UsageError(Program::own_words(ran));
+    if (ran.exit_code != success)
+      throw std::runtime_error("the sweep of '" + before.path +
+                               "' did not end: " + ran.last_error_line());
+    std::vector<PairedPoint> points;
+    for (json point : read_result(out).at("points")) {
+      if (!point.value("best", false)) continue;
+      if (const json& options = point.at("options"); options.contains("stiffness"))
+        point["settings"]["stiffness"] = options.at("stiffness");
+      const double seconds = point.at("seconds_per_simulated_second").at("min").get<double>() *
+                             point.at("duration").get<double>();
+      points.push_back(
+          {std::move(point), samples_for(std::max(seconds, least_sample), least_measured)});
+    }
+    if (points.empty())
+      throw NotComparable("'" + before.path + "' has no point that runs to its end");
+    return points;
+  }
+
+  int run() {
+    const Gate passes = gate_of();
+    check_reports();
+    for (Program* program : {&before, &after}) {
+      program->path = program_named(program->path);
+      program->check();
+    }
+    const TimingLock lock(!no_wait);
+    std::cerr << "looking for the best steps of " << before.path << " ..." << std::endl;
+    std::vector<PairedPoint> points = best_points();
+    // One process of each says whether their counters compare.
+    Comparability can;
+    if (run_one(before, points.front()).value("counters_fingerprint", "") !=
+        run_one(after, points.front()).value("counters_fingerprint", "?"))
+      can.no_counters = "compiler, flags or libraries differ";
+    std::cerr << points.size() << " points, " << pairs << " pairs each ..." << std::endl;
+    Comparison comparison =
+        compare_in_pairs(std::move(points), pairs, confirming, passes, can,
+                         [this](Side side, const PairedPoint& point) {
+                           return run_one(side == Side::old_one ? before : after, point);
+                         });
+    if (!can.counters()) comparison.notes.push_back("counters not compared: " + can.no_counters);
+    return report(comparison, "bench ab",
+                  "some points cannot be decided (AMBIGUOUS above): take more --pairs and "
+                  "--sample-seconds, or a quieter machine");
+  }
+};
 
 }  // namespace
 
 Verb ab_verb() {
-  return {
-      "ab", "compare the speed of two builds in interleaved pairs of runs",
-      [](const Command& command) -> Action {
-        const auto given = std::make_shared<AbCommand>();
-        AbCommand& options = *given;
-        command.option("old", options.old_binary, "the program before", "OLD").required();
-        command.option("new", options.new_binary, "the program after", "NEW").required();
-        command
-            .option("--old-plugin", options.old_plugins,
-                    "a plug-in of the program before; repeatable", "FILE")
-            .repeatable();
-        command
-            .option("--new-plugin", options.new_plugins,
-                    "a plug-in of the program after; repeatable", "FILE")
-            .repeatable();
-        add_suite(command, options.profile, options.config);
-        command
-            .option("--pairs", options.pairs, "processes of each build for a point; default: 15",
-                    "N")
-            .within(4, 1000);  // fewer are never significant
-        command
-            .option("--confirm", options.confirming, "pairs of the second look; default: 25", "N")
-            .within(4, 1000);
-        command
-            .option("--sample-seconds", options.least_measured,
-                    "least time that a process measures, in as many runs as needed; default: 0.05",
-                    "S")
-            .within(1e-3, 60.0);
-        add_solver(command, options.solver);
-        command.option("--scene", options.scene, "one of the suite's; default: all", "SCENE");
-        add_filters(command, options.filter, options.exclude);
-        add_no_wait(command, options.no_wait);
-        add_compare_options(command, options);
-        return [given] {
-          given->old_binary = program_named(given->old_binary);
-          given->new_binary = program_named(given->new_binary);
-          return run_ab(*given);
-        };
-      }};
+  return {"ab", "compare the speed of two builds in interleaved pairs of runs", verb<Ab>};
 }
 
 }  // namespace harness

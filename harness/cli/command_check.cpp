@@ -4,11 +4,9 @@
 #include <iostream>
 #include <sstream>
 
-#include "harness/base/errors.h"
 #include "harness/base/interrupt.h"
-#include "harness/base/pattern.h"
 #include "harness/cli/exit_codes.h"
-#include "harness/cli/shared_options.h"
+#include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/stability/conformance.h"
 #include "solvers/registry.h"
@@ -27,48 +25,47 @@ void print(const Finding& finding) {
   std::cout.flush();
 }
 
-bool check(const std::string& solver, bool hard_cases, std::int64_t seed) {
-  const auto findings =
-      examine(solver, {static_cast<std::uint64_t>(seed), hard_cases, print, interrupted});
-  const auto count = [&](Finding::Grade grade) {
-    return std::count_if(findings.begin(), findings.end(),
-                         [grade](const Finding& f) { return f.grade == grade; });
-  };
-  std::cout << solver << (conforms(findings) ? " conforms: " : " does not conform: ")
-            << count(Finding::Grade::pass) << " passed, " << count(Finding::Grade::fail)
-            << " failed, " << count(Finding::Grade::not_applicable) << " not applicable"
-            << std::endl;
-  return conforms(findings);
-}
+struct Check {
+  std::string solver;
+  bool quick = false;
+  std::int64_t seed = 1;
 
-int check_all(const std::string& solver, bool hard_cases, std::int64_t seed) {
-  check_solver_pattern(solver);
-  catch_interrupts();
-  const Pattern wanted("--solver", solver);
-  bool conform = true;
-  for (const auto& backend : inextensible::backends()) {
-    if (wanted.matches(backend.name)) conform = check(backend.name, hard_cases, seed) && conform;
+  void declare(const Command& command) {
+    add_solver(command, solver);
+    command.require({"--solver"});
+    command.flag("--quick", quick, "without the hard cases, which may take minutes");
+    add_seed(command, seed, "of methods that draw random numbers");
   }
-  return conform ? success : unexpected_outcome;
-}
+
+  bool conforms_to_all(const std::string& name) const {
+    const auto findings =
+        examine(name, {static_cast<std::uint64_t>(seed), !quick, print, interrupted});
+    const auto count = [&findings](Finding::Grade grade) {
+      return std::count_if(findings.begin(), findings.end(),
+                           [grade](const Finding& f) { return f.grade == grade; });
+    };
+    std::cout << name << (conforms(findings) ? " conforms: " : " does not conform: ")
+              << count(Finding::Grade::pass) << " passed, " << count(Finding::Grade::fail)
+              << " failed, " << count(Finding::Grade::not_applicable) << " not applicable"
+              << std::endl;
+    return conforms(findings);
+  }
+
+  int run() const {
+    const auto wanted = solver_pattern(solver);
+    bool conform = true;
+    for (const auto& backend : inextensible::backends()) {
+      if (wanted->matches(backend.name)) conform = conforms_to_all(backend.name) && conform;
+    }
+    return conform ? success : unexpected_outcome;
+  }
+};
 
 }  // namespace
 
 Verb check_verb() {
   return {"check", "test what every solver must fulfil, and say where to look if one does not",
-          [](const Command& command) -> Action {
-            struct Given {
-              std::string solver;
-              bool quick = false;
-              std::int64_t seed = 1;
-            };
-            const auto given = std::make_shared<Given>();
-            add_solver(command, given->solver).required();
-            command.flag("--quick", given->quick, "without the hard cases, which may take minutes");
-            command.option("--seed", given->seed, "of methods that draw random numbers", "N")
-                .holds(Bounds::exact_number());
-            return [given] { return check_all(given->solver, !given->quick, given->seed); };
-          }};
+          verb<Check>};
 }
 
 }  // namespace harness

@@ -1,7 +1,11 @@
 // bench choose: which solver to take for a scene, at which step, and what a frame costs.
 #include <algorithm>
+#include <cmath>
 #include <iostream>
+#include <map>
+#include <set>
 
+#include "harness/analysis/words.h"
 #include "harness/base/child_process.h"
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
@@ -10,12 +14,12 @@
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
-#include "harness/cli/choice_report.h"
 #include "harness/cli/exit_codes.h"
-#include "harness/cli/shared_options.h"
+#include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/judge/reference_file.h"
 #include "harness/judge/reference_routes.h"
+#include "harness/points/point_json.h"
 #include "harness/points/tuned.h"
 #include "harness/run/choose.h"
 #include "harness/run/frame_times.h"
@@ -26,26 +30,152 @@ namespace {
 
 using nlohmann::json;
 
+// ---- What it says of what it found ----
+
+struct Choice {
+  const SweepSpec& sweep;
+  Wish wish;
+  const Trials& trials;
+  double seconds;         // that it took
+  std::string reference;  // the method that errors are measured against; empty: none
+  Recommendation found = recommend(trials.points, wish);
+
+  // s of computing time a frame: the one that was given, or what the best run takes.
+  double budget() const {
+    return wish.budget > 0 ? wish.budget : found.best ? found.best->frame.slow : 0;
+  }
+  std::optional<Pick> within(double budget_of_frame) const {
+    return most_accurate(trials.points, wish, budget_of_frame);
+  }
+  // Contestants without a run to take, and why.
+  std::map<std::string, std::string> all_why_not() const {
+    std::map<std::string, std::string> all;
+    for (const PointResult& screened : trials.screened) {
+      const std::string& name = screened.spec.name();
+      if (std::string why = why_not(name, trials, wish); !why.empty())
+        all.emplace(name, std::move(why));
+    }
+    return all;
+  }
+};
+
+std::string ms(double seconds) { return number_text(1e3 * seconds, 3); }
+
+std::string error_text(double error) {
+  return std::isnan(error) ? "error unknown" : "error " + analysis::percent(error);
+}
+
+std::string pick_text(const Pick& pick, double rate) {
+  const PointSpec& spec = pick.point->spec;
+  return spec.name() + " at " + step_text(spec.step) + " s (" +
+         std::to_string(std::lround(1 / (rate * spec.step))) +
+         " a frame): " + ms(pick.frame.median) + " ms a frame, 99 % below " + ms(pick.frame.slow) +
+         ", worst " + ms(pick.frame.worst) + "; strain " +
+         analysis::percent(pick.point->measures.max_strain) + ", " + error_text(pick.error);
+}
+
+json pick_json(const std::optional<Pick>& pick) {
+  if (!pick) return nullptr;
+  const PointSpec& spec = pick->point->spec;
+  return {
+      {"solver", spec.solver},
+      {"settings", to_json(spec.settings)},
+      {"step", spec.step},
+      {"frame_seconds",
+       {{"median", pick->frame.median}, {"p99", pick->frame.slow}, {"worst", pick->frame.worst}}},
+      {"seconds_per_simulated_second", pick->point->seconds()},
+      {"max_strain", number(pick->point->measures.max_strain)},
+      {"error", number(pick->error)}};
+}
+
+void print_scene(std::ostream& out, const Choice& choice) {
+  const auto& [sweep, wish, trials, seconds, reference, found] = choice;
+  std::set<std::string> tried;
+  for (const PointResult& point : trials.points) tried.insert(point.spec.name());
+  out << analysis::scene_words(sweep.scene) << ", " << trials.screened.front().spec.vertices
+      << " vertices, " << analysis::percent(sweep.limits.front()) << " strain, "
+      << (std::isfinite(wish.error) ? "motion error at most " + analysis::percent(wish.error)
+                                    : std::string("any motion"))
+      << ": " << tried.size() << " of " << trials.screened.size() << " solvers tried in "
+      << duration_text(seconds) << '\n';
+}
+
+void print_nothing_found(std::ostream& out, const Trials& trials) {
+  const bool ended = std::any_of(trials.points.begin(), trials.points.end(),
+                                 [](const PointResult& p) { return p.ok(); });
+  if (trials.complete) {
+    out << "no solver meets limit and error: a larger --error or --limit may be met\n";
+  } else if (ended) {
+    out << "no run that ended in this time meets limit and error: give more --seconds, or a larger "
+           "--error\n";
+  } else {
+    out << "no run ended within its strain limit in this time: give more --seconds, or a smaller "
+           "--n\n";
+  }
+}
+
+void print_found(std::ostream& out, const Choice& choice) {
+  const auto& [sweep, wish, trials, seconds, reference, found] = choice;
+  const std::string budget = "the budget of " + ms(wish.budget) + " ms";
+  if (!found.to_be_taken())
+    out << "no solver that was tried keeps " << budget << "; the fastest within limit and error:\n";
+  out << (found.to_be_taken() ? "take  " : "best  ") << pick_text(*found.best, wish.rate) << '\n';
+  if (found.budget == Kept::half)
+    out << "1 % of its frames or more take longer than " << budget << '\n';
+  if (found.next) {
+    const Ratio ratio = ratio_of_times(found.next->point->samples, found.best->point->samples);
+    out << "next  " << pick_text(*found.next, wish.rate) << "; "
+        << (ratio.above(1)   ? analysis::text(ratio) + " times as long"
+            : ratio.below(1) ? "faster, with slower frames"
+                             : "too close to rank")
+        << '\n';
+  }
+  const auto with = [&choice](double frame) {
+    const auto pick = choice.within(frame);
+    return ms(frame) + " ms a frame: " +
+           (pick ? pick->point->spec.name() + " at " + step_text(pick->point->spec.step) + " s, " +
+                       error_text(pick->error)
+                 : std::string("none that was tried"));
+  };
+  out << "with  " << with(choice.budget() / 2) << "; with " << with(choice.budget() * 2) << '\n';
+}
+
+void print(std::ostream& out, const Choice& choice) {
+  print_scene(out, choice);
+  if (choice.found.best) {
+    print_found(out, choice);
+  } else {
+    print_nothing_found(out, choice.trials);
+  }
+  for (const auto& [name, why] : choice.all_why_not())
+    out << "not   " << name << ": " << why << '\n';
+}
+
+json choice_json(const Choice& choice) {
+  const auto& [sweep, wish, trials, seconds, reference, found] = choice;
+  const double budget = choice.budget();
+  return {{"scene", sweep.scene},
+          {"scene_parameters", sweep.scene_parameters},
+          {"strain_limit", sweep.limits.front()},
+          {"error", number(wish.error)},
+          {"frame", 1 / wish.rate},
+          {"budget", budget},
+          {"budget_kept", found.all_is_well()},
+          {"take", pick_json(found.to_be_taken() ? found.best : std::nullopt)},
+          {"fastest", pick_json(found.best)},
+          {"runner_up", pick_json(found.next)},
+          {"half_budget", pick_json(choice.within(budget / 2))},
+          {"double_budget", pick_json(choice.within(budget * 2))},
+          {"without_result", choice.all_why_not()},
+          {"reference", reference.empty() ? json() : json(reference)},
+          {"measured_seconds", seconds}};
+}
+
+// ---- Measuring ----
+
 constexpr double far_behind = 4;  // times the fastest so far: a run that takes longer is stopped
 constexpr int finest_part = 32;   // of a frame: the smallest step
 constexpr double reference_share = 0.4;  // of the time, for a finer run at most
-
-struct ChooseCommand : SceneOptions {
-  std::string budget, solver, limits = "0.01";
-  double frames_per_second = 60, error = headline_error, seconds = 60;
-  bool as_json = false, no_wait = false;
-};
-
-void check_rate(double rate) {
-  if (std::find(std::begin(frame_rates), std::end(frame_rates), rate) == std::end(frame_rates))
-    throw UsageError("--fps is " + number_text(rate) + ", must be 24, 30 or 60");
-}
-
-double limit_of(const ChooseCommand& given) {
-  const std::vector<double> limits = numbers_of("--limit", given.limits, Bounds::strain());
-  if (limits.size() != 1) throw UsageError("--limit is '" + given.limits + "', must be one limit");
-  return limits.front();
-}
 
 // Contestants of the scene that --solver matches, and what it names that does not compete there.
 // Throws UsageError for a name that the scene has nothing for.
@@ -53,9 +183,8 @@ Contestants contestants_for(const std::string& given, const SceneType& type,
                             const SceneParameters& parameters) {
   Contestants all = competitors(type, parameters);
   if (given.empty()) return all;
-  check_solver_pattern(given);
-  const Pattern wanted("--solver", given);
-  std::erase_if(all, [&](const Contestant& c) { return !wanted.matches(c.name); });
+  const auto wanted = solver_pattern(given);
+  std::erase_if(all, [&](const Contestant& c) { return !wanted->matches(c.name); });
   for (const std::string& name : alternatives(given)) {
     if (inextensible::find_backend(name) && find_contestant(all, name) == all.end())
       all.push_back({name, name});
@@ -64,30 +193,6 @@ Contestants contestants_for(const std::string& given, const SceneType& type,
     throw UsageError("no solver that --solver '" + shortened(given) + "' matches competes on " +
                      type.name + "; one that is named in full is tried there");
   return all;
-}
-
-Suite suite_of(const ChooseCommand& given, double rate) {
-  const SceneParameters parameters = complete_parameters_of(given);
-  const std::string scene = scene_of(given);
-  const auto type = find_scene(scene);
-  Suite suite;
-  suite.name = "choose";
-  suite.reps = 1;
-  suite.finest_error = std::min(given.error, headline_error);
-  suite.timeout = given.seconds;
-  suite.far_behind = far_behind * std::max(1.0, headline_error / given.error);
-  SweepSpec& sweep = suite.sweeps.emplace_back();
-  sweep.sweep = "strain";
-  sweep.refine = false;  // the time is better spent on other contestants
-  sweep.scene = scene;
-  sweep.limits = {limit_of(given)};
-  sweep.scene_parameters = parameters;
-  sweep.resolutions = {static_cast<int>(sweep.scene_parameters.at(type->resolution))};
-  sweep.coarsest = 1 / rate;
-  sweep.finest = sweep.coarsest / finest_part;
-  sweep.contestants = contestants_for(given.solver, *type, parameters);
-  tune(sweep.contestants, read_tuned_up_to_date("tuned.json"), type->kind(), {}, false);
-  return suite;
 }
 
 // A kept reference, or a finer run made now, which is then among `references`. Null: neither.
@@ -138,65 +243,92 @@ Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
   return try_contestants(suite, plan(suite, {}), wish, limits, events, runners);
 }
 
-int choose(const ChooseCommand& given) {
-  check_rate(given.frames_per_second);
-  Wish wish{given.error, given.frames_per_second,
-            given.budget.empty() ? 0 : duration_of("--budget", given.budget)};
-  const Suite suite = suite_of(given, wish.rate);
-  const SweepSpec& sweep = suite.sweeps.front();
-  const TimingLock lock(!given.no_wait);
-  const auto begin = Clock::now();
-  const ChooseLimits limits{given.seconds, [begin] { return since(begin); }, interrupted};
-  const auto references = std::make_shared<ReferenceFolder>(source_path("results/references"));
-  const auto reference = reference_for(sweep, *references, limits);
-  if (!reference) wish.error = any_motion;
-  const Trials trials = measure(suite, wish, limits, references);
-  const ChoiceReport report{sweep, wish, trials, since(begin), reference ? reference->method : ""};
-  if (given.as_json) {
-    std::cout << to_json(report).dump(1) << '\n';
-  } else {
-    print(std::cout, report);
-  }
-  return recommend(trials.points, wish).all_is_well() ? success : cannot_decide;
+// Seconds of "2ms", "500us" or "0.002s".
+double duration_of(const std::string& option, const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const std::string unit = end;
+  const double scale = unit == "ms" ? 1e-3 : unit == "us" ? 1e-6 : unit == "s" ? 1 : 0;
+  if (!(value > 0) || scale == 0)
+    throw UsageError(option + " is '" + shortened(text, 40) +
+                     "', must be such as 2ms, 500us or 0.002s");
+  return value * scale;
 }
 
-int choose_or_tell_interrupted(const ChooseCommand& given) {
-  catch_interrupts();
-  try {
-    return choose(given);
-  } catch (const Interrupted&) {
-    std::cerr << "bench: interrupted, nothing is recommended\n";
-    return interrupted_exit;
+struct Choose : SceneOptions {
+  std::string budget, solver, limits = "0.01";
+  double frames_per_second = 60, error = headline_error, seconds = 60;
+  bool as_json = false, no_wait = false;
+
+  void declare(const Command& command) {
+    scene = "drape";
+    SceneOptions::declare(command, scene);
+    add_limits(command, limits, limits);
+    command.option("--error", error,
+                   "permitted distance from the reference, over the scene's size; default: 0.02",
+                   "E", Bounds::positive());
+    command.option("--fps", frames_per_second,
+                   "frames a second: 24, 30 or 60 (default); no step is longer than a frame", "N");
+    command.option("--budget", budget, "computing time that a frame may take, e.g. 2ms", "TIME");
+    add_solver(command, solver);
+    command.option("--seconds", seconds, "that measuring may take; default: 60", "S",
+                   Bounds::positive());
+    command.flag("--json", as_json, "for programs");
+    add_no_wait(command, no_wait);
   }
-}
+
+  Suite suite() const {
+    const SceneParameters parameters = complete_parameters();
+    const std::string named = name();
+    const auto type = find_scene(named);
+    Suite chosen;
+    chosen.name = "choose";
+    chosen.reps = 1;
+    chosen.finest_error = std::min(error, headline_error);
+    chosen.timeout = seconds;
+    chosen.far_behind = far_behind * std::max(1.0, headline_error / error);
+    SweepSpec& sweep = chosen.sweeps.emplace_back();
+    sweep.sweep = "strain";
+    sweep.refine = false;  // the time is better spent on other contestants
+    sweep.scene = named;
+    sweep.limits = {one_number_of("--limit", limits, Bounds::strain())};
+    sweep.scene_parameters = parameters;
+    sweep.resolutions = {static_cast<int>(sweep.scene_parameters.at(type->resolution))};
+    sweep.coarsest = 1 / frames_per_second;
+    sweep.finest = sweep.coarsest / finest_part;
+    sweep.contestants = contestants_for(solver, *type, parameters);
+    tune(sweep.contestants, read_tuned_up_to_date("tuned.json"), type->kind(), {}, false);
+    return chosen;
+  }
+
+  int run() {
+    if (std::count(std::begin(frame_rates), std::end(frame_rates), frames_per_second) == 0)
+      throw UsageError("--fps is " + number_text(frames_per_second) + ", must be 24, 30 or 60");
+    Wish wish{error, frames_per_second, budget.empty() ? 0 : duration_of("--budget", budget)};
+    const Suite tried = suite();
+    const TimingLock lock(!no_wait);
+    const auto begin = Clock::now();
+    const ChooseLimits limits_of_time{seconds, [begin] { return since(begin); }, interrupted};
+    const auto references = std::make_shared<ReferenceFolder>(source_path("results/references"));
+    const auto reference = reference_for(tried.sweeps.front(), *references, limits_of_time);
+    if (!reference) wish.error = any_motion;
+    const Trials trials = measure(tried, wish, limits_of_time, references);
+    const Choice choice{tried.sweeps.front(), wish, trials, since(begin),
+                        reference ? reference->method : ""};
+    if (as_json) {
+      std::cout << choice_json(choice).dump(1) << '\n';
+    } else {
+      print(std::cout, choice);
+    }
+    return choice.found.all_is_well() ? success : cannot_decide;
+  }
+};
 
 }  // namespace
 
 Verb choose_verb() {
-  return {
-      "choose", "recommend a solver and a step for a scene, after a minute of measuring",
-      [](const Command& command) -> Action {
-        const auto given = std::make_shared<ChooseCommand>();
-        given->scene = "drape";
-        add_scene(command, *given, given->scene);
-        add_limits(command, given->limits, given->limits);
-        command
-            .option("--error", given->error,
-                    "permitted distance from the reference, over the scene's size; default: 0.02",
-                    "E")
-            .positive();
-        command.option("--fps", given->frames_per_second,
-                       "frames a second: 24, 30 or 60 (default); no step is longer than a frame",
-                       "N");
-        command.option("--budget", given->budget, "computing time that a frame may take, e.g. 2ms",
-                       "TIME");
-        add_solver(command, given->solver);
-        command.option("--seconds", given->seconds, "that measuring may take; default: 60", "S")
-            .positive();
-        command.flag("--json", given->as_json, "for programs");
-        add_no_wait(command, given->no_wait);
-        return [given] { return choose_or_tell_interrupted(*given); };
-      }};
+  return {"choose", "recommend a solver and a step for a scene, after a minute of measuring",
+          verb<Choose>};
 }
 
 }  // namespace harness

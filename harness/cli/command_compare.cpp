@@ -1,63 +1,108 @@
-// bench compare: two results point by point.
+// bench compare, baseline: two results point by point, and a result for the next comparisons.
 #include <iostream>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/base/interrupt.h"
 #include "harness/base/json_text.h"
 #include "harness/base/paths.h"
 #include "harness/cli/compare_options.h"
 #include "harness/cli/exit_codes.h"
+#include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/points/result_file.h"
 
 namespace harness {
-namespace {
 
-struct CompareCommand : CompareOptions {
-  std::string base;
-  std::vector<std::string> next;
-};
-
-std::string with_spaces(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-  return text;
+void CompareOptions::declare(const Command& to) {
+  to.option("--gate", gate, "what passes; default: configs/gate.json", "FILE");
+  to.option("--junit", junit, "also write JUnit XML, one test case a point", "FILE");
+  to.option("--markdown", markdown, "also write the table in Markdown", "FILE");
 }
 
-int run_compare(const CompareCommand& options) {
-  const Gate gate =
-      read_gate(options.gate.empty() ? source_path("configs/gate.json") : options.gate);
-  const ComparedResult base = read_compared({options.base});
-  const ComparedResult next = read_compared(options.next);
-  check_reports(options);
-  try {
-    const Comparison comparison = compare(base, next, gate);
-    return report_comparison(
-        comparison, options, "bench compare",
-        "times of best points differ, but too few runs or too noisy a machine leave open whether "
-        "that is noise: take more --reps, or use bench ab, which times in pairs");
-  } catch (const NotComparable& reason) {
-    std::cerr << "bench: " << reason.what() << "; a new baseline: bench baseline "
-              << with_spaces(options.next) << " --out "
-              << (base.baseline ? options.base : "baseline.json") << '\n';
-    return not_comparable;
+void CompareOptions::check_reports() const {
+  for (const std::string& path : {junit, markdown}) {
+    if (!path.empty()) check_writable(path);
   }
 }
+
+int CompareOptions::report(const Comparison& comparison, const std::string& name,
+                           const std::string& undecided) const {
+  if (!junit.empty()) write_atomically(junit, junit_xml(comparison, name));
+  if (!markdown.empty()) write_atomically(markdown, markdown_table(comparison, name));
+  print_comparison(std::cout, comparison);
+  if (comparison.any(is_failure)) return unexpected_outcome;
+  if (comparison.any(is_regression)) return regression;
+  if (!comparison.undecided()) return success;
+  std::cerr << "bench: " << undecided << '\n';
+  return cannot_decide;
+}
+
+namespace {
+
+struct Compare : CompareOptions {
+  std::string base;
+  Words next;
+
+  void declare(const Command& command) {
+    command.option("base", base, "result file or baseline", "BASE.json");
+    command.option("new", next, "result files; several count as one", "NEW.json");
+    command.require({"base", "new"});
+    CompareOptions::declare(command);
+  }
+
+  int run() {
+    const Gate passes = read_gate(gate.empty() ? source_path("configs/gate.json") : gate);
+    const ComparedResult before = read_compared({base}), after = read_compared(next);
+    check_reports();
+    try {
+      return report(compare(before, after, passes), "bench compare",
+                    "times of best points differ, but too few runs or too noisy a machine leave "
+                    "open whether that is noise: take more --reps, or use bench ab, which times in "
+                    "pairs");
+    } catch (const NotComparable& reason) {
+      std::string hint = "; a new baseline: bench baseline";
+      for (const std::string& file : next) hint += " " + file;
+      throw NotComparable(reason.what() + hint + " --out " +
+                          (before.baseline ? base : "baseline.json"));
+    }
+  }
+};
+
+struct Baseline {
+  Words files;
+  std::string out;
+
+  void declare(const Command& command) {
+    add_results(command, files, "result files");
+    command.option("--out", out, "the baseline", "FILE");
+    command.require({"--out"});
+  }
+
+  int run() {
+    std::vector<nlohmann::json> results;
+    for (const std::string& file : files) results.push_back(read_result(file));
+    const ComparedResult checked = read_compared(files);  // all that a comparison will ask for
+    if (checked.baseline) throw UsageError("a baseline is made from result files");
+    if (!checked.complete)
+      throw UsageError("'" + checked.path + "' is of an interrupted run: no baseline");
+    check_writable(out);
+    write_atomically(out, document_text(baseline_document(results)));
+    std::cout << out << ": " << checked.points.size() << " points" << std::endl;
+    return success;
+  }
+};
 
 }  // namespace
 
 Verb compare_verb() {
   return {"compare",
           "compare two results point by point: what is slower, less accurate or fails now",
-          [](const Command& command) -> Action {
-            const auto given = std::make_shared<CompareCommand>();
-            command.option("base", given->base, "result file or baseline", "BASE.json").required();
-            command.option("new", given->next, "result files; several count as one", "NEW.json")
-                .required();
-            add_compare_options(command, *given);
-            return [given] { return run_compare(*given); };
-          }};
+          verb<Compare>};
+}
+
+Verb baseline_verb() {
+  return {"baseline", "reduce results to a file without times, to compare with later",
+          verb<Baseline>};
 }
 
 }  // namespace harness

@@ -11,12 +11,10 @@
 #include "harness/cli/exit_codes.h"
 
 namespace harness {
-
-Option Option::required() const { return Option(option_->required()); }
 namespace {
 
 // A number that is one, and holds the bounds; said as everything else says it.
-CLI::Validator within_bounds(const Bounds& bounds) {
+CLI::Validator within(const Bounds& bounds) {
   return CLI::Validator(
       [bounds](const std::string& text) {
         char* end = nullptr;
@@ -26,56 +24,6 @@ CLI::Validator within_bounds(const Bounds& bounds) {
       },
       "");
 }
-
-}  // namespace
-
-Option Option::positive() const { return holds(Bounds::positive()); }
-Option Option::not_negative() const { return holds(Bounds::at_least(0)); }
-Option Option::holds(const Bounds& bounds) const {
-  return Option(option_->check(within_bounds(bounds)));
-}
-Option Option::repeatable() const { return Option(option_->allow_extra_args(false)); }
-Option Option::within(int least, int most) const {
-  return holds(
-      {.least = static_cast<double>(least), .most = static_cast<double>(most), .whole = true});
-}
-Option Option::within(double least, double most) const {
-  return holds({.least = least, .most = most});
-}
-
-namespace {
-
-template <class Value>
-Option add(CLI::App* app, const std::string& name, Value& value, const std::string& help,
-           const std::string& type) {
-  CLI::Option* option = app->add_option(name == "--out" ? "-o,--out" : name, value, help);
-  if (!type.empty()) option->type_name(type);
-  return Option(option);
-}
-
-}  // namespace
-
-Option Command::option(const std::string& name, std::string& value, const std::string& help,
-                       const std::string& type) const {
-  return add(app_, name, value, help, type);
-}
-Option Command::option(const std::string& name, std::vector<std::string>& values,
-                       const std::string& help, const std::string& type) const {
-  return add(app_, name, values, help, type);
-}
-Option Command::option(const std::string& name, double& value, const std::string& help,
-                       const std::string& type) const {
-  return add(app_, name, value, help, type).holds({});
-}
-Option Command::option(const std::string& name, int& value, const std::string& help,
-                       const std::string& type) const {
-  return add(app_, name, value, help, type);
-}
-Option Command::option(const std::string& name, std::int64_t& value, const std::string& help,
-                       const std::string& type) const {
-  return add(app_, name, value, help, type);
-}
-namespace {
 
 // Names of version 0.2, which --solver takes for one more version.
 std::string renamed(std::string text) {
@@ -90,25 +38,65 @@ std::string renamed(std::string text) {
 
 }  // namespace
 
-Option Command::alternatives(const std::string& name, std::string& value,
-                             const std::string& help) const {
-  return Option(app_->add_option(name, value, help)
-                    ->type_name("REGEX")
-                    ->transform([](std::string text) {
-                      std::replace(text.begin(), text.end(), ',', '|');
-                      return renamed(std::move(text));
-                    })
-                    ->delimiter('|')  // they are joined by it again
-                    ->multi_option_policy(CLI::MultiOptionPolicy::Join));
+CLI::Option* Command::placed(CLI::Option* option) const {
+  return group_.empty() ? option : option->group(group_);
 }
-Option Command::byte_count(const std::string& name, double& value, const std::string& help) const {
-  return Option(app_->add_option(name, value, help)
-                    ->transform(CLI::AsSizeValue(false).description(""))
-                    ->type_name("BYTES"))
-      .holds({.least = 1 << 20});
+
+template <class Value>
+void Command::option(const std::string& name, Value& value, const std::string& help,
+                     const std::string& type, const Bounds& bounds) const {
+  CLI::Option* option =
+      placed(app_->add_option(name == "--out" ? "-o,--out" : name, value, help))->type_name(type);
+  if constexpr (std::is_arithmetic_v<Value>) option->check(within(bounds));
 }
+template void Command::option(const std::string&, std::string&, const std::string&,
+                              const std::string&, const Bounds&) const;
+template void Command::option(const std::string&, Words&, const std::string&, const std::string&,
+                              const Bounds&) const;
+template void Command::option(const std::string&, double&, const std::string&, const std::string&,
+                              const Bounds&) const;
+template void Command::option(const std::string&, int&, const std::string&, const std::string&,
+                              const Bounds&) const;
+template void Command::option(const std::string&, std::int64_t&, const std::string&,
+                              const std::string&, const Bounds&) const;
+
+void Command::repeatable(const std::string& name, Words& values, const std::string& help,
+                         const std::string& type) const {
+  placed(app_->add_option(name, values, help))->type_name(type)->allow_extra_args(false);
+}
+
+void Command::alternatives(const std::string& name, std::string& value,
+                           const std::string& help) const {
+  placed(app_->add_option(name, value, help))
+      ->type_name("REGEX")
+      ->transform([](std::string text) {
+        std::replace(text.begin(), text.end(), ',', '|');
+        return renamed(std::move(text));
+      })
+      ->delimiter('|')  // they are joined by it again
+      ->multi_option_policy(CLI::MultiOptionPolicy::Join);
+}
+
+void Command::byte_count(const std::string& name, double& value, const std::string& help) const {
+  placed(app_->add_option(name, value, help))
+      ->transform(CLI::AsSizeValue(false).description(""))
+      ->type_name("BYTES")
+      ->check(within({.least = 1 << 20}));
+}
+
 void Command::flag(const std::string& name, bool& value, const std::string& help) const {
-  app_->add_flag(name, value, help);
+  placed(app_->add_flag(name, value, help));
+}
+
+void Command::require(std::initializer_list<const char*> names) const {
+  for (const char* name : names) app_->get_option(name)->required();
+}
+
+std::string Command::one_typed() const {
+  for (const CLI::Option* option : app_->get_options()) {
+    if (option->get_group() == group_ && option->count() > 0) return option->get_name();
+  }
+  return "";
 }
 
 CommandLine::CommandLine(const std::string& description, const std::vector<Verb>& verbs,
@@ -119,38 +107,29 @@ CommandLine::CommandLine(const std::string& description, const std::vector<Verb>
   for (const Verb& verb : verbs) {
     const bool first = &verb == &verbs.front();
     CLI::App* app = first ? app_.get() : app_->add_subcommand(verb.name, verb.summary);
-    app->callback([this, app, name = verb.name, action = verb.add(Command(app, &invocation_))] {
+    app->callback([this, app, has_children = verb.has_children, action = verb.add(Command(app))] {
       if (!app->get_subcommands().empty()) return;  // a verb is meant
-      invocation_.verb = name;
-      invocation_.action = action;
+      action_ = action;
+      has_children_ = has_children;
     });
+    app->add_option_function<Words>(
+           "--plugin",
+           [this](const Words& files) {
+             plugins_.insert(plugins_.end(), files.begin(), files.end());
+           },
+           "load solvers of your own from a shared library (solvers/plugin.h); repeatable")
+        ->allow_extra_args(false)
+        ->type_name("FILE");
   }
 }
 
 CommandLine::~CommandLine() = default;
 
-void CommandLine::add_everywhere(const std::string& name, std::vector<std::string>& values,
-                                 const std::string& help, const std::string& type) {
-  std::vector<CLI::App*> places = app_->get_subcommands([](const CLI::App*) { return true; });
-  places.push_back(app_.get());
-  for (CLI::App* place : places) {
-    place
-        ->add_option_function<std::vector<std::string>>(
-            name,
-            [&values](const auto& given) {
-              values.insert(values.end(), given.begin(), given.end());
-            },
-            help)
-        ->allow_extra_args(false)
-        ->type_name(type);
-  }
-}
-
 namespace {
 
 // As a result records them: it is no place for a machine's folders.
-std::vector<std::string> recorded_words(int argc, char** argv) {
-  std::vector<std::string> words{"bench"};
+Words recorded_words(int argc, char** argv) {
+  Words words{"bench"};
   for (int i = 1; i < argc; ++i) {
     const std::filesystem::path argument(argv[i]);
     words.push_back(argument.is_absolute() ? argument.filename().string() : argument.string());
@@ -159,8 +138,8 @@ std::vector<std::string> recorded_words(int argc, char** argv) {
 }
 
 // The words in the order of typing, without the program's name.
-std::vector<std::string> usual_words(int argc, char** argv) {
-  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+Words usual_words(int argc, char** argv) {
+  Words words(argv + std::min(argc, 1), argv + argc);
   if (words.empty()) return words;
   if (words.front() == "help") {
     words.erase(words.begin());
@@ -181,15 +160,15 @@ const CLI::App* command_of(const CLI::App& program) {
 }
 
 // What is wrong with the first of the typed words that CLI11 had no place for.
-std::string not_understood(const CLI::App& program, const std::vector<std::string>& typed) {
+std::string not_understood(const CLI::App& program, const Words& typed) {
   const CLI::App* command = command_of(program);
-  const std::vector<std::string> left = program.remaining(true);
+  const Words left = program.remaining(true);
   const auto first = std::find_if(typed.begin(), typed.end(), [&left](const std::string& word) {
     return std::find(left.begin(), left.end(), word) != left.end();
   });
   const std::string word = first == typed.end() ? left.front() : *first;
   const std::string of = command == &program ? "" : " of bench " + command->get_name();
-  std::vector<std::string> known;
+  Words known;
   std::string message;
   if (word.starts_with('-')) {
     for (const CLI::Option* option : command->get_options())
@@ -209,8 +188,8 @@ std::string not_understood(const CLI::App& program, const std::vector<std::strin
 }  // namespace
 
 std::optional<int> CommandLine::read(int argc, char** argv) {
-  const std::vector<std::string> words = usual_words(argc, argv);
-  invocation_.words = recorded_words(argc, argv);
+  const Words words = usual_words(argc, argv);
+  words_ = recorded_words(argc, argv);
   const auto refused = [this](const std::string& why) {
     const CLI::App* command = command_of(*app_);
     std::cerr << "bench: " << why << " (see bench "
@@ -218,7 +197,7 @@ std::optional<int> CommandLine::read(int argc, char** argv) {
     return usage_error;
   };
   try {
-    app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as CLI11 takes them
+    app_->parse(Words(words.rbegin(), words.rend()));  // as CLI11 takes them
   } catch (const CLI::ExtrasError&) {
     return refused(not_understood(*app_, words));
   } catch (const CLI::ParseError& error) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,68 +19,63 @@ class Option;
 
 namespace harness {
 
-using Action = std::function<int()>;  // returns an ExitCode; throws UsageError
+using Words = std::vector<std::string>;
+using Action = std::function<int(const Words& typed)>;  // returns an ExitCode
 
-// What was typed: all words, for the record, and the action of the verb among them.
-struct Invocation {
-  std::vector<std::string> words;
-  std::string verb;
-  Action action;
-};
-
-// An option that was just added, to say more of it.
-class Option {
- public:
-  explicit Option(CLI::Option* option) : option_(option) {}
-  Option required() const;
-  Option holds(const Bounds& bounds) const;
-  Option positive() const;
-  Option not_negative() const;
-  Option repeatable() const;  // one value each time; else a list takes all words that follow
-  Option within(int least, int most) const;
-  Option within(double least, double most) const;
-
- private:
-  CLI::Option* option_;
-};
-
-// Where a verb adds its options. What an option is written to must live until the action has run,
-// which is why actions share their options' owner.
+// Where a verb adds its options. What an option is written to must outlive the verb's run.
 class Command {
  public:
-  Command(CLI::App* app, const Invocation* invocation) : app_(app), invocation_(invocation) {}
+  explicit Command(CLI::App* app = nullptr, std::string group = {})
+      : app_(app), group_(std::move(group)) {}
 
   // An option if the name begins with dashes, a word in its place if not. `type`: what the help
-  // calls the value.
-  Option option(const std::string& name, std::string& value, const std::string& help,
-                const std::string& type = {}) const;
-  Option option(const std::string& name, std::vector<std::string>& values, const std::string& help,
-                const std::string& type) const;
-  Option option(const std::string& name, double& value, const std::string& help,
-                const std::string& type) const;
-  Option option(const std::string& name, int& value, const std::string& help,
-                const std::string& type) const;
-  Option option(const std::string& name, std::int64_t& value, const std::string& help,
-                const std::string& type) const;
+  // calls the value, which is a string, Words, a double, an int or an int64_t.
+  template <class Value>
+  void option(const std::string& name, Value& value, const std::string& help,
+              const std::string& type, const Bounds& bounds = {}) const;
+  // One value each time; Words as an option take all words that follow.
+  void repeatable(const std::string& name, Words& values, const std::string& help,
+                  const std::string& type) const;
   // A regular expression; of several, given one by one or between commas, what matches one of them.
-  Option alternatives(const std::string& name, std::string& value, const std::string& help) const;
+  void alternatives(const std::string& name, std::string& value, const std::string& help) const;
   // "4G" is 4 GiB.
-  Option byte_count(const std::string& name, double& value, const std::string& help) const;
+  void byte_count(const std::string& name, double& value, const std::string& help) const;
   void flag(const std::string& name, bool& value, const std::string& help) const;
 
-  // The words of the command line, for the record: ask when the action runs.
-  const std::vector<std::string>& words() const { return invocation_->words; }
+  void require(std::initializer_list<const char*> names) const;
+  // Options that the help lists under a heading of their own; which of them was typed, if any.
+  Command group(const std::string& heading) const { return Command(app_, heading); }
+  const std::string& heading() const { return group_; }
+  std::string one_typed() const;
 
  private:
+  CLI::Option* placed(CLI::Option* option) const;
+
   CLI::App* app_;
-  const Invocation* invocation_;
+  std::string group_;
 };
 
 // A verb of the program. `add` adds its options, and returns what is done if it is chosen.
 struct Verb {
   std::string name, summary;
   Action (*add)(const Command& command);
+  // It computes in children of its own, and answers an interruption with what was done until then.
+  bool has_children = false;
 };
+
+// The action of a verb whose options are the members of a struct, which adds them in declare() and
+// acts in run(), with the words of the command line for the record where it asks for them.
+template <class Options>
+Action verb(const Command& command) {
+  const auto options = std::make_shared<Options>();
+  options->declare(command);
+  return [options](const Words& typed) {
+    if constexpr (requires { options->run(typed); })
+      return options->run(typed);
+    else
+      return options->run();
+  };
+}
 
 class CommandLine {
  public:
@@ -91,19 +87,18 @@ class CommandLine {
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  // Before and after the name of every verb, any number of times.
-  void add_everywhere(const std::string& name, std::vector<std::string>& values,
-                      const std::string& help, const std::string& type);
-
   // `help VERB` is VERB --help, and `sweep AXIS` is --sweep AXIS. An exit code if nothing is left
   // to do: help was printed, or a word is wrong, which is said on stderr.
   std::optional<int> read(int argc, char** argv);
-  int run() const { return invocation_.action(); }
-  const std::string& verb() const { return invocation_.verb; }  // that was typed
+  int run() const { return action_(words_); }
+  bool has_children() const { return has_children_; }  // of the verb that was typed
+  const Words& plugins() const { return plugins_; }    // of --plugin, which every verb takes
 
  private:
   std::unique_ptr<CLI::App> app_;
-  Invocation invocation_;
+  Words words_, plugins_;
+  Action action_;
+  bool has_children_ = false;
 };
 
 }  // namespace harness

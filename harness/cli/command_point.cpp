@@ -8,7 +8,7 @@
 #include "harness/base/paths.h"
 #include "harness/base/standard_streams.h"
 #include "harness/cli/exit_codes.h"
-#include "harness/cli/shared_options.h"
+#include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
@@ -19,11 +19,6 @@ namespace harness {
 namespace {
 
 using nlohmann::json;
-
-struct PointCommand {
-  int samples = 1;
-  double timeout = 60;  // s
-};
 
 // What a point says of itself twice must agree: no run stands for another.
 void check_count(const std::string& where, const char* key, int given, int actual) {
@@ -84,41 +79,43 @@ std::vector<PointSpec> read_specs(std::istream& in) {
   return specs;
 }
 
-// A line of the solver's own among the results would be read as one of them.
-PointResult timed_point(const PointSpec& spec, const RunLimits& limits, int samples) {
-  const OutputToError no_output;
-  PointResult point = run_point(spec, limits);
-  for (int i = 1; i < samples && point.ok(); ++i) repeat_point(point, limits);
-  return point;
-}
+struct PointVerb {
+  int samples = 1;
+  double timeout = 60;  // s
 
-int run_points(const PointCommand& options) {
-  RunLimits limits;
-  limits.timeout = options.timeout;
-  limits.references = std::make_shared<ReferenceFolder>(source_path("results/references"));
-  const std::string fingerprint = counters_fingerprint();
-  for (const PointSpec& spec : read_specs(std::cin)) {
-    const PointResult point = timed_point(spec, limits, options.samples);
-    json line = to_json(point);
-    line["counters_fingerprint"] = fingerprint;
-    std::cout << compact(line) << std::endl;
+  void declare(const Command& command) {
+    command.option("--samples", samples, "runs of each, the first one judged; default: 1", "N",
+                   {.least = 1, .most = 1000000, .whole = true});
+    add_timeout(command, timeout, "60");
   }
-  return success;
-}
+
+  // A line of the solver's own among the results would be read as one of them.
+  PointResult timed(const PointSpec& spec, const RunLimits& limits) const {
+    const OutputToError no_output;
+    PointResult point = run_point(spec, limits);
+    for (int i = 1; i < samples && point.ok(); ++i) repeat_point(point, limits);
+    return point;
+  }
+
+  int run() const {
+    RunLimits limits;
+    limits.timeout = timeout;
+    limits.references = std::make_shared<ReferenceFolder>(source_path("results/references"));
+    const std::string fingerprint = counters_fingerprint();
+    for (const PointSpec& spec : read_specs(std::cin)) {
+      json line = to_json(timed(spec, limits));
+      line["counters_fingerprint"] = fingerprint;
+      std::cout << compact(line) << std::endl;
+    }
+    return success;
+  }
+};
 
 }  // namespace
 
 Verb point_verb() {
   return {"point", "run single points, given as JSON on standard input, one a line",
-          [](const Command& command) -> Action {
-            const auto given = std::make_shared<PointCommand>();
-            command
-                .option("--samples", given->samples,
-                        "runs of each, the first one judged; default: 1", "N")
-                .within(1, 1000000);
-            add_timeout(command, given->timeout, "60");
-            return [given] { return run_points(*given); };
-          }};
+          verb<PointVerb>};
 }
 
 }  // namespace harness

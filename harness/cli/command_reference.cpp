@@ -9,7 +9,7 @@
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/cli/exit_codes.h"
-#include "harness/cli/sweep_options.h"
+#include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/judge/ensemble_runs.h"
 #include "harness/judge/reference_file.h"
@@ -18,8 +18,6 @@
 
 namespace harness {
 namespace {
-
-using SceneOfReference = std::pair<std::string, SceneParameters>;
 
 // How good it is, and where the scene's last vertex is.
 void print_reference(std::ostream& out, const Reference& reference) {
@@ -57,12 +55,13 @@ void print_ensemble(std::ostream& out, const Ensemble& ensemble) {
   out << '\n';
 }
 
-// A reference's file, and where what belongs to it is kept while it is made.
+// A reference's file while it is made: runs that are done are kept beside it, so that one that was
+// stopped goes on after them.
 class PendingReference {
  public:
   PendingReference(const std::string& path, const std::string& scene,
                    const SceneParameters& parameters, double finest)
-      : name_(std::filesystem::path(path).filename().string()),
+      : path_(writable(path)),
         pieces_(path, {{"schema", "inextensible-reference-pieces/1"},
                        {"scene", scene},
                        {"scene_parameters", parameters},
@@ -71,7 +70,6 @@ class PendingReference {
     for (const std::string& line : pieces_.news()) tell(line);
   }
 
-  void tell(const std::string& line) const { std::cerr << name_ << ": " << line << '\n'; }
   Tell teller() const {
     return [this](const std::string& line) { tell(line); };
   }
@@ -80,30 +78,36 @@ class PendingReference {
       return pieces_.run(run, compute);
     };
   }
-  void done() { pieces_.remove(); }
+  // Of cloth.
+  Ensemble ensemble(const Scene& scene, const std::vector<double>& times) {
+    return is_cloth(scene) ? compute_ensemble(scene, times, {}, teller(), keeper()) : Ensemble();
+  }
+  void write(const nlohmann::json& document) {
+    write_atomically(path_, document.dump() + "\n");
+    pieces_.remove();
+  }
 
  private:
-  std::string name_;
+  static const std::string& writable(const std::string& path) {
+    check_writable(path);
+    return path;
+  }
+  void tell(const std::string& line) const {
+    std::cerr << std::filesystem::path(path_).filename().string() << ": " << line << '\n';
+  }
+
+  std::string path_;
   ReferencePieces pieces_;
 };
 
-Ensemble ensemble_for(const Scene& scene, const std::vector<double>& times,
-                      PendingReference& making) {
-  return is_cloth(scene) ? compute_ensemble(scene, times, {}, making.teller(), making.keeper())
-                         : Ensemble();
-}
-
-// By both routes, and of cloth an ensemble. One that was stopped goes on after the runs that were
-// done.
+// By both routes, and of cloth an ensemble.
 void make_reference(const std::string& path, const std::string& scene,
                     const SceneParameters& parameters, double finest) {
-  check_writable(path);
   PendingReference making(path, scene, parameters, finest);
   Reference reference =
       compute_reference(scene, parameters, finest, making.teller(), making.keeper());
-  reference.ensemble = ensemble_for(find_scene(scene)->build(parameters), reference.times, making);
-  write_atomically(path, to_json(reference).dump() + "\n");
-  making.done();
+  reference.ensemble = making.ensemble(find_scene(scene)->build(parameters), reference.times);
+  making.write(to_json(reference));
   print_reference(std::cout, reference);
   print_ensemble(std::cout, reference.ensemble);
   std::cout << path << std::endl;
@@ -111,13 +115,10 @@ void make_reference(const std::string& path, const std::string& scene,
 
 // Makes the ensemble of a reference that is there. Its path stays as it is.
 void add_ensemble(const std::string& path, const Reference& reference) {
-  check_writable(path);
   PendingReference making(path, reference.scene, reference.parameters, 0);
   const Scene scene = find_scene(reference.scene)->build(reference.parameters);
-  const Ensemble ensemble = ensemble_for(scene, reference.times, making);
-  const nlohmann::json document = parse_document(read_file(path, "reference"), path);
-  write_atomically(path, with_ensemble(document, ensemble).dump() + "\n");
-  making.done();
+  const Ensemble ensemble = making.ensemble(scene, reference.times);
+  making.write(with_ensemble(parse_document(read_file(path, "reference"), path), ensemble));
   std::cout << reference.scene << ":\n";
   print_ensemble(std::cout, ensemble);
   std::cout << path << std::endl;
@@ -130,84 +131,78 @@ bool wants_ensemble(const Reference& reference, bool again) {
          is_cloth(find_scene(reference.scene)->build(reference.parameters));
 }
 
-// Sweeps of one scene at the sizes that were given.
-std::vector<SceneOfReference> given_scenes(const SweepOptions& options) {
-  if (options.scene.empty())
-    throw UsageError("--n and --set go with --scene: of which scene is the reference to be?");
-  const std::string scene = scene_of(options);
-  const auto type = find_scene(scene);
-  if (!type) throw UsageError("there is no scene '" + scene + "'; `bench list scenes` names them");
-  SceneParameters given = parameters_of(options);
-  std::vector<SceneOfReference> scenes;
-  if (options.n.empty()) scenes.emplace_back(scene, complete_parameters(*type, given));
-  for (const double n : numbers_of("--n", options.n, Bounds::whole_number(2))) {
-    given[type->resolution] = n;
-    scenes.emplace_back(scene, complete_parameters(*type, given));
-  }
-  return scenes;
-}
-
-// Those of a profile's sweeps.
-std::vector<SceneOfReference> scenes_of_suite(const SweepOptions& options) {
-  Suite suite = read_suite(suite_path(options));
-  std::erase_if(suite.sweeps, [&](const SweepSpec& s) {
-    return (!options.sweep.empty() && s.sweep != options.sweep) ||
-           (!options.scene.empty() && s.scene != options.scene);
-  });
-  if (suite.sweeps.empty()) throw UsageError("no sweep of the suite has such a scene");
-  ReferenceFolder nothing("");
-  return without_reference(plan(suite, {}), nothing);
-}
-
-struct ReferenceOptions {
-  SweepOptions options;
-  bool again = false, ensemble = false;
+struct ReferenceVerb : SelectionOptions {
+  bool again = false, only_ensemble = false;
   double finest = 0;
-};
 
-// Makes what is missing, or all of it: references, and ensembles of those that are there.
-int make_references(const ReferenceOptions& given) {
-  const SweepOptions& options = given.options;
-  if (given.ensemble && given.finest > 0)
-    throw UsageError("--finest does not go with --ensemble, whose runs have a step of their own");
-  const bool one_scene = !options.n.empty() || !parameters_of(options).empty() ||
-                         options.scene.starts_with("mesh:");  // of no suite
-  const std::string folder = source_path("results/references");
-  ReferenceFolder references(folder);
-  bool nothing = true;
-  for (const auto& [scene, parameters] :
-       one_scene ? given_scenes(options) : scenes_of_suite(options)) {
-    const std::string path = folder + "/" + reference_name(scene, parameters);
-    const auto stored = references.find(scene, parameters);
-    if (!given.ensemble && (!stored || given.again)) {
-      make_reference(path, scene, parameters, given.finest);
-    } else if (stored && wants_ensemble(*stored, given.again)) {
-      add_ensemble(path, *stored);
-    } else if (!stored) {
-      std::cerr << path << " is not there: bench reference makes it\n";
-    } else {
-      continue;
-    }
-    nothing = false;
+  void declare(const Command& command) {
+    declare_scenes(command, command);
+    command.flag("--again", again, "also what exists already");
+    command.flag("--ensemble", only_ensemble,
+                 "only ensembles of references that exist; their paths stay as they are");
+    command.option("--finest", finest, "smallest step of step halving, s", "S", Bounds::positive());
   }
-  if (nothing) std::cout << "nothing is missing (--again computes again)\n";
-  return success;
-}
+
+  // One scene at the sizes that were given.
+  std::vector<SceneOfReference> given_scenes() const {
+    if (scene.empty())
+      throw UsageError("--n and --set go with --scene: of which scene is the reference to be?");
+    if (n.empty()) return {{name(), complete_parameters()}};
+    std::vector<SceneOfReference> scenes;
+    SceneOptions one = *this;
+    for (const double size : numbers_of("--n", n, Bounds::whole_number(2))) {
+      one.n = number_text(size, 10);
+      scenes.emplace_back(name(), one.complete_parameters());
+    }
+    return scenes;
+  }
+
+  // Those of a profile's sweeps.
+  std::vector<SceneOfReference> scenes_of_suite() const {
+    Suite suite = read_suite(suite_path(*this));
+    std::erase_if(suite.sweeps, [this](const SweepSpec& s) {
+      return (!sweep.empty() && s.sweep != sweep) || (!scene.empty() && s.scene != scene);
+    });
+    if (suite.sweeps.empty()) throw UsageError("no sweep of the suite has such a scene");
+    ReferenceFolder nothing("");
+    std::vector<SceneOfReference> scenes;
+    for (const auto& [file, missing] : without_reference(plan(suite, {}), nothing))
+      scenes.push_back(missing);
+    return scenes;
+  }
+
+  // Makes what is missing, or all of it: references, and ensembles of those that are there.
+  int run() const {
+    if (only_ensemble && finest > 0)
+      throw UsageError("--finest does not go with --ensemble, whose runs have a step of their own");
+    const bool one_scene = !n.empty() || !set.empty() || scene.starts_with("mesh:");  // of no suite
+    const std::string folder = source_path("results/references");
+    ReferenceFolder references(folder);
+    bool nothing = true;
+    for (const auto& [name, parameters] : one_scene ? given_scenes() : scenes_of_suite()) {
+      const std::string path = folder + "/" + reference_name(name, parameters);
+      const auto stored = references.find(name, parameters);
+      if (!only_ensemble && (!stored || again)) {
+        make_reference(path, name, parameters, finest);
+      } else if (stored && wants_ensemble(*stored, again)) {
+        add_ensemble(path, *stored);
+      } else if (!stored) {
+        std::cerr << path << " is not there: bench reference makes it\n";
+      } else {
+        continue;
+      }
+      nothing = false;
+    }
+    if (nothing) std::cout << "nothing is missing (--again computes again)\n";
+    return success;
+  }
+};
 
 }  // namespace
 
 Verb reference_verb() {
   return {"reference", "compute the trajectories and ensembles that errors are measured against",
-          [](const Command& command) -> Action {
-            const auto given = std::make_shared<ReferenceOptions>();
-            add_scene_selection(command, given->options);
-            command.flag("--again", given->again, "also what exists already");
-            command.flag("--ensemble", given->ensemble,
-                         "only ensembles of references that exist; their paths stay as they are");
-            command.option("--finest", given->finest, "smallest step of step halving, s", "S")
-                .positive();
-            return [given] { return make_references(*given); };
-          }};
+          verb<ReferenceVerb>};
 }
 
 }  // namespace harness

@@ -1,21 +1,29 @@
-// bench show: what a result file says, as the sweep said it at its end.
+// What result files say: bench show, budget and claims.
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <map>
 #include <set>
 #include <sstream>
+#include <string_view>
 
 #include "harness/analysis/analysis_json.h"
+#include "harness/analysis/budget.h"
 #include "harness/answers/measure.h"
 #include "harness/base/errors.h"
+#include "harness/base/files.h"
 #include "harness/base/standard_streams.h"
 #include "harness/base/text.h"
+#include "harness/claims/claims.h"
+#include "harness/claims/judging.h"
 #include "harness/cli/exit_codes.h"
+#include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/points/joined.h"
 #include "harness/points/noise.h"
 #include "harness/points/result_file.h"
+#include "harness/tables/results_page.h"
 #include "harness/tables/terminal.h"
 
 namespace harness {
@@ -66,17 +74,10 @@ void print_outcomes(std::ostream& out, const json& document) {
 
 void print_whole(std::ostream& out, const json& document, const std::string& file, bool all) {
   print_head(out, document, file);
-  if (is_answers(document)) {
-    print_answers(out, document);
-    return;
-  }
-  if (document.at("schema") == "inextensible-stability/1") {
-    print_outcomes(out, document);
-    return;
-  }
-  const json& context = document.at("context");
+  if (is_answers(document)) return print_answers(out, document);
+  if (document.contains("matrix")) return print_outcomes(out, document);
   print_sweep(out, document, all, output_columns());
-  if (const auto pair = noise_of(context))
+  if (const auto pair = noise_of(document.at("context")))
     out << "\ndifferences below " << number_text(100 * std::expm1(pair->q95), 2)
         << " % are noise, by " << pair->one << " against itself\n";
   if (!all)
@@ -84,51 +85,114 @@ void print_whole(std::ostream& out, const json& document, const std::string& fil
         << file << " --out report.html\n";
 }
 
-// Several files are one table; a file of known answers is printed by itself.
-json read_shown(const std::vector<std::string>& files) {
-  return files.size() == 1 ? read_result_or_answers(files.front()) : read_results(files);
-}
+bool is_sweep(const json& document) { return document.at("schema") == "inextensible-bench/1"; }
 
-int show(const std::vector<std::string>& files, bool all) {
-  std::ostringstream text;
-  print_whole(text, read_shown(files), files.front(), all);
-  std::cout << fitted(text.str(), output_columns());
-  return success;
-}
+struct Show {
+  Words files;
+  bool as_json = false, all = false;
 
-// The analysis of the sweep's points, for programs.
-int show_json(const std::vector<std::string>& files) {
-  const json document = read_shown(files);
-  if (document.at("schema") != "inextensible-bench/1")
-    throw UsageError("'" + files.front() +
-                     "' has no strain limits and errors to be analyzed; --json is for "
-                     "sweeps over strain, resolution and step");
-  std::cout << analysis::analysis_of(document).dump(1) << '\n';
-  return success;
-}
+  void declare(const Command& command) {
+    add_results(command, files, "result files; several count as one");
+    command.flag("--json", as_json,
+                 "as JSON: which contestant is fastest within each strain limit and error");
+    command.flag("--all", all, "every contestant, and how runs failed");
+  }
+
+  int run() {
+    if (as_json && all) throw UsageError("--json has all contestants already: leave out --all");
+    // Several files are one table; a file of known answers is printed by itself.
+    const json document =
+        files.size() == 1 ? read_result_or_answers(files.front()) : read_results(files);
+    if (!as_json) {
+      std::ostringstream text;
+      print_whole(text, document, files.front(), all);
+      std::cout << fitted(text.str(), output_columns());
+    } else if (is_sweep(document)) {
+      std::cout << analysis::analysis_of(document).dump(1) << '\n';
+    } else {
+      throw UsageError("'" + files.front() +
+                       "' has no strain limits and errors to be analyzed; --json is for sweeps "
+                       "over strain, resolution and step");
+    }
+    return success;
+  }
+};
+
+struct Budget {
+  Words files;
+  std::string ms = "1,4,16";
+
+  void declare(const Command& command) {
+    add_results(command, files, "result files");
+    command.option("--ms", ms, "milliseconds of one core for a frame of 1/60 s; default: " + ms,
+                   "MS,...");
+  }
+
+  int run() {
+    std::vector<double> seconds = numbers_of("--ms", ms, Bounds::positive());
+    for (double& budget : seconds) budget *= 1e-3;
+    std::vector<json> sweeps;
+    for (const std::string& file : files) {
+      if (json document = read_result_or_answers(file); is_sweep(document))
+        sweeps.push_back(std::move(document));
+    }
+    std::vector<analysis::BudgetTable> tables;
+    const json table = sweeps.empty() ? json() : joined(sweeps);  // the tables refer to it
+    if (!sweeps.empty()) tables = analysis::budget_tables(table, seconds);
+    if (tables.empty())
+      throw UsageError("'" + files.front() +
+                       "' has no times of frames; sweeps of at least one second have them");
+    print_budgets(std::cout, tables);
+    return success;
+  }
+};
+
+struct Claims {
+  Words files;
+  std::string markdown;
+
+  void declare(const Command& command) {
+    add_results(command, files, "result files");
+    command.option("--markdown", markdown, "also write the table in Markdown", "FILE");
+  }
+
+  int run() {
+    if (!markdown.empty()) check_writable(markdown);
+    std::vector<json> results;
+    for (const std::string& file : files) {
+      if (json document = read_result_or_answers(file); !is_answers(document))
+        results.push_back(std::move(document));  // no claim is about answers
+    }
+    if (results.empty()) throw UsageError("claims are about sweeps; results/*.json has some");
+    const std::vector<ClaimVerdict> verdicts = judge_claims(results);
+    if (std::all_of(verdicts.begin(), verdicts.end(), [](const ClaimVerdict& claim) {
+          return claim.verdict == std::string_view(claims::not_measured);
+        }))
+      throw UsageError("nothing in '" + files.front() +
+                       "' is what a claim is about; results/*.json are");
+    if (!markdown.empty()) {
+      std::ostringstream table;
+      print_claims_markdown(table, verdicts);
+      write_atomically(markdown, table.str());
+    }
+    print_claims(std::cout, verdicts);
+    return success;
+  }
+};
 
 }  // namespace
 
 Verb show_verb() {
-  return {
-      "show", "print a result file: which method is fastest within each strain limit and error",
-      [](const Command& command) -> Action {
-        struct Given {
-          std::vector<std::string> files;
-          bool as_json = false, all = false;
-        };
-        const auto given = std::make_shared<Given>();
-        command.option("results", given->files, "result files; several count as one", "RESULT.json")
-            .required();
-        command.flag("--json", given->as_json,
-                     "as JSON: which contestant is fastest within each strain limit and error");
-        command.flag("--all", given->all, "every contestant, and how runs failed");
-        return [given] {
-          if (given->as_json && given->all)
-            throw UsageError("--json has all contestants already: leave out --all");
-          return given->as_json ? show_json(given->files) : show(given->files, given->all);
-        };
-      }};
+  return {"show", "print a result file: which method is fastest within each strain limit and error",
+          verb<Show>};
+}
+
+Verb budget_verb() {
+  return {"budget", "strain and error of each method within a frame budget", verb<Budget>};
+}
+
+Verb claims_verb() {
+  return {"claims", "decide the paper's claims from result files", verb<Claims>};
 }
 
 }  // namespace harness

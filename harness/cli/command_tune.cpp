@@ -13,7 +13,7 @@
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/exit_codes.h"
-#include "harness/cli/shared_options.h"
+#include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
@@ -24,24 +24,6 @@ namespace harness {
 namespace {
 
 using nlohmann::json;
-
-struct TuneCommand {
-  std::string solver, scene, n, limits, out;
-  int trials = 0;  // 0: the rule's
-  double timeout = TuneOptions{}.timeout;
-  bool no_wait = false, quiet = false, again = false;
-};
-
-std::vector<SweepSpec> chosen_scenes(const std::string& name) {
-  std::vector<SweepSpec> scenes = tuning_scenes();
-  if (name.empty()) return scenes;
-  std::vector<std::string> names;
-  names.reserve(scenes.size());
-  for (const SweepSpec& scene : scenes) names.push_back(scene.scene);
-  std::erase_if(scenes, [&name](const SweepSpec& s) { return s.scene != name; });
-  if (scenes.empty()) throw unknown_name("scene to tune on", name, names);
-  return scenes;
-}
 
 // All that have something to be tuned; a solver that is no contestant only by name.
 std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec& scene) {
@@ -58,12 +40,12 @@ std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec
   return solvers;
 }
 
-// Whether settings by today's rule are there already.
-bool stands(const std::vector<TunedEntry>& entries, const std::string& kind,
-            const std::string& solver) {
-  return std::any_of(entries.begin(), entries.end(), [&](const TunedEntry& e) {
-    return e.kind == kind && e.solver == solver && up_to_date(e);
+TunedEntry* find(std::vector<TunedEntry>& entries, const std::string& kind,
+                 const std::string& solver) {
+  const auto place = std::find_if(entries.begin(), entries.end(), [&](const TunedEntry& e) {
+    return e.kind == kind && e.solver == solver;
   });
+  return place == entries.end() ? nullptr : &*place;
 }
 
 // Adds what was found at places of the user's own, or takes it instead of what was found there
@@ -92,13 +74,13 @@ void put_in(std::vector<TunedEntry>& entries, TunedEntry entry) {
                    [&rank](const auto& a, const auto& b) { return rank(a) < rank(b); });
 }
 
-json context_of(const TuneCommand& options) {
+json context_of(double timeout) {
   const json machine = machine_context();
   return {{"date", machine.at("date")},
           {"cpu_model", machine.at("cpu_model")},
           {"commit", machine.at("build").at("git")},
           {"dirty", machine.at("build").at("dirty")},
-          {"timeout", options.timeout}};
+          {"timeout", timeout}};
 }
 
 // The settings of a place that are an end of their range: beyond it there may be better ones.
@@ -122,95 +104,117 @@ void print(const TunedEntry& entry) {
   }
 }
 
-int run_tune(const TuneCommand& options) {
-  auto scenes = chosen_scenes(options.scene);
-  const bool own_places = !options.n.empty() || !options.limits.empty();
-  if (own_places && scenes.size() != 1)
-    throw UsageError("--n and --limit go with --scene: of which scene is the place?");
-  if (own_places) scenes.front().scene_parameters.clear();  // the scene that results report
-  if (!options.n.empty()) {
-    scenes.front().resolutions.clear();
-    for (const double n : numbers_of("--n", options.n, Bounds::whole_number(2)))
-      scenes.front().resolutions.push_back(static_cast<int>(n));
+struct Tune {
+  std::string solver, scene, n, limits, out;
+  int trials = 0;  // 0: the rule's
+  double timeout = TuneOptions{}.timeout;
+  bool no_wait = false, quiet = false, again = false;
+
+  void declare(const Command& command) {
+    add_solver(command, solver);
+    command.option("--scene", scene, "chain, drape, patch or spinning_net; default: all", "SCENE");
+    command.option("--n", n, "sizes of your own, whose settings are added", "N,...");
+    command.option("--limit", limits, "strain limits of your own, whose settings are added",
+                   "STRAIN,...");
+    command.option("--trials", trials,
+                   "sets of settings to try for each solver, size and limit; default: 10 for each "
+                   "setting, at most 40",
+                   "N", {.least = 4, .most = 10000, .whole = true});
+    add_timeout(command, timeout, "10");
+    command.flag("--again", again, "also what is up to date");
+    command.option("--out", out, "the settings; default: configs/tuned.json", "FILE");
+    command.flag("--quiet", quiet, "no line for each set of settings");
+    add_no_wait(command, no_wait);
   }
-  if (!options.limits.empty())
-    scenes.front().limits = numbers_of("--limit", options.limits, Bounds::strain());
-  if (!options.solver.empty()) check_solver_pattern(options.solver);
-  if (std::all_of(scenes.begin(), scenes.end(), [&options](const SweepSpec& scene) {
-        return chosen_solvers(options.solver, scene).empty();
-      }))
-    throw UsageError("--solver " + options.solver + ": no setting of it is to be tuned");
-  const std::string out = options.out.empty() ? source_path("configs/tuned.json") : options.out;
-  std::vector<TunedEntry> entries;
-  if (std::filesystem::exists(out))
-    entries = parse_tuned(read_file(out, "file of tuned settings"), out).entries;
-  check_writable(out);
-  catch_interrupts();
-  const TimingLock lock(!options.no_wait);
-  TuneOptions tuning;
-  if (options.trials > 0) tuning.rules.budget = tuning.trials_each = options.trials;
-  tuning.timeout = options.timeout;
-  tuning.interrupted = interrupted;
-  if (own_places) tuning.longest_run = std::numeric_limits<double>::infinity();
-  if (!options.quiet) tuning.tell = [](const std::string& line) { std::cerr << line << '\n'; };
-  SweepRunners runners;
-  runners.references = std::make_shared<ReferenceFolder>(source_path("results/references"));
-  runners = isolated(runners, 0);
-  std::cout << "kind          solver                             size  limit   gain   settings\n";
-  for (const SweepSpec& scene : scenes) {
-    for (const std::string& solver : chosen_solvers(options.solver, scene)) {
-      if (own_places) {
-        const auto known = std::find_if(entries.begin(), entries.end(), [&](const TunedEntry& e) {
-          return e.kind == scene.scene && e.solver == solver;
-        });
-        if (known == entries.end() || !up_to_date(*known))
-          throw UsageError(solver + " has no settings by today's rule yet: bench tune --scene " +
-                           scene.scene + " --solver " + solver);
-        TunedEntry found = tune_solver(solver, scene, tuning, runners, &*known);
-        print(found);
-        add_places(*known, found.places);
-        write_atomically(out, document_text(tuned_document(entries)));
-        continue;
-      }
-      if (!options.again && stands(entries, find_scene(scene.scene)->kind(), solver)) continue;
-      TunedEntry entry = tune_solver(solver, scene, tuning, runners);
-      entry.context = context_of(options);
-      print(entry);
-      put_in(entries, std::move(entry));
-      write_atomically(out, document_text(tuned_document(entries)));
+
+  bool own_places() const { return !n.empty() || !limits.empty(); }
+
+  std::vector<SweepSpec> scenes() const {
+    std::vector<SweepSpec> chosen = tuning_scenes();
+    if (!scene.empty()) {
+      std::vector<std::string> names;
+      for (const SweepSpec& each : chosen) names.push_back(each.scene);
+      check_known("scene to tune on", scene, names);
+      std::erase_if(chosen, [this](const SweepSpec& s) { return s.scene != scene; });
     }
+    if (!own_places()) return chosen;
+    if (chosen.size() != 1)
+      throw UsageError("--n and --limit go with --scene: of which scene is the place?");
+    SweepSpec& one = chosen.front();
+    one.scene_parameters.clear();  // the scene that results report
+    if (!n.empty()) {
+      const std::vector<double> sizes = numbers_of("--n", n, Bounds::whole_number(2));
+      one.resolutions.assign(sizes.begin(), sizes.end());
+    }
+    if (!limits.empty()) one.limits = numbers_of("--limit", limits, Bounds::strain());
+    return chosen;
   }
-  std::cout << "\nwritten:\n" << out << std::endl;
-  return success;
-}
+
+  TuneOptions tuning() const {
+    TuneOptions options;
+    if (trials > 0) options.rules.budget = options.trials_each = trials;
+    options.timeout = timeout;
+    options.interrupted = interrupted;
+    if (own_places()) options.longest_run = std::numeric_limits<double>::infinity();
+    if (!quiet) options.tell = [](const std::string& line) { std::cerr << line << '\n'; };
+    return options;
+  }
+
+  // Into `entries`; false: what is there is up to date.
+  bool tune_one(const SweepSpec& on, const std::string& name, const SweepRunners& runners,
+                std::vector<TunedEntry>& entries) const {
+    if (own_places()) {
+      TunedEntry* known = find(entries, on.scene, name);
+      if (!known || !up_to_date(*known))
+        throw UsageError(name + " has no settings by today's rule yet: bench tune --scene " +
+                         on.scene + " --solver " + name);
+      const TunedEntry found = tune_solver(name, on, tuning(), runners, known);
+      print(found);
+      add_places(*known, found.places);
+      return true;
+    }
+    const TunedEntry* known = find(entries, find_scene(on.scene)->kind(), name);
+    if (!again && known && up_to_date(*known)) return false;
+    TunedEntry entry = tune_solver(name, on, tuning(), runners);
+    entry.context = context_of(timeout);
+    print(entry);
+    put_in(entries, std::move(entry));
+    return true;
+  }
+
+  int run() const {
+    const std::vector<SweepSpec> chosen = scenes();
+    (void)solver_pattern(solver);
+    if (std::all_of(chosen.begin(), chosen.end(),
+                    [this](const SweepSpec& s) { return chosen_solvers(solver, s).empty(); }))
+      throw UsageError("--solver " + solver + ": no setting of it is to be tuned");
+    const std::string file = out.empty() ? source_path("configs/tuned.json") : out;
+    std::vector<TunedEntry> entries;
+    if (std::filesystem::exists(file))
+      entries = parse_tuned(read_file(file, "file of tuned settings"), file).entries;
+    check_writable(file);
+    const TimingLock lock(!no_wait);
+    SweepRunners runners;
+    runners.references = std::make_shared<ReferenceFolder>(source_path("results/references"));
+    runners = isolated(runners, 0);
+    std::cout << "kind          solver                             size  limit   gain   settings\n";
+    for (const SweepSpec& on : chosen) {
+      for (const std::string& name : chosen_solvers(solver, on)) {
+        if (tune_one(on, name, runners, entries))
+          write_atomically(file, document_text(tuned_document(entries)));
+      }
+    }
+    std::cout << "\nwritten:\n" << file << std::endl;
+    return success;
+  }
+};
 
 }  // namespace
 
 Verb tune_verb() {
-  return {
-      "tune", "search the settings of each solver, by one rule, on scenes that no result reports",
-      [](const Command& command) -> Action {
-        const auto given = std::make_shared<TuneCommand>();
-        TuneCommand& options = *given;
-        add_solver(command, options.solver);
-        command.option("--scene", options.scene,
-                       "chain, drape, patch or spinning_net; default: all", "SCENE");
-        command.option("--n", options.n, "sizes of your own, whose settings are added", "N,...");
-        command.option("--limit", options.limits,
-                       "strain limits of your own, whose settings are added", "STRAIN,...");
-        command
-            .option("--trials", options.trials,
-                    "sets of settings to try for each solver, size and limit; default: 10 for each "
-                    "setting, at most 40",
-                    "N")
-            .within(4, 10000);
-        add_timeout(command, options.timeout, "10");
-        command.flag("--again", options.again, "also what is up to date");
-        command.option("--out", options.out, "the settings; default: configs/tuned.json", "FILE");
-        command.flag("--quiet", options.quiet, "no line for each set of settings");
-        add_no_wait(command, options.no_wait);
-        return [given] { return run_tune(*given); };
-      }};
+  return {"tune",
+          "search the settings of each solver, by one rule, on scenes that no result reports",
+          verb<Tune>, true};
 }
 
 }  // namespace harness

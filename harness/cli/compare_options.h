@@ -10,17 +10,15 @@ namespace harness {
 
 struct CompareOptions {
   std::string gate, junit, markdown;
+
+  void declare(const Command& to);
+  // Throws UsageError for a report that cannot be written, before anything is done.
+  void check_reports() const;
+  // Prints the comparison, writes the reports; the exit code: a failure outranks a regression.
+  // name: of the JUnit suite and the Markdown heading. undecided: what is said if times of best
+  // points cannot be told apart.
+  int report(const Comparison& comparison, const std::string& name,
+             const std::string& undecided) const;
 };
-
-void add_compare_options(const Command& to, CompareOptions& options);
-
-// Throws UsageError for a report that cannot be written, before anything is done.
-void check_reports(const CompareOptions& options);
-
-// Prints the comparison, writes the reports; the exit code (exit_codes.h): a failure outranks a
-// regression. name: of the JUnit suite and the Markdown heading. undecided: what is said if times
-// of best points cannot be told apart.
-int report_comparison(const Comparison& comparison, const CompareOptions& options,
-                      const std::string& name, const std::string& undecided);
 
 }  // namespace harness

@@ -7,9 +7,9 @@
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/standard_streams.h"
-#include "harness/base/text.h"
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/verbs.h"
+#include "harness/compare/comparison.h"
 #include "harness/points/context.h"
 #include "harness/points/plugins.h"
 
@@ -38,7 +38,7 @@ std::string version_text() {
          " with " + build.at("flags").get<std::string>();
 }
 
-void load(const std::vector<std::string>& plugins) {
+void load(const Words& plugins) {
   {
     const OutputToError no_output;
     for (const std::string& file : plugins) load_plugin(file);
@@ -64,7 +64,11 @@ int guarded(const std::function<int()>& work) {
     // Schemas are checked where files are read; what a schema leaves open is reported here.
     std::cerr << "bench: a value in a file has the wrong type: " << error.what() << '\n';
     return usage_error;
+  } catch (const NotComparable& reason) {
+    std::cerr << "bench: " << reason.what() << '\n';
+    return not_comparable;
   } catch (const Interrupted&) {
+    std::cerr << "bench: interrupted\n";
     return interrupted_exit;
   } catch (const FileError& error) {
     std::cerr << "bench: " << error.what() << '\n';
@@ -75,26 +79,17 @@ int guarded(const std::function<int()>& work) {
   }
 }
 
-// Whether a verb computes in children of its own, and answers an interruption itself: with what
-// was done until then.
-bool has_children(const std::string& verb) {
-  return verb == "sweep" || verb == "answers" || verb == "tune";
-}
-
 int run(int argc, char** argv) {
   CommandLine line(description, verbs(), version_text);
-  std::vector<std::string> plugins;
-  line.add_everywhere(
-      "--plugin", plugins,
-      "load solvers of your own from a shared library (solvers/plugin.h); repeatable", "FILE");
   if (const std::optional<int> done = line.read(argc, argv)) return *done;
-  const auto act = [&] {
-    return guarded([&] {
-      load(plugins);
+  catch_interrupts();
+  const auto act = [&line] {
+    return guarded([&line] {
+      load(line.plugins());
       return line.run();
     });
   };
-  return has_children(line.verb()) ? act() : supervised(act);
+  return line.has_children() ? act() : supervised(act);
 }
 
 }  // namespace

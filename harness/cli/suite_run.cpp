@@ -1,20 +1,14 @@
 // Runs a suite's sweeps: bench --sweep strain|resolution|step.
-#include <unistd.h>
-
 #include <cmath>
-#include <filesystem>
 #include <iostream>
+#include <sstream>
 
 #include "harness/base/errors.h"
-#include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
 #include "harness/base/standard_streams.h"
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
-#include "harness/cli/exit_codes.h"
-#include "harness/cli/figures.h"
-#include "harness/cli/progress.h"
 #include "harness/cli/sweep_run.h"
 #include "harness/judge/reference_file.h"
 #include "harness/points/context.h"
@@ -32,24 +26,23 @@
 namespace harness {
 namespace {
 
-void dry_run(const Suite& suite, const std::vector<Search>& searches) {
+int dry_run(const Suite& suite, const std::vector<Search>& searches) {
   std::size_t most = 0;
   for (const Search& search : searches) most += search.ladder.size();
   const Estimate guess = estimate(suite, searches);
   std::cout << searches.size() << " searches for a best step, at most " << most
             << " points (usually half of them), about " << duration_text(guess.seconds)
-            << ", going by a few steps of " << guess.timed << " contestants and sizes\n";
+            << ", estimated from a few steps of " << guess.timed << " contestants and sizes\n";
+  return success;
 }
 
-void tell_missing_references(const SweepCommand& options, const std::vector<Search>& searches,
-                             ReferenceFolder& references) {
+void report_missing_references(const SweepCommand& options, const std::vector<Search>& searches,
+                               ReferenceFolder& references) {
   const auto missing = without_reference(searches, references);
   if (missing.empty()) return;
   std::string names;
-  for (const auto& [scene, parameters] : missing) {
-    std::string name = reference_name(scene, parameters);
-    names += (names.empty() ? "" : ", ") + name.substr(0, name.rfind(".json"));
-  }
+  for (const auto& [file, scene] : missing)
+    names += (names.empty() ? "" : ", ") + file.substr(0, file.rfind(".json"));
   if (options.finest_error > 0)
     throw UsageError("--finest-error needs references, missing: " + names +
                      " (bench reference, with the same scene and profile, makes them)");
@@ -101,19 +94,20 @@ void warn_if_busy(const nlohmann::json& context) {
               << processors << " processors): times will be noisy\n";
 }
 
-void tell_noise(const nlohmann::json& document) {
+void print_noise(std::ostream& out, const nlohmann::json& document) {
   const nlohmann::json& context = document.at("context");
   if (const auto pair = noise_of(context))
-    std::cout << "\n"
-              << pair->one << " ran twice under two names: in 95 % of " << pair->places
-              << " places its two times are within " << number_text(100 * std::expm1(pair->q95), 2)
-              << " % of each other; smaller differences between solvers are noise\n";
+    out << "\n"
+        << pair->one << " ran twice under two names: in 95 % of " << pair->places
+        << " places its two times are within " << number_text(100 * std::expm1(pair->q95), 2)
+        << " % of each other; smaller differences between solvers are noise\n";
   if (document.contains("warning"))
-    std::cout << "\n" << document.at("warning").get<std::string>() << '\n';
-  if (!context.at("sentinel").at("noisy").get<bool>()) return;
-  std::cout << "\nNOISY: a fixed kernel's time varied by "
-            << number_text(100 * context.at("sentinel").at("spread").get<double>(), 2)
-            << " % during the run; counters and errors are valid, compare times with care\n";
+    out << "\n" << document.at("warning").get<std::string>() << '\n';
+  const nlohmann::json& sentinel = context.at("sentinel");
+  if (sentinel.at("noisy").get<bool>())
+    out << "\nNOISY: a fixed kernel's time varied by "
+        << number_text(100 * sentinel.at("spread").get<double>(), 2)
+        << " % during the run; counters and errors are valid, compare times with care\n";
 }
 
 // The harness's own share of the shortest step that was timed.
@@ -132,13 +126,29 @@ nlohmann::json harness_overhead(const std::vector<PointResult>& points) {
   return overhead;
 }
 
-void tell_overhead(const nlohmann::json& overhead) {
+void print_overhead(std::ostream& out, const nlohmann::json& overhead) {
   if (!overhead.contains("of")) return;
   const double own = overhead.at("seconds_per_step"), step = overhead.at("shortest_step");
-  std::cout << "\nthe harness's own share of the shortest timed step: " << number_text(1e9 * own, 2)
-            << " ns of " << number_text(1e9 * step, 3) << " ns, "
-            << number_text(100 * own / step, 2) << " % (" << overhead.at("of").get<std::string>()
-            << ")\n";
+  out << "\nthe harness's own share of the shortest timed step: " << number_text(1e9 * own, 2)
+      << " ns of " << number_text(1e9 * step, 3) << " ns, " << number_text(100 * own / step, 2)
+      << " % (" << overhead.at("of").get<std::string>() << ")\n";
+}
+
+SweepEvents shown(Progress& progress) {
+  SweepEvents events;
+  events.interrupted = interrupted;
+  events.point = [&progress, points = 0](const PointResult& p, std::size_t s,
+                                         std::size_t all) mutable {
+    progress.show(
+        (static_cast<double>(s) + 0.5) / static_cast<double>(all),
+        std::to_string(++points) + " points",
+        p.spec.id() + " " + (p.ok() ? duration_text(p.seconds()) + "/s" : to_string(p.status)));
+  };
+  events.repetition = [&progress, first = true](std::size_t done, std::size_t all) mutable {
+    if (std::exchange(first, false)) progress.begin_part();
+    progress.show(done, all, "re-timing the best runs");
+  };
+  return events;
 }
 
 // Runs the sweep, with progress on stderr and each run in the journal, and writes into the context
@@ -146,19 +156,12 @@ void tell_overhead(const nlohmann::json& overhead) {
 SweepOutcome measured(const Suite& suite, const std::vector<Search>& searches,
                       const SweepRunners& runners, Journal& journal, bool timed,
                       nlohmann::json& context) {
-  Progress progress(std::cerr, isatty(STDERR_FILENO) == 1);
-  SweepEvents events;
-  events.point = [&](const PointResult& p, std::size_t s, std::size_t all) {
-    progress.point(p, s, all);
-  };
-  events.repetition = [&](std::size_t done, std::size_t all) { progress.repetition(done, all); };
-  events.interrupted = interrupted;
+  Progress progress;
   NoiseProbe noise_probe;
   noise_probe.sample();
   const ProcessorTicks ticks = processor_ticks();
-  SweepOutcome outcome =
-      run_sweep(suite, searches, events, journaled(watched(runners, noise_probe, timed), journal));
-  progress.finish();
+  SweepOutcome outcome = run_sweep(suite, searches, shown(progress),
+                                   journaled(watched(runners, noise_probe, timed), journal));
   noise_probe.sample();
   context["sentinel"] = noise_probe.to_json();
   context["stolen"] = stolen_share(ticks, processor_ticks());
@@ -166,64 +169,56 @@ SweepOutcome measured(const Suite& suite, const std::vector<Search>& searches,
   return outcome;
 }
 
-void print_document(const nlohmann::json& document, const std::string& out) {
-  print_sweep(std::cout, document, false, output_columns());
-  tell_overhead(document.at("context").at("harness_overhead"));
-  tell_noise(document);
-  std::cout << "\nall contestants: bench show " << out << " --all\nwritten:\n" << out << std::endl;
+std::string text_of(const nlohmann::json& document, const std::string& out) {
+  std::ostringstream text;
+  print_sweep(text, document, false, output_columns());
+  print_overhead(text, document.at("context").at("harness_overhead"));
+  print_noise(text, document);
+  text << "\nall contestants: bench show " << out << " --all\n";
+  return text.str();
+}
+
+nlohmann::json context_of(const SweepCommand& options) {
+  nlohmann::json context = machine_context();
+  context["selection"] = selection(options);
+  return context;
 }
 
 }  // namespace
 
-int run_suite(const SweepCommand& options, const std::vector<std::string>& command) {
+int run_suite(const SweepCommand& options, const Words& typed) {
   const Suite suite = load_suite(options);
-  auto searches = plan(suite, make_filters(options));
+  auto searches = plan(suite, filters_of(options));
   if (!options.shard.empty()) searches = shard(std::move(searches), parse_shard(options.shard));
-  if (options.dry_run) {
-    dry_run(suite, searches);
-    return success;
-  }
-  const std::string out = chosen_output(options, suite.name + "-" + options.sweep);
-  check_writable(out);
-  nlohmann::json context = machine_context();
-  context["selection"] = selection(options);
-  const nlohmann::json mine = identity(context, to_json(suite), context["selection"]);
-  Journal journal(out);
-  const Past past = begin_journal(options, out, journal,
-                                  {mine, context, "points", "points", points_in, add_runs_of});
-  if (past.finished) {
-    std::cout << out << " is complete already\n";
-    return success;
-  }
-  if (options.rerun_failed) forget_failures(journal);
-  SweepRunners runners;
-  const auto references = std::make_shared<ReferenceFolder>(source_path("results/references"));
-  runners.references = references;
-  tell_missing_references(options, searches, *references);
-  catch_interrupts();
-  std::optional<TimingLock> lock;
-  if (!options.untimed) lock.emplace(!options.no_wait);
-  if (lock && lock->waited()) {
-    context = machine_context();
-    context["selection"] = selection(options);
-  }
-  context["timed"] = !options.untimed;
-  if (!options.untimed) warn_if_busy(context);
-  if (past.context.is_object())
-    context["resumed"] = {{"from", past.context.at("date")}, {"points", points_in(journal)}};
-
-  if (!options.in_process) runners = isolated(runners, options.memory);
-  const SweepOutcome outcome =
-      measured(suite, searches, runners, journal, !options.untimed, context);
-  const nlohmann::json document = result_document(context, suite, command, outcome.complete,
-                                                  outcome.points, references->summaries());
-  write_atomically(out, result_text(document));
-  print_document(document, out);
-  if (!outcome.complete) return tell_interrupted();
-  journal.remove();
-  if (!options.no_plots && !options.untimed && draw_result(out) != 0)
-    std::cerr << "bench: the figures could not be drawn\n";
-  return success;
+  if (options.dry_run) return dry_run(suite, searches);
+  nlohmann::json context = context_of(options);
+  const auto run = [&](const std::string& out, Journal& journal,
+                       const nlohmann::json& before) -> Finished {
+    if (options.rerun_failed) forget_failures(journal);
+    SweepRunners runners;
+    const auto references = std::make_shared<ReferenceFolder>(source_path("results/references"));
+    runners.references = references;
+    report_missing_references(options, searches, *references);
+    std::optional<TimingLock> lock;
+    if (!options.untimed) lock.emplace(!options.no_wait);
+    if (lock && lock->waited()) context = context_of(options);
+    context["timed"] = !options.untimed;
+    if (!options.untimed) warn_if_busy(context);
+    if (before.is_object())
+      context["resumed"] = {{"from", before.at("date")}, {"points", points_in(journal)}};
+    if (!options.in_process) runners = isolated(runners, options.memory);
+    const SweepOutcome outcome =
+        measured(suite, searches, runners, journal, !options.untimed, context);
+    nlohmann::json document = result_document(context, suite, typed, outcome.complete,
+                                              outcome.points, references->summaries());
+    std::string text = text_of(document, out);
+    return {std::move(document), outcome.complete, std::move(text)};
+  };
+  OutputOptions output = options;
+  output.no_plots |= options.untimed;
+  return carry_out(output, {suite.name + "-" + options.sweep,
+                            identity(context, to_json(suite), context["selection"]), context,
+                            "points", "points", run, add_runs_of, points_in});
 }
 
 }  // namespace harness

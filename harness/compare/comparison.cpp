@@ -1,11 +1,10 @@
 #include "harness/compare/comparison.h"
 
 #include <algorithm>
-#include <array>
-#include <iomanip>
+#include <cmath>
+#include <deque>
 #include <map>
 #include <set>
-#include <sstream>
 #include <tuple>
 
 #include "harness/base/statistics.h"
@@ -28,18 +27,15 @@ std::size_t least_samples(double significance) {
   return n;
 }
 
-std::string field(const json& context, const char* key) { return context.value(key, ""); }
-
 void note_counters(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
                    PointChange& result) {
   bool rose = false, fell = false;
-  const auto wanted = [&gate](const std::string& name) {
-    return gate.counters.empty() ||
-           std::find(gate.counters.begin(), gate.counters.end(), name) != gate.counters.end();
-  };
+  const std::set<std::string> wanted(gate.counters.begin(), gate.counters.end());
   for (const auto& [name, value] : base.counters) {
     const auto other = next.counters.find(name);
-    if (other == next.counters.end() || other->second == value || !wanted(name)) continue;
+    if (other == next.counters.end() || other->second == value ||
+        !(wanted.empty() || wanted.contains(name)))
+      continue;
     (other->second > value ? rose : fell) = true;
     std::string reason =
         name + " " + number_text(value, 15) + " -> " + number_text(other->second, 15);
@@ -116,36 +112,7 @@ class Tried {
   std::set<std::string> searches_, best_;
 };
 
-// Points by key; two of one key (two sweeps of one scene in a suite) pair up in their order.
-std::multimap<std::string, const ComparedPoint*> by_key(const ComparedResult& result) {
-  std::multimap<std::string, const ComparedPoint*> points;
-  for (const ComparedPoint& point : result.points) points.emplace(point.key(), &point);
-  return points;
-}
-
-PointChange one_sided(Change change, const ComparedPoint& point, const std::string& reason) {
-  return {change, point.sweep, point.id, {reason}};
-}
-
-void check_same_runs(const ComparedPoint& base, const ComparedPoint& next) {
-  if (base.spec != next.spec)
-    throw NotComparable(base.id +
-                        " is not the same run in both: scene parameters, settings or seed differ");
-}
-
 }  // namespace
-
-const char* to_string(Change change) {
-  constexpr std::array names{"SAME",          "FASTER", "SLOWER",  "CHANGED", "AMBIGUOUS",
-                             "NEWLY_FAILING", "FIXED",  "MISSING", "NEW"};
-  return names[static_cast<std::size_t>(change)];
-}
-
-bool is_regression(Change change) { return change == Change::slower || change == Change::changed; }
-
-bool is_failure(Change change) {
-  return change == Change::newly_failing || change == Change::missing;
-}
 
 std::string PointChange::text() const {
   std::string text;
@@ -189,60 +156,69 @@ namespace {
 constexpr double same_speed = 0.05;     // of two machines: |log(ratio)| of the fixed kernel's times
 constexpr double unknown_spread = 0.5;  // of a noisy file that does not say
 
-// Time of the kernel that sweeps run in between; not-a-number in files without it.
-double kernel_seconds(const nlohmann::json& context) {
-  const auto place = context.find("sentinel");
-  if (place == context.end() || !place->contains("seconds")) return std::nan("");
-  return quantile(place->at("seconds").get<std::vector<double>>(), 0.5);
-}
-
 // Two sweeps, one after the other, tell builds apart only by more than the machine's own speed
-// varied: within each of them, and from one to the other.
-double drift_between(const nlohmann::json& base, const nlohmann::json& next) {
-  double drift = 0;
-  for (const auto* context : {&base, &next}) {
-    const auto place = context->find("sentinel");
-    if (place != context->end() && place->value("noisy", false))
-      drift = std::max(drift, std::log1p(place->value("spread", unknown_spread)));
+// varied: within each of them, and from one to the other. The kernel that sweeps run in between
+// tells; without it the ratio is not a number.
+double drift_between(const json& base, const json& next) {
+  double drift = 0, log_seconds[2] = {std::nan(""), std::nan("")};
+  for (const int i : {0, 1}) {
+    const json kernel = (i == 0 ? base : next).value("sentinel", json::object());
+    if (kernel.value("noisy", false))
+      drift = std::max(drift, std::log1p(kernel.value("spread", unknown_spread)));
+    if (kernel.contains("seconds"))
+      log_seconds[i] = std::log(quantile(kernel.at("seconds").get<std::vector<double>>(), 0.5));
   }
-  const double ratio = std::abs(std::log(kernel_seconds(next) / kernel_seconds(base)));
+  const double ratio = std::abs(log_seconds[1] - log_seconds[0]);
   return ratio > same_speed ? std::max(drift, ratio) : drift;
 }
 
-double q95_of(const nlohmann::json& context) {
-  const auto pair = noise_of(context);
-  return pair ? pair->q95 : 0;
-}
-
-}  // namespace
-
 Comparability comparability(const ComparedResult& base, const ComparedResult& next,
                             const Gate& gate) {
+  const auto agree = [&](const char* key) {
+    return base.context.value(key, json()) == next.context.value(key, json());
+  };
+  const auto known = [](const ComparedResult& result) {
+    return !result.context.value("counters_fingerprint", "").empty();
+  };
   Comparability can;
-  const std::string fingerprint = field(base.context, "counters_fingerprint");
-  const bool same_build =
-      fingerprint.empty() || field(next.context, "counters_fingerprint").empty()
-          ? field(base.context, "fingerprint") == field(next.context, "fingerprint")
-          : fingerprint == field(next.context, "counters_fingerprint");
-  if (!same_build) can.no_counters = "compiler, flags or libraries differ";
+  if (!agree(known(base) && known(next) ? "counters_fingerprint" : "fingerprint"))
+    can.no_counters = "compiler, flags or libraries differ";
   if (!gate.times) {
     can.no_times = "the gate does not count them";
   } else if (base.baseline || next.baseline) {
     can.no_times = "a baseline has none";
   } else if (!base.context.value("timed", true) || !next.context.value("timed", true)) {
     can.no_times = "one of them was made with --untimed";
-  } else if (field(base.context, "cpu_model") != field(next.context, "cpu_model") ||
-             base.context.value("num_cpus", 0) != next.context.value("num_cpus", 0)) {
+  } else if (!agree("cpu_model") || !agree("num_cpus")) {
     can.no_times = "the machines differ";
   }
   can.drift = drift_between(base.context, next.context);
-  can.noise = std::max(q95_of(base.context), q95_of(next.context));
+  for (const ComparedResult* result : {&base, &next}) {
+    if (const auto pair = noise_of(result->context)) can.noise = std::max(can.noise, pair->q95);
+  }
   return can;
 }
 
+std::vector<std::string> notes_of(const ComparedResult& base, const ComparedResult& next,
+                                  const Comparability& can) {
+  if (!can.counters() && !can.times())
+    throw NotComparable("neither counters (" + can.no_counters + ") nor times (" + can.no_times +
+                        ") of '" + base.path + "' and '" + next.path + "' compare");
+  std::vector<std::string> notes;
+  if (!can.counters()) notes.push_back("counters not compared: " + can.no_counters);
+  if (!can.times()) notes.push_back("times not compared: " + can.no_times);
+  if (can.times() && can.drift > 0)
+    notes.push_back("the machine's own speed varied by " + per_cent(std::exp(can.drift)) +
+                    ": times that differ by less are undecided");
+  if (!next.complete) notes.push_back("'" + next.path + "' is of an interrupted run");
+  return notes;
+}
+
+}  // namespace
+
 PointChange compare_point(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
                           const Comparability& can) {
-  PointChange result{Change::same, base.sweep, base.id, {}};
+  PointChange result{Change::same, base.sweep, base.id};
   if (base.ok() && !next.ok()) {
     result.change = Change::newly_failing;
     result.reasons.push_back(next.status + (next.detail.empty() ? "" : ": " + next.detail));
@@ -276,34 +252,33 @@ bool Comparison::undecided() const {
 
 Comparison compare(const ComparedResult& base, const ComparedResult& next, const Gate& gate) {
   const Comparability can = comparability(base, next, gate);
-  if (!can.counters() && !can.times())
-    throw NotComparable("neither counters (" + can.no_counters + ") nor times (" + can.no_times +
-                        ") of '" + base.path + "' and '" + next.path + "' compare");
-  Comparison comparison;
-  if (!can.counters()) comparison.notes.push_back("counters not compared: " + can.no_counters);
-  if (!can.times()) comparison.notes.push_back("times not compared: " + can.no_times);
-  if (can.times() && can.drift > 0)
-    comparison.notes.push_back("the machine's own speed varied by " +
-                               per_cent(std::exp(can.drift)) +
-                               ": times that differ by less are undecided");
-  if (!next.complete) comparison.notes.push_back("'" + next.path + "' is of an interrupted run");
-  auto left = by_key(next);
+  Comparison comparison{{}, notes_of(base, next, can)};
   const Tried tried_before(base), tried(next);
   std::size_t untried = 0, matched = 0;
+  const auto in_one_only = [&](Change change, const ComparedPoint& point, const Tried& in_other,
+                               const std::string& reason) {
+    if (in_other.covers(point)) {
+      ++untried;
+    } else {
+      comparison.points.push_back({change, point.sweep, point.id, {reason}});
+    }
+  };
+  // Two points of one key (two sweeps of one scene in a suite) pair up in their order.
+  std::map<std::string, std::deque<const ComparedPoint*>> left;
+  for (const ComparedPoint& point : next.points) left[point.key()].push_back(&point);
   for (const ComparedPoint& point : base.points) {
-    const auto found = left.lower_bound(point.key());
-    if (found == left.end() || found->first != point.key()) {
-      if (tried.covers(point)) {
-        ++untried;
-      } else {
-        comparison.points.push_back(one_sided(Change::missing, point, "was " + point.status));
-      }
+    auto& same_key = left[point.key()];
+    if (same_key.empty()) {
+      in_one_only(Change::missing, point, tried, "was " + point.status);
       continue;
     }
-    const ComparedPoint& other = *found->second;
-    left.erase(found);
+    const ComparedPoint& other = *same_key.front();
+    same_key.pop_front();
     ++matched;
-    check_same_runs(point, other);
+    if (point.spec != other.spec)
+      throw NotComparable(point.id +
+                          " is not the same run in both: scene parameters, settings or seed "
+                          "differ");
     if (tried_before.gave_up(point) || tried.gave_up(other)) {
       ++untried;
     } else {
@@ -313,175 +288,16 @@ Comparison compare(const ComparedResult& base, const ComparedResult& next, const
   if (matched == 0)
     throw NotComparable("'" + base.path + "' and '" + next.path + "' have no point in common");
   for (const ComparedPoint& point : next.points) {
-    const auto [first, last] = left.equal_range(point.key());
-    const auto found =
-        std::find_if(first, last, [&point](const auto& entry) { return entry.second == &point; });
-    if (found == last) continue;
-    if (tried_before.covers(point)) {
-      ++untried;
-    } else {
-      comparison.points.push_back(one_sided(Change::added, point, point.status));
-    }
+    auto& same_key = left[point.key()];
+    if (same_key.empty() || same_key.front() != &point) continue;
+    same_key.pop_front();
+    in_one_only(Change::added, point, tried_before, point.status);
   }
   if (untried > 0)
     comparison.notes.push_back(std::to_string(untried) +
                                " steps were tried, or run to the end, in one of them only: their "
                                "searches took other ways");
   return comparison;
-}
-
-namespace {
-
-// From what matters most; the table's order too.
-constexpr std::array order{Change::newly_failing, Change::missing,   Change::slower,
-                           Change::changed,       Change::ambiguous, Change::fixed,
-                           Change::faster,        Change::added,     Change::same};
-
-std::vector<const PointChange*> sorted_changes(const Comparison& comparison) {
-  std::vector<const PointChange*> list;
-  for (const Change change : order) {
-    for (const PointChange& point : comparison.points) {
-      // SAME with a reason: a difference that the gate only wants told.
-      if (point.change == change && !point.too_few &&
-          (change != Change::same || !point.reasons.empty()))
-        list.push_back(&point);
-    }
-  }
-  return list;
-}
-
-std::string counts(const Comparison& comparison) {
-  std::string text = std::to_string(comparison.points.size()) + " points: ";
-  std::string separator;
-  for (const Change change : order) {
-    if (const std::size_t n = comparison.count(change); n > 0) {
-      text += separator + std::to_string(n) + " " + to_string(change);
-      separator = ", ";
-    }
-  }
-  return text;
-}
-
-// One line for all points that differ in time and have too few runs to say whether they really do.
-std::vector<std::string> all_notes(const Comparison& comparison) {
-  std::vector<std::string> notes = comparison.notes;
-  const auto few = std::count_if(comparison.points.begin(), comparison.points.end(),
-                                 [](const PointChange& point) { return point.too_few; });
-  if (few > 0) {
-    const auto example = std::find_if(comparison.points.begin(), comparison.points.end(),
-                                      [](const PointChange& point) { return point.too_few; });
-    notes.push_back(std::to_string(few) + " of the AMBIGUOUS have too few runs, for example " +
-                    example->id + ": " + example->text());
-  }
-  return notes;
-}
-
-bool fails(Change change) { return is_failure(change) || is_regression(change); }
-
-// Control characters have no place in XML 1.0, not even escaped.
-std::string xml(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\n':
-        result += "&#10;";
-        break;
-      default:
-        result += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-    }
-  }
-  return result;
-}
-
-// Inside a cell: no line may end, no cell may end, and nothing is a tag.
-std::string cell(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '|' || c == '*' || c == '_' || c == '`' || c == '\\') result += '\\';
-    if (c == '<') {
-      result += "&lt;";
-    } else if (c == '&') {
-      result += "&amp;";
-    } else {
-      result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return result;
-}
-
-// "drape/icd/n:225/..." of sweep strain: class strain.drape.icd.
-std::string class_name(const PointChange& point) {
-  const auto scene = point.id.find('/'), solver = point.id.find('/', scene + 1);
-  std::string name = point.sweep + "." + point.id.substr(0, solver);
-  std::replace(name.begin(), name.end(), '/', '.');
-  return name;
-}
-
-}  // namespace
-
-void print_comparison(std::ostream& out, const Comparison& comparison) {
-  const auto list = sorted_changes(comparison);
-  std::size_t width = 0;
-  for (const PointChange* point : list)
-    width = std::max(width, point->sweep.size() + point->id.size() + 3);
-  for (const PointChange* point : list) {
-    out << std::left << std::setw(14) << to_string(point->change)
-        << std::setw(static_cast<int>(width)) << point->sweep + " " + point->id << point->text()
-        << '\n';
-  }
-  if (!list.empty()) out << '\n';
-  for (const std::string& note : all_notes(comparison)) out << "note: " << note << '\n';
-  out << counts(comparison) << std::endl;
-}
-
-std::string junit_xml(const Comparison& comparison, const std::string& name) {
-  const auto failures = std::count_if(comparison.points.begin(), comparison.points.end(),
-                                      [](const PointChange& point) { return fails(point.change); });
-  std::ostringstream text;
-  const std::string totals = " tests=\"" + std::to_string(comparison.points.size()) +
-                             "\" failures=\"" + std::to_string(failures) + "\" errors=\"0\"";
-  text << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" << totals
-       << ">\n<testsuite name=\"" << xml(name) << "\"" << totals << ">\n";
-  for (const PointChange& point : comparison.points) {
-    text << "<testcase classname=\"" << xml(class_name(point)) << "\" name=\"" << xml(point.id)
-         << "\"";
-    const std::string change = to_string(point.change);
-    if (fails(point.change)) {
-      text << "><failure type=\"" << change << "\" message=\"" << xml(change + ": " + point.text())
-           << "\"/></testcase>\n";
-    } else if (point.change != Change::same || !point.reasons.empty()) {
-      text << "><system-out>" << xml(change + ": " + point.text()) << "</system-out></testcase>\n";
-    } else {
-      text << "/>\n";
-    }
-  }
-  text << "</testsuite>\n</testsuites>\n";
-  return text.str();
-}
-
-std::string markdown_table(const Comparison& comparison, const std::string& title) {
-  std::string text = "### " + cell(title) + "\n\n" + counts(comparison) + "\n";
-  const auto list = sorted_changes(comparison);
-  if (!list.empty()) text += "\n| change | sweep | point | what |\n|---|---|---|---|\n";
-  for (const PointChange* point : list) {
-    const std::string change = cell(to_string(point->change));
-    text += "| " + (fails(point->change) ? "**" + change + "**" : change) + " | " +
-            cell(point->sweep) + " | " + cell(point->id) + " | " + cell(point->text()) + " |\n";
-  }
-  for (const std::string& note : all_notes(comparison)) text += "\nNote: " + cell(note) + "\n";
-  return text;
 }
 
 }  // namespace harness

@@ -2,44 +2,111 @@
 // rustc-perf and asv put together: a rank test and two ratios, all of which must agree.
 #pragma once
 
+#include <array>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <ostream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "harness/compare/baseline.h"
-#include "harness/compare/gate.h"
-
 namespace harness {
 
+// ---- What a comparison lets pass: configs/gate.json, schema configs/gate.schema.json ----
+
+enum class CounterRule {
+  exact,   // any difference fails, fewer iterations too: the base is then to be renewed
+  rise,    // only more work fails
+  inform,  // differences are counted and told, and nothing fails
+};
+
+struct Gate {
+  bool times = true;  // whether times count at all
+  // A time has changed if all three say so.
+  double significance = 0.05;  // one-sided Mann-Whitney p below this
+  double median_ratio = 1.05;
+  double minimum_ratio = 1.03;
+  CounterRule counter_rule = CounterRule::exact;
+  std::vector<std::string> counters;  // names of `work` in a result file; all of them if empty
+  // Largest permitted ratio of new to base of "max_strain", "trajectory" and "energy_drift"; what
+  // is not there does not count.
+  std::map<std::string, double> errors{
+      {"max_strain", 1.001}, {"trajectory", 1.01}, {"energy_drift", 1.01}};
+  double error_floor = 1e-9;  // an error below this is rounding
+};
+
+// Both throw UsageError, naming file, key and value, for anything that is not a gate.
+Gate read_gate(const std::string& path);
+Gate parse_gate(const std::string& text, const std::string& path);
+
+// ---- Results, as far as they can be compared ----
+
+struct ComparedPoint {
+  std::string sweep, id, status, detail;
+  std::string spec;       // a hash of what is run: parameters, settings, seed
+  bool searched = false;  // which steps were tried depended on times
+  bool best = false;
+  std::map<std::string, double> counters;
+  std::map<std::string, double> errors;  // those of Gate::errors that are known
+  std::vector<double> samples;           // wall seconds per simulated second
+
+  bool ok() const { return status == "ok"; }
+  std::string key() const { return sweep + " " + id; }
+  std::string search() const { return key().substr(0, key().rfind("/h:")); }  // all but the step
+};
+
+struct ComparedResult {
+  std::string path;
+  nlohmann::json context;
+  bool baseline = false;
+  bool complete = true;
+  std::vector<ComparedPoint> points;
+};
+
+// Result files of sweeps, or a baseline. Several files are one result: their contexts must agree in
+// build and machine. Throws UsageError, naming the file, for anything else.
+ComparedResult read_compared(const std::vector<std::string>& paths);
+ComparedPoint compared_point(const nlohmann::json& point);  // of a result file or a baseline
+
+// The baseline of result files, as read_result gives them: a result without times, one point a
+// line, for a repository (schema inextensible-baseline/1, configs/baseline.schema.json).
+nlohmann::ordered_json baseline_document(const std::vector<nlohmann::json>& results);
+
+// ---- The comparison ----
+
+// From what matters most, in the order of tables.
 enum class Change {
-  same,
-  faster,
+  newly_failing,  // ran in the base
+  missing,        // of the base's points
   slower,         // in time, or more work; a regression
   changed,        // less work under the rule "exact", or a larger error; a regression
   ambiguous,      // cannot be decided; no regression
-  newly_failing,  // ran in the base
   fixed,
-  missing,  // of the base's points
-  added,    // written NEW
+  faster,
+  added,
+  same,
 };
-const char* to_string(Change change);  // "SAME", ...
-bool is_regression(Change change);
-bool is_failure(Change change);
+inline constexpr std::array change_names{
+    "NEWLY_FAILING", "MISSING", "SLOWER", "CHANGED", "AMBIGUOUS", "FIXED", "FASTER", "NEW", "SAME"};
+constexpr const char* to_string(Change change) { return change_names[static_cast<int>(change)]; }
+constexpr bool is_failure(Change change) { return change <= Change::missing; }
+constexpr bool is_regression(Change change) {
+  return change == Change::slower || change == Change::changed;
+}
 
 struct PointChange {
   Change change = Change::same;
   std::string sweep, id;
-  std::vector<std::string> reasons;  // one line each, for people
-  bool too_few = false;              // nothing to say but that times had too few runs
-  bool undecided = false;            // too few runs, or too unquiet a machine, for a best point
+  std::vector<std::string> reasons = {};  // one line each, for people
+  bool too_few = false;                   // nothing to say but that times had too few runs
+  bool undecided = false;  // too few runs, or too unquiet a machine, for a best point
 
   std::string text() const;  // the reasons in one line
 };
 
 struct TimeChange {
   Change change = Change::same;  // same, faster, slower or ambiguous
-  std::string reason;            // "" if same
+  std::string reason = {};       // "" if same
   bool too_few = false;          // ambiguous: too few samples
 };
 
@@ -57,8 +124,6 @@ struct Comparability {
   bool counters() const { return no_counters.empty(); }
   bool times() const { return no_times.empty(); }
 };
-Comparability comparability(const ComparedResult& base, const ComparedResult& next,
-                            const Gate& gate);
 
 // One point in both. Times are left out unless `can.times()`, counters unless `can.counters()`.
 PointChange compare_point(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
@@ -81,13 +146,13 @@ class NotComparable : public std::runtime_error {
 
 Comparison compare(const ComparedResult& base, const ComparedResult& next, const Gate& gate);
 
+// ---- Reports ----
+
 // A table of the points that are not SAME, the notes, and how many there are of each kind of
 // change.
 void print_comparison(std::ostream& out, const Comparison& comparison);
-
 // JUnit XML: one test case a point; regressions and failures are its failures. name: the suite's.
 std::string junit_xml(const Comparison& comparison, const std::string& name);
-
 // The same table for a pull request or a job summary. title: its heading.
 std::string markdown_table(const Comparison& comparison, const std::string& title);
 

@@ -16,13 +16,15 @@ bool failed(const PairedPoint& point) {
 }
 
 void run_side(Side side, PairedPoint& point, const RunOne& run) {
-  const nlohmann::json printed = run(side, point);
-  ComparedPoint& said = side == Side::old_one ? point.before : point.after;
-  ComparedPoint now = compared_point(printed);
-  // The first process speaks for the point, unless a later one fails.
+  ComparedPoint& said = point.said(side);
+  if (!said.status.empty() && failed(point)) return;
+  ComparedPoint now = compared_point(run(side, point));
+  // The first process speaks for the point, unless a later one fails. A process's time is the least
+  // of its runs: interruptions only ever add, and what differs from process to process (where its
+  // memory lies) is in every one of its runs.
   std::vector<double> times = std::move(said.samples);
-  if (said.status.empty() || !now.ok()) said = now;
-  if (now.ok()) times.push_back(process_time(printed));
+  if (now.ok()) times.push_back(time_of(now.samples));
+  if (said.status.empty() || !now.ok()) said = std::move(now);
   said.samples = std::move(times);
 }
 
@@ -40,14 +42,13 @@ PointChange without_false_same(PointChange result, const PairedPoint& point, con
   };
   if (has_failed(point.before) && has_failed(point.after)) {
     cannot_tell("fails on both sides: " + point.before.status + ", " + point.before.detail);
-    return result;
+  } else if (!failed(point) &&
+             (result.change == Change::same || result.change == Change::ambiguous)) {
+    const Ratio ratio = ratio_of_times(point.after.samples, point.before.samples);
+    if (ratio.low < 1 / gate.median_ratio || ratio.high > gate.median_ratio)
+      cannot_tell("the time may have changed by anything from " + change_text(ratio.low) + " to " +
+                  change_text(ratio.high));
   }
-  if (failed(point) || (result.change != Change::same && result.change != Change::ambiguous))
-    return result;
-  const Ratio ratio = ratio_of_times(point.after.samples, point.before.samples);
-  if (ratio.low < 1 / gate.median_ratio || ratio.high > gate.median_ratio)
-    cannot_tell("the time may have changed by anything from " + change_text(ratio.low) + " to " +
-                change_text(ratio.high));
   return result;
 }
 
@@ -57,24 +58,19 @@ Change timing(const PairedPoint& point, const Gate& gate) {
 
 // After the second look at a time that was flagged as `first`.
 PointChange judge_again(const PairedPoint& point, Change first, const Gate& gate,
-                        const Comparability& can) {
+                        Comparability can) {
   if (failed(point) || timing(point, gate) == first)
     return compare_point(point.before, point.after, gate, can);
-  Comparability all_but_times = can;
-  all_but_times.no_times = "not confirmed";
-  PointChange result = compare_point(point.before, point.after, gate, all_but_times);
-  const auto pairs = std::to_string(point.before.samples.size());
+  can.no_times = "not confirmed";
+  PointChange result = compare_point(point.before, point.after, gate, can);
   result.reasons.push_back(std::string("time ") + to_string(first) +
-                           " at first, but not in another " + pairs + " pairs");
+                           " at first, but not in another " +
+                           std::to_string(point.before.samples.size()) + " pairs");
   if (result.change == Change::same) result.change = Change::ambiguous;
   return result;
 }
 
 }  // namespace
-
-double process_time(const nlohmann::json& printed) {
-  return printed.at("seconds_per_simulated_second").at("min").get<double>();
-}
 
 int samples_for(double seconds, double least) {
   constexpr double most = 1000;
@@ -83,45 +79,39 @@ int samples_for(double seconds, double least) {
 
 void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne& run) {
   for (int pair = 0; pair < pairs; ++pair) {
-    const bool old_first = pair % 2 == 0;
+    const Side first = pair % 2 == 0 ? Side::old_one : Side::new_one;
     for (PairedPoint* point : points) {
-      for (const Side side :
-           {old_first ? Side::old_one : Side::new_one, old_first ? Side::new_one : Side::old_one}) {
-        const ComparedPoint& said = side == Side::old_one ? point->before : point->after;
-        if (said.status.empty() || !failed(*point)) run_side(side, *point, run);
-      }
+      run_side(first, *point, run);
+      run_side(first == Side::old_one ? Side::new_one : Side::old_one, *point, run);
     }
   }
 }
 
 Comparison compare_in_pairs(std::vector<PairedPoint> points, int pairs, int confirming,
                             const Gate& gate, const Comparability& can, const RunOne& run) {
-  struct Flagged {
-    PairedPoint* point;
-    std::size_t place;
-    Change first;
-  };
   std::vector<PairedPoint*> all, again;
-  all.reserve(points.size());
   for (PairedPoint& point : points) all.push_back(&point);
   run_pairs(all, pairs, run);
   Comparison comparison;
-  std::vector<Flagged> flagged;
+  std::vector<Change> first;
   for (PairedPoint& point : points) {
     comparison.points.push_back(
         without_false_same(compare_point(point.before, point.after, gate, can), point, gate));
-    const Change first = timing(point, gate);
-    if (failed(point) || !can.times() || (first != Change::slower && first != Change::faster))
-      continue;
-    flagged.push_back({&point, comparison.points.size() - 1, first});
+    const Change change = timing(point, gate);
+    const bool flagged =
+        !failed(point) && can.times() && (change == Change::slower || change == Change::faster);
+    first.push_back(flagged ? change : Change::same);
+    if (!flagged) continue;
     again.push_back(&point);
     point.before.samples.clear();
     point.after.samples.clear();
   }
   run_pairs(again, confirming, run);
-  for (const Flagged& f : flagged)
-    comparison.points[f.place] =
-        without_false_same(judge_again(*f.point, f.first, gate, can), *f.point, gate);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (first[i] != Change::same)
+      comparison.points[i] =
+          without_false_same(judge_again(points[i], first[i], gate, can), points[i], gate);
+  }
   return comparison;
 }
 

@@ -15,18 +15,15 @@ enum class Side { old_one, new_one };
 
 // One point to be timed.
 struct PairedPoint {
-  nlohmann::json spec;          // what `bench point` reads
-  std::string id;               // of the point
-  int samples = 1;              // runs in one process
-  ComparedPoint before, after;  // what the processes said; samples: one time a process
+  nlohmann::json spec;                    // what `bench point` reads, with the point's id
+  int samples = 1;                        // runs in one process
+  ComparedPoint before = {}, after = {};  // what the processes said; samples: one time a process
+
+  ComparedPoint& said(Side side) { return side == Side::old_one ? before : after; }
 };
 
 // Runs one process on one point; what `bench point` printed.
 using RunOne = std::function<nlohmann::json(Side, const PairedPoint&)>;
-
-// A process's figure: the least of its runs. Interruptions only ever add, and what differs from
-// process to process (where its memory lies) is in every one of its runs.
-double process_time(const nlohmann::json& printed);
 
 // Runs in one process, so that a process measures for at least `least` seconds. seconds: one run.
 int samples_for(double seconds, double least);

@@ -1,9 +1,6 @@
 // Assembly, factorization and back-substitution: of J W J^T, and of ICD's saddle point.
-#include <string_view>
-
-#include "harness/kernels/hardware_peak.h"
+#include "harness/kernels/floors.h"
 #include "harness/kernels/kernel.h"
-#include "solvers/linear/spd_solvers.h"
 #include "solvers/registry.h"
 #include "solvers/systems/kkt_system.h"
 #include "solvers/systems/projected_cg.h"
@@ -12,7 +9,22 @@ namespace harness::kernels {
 namespace {
 
 using namespace inextensible;
-using benchmark::Counter;
+
+// J W J^T at x0 in the solver's order, not yet factored.
+struct Linearized {
+  Linearized(const Moment& m, std::string_view name)
+      : system(m.problem(), 0.01, name),
+        u(3, m.problem().constraints()),
+        c(m.problem().constraints()),
+        solver(make_spd_solver(system.solver_name(), system.schur().pattern())) {
+    system.edges().linearize(m.x0, u, c);
+    system.schur().assemble(u, solver->values());
+  }
+  ConstraintSystem system;
+  Eigen::Matrix3Xd u;
+  Eigen::VectorXd c;
+  std::unique_ptr<SpdSolver> solver;
+};
 
 void assembly(benchmark::State& state, const std::string& scene, int n) {
   const Moment& m = moment(scene, n);
@@ -41,7 +53,6 @@ void linear_solver(benchmark::State& state, const std::string& name, bool solve,
     benchmark::ClobberMemory();
   }
   per_item(state, m.problem().constraints());
-  const auto rate = [](double a) { return Counter(a, Counter::kIsIterationInvariantRate); };
   state.counters["nnz_L"] = l.solver->factor_nonzeros();
   if (solve) {
     const double bytes = l.solver->factor_nonzeros() * sizeof(double);
@@ -98,36 +109,29 @@ void kkt(benchmark::State& state, const std::string& solver, bool solve, int n) 
     return state.SkipWithError("another solver had to take over");
   per_item(state, edges.count());
   state.counters["nnz_L"] = work.factor_nonzeros;
-  state.counters["flops"] =
-      Counter(solve ? 0 : work.factor_flops, Counter::kIsIterationInvariantRate);
-  state.counters["back_solves"] =
-      Counter(static_cast<double>(work.back_solves), Counter::kAvgIterations);
+  state.counters["flops"] = rate(solve ? 0 : work.factor_flops);
+  state.counters["back_solves"] = average(static_cast<double>(work.back_solves));
 }
 
 }  // namespace
 
-void register_schur_complement(const std::string& scene, int n, const std::string& at,
-                               const std::vector<std::string>& solvers) {
-  using State = benchmark::State;
-  add("assembly" + at, [=](State& s) { assembly(s, scene, n); });
-  for (const std::string& name : solvers) {
-    add("factor/" + name + at, [=](State& s) { linear_solver(s, name, false, scene, n); });
-    add("solve/" + name + at, [=](State& s) { linear_solver(s, name, true, scene, n); });
+void register_linear_systems(const std::string& scene, int n, const std::vector<std::string>& spd,
+                             const std::vector<std::string>& saddle_point) {
+  const std::string at = "/" + scene + ":" + std::to_string(n);
+  add("assembly" + at, assembly, scene, n);
+  for (const std::string& name : spd) {
+    add("factor/" + name + at, linear_solver, name, false, scene, n);
+    add("solve/" + name + at, linear_solver, name, true, scene, n);
+  }
+  for (const std::string& name : saddle_point) {
+    add("icd_factor/" + name + at, kkt, name, false, n);
+    add("icd_solve/" + name + at, kkt, name, true, n);
   }
 }
 
 void register_whole_systems(int n, const std::vector<std::string>& solvers) {
-  for (const std::string& name : solvers) {
-    add("assemble_factor_solve/" + name + "/drape:" + std::to_string(n),
-        [=](benchmark::State& s) { whole_system(s, name, n); });
-  }
-}
-
-void register_saddle_point(int n, const std::string& at, const std::vector<std::string>& solvers) {
-  for (const std::string& name : solvers) {
-    add("icd_factor/" + name + at, [=](benchmark::State& s) { kkt(s, name, false, n); });
-    add("icd_solve/" + name + at, [=](benchmark::State& s) { kkt(s, name, true, n); });
-  }
+  for (const std::string& name : solvers)
+    add("assemble_factor_solve/" + name + "/drape:" + std::to_string(n), whole_system, name, n);
 }
 
 }  // namespace harness::kernels

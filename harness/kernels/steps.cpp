@@ -1,10 +1,10 @@
-// What a step does beside its filter, and whole iterations of solvers.
+// Passes over all edges or vertices, and whole iterations of solvers.
 #include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string_view>
 
-#include "harness/kernels/hardware_peak.h"
+#include "harness/kernels/floors.h"
 #include "harness/kernels/kernel.h"
 #include "solvers/problem/forces.h"
 #include "solvers/registry.h"
@@ -13,7 +13,6 @@ namespace harness::kernels {
 namespace {
 
 using namespace inextensible;
-using benchmark::Counter;
 
 void edge_pass(benchmark::State& state, bool gradients, const std::string& scene, int n) {
   const Moment& m = moment(scene, n);
@@ -46,9 +45,7 @@ void vertex_pass(benchmark::State& state, bool collision, const std::string& sce
     benchmark::ClobberMemory();
   }
   per_item(state, problem.vertices(), "s_per_vertex");
-  if (collision)
-    state.counters["contacts"] =
-        Counter(static_cast<double>(work.contacts), Counter::kAvgIterations);
+  if (collision) state.counters["contacts"] = average(static_cast<double>(work.contacts));
 }
 
 // One iteration of a solver as it is in a step: steps from one state, less those of `null`, over
@@ -81,26 +78,60 @@ void iteration(benchmark::State& state, const std::string& name, const std::stri
   state.counters["iterations"] = first.iterations;
 }
 
+std::unique_ptr<VelocityFilter> filter(const Problem& problem, const std::string& method,
+                                       double passes) {
+  const Backend& row = *find_backend(method);
+  BackendOptions options{.settings = complete_settings(row, {})};
+  options.settings["max_iterations"] = passes;
+  // A pass over yarns alone.
+  if (const auto sweeps = options.settings.find("sweeps"); sweeps != options.settings.end())
+    sweeps->second = 0.0;
+  return row.make_filter(problem, options, Along::edges);
+}
+
+// One pass over a cloth stretched by a fifth, so that every edge is corrected. A call that
+// may not pass at all costs the checks, the refusal and the clock: that is taken off.
+void strain_pass(benchmark::State& state, const std::string& method, int n) {
+  const Moment& m = moment("drape", n);
+  const auto one = filter(m.problem(), method, 1), none = filter(m.problem(), method, 0);
+  const Positions stretched = 1.2 * m.x0;
+  Positions x = stretched;
+  WorkCounters work;
+  double total = 0;
+  while (state.KeepRunning()) {
+    x = stretched;
+    const double begin = processor_seconds();
+    benchmark::DoNotOptimize(none->apply(m.state.x, m.h, x, work));
+    const double middle = processor_seconds();
+    benchmark::DoNotOptimize(one->apply(m.state.x, m.h, x, work));
+    const double seconds = (processor_seconds() - middle) - (middle - begin);
+    state.SetIterationTime(seconds);
+    total += seconds;
+  }
+  per_item(state, m.problem().constraints());
+  state.counters["floor_ratio"] = average(total / m.problem().constraints() / sqrt_div_seconds());
+  state.counters["corrected"] =
+      average(static_cast<double>(work.edge_projections) / m.problem().constraints());
+}
+
 }  // namespace
 
-void register_steps(const std::string& scene, int n, const std::string& at) {
-  using State = benchmark::State;
-  add("unconstrained_step" + at, [=](State& s) { vertex_pass(s, false, scene, n); });
-  add("edge_pass" + at, [=](State& s) { edge_pass(s, true, scene, n); });
-  add("strain_check" + at, [=](State& s) { edge_pass(s, false, scene, n); });
-}
-
-void register_collision(const std::string& scene, int n, const std::string& at) {
-  add("collision_pass" + at, [=](benchmark::State& s) { vertex_pass(s, true, scene, n); });
-}
-
-void register_iterations(const std::string& scene, int n, const std::string& at,
-                         const std::vector<std::string>& solvers) {
-  for (const std::string& name : solvers) {
-    add("iteration/" + name + at, [=](benchmark::State& s) {
-      iteration(s, name, scene, n);
-    })->UseManualTime();
+void register_steps(const std::string& scene, int n) {
+  const std::string at = "/" + scene + ":" + std::to_string(n);
+  add("unconstrained_step" + at, vertex_pass, false, scene, n);
+  add("edge_pass" + at, edge_pass, true, scene, n);
+  add("strain_check" + at, edge_pass, false, scene, n);
+  if (scene == "drape") {
+    add("collision_pass" + at, vertex_pass, true, scene, n);
+    for (const std::string method :
+         {"gauss_seidel", "gauss_seidel_colored", "jacobi", "yarn_projection"})
+      add("strain_pass/" + method + at, strain_pass, method, n)->UseManualTime();
+    return;
   }
+  std::vector<std::string> solvers{"fast_projection", "implicit_springs"};
+  if (n <= 80) solvers.insert(solvers.end(), {"shake", "rattle", "icd"});
+  for (const std::string& name : solvers)
+    add("iteration/" + name + at, iteration, name, scene, n)->UseManualTime();
 }
 
 }  // namespace harness::kernels

@@ -1,12 +1,11 @@
-// The statistics of a comparison against scipy's numbers and against themselves; its words for
-// changes, its gate, its baseline and its reports.
+// The statistics of a comparison against scipy's numbers and against themselves; its changes, its
+// gate, its baseline and its reports.
 #include "harness/compare/comparison.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <random>
 
 #include "harness/base/errors.h"
@@ -26,39 +25,39 @@ using Times = std::vector<double>;
 
 // ---- Mann-Whitney -------------------------------------------------------------------------------
 
-// scipy 1.10.1: scipy.stats.mannwhitneyu(a, b, alternative="greater", method="exact").
-TEST(MannWhitney, AgreesWithScipyWhereThereAreNoTies) {
-  EXPECT_NEAR(mann_whitney_greater({1.1, 1.2, 1.3, 1.4}, {1.0, 1.05, 0.9, 0.95}),
-              0.014285714285714285, 1e-15);
-  EXPECT_NEAR(mann_whitney_greater({0.8, 0.83, 1.89, 1.04, 1.45, 1.38, 1.91, 1.64, 0.73, 1.46},
-                                   {1.15, 0.88, 0.9, 0.74, 1.21}),
-              0.1272061272061272, 1e-15);
-  EXPECT_NEAR(mann_whitney_greater({19, 22, 16, 29, 24}, {20, 11, 17, 12}), 0.05555555555555555,
-              1e-15);
-}
-
-// Ties: all choices of ranks counted one by one (scipy.stats.rankdata and itertools.combinations).
-TEST(MannWhitney, IsExactWithTies) {
-  const Times a{3, 4, 2, 6, 2, 5, 7, 7}, b{9, 7, 5, 10, 6, 8, 2, 3};
-  EXPECT_NEAR(mann_whitney_greater(a, b), 0.9120435120435121, 1e-15);
-  EXPECT_NEAR(mann_whitney_greater(b, a), 0.10240870240870241, 1e-15);
-  EXPECT_NEAR(mann_whitney_greater({9, 7, 5, 10, 6, 8}, {3, 4, 2, 6, 2, 5}), 0.005411255411255411,
-              1e-15);
-}
-
-// scipy 1.10.1, method="asymptotic" (it corrects for ties and continuity).
-TEST(MannWhitney, OfManySamplesAgreesWithScipysNormalApproximation) {
-  Times a, b;
-  for (int i = 3; i < 43; ++i) a.push_back(i % 17);
-  for (int i = 0; i < 45; ++i) b.push_back((3 * i % 19) * 0.9);
-  EXPECT_NEAR(mann_whitney_greater(a, b), 0.6717825771992799, 1e-9);
-  EXPECT_NEAR(mann_whitney_greater(b, a), 0.33140674930257097, 1e-9);
-  Times c, d;
-  for (int i = 0; i < 40; ++i) {
-    c.push_back(i * 1.01 + 5);
-    d.push_back(i * 1.0 + 0.003);
-  }
-  EXPECT_NEAR(mann_whitney_greater(c, d), 0.025104467306861344, 1e-9);
+TEST(MannWhitney, AgreesWithIndependentPrograms) {
+  const auto series = [](int from, int to, auto value) {
+    Times times;
+    for (int i = from; i < to; ++i) times.push_back(value(i));
+    return times;
+  };
+  const Times tied_a{3, 4, 2, 6, 2, 5, 7, 7}, tied_b{9, 7, 5, 10, 6, 8, 2, 3};
+  const Times many_a = series(3, 43, [](int i) { return i % 17; });
+  const Times many_b = series(0, 45, [](int i) { return (3 * i % 19) * 0.9; });
+  struct Row {
+    Times a, b;
+    double p, accuracy;
+  };
+  for (const Row& row : {
+           // scipy 1.10.1: scipy.stats.mannwhitneyu(a, b, alternative="greater", method="exact")
+           Row{{1.1, 1.2, 1.3, 1.4}, {1.0, 1.05, 0.9, 0.95}, 0.014285714285714285, 1e-15},
+           Row{{0.8, 0.83, 1.89, 1.04, 1.45, 1.38, 1.91, 1.64, 0.73, 1.46},
+               {1.15, 0.88, 0.9, 0.74, 1.21},
+               0.1272061272061272,
+               1e-15},
+           Row{{19, 22, 16, 29, 24}, {20, 11, 17, 12}, 0.05555555555555555, 1e-15},
+           // ties: all choices of ranks counted one by one (scipy.stats.rankdata and
+           // itertools.combinations)
+           Row{tied_a, tied_b, 0.9120435120435121, 1e-15},
+           Row{tied_b, tied_a, 0.10240870240870241, 1e-15},
+           Row{{9, 7, 5, 10, 6, 8}, {3, 4, 2, 6, 2, 5}, 0.005411255411255411, 1e-15},
+           // many: method="asymptotic", which corrects for ties and continuity
+           Row{many_a, many_b, 0.6717825771992799, 1e-9},
+           Row{many_b, many_a, 0.33140674930257097, 1e-9},
+           Row{series(0, 40, [](int i) { return i * 1.01 + 5; }),
+               series(0, 40, [](int i) { return i + 0.003; }), 0.025104467306861344, 1e-9},
+       })
+    EXPECT_NEAR(mann_whitney_greater(row.a, row.b), row.p, row.accuracy);
 }
 
 Times random_times(std::mt19937_64& random, std::size_t n) {
@@ -127,29 +126,30 @@ Times spread(double middle, int n, double width = 0.01) {
 }
 
 TEST(CompareTimes, FlagsOnlyWhatTestAndBothRatiosAgreeOn) {
-  const Gate gate;
   const Times base = spread(1, 15);
-  EXPECT_EQ(compare_times(base, spread(1.15, 15), gate).change, Change::slower);
-  EXPECT_EQ(compare_times(spread(1.15, 15), base, gate).change, Change::faster);
-  EXPECT_EQ(compare_times(base, spread(1.02, 15), gate).change, Change::same);  // sure, but small
-  EXPECT_EQ(compare_times(base, base, gate).change, Change::same);
   Times one_fast = spread(1.15, 15);
-  one_fast.front() = 1;  // the minimum does not agree
-  const TimeChange torn = compare_times(base, one_fast, gate);
-  EXPECT_EQ(torn.change, Change::ambiguous);
-  EXPECT_NE(torn.reason.find("only the median"), std::string::npos) << torn.reason;
-  EXPECT_FALSE(torn.too_few);
-}
-
-TEST(CompareTimes, SaysWhenThereAreTooFewRuns) {
-  const TimeChange few = compare_times({1, 1.01, 1.02}, {2, 2.1, 2.2}, Gate());
-  EXPECT_EQ(few.change, Change::ambiguous);
-  EXPECT_TRUE(few.too_few);
-  EXPECT_NE(few.reason.find("it takes 4 each"), std::string::npos) << few.reason;
-  EXPECT_EQ(compare_times({1, 1.01, 1.02, 1.03}, {2, 2.1, 2.2, 2.3}, Gate()).change,
-            Change::slower);
-  EXPECT_EQ(compare_times({1}, {1.01}, Gate()).change, Change::same);
-  EXPECT_EQ(compare_times({}, {1.01}, Gate()).change, Change::same);
+  one_fast.front() = 1;
+  struct Row {
+    Times base, next;
+    Change change;
+    const char* reason;
+  };
+  for (const auto& [before, after, change, reason] : {
+           Row{base, spread(1.15, 15), Change::slower, ""},
+           Row{spread(1.15, 15), base, Change::faster, ""},
+           Row{base, spread(1.02, 15), Change::same, ""},  // sure, but small
+           Row{base, base, Change::same, ""},
+           Row{base, one_fast, Change::ambiguous, "only the median"},
+           Row{{1, 1.01, 1.02}, {2, 2.1, 2.2}, Change::ambiguous, "it takes 4 each"},
+           Row{{1, 1.01, 1.02, 1.03}, {2, 2.1, 2.2, 2.3}, Change::slower, ""},
+           Row{{1}, {1.01}, Change::same, ""},
+           Row{{}, {1.01}, Change::same, ""},
+       }) {
+    const TimeChange times = compare_times(before, after, Gate());
+    EXPECT_EQ(times.change, change) << times.reason;
+    EXPECT_NE(times.reason.find(reason), std::string::npos) << times.reason;
+    EXPECT_EQ(times.too_few, before.size() == 3);
+  }
 }
 
 // ---- Points and results -------------------------------------------------------------------------
@@ -173,61 +173,67 @@ ComparedResult result_of(std::vector<ComparedPoint> points) {
   return result;
 }
 
-Change only_change(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate = {}) {
-  const Comparison comparison = compare(result_of({base}), result_of({next}), gate);
-  return comparison.points.at(0).change;
-}
-
 const char* const some_id = "chain/shake/n:80/strain:0.01/h:0.01";
 
-TEST(Compare, TellsEveryChange) {
-  const ComparedPoint good = point_with(some_id);
-  ComparedPoint bad = good;
-  bad.status = "not_converged";
-  EXPECT_EQ(only_change(good, good), Change::same);
-  EXPECT_EQ(only_change(good, bad), Change::newly_failing);
-  EXPECT_EQ(only_change(bad, good), Change::fixed);
-  EXPECT_EQ(only_change(bad, bad), Change::same);
-  EXPECT_EQ(only_change(good, point_with(some_id, 101)), Change::slower);
+TEST(Compare, JudgesAPoint) {
+  struct Row {
+    const char *before, *after;  // statuses
+    double iterations;           // 100 before
+    CounterRule rule;
+    double error_before, error_after;
+    Change change;
+  };
+  using enum CounterRule;
+  for (const Row& row : {
+           Row{"ok", "ok", 100, exact, 0.02, 0.02, Change::same},
+           Row{"ok", "diverged", 100, exact, 0.02, 0.02, Change::newly_failing},
+           Row{"diverged", "ok", 100, exact, 0.02, 0.02, Change::fixed},
+           Row{"diverged", "diverged", 100, exact, 0.02, 0.02, Change::same},
+           Row{"diverged", "singular", 100, exact, 0.02, 0.02, Change::ambiguous},
+           Row{"timeout", "crashed", 200, exact, 0.02, 0.02, Change::same},
+           Row{"ok", "ok", 101, exact, 0.02, 0.02, Change::slower},
+           Row{"ok", "ok", 99, exact, 0.02, 0.02, Change::changed},
+           Row{"ok", "ok", 101, rise, 0.02, 0.02, Change::slower},
+           Row{"ok", "ok", 99, rise, 0.02, 0.02, Change::faster},
+           Row{"ok", "ok", 101, inform, 0.02, 0.02, Change::same},
+           Row{"ok", "ok", 100, exact, 0.02, 0.0201, Change::same},
+           Row{"ok", "ok", 100, exact, 0.02, 0.021, Change::changed},
+           Row{"ok", "ok", 100, exact, 0.02, 0.01, Change::same},
+           Row{"ok", "ok", 100, exact, 1e-16, 3e-16, Change::same},  // rounding
+       }) {
+    ComparedPoint base = point_with(some_id), next = point_with(some_id, row.iterations);
+    base.status = row.before;
+    next.status = row.after;
+    base.errors["trajectory"] = row.error_before;
+    next.errors["trajectory"] = row.error_after;
+    Gate gate;
+    gate.counter_rule = row.rule;
+    const PointChange judged = compare(result_of({base}), result_of({next}), gate).points.at(0);
+    EXPECT_EQ(judged.change, row.change)
+        << row.before << " -> " << row.after << ": " << judged.text();
+  }
+  Gate steps;
+  steps.counters = {"steps"};
+  EXPECT_EQ(compare(result_of({point_with(some_id)}), result_of({point_with(some_id, 101)}), steps)
+                .points[0]
+                .change,
+            Change::same);
+}
+
+TEST(Compare, FindsWhatIsMissingAndNew) {
+  const ComparedPoint common = point_with(some_id);
   const auto both =
-      compare(result_of({good, point_with("chain/icd/n:80/strain:0.01/h:0.01")}),
-              result_of({good, point_with("chain/null/n:80/strain:0.01/h:0.01")}), Gate());
+      compare(result_of({common, point_with("chain/icd/n:80/strain:0.01/h:0.01")}),
+              result_of({common, point_with("chain/null/n:80/strain:0.01/h:0.01")}), Gate());
   ASSERT_EQ(both.points.size(), 3u);
   EXPECT_EQ(both.points[1].change, Change::missing);
   EXPECT_EQ(both.points[2].change, Change::added);
   EXPECT_TRUE(both.any(is_failure));
   EXPECT_FALSE(both.any(is_regression));
-}
-
-TEST(Compare, CounterRuleDecidesWhatAFallMeans) {
-  const ComparedPoint base = point_with(some_id, 100), fell = point_with(some_id, 99),
-                      rose = point_with(some_id, 101);
-  Gate gate;
-  EXPECT_EQ(only_change(base, fell, gate), Change::changed);
-  gate.counter_rule = CounterRule::rise;
-  EXPECT_EQ(only_change(base, fell, gate), Change::faster);
-  EXPECT_EQ(only_change(base, rose, gate), Change::slower);
-  gate.counter_rule = CounterRule::inform;
-  EXPECT_EQ(only_change(base, rose, gate), Change::same);
-  gate.counter_rule = CounterRule::exact;
-  gate.counters = {"steps"};
-  EXPECT_EQ(only_change(base, rose, gate), Change::same);
-}
-
-TEST(Compare, LargerErrorsAreARegressionAndRoundingIsNot) {
-  const ComparedPoint base = point_with(some_id);
-  ComparedPoint next = base;
-  next.errors["trajectory"] = 0.0201;
-  EXPECT_EQ(only_change(base, next), Change::same);  // within 1 %
-  next.errors["trajectory"] = 0.021;
-  EXPECT_EQ(only_change(base, next), Change::changed);
-  next.errors["trajectory"] = 0.01;
-  EXPECT_EQ(only_change(base, next), Change::same);
-  ComparedPoint exact = base;
-  exact.errors["max_strain"] = 1e-16;
-  next = exact;
-  next.errors["max_strain"] = 3e-16;
-  EXPECT_EQ(only_change(exact, next), Change::same);
+  ComparedPoint other = common;
+  other.spec = "other";
+  for (const ComparedPoint& next : {other, point_with("chain/icd/n:7")})
+    EXPECT_THROW(compare(result_of({common}), result_of({next}), Gate()), NotComparable);
 }
 
 TEST(Compare, LeavesCountersOfAnotherBuildAndTimesOfAnotherMachineAlone) {
@@ -244,15 +250,6 @@ TEST(Compare, LeavesCountersOfAnotherBuildAndTimesOfAnotherMachineAlone) {
   there.context["counters_fingerprint"] = "c";
   const Comparison counters_only = compare(here, there, Gate());
   EXPECT_EQ(counters_only.points[0].text(), "iterations 100 -> 101 (+1 %)");
-}
-
-TEST(Compare, RefusesResultsWithNothingInCommonOrOtherParameters) {
-  const ComparedPoint base = point_with(some_id);
-  ComparedPoint other = point_with(some_id);
-  other.spec = "other";
-  EXPECT_THROW(compare(result_of({base}), result_of({other}), Gate()), NotComparable);
-  EXPECT_THROW(compare(result_of({base}), result_of({point_with("chain/icd/n:7")}), Gate()),
-               NotComparable);
 }
 
 TEST(Compare, ASearchMayTakeAnotherWay) {
@@ -303,39 +300,24 @@ json one_result() {
       result_document(machine_context(), Suite(), {"bench"}, true, {point, failed}).dump());
 }
 
-TEST(Baseline, HoldsCountersAndRoundedErrorsOnePointALineAndNoTimes) {
+TEST(Baseline, HoldsWhatIsComparedAndNoTimes) {
+  const std::string result = ::testing::TempDir() + "result.json",
+                    baseline = ::testing::TempDir() + "baseline.json";
   const std::string text = document_text(baseline_document({one_result()}));
-  const json document = json::parse(text);
-  ASSERT_EQ(document["points"].size(), 2u);
-  const json& point = document["points"][0];
+  EXPECT_EQ(text.find("seconds"), std::string::npos);
+  const json point = json::parse(text).at("points").at(0);
   EXPECT_EQ(point["work"]["iterations"], 1234567);
   EXPECT_EQ(point["max_strain"], 0.00987654);
   EXPECT_EQ(point["error"]["trajectory"], 0.0123457);
-  EXPECT_TRUE(document["points"][1]["max_strain"].is_null());
-  EXPECT_EQ(text.find("seconds"), std::string::npos);
-  std::istringstream lines(text);
-  int points = 0;
-  for (std::string line; std::getline(lines, line);) {
-    if (!line.starts_with("{\"sweep\"")) continue;
-    ++points;
-    if (line.back() == ',') line.pop_back();
-    EXPECT_TRUE(json::parse(line).is_object());
+  write_atomically(baseline, text);
+  for (const int more : {0, 1}) {
+    json document = one_result();
+    document["points"][0]["work"]["iterations"] = 1234567 + more;
+    write_atomically(result, document.dump());
+    const Comparison found = compare(read_compared({baseline}), read_compared({result}), Gate());
+    EXPECT_EQ(found.count(Change::same), 2u - more);
+    EXPECT_EQ(found.count(Change::slower), more);
   }
-  EXPECT_EQ(points, 2);
-}
-
-TEST(Baseline, ComparesAsTheResultItCameFrom) {
-  const std::string result = ::testing::TempDir() + "result.json",
-                    baseline = ::testing::TempDir() + "baseline.json";
-  write_atomically(result, one_result().dump());
-  write_atomically(baseline, document_text(baseline_document({one_result()})));
-  const Comparison same = compare(read_compared({baseline}), read_compared({result}), Gate());
-  EXPECT_EQ(same.count(Change::same), 2u);
-  json worse = one_result();
-  worse["points"][0]["work"]["iterations"] = 1234568;
-  write_atomically(result, worse.dump());
-  const Comparison changed = compare(read_compared({baseline}), read_compared({result}), Gate());
-  EXPECT_EQ(changed.count(Change::slower), 1u);
 }
 
 TEST(Gate, RefusesWhatItDoesNotKnow) {

@@ -1,10 +1,12 @@
-#include "harness/compare/baseline.h"
+// What is compared, read from files: gates, results and baselines; and a baseline written.
+#include "harness/base/files.h"
+
+#include <algorithm>
 
 #include "harness/base/errors.h"
-#include "harness/base/files.h"
 #include "harness/base/json_reader.h"
 #include "harness/base/text.h"
-#include "harness/compare/gate.h"
+#include "harness/compare/comparison.h"
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
 #include "harness/points/schema.h"
@@ -14,6 +16,62 @@ namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
+using Names = std::vector<std::string>;
+
+constexpr std::array error_names{"max_strain", "trajectory", "energy_drift"};
+
+void read_times(JsonReader reader, Gate& gate) {
+  const Bounds ratio = Bounds::at_least(1);
+  gate.times = reader.flag("count", gate.times);
+  gate.significance =
+      reader.number("significance", gate.significance, {.least = 0, .above = true, .most = 0.5});
+  gate.median_ratio = reader.number("median_ratio", gate.median_ratio, ratio);
+  gate.minimum_ratio = reader.number("minimum_ratio", gate.minimum_ratio, ratio);
+  reader.finish();
+}
+
+void read_counters(JsonReader reader, Gate& gate) {
+  static const Names rules{"exact", "rise", "inform"};  // in the order of CounterRule
+  const std::string rule = reader.one_of("rule", rules.front(), rules, "rule");
+  gate.counter_rule =
+      static_cast<CounterRule>(std::find(rules.begin(), rules.end(), rule) - rules.begin());
+  const Names known = counter_names();
+  for (const std::string& name : reader.texts("names")) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw UsageError(reader.where("names") + ": " + unknown_name("counter", name, known).what());
+    gate.counters.push_back(name);
+  }
+  reader.finish();
+}
+
+void read_errors(JsonReader reader, Gate& gate) {
+  gate.errors.clear();
+  for (const char* name : error_names) {
+    if (reader.find(name)) gate.errors[name] = reader.number(name, 1, Bounds::at_least(1));
+  }
+  gate.error_floor = reader.number("floor", gate.error_floor, Bounds::at_least(0));
+  reader.finish();
+}
+
+}  // namespace
+
+Gate read_gate(const std::string& path) { return parse_gate(read_file(path, "gate"), path); }
+
+Gate parse_gate(const std::string& text, const std::string& path) {
+  const json document = parse_commented(text, path);
+  JsonReader reader(document, "gate '" + path + "'");
+  Gate gate;
+  const auto part = [&reader](const char* key, auto read) {
+    if (const json* value = reader.find(key)) read(JsonReader(*value, reader.where(key)));
+  };
+  part("times", [&gate](const JsonReader& times) { read_times(times, gate); });
+  part("counters", [&gate](const JsonReader& counters) { read_counters(counters, gate); });
+  part("errors", [&gate](const JsonReader& errors) { read_errors(errors, gate); });
+  reader.finish();
+  return gate;
+}
+
+namespace {
 
 constexpr const char* baseline_schema = "inextensible-baseline/1";
 constexpr int error_digits = 6;  // enough for a ratio; the rest is noise in a diff
@@ -24,23 +82,22 @@ std::string spec_hash(const json& point) {
   return fnv1a(spec.dump());
 }
 
-const json& error_of(const json& point, const std::string& name) {
-  static const json none;
-  const json& place = name == "max_strain" ? point : point.at("error");
-  return place.contains(name) ? place.at(name) : none;
+json error_of(const json& point, const std::string& name) {
+  return (name == "max_strain" ? point : point.at("error")).value(name, json());
 }
 
 json read_any(const std::string& path) {
   json document = parse_document(read_file(path, "result file"), path);
-  if (document.is_object() && document.value("schema", json()) == baseline_schema) {
-    check_schema(document, "baseline", path);
-    return document;
-  }
-  if (document.is_object() && document.value("schema", json()) == "inextensible-stability/1")
+  const json schema = document.is_object() ? document.value("schema", json()) : json();
+  if (schema == "inextensible-stability/1")
     throw UsageError("'" + path +
                      "' is the result of a stability sweep, which cannot be compared: it has its "
                      "expected outcomes in the program");
-  check_result(document, path);
+  if (schema == baseline_schema) {
+    check_schema(document, "baseline", path);
+  } else {
+    check_result(document, path);
+  }
   return document;
 }
 
@@ -97,9 +154,8 @@ ordered_json rounded(const json& value) {
 
 ordered_json baseline_point(const json& point) {
   ordered_json errors = ordered_json::object();
-  for (const std::string& name : error_names()) {
-    if (name != "max_strain") errors[name] = rounded(error_of(point, name));
-  }
+  for (const char* name : {"trajectory", "energy_drift"})
+    errors[name] = rounded(error_of(point, name));
   return {{"sweep", point.at("sweep")},
           {"id", point.at("id")},
           {"status", point.at("status")},
@@ -120,9 +176,8 @@ ComparedPoint compared_point(const json& p) {
   point.spec = p.contains("spec") ? p.at("spec").get<std::string>() : spec_hash(p);
   point.best = p.value("best", false);
   p.at("work").get_to(point.counters);
-  for (const std::string& name : error_names()) {
-    if (const json& value = error_of(p, name); value.is_number())
-      point.errors[name] = value.get<double>();
+  for (const char* name : error_names) {
+    if (const json value = error_of(p, name); value.is_number()) point.errors[name] = value;
   }
   const json seconds = p.value("seconds_per_simulated_second", json());
   if (seconds.is_object()) seconds.at("samples").get_to(point.samples);

@@ -1,16 +1,14 @@
-#include "harness/cli/sweep_options.h"
-
+// The suite that a sweep runs: a profile's or one's own, with what the options say instead.
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <limits>
-#include <sstream>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
+#include "harness/cli/options.h"
 #include "harness/judge/reference_file.h"
 
 namespace harness {
@@ -56,54 +54,11 @@ void cut_ladders(Suite& suite, double finest) {
 
 }  // namespace
 
-void add_scene_selection(const Command& to, SweepOptions& options) {
-  to.option("--sweep", options.sweep, "axis: strain (limit), resolution, step or stability",
-            "AXIS");
-  add_scene(to, options, "all of the suite's");
-  add_suite(to, options.profile, options.config);
-}
-
-void add_selection(const Command& to, SweepOptions& options) {
-  add_scene_selection(to, options);
-  add_limits(to, options.limits, "the suite's");
-  add_solver(to, options.solver);
-  add_filters(to, options.filter, options.exclude);
-}
-
-void add_measurement(const Command& to, SweepOptions& options) {
-  to.option(
-      "--reps", options.reps,
-      "samples of each point that may be best; 7..40: more until the median is known to --rel-ci",
-      "N");
-  to.option("--rel-ci", options.rel_ci,
-            "half width of the median's 95 % confidence interval over the median, default 0.02",
-            "R")
-      .positive();
-  add_timeout(to, options.timeout, "the suite's");
-  to.option("--steps", options.steps,
-            "search (each solver's best step, default), all (the whole ladder) or adaptive "
-            "(one run from the coarsest step, halved where the solver refuses it)",
-            "HOW");
-  to.option("--finest", options.finest, "smallest step of the ladder instead of the suite's", "S")
-      .positive();
-  to.option(
-        "--finest-error", options.finest_error,
-        "search best steps for levels of error down to this one, over the scene's size, instead of "
-        "the suite's",
-        "E")
-      .positive();
-  to.option("--seed", options.seed, "of random orders", "N").holds(Bounds::exact_number());
-  to.flag(
-      "--untimed", options.untimed,
-      "for counters and errors only: run at once, beside programs that take times; the result is "
-      "refused wherever times are read");
-}
-
-std::string suite_path(const SweepOptions& options) {
+std::string suite_path(const SelectionOptions& options) {
   if (!options.scene.empty() && !find_scene(options.scene))
     throw unknown_name("scene", options.scene, names_of(scene_types()));
   if (!options.config.empty()) return options.config;
-  check_profile(options.profile);
+  check_known("profile", options.profile, profiles());
   return source_path("configs/" + options.profile + ".json");
 }
 
@@ -135,7 +90,7 @@ void put_in_scene(json& sweeps, const SweepOptions& options) {
 // The suite with what the options say instead: it then is one like any other, checked as a whole.
 Suite edited_suite(const std::string& path, const SweepOptions& options) {
   const std::string text = read_file(path, "suite");
-  const SceneParameters given = parameters_of(options);
+  const SceneParameters given = options.given_parameters();
   if (!given.empty() && options.scene.empty())
     throw UsageError("--set goes with --scene: of which scene is the parameter?");
   if (options.n.empty() && options.limits.empty() && options.scene.empty())
@@ -173,23 +128,20 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
 
 Suite load_suite(const SweepOptions& given) {
   SweepOptions options = given;
-  options.scene = scene_of(given);
+  options.scene = given.name();
   const std::string path = suite_path(options);
   Suite suite = edited_suite(path, options);
-  if (!options.solver.empty()) check_solver_pattern(options.solver, contestants_of(suite));
+  (void)solver_pattern(options.solver, contestants_of(suite));
   std::vector<std::string> kinds = sweep_kinds();
-  if (std::find(kinds.begin(), kinds.end(), options.sweep) == kinds.end()) {
-    kinds.emplace_back("stability");
-    throw unknown_name("sweep", options.sweep, kinds);
-  }
+  kinds.emplace_back("stability");
+  check_known("sweep", options.sweep, kinds);
   std::erase_if(suite.sweeps, [&](const SweepSpec& s) {
     return s.sweep != options.sweep || (!options.scene.empty() && s.scene != options.scene);
   });
   if (suite.sweeps.empty())
     throw UsageError("'" + path + "' has no such sweep: --sweep " + options.sweep + " --scene " +
                      options.scene);
-  if (options.steps != "search" && options.steps != "adaptive" && options.steps != "all")
-    throw unknown_name("choice of steps", options.steps, {"search", "adaptive", "all"});
+  check_known("choice of steps", options.steps, {"search", "adaptive", "all"});
   check_longest_step(suite);
   if (options.steps == "adaptive") {
     if (options.sweep == "step")
@@ -218,26 +170,20 @@ Suite load_suite(const SweepOptions& given) {
   return suite;
 }
 
-SweepFilters make_filters(const SweepOptions& options) {
-  SweepFilters filters;
-  if (!options.solver.empty()) filters.solver = Pattern("--solver", options.solver);
-  if (!options.filter.empty()) filters.include = Pattern("--filter", options.filter);
-  if (!options.exclude.empty()) filters.exclude = Pattern("--exclude", options.exclude);
-  return filters;
+SweepFilters filters_of(const SelectionOptions& options) {
+  return {pattern_of("--solver", options.solver), pattern_of("--filter", options.filter),
+          pattern_of("--exclude", options.exclude)};
 }
 
-std::vector<std::pair<std::string, SceneParameters>> without_reference(
-    const std::vector<Search>& searches, ReferenceFolder& references) {
-  std::map<std::string, std::pair<std::string, SceneParameters>> missing;
+std::map<std::string, SceneOfReference> without_reference(const std::vector<Search>& searches,
+                                                          ReferenceFolder& references) {
+  std::map<std::string, SceneOfReference> missing;
   for (const Search& search : searches) {
-    const auto& [scene, parameters] = std::pair(search.base.scene, search.base.scene_parameters);
-    if (!references.find(scene, parameters))
-      missing[reference_name(scene, parameters)] = {scene, parameters};
+    const SceneOfReference scene{search.base.scene, search.base.scene_parameters};
+    if (!references.find(scene.first, scene.second))
+      missing.emplace(reference_name(scene.first, scene.second), scene);
   }
-  std::vector<std::pair<std::string, SceneParameters>> list;
-  list.reserve(missing.size());
-  for (auto& [name, scene] : missing) list.push_back(std::move(scene));
-  return list;
+  return missing;
 }
 
 }  // namespace harness

@@ -1,0 +1,214 @@
+#include "harness/cli/output.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <utility>
+
+#include "harness/base/clock.h"
+#include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/paths.h"
+#include "harness/base/text.h"
+#include "harness/cli/figures.h"
+#include "harness/points/context.h"
+#include "harness/points/result_file.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+
+bool exists(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
+}
+
+// Width of the terminal, less one: a line that fills it scrolls.
+std::size_t terminal_columns() {
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return std::max<std::size_t>(known ? size.ws_col : 80, 20) - 1;
+}
+
+}  // namespace
+
+Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
+
+void Progress::begin_part() {
+  part_ = std::chrono::steady_clock::now();
+  lines_ = 0;
+}
+
+void Progress::show(double fraction, const std::string& head, const std::string& text) {
+  constexpr int most_lines = 20;
+  if (!terminal_ && fraction * most_lines < lines_) return;
+  std::string line = head + ", " + duration_text(since(start_));
+  if (fraction > 0.02 && fraction < 1)
+    line += ", about " + duration_text(since(part_) * (1 - fraction) / fraction) + " left";
+  if (!text.empty()) line += ": " + text;
+  if (!terminal_) {
+    ++lines_;
+    std::cerr << line << std::endl;
+    return;
+  }
+  constexpr std::size_t cells = 12;
+  const auto filled = std::min(static_cast<std::size_t>(fraction * cells), cells);
+  line = "[" + std::string(filled, '#') + std::string(cells - filled, '.') + "] " + line;
+  line.resize(std::min(line.size(), terminal_columns()));
+  clear();
+  width_ = line.size();
+  std::cerr << line << std::flush;
+}
+
+void Progress::show(std::size_t done, std::size_t all, const std::string& text) {
+  show(static_cast<double>(done) / static_cast<double>(all),
+       std::to_string(done) + " of " + std::to_string(all), text);
+}
+
+void Progress::clear() {
+  if (width_ > 0) std::cerr << "\r\033[K" << std::flush;
+  width_ = 0;
+}
+
+RunEvents journaled_events(Journal& journal, Progress& progress) {
+  RunEvents events;
+  events.interrupted = interrupted;
+  events.once = [&journal](const auto& key, const auto& compute) {
+    return journal.once(key, compute);
+  };
+  events.done = [&progress](const std::string& key, std::size_t done, std::size_t all) {
+    if (all > 0) return progress.show(done, all, key);
+    progress.clear();
+    std::cerr << key << '\n';
+  };
+  return events;
+}
+
+void OutputOptions::declare(const Command& to, const std::string& standard) {
+  to.option("--out", out, "result file; default: results/local/" + standard, "FILE");
+  to.flag("--resume", resume, "continue an interrupted run of the same --out");
+  to.flag("--force", force,
+          "replace a result or an interrupted run; with --resume: continue a run of another build "
+          "or suite");
+  to.flag("--no-plots", no_plots, "draw no figures");
+}
+
+std::string default_output(const std::string& stem, const std::string& ending, bool last) {
+  const auto numbered = [&](int i) {
+    return local_result(stem + (i == 1 ? "" : "-" + std::to_string(i)) + ending);
+  };
+  int free = 1;
+  while (exists(numbered(free))) ++free;
+  return numbered(last && free > 1 && !exists(numbered(free) + ".journal") ? free - 1 : free);
+}
+
+namespace {
+
+// What was there before.
+struct Past {
+  bool finished = false;  // a whole result: nothing to do, and the journal is untouched
+  json context;           // of the run that this one goes on with; null: there is none
+};
+
+// Whether what a journal holds may be taken up or dropped.
+void check_unfinished(const OutputOptions& options, const Journal& journal,
+                      const Undertaking& run) {
+  const std::size_t count = run.count(journal);
+  const std::string entries = std::to_string(count) + " " + run.what;
+  if (options.force) return;
+  if (!journal.damage().empty())
+    throw UsageError("'" + journal.path() + "' is damaged, " + journal.damage() +
+                     "; --resume --force continues with the " + entries +
+                     " that can be read, --force starts again");
+  if (count > 0 && !options.resume && !options.rerun_failed)
+    throw UsageError("'" + journal.path() + "' has " + entries +
+                     " of a run that did not finish: --resume continues it, --force starts again");
+}
+
+void check_same(const OutputOptions& options, const std::string& path, const json& was,
+                const json& mine) {
+  if (was.is_null() || options.force) return;
+  const std::string what = difference(was, mine);
+  if (!what.empty())
+    throw UsageError("'" + path + "' is of another build or selection: " + what +
+                     "; --resume --force continues nevertheless");
+}
+
+Past begin_journal(const OutputOptions& options, const std::string& out, Journal& journal,
+                   const Undertaking& run) {
+  const bool again = options.resume || options.rerun_failed;
+  const json header = {
+      {"schema", "inextensible-journal/2"}, {"identity", run.identity}, {"context", run.context}};
+  check_unfinished(options, journal, run);
+  if (again && run.count(journal) > 0) {
+    const json was = journal.header().is_object() ? journal.header() : json::object();
+    check_same(options, journal.path(), was.value("identity", json()), run.identity);
+    journal.go_on(header);
+    return {false, was.value("context", json())};
+  }
+  if (again && exists(out)) {
+    const json result = read_result_or_answers(out);
+    if (!result.contains(run.rows))
+      throw UsageError("'" + out + "' is the result of another kind of sweep: nothing to resume");
+    const json& context = result.at("context");
+    check_same(options, out,
+               identity(context, context.value("suite", json()),
+                        context.value("selection", json::object())),
+               run.identity);
+    if (result.at("complete").get<bool>() && !options.rerun_failed) return {true, context};
+    journal.start(header);
+    run.add(result, journal);
+    return {false, context};
+  }
+  if (!options.force && exists(out))
+    throw UsageError("'" + out +
+                     "' exists: --force replaces it, --resume completes it, and another "
+                     "--out keeps both");
+  journal.start(header);
+  return {};
+}
+
+// A part of a result takes no place but that of another part.
+bool takes_a_part(const std::string& out) {
+  if (!exists(out)) return true;
+  std::ifstream file(out);
+  const json there = json::parse(file, nullptr, false);
+  return there.is_object() && there.value("complete", json()) == false;
+}
+
+}  // namespace
+
+int carry_out(const OutputOptions& options, const Undertaking& undertaking) {
+  const bool last = options.resume || options.rerun_failed || options.force;
+  const std::string out = options.out.empty() ? default_output(undertaking.stem, ".json", last)
+                                              : regular_output_path(options.out);
+  check_writable(out);
+  Journal journal(out);
+  const Past past = begin_journal(options, out, journal, undertaking);
+  if (past.finished) {
+    std::cout << out << " is complete already\n";
+    return success;
+  }
+  const Finished done = undertaking.run(out, journal, past.context);
+  const bool written = !done.document.is_null() && (done.complete || takes_a_part(out));
+  if (written) write_atomically(out, result_text(done.document));
+  std::cout << done.text;
+  if (written) std::cout << "\nwritten:\n" << out << std::endl;
+  if (!done.complete) {
+    if (!written && exists(out)) std::cerr << "bench: '" << out << "' stays as it was\n";
+    std::cerr << "bench: interrupted; the same command with --resume continues from here\n";
+    return interrupted_exit;
+  }
+  journal.remove();
+  if (!options.no_plots && draw_result(out) != 0)
+    std::cerr << "bench: the figures could not be drawn\n";
+  return done.code;
+}
+
+}  // namespace harness

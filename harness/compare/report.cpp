@@ -1,0 +1,141 @@
+// The printers of a comparison: terminal, JUnit XML, Markdown.
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+#include <unordered_map>
+
+#include "harness/compare/comparison.h"
+
+namespace harness {
+namespace {
+
+bool fails(Change change) { return is_failure(change) || is_regression(change); }
+
+// SAME with a reason: a difference that the gate only wants told.
+bool worth_a_row(const PointChange& point) {
+  return !point.too_few && (point.change != Change::same || !point.reasons.empty());
+}
+
+std::vector<PointChange> rows_of(const Comparison& comparison) {
+  std::vector<PointChange> rows;
+  std::copy_if(comparison.points.begin(), comparison.points.end(), std::back_inserter(rows),
+               worth_a_row);
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto& a, const auto& b) { return a.change < b.change; });
+  return rows;
+}
+
+std::string counts(const Comparison& comparison) {
+  std::string text;
+  for (std::size_t i = 0; i < change_names.size(); ++i) {
+    if (const std::size_t n = comparison.count(static_cast<Change>(i)); n > 0)
+      text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + change_names[i];
+  }
+  return std::to_string(comparison.points.size()) + " points: " + text;
+}
+
+// One line for all points that differ in time and have too few runs to say whether they really do.
+std::vector<std::string> all_notes(const Comparison& comparison) {
+  std::vector<std::string> notes = comparison.notes;
+  const auto& points = comparison.points;
+  const auto too_few = [](const PointChange& point) { return point.too_few; };
+  const auto example = std::find_if(points.begin(), points.end(), too_few);
+  if (example != points.end())
+    notes.push_back(std::to_string(std::count_if(example, points.end(), too_few)) +
+                    " of the AMBIGUOUS have too few runs, for example " + example->id + ": " +
+                    example->text());
+  return notes;
+}
+
+std::string escaped(const std::string& text, const std::unordered_map<char, std::string>& by,
+                    char control) {
+  std::string result;
+  for (const char c : text) {
+    if (const auto found = by.find(c); found != by.end()) {
+      result += found->second;
+    } else {
+      result += static_cast<unsigned char>(c) < 0x20 ? control : c;
+    }
+  }
+  return result;
+}
+
+// Control characters have no place in XML 1.0, not even escaped.
+std::string xml(const std::string& text) {
+  return escaped(
+      text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\n', "&#10;"}}, '?');
+}
+
+// Inside a cell: no line may end, no cell may end, and nothing is a tag.
+std::string cell(const std::string& text) {
+  return escaped(text,
+                 {{'|', "\\|"},
+                  {'*', "\\*"},
+                  {'_', "\\_"},
+                  {'`', "\\`"},
+                  {'\\', "\\\\"},
+                  {'<', "&lt;"},
+                  {'&', "&amp;"}},
+                 ' ');
+}
+
+// "drape/icd/n:225/..." of sweep strain: class strain.drape.icd.
+std::string class_name(const PointChange& point) {
+  const auto scene = point.id.find('/'), solver = point.id.find('/', scene + 1);
+  std::string name = point.sweep + "." + point.id.substr(0, solver);
+  std::replace(name.begin(), name.end(), '/', '.');
+  return name;
+}
+
+}  // namespace
+
+void print_comparison(std::ostream& out, const Comparison& comparison) {
+  const std::vector<PointChange> rows = rows_of(comparison);
+  std::size_t width = 0;
+  for (const PointChange& row : rows) width = std::max(width, row.sweep.size() + row.id.size() + 3);
+  for (const PointChange& row : rows) {
+    out << std::left << std::setw(14) << to_string(row.change) << std::setw(static_cast<int>(width))
+        << row.sweep + " " + row.id << row.text() << '\n';
+  }
+  if (!rows.empty()) out << '\n';
+  for (const std::string& note : all_notes(comparison)) out << "note: " << note << '\n';
+  out << counts(comparison) << std::endl;
+}
+
+std::string junit_xml(const Comparison& comparison, const std::string& name) {
+  std::ostringstream cases;
+  int failures = 0;
+  for (const PointChange& point : comparison.points) {
+    const std::string change = to_string(point.change), what = xml(change + ": " + point.text());
+    cases << "<testcase classname=\"" << xml(class_name(point)) << "\" name=\"" << xml(point.id)
+          << "\"";
+    if (fails(point.change)) {
+      ++failures;
+      cases << "><failure type=\"" << change << "\" message=\"" << what << "\"/></testcase>\n";
+    } else if (point.change != Change::same || !point.reasons.empty()) {
+      cases << "><system-out>" << what << "</system-out></testcase>\n";
+    } else {
+      cases << "/>\n";
+    }
+  }
+  const std::string totals = " tests=\"" + std::to_string(comparison.points.size()) +
+                             "\" failures=\"" + std::to_string(failures) + "\" errors=\"0\"";
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + totals +
+         ">\n<testsuite name=\"" + xml(name) + "\"" + totals + ">\n" + cases.str() +
+         "</testsuite>\n</testsuites>\n";
+}
+
+std::string markdown_table(const Comparison& comparison, const std::string& title) {
+  std::string text = "### " + cell(title) + "\n\n" + counts(comparison) + "\n";
+  const std::vector<PointChange> rows = rows_of(comparison);
+  if (!rows.empty()) text += "\n| change | sweep | point | what |\n|---|---|---|---|\n";
+  for (const PointChange& row : rows) {
+    const std::string bold = fails(row.change) ? "**" : "";
+    text += "| " + bold + cell(to_string(row.change)) + bold + " | " + cell(row.sweep) + " | " +
+            cell(row.id) + " | " + cell(row.text()) + " |\n";
+  }
+  for (const std::string& note : all_notes(comparison)) text += "\nNote: " + cell(note) + "\n";
+  return text;
+}
+
+}  // namespace harness
