@@ -9,7 +9,6 @@
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
-#include "harness/points/result_file.h"
 
 namespace harness {
 
@@ -79,15 +78,14 @@ struct Baseline {
   }
 
   int run() {
-    std::vector<nlohmann::json> results;
-    for (const std::string& file : files) results.push_back(read_result(file));
-    const ComparedResult checked = read_compared(files);  // all that a comparison will ask for
-    if (checked.baseline) throw UsageError("a baseline is made from result files");
-    if (!checked.complete)
-      throw UsageError("'" + checked.path + "' is of an interrupted run: no baseline");
+    const ComparedResult result = read_compared(files);
+    if (result.baseline)
+      throw UsageError("'" + result.path + "' is not a result file, of which a baseline is made");
+    if (!result.complete)
+      throw UsageError("'" + result.path + "' is of an interrupted run: no baseline");
     check_writable(out);
-    write_atomically(out, document_text(baseline_document(results)));
-    std::cout << out << ": " << checked.points.size() << " points" << std::endl;
+    write_atomically(out, document_text(baseline_document(result)));
+    std::cout << out << ": " << result.points.size() << " points" << std::endl;
     return success;
   }
 };

@@ -31,15 +31,12 @@ void note_counters(const ComparedPoint& base, const ComparedPoint& next, const G
                    PointChange& result) {
   bool rose = false, fell = false;
   const std::set<std::string> wanted(gate.counters.begin(), gate.counters.end());
-  for (const auto& [name, value] : base.counters) {
-    const auto other = next.counters.find(name);
-    if (other == next.counters.end() || other->second == value ||
-        !(wanted.empty() || wanted.contains(name)))
-      continue;
-    (other->second > value ? rose : fell) = true;
-    std::string reason =
-        name + " " + number_text(value, 15) + " -> " + number_text(other->second, 15);
-    if (value > 0) reason += " (" + per_cent(other->second / value) + ")";
+  for (const auto& [name, before] : base.counters.items()) {
+    const double value = before, other = next.counters.value(name, value);
+    if (other == value || !(wanted.empty() || wanted.contains(name))) continue;
+    (other > value ? rose : fell) = true;
+    std::string reason = name + " " + number_text(value, 15) + " -> " + number_text(other, 15);
+    if (value > 0) reason += " (" + per_cent(other / value) + ")";
     result.reasons.push_back(reason);
   }
   if (gate.counter_rule == CounterRule::inform) return;
@@ -172,6 +169,8 @@ double drift_between(const json& base, const json& next) {
   return ratio > same_speed ? std::max(drift, ratio) : drift;
 }
 
+}  // namespace
+
 Comparability comparability(const ComparedResult& base, const ComparedResult& next,
                             const Gate& gate) {
   const auto agree = [&](const char* key) {
@@ -198,6 +197,8 @@ Comparability comparability(const ComparedResult& base, const ComparedResult& ne
   }
   return can;
 }
+
+namespace {
 
 std::vector<std::string> notes_of(const ComparedResult& base, const ComparedResult& next,
                                   const Comparability& can) {

@@ -42,13 +42,13 @@ Gate parse_gate(const std::string& text, const std::string& path);
 // ---- Results, as far as they can be compared ----
 
 struct ComparedPoint {
-  std::string sweep, id, status, detail;
-  std::string spec;       // a hash of what is run: parameters, settings, seed
+  std::string sweep = {}, id = {}, status = {}, detail = {};
+  std::string spec = {};  // a hash of what is run: parameters, settings, seed
   bool searched = false;  // which steps were tried depended on times
   bool best = false;
-  std::map<std::string, double> counters;
-  std::map<std::string, double> errors;  // those of Gate::errors that are known
-  std::vector<double> samples;           // wall seconds per simulated second
+  nlohmann::json counters = {};               // by name
+  std::map<std::string, double> errors = {};  // those of Gate::errors that are known
+  std::vector<double> samples = {};           // wall seconds per simulated second
 
   bool ok() const { return status == "ok"; }
   std::string key() const { return sweep + " " + id; }
@@ -56,8 +56,9 @@ struct ComparedPoint {
 };
 
 struct ComparedResult {
-  std::string path;
-  nlohmann::json context;
+  std::string path;                   // of the first file
+  nlohmann::json context;             // with the sweeps of all files
+  std::vector<std::string> commands;  // that made them
   bool baseline = false;
   bool complete = true;
   std::vector<ComparedPoint> points;
@@ -68,9 +69,9 @@ struct ComparedResult {
 ComparedResult read_compared(const std::vector<std::string>& paths);
 ComparedPoint compared_point(const nlohmann::json& point);  // of a result file or a baseline
 
-// The baseline of result files, as read_result gives them: a result without times, one point a
-// line, for a repository (schema inextensible-baseline/1, configs/baseline.schema.json).
-nlohmann::ordered_json baseline_document(const std::vector<nlohmann::json>& results);
+// The baseline of result files: a result without times, one point a line, for a repository (schema
+// inextensible-baseline/1, configs/baseline.schema.json).
+nlohmann::ordered_json baseline_document(const ComparedResult& result);
 
 // ---- The comparison ----
 
@@ -124,6 +125,8 @@ struct Comparability {
   bool counters() const { return no_counters.empty(); }
   bool times() const { return no_times.empty(); }
 };
+Comparability comparability(const ComparedResult& base, const ComparedResult& next,
+                            const Gate& gate);
 
 // One point in both. Times are left out unless `can.times()`, counters unless `can.counters()`.
 PointChange compare_point(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,

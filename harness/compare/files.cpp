@@ -2,6 +2,7 @@
 #include "harness/base/files.h"
 
 #include <algorithm>
+#include <array>
 
 #include "harness/base/errors.h"
 #include "harness/base/json_reader.h"
@@ -16,75 +17,75 @@ namespace {
 
 using nlohmann::json;
 using nlohmann::ordered_json;
-using Names = std::vector<std::string>;
 
-constexpr std::array error_names{"max_strain", "trajectory", "energy_drift"};
-
-void read_times(JsonReader reader, Gate& gate) {
-  const Bounds ratio = Bounds::at_least(1);
-  gate.times = reader.flag("count", gate.times);
-  gate.significance =
-      reader.number("significance", gate.significance, {.least = 0, .above = true, .most = 0.5});
-  gate.median_ratio = reader.number("median_ratio", gate.median_ratio, ratio);
-  gate.minimum_ratio = reader.number("minimum_ratio", gate.minimum_ratio, ratio);
-  reader.finish();
-}
-
-void read_counters(JsonReader reader, Gate& gate) {
-  static const Names rules{"exact", "rise", "inform"};  // in the order of CounterRule
-  const std::string rule = reader.one_of("rule", rules.front(), rules, "rule");
-  gate.counter_rule =
-      static_cast<CounterRule>(std::find(rules.begin(), rules.end(), rule) - rules.begin());
-  const Names known = counter_names();
-  for (const std::string& name : reader.texts("names")) {
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw UsageError(reader.where("names") + ": " + unknown_name("counter", name, known).what());
-    gate.counters.push_back(name);
-  }
-  reader.finish();
-}
-
-void read_errors(JsonReader reader, Gate& gate) {
-  gate.errors.clear();
-  for (const char* name : error_names) {
-    if (reader.find(name)) gate.errors[name] = reader.number(name, 1, Bounds::at_least(1));
-  }
-  gate.error_floor = reader.number("floor", gate.error_floor, Bounds::at_least(0));
-  reader.finish();
-}
+constexpr const char* baseline_schema = "inextensible-baseline/1";
+constexpr std::array errors_of_runs{"trajectory", "energy_drift"};  // and max_strain
 
 }  // namespace
 
 Gate read_gate(const std::string& path) { return parse_gate(read_file(path, "gate"), path); }
 
 Gate parse_gate(const std::string& text, const std::string& path) {
-  const json document = parse_commented(text, path);
+  const json document = parse_commented(text, path), nothing = json::object();
   JsonReader reader(document, "gate '" + path + "'");
-  Gate gate;
-  const auto part = [&reader](const char* key, auto read) {
-    if (const json* value = reader.find(key)) read(JsonReader(*value, reader.where(key)));
+  const auto part = [&](const char* key) {
+    const json* value = reader.find(key);
+    return JsonReader(value ? *value : nothing, reader.where(key));
   };
-  part("times", [&gate](const JsonReader& times) { read_times(times, gate); });
-  part("counters", [&gate](const JsonReader& counters) { read_counters(counters, gate); });
-  part("errors", [&gate](const JsonReader& errors) { read_errors(errors, gate); });
+  Gate gate;
+  JsonReader times = part("times");
+  gate.times = times.flag("count", gate.times);
+  gate.significance =
+      times.number("significance", gate.significance, {.least = 0, .above = true, .most = 0.5});
+  gate.median_ratio = times.number("median_ratio", gate.median_ratio, Bounds::at_least(1));
+  gate.minimum_ratio = times.number("minimum_ratio", gate.minimum_ratio, Bounds::at_least(1));
+  times.finish();
+  JsonReader counters = part("counters");
+  const std::map<std::string, CounterRule> rules{
+      {"exact", CounterRule::exact}, {"rise", CounterRule::rise}, {"inform", CounterRule::inform}};
+  gate.counter_rule =
+      rules.at(counters.one_of("rule", "exact", {"exact", "rise", "inform"}, "rule"));
+  const std::vector<std::string> known = counter_names();
+  gate.counters = counters.texts("names");
+  for (const std::string& name : gate.counters) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw UsageError(counters.where("names") + ": " +
+                       unknown_name("counter", name, known).what());
+  }
+  counters.finish();
+  JsonReader errors = part("errors");
+  if (reader.find("errors")) gate.errors.clear();
+  for (const char* name : {"max_strain", "trajectory", "energy_drift"}) {
+    if (errors.find(name)) gate.errors[name] = errors.number(name, 1, Bounds::at_least(1));
+  }
+  gate.error_floor = errors.number("floor", gate.error_floor, Bounds::at_least(0));
+  errors.finish();
   reader.finish();
   return gate;
 }
 
+ComparedPoint compared_point(const json& p) {
+  ComparedPoint point{p.at("sweep"), p.at("id"), p.at("status"), p.value("status_detail", "")};
+  point.best = p.value("best", false);
+  point.counters = p.at("work");
+  if (p.at("max_strain").is_number()) point.errors["max_strain"] = p.at("max_strain");
+  for (const char* name : errors_of_runs) {
+    if (const json error = p.at("error").value(name, json()); error.is_number())
+      point.errors[name] = error;
+  }
+  if (p.contains("spec")) {  // of a baseline
+    point.spec = p.at("spec");
+    return point;
+  }
+  point.spec = fnv1a(json{p.at("scene_parameters"), p.value("settings", json::object()),
+                          p.value("adaptive", false), p.at("seed")}
+                         .dump());
+  const json seconds = p.value("seconds_per_simulated_second", json());
+  if (seconds.is_object()) seconds.at("samples").get_to(point.samples);
+  return point;
+}
+
 namespace {
-
-constexpr const char* baseline_schema = "inextensible-baseline/1";
-constexpr int error_digits = 6;  // enough for a ratio; the rest is noise in a diff
-
-std::string spec_hash(const json& point) {
-  const json spec = {point.at("scene_parameters"), point.value("settings", json::object()),
-                     point.value("adaptive", false), point.at("seed")};
-  return fnv1a(spec.dump());
-}
-
-json error_of(const json& point, const std::string& name) {
-  return (name == "max_strain" ? point : point.at("error")).value(name, json());
-}
 
 json read_any(const std::string& path) {
   json document = parse_document(read_file(path, "result file"), path);
@@ -113,105 +114,77 @@ bool searched(const json& suite, const ComparedPoint& point) {
   return true;
 }
 
-void append(ComparedResult& to, const json& document, const std::string& path) {
-  try {
-    const json& context = document.at("context");
-    for (const json& entry : document.at("points")) {
-      ComparedPoint point = compared_point(entry);
-      point.searched = searched(context.at("suite"), point);
-      to.points.push_back(std::move(point));
-    }
-    to.complete = to.complete && document.value("complete", true);
-    to.baseline = to.baseline || document.at("schema") == baseline_schema;
-    if (to.context.is_null()) {
-      to.context = context;
-      return;
-    }
-    for (const char* key : {"fingerprint", "counters_fingerprint"}) {
-      if (to.context.value(key, "") != context.value(key, ""))
-        throw UsageError("'" + to.path + "' and '" + path +
-                         "' are not of one build on one machine, so they are not one result");
-    }
-  } catch (const json::exception& error) {
-    throw UsageError("'" + path + "' is not a result file: " + error.what());
-  }
-}
-
-std::string command_line(const json& words) {
+std::string shell_line(const json& words) {
   std::string line;
-  for (const json& word : words) {
-    const std::string text = word.get<std::string>();
+  for (const std::string text : words) {
     const bool plain = text.find_first_of(" |()$*?^'\"[]\\") == std::string::npos;
     line += (line.empty() ? "" : " ") + (plain ? text : "'" + text + "'");
   }
   return line;
 }
 
-ordered_json rounded(const json& value) {
-  if (!value.is_number()) return nullptr;
-  return rounded_to(value.get<double>(), error_digits);
-}
-
-ordered_json baseline_point(const json& point) {
-  ordered_json errors = ordered_json::object();
-  for (const char* name : {"trajectory", "energy_drift"})
-    errors[name] = rounded(error_of(point, name));
-  return {{"sweep", point.at("sweep")},
-          {"id", point.at("id")},
-          {"status", point.at("status")},
-          {"spec", spec_hash(point)},
-          {"work", point.at("work")},
-          {"max_strain", rounded(point.at("max_strain"))},
-          {"error", errors}};
+void append(ComparedResult& to, const json& document, const std::string& path) {
+  const json& context = document.at("context");
+  for (const json& entry : document.at("points")) {
+    to.points.push_back(compared_point(entry));
+    to.points.back().searched = searched(context.at("suite"), to.points.back());
+  }
+  to.complete = to.complete && document.value("complete", true);
+  to.baseline = to.baseline || document.at("schema") == baseline_schema;
+  if (!to.baseline) to.commands.push_back(shell_line(context.at("command")));
+  if (to.context.is_null()) {
+    to.path = path;
+    to.context = context;
+    return;
+  }
+  for (const char* key : {"fingerprint", "counters_fingerprint"}) {
+    if (to.context.value(key, "") != context.value(key, ""))
+      throw UsageError("'" + to.path + "' and '" + path +
+                       "' are not of one build on one machine, so they are not one result");
+  }
+  for (const json& sweep : context.at("suite").at("sweeps"))
+    to.context["suite"]["sweeps"].push_back(sweep);
 }
 
 }  // namespace
 
-ComparedPoint compared_point(const json& p) {
-  ComparedPoint point;
-  p.at("sweep").get_to(point.sweep);
-  p.at("id").get_to(point.id);
-  p.at("status").get_to(point.status);
-  point.detail = p.value("status_detail", "");
-  point.spec = p.contains("spec") ? p.at("spec").get<std::string>() : spec_hash(p);
-  point.best = p.value("best", false);
-  p.at("work").get_to(point.counters);
-  for (const char* name : error_names) {
-    if (const json value = error_of(p, name); value.is_number()) point.errors[name] = value;
-  }
-  const json seconds = p.value("seconds_per_simulated_second", json());
-  if (seconds.is_object()) seconds.at("samples").get_to(point.samples);
-  return point;
-}
-
 ComparedResult read_compared(const std::vector<std::string>& paths) {
   ComparedResult result;
   for (const std::string& path : paths) {
-    if (result.path.empty()) result.path = path;
-    append(result, read_any(path), path);
+    const json document = read_any(path);
+    try {
+      append(result, document, path);
+    } catch (const json::exception& error) {
+      throw UsageError("'" + path + "' is not a result file: " + error.what());
+    }
   }
   return result;
 }
 
-ordered_json baseline_document(const std::vector<json>& results) {
-  const json& context = results.front().at("context");
-  ordered_json suite = context.at("suite"), commands = ordered_json::array(), points;
-  points = ordered_json::array();
-  suite["sweeps"] = ordered_json::array();
-  for (const json& result : results) {
-    commands.push_back(command_line(result.at("context").at("command")));
-    for (const json& sweep : result.at("context").at("suite").at("sweeps"))
-      suite["sweeps"].push_back(ordered_json(sweep));
-    for (const json& point : result.at("points")) points.push_back(baseline_point(point));
+ordered_json baseline_document(const ComparedResult& result) {
+  ordered_json context, points = ordered_json::array();
+  for (const char* key : {"counters_fingerprint", "build", "libraries"})
+    context[key] = result.context.value(key, json(""));
+  context["command"] = result.commands;
+  context["suite"] = result.context.at("suite");
+  for (const ComparedPoint& point : result.points) {
+    const auto rounded = [&point](const char* name) {
+      constexpr int digits = 6;  // enough for a ratio; the rest is noise in a diff
+      const auto error = point.errors.find(name);
+      return error == point.errors.end() ? ordered_json()
+                                         : ordered_json(rounded_to(error->second, digits));
+    };
+    ordered_json errors;
+    for (const char* name : errors_of_runs) errors[name] = rounded(name);
+    points.push_back({{"sweep", point.sweep},
+                      {"id", point.id},
+                      {"status", point.status},
+                      {"spec", point.spec},
+                      {"work", point.counters},
+                      {"max_strain", rounded("max_strain")},
+                      {"error", errors}});
   }
-  return {{"schema", baseline_schema},
-          {"context",
-           {{"counters_fingerprint", context.value("counters_fingerprint", "")},
-            {"build", context.at("build")},
-            {"libraries", context.at("libraries")},
-            {"command", commands},
-            {"suite", suite}}},
-          {"points", points}};
+  return {{"schema", baseline_schema}, {"context", context}, {"points", points}};
 }
 
 }  // namespace harness

@@ -1,15 +1,10 @@
 #include "harness/kernels/floors.h"
 
-#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <ctime>
 #include <map>
-
-#include "harness/kernels/kernel.h"
 
 namespace harness::kernels {
 namespace {
@@ -26,7 +21,6 @@ constexpr std::size_t lanes = vector_bytes / sizeof(double);
 // Independent accumulators: as many as the latency of an addition (four cycles or so) times the
 // additions a cycle (two), within sixteen registers.
 constexpr std::size_t chains = 8;
-constexpr std::size_t read_granularity = 128;  // doubles
 
 double sum(const Vector (&v)[chains]) {
   double total = 0;
@@ -35,7 +29,28 @@ double sum(const Vector (&v)[chains]) {
   return total;
 }
 
-// `data` is aligned as Eigen's arrays are, and a multiple of read_granularity long.
+volatile double sink;  // so that no work is left out
+
+// s of processor time, the shortest of several runs: other programs do not count.
+template <class Work>
+double shortest(int rounds, Work work) {
+  double best = 1e300;
+  for (int round = 0; round < rounds; ++round) {
+    const double start = processor_seconds();
+    work();
+    best = std::min(best, processor_seconds() - start);
+  }
+  return best;
+}
+
+}  // namespace
+
+double processor_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 double read_all(const Eigen::VectorXd& data) {
   Vector v[chains] = {};
   const auto size = static_cast<std::size_t>(data.size());
@@ -58,9 +73,6 @@ double multiply_add(std::size_t times) {
 
 double flops_of_multiply_add(std::size_t times) { return 2.0 * static_cast<double>(times * lanes); }
 
-// A square root and a division an edge, independent of each other, in the first-level cache.
-using Lengths = std::array<double, 1024>;
-
 Lengths some_lengths() {
   Lengths lengths;
   lengths.fill(1.2);
@@ -69,28 +81,6 @@ Lengths some_lengths() {
 
 void sqrt_div(Lengths& lengths) {
   for (double& q : lengths) q = 1.5 - 0.5 / std::sqrt(q);
-  benchmark::DoNotOptimize(lengths.data());
-  benchmark::ClobberMemory();
-}
-
-// s of processor time, the shortest of several runs: other programs do not count.
-template <class Work>
-double shortest(int rounds, Work work) {
-  double best = 1e300;
-  for (int round = 0; round < rounds; ++round) {
-    const double start = processor_seconds();
-    work();
-    best = std::min(best, processor_seconds() - start);
-  }
-  return best;
-}
-
-}  // namespace
-
-double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 double sqrt_div_seconds() {
@@ -98,8 +88,9 @@ double sqrt_div_seconds() {
     return shortest(1000,
                     [&] {
                       for (int repeat = 0; repeat < 20; ++repeat) sqrt_div(lengths);
+                      sink = lengths.front();
                     }) /
-           (20 * 1024);
+           static_cast<double>(20 * lengths.size());
   }();
   return seconds;
 }
@@ -113,7 +104,7 @@ double read_bandwidth(double bytes) {
   const Eigen::VectorXd data = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(size));
   const std::size_t passes = std::max<std::size_t>(1, (std::size_t{1} << 21) / size);
   const double seconds = shortest(10, [&] {
-    for (std::size_t pass = 0; pass < passes; ++pass) benchmark::DoNotOptimize(read_all(data));
+    for (std::size_t pass = 0; pass < passes; ++pass) sink = read_all(data);
   });
   rate = static_cast<double>(passes * size * sizeof(double)) / seconds;
   return rate;
@@ -121,29 +112,9 @@ double read_bandwidth(double bytes) {
 
 double peak_flops() {
   constexpr std::size_t times = 1 << 20;
-  static const double rate = flops_of_multiply_add(times) /
-                             shortest(10, [] { benchmark::DoNotOptimize(multiply_add(times)); });
+  static const double rate =
+      flops_of_multiply_add(times) / shortest(10, [] { sink = multiply_add(times); });
   return rate;
-}
-
-void register_floors() {
-  add("floor/sqrt_div", [](benchmark::State& state) {
-    Lengths lengths = some_lengths();
-    while (state.KeepRunning()) sqrt_div(lengths);
-    per_item(state, 1024);
-  });
-  add("floor/multiply_add", [](benchmark::State& state) {
-    constexpr std::size_t times = 1 << 16;
-    while (state.KeepRunning()) benchmark::DoNotOptimize(multiply_add(times));
-    state.counters["flops"] = rate(flops_of_multiply_add(times));
-  });
-  for (const std::int64_t kib : {16, 512, 8192, 262144}) {
-    add("floor/stream_read/KiB:" + std::to_string(kib), [kib](benchmark::State& state) {
-      const Eigen::VectorXd data = Eigen::VectorXd::Ones(kib * 1024 / 8);
-      while (state.KeepRunning()) benchmark::DoNotOptimize(read_all(data));
-      state.SetBytesProcessed(state.iterations() * kib * 1024);
-    });
-  }
 }
 
 }  // namespace harness::kernels

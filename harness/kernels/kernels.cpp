@@ -8,9 +8,14 @@
 // of_bandwidth hold flops of a factorization against the peak, and bytes of the factor, read twice
 // by a solve, against the bandwidth at which an array of the factor's size is read (the library
 // prints such ratios with "/s" behind them).
+#include <benchmark/benchmark.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,14 +23,31 @@
 #include "harness/base/errors.h"
 #include "harness/base/timing_lock.h"
 #include "harness/kernels/floors.h"
-#include "harness/kernels/kernel.h"
 #include "harness/points/context.h"
+#include "harness/scenes/scene.h"
+#include "solvers/linear/spd_solvers.h"
 #include "solvers/problem/forces.h"
 #include "solvers/registry.h"
+#include "solvers/systems/constraint_system.h"
+#include "solvers/systems/kkt_system.h"
+#include "solvers/systems/projected_cg.h"
 
 namespace harness::kernels {
+namespace {
 
 using namespace inextensible;
+using benchmark::Counter;
+
+// A scene after some steps of fast projection: deformed, in contact where there is something to
+// touch. Made once: Google Benchmark calls each benchmark several times to find its number of
+// iterations.
+struct Moment {
+  Scene scene;
+  double h;  // s
+  State state;
+  Positions x0;  // after the next unconstrained step
+  const Problem& problem() const { return *scene.problem; }
+};
 
 const Moment& moment(const std::string& scene, int n) {
   static std::map<std::pair<std::string, int>, Moment> moments;
@@ -49,13 +71,286 @@ const Moment& moment(const std::string& scene, int n) {
   return m;
 }
 
-void per_item(benchmark::State& state, int items, const char* what) {
-  using benchmark::Counter;
+Counter rate(double each) { return Counter(each, Counter::kIsIterationInvariantRate); }
+Counter average(double all) { return Counter(all, Counter::kAvgIterations); }
+
+// Items are constrained edges, or vertices.
+void per_item(benchmark::State& state, int items, const char* what = "s_per_edge") {
   state.SetItemsProcessed(state.iterations() * items);
   state.counters[what] = Counter(items, Counter::kIsIterationInvariantRate | Counter::kInvert);
 }
 
-namespace {
+// ---- Passes over all edges or vertices, and whole iterations of solvers ----
+
+void edge_pass(benchmark::State& state, bool gradients, const std::string& scene, int n) {
+  const Moment& m = moment(scene, n);
+  const EdgeConstraints edges(m.problem(), 1);  // nothing violates: the whole pass
+  if (!edges.permissible(m.x0)) return state.SkipWithError("leaves early");
+  Eigen::Matrix3Xd u(3, edges.count());
+  Eigen::VectorXd c(edges.count());
+  while (state.KeepRunning()) {
+    benchmark::DoNotOptimize(gradients ? edges.linearize(m.x0, u, c) : edges.permissible(m.x0));
+    benchmark::ClobberMemory();
+  }
+  per_item(state, edges.count());
+}
+
+void vertex_pass(benchmark::State& state, bool collision, const std::string& scene, int n) {
+  const Moment& m = moment(scene, n);
+  const Problem& problem = m.problem();
+  Positions x = m.x0;
+  WorkCounters work;
+  std::optional<Contacts> contacts;
+  if (collision) contacts.emplace(problem);
+  while (state.KeepRunning()) {
+    if (collision) {
+      x = m.x0;
+      contacts->begin(m.state.x, m.state.time, m.h);
+      contacts->push_out(x, work);
+    } else {
+      unconstrained_step(problem, m.state, m.h, x, work);
+    }
+    benchmark::ClobberMemory();
+  }
+  per_item(state, problem.vertices(), "s_per_vertex");
+  if (collision) state.counters["contacts"] = average(static_cast<double>(work.contacts));
+}
+
+// One iteration of a solver as it is in a step: steps from one state, less those of `null`, over
+// their iterations. So it holds also what a solver does once a step, a last look at the edges, say.
+void iteration(benchmark::State& state, const std::string& name, const std::string& scene, int n) {
+  const Moment& m = moment(scene, n);
+  BackendOptions options{.strain_limit = 1e-4};  // so that there is something to do
+  for (const SettingInfo& setting : find_backend(name)->settings)
+    if (std::string_view(setting.name) == "min_iterations") options.settings[setting.name] = 1.0;
+  const auto stepper = make_stepper(name, m.scene.problem, options);
+  const auto null = make_stepper("null", m.scene.problem, {});
+  const int rounds = std::max(1, 20000 / n);  // so that clock reads do not count
+  State s;
+  const auto seconds = [&](Stepper& which) {
+    const double begin = processor_seconds();
+    for (int round = 0; round < rounds; ++round) {
+      s = m.state;
+      benchmark::DoNotOptimize(which.advance(s, m.h));
+    }
+    return processor_seconds() - begin;
+  };
+  s = m.state;
+  const StepResult first = stepper->advance(s, m.h);
+  if (!first || first.iterations == 0) return state.SkipWithError("refused, or nothing to do");
+  while (state.KeepRunning()) {
+    const double without = seconds(*null);
+    state.SetIterationTime(seconds(*stepper) - without);
+  }
+  per_item(state, m.problem().constraints() * first.iterations * rounds);
+  state.counters["iterations"] = first.iterations;
+}
+
+std::unique_ptr<VelocityFilter> filter(const Problem& problem, const std::string& method,
+                                       double passes) {
+  const Backend& row = *find_backend(method);
+  BackendOptions options{.settings = complete_settings(row, {})};
+  options.settings["max_iterations"] = passes;
+  // A pass over yarns alone.
+  if (const auto sweeps = options.settings.find("sweeps"); sweeps != options.settings.end())
+    sweeps->second = 0.0;
+  return row.make_filter(problem, options, Along::edges);
+}
+
+// One pass over a cloth stretched by a fifth, so that every edge is corrected. A call that
+// may not pass at all costs the checks, the refusal and the clock: that is taken off.
+void strain_pass(benchmark::State& state, const std::string& method, int n) {
+  const Moment& m = moment("drape", n);
+  const auto one = filter(m.problem(), method, 1), none = filter(m.problem(), method, 0);
+  const Positions stretched = 1.2 * m.x0;
+  Positions x = stretched;
+  WorkCounters work;
+  double total = 0;
+  while (state.KeepRunning()) {
+    x = stretched;
+    const double begin = processor_seconds();
+    benchmark::DoNotOptimize(none->apply(m.state.x, m.h, x, work));
+    const double middle = processor_seconds();
+    benchmark::DoNotOptimize(one->apply(m.state.x, m.h, x, work));
+    const double seconds = (processor_seconds() - middle) - (middle - begin);
+    state.SetIterationTime(seconds);
+    total += seconds;
+  }
+  per_item(state, m.problem().constraints());
+  state.counters["floor_ratio"] = average(total / m.problem().constraints() / sqrt_div_seconds());
+  state.counters["corrected"] =
+      average(static_cast<double>(work.edge_projections) / m.problem().constraints());
+}
+
+// ---- Assembly, factorization and back-substitution: of J W J^T, and of ICD's saddle point ----
+
+// J W J^T at x0 in the solver's order, not yet factored.
+struct Linearized {
+  Linearized(const Moment& m, std::string_view name)
+      : system(m.problem(), 0.01, name),
+        u(3, m.problem().constraints()),
+        c(m.problem().constraints()),
+        solver(make_spd_solver(system.solver_name(), system.schur().pattern())) {
+    system.edges().linearize(m.x0, u, c);
+    system.schur().assemble(u, solver->values());
+  }
+  ConstraintSystem system;
+  Eigen::Matrix3Xd u;
+  Eigen::VectorXd c;
+  std::unique_ptr<SpdSolver> solver;
+};
+
+void assembly(benchmark::State& state, const std::string& scene, int n) {
+  const Moment& m = moment(scene, n);
+  const Linearized l(m, "auto");
+  while (state.KeepRunning()) {
+    l.system.schur().assemble(l.u, l.solver->values());
+    benchmark::ClobberMemory();
+  }
+  per_item(state, m.problem().constraints());
+  state.counters["entries"] = l.system.schur().pattern().entries();
+}
+
+void linear_solver(benchmark::State& state, const std::string& name, bool solve,
+                   const std::string& scene, int n) {
+  const Moment& m = moment(scene, n);
+  const Linearized l(m, name);
+  if (!l.solver->factor()) return state.SkipWithError("not positive definite");
+  Eigen::VectorXd x = l.c;
+  while (state.KeepRunning()) {
+    if (solve) {
+      x = l.c;
+      l.solver->solve(x.data());
+    } else {
+      benchmark::DoNotOptimize(l.solver->factor());
+    }
+    benchmark::ClobberMemory();
+  }
+  per_item(state, m.problem().constraints());
+  state.counters["nnz_L"] = l.solver->factor_nonzeros();
+  if (solve) {
+    const double bytes = l.solver->factor_nonzeros() * sizeof(double);
+    state.counters["of_bandwidth"] = rate(2 * bytes / read_bandwidth(bytes));
+  } else {
+    state.counters["flops"] = rate(l.solver->factor_flops());
+    state.counters["of_peak"] = rate(l.solver->factor_flops() / peak_flops());
+  }
+}
+
+// What a projection asks of a linear solver, to the digits that it asks for.
+void whole_system(benchmark::State& state, const std::string& name, int n) {
+  const Moment& m = moment("drape", n);
+  const Linearized l(m, name);
+  Eigen::VectorXd x = l.c;
+  while (state.KeepRunning()) {
+    l.system.schur().assemble(l.u, l.solver->values());
+    x = l.c;
+    if (!l.solver->factor() || !l.solver->solve_within(1e-2, x.data()))
+      return state.SkipWithError("not positive definite");
+    benchmark::ClobberMemory();
+  }
+  per_item(state, m.problem().constraints());
+}
+
+// The matrix of ICD's second iteration, about: with fast projection's first multipliers, negative
+// ones left out of H, so that there is one factorization. Factoring includes assembling; solving
+// includes refinement, or the conjugate gradients to ICD's own tolerance.
+void kkt(benchmark::State& state, const std::string& solver, bool solve, int n) {
+  const Moment& m = moment("drape", n);
+  const Linearized l(m, "multifrontal");
+  const EdgeConstraints& edges = l.system.edges();
+  std::unique_ptr<KktSolver> system;
+  if (solver == "projected_cg") {
+    const Settings settings = complete_settings(*find_backend("icd"), {});
+    const double tolerance = std::get<double>(settings.at("cg_tolerance"));
+    system = std::make_unique<ProjectedCg>(m.problem(), edges, ProjectedCg::Settings{tolerance});
+  } else {
+    system = std::make_unique<KktSystem>(m.problem(), edges);
+  }
+  if (!l.solver->factor()) return state.SkipWithError("not positive definite");
+  Eigen::VectorXd mu = l.c, q(edges.count());
+  l.solver->solve(mu.data());
+  mu /= system->mean_mass();
+  const Positions r = Positions::Zero(3, m.x0.cols());
+  Positions p = r;
+  WorkCounters work;
+  if (!system->factor(l.u, mu, nullptr, true, work)) return state.SkipWithError("singular");
+  while (state.KeepRunning()) {
+    if (!(solve ? system->solve(r, l.c, p, q, work) : system->factor(l.u, mu, nullptr, true, work)))
+      return state.SkipWithError("singular, or too inaccurate");
+  }
+  if (work.factorizations != (solve ? 1 : state.iterations() + 1))
+    return state.SkipWithError("another solver had to take over");
+  per_item(state, edges.count());
+  state.counters["nnz_L"] = work.factor_nonzeros;
+  state.counters["flops"] = rate(solve ? 0 : work.factor_flops);
+  state.counters["back_solves"] = average(static_cast<double>(work.back_solves));
+}
+
+// ---- All of them ----
+
+template <class Body, class... Arguments>
+benchmark::internal::Benchmark* add(const std::string& name, const Body& body,
+                                    const Arguments&... arguments) {
+  return benchmark::RegisterBenchmark(name.c_str(),
+                                      [=](benchmark::State& state) { body(state, arguments...); })
+      ->Unit(benchmark::kMicrosecond);
+}
+
+void register_steps(const std::string& scene, int n) {
+  const std::string at = "/" + scene + ":" + std::to_string(n);
+  add("unconstrained_step" + at, vertex_pass, false, scene, n);
+  add("edge_pass" + at, edge_pass, true, scene, n);
+  add("strain_check" + at, edge_pass, false, scene, n);
+  if (scene == "drape") {
+    add("collision_pass" + at, vertex_pass, true, scene, n);
+    for (const std::string method :
+         {"gauss_seidel", "gauss_seidel_colored", "jacobi", "yarn_projection"})
+      add("strain_pass/" + method + at, strain_pass, method, n)->UseManualTime();
+    return;
+  }
+  std::vector<std::string> solvers{"fast_projection", "implicit_springs"};
+  if (n <= 80) solvers.insert(solvers.end(), {"shake", "rattle", "icd"});
+  for (const std::string& name : solvers)
+    add("iteration/" + name + at, iteration, name, scene, n)->UseManualTime();
+}
+
+void register_linear_systems(const std::string& scene, int n, const std::vector<std::string>& spd,
+                             const std::vector<std::string>& saddle_point) {
+  const std::string at = "/" + scene + ":" + std::to_string(n);
+  add("assembly" + at, assembly, scene, n);
+  for (const std::string& name : spd) {
+    add("factor/" + name + at, linear_solver, name, false, scene, n);
+    add("solve/" + name + at, linear_solver, name, true, scene, n);
+  }
+  for (const std::string& name : saddle_point) {
+    add("icd_factor/" + name + at, kkt, name, false, n);
+    add("icd_solve/" + name + at, kkt, name, true, n);
+  }
+}
+
+void register_floors() {
+  add("floor/sqrt_div", [](benchmark::State& state) {
+    Lengths lengths = some_lengths();
+    while (state.KeepRunning()) {
+      sqrt_div(lengths);
+      benchmark::ClobberMemory();
+    }
+    per_item(state, static_cast<int>(lengths.size()));
+  });
+  add("floor/multiply_add", [](benchmark::State& state) {
+    constexpr std::size_t times = 1 << 16;
+    while (state.KeepRunning()) benchmark::DoNotOptimize(multiply_add(times));
+    state.counters["flops"] = rate(flops_of_multiply_add(times));
+  });
+  for (const std::int64_t kib : {16, 512, 8192, 262144}) {
+    add("floor/stream_read/KiB:" + std::to_string(kib), [kib](benchmark::State& state) {
+      const Eigen::VectorXd data = Eigen::VectorXd::Ones(kib * 1024 / 8);
+      while (state.KeepRunning()) benchmark::DoNotOptimize(read_all(data));
+      state.SetBytesProcessed(state.iterations() * kib * 1024);
+    });
+  }
+}
 
 void register_all() {
   const std::vector<std::string> spd{"cholmod_simplicial", "cholmod_supernodal", "multifrontal",
@@ -69,7 +364,10 @@ void register_all() {
     register_steps("drape", n);
     register_linear_systems("drape", n, spd, {"projected_cg", "quasi_definite"});
   }
-  for (const int n : {15, 31, 71, 101, 201, 501}) register_whole_systems(n, spd);
+  for (const int n : {15, 31, 71, 101, 201, 501}) {
+    for (const std::string& name : spd)
+      add("assemble_factor_solve/" + name + "/drape:" + std::to_string(n), whole_system, name, n);
+  }
 }
 
 }  // namespace
