@@ -7,7 +7,7 @@
 
 namespace harness {
 
-// To add one: a file command_NAME.cpp with NAME_verb(), and a line here.
+// To add one: a file with NAME_verb(), and a line here.
 #define HARNESS_VERBS(VERB) \
   VERB(sweep)               \
   VERB(show)                \

@@ -73,13 +73,11 @@ ComparedPoint compared_point(const json& p) {
     if (const json error = p.at("error").value(name, json()); error.is_number())
       point.errors[name] = error;
   }
-  if (p.contains("spec")) {  // of a baseline
-    point.spec = p.at("spec");
-    return point;
-  }
-  point.spec = fnv1a(json{p.at("scene_parameters"), p.value("settings", json::object()),
-                          p.value("adaptive", false), p.at("seed")}
-                         .dump());
+  point.spec = p.contains("spec")  // of a baseline
+                   ? p.at("spec").get<std::string>()
+                   : fnv1a(json{p.at("scene_parameters"), p.value("settings", json::object()),
+                                p.value("adaptive", false), p.at("seed")}
+                               .dump());
   const json seconds = p.value("seconds_per_simulated_second", json());
   if (seconds.is_object()) seconds.at("samples").get_to(point.samples);
   return point;

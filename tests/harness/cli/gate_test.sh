@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # bench compare, baseline and point: exit codes, bad input, and faults put into a second build of the program that counters
-# must find. What times must find is in ab_test.sh.
+# must find. What times must find is in ab_test.sh, how single points are judged in comparison_test.cpp.
 rm -rf -- ./*  # of the last time
 set -u
 failures=0
@@ -28,6 +28,11 @@ refused() {
     fail "${*:2}: $(cat stdout.txt stderr.txt)"
 }
 
+# edit FROM TO PYTHON: a file with the document `d` changed.
+edit() {
+  /usr/bin/python3 -c "import json; d = json.load(open('$1')); $3; json.dump(d, open('$2', 'w'))" || fail "edit $2"
+}
+
 # A few points in which no decision depends on time, at steps fine enough that one iteration more does not change the fate
 # of a run.
 cat >suite.txt <<'JSON'
@@ -36,39 +41,21 @@ cat >suite.txt <<'JSON'
    "limits": [0.02, 0.01, 0.001], "scene_parameters": {"n": 20},
    "steps": {"coarsest": 0.005, "finest": 0.00125, "all": true}}]}
 JSON
-
-# sweep FILE [OPTIONS...]
-sweep() {
-  local out=$1
-  shift
-  "${binary:-$BENCH_BINARY}" --sweep strain --config suite.txt --no-plots --out "$out" "$@" >/dev/null 2>&1 ||
-    fail "sweep $out"
-}
-
-# edit FROM TO PYTHON: a file with the document `d` changed.
-edit() {
-  /usr/bin/python3 -c "import json; d = json.load(open('$1')); $3; json.dump(d, open('$2', 'w'))" || fail "edit $2"
-}
-
-rm -f ./*.json
-sweep base.json
-sweep again.json
-binary=$BENCH_WITH_FAULTS sweep faulty.json
-cat >counters.json <<'GATE'
-{"times": {"count": false}}  // this machine may be busy
-GATE
+for run in base again faulty; do
+  [[ $run == faulty ]] && binary=$BENCH_WITH_FAULTS || binary=$BENCH_BINARY
+  "$binary" --sweep strain --config suite.txt --no-plots --out $run.json >/dev/null 2>&1 || fail "sweep $run"
+done
+echo '{"times": {"count": false}}  // this machine may be busy' >counters.json
 gate=(--gate counters.json)
 
 # Two runs of one program; of a program that does more, and fails, where a fault was put.
 exits 0 '36 points: 36 SAME' compare base.json again.json "${gate[@]}"
-/usr/bin/python3 - <<'PYTHON' || fail "two runs differ in their strain"
-import json
-first, second = ({p["id"]: (p["max_strain"], p["rms_strain"]) for p in json.load(open(name))["points"]} for name in ("base.json", "again.json"))
-assert first == second and any(all(pair) for pair in first.values()), first
-PYTHON
 exits 4 'NEWLY_FAILING' compare base.json faulty.json "${gate[@]}" --junit faults.xml --markdown faults.md
 /usr/bin/python3 - <<'PYTHON' || fail "the changes by faults"
+import json
 import xml.etree.ElementTree as tree
+first, second = ({p["id"]: (p["max_strain"], p["rms_strain"]) for p in json.load(open(name))["points"]} for name in ("base.json", "again.json"))
+assert first == second and any(all(pair) for pair in first.values()), first
 suite = tree.parse("faults.xml").getroot().find("testsuite")
 changes = {}
 for case in suite.findall("testcase"):
@@ -84,45 +71,45 @@ PYTHON
 grep -q '^| \*\*NEWLY\\_FAILING\*\* | strain | chain/jacobi' faults.md || fail "faults.md: $(cat faults.md)"
 # The other way round the failures are fixed. Less work is a change that the baseline has to learn of.
 exits 3 'FIXED' compare faulty.json base.json "${gate[@]}"
-edit base.json more.json 'd["points"][0]["work"]["iterations"] += 1'
-exits 3 'SLOWER' compare base.json more.json "${gate[@]}"
-exits 3 'CHANGED' compare more.json base.json "${gate[@]}"
-echo '{"times": {"count": false}, "counters": {"rule": "rise"}}' >rise.json
-exits 0 'FASTER' compare more.json base.json --gate rise.json
-edit faulty.json extra.json 'd["points"] = [p for p in d["points"] if p["solver"] != "jacobi"]'
 edit base.json fewer.json 'd["points"] = [p for p in d["points"] if p["solver"] != "jacobi"]'
-exits 3 'SLOWER' compare fewer.json extra.json "${gate[@]}"
 exits 4 'MISSING' compare base.json fewer.json "${gate[@]}"
 exits 0 'NEW' compare fewer.json base.json "${gate[@]}"
 
 # A baseline says the same as the result it is of.
 "$BENCH_BINARY" baseline base.json --out baseline.json >/dev/null || fail baseline
 [[ $(grep -c '^{"sweep"' baseline.json) == 36 ]] || fail "not one point a line"
-grep -q 'seconds' baseline.json && fail "times in a baseline"
 exits 0 '36 SAME' compare baseline.json again.json
 exits 4 'SLOWER' compare baseline.json faulty.json
 
-# A result whose every time is tripled does not pass: with enough runs it is slower, with one each nobody can say, which has an
-# exit code of its own.
-timed='[t.update(samples=[f(x, i) for i in range(n) for x in t["samples"][:1]]) for p in d["points"] for t in [p["seconds_per_simulated_second"]] if t]; d["context"]["sentinel"] = {"noisy": False}'
-edit base.json slow1.json "n = 1; f = lambda x, i: 3 * x; $timed"
-edit base.json one.json "n = 1; f = lambda x, i: x; $timed"
-exits 6 'too few runs' compare one.json slow1.json
-edit base.json five.json "n = 5; f = lambda x, i: x * (1 + 0.001 * i); $timed"
-edit base.json slow5.json "n = 5; f = lambda x, i: 3 * x * (1 + 0.001 * i); $timed"
-exits 3 'SLOWER' compare five.json slow5.json
-exits 0 'FASTER' compare slow5.json five.json
-# On a machine that was busy, or not as fast in both, times must differ by more than its own speed did. What is equal is equal.
-edit five.json little.json "n = 5; f = lambda x, i: 1.2 * x * (1 + 0.001 * i); $timed"
-edit five.json busy.json 'd["context"]["sentinel"] = {"noisy": True, "spread": 0.3}'
-exits 0 'SAME' compare busy.json busy.json
-exits 3 'SLOWER' compare busy.json slow5.json
-edit little.json busy_little.json 'd["context"]["sentinel"] = {"noisy": True, "spread": 0.3}'
-exits 3 'SLOWER' compare five.json little.json
-exits 6 'too noisy a machine' compare five.json busy_little.json
-edit five.json fast_machine.json 'd["context"]["sentinel"] = {"noisy": False, "seconds": [1e-3, 1.01e-3]}'
-edit little.json slow_machine.json 'd["context"]["sentinel"] = {"noisy": False, "seconds": [1.3e-3, 1.31e-3]}'
-exits 6 'own speed varied by as much' compare fast_machine.json slow_machine.json
+# A result whose every time is longer does not pass: with enough runs it is slower, with one each nobody can say, which has an
+# exit code of its own. On a machine that was busy, or not as fast in both, times must differ by more than its own speed did.
+# timed NAME RUNS FACTOR [SENTINEL]: base.json with so many samples a point, all longer by a factor.
+timed() {
+  local sentinel=${4-"{'noisy': False}"}
+  edit base.json "$1.json" "[t.update(samples=[$3 * t['samples'][0] * (1 + 0.001 * i) for i in range($2)])
+for p in d['points'] for t in [p['seconds_per_simulated_second']] if t]; d['context']['sentinel'] = $sentinel"
+}
+timed one 1 1
+timed slow1 1 3
+timed five 5 1
+timed slow5 5 3
+timed little 5 1.2
+timed busy 5 1 "{'noisy': True, 'spread': 0.3}"
+timed busy_little 5 1.2 "{'noisy': True, 'spread': 0.3}"
+timed fast_machine 5 1 "{'noisy': False, 'seconds': [1e-3, 1.01e-3]}"
+timed slow_machine 5 1.2 "{'noisy': False, 'seconds': [1.3e-3, 1.31e-3]}"
+while read -r code before after words; do
+  exits "$code" "$words" compare "$before.json" "$after.json"
+done <<'TABLE'
+6 one slow1 too few runs
+3 five slow5 SLOWER
+0 slow5 five FASTER
+0 busy busy SAME
+3 busy slow5 SLOWER
+3 five little SLOWER
+6 five busy_little too noisy a machine
+6 fast_machine slow_machine own speed varied by as much
+TABLE
 
 # Not comparable: another build, other parameters, nothing in common. The way out is printed.
 edit again.json other.json 'd["context"]["counters_fingerprint"] = "another"'
@@ -133,25 +120,29 @@ edit again.json other.json '[p.update(id=p["id"] + "0") for p in d["points"]]'
 exits 5 'no point in common' compare baseline.json other.json
 
 # Bad input.
-refused "cannot read the result file 'missing.json'" compare missing.json base.json --junit out.xml
-refused "cannot read the gate 'missing.json'" compare base.json again.json --gate missing.json --markdown out.md
 echo '{"schema": "another"}' >wrong.json
-refused "'wrong.json' is not a result file" compare base.json wrong.json --junit out.xml
-echo '{"schema": "inextensible-bench/1", "points": []}' >wrong.json
-refused "'wrong.json' is not a result file" compare base.json wrong.json --junit out.xml
-echo '{"schema": "inextensible-stability/1"}' >wrong.json
-refused "a stability sweep, which cannot be compared" compare wrong.json base.json
-echo '{"counters": {"rul": "exact"}}' >wrong.json
-refused "gate 'wrong.json': 'counters': no key 'rul'; did you mean 'rule'?" compare base.json again.json --gate wrong.json --junit out.xml
-refused "required" compare base.json
-refused "there is no folder 'base.json'" compare base.json again.json --junit base.json/out.xml
-refused "cannot read the result file" baseline missing.json --out out.json
-edit base.json wrong.json 'd["complete"] = False'
-refused "of an interrupted run" baseline wrong.json --out out.json
-refused "is not a result file" baseline baseline.json --out out.json
-refused "leaves no step" --sweep strain --profile quick --finest 0.05 --out out.json
-refused "--finest" --sweep strain --profile quick --finest -1 --out out.json
-refused "does not go with adaptive steps" --sweep strain --profile quick --steps adaptive --finest 0.01 --out out.json
+echo '{"schema": "inextensible-stability/1"}' >hard.json
+echo '{"counters": {"rul": "exact"}}' >rul.json
+edit base.json part.json 'd["complete"] = False'
+while IFS='|' read -r words arguments; do
+  refused "$words" $arguments
+done <<TABLE
+cannot read the result file 'missing.json'|compare missing.json base.json --junit out.xml
+cannot read the gate 'missing.json'|compare base.json again.json --gate missing.json --markdown out.md
+'wrong.json' is not a result file|compare base.json wrong.json --junit out.xml
+a stability sweep, which cannot be compared|compare hard.json base.json
+gate 'rul.json': 'counters': no key 'rul'; did you mean 'rule'?|compare base.json again.json --gate rul.json --junit out.xml
+required|compare base.json
+there is no folder 'base.json'|compare base.json again.json --junit base.json/out.xml
+cannot read the result file|baseline missing.json --out out.json
+of an interrupted run|baseline part.json --out out.json
+is not a result file|baseline baseline.json --out out.json
+no point on standard input|point
+'missing' is no program|ab missing $BENCH_BINARY --junit out.xml
+--pairs|ab $BENCH_BINARY $BENCH_BINARY --pairs 3
+TABLE
+exits 2 "did you mean 'shake'" ab "$BENCH_BINARY" "$BENCH_BINARY" --solver shaek
+exits 5 "has no command \`point\`" ab /bin/true "$BENCH_BINARY"
 
 # Single points: the same counters as in the sweep, one line each; bad ones are refused before any runs.
 /usr/bin/python3 -c "
@@ -168,27 +159,20 @@ for a, b in zip(given, printed):
     assert a["status"] != "ok" or len(b["seconds_per_simulated_second"]["samples"]) == 3
 assert any(b["status"] == "ok" for b in printed)
 PYTHON
-refused_point() {
-  local part=$1
-  { head -n 1 points.txt && sed -n "1{$2;p}" points.txt; } | "$BENCH_BINARY" point >stdout.txt 2>stderr.txt
-  [[ ${PIPESTATUS[1]} == 2 && ! -s stdout.txt && $(wc -l <stderr.txt) == 1 ]] && grep -qF "line 2: $part" stderr.txt ||
-    fail "point, $2: $(cat stdout.txt stderr.txt)"
-}
-refused_point "no solver 'jacob'; did you mean 'jacobi'?" 's/"solver": "jacobi"/"solver": "jacob"/'
-refused_point "no scene 'chian'; did you mean 'chain'?" 's/"scene": "chain"/"scene": "chian"/'
-refused_point "'step' is 0" 's/"step": 0.005/"step": 0/'
-refused_point "'strain_limit' is -1" 's/"strain_limit": 0.01/"strain_limit": -1/'
-refused_point "'vertices' is 81" 's/"vertices": 20/"vertices": 81/'
-refused_point "'settings': no setting" 's/"settings": {}/"settings": {"targt": 1}/'
-refused_point "[json" 's/"seed"/"sed"/'
-refused_point "[json" 's/}$//'
-refused "no point on standard input" point
-
-# Two programs against each other: what can be said before anything is measured.
-refused "'missing' is no program" ab missing "$BENCH_BINARY" --junit out.xml
-refused "--pairs" ab "$BENCH_BINARY" "$BENCH_BINARY" --pairs 3
-exits 2 "did you mean 'shake'" ab "$BENCH_BINARY" "$BENCH_BINARY" --solver shaek
-exits 5 "has no command \`point\`" ab /bin/true "$BENCH_BINARY"
+while IFS='|' read -r words replacement; do
+  { head -n 1 points.txt && sed -n "1{s/$replacement/;p}" points.txt; } | "$BENCH_BINARY" point >stdout.txt 2>stderr.txt
+  [[ ${PIPESTATUS[1]} == 2 && ! -s stdout.txt && $(wc -l <stderr.txt) == 1 ]] && grep -qF "line 2: $words" stderr.txt ||
+    fail "point, $replacement: $(cat stdout.txt stderr.txt)"
+done <<'TABLE'
+no solver 'jacob'; did you mean 'jacobi'?|"solver": "jacobi"/"solver": "jacob"
+no scene 'chian'; did you mean 'chain'?|"scene": "chain"/"scene": "chian"
+'step' is 0|"step": 0.005/"step": 0
+'strain_limit' is -1|"strain_limit": 0.01/"strain_limit": -1
+'vertices' is 81|"vertices": 20/"vertices": 81
+'settings': no setting|"settings": {}/"settings": {"targt": 1}
+[json|"seed"/"sed"
+[json|}$/
+TABLE
 
 ((failures == 0)) && echo "all well"
 exit $((failures > 0))
