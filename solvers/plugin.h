@@ -12,14 +12,12 @@
 //     return &plugin;
 //   }
 //
-// The plug-in links headers only. The library is bench's own copy, which bench exports whole: there
-// is one registry and one make_stepper, and methods of the library that the plug-in builds on are
-// those that it is measured against. A plug-in is never unloaded.
+// The plug-in links headers only: the library is bench's own copy, so that methods which the
+// plug-in builds on are those that it is measured against. A plug-in is never unloaded.
 //
 // Classes cross the border, so both sides must be built alike: compiler, standard library, Eigen
-// and these headers. A stamp says so, and bench refuses another one in one line. Optimization and
-// -march may differ, since inextensible::plugin fixes Eigen's alignment. A sanitizer must be that
-// of bench.
+// and these headers, as a stamp says, and the same sanitizer. Optimization and -march may differ,
+// since inextensible::plugin fixes Eigen's alignment.
 #pragma once
 
 #include <cstdint>

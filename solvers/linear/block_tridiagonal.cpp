@@ -1,12 +1,13 @@
-// As tridiagonal_solver.cpp, with 3 x 3 blocks for numbers. Let A be a row's diagonal block less
-// what it has lost to rows eliminated before it, and B its coupling to the next row. With
-// A = L D L^T and Z = D^-1 L^-1 B the next row loses B^T A^-1 B = Z^T D Z. Loops: one over pairs of
-// rows to factor, two to solve. Blocks are spelled out as numbers: as arrays they travel through
-// memory, which takes three times as long (measured).
-#include "solvers/linear/block_tridiagonal.h"
-
+// As tridiagonal.cpp, with 3 x 3 blocks for numbers: the springs of a chain, a rope, a hair. Let A
+// be a row's diagonal block less what it has lost to rows eliminated before it, and B its coupling
+// to the next row. With A = L D L^T and Z = D^-1 L^-1 B the next row loses B^T A^-1 B = Z^T D Z.
+// Loops: one over pairs of rows to factor, two to solve. Blocks are spelled out as numbers: as
+// arrays they travel through memory, which takes three times as long (measured).
 #include <algorithm>
+#include <memory>
 #include <stdexcept>
+
+#include "solvers/linear/spd_solver.h"
 
 namespace inextensible {
 namespace {
@@ -35,9 +36,7 @@ SymmetricBlock diagonal(const double* values, std::size_t row) {
   return {v[3], v[7], v[8], v[12], v[13], v[14]};
 }
 
-}  // namespace
-
-struct BlockTridiagonalSolver::Row {
+struct Row {
   double l10, l20, l21;  // of L
   double i0, i1, i2;     // D^-1
   double z00, z01, z02, z10, z11, z12, z20, z21, z22;
@@ -95,17 +94,29 @@ struct BlockTridiagonalSolver::Row {
   }
 };
 
-BlockTridiagonalSolver::BlockTridiagonalSolver(const SymmetricPattern& pattern) {
-  if (!pattern.block_tridiagonal() || pattern.triangle != SymmetricPattern::Triangle::upper ||
-      pattern.entries() != 5 * pattern.n - 9) {
-    throw std::invalid_argument(
-        "the linear solver 'block_tridiagonal' needs vertices that form one chain in order");
+class BlockTridiagonalSolver final : public SpdSolver {
+ public:
+  explicit BlockTridiagonalSolver(const SymmetricPattern& pattern)
+      : values_(pattern.entries()), rows_(pattern.n / 3) {
+    if (!pattern.chain(3) || pattern.triangle != SymmetricPattern::Triangle::upper) {
+      throw std::invalid_argument(
+          "the linear solver 'block_tridiagonal' needs vertices that form one chain in order");
+    }
   }
-  values_.resize(pattern.entries());
-  rows_.resize(pattern.n / 3);
-}
+  double* values() override { return values_.data(); }
+  bool factor() override;
+  void solve(double* rhs) override;
+  double reciprocal_condition() const override;
+  double factor_nonzeros() const override { return static_cast<double>(values_.size()); }
+  // The sum of squared column counts: 6, 5 and 4 in each row but the last.
+  double factor_flops() const override {
+    return 77.0 * (static_cast<double>(rows_.size()) - 1) + 14;
+  }
 
-BlockTridiagonalSolver::~BlockTridiagonalSolver() = default;
+ private:
+  std::vector<double> values_;
+  std::vector<Row> rows_;
+};
 
 bool BlockTridiagonalSolver::factor() {
   static constexpr std::size_t column[3] = {0, 4, 9};  // of row_values
@@ -183,9 +194,10 @@ double BlockTridiagonalSolver::reciprocal_condition() const {
   return low / high;
 }
 
-// The sum of squared column counts: 6, 5 and 4 in each row but the last.
-double BlockTridiagonalSolver::factor_flops() const {
-  return 77.0 * (static_cast<double>(rows_.size()) - 1) + 14;
+}  // namespace
+
+std::unique_ptr<SpdSolver> make_block_tridiagonal(SymmetricPattern pattern) {
+  return std::make_unique<BlockTridiagonalSolver>(pattern);
 }
 
 }  // namespace inextensible

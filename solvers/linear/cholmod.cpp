@@ -1,61 +1,65 @@
-#include "solvers/linear/cholmod.h"
-
+// CHOLMOD's simplicial and supernodal Cholesky (Chen, Davis, Hager and Rajamanickam 2008) on a
+// matrix in elimination order.
 #include <algorithm>
 #include <cmath>
-#include <new>
+#include <memory>
 #include <numeric>
 
 #include "solvers/linear/cholmod_symbolic.h"
+#include "solvers/linear/spd_solver.h"
 
 namespace inextensible {
-struct CholmodSolver::Library {
-  cholmod_common common{};
-  cholmod_sparse matrix{};
-  cholmod_factor* factor = nullptr;
-  cholmod_dense rhs{};
-  cholmod_dense *solution = nullptr, *y = nullptr, *e = nullptr;  // reused by cholmod_solve2
+namespace {
 
-  ~Library() {
-    cholmod_free_dense(&solution, &common);
-    cholmod_free_dense(&y, &common);
-    cholmod_free_dense(&e, &common);
-    cholmod_free_factor(&factor, &common);
-    cholmod_finish(&common);
+class CholmodSolver final : public SpdSolver, CholmodAnalysis {
+ public:
+  CholmodSolver(SymmetricPattern pattern, int supernodal)
+      : pattern_(std::move(pattern)), values_(pattern_.entries()) {
+    common.supernodal = supernodal;
+    common.final_ll = supernodal == CHOLMOD_SUPERNODAL;  // simplicial: L D L^T
+    common.quick_return_if_not_posdef = 1;
+    matrix_ = cholmod_view(pattern_, values_.data());
+    analyze(pattern_);
+    rhs_.nrow = rhs_.nzmax = rhs_.d = pattern_.n;
+    rhs_.ncol = 1;
+    rhs_.xtype = CHOLMOD_REAL;
+    rhs_.dtype = CHOLMOD_DOUBLE;
   }
+  ~CholmodSolver() override {
+    for (cholmod_dense** dense : {&solution_, &y_, &e_}) cholmod_free_dense(dense, &common);
+  }
+  CholmodSolver(const CholmodSolver&) = delete;
+  CholmodSolver& operator=(const CholmodSolver&) = delete;
+
+  double* values() override { return values_.data(); }
+  bool factor() override;
+  void solve(double* rhs) override {
+    rhs_.x = rhs;
+    cholmod_solve2(CHOLMOD_A, l, &rhs_, nullptr, &solution_, nullptr, &y_, &e_, &common);
+    std::copy_n(static_cast<const double*>(solution_->x), pattern_.n, rhs);
+  }
+  double reciprocal_condition() const override { return cholmod_rcond(l, &common); }
+  double factor_nonzeros() const override { return common.lnz; }
+  double factor_flops() const override { return common.fl; }
+
+ private:
+  SymmetricPattern pattern_;
+  std::vector<double> values_;
+  cholmod_sparse matrix_{};
+  cholmod_dense rhs_{};
+  cholmod_dense *solution_ = nullptr, *y_ = nullptr, *e_ = nullptr;  // reused by cholmod_solve2
 };
 
-CholmodSolver::CholmodSolver(SymmetricPattern pattern, bool supernodal)
-    : pattern_(std::move(pattern)),
-      values_(pattern_.entries()),
-      library_(std::make_unique<Library>()) {
-  Library& c = *library_;
-  cholmod_start_natural(c.common);
-  c.common.supernodal = supernodal ? CHOLMOD_SUPERNODAL : CHOLMOD_SIMPLICIAL;
-  c.common.final_ll = supernodal;  // simplicial: L D L^T, without square roots
-  c.common.quick_return_if_not_posdef = 1;
-  c.matrix = cholmod_view(pattern_, values_.data());
-  c.factor = cholmod_analyze(&c.matrix, &c.common);
-  if (!c.factor) throw std::bad_alloc();
-  c.rhs.nrow = c.rhs.nzmax = c.rhs.d = pattern_.n;
-  c.rhs.ncol = 1;
-  c.rhs.xtype = CHOLMOD_REAL;
-  c.rhs.dtype = CHOLMOD_DOUBLE;
-}
-
-CholmodSolver::~CholmodSolver() = default;
-
 bool CholmodSolver::factor() {
-  Library& c = *library_;
   // LAPACK's Cholesky, inside the supernodal code, lets NaN pass: no pivot compares as negative.
   if (!std::isfinite(std::accumulate(values_.begin(), values_.end(), 0.0))) return false;
-  const bool done = cholmod_factorize(&c.matrix, c.factor, &c.common);
-  if (c.common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
-  if (!done) return false;
-  if (c.common.status != CHOLMOD_OK || c.factor->minor != c.factor->n) return false;
-  if (c.factor->is_super || c.factor->is_ll) return true;
+  const bool done = cholmod_factorize(&matrix_, l, &common);
+  if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (!done || common.status != CHOLMOD_OK || l->minor != l->n) return false;
+  if (l->is_super || l->is_ll) return true;
   // L D L^T goes on through negative pivots: look at them.
-  const auto* start = static_cast<const int*>(c.factor->p);
-  const auto* value = static_cast<const double*>(c.factor->x);
+  const auto* start = static_cast<const int*>(l->p);
+  const auto* value = static_cast<const double*>(l->x);
   for (int i = 0; i < pattern_.n; ++i) {
     const std::size_t diagonal = pattern_.diagonal(i);
     if (!(value[start[i]] > least_pivot_ * values_[diagonal])) return false;
@@ -63,41 +67,25 @@ bool CholmodSolver::factor() {
   return true;
 }
 
-void CholmodSolver::solve(double* rhs) {
-  Library& c = *library_;
-  c.rhs.x = rhs;
-  cholmod_solve2(CHOLMOD_A, c.factor, &c.rhs, nullptr, &c.solution, nullptr, &c.y, &c.e, &c.common);
-  const auto* x = static_cast<const double*>(c.solution->x);
-  std::copy(x, x + pattern_.n, rhs);
-}
+}  // namespace
 
-double CholmodSolver::reciprocal_condition() const {
-  return cholmod_rcond(library_->factor, &library_->common);
+std::unique_ptr<SpdSolver> make_cholmod_simplicial(SymmetricPattern pattern) {
+  return std::make_unique<CholmodSolver>(std::move(pattern), CHOLMOD_SIMPLICIAL);
 }
-
-double CholmodSolver::factor_nonzeros() const { return library_->common.lnz; }
-double CholmodSolver::factor_flops() const { return library_->common.fl; }
+std::unique_ptr<SpdSolver> make_cholmod_supernodal(SymmetricPattern pattern) {
+  return std::make_unique<CholmodSolver>(std::move(pattern), CHOLMOD_SUPERNODAL);
+}
 
 std::vector<int> fill_reducing_order(const SymmetricPattern& pattern) {
   if (pattern.n == 0) return {};
-  cholmod_common common{};
-  cholmod_start(&common);
-  common.print = 0;
-  common.nmethods = 2;
-  common.method[0].ordering = CHOLMOD_AMD;
-  common.method[1].ordering = CHOLMOD_METIS;
-  common.postorder = 1;
-  cholmod_sparse matrix = cholmod_view(pattern, nullptr);
-  cholmod_factor* factor = cholmod_analyze(&matrix, &common);
-  if (!factor) {
-    cholmod_finish(&common);
-    throw std::bad_alloc();
-  }
-  const auto* permutation = static_cast<const int*>(factor->Perm);
-  std::vector<int> order(permutation, permutation + pattern.n);
-  cholmod_free_factor(&factor, &common);
-  cholmod_finish(&common);
-  return order;
+  CholmodAnalysis c;
+  c.common.nmethods = 2;
+  c.common.method[0].ordering = CHOLMOD_AMD;
+  c.common.method[1].ordering = CHOLMOD_METIS;
+  c.common.postorder = 1;
+  c.analyze(pattern);
+  const auto* order = static_cast<const int*>(c.l->Perm);
+  return {order, order + pattern.n};
 }
 
 }  // namespace inextensible

@@ -3,7 +3,9 @@
 
 #include <cholmod.h>
 
-#include "solvers/linear/spd_solver.h"
+#include <new>
+
+#include "solvers/linear/symmetric_pattern.h"
 
 namespace inextensible {
 
@@ -24,14 +26,31 @@ inline cholmod_sparse cholmod_view(const SymmetricPattern& pattern, double* valu
   return matrix;
 }
 
-// Starts `common` for matrices that are in elimination order already (fill_reducing_order), without
-// messages.
-inline void cholmod_start_natural(cholmod_common& common) {
-  cholmod_start(&common);
-  common.print = 0;
-  common.nmethods = 1;
-  common.method[0].ordering = CHOLMOD_NATURAL;
-  common.postorder = 0;
-}
+// CHOLMOD's settings and a factor, without messages; to begin with for matrices that are in
+// elimination order already (fill_reducing_order).
+struct CholmodAnalysis {
+  mutable cholmod_common common{};  // of every call, those that only look as well
+  cholmod_factor* l = nullptr;
+
+  CholmodAnalysis() {
+    cholmod_start(&common);
+    common.print = 0;
+    common.nmethods = 1;
+    common.method[0].ordering = CHOLMOD_NATURAL;
+    common.postorder = 0;
+  }
+  ~CholmodAnalysis() {
+    cholmod_free_factor(&l, &common);
+    cholmod_finish(&common);
+  }
+  CholmodAnalysis(const CholmodAnalysis&) = delete;
+  CholmodAnalysis& operator=(const CholmodAnalysis&) = delete;
+
+  void analyze(const SymmetricPattern& pattern) {
+    cholmod_sparse matrix = cholmod_view(pattern, nullptr);
+    l = cholmod_analyze(&matrix, &common);
+    if (!l) throw std::bad_alloc();
+  }
+};
 
 }  // namespace inextensible

@@ -1,12 +1,11 @@
-// The two costs differ by orders of magnitude either way: on cloth that is little sheared, CG needs
-// about ten iterations at any size, a few percent of a factorization; where warp and weft have
-// become parallel it needs hundreds or thousands. Only trying tells which, so this is the
-// rent-or-buy problem (Karlin et al. 1988): CG iterations are rent. As long as no elimination order
-// has been computed (which costs about `ordering_cost` iterations), long solves go on until the
-// iterations beyond `quick` add up to that cost. From then on a solve that has not converged after
-// `quick` iterations, about the cost of a factorization, is finished by one. CG is tried again
-// after a retry interval, which doubles each time CG fails. Costs are counted, not timed, so that
-// runs repeat exactly.
+// On cloth that is little sheared, CG takes a few percent of a factorization at any size; where
+// warp and weft have become parallel, many times as long. Only trying tells which: the rent-or-buy
+// problem (Karlin et al. 1988), with CG iterations as rent. Until an elimination order is computed
+// (which costs about `ordering_cost` iterations), long solves go on until the iterations beyond
+// `quick` add up to that cost. From then on a solve that has not converged after `quick`
+// iterations, about the cost of a factorization, is finished by one, and CG is tried again after a
+// retry interval, which doubles each time CG fails. Costs are counted, not timed, so that runs
+// repeat exactly.
 #include "solvers/linear/hybrid.h"
 
 #include <algorithm>
@@ -57,38 +56,13 @@ void HybridSpdSolver::prepare_factorization() {
   order_ = fill_reducing_order(pattern_);
   std::vector<int> row_of(order_.size());
   for (int i = 0; i < pattern_.n; ++i) row_of[order_[i]] = i;
-  // Lower triangle, column by column, rows ascending: a bucket sort by column of a bucket sort by
-  // row.
-  struct Entry {
-    int row, column, from;
-  };
-  std::vector<Entry> entries(pattern_.entries()), by_row(entries.size());
+  Pairs entries;
   for (int column = 0; column < pattern_.n; ++column) {
-    for (int i = pattern_.column_start[column]; i < pattern_.column_start[column + 1]; ++i) {
-      const int p = row_of[column], q = row_of[pattern_.row_index[i]];
-      entries[i] = {std::max(p, q), std::min(p, q), i};
-    }
+    for (int i = pattern_.column_start[column]; i < pattern_.column_start[column + 1]; ++i)
+      entries.emplace_back(row_of[pattern_.row_index[i]], row_of[column]);
   }
-  const auto sort_by = [n = pattern_.n](int Entry::*key, const std::vector<Entry>& from,
-                                        std::vector<Entry>& to) {
-    std::vector<int> start(n + 1);
-    for (const Entry& entry : from) ++start[entry.*key + 1];
-    for (int i = 0; i < n; ++i) start[i + 1] += start[i];
-    std::vector<int> end = start;
-    for (const Entry& entry : from) to[end[entry.*key]++] = entry;
-    return start;
-  };
-  sort_by(&Entry::row, entries, by_row);
-  SymmetricPattern ordered;
-  ordered.n = pattern_.n;
-  ordered.triangle = SymmetricPattern::Triangle::lower;
-  ordered.column_start = sort_by(&Entry::column, by_row, entries);
-  place_.resize(entries.size());
-  ordered.row_index.resize(entries.size());
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    ordered.row_index[i] = entries[i].row;
-    place_[entries[i].from] = static_cast<int>(i);
-  }
+  SymmetricPattern ordered = pattern_of(pattern_.n, entries, SymmetricPattern::Triangle::lower);
+  for (const auto& [i, j] : entries) place_.push_back(ordered.place(i, j));
   direct_ = std::make_unique<MultifrontalCholesky<double>>(std::move(ordered));
 }
 

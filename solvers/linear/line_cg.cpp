@@ -15,19 +15,14 @@
 //
 //   (T_B - C T_A^-1 C^T) x_B = b_B - C T_A^-1 b_A.
 //
-// The residual of the whole system is that of these rows, zeros elsewhere. It works on any matrix:
+// The residual of the whole system is that of these rows, zeros elsewhere. Any matrix will do:
 // lines are paths through strong couplings without chords, A is an independent set of lines, and
-// what couples lines of B with each other (R) is added to T_B in the product only. Where cloth has
-// sheared until warp and weft are parallel, J W J^T itself is nearly singular and the lines are no
-// help; the number of iterations then grows.
+// what couples lines of B with each other (R) is added to T_B in the product only.
 //
-// Iterations to 1e-2 and to 1e-8 of the right-hand side, drape of 201 x 201 at 0.2 s (largest |cos
-// g| 0.58): this 4 and 12, the same at 101 x 101; diag(T_A, T_B) 6 and 22; incomplete Cholesky
-// without fill 6 and 22 in the natural order (twice the work an iteration), hundreds in a
-// fill-reducing one; exact blocks of 16 x 16 vertices 43 and 209; the diagonal 275 and 1382. An
-// exact factor, ten steps of 1/1000 s old, needs 4 and 15 (101 x 101). At 0.3 s, |cos g| up to 1:
-// this 181 and 1182, incomplete Cholesky 43 and 385, blocks 60 and 278, the old factor 20 and 297
-// (101 x 101): where it gets hard nothing cheap is good, and hybrid_spd_solver.h factors.
+// Iterations to 1e-2 and 1e-8 of the right-hand side, drape of 201 x 201 at 0.2 s (largest |cos g|
+// 0.58): this 4 and 12, incomplete Cholesky 6 and 22, the diagonal 275 and 1382. At 0.3 s, where
+// warp and weft have become parallel and J W J^T nearly singular: 181 and 1182, 43 and 385 (101 x
+// 101); nothing cheap is good there, and hybrid.h factors.
 //
 // Loops: an iteration reads C twice, the factors of T_A and T_B twice, and six vectors.
 #include "solvers/linear/line_cg.h"
@@ -359,8 +354,6 @@ double LineCgSolver::multiply(const double* p, double* q) {
   }
   return sum;
 }
-
-void LineCgSolver::solve(double* rhs) { solve_within(tightest, rhs); }
 
 bool LineCgSolver::solve_within(double tolerance, double* rhs) {
   const int n = kept_.size();

@@ -10,16 +10,15 @@ namespace inextensible {
 
 class LineCgSolver final : public SpdSolver {
  public:
-  // Reads the upper triangle, whose columns must hold their diagonal entry; any order of rows, best
-  // one in which neighbours are near each other. Throws std::invalid_argument for a lower triangle.
+  // Any order of rows, best one in which neighbours are near each other. Throws
+  // std::invalid_argument for a lower triangle.
   explicit LineCgSolver(SymmetricPattern pattern);
 
   double* values() override { return values_.data(); }
   // Factors the lines; false: one of them is not positive definite, so neither is the matrix. The
   // first call finds the lines: strong couplings there and then.
   bool factor() override;
-  // To `tightest`.
-  void solve(double* rhs) override;
+  void solve(double* rhs) override { solve_within(tightest, rhs); }
   // false: not positive definite (a direction of negative curvature), not finite, or not reached
   // after the largest number of iterations.
   bool solve_within(double tolerance, double* rhs) override;
@@ -30,11 +29,10 @@ class LineCgSolver final : public SpdSolver {
 
   void set_most_iterations(int limit) { most_iterations_ = limit; }
 
-  // What was found: the number of lines; whether row i is eliminated (its line is coupled with no
-  // other eliminated one).
   int lines() const { return lines_; }
   // x = diag(T_A, T_B)^-1 x, rows as in the matrix: every line's own system.
   void solve_lines(double* x);
+  // Whether the row's line is coupled with no other line of its kind.
   bool eliminated(int row) const { return family_of_[row] == 0; }
 
  private:

@@ -22,13 +22,12 @@ constexpr double singular_rcond = 1e-15;
 
 class UmfpackSolver final : public UnsymmetricSolver {
  public:
-  UmfpackSolver(std::vector<int> column_start, std::vector<int> row_index)
-      : column_start_(std::move(column_start)),
-        row_index_(std::move(row_index)),
-        values_(row_index_.size()),
-        solution_(column_start_.size() - 1),
-        int_work_(column_start_.size() - 1),
-        work_(5 * (column_start_.size() - 1)) {
+  explicit UmfpackSolver(SymmetricPattern pattern)
+      : pattern_(std::move(pattern)),
+        values_(pattern_.entries()),
+        solution_(pattern_.n),
+        int_work_(pattern_.n),
+        work_(5 * solution_.size()) {
     umfpack_di_defaults(control_.data());
     control_[UMFPACK_IRSTEP] = 0;  // callers refine where they need it
   }
@@ -45,25 +44,24 @@ class UmfpackSolver final : public UnsymmetricSolver {
   bool factor() override {
     if (!std::all_of(values_.begin(), values_.end(), [](double v) { return std::isfinite(v); }))
       return false;
-    const int n = static_cast<int>(solution_.size());
+    const int *start = pattern_.column_start.data(), *row = pattern_.row_index.data();
     if (!symbolic_) {  // with values, so that the strategy suits the matrix; then reused
-      const int status =
-          umfpack_di_symbolic(n, n, column_start_.data(), row_index_.data(), values_.data(),
-                              &symbolic_, control_.data(), info_.data());
+      const int status = umfpack_di_symbolic(pattern_.n, pattern_.n, start, row, values_.data(),
+                                             &symbolic_, control_.data(), info_.data());
       if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();
       if (status != UMFPACK_OK) return false;
     }
     umfpack_di_free_numeric(&numeric_);
-    const int status = umfpack_di_numeric(column_start_.data(), row_index_.data(), values_.data(),
-                                          symbolic_, &numeric_, control_.data(), info_.data());
+    const int status = umfpack_di_numeric(start, row, values_.data(), symbolic_, &numeric_,
+                                          control_.data(), info_.data());
     if (status == UMFPACK_ERROR_out_of_memory) throw std::bad_alloc();
     return status == UMFPACK_OK && info_[UMFPACK_RCOND] > singular_rcond;
   }
 
   void solve(double* rhs) override {
-    umfpack_di_wsolve(UMFPACK_A, column_start_.data(), row_index_.data(), values_.data(),
-                      solution_.data(), rhs, numeric_, control_.data(), info_.data(),
-                      int_work_.data(), work_.data());
+    umfpack_di_wsolve(UMFPACK_A, pattern_.column_start.data(), pattern_.row_index.data(),
+                      values_.data(), solution_.data(), rhs, numeric_, control_.data(),
+                      info_.data(), int_work_.data(), work_.data());
     std::copy(solution_.begin(), solution_.end(), rhs);
   }
 
@@ -72,7 +70,7 @@ class UmfpackSolver final : public UnsymmetricSolver {
   double factor_flops() const override { return info_[UMFPACK_FLOPS]; }
 
  private:
-  std::vector<int> column_start_, row_index_;
+  SymmetricPattern pattern_;
   std::vector<double> values_, solution_;
   std::vector<int> int_work_;
   std::vector<double> work_;
@@ -126,25 +124,11 @@ class TridiagonalLuSolver final : public UnsymmetricSolver {
   std::vector<int> pivot_;
 };
 
-bool tridiagonal(const std::vector<int>& column_start, const std::vector<int>& row_index) {
-  const int n = static_cast<int>(column_start.size()) - 1;
-  if (static_cast<int>(row_index.size()) != 3 * n - 2) return false;
-  for (int j = 0; j < n; ++j) {
-    for (int i = column_start[j]; i < column_start[j + 1]; ++i) {
-      if (std::abs(row_index[i] - j) > 1) return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace
 
-std::unique_ptr<UnsymmetricSolver> make_unsymmetric_solver(std::vector<int> column_start,
-                                                           std::vector<int> row_index) {
-  if (tridiagonal(column_start, row_index)) {
-    return std::make_unique<TridiagonalLuSolver>(static_cast<int>(column_start.size()) - 1);
-  }
-  return std::make_unique<UmfpackSolver>(std::move(column_start), std::move(row_index));
+std::unique_ptr<UnsymmetricSolver> make_unsymmetric_solver(SymmetricPattern pattern) {
+  if (pattern.chain(1)) return std::make_unique<TridiagonalLuSolver>(pattern.n);
+  return std::make_unique<UmfpackSolver>(std::move(pattern));
 }
 
 }  // namespace inextensible

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <memory>
-#include <vector>
+
+#include "solvers/linear/symmetric_pattern.h"
 
 namespace inextensible {
 
@@ -14,7 +15,7 @@ class UnsymmetricSolver {
   UnsymmetricSolver(const UnsymmetricSolver&) = delete;
   UnsymmetricSolver& operator=(const UnsymmetricSolver&) = delete;
 
-  virtual double* values() = 0;         // in compressed-column order
+  virtual double* values() = 0;         // in the pattern's order
   virtual bool factor() = 0;            // false: singular to working precision, or not finite
   virtual void solve(double* rhs) = 0;  // overwritten by the solution; after a successful factor()
   virtual double reciprocal_condition() const = 0;  // an estimate from the pivots
@@ -22,8 +23,7 @@ class UnsymmetricSolver {
   virtual double factor_flops() const = 0;
 };
 
-// Square, compressed columns, rows ascending. Tridiagonal patterns get the tridiagonal solver.
-std::unique_ptr<UnsymmetricSolver> make_unsymmetric_solver(std::vector<int> column_start,
-                                                           std::vector<int> row_index);
+// The pattern has both triangles. Tridiagonal ones get the tridiagonal solver.
+std::unique_ptr<UnsymmetricSolver> make_unsymmetric_solver(SymmetricPattern pattern);
 
 }  // namespace inextensible

@@ -1,11 +1,12 @@
 #include "solvers/linear/multifrontal_cholesky.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
-#include <new>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 
 #include "solvers/linear/cholmod_symbolic.h"
 
@@ -57,9 +58,9 @@ void store_lanes(const Lanes<Real>& values, Real* p) {
 
 // Eliminates the K columns of a panel of n rows: the triangle of K rows, then the rows below, each
 // independent of the others. Leaves unit columns of L (their ones are not written) and the pivots.
-// Returns the first column whose pivot is not above its bound, K if all are.
+// false: a pivot is not above its bound.
 template <int K, class Real>
-int eliminate(Real* l, Distance ld, int n, const Real* bound, Real* pivots) {
+bool eliminate(Real* l, Distance ld, int n, const Real* bound, Real* pivots) {
   Real triangle[K][K], inverse[K];  // lower; 1 / pivot
 #pragma GCC unroll 8
   for (int c = 0; c < K; ++c) {
@@ -69,7 +70,7 @@ int eliminate(Real* l, Distance ld, int n, const Real* bound, Real* pivots) {
 #pragma GCC unroll 8
   for (int c = 0; c < K; ++c) {
     const Real d = triangle[c][c];
-    if (!(d > bound[c])) return c;  // the negation catches NaN
+    if (!(d > bound[c])) return false;  // the negation catches NaN
     pivots[c] = d;
     inverse[c] = 1 / d;
     Real scaled[K];
@@ -95,7 +96,7 @@ int eliminate(Real* l, Distance ld, int n, const Real* bound, Real* pivots) {
       store_lanes<Real>(y[c] * inverse[c], l + c * ld + i);
     }
   }
-  return K;
+  return true;
 }
 
 // J columns of C less those of P D P^T, from row j on, where the first of them is column j; P is n
@@ -158,12 +159,11 @@ struct Trapezoid {
 // The panel of K columns at column k: eliminated, and taken from the own columns right of it and
 // from the update matrix.
 template <int K, class Real>
-int take_panel(const Trapezoid<Real>& front, int k, const Real* bound, Real* pivots) {
+bool take_panel(const Trapezoid<Real>& front, int k, const Real* bound, Real* pivots) {
   const int n = front.rows - k, below = front.rows - front.own;
   const Distance ld = panel_ld<Real>(K, n);
   Real* l = front.columns + panel_at<Real>(front.rows, k);
-  const int bad = eliminate<K>(l, ld, n, bound, pivots);
-  if (bad < K) return bad;
+  if (!eliminate<K>(l, ld, n, bound, pivots)) return false;
   if constexpr (K == panel) {
     for (int r = k + panel; r < front.own; r += panel) {
       const int width = std::min(panel, front.own - r), rows = front.rows - r;
@@ -179,15 +179,8 @@ int take_panel(const Trapezoid<Real>& front, int k, const Real* bound, Real* piv
   } else {
     subtract_product<K, false>(p, ld, pivots, below, all, front.update, all);
   }
-  return K;
+  return true;
 }
-
-template <class Real>
-using TakePanel = int (*)(const Trapezoid<Real>& front, int k, const Real* bound, Real* pivots);
-template <class Real>
-constexpr TakePanel<Real> take_panel_of_width[] = {nullptr,       take_panel<1>, take_panel<2>,
-                                                   take_panel<3>, take_panel<4>, take_panel<5>,
-                                                   take_panel<6>, take_panel<7>, take_panel<panel>};
 
 // K columns of forward substitution on the front's rows w: the triangle, then the rows below it.
 template <int K, class Real>
@@ -242,37 +235,25 @@ void substitute_back(const Real* l, Distance ld, int n, Real* w) {
   }
 }
 
+// The dense steps by the width of their panel, less one.
 template <class Real>
-using Substitute = void (*)(const Real* l, Distance ld, int n, Real* w);
+struct OfWidth {
+  bool (*take_panel)(const Trapezoid<Real>& front, int k, const Real* bound, Real* pivots);
+  void (*forward)(const Real* l, Distance ld, int n, Real* w);
+  void (*back)(const Real* l, Distance ld, int n, Real* w);
+};
+template <class Real, int... smaller>
+constexpr std::array<OfWidth<Real>, panel> of_widths(std::integer_sequence<int, smaller...>) {
+  return {{{take_panel<smaller + 1, Real>, substitute_forward<smaller + 1, Real>,
+            substitute_back<smaller + 1, Real>}...}};
+}
 template <class Real>
-constexpr Substitute<Real> forward_of_width[] = {nullptr,
-                                                 substitute_forward<1>,
-                                                 substitute_forward<2>,
-                                                 substitute_forward<3>,
-                                                 substitute_forward<4>,
-                                                 substitute_forward<5>,
-                                                 substitute_forward<6>,
-                                                 substitute_forward<7>,
-                                                 substitute_forward<panel>};
-template <class Real>
-constexpr Substitute<Real> back_of_width[] = {nullptr,
-                                              substitute_back<1>,
-                                              substitute_back<2>,
-                                              substitute_back<3>,
-                                              substitute_back<4>,
-                                              substitute_back<5>,
-                                              substitute_back<6>,
-                                              substitute_back<7>,
-                                              substitute_back<panel>};
+constexpr auto of_width = of_widths<Real>(std::make_integer_sequence<int, panel>());
 
 // ---- CHOLMOD's symbolic analysis ----
 
-struct Analysis {
-  cholmod_common common{};
-  cholmod_factor* factor = nullptr;
-
+struct Analysis : CholmodAnalysis {
   explicit Analysis(const SymmetricPattern& pattern) {
-    cholmod_start_natural(common);
     common.supernodal = CHOLMOD_SUPERNODAL;
     // Supernodes are merged less than CHOLMOD does for its BLAS calls: short loops cost less here,
     // and every zero stored is read again in solve().
@@ -284,19 +265,8 @@ struct Analysis {
       common.nrelax[i] = relaxed[i].columns;
       common.zrelax[i] = relaxed[i].zeros;
     }
-    cholmod_sparse matrix = cholmod_view(pattern, nullptr);
-    factor = cholmod_analyze(&matrix, &common);
-    if (!factor) {
-      cholmod_finish(&common);
-      throw std::bad_alloc();
-    }
+    analyze(pattern);
   }
-  ~Analysis() {
-    cholmod_free_factor(&factor, &common);
-    cholmod_finish(&common);
-  }
-  Analysis(const Analysis&) = delete;
-  Analysis& operator=(const Analysis&) = delete;
 };
 
 // All panels of a front, and where column c of row 0 is among them.
@@ -331,7 +301,7 @@ MultifrontalCholesky<Real>::MultifrontalCholesky(SymmetricPattern pattern)
 template <class Real>
 void MultifrontalCholesky<Real>::find_fronts() {
   const Analysis analysis(pattern_);
-  const cholmod_factor& f = *analysis.factor;
+  const cholmod_factor& f = *analysis.l;
   const auto* super = static_cast<const int*>(f.super);
   const auto* start = static_cast<const int*>(f.pi);
   const auto* row = static_cast<const int*>(f.s);
@@ -466,7 +436,6 @@ bool MultifrontalCholesky<Real>::factor() {
       });
     }
   }
-  failed_column_ = -1;
   return true;
 }
 
@@ -495,12 +464,9 @@ bool MultifrontalCholesky<Real>::eliminate_columns(const Front& front, Real* col
     const int width = std::min(panel, front.columns - k), column = front.first_column + k;
     for (int c = 0; c < width; ++c)
       bound[c] = static_cast<Real>(least * values_[pattern_.diagonal(column + c)]);
-    const int good = take_panel_of_width<Real>[width]({columns, front.rows, front.columns, update},
-                                                      k, bound, pivots_.data() + column);
-    if (good < width) {
-      failed_column_ = column + good;
+    if (!of_width<Real>[width - 1].take_panel({columns, front.rows, front.columns, update}, k,
+                                              bound, pivots_.data() + column))
       return false;
-    }
   }
   return true;
 }
@@ -530,8 +496,9 @@ void MultifrontalCholesky<Real>::substitute(Real* rhs) {
     std::fill_n(w + front.columns, front.below(), Real{0});
     for (int k = 0; k < front.columns; k += panel) {
       const int width = std::min(panel, front.columns - k);
-      forward_of_width<Real>[width](l + panel_at<Real>(front.rows, k),
-                                    panel_ld<Real>(width, front.rows - k), front.rows - k, w + k);
+      of_width<Real>[width - 1].forward(l + panel_at<Real>(front.rows, k),
+                                        panel_ld<Real>(width, front.rows - k), front.rows - k,
+                                        w + k);
     }
     std::copy_n(w, front.columns, x);
     const Real* below = w + front.columns;
@@ -549,8 +516,8 @@ void MultifrontalCholesky<Real>::substitute(Real* rhs) {
     std::fill_n(below + front.below(), lanes<Real>, Real{0});
     for (int k = (front.columns - 1) / panel * panel; k >= 0; k -= panel) {
       const int width = std::min(panel, front.columns - k);
-      back_of_width<Real>[width](l + panel_at<Real>(front.rows, k),
-                                 panel_ld<Real>(width, front.rows - k), front.rows - k, w + k);
+      of_width<Real>[width - 1].back(l + panel_at<Real>(front.rows, k),
+                                     panel_ld<Real>(width, front.rows - k), front.rows - k, w + k);
     }
     std::copy_n(w, front.columns, x);
   }

@@ -8,11 +8,10 @@
 // the rows below, with what the children leave over there, is the front's update matrix, for its
 // parent.
 //
-// Fixed by the pattern, and so made in the constructor: supernodes and their rows (CHOLMOD's
-// analysis), the place of every entry of A in its front, the place of every row of an update matrix
-// in the parent's front, and the place of every update matrix. Those lie on two stacks, one for
-// even and one for odd depths of the tree: a front's update matrix is made on one while its
-// children's, the last ones on the other, are read and dropped.
+// The constructor lays out supernodes and their rows (CHOLMOD's analysis), and the place of every
+// entry of A and every row of an update matrix in its front. Update matrices lie on two stacks, for
+// even and odd depths of the tree: a front's is made on one while its children's, the last ones on
+// the other, are read and dropped.
 //
 // The dense steps take panels of up to eight columns, whose number is a template argument: eight
 // columns of the panel against four of the target in one loop over rows, four doubles (eight
@@ -25,9 +24,8 @@
 
 namespace inextensible {
 
-// Real: double, or float for half the memory and twice the numbers an instruction, where seven
-// digits are enough: as the linear solver of an iteration that corrects itself, or of one that is
-// preconditioned.
+// Real: double, or float where seven digits are enough: half the memory, and twice the numbers an
+// instruction.
 template <class Real>
 class MultifrontalCholesky final : public SpdSolver {
  public:
@@ -48,8 +46,6 @@ class MultifrontalCholesky final : public SpdSolver {
   // from. Unlike reciprocal_condition() it does not see how rows are scaled, as the solve's
   // accuracy does not.
   double least_relative_pivot() const;
-  // After factor() returned false: the column whose pivot was too small.
-  int failed_column() const { return failed_column_; }
 
  private:
   struct Front {
@@ -85,7 +81,6 @@ class MultifrontalCholesky final : public SpdSolver {
   std::vector<Real> front_rows_;   // solve(): one number a row of a front
   std::vector<Real> rounded_;      // solve() in single precision: the right-hand side
   double nonzeros_ = 0, flops_ = 0;
-  int failed_column_ = -1;
 };
 
 }  // namespace inextensible

@@ -18,18 +18,16 @@ class SpdSolver {
   SpdSolver& operator=(const SpdSolver&) = delete;
 
   virtual double* values() = 0;  // entries() numbers, in the pattern's order
-  // false: not positive definite (or not finite), that is, a pivot of L D L^T is not above
-  // least_pivot times the diagonal entry that it came from. (The supernodal code has no such pivots
-  // to look at and takes any positive one.)
+  // false: not finite, or a pivot of L D L^T is not above least_pivot times the diagonal entry that
+  // it came from. (The supernodal code takes any positive pivot.)
   virtual bool factor() = 0;
-  // 0 (the default) takes every positive pivot; 1e-10, say, refuses matrices in which ten digits
-  // are lost.
+  // 0 (the default) takes every positive pivot; 1e-10 refuses matrices in which ten digits are
+  // lost.
   void set_least_pivot(double relative) { least_pivot_ = relative; }
   virtual void solve(
       double* rhs) = 0;  // n numbers, overwritten by the solution; after a successful factor()
-  // As solve(), but iterative solvers stop once |b - A x| <= tolerance |b|; direct ones are as
-  // exact as they are. false: not reached, or not positive definite after all; rhs is then
-  // unspecified.
+  // Iterative solvers stop once |b - A x| <= tolerance |b|. false: not reached, or not positive
+  // definite after all; rhs is then unspecified.
   virtual bool solve_within(double /*tolerance*/, double* rhs) {
     solve(rhs);
     return true;

@@ -4,20 +4,24 @@
 #include <stdexcept>
 #include <string>
 
-#include "solvers/linear/block_tridiagonal.h"
-#include "solvers/linear/cholmod.h"
 #include "solvers/linear/hybrid.h"
 #include "solvers/linear/line_cg.h"
 #include "solvers/linear/mixed_cholesky.h"
 #include "solvers/linear/multifrontal_cholesky.h"
-#include "solvers/linear/tridiagonal.h"
 
 namespace inextensible {
+
+// Those that are known by their name alone.
+std::unique_ptr<SpdSolver> make_tridiagonal(SymmetricPattern pattern);
+std::unique_ptr<SpdSolver> make_block_tridiagonal(SymmetricPattern pattern);
+std::unique_ptr<SpdSolver> make_cholmod_simplicial(SymmetricPattern pattern);
+std::unique_ptr<SpdSolver> make_cholmod_supernodal(SymmetricPattern pattern);
+
 namespace {
 
-template <class Solver, auto... arguments>
+template <class Solver>
 std::unique_ptr<SpdSolver> make(SymmetricPattern pattern) {
-  return std::make_unique<Solver>(std::move(pattern), arguments...);
+  return std::make_unique<Solver>(std::move(pattern));
 }
 
 constexpr auto lower = SymmetricPattern::Triangle::lower;
@@ -39,9 +43,9 @@ class NoEquations : public SpdSolver {
 // codes a lower one.
 constexpr SpdSolverRow rows[] = {
     {"tridiagonal", "L D L^T from both ends", upper, direct, Takes::tridiagonal, as_is,
-     Precision::full, make<TridiagonalSolver>},
+     Precision::full, make_tridiagonal},
     {"block_tridiagonal", "the same of 3 x 3 blocks", upper, direct, Takes::block_tridiagonal,
-     as_is, Precision::full, make<BlockTridiagonalSolver>},
+     as_is, Precision::full, make_block_tridiagonal},
     {"multifrontal", "multifrontal Cholesky, laid out once", lower, direct, Takes::any, fills,
      Precision::full, make<MultifrontalCholesky<double>>},
     {"multifrontal_mixed", "the same in single precision where that is enough", lower, direct,
@@ -51,9 +55,9 @@ constexpr SpdSolverRow rows[] = {
     {"hybrid", "line_cg while it converges quickly, else multifrontal", upper, iterative,
      Takes::any, as_is, Precision::full, make<HybridSpdSolver>},
     {"cholmod_simplicial", "CHOLMOD's simplicial Cholesky", upper, direct, Takes::any, fills,
-     Precision::full, make<CholmodSolver, false>},
+     Precision::full, make_cholmod_simplicial},
     {"cholmod_supernodal", "CHOLMOD's supernodal Cholesky", lower, direct, Takes::any, fills,
-     Precision::full, make<CholmodSolver, true>},
+     Precision::full, make_cholmod_supernodal},
 };
 
 }  // namespace
@@ -66,10 +70,6 @@ const SpdSolverRow& spd_solver(std::string_view name) {
   if (place == std::end(rows))
     throw std::invalid_argument("no linear solver '" + std::string(name) + "'");
   return *place;
-}
-
-SymmetricPattern::Triangle triangle_of(std::string_view solver) {
-  return spd_solver(solver).triangle;
 }
 
 std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern) {

@@ -1,4 +1,4 @@
-// The list of all linear solvers of spd_solver.h: a new one is its file pair and one row in
+// The list of all linear solvers of spd_solver.h: a new one is its file and one row in
 // spd_solvers.cpp.
 #pragma once
 
@@ -27,9 +27,6 @@ struct SpdSolverRow {
 std::span<const SpdSolverRow> spd_solvers();
 // Throws std::invalid_argument, naming it, if there is none.
 const SpdSolverRow& spd_solver(std::string_view name);
-
-// The triangle that the named solver reads.
-SymmetricPattern::Triangle triangle_of(std::string_view solver);
 
 // Throws std::invalid_argument for a name not in the list or a pattern that the solver cannot take.
 std::unique_ptr<SpdSolver> make_spd_solver(std::string_view name, SymmetricPattern pattern);

@@ -1,24 +1,40 @@
-// Every pivot waits for the division of the one before it: some twenty cycles a row. So rows are
-// eliminated from both ends at once, two such chains side by side, and the row in the middle last
-// (the twisted factorization). This is L D L^T of the matrix with its rows in another order, hence
-// as stable. Loops: one over pairs of rows to factor, two to solve.
-#include "solvers/linear/tridiagonal.h"
-
+// L D L^T of a symmetric tridiagonal matrix (Golub and Van Loan, Matrix Computations,
+// section 4.3.6): O(n), no pivoting. Every pivot waits for the division of the one before it: some
+// twenty cycles a row. So rows are eliminated from both ends at once, two such chains side by side,
+// and the row in the middle last (twisted: van der Vorst 1987). This is L D L^T of the matrix with
+// its rows in another order, hence as stable. Loops: one over pairs of rows to factor, two to
+// solve.
 #include <algorithm>
+#include <memory>
 #include <stdexcept>
 
-namespace inextensible {
+#include "solvers/linear/spd_solver.h"
 
-TridiagonalSolver::TridiagonalSolver(const SymmetricPattern& pattern) : n_(pattern.n) {
-  if (!pattern.tridiagonal() || pattern.triangle != SymmetricPattern::Triangle::upper ||
-      pattern.entries() != 2 * pattern.n - 1) {
-    throw std::invalid_argument(
-        "the linear solver 'tridiagonal' needs constraints that form one chain in order");
+namespace inextensible {
+namespace {
+
+class TridiagonalSolver final : public SpdSolver {
+ public:
+  explicit TridiagonalSolver(const SymmetricPattern& pattern)
+      : n_(pattern.n), values_(pattern.entries()), l_(n_), inverse_d_(n_) {
+    if (!pattern.chain(1) || pattern.triangle != SymmetricPattern::Triangle::upper) {
+      throw std::invalid_argument(
+          "the linear solver 'tridiagonal' needs constraints that form one chain in order");
+    }
   }
-  values_.resize(2 * n_ - 1);
-  l_.resize(n_);
-  inverse_d_.resize(n_);
-}
+  double* values() override { return values_.data(); }
+  bool factor() override;
+  void solve(double* rhs) override;
+  double reciprocal_condition() const override;
+  double factor_nonzeros() const override { return 2.0 * static_cast<double>(n_) - 1; }
+  double factor_flops() const override { return 3.0 * static_cast<double>(n_); }
+
+ private:
+  std::size_t n_;
+  std::vector<double> values_;  // upper triangle: d_0, (e_1, d_1), (e_2, d_2), ...
+  std::vector<double> l_;       // the factor's entry between rows i - 1 and i, i from 1 on
+  std::vector<double> inverse_d_;
+};
 
 bool TridiagonalSolver::factor() {
   const auto pivot = [&](std::size_t row, double lost) {
@@ -77,6 +93,12 @@ void TridiagonalSolver::solve(double* rhs) {
     rhs[i] = above = rhs[i] * inverse_d_[i] - l_[i + 1] * above;
     rhs[j] = below = rhs[j] * inverse_d_[j] - l_[j] * below;
   }
+}
+
+}  // namespace
+
+std::unique_ptr<SpdSolver> make_tridiagonal(SymmetricPattern pattern) {
+  return std::make_unique<TridiagonalSolver>(pattern);
 }
 
 }  // namespace inextensible

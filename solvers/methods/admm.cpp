@@ -23,7 +23,6 @@
 
 #include "solvers/methods/rows.h"
 #include "solvers/systems/constraint_system.h"
-#include "solvers/systems/vertex_blocks.h"
 
 namespace inextensible {
 namespace {
@@ -36,7 +35,9 @@ class Admm final : public VelocityFilter {
   double reciprocal_condition() const override { return solver_->reciprocal_condition(); }
 
  private:
-  SymmetricPattern graph_of(const std::vector<int>& order, bool one_chain);
+  SymmetricPattern graph_of(
+      const std::vector<int>& order, bool one_chain,
+      SymmetricPattern::Triangle triangle = SymmetricPattern::Triangle::upper);
   void choose_solver(std::string_view wanted);
   bool factor(WorkCounters& work);
   void start(double h, Iterate x);
@@ -94,18 +95,19 @@ Admm::Admm(const Problem& problem, const BackendOptions& options)
 }
 
 // Which vertices of `order` share an edge, as a matrix in that order.
-SymmetricPattern Admm::graph_of(const std::vector<int>& order, bool one_chain) {
+SymmetricPattern Admm::graph_of(const std::vector<int>& order, bool one_chain,
+                                SymmetricPattern::Triangle triangle) {
   free_vertex_ = order;
-  std::vector<Edge> pairs;
+  Pairs pairs;
   for (int f = 0; f < static_cast<int>(order.size()); ++f) {
     place_[order[f]] = f;
     // Where one chain ends and the next begins the matrix holds zeros.
-    if (one_chain && f > 0) pairs.push_back({f - 1, f});
+    if (one_chain && f > 0) pairs.emplace_back(f - 1, f);
   }
   for (const auto [a, b] : problem_.edges()) {
-    if (place_[a] >= 0 && place_[b] >= 0) pairs.push_back({place_[a], place_[b]});
+    if (place_[a] >= 0 && place_[b] >= 0) pairs.emplace_back(place_[a], place_[b]);
   }
-  return vertex_graph(static_cast<int>(order.size()), pairs);
+  return pattern_of(static_cast<int>(order.size()), pairs, triangle);
 }
 
 void Admm::choose_solver(std::string_view wanted) {
@@ -113,17 +115,16 @@ void Admm::choose_solver(std::string_view wanted) {
   for (int v = 0; v < problem_.vertices(); ++v) {
     if (problem_.inverse_mass()[v] > 0) order.push_back(v);
   }
-  SymmetricPattern graph = graph_of(order, true);
-  linear_solver_ = wanted != "auto"      ? std::string(wanted)
-                   : graph.tridiagonal() ? "tridiagonal"
-                                         : "multifrontal";
-  if (spd_solver(linear_solver_).fills) {
+  pattern_ = graph_of(order, true);
+  linear_solver_ = wanted != "auto"    ? std::string(wanted)
+                   : pattern_.chain(1) ? "tridiagonal"
+                                       : "multifrontal";
+  const SpdSolverRow& row = spd_solver(linear_solver_);
+  if (row.fills) {
     const std::vector<int> elimination = fill_reducing_order(graph_of(order, false));
     for (std::size_t f = 0; f < order.size(); ++f) order[f] = free_vertex_[elimination[f]];
-    graph = graph_of(order, false);
+    pattern_ = graph_of(order, false, row.triangle);
   }
-  const bool upper = triangle_of(linear_solver_) == SymmetricPattern::Triangle::upper;
-  pattern_ = upper ? graph : lower_triangle(graph);
   solver_ = make_spd_solver(linear_solver_, pattern_);
 }
 
@@ -133,14 +134,7 @@ bool Admm::factor(WorkCounters& work) {
   double* value = solver_->values();
   std::fill(value, value + pattern_.entries(), 0.0);
   const auto add = [&](int f, int g, double number) {
-    if (f < 0 || g < 0) return;
-    const bool upper = pattern_.triangle == SymmetricPattern::Triangle::upper;
-    const int low = std::min(f, g), high = std::max(f, g);
-    const int row = upper ? low : high, column = upper ? high : low;
-    const int* first = pattern_.row_index.data();
-    const int* place = std::lower_bound(first + pattern_.column_start[column],
-                                        first + pattern_.column_start[column + 1], row);
-    value[place - first] += number;
+    if (f >= 0 && g >= 0) value[pattern_.place(f, g)] += number;
   };
   const double scale = problem_.contact_inside() ? 1 + contact_weight : 1;
   for (std::size_t f = 0; f < free_vertex_.size(); ++f) {

@@ -17,7 +17,6 @@
 
 #include "solvers/methods/rows.h"
 #include "solvers/systems/active_contacts.h"
-#include "solvers/systems/chain_kkt.h"
 #include "solvers/systems/constraint_system.h"
 #include "solvers/systems/kkt_system.h"
 #include "solvers/systems/projected_cg.h"
@@ -70,7 +69,7 @@ constexpr int many_edges = 600;
 std::string choose(std::string_view wanted, const Problem& problem) {
   if (wanted != "auto") return std::string(wanted);
   if (problem.contact_inside()) return projected_cg;
-  if (ChainKkt::fits(problem)) return block_tridiagonal;
+  if (forms_chains(problem)) return block_tridiagonal;
   const bool fill = problem.constraints() >= problem.vertices();
   return fill && problem.constraints() >= many_edges ? projected_cg : "quasi_definite";
 }
@@ -79,7 +78,7 @@ std::unique_ptr<KktSolver> make_kkt_solver(std::string_view name, const Problem&
                                            const EdgeConstraints& edges, double cg_tolerance) {
   if (name == projected_cg)
     return std::make_unique<ProjectedCg>(problem, edges, ProjectedCg::Settings{cg_tolerance});
-  if (name == block_tridiagonal) return std::make_unique<ChainKkt>(problem, edges);
+  if (name == block_tridiagonal) return make_chain_kkt(problem, edges);
   return std::make_unique<KktSystem>(problem, edges);
 }
 

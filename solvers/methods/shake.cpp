@@ -62,9 +62,8 @@ class Shake final : public VelocityFilter {
   Eigen::VectorXd c_, mu_;  // C~(x_j), and the step's h^2 dlambda
   Iterate::Record best_;    // of least |C|
   // J(x_j) W J(x^n)^T, made at the first failure to converge: most runs never need it.
-  std::unique_ptr<UnsymmetricSchurComplement> current_;
+  std::unique_ptr<SchurComplement> current_;
   std::unique_ptr<UnsymmetricSolver> current_solver_;
-  std::unique_ptr<ContactTerms> current_contact_terms_;  // with contacts only
 };
 
 constexpr double shortest_step = 1e-3;  // of Newton's
@@ -192,18 +191,12 @@ double Shake::distance(const Positions& x_start, const Positions& x) const {
 
 bool Shake::factor_here(const Contacts* contacts, WorkCounters& work) {
   if (!current_) {
-    current_ = std::make_unique<UnsymmetricSchurComplement>(system_.edges(), problem_.vertices());
-    current_solver_ = make_unsymmetric_solver(current_->column_start, current_->row_index);
+    current_ = std::make_unique<SchurComplement>(system_.edges(), problem_.vertices(),
+                                                 SymmetricPattern::Triangle::both);
+    current_solver_ = make_unsymmetric_solver(current_->pattern());
   }
   current_->assemble(u_, u_start_, current_solver_->values());
-  if (contacts) {
-    if (!current_contact_terms_) {
-      current_contact_terms_ = std::make_unique<ContactTerms>(
-          system_.edges(), problem_.vertices(), current_->column_start, current_->row_index);
-    }
-    current_contact_terms_->subtract(*contacts, problem_.inverse_mass().data(), u_, u_start_,
-                                     current_solver_->values());
-  }
+  if (contacts) current_->subtract_contacts(*contacts, u_, u_start_, current_solver_->values());
   ++work.assemblies;
   ++work.factorizations;
   return current_solver_->factor();

@@ -2,8 +2,7 @@
 
 #include <string_view>
 
-#include "solvers/stepping/bdf2_of_euler.h"
-#include "solvers/stepping/bdf2_stepper.h"
+#include "solvers/stepping/bdf2.h"
 #include "solvers/stepping/midpoint_stepper.h"
 
 namespace inextensible {

@@ -33,7 +33,6 @@ Contacts::Contacts(const Problem& problem)
   slack_ = length > 0 ? room * length * std::sqrt(problem.total_mass())
                       : std::numeric_limits<double>::infinity();
   for (std::vector<double>& column : numbers_) column.assign(problem.vertices() + lanes, 0.0);
-  push_.assign(problem.vertices() + lanes, 0.0);
   found_.reserve(problem.vertices());
   if (!problem.contact_inside() || friction_ == 0) return;
   candidate_.resize(3, problem.vertices());
@@ -69,7 +68,7 @@ void Contacts::put(const ContactPlane& plane, WorkCounters& work) {
   if (place < 0) {
     place = count_++;
     vertex_[place] = plane.vertex;
-    push_[place] = 0;
+    value(pushed, place) = 0;
     ++work.contacts;
   }
   value(normal_x, place) = plane.normal.x();
@@ -99,8 +98,8 @@ int Contacts::update(Positions& x, WorkCounters& work) {
     } else if (plane.normal.dot(at) - plane.offset <= margin_) {
       continue;
     }
-    at -= push_[c] * normal(c);
-    push_[c] = 0;
+    at -= push(c) * normal(c);
+    value(pushed, c) = 0;
     put(plane, work);
     ++changed;
   }
@@ -119,7 +118,7 @@ void Contacts::settle(Positions& x) {
       for (int axis = 0; axis < 3; ++axis) at[axis][i] = x(axis, vertex[i]);
     }
     visit({&value(normal_x, first), &value(normal_y, first), &value(normal_z, first)},
-          &value(offset, first), push_.data() + first, {at[0], at[1], at[2]});
+          &value(offset, first), &value(pushed, first), {at[0], at[1], at[2]});
     for (int i = 0; i < here; ++i) {
       for (int axis = 0; axis < 3; ++axis) x(axis, vertex[i]) = at[axis][i];
     }
@@ -160,7 +159,7 @@ void Contacts::accept(const Positions& x) {
   const Timing measured = timing();
   const double scale = 1 / (h_ * h_), edge = margin_ / margin;
   expected_ = scale * (x - candidate_);
-  for (int c = 0; c < count_; ++c) expected_.col(vertex_[c]) -= scale * push_[c] * normal(c);
+  for (int c = 0; c < count_; ++c) expected_.col(vertex_[c]) -= scale * push(c) * normal(c);
   for (Eigen::Index v = 0; v < x.cols(); ++v) {
     const auto now = expected_.col(v), before = before_.col(v);
     const double distance = (x.col(v) - start_->col(v)).norm();
@@ -193,8 +192,7 @@ void Contacts::keep_on_planes(const Positions& x, Positions& v) const {
   }
 }
 
-// In the paper's pipeline, with friction of this push; where contacts are kept inside the solve,
-// little is left to do, and friction was before.
+// With friction of this push, unless contacts were kept inside the solve and friction came before.
 void Contacts::push_out(Positions& x, WorkCounters& work) {
   obstacle_.find(x, tolerance_, found_, work);
   for (const ContactPlane& plane : found_) {
@@ -202,7 +200,7 @@ void Contacts::push_out(Positions& x, WorkCounters& work) {
     const double depth = plane.offset - plane.normal.dot(at);
     at += depth * plane.normal;
     put(plane, work);
-    push_[place_[plane.vertex]] += depth;
+    value(pushed, place_[plane.vertex]) += depth;
     if (!problem_.contact_inside()) take_friction(plane, depth, at - carried(plane.vertex), x);
   }
   if (problem_.contact_inside() || friction_ == 0) return;
@@ -215,20 +213,17 @@ void Contacts::push_out(Positions& x, WorkCounters& work) {
 }
 
 void Contacts::save(Record& record) const {
-  for (std::size_t i = 0; i < record.done.size(); ++i) {
-    const std::vector<double>& from = i < numbers ? numbers_[i] : push_;
-    record.done[i].reserve(from.size());
-    record.done[i].assign(from.begin(), from.begin() + count_);
+  for (std::size_t i = 0; i < numbers; ++i) {
+    record[i].reserve(numbers_[i].size());
+    record[i].assign(numbers_[i].begin(), numbers_[i].begin() + count_);
   }
 }
 
 void Contacts::restore(const Record& record) {
-  const int known = static_cast<int>(record.done[0].size());
+  const int known = static_cast<int>(record[0].size());
   while (count_ > known) place_[vertex_[--count_]] = -1;
-  for (std::size_t i = 0; i < record.done.size(); ++i) {
-    std::vector<double>& to = i < numbers ? numbers_[i] : push_;
-    std::copy(record.done[i].begin(), record.done[i].end(), to.begin());
-  }
+  for (std::size_t i = 0; i < numbers; ++i)
+    std::copy(record[i].begin(), record[i].end(), numbers_[i].begin());
 }
 
 }  // namespace inextensible

@@ -6,17 +6,15 @@
 // which settle() brings about vertex by vertex, by projected Gauss-Seidel (Jourdan, Alart and Jean
 // 1998): the push is kept, so that a plane releases a vertex that is pulled away from it.
 //
-// Friction is lagged: it is found before edges and planes are solved, and held fixed while they
-// are. Coulomb's cone with the push of the same step couples all three, and a tight ring then locks
-// itself: no positions satisfy them together. Planes and edges alone have a solution wherever the
-// geometry has one. What edges will do to a vertex is expected to be what they have done (Kaufman
-// et al. 2008 and Li et al. 2020 lag the push in this way):
+// Friction is lagged: it is found before edges and planes are solved, and held fixed meanwhile.
+// With the push of the same step in Coulomb's cone, a tight ring locks itself: no positions satisfy
+// edges, planes and friction together. What edges will do to a vertex is expected to be what they
+// have done (Kaufman et al. 2008 and Li et al. 2020 lag the push in this way):
 // * They press with a mean over some ten steps. A vertex that is `depth` inside with it is pushed
 //   by as much, and friction takes at most mu depth off its displacement along the surface.
-// * They pull along the surface by what they did in each of the last two steps, the lesser of the
-//   two, and by nothing where these contradict each other. Friction takes this off beforehand, so
-//   that a vertex sticks under a steady pull: from rest it creeps by what that pull moves it in one
-//   or two steps, which falls with the square of the step.
+// * They pull along the surface by the lesser of what they did in the last two steps, and by
+//   nothing where these contradict each other. Friction takes this off beforehand, so that a vertex
+//   sticks under a steady pull; from rest it creeps by what that pull moves it in one or two steps.
 // On an obstacle that moves, displacements are counted from where the obstacle carries the vertex.
 #pragma once
 
@@ -47,13 +45,12 @@ class Contacts {
   // candidate is expected of them in the next step.
   void accept(const Positions& x);
 
-  // Adds a contact for every vertex of x that is inside and has none; one that is inside in spite
-  // of its plane, as it may be where the obstacle is not convex, takes the plane that is nearest
-  // now. Returns how many were inside, deeper than `tolerance()`.
+  // Gives every vertex of x that is inside a contact with the plane that is nearest now. Returns
+  // how many were inside, deeper than `tolerance()`.
   int find(const Positions& x, WorkCounters& work);
   // As find(); and a contact that holds a vertex which has left the surroundings of its plane takes
-  // the plane that is nearest now: the old one keeps the vertex out of half a space, where the
-  // obstacle may be long past. Then settles. Returns how many planes are new or replaced.
+  // the nearest one, as the old one excludes half of space. Then settles. Returns how many planes
+  // are new or replaced.
   int update(Positions& x, WorkCounters& work);
   double tolerance() const { return tolerance_; }  // m
 
@@ -73,7 +70,7 @@ class Contacts {
   // that holds them, as it moves.
   void keep_on_planes(const Positions& x, Positions& v) const;
 
-  // What a step must do in the end, whatever it did before: leaves no vertex inside.
+  // The end of every step: leaves no vertex inside.
   void push_out(Positions& x, WorkCounters& work);
 
   // |x - x_start| in the norm of M, each vertex from where it began or from where the obstacle
@@ -107,32 +104,28 @@ class Contacts {
 
   int count() const { return count_; }
   int vertex(int contact) const { return vertex_[contact]; }
-  Eigen::Vector3d normal(int contact) const { return vector(normal_x, contact); }
-  bool holds(int contact) const { return push_[contact] > 0; }
-  double push(int contact) const { return push_[contact]; }  // m, along the normal
-  void set_push(int contact, double push) { push_[contact] = push; }
+  Eigen::Vector3d normal(int contact) const {
+    return {value(normal_x, contact), value(normal_y, contact), value(normal_z, contact)};
+  }
+  bool holds(int contact) const { return push(contact) > 0; }
+  double push(int contact) const { return value(pushed, contact); }  // m, along the normal
+  void set_push(int contact, double push) { value(pushed, contact) = push; }
   // Height of its vertex at x above the plane, m.
   double gap(int contact, const Eigen::Vector3d& x) const {
     return normal(contact).dot(x) - value(offset, contact);
   }
 
-  // Planes and pushes, to be taken up again with the positions of that time. Contacts that were
-  // found since are forgotten.
-  struct Record {
-    std::array<std::vector<double>, 5> done;
-  };
+  // Numbers of a contact, m; each has a column of its own.
+  enum Number { normal_x, normal_y, normal_z, offset, pushed, numbers };
+  // A snapshot of planes and pushes, for rollback with the positions of that time. Contacts that
+  // were found since are forgotten.
+  using Record = std::array<std::vector<double>, numbers>;
   void save(Record& record) const;
   void restore(const Record& record);
 
  private:
-  // Numbers of a contact, m; each has a column of its own.
-  enum Number { normal_x, normal_y, normal_z, offset, numbers };
-
   double& value(Number number, int contact) { return numbers_[number][contact]; }
   double value(Number number, int contact) const { return numbers_[number][contact]; }
-  Eigen::Vector3d vector(Number first, int contact) const {
-    return {numbers_[first][contact], numbers_[first + 1][contact], numbers_[first + 2][contact]};
-  }
   void put(const ContactPlane& plane, WorkCounters& work);
   Eigen::Vector3d carried(int vertex) const;
   void take_friction(const ContactPlane& plane, double push, const Eigen::Vector3d& displacement,
@@ -148,7 +141,6 @@ class Contacts {
   int count_ = 0;
   std::vector<int> vertex_;
   std::array<std::vector<double>, numbers> numbers_;  // filled up to whole lanes
-  std::vector<double> push_;                          // as they are
   std::vector<int> place_;                            // of a vertex's contact, or -1
   Obstacle obstacle_;
   std::vector<ContactPlane> found_;

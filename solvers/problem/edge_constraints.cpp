@@ -33,22 +33,17 @@ EdgeConstraints::EdgeConstraints(const Problem& problem, double strain_limit,
 }
 
 bool EdgeConstraints::linearize(const Positions& x, Eigen::Matrix3Xd& u, Eigen::VectorXd& c) const {
-  const double* p = x.data();
   double* uk = u.data();
   double* ck = c.data();
   const std::size_t m = count();
   int violations = 0;
   for (std::size_t k = 0; k < m; ++k, uk += 3) {
-    const double* pa = p + 3 * a[k];
-    const double* pb = p + 3 * b[k];
-    const double il = inverse_rest_length[k];
-    const double s0 = (pb[0] - pa[0]) * il, s1 = (pb[1] - pa[1]) * il, s2 = (pb[2] - pa[2]) * il;
-    const double q = s0 * s0 + s1 * s1 + s2 * s2;  // |d|^2 / l^2
-    uk[0] = 2 * s0;
-    uk[1] = 2 * s1;
-    uk[2] = 2 * s2;
-    ck[k] = rest_length[k] * (q - 1);
-    violations += !(q >= permissible_low && q <= permissible_high);  // the negation catches NaN
+    const Scaled s = scaled(x.data(), k);
+    uk[0] = 2 * s.x;
+    uk[1] = 2 * s.y;
+    uk[2] = 2 * s.z;
+    ck[k] = rest_length[k] * (s.squared - 1);
+    violations += outside(s);
   }
   return violations == 0;
 }
@@ -78,19 +73,11 @@ void EdgeConstraints::rate(const Eigen::Matrix3Xd& u, const Positions& v,
 bool EdgeConstraints::permissible(const Positions& x) const {
   constexpr std::size_t block =
       128;  // long enough to vectorize, short enough that a violation is found soon
-  const double* p = x.data();
   const std::size_t m = a.size();
   for (std::size_t begin = 0; begin < m; begin += block) {
     const std::size_t end = std::min(begin + block, m);
     int violations = 0;
-    for (std::size_t k = begin; k < end; ++k) {
-      const double* pa = p + 3 * a[k];
-      const double* pb = p + 3 * b[k];
-      const double il = inverse_rest_length[k];
-      const double s0 = (pb[0] - pa[0]) * il, s1 = (pb[1] - pa[1]) * il, s2 = (pb[2] - pa[2]) * il;
-      const double q = s0 * s0 + s1 * s1 + s2 * s2;
-      violations += !(q >= permissible_low && q <= permissible_high);
-    }
+    for (std::size_t k = begin; k < end; ++k) violations += outside(scaled(x.data(), k));
     if (violations != 0) return false;
   }
   return true;

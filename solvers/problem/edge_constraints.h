@@ -69,6 +69,17 @@ class EdgeConstraints {
   double permissible_low, permissible_high;  // bounds on |d|^2 / l^2
 
  private:
+  struct Scaled {  // d / l of an edge, and its square
+    double x, y, z, squared;
+  };
+  Scaled scaled(const double* x, std::size_t k) const {
+    const double *pa = x + 3 * a[k], *pb = x + 3 * b[k], il = inverse_rest_length[k];
+    const double s0 = (pb[0] - pa[0]) * il, s1 = (pb[1] - pa[1]) * il, s2 = (pb[2] - pa[2]) * il;
+    return {s0, s1, s2, s0 * s0 + s1 * s1 + s2 * s2};
+  }
+  bool outside(const Scaled& s) const {  // the negation catches NaN
+    return !(s.squared >= permissible_low && s.squared <= permissible_high);
+  }
   std::vector<int> order_;
 };
 

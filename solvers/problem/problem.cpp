@@ -5,47 +5,46 @@
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 namespace inextensible {
 namespace {
 
-[[noreturn]] void refuse(const std::string& what, std::size_t index, const std::string& why) {
-  throw std::invalid_argument(what + " " + std::to_string(index) + ": " + why);
+template <class... Words>
+[[noreturn]] void refuse(const Words&... words) {
+  std::ostringstream text;
+  (text << ... << words);
+  throw std::invalid_argument(text.str());
 }
 
+// What is so small or so large that its inverse is not a normal number is a mistake.
 void check_positive(const std::vector<double>& values, const char* what, const char* quantity) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    // What is so small or so large that its inverse is not a normal number is a mistake.
-    if (!(values[i] > 0) || !std::isnormal(values[i]) || !std::isnormal(1 / values[i])) {
-      std::ostringstream value;
-      value << values[i];
-      refuse(what, i,
-             std::string(quantity) + " is " + value.str() + ", must be positive and finite");
-    }
+    const double value = values[i];
+    if (!(value > 0) || !std::isnormal(value) || !std::isnormal(1 / value))
+      refuse(what, ' ', i, ": ", quantity, " is ", value, ", must be positive and finite");
   }
 }
+
+bool exists(int vertex, std::size_t vertices) {
+  return vertex >= 0 && std::cmp_less(vertex, vertices);
+}
+
+bool negative_or_not_finite(double value) { return !(value >= 0) || !std::isfinite(value); }
 
 void check_edges(const std::vector<Edge>& edges, std::size_t vertices, const char* what) {
   for (std::size_t k = 0; k < edges.size(); ++k) {
     const auto [a, b] = edges[k];
-    const auto exists = [&](int vertex) { return vertex >= 0 && std::cmp_less(vertex, vertices); };
-    if (!exists(a) || !exists(b)) {
-      refuse(what, k,
-             "joins vertices " + std::to_string(a) + " and " + std::to_string(b) +
-                 ", but there are only " + std::to_string(vertices));
-    }
-    if (a == b) refuse(what, k, "joins vertex " + std::to_string(a) + " with itself");
+    if (!exists(a, vertices) || !exists(b, vertices))
+      refuse(what, ' ', k, ": joins vertices ", a, " and ", b, ", but there are only ", vertices);
+    if (a == b) refuse(what, ' ', k, ": joins vertex ", a, " with itself");
   }
 }
 
 void check_shear(const Springs& shear, std::size_t vertices) {
   if (shear.rest_length.size() != shear.edges.size() ||
-      shear.stiffness.size() != shear.edges.size()) {
-    throw std::invalid_argument(
-        "shear springs: edges, rest lengths and stiffnesses differ in number");
-  }
+      shear.stiffness.size() != shear.edges.size())
+    refuse("shear springs: edges, rest lengths and stiffnesses differ in number");
   check_edges(shear.edges, vertices, "shear spring");
   check_positive(shear.rest_length, "shear spring", "rest length");
   check_positive(shear.stiffness, "shear spring", "stiffness");
@@ -54,24 +53,23 @@ void check_shear(const Springs& shear, std::size_t vertices) {
 void check_bending(const Bending& bending, std::size_t vertices) {
   for (std::size_t s = 0; s < bending.size(); ++s) {
     for (const int vertex : bending[s].vertex) {
-      if (vertex < 0 || std::cmp_greater_equal(vertex, vertices))
-        refuse("bending stencil", s, "vertex " + std::to_string(vertex) + " does not exist");
+      if (!exists(vertex, vertices))
+        refuse("bending stencil ", s, ": vertex ", vertex, " does not exist");
     }
     for (const double c : bending[s].coefficient) {
-      if (!std::isfinite(c)) refuse("bending stencil", s, "a coefficient is not finite");
+      if (!std::isfinite(c)) refuse("bending stencil ", s, ": a coefficient is not finite");
     }
-    if (!(bending[s].stiffness >= 0) || !std::isfinite(bending[s].stiffness))
-      refuse("bending stencil", s, "its stiffness is negative or not finite");
+    if (negative_or_not_finite(bending[s].stiffness))
+      refuse("bending stencil ", s, ": its stiffness is negative or not finite");
   }
 }
 
 void check_drag(const std::vector<double>& drag, std::size_t vertices) {
   if (!drag.empty() && drag.size() != vertices)
-    throw std::invalid_argument("there are " + std::to_string(vertices) + " vertices but " +
-                                std::to_string(drag.size()) + " drag coefficients");
+    refuse("there are ", vertices, " vertices but ", drag.size(), " drag coefficients");
   for (std::size_t i = 0; i < drag.size(); ++i) {
-    if (!(drag[i] >= 0) || !std::isfinite(drag[i]))
-      refuse("vertex", i, "its drag is negative or not finite");
+    if (negative_or_not_finite(drag[i]))
+      refuse("vertex ", i, ": its drag is negative or not finite");
   }
 }
 
@@ -79,38 +77,31 @@ void check_drag(const std::vector<double>& drag, std::size_t vertices) {
 
 Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
   const std::size_t n = parts_.mass.size();
-  if (n == 0) throw std::invalid_argument("a problem needs at least one vertex");
-  if (parts_.rest_length.size() != parts_.edges.size()) {
-    throw std::invalid_argument("there are " + std::to_string(parts_.edges.size()) + " edges but " +
-                                std::to_string(parts_.rest_length.size()) + " rest lengths");
-  }
+  if (n == 0) refuse("a problem needs at least one vertex");
+  if (parts_.rest_length.size() != parts_.edges.size())
+    refuse("there are ", parts_.edges.size(), " edges but ", parts_.rest_length.size(),
+           " rest lengths");
   check_positive(parts_.mass, "vertex", "mass");
   check_positive(parts_.rest_length, "edge", "rest length");
   check_edges(parts_.edges, n, "edge");
-  if (!parts_.gravity.allFinite()) throw std::invalid_argument("gravity is not finite");
+  if (!parts_.gravity.allFinite()) refuse("gravity is not finite");
 
-  inverse_mass_.resize(n);
-  std::transform(parts_.mass.begin(), parts_.mass.end(), inverse_mass_.begin(),
-                 [](double m) { return 1 / m; });
+  for (const double m : parts_.mass) inverse_mass_.push_back(1 / m);
   for (const int vertex : parts_.pinned) {
-    if (vertex < 0 || std::cmp_greater_equal(vertex, n)) {
-      throw std::invalid_argument("pinned vertex " + std::to_string(vertex) + " does not exist");
-    }
+    if (!exists(vertex, n)) refuse("pinned vertex ", vertex, " does not exist");
     inverse_mass_[vertex] = 0;
   }
   for (std::size_t k = 0; k < parts_.edges.size(); ++k) {
     const auto [a, b] = parts_.edges[k];
-    if (inverse_mass_[a] + inverse_mass_[b] == 0) {
-      refuse("edge", k, "both ends are pinned, so nothing can keep its length; leave it out");
-    }
+    if (inverse_mass_[a] + inverse_mass_[b] == 0)
+      refuse("edge ", k, ": both ends are pinned, so nothing can keep its length; leave it out");
   }
   if (parts_.shear) check_shear(*parts_.shear, n);
   check_bending(parts_.bending, n);
   check_drag(parts_.drag, n);
-  if (parts_.body_motion && !parts_.collider)
-    throw std::invalid_argument("a body's motion without a collider");
+  if (parts_.body_motion && !parts_.collider) refuse("a body's motion without a collider");
   if (parts_.pins_follow_body && !parts_.body_motion)
-    throw std::invalid_argument("pins that follow a body that does not move");
+    refuse("pins that follow a body that does not move");
   total_mass_ = std::accumulate(parts_.mass.begin(), parts_.mass.end(), 0.0);
   if (!parts_.rest_length.empty()) {
     const auto [shortest, longest] =
@@ -122,12 +113,10 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
 
 void check_state(const Problem& problem, const State& state) {
   const auto check = [&](const Positions& p, const char* quantity) {
-    if (p.cols() != problem.vertices()) {
-      throw std::invalid_argument(std::string(quantity) + " holds " + std::to_string(p.cols()) +
-                                  " vertices, the problem " + std::to_string(problem.vertices()));
-    }
+    if (p.cols() != problem.vertices())
+      refuse(quantity, " holds ", p.cols(), " vertices, the problem ", problem.vertices());
     for (Eigen::Index i = 0; i < p.cols(); ++i) {
-      if (!p.col(i).allFinite()) refuse("vertex", i, std::string(quantity) + " is not finite");
+      if (!p.col(i).allFinite()) refuse("vertex ", i, ": ", quantity, " is not finite");
     }
   };
   check(state.x, "position");

@@ -9,7 +9,10 @@ enum class Status {
   singular,       // a linear system could not be solved
   not_finite,     // a number overflowed
 };
-const char* to_string(Status status);
+inline const char* to_string(Status status) {
+  constexpr const char* names[] = {"ok", "not_converged", "singular", "not_finite"};
+  return names[static_cast<int>(status)];
+}
 
 struct StepResult {
   Status status = Status::ok;

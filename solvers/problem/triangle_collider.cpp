@@ -137,11 +137,11 @@ void TriangleCollider::lay_out_grid() {
     planes_.push_back(
         {normal.x(), normal.y(), normal.z(), normal.dot(corner(mesh_, static_cast<int>(f), 0))});
   }
-  all_.resize(count);
-  std::iota(all_.begin(), all_.end(), 0);
+  std::vector<int> all(count);
+  std::iota(all.begin(), all.end(), 0);
   cell_.assign(resolution * resolution * resolution, outside);
-  lists_.push_back(add_list(all_));  // deep
-  refine(Eigen::Vector3i::Zero(), resolution, all_);
+  lists_.push_back(add_list(all));  // deep
+  refine(Eigen::Vector3i::Zero(), resolution, all);
 }
 
 std::size_t TriangleCollider::cell_index(const Eigen::Vector3i& cell) const {
@@ -215,8 +215,7 @@ TriangleCollider::Closest TriangleCollider::closest(int triangle, const Vector3d
   return at(a + vb / sum * ab + vc / sum * ac, 0);
 }
 
-template <class Triangles>
-TriangleCollider::Nearest TriangleCollider::nearest_among(const Triangles& triangles,
+TriangleCollider::Nearest TriangleCollider::nearest_among(std::span<const int> triangles,
                                                           const Vector3d& p) const {
   Closest best{Vector3d::Zero(), std::numeric_limits<double>::infinity(), 0};
   int owner = 0;
@@ -230,10 +229,6 @@ TriangleCollider::Nearest TriangleCollider::nearest_among(const Triangles& trian
   const Vector3d& normal = pseudonormal_[owner][best.feature];
   const double distance = std::sqrt(best.squared);
   return {best.point, normal, (p - best.point).dot(normal) < 0 ? -distance : distance};
-}
-
-TriangleCollider::Nearest TriangleCollider::nearest_by_all(const Vector3d& p) const {
-  return nearest_among(all_, p);
 }
 
 TriangleCollider::List TriangleCollider::add_list(const std::vector<int>& triangles) {

@@ -2,12 +2,11 @@
 // with the sign from angle-weighted pseudonormals (Baerentzen and Aanaes 2005).
 //
 // A uniform grid over the mesh's box lists for each cell every triangle that is nearest to some
-// point of the cell (exact: those no farther from the cell's centre than the nearest one plus the
-// cell's diagonal), found by refining an octree. Cells that lie wholly outside are empty, so a
-// vertex away from the mesh costs one look-up. Of a convex mesh the planes of these triangles are
-// enough: a point is inside if it is behind all of them, and its nearest point is its foot on the
-// plane that it is least behind. A plane that it is not behind shows that it is outside: the one
-// that did so last is asked first.
+// point of the cell (those no farther from its centre than the nearest one plus its diagonal),
+// found by refining an octree. Cells wholly outside are empty. Of a convex mesh the planes of these
+// triangles are enough: a point is inside if it is behind all of them, and its nearest point is its
+// foot on the plane that it is least behind. A plane that it is not behind shows that it is
+// outside: the one that did so last is asked first.
 #pragma once
 
 #include <array>
@@ -43,11 +42,12 @@ class TriangleCollider final : public Collider {
     Eigen::Vector3d normal;  // outward pseudonormal there, unit
     double signed_distance;  // m, negative inside
   };
-  // By way of the grid inside the mesh's box; exact. Outside the box the answer comes from all
-  // triangles.
+  // Exact; inside the mesh's box by way of the grid.
   Nearest nearest(const Eigen::Vector3d& p) const;
   // The slow, obvious route: over all triangles. What the tests compare with.
-  Nearest nearest_by_all(const Eigen::Vector3d& p) const;
+  Nearest nearest_by_all(const Eigen::Vector3d& p) const {
+    return nearest_among(triangles_of(lists_[deep]), p);
+  }
 
  private:
   struct Closest {  // on one triangle
@@ -56,8 +56,7 @@ class TriangleCollider final : public Collider {
     int feature;  // 0 face; 1, 2, 3 edge after corner feature - 1; 4, 5, 6 corner feature - 4
   };
   Closest closest(int triangle, const Eigen::Vector3d& p) const;
-  template <class Triangles>
-  Nearest nearest_among(const Triangles& triangles, const Eigen::Vector3d& p) const;
+  Nearest nearest_among(std::span<const int> triangles, const Eigen::Vector3d& p) const;
   void find_pseudonormals();
   void check_orientation();
   void lay_out_grid();
@@ -87,7 +86,6 @@ class TriangleCollider final : public Collider {
   bool convex_ = false;
   std::vector<std::array<Eigen::Vector3d, 7>> pseudonormal_;  // per triangle, by feature
   Eigen::Vector3d low_, cell_size_, inverse_cell_size_;
-  std::vector<int> all_;   // 0, 1, 2, ...
   std::vector<int> cell_;  // its list, or outside
   std::vector<List> lists_;
   std::vector<int> listed_;

@@ -7,26 +7,20 @@ namespace inextensible {
 
 MidpointStepper::MidpointStepper(std::shared_ptr<const Problem> problem,
                                  std::unique_ptr<VelocityFilter> filter, double spectral_radius)
-    : Stepper(std::move(problem)),
-      filter_(std::move(filter)),
+    : FilterStepper(std::move(problem), std::move(filter)),
       rho_(spectral_radius),
       middle_(3, problem_->vertices()),
       candidate_(3, problem_->vertices()) {}
 
-StepResult MidpointStepper::solve(const State& state, double h, Positions& x) {
-  Stopwatch stopwatch(phases_wanted_);
+bool MidpointStepper::unconstrained(const State& state, double h, Positions& x0) {
   const double scale = 0.5 * h * h;
-  x = state.x + h * state.v;
-  middle_ = 0.5 * (state.x + x);
-  add_acceleration(*problem_, middle_, scale, x, work_);
-  if (problem_->has_drag()) add_drag(*problem_, state.v, scale, x);
-  for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
-  candidate_ = x;
-  phases_.unconstrained += stopwatch();
-  const StepResult result =
-      apply_until_clear(*filter_, contacts_inside(), start_positions(), h, x, work_);
-  phases_.filter += stopwatch();
-  return result;
+  x0 = state.x + h * state.v;
+  middle_ = 0.5 * (state.x + x0);
+  add_acceleration(*problem_, middle_, scale, x0, work_);
+  if (problem_->has_drag()) add_drag(*problem_, state.v, scale, x0);
+  for (const int vertex : problem_->pinned()) x0.col(vertex) = state.x.col(vertex);
+  candidate_ = x0;
+  return true;
 }
 
 StepResult MidpointStepper::end_velocities(const State& start, double h,

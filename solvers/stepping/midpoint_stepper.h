@@ -19,21 +19,17 @@
 
 namespace inextensible {
 
-class MidpointStepper final : public Stepper {
+class MidpointStepper final : public FilterStepper {
  public:
   // The problem has no implicit forces. spectral_radius: rho, 0 to 1.
   MidpointStepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter,
                   double spectral_radius);
-  const char* linear_solver() const override { return filter_->linear_solver(); }
-  double reciprocal_condition() const override { return filter_->reciprocal_condition(); }
-  void observe(IterateObserver* observer) override { filter_->observe(observer); }
 
  private:
-  StepResult solve(const State& state, double h, Positions& x) override;
+  bool unconstrained(const State& state, double h, Positions& x0) override;
   StepResult end_velocities(const State& start, double h, const Positions& filtered,
                             const Positions& x, Positions& v) override;
 
-  std::unique_ptr<VelocityFilter> filter_;
   double rho_;
   Positions middle_;     // x^n + h v^n / 2
   Positions candidate_;  // x0

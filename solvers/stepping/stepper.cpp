@@ -25,18 +25,19 @@ void Stepper::measure_phases(bool wanted) {
 }
 
 StepResult Stepper::advance(State& state, double h) {
-  if (!(h > 0) || !std::isnormal(h)) {
-    ++work_.rejected_steps;
+  const StepResult result = attempt(state, h);
+  ++(result ? work_.steps : work_.rejected_steps);
+  return result;
+}
+
+StepResult Stepper::attempt(State& state, double h) {
+  if (!(h > 0) || !std::isnormal(h))
     return {Status::not_finite, 0, -1, 0, "the step must be a positive, finite time"};
-  }
   if (contacts_) contacts_->begin(state.x, state.time, h);
   start_ = &state.x;
-  StepResult result = solve(with_pins_at_end(state, h), h, next_);
+  const StepResult result = solve(with_pins_at_end(state, h), h, next_);
   work_.iterations += result.iterations;
-  if (!result) {
-    ++work_.rejected_steps;
-    return result;
-  }
+  if (!result) return result;
   if (contacts_) {
     Stopwatch stopwatch(phases_wanted_);
     filtered_ = next_;
@@ -45,24 +46,16 @@ StepResult Stepper::advance(State& state, double h) {
     phases_.collision += stopwatch();
   }
   // A sum is not finite if any term is not.
-  if (!std::isfinite(next_.sum())) {
-    ++work_.rejected_steps;
+  if (!std::isfinite(next_.sum()))
     return {Status::not_finite, result.iterations, -1, 0, "a position overflowed"};
-  }
   const StepResult end = end_velocities(state, h, filtered_positions(), next_, velocity_);
-  if (!end) {
-    ++work_.rejected_steps;
-    return end;
-  }
-  if (!std::isfinite(velocity_.sum())) {
-    ++work_.rejected_steps;
+  if (!end) return end;
+  if (!std::isfinite(velocity_.sum()))
     return {Status::not_finite, result.iterations, -1, 0, "a velocity overflowed"};
-  }
   if (contacts_) contacts_->accept(filtered_);
   state.v.swap(velocity_);
   state.x = next_;
   state.time += h;
-  ++work_.steps;
   return result;
 }
 

@@ -1,10 +1,9 @@
 // What every backend offers: advance a state by h, or refuse and leave it bit for bit as it was.
 //
-// A step is: positions from the state that are inextensible and, where the problem asks for contact
-// inside, out of the obstacle (a backend's own business); a collision filter, which moves out what
-// is still inside; then v = (x^{n+1} - x^n) / h. Constraint methods are velocity filters behind one
-// common unconstrained step; a method that treats stretching inside its time stepper (implicit
-// springs) derives from Stepper directly.
+// A step is: positions that are inextensible and, where the problem asks for contact inside, out of
+// the obstacle; a collision filter, which moves out what is still inside; then
+// v = (x^{n+1} - x^n) / h. Constraint methods are velocity filters behind one unconstrained step; a
+// method that treats stretching inside its time stepper derives from Stepper directly.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +17,9 @@ namespace inextensible {
 
 class EdgeConstraints;
 
-// contact: what of the first three goes to friction, to finding contacts and to planes. Iterations
-// that a step needs more for them are the method's. copy: into the state of an engine and out of
-// it; part of none of the others.
+// contact: what of the first three goes to friction, to finding contacts and to planes, without the
+// iterations that these cost a method. copy: into an engine's state and out of it; not in the
+// others.
 struct PhaseSeconds {
   double unconstrained = 0, filter = 0, collision = 0, contact = 0, copy = 0;
 };
@@ -99,6 +98,7 @@ class Stepper {
   }
 
  private:
+  StepResult attempt(State& state, double h);  // advance() without its counters
   const State& with_pins_at_end(const State& state, double h);
 
   Positions next_, filtered_, velocity_;

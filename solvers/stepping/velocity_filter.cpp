@@ -41,19 +41,20 @@ FilterStepper::FilterStepper(std::shared_ptr<const Problem> problem,
   if (problem_->implicit_forces()) implicit_ = std::make_unique<ImplicitForces>(*problem_);
 }
 
-StepResult no_forces() {
-  return {Status::singular, 0, -1, 0, "the system of implicit forces is singular"};
+bool FilterStepper::unconstrained(const State& state, double h, Positions& x0) {
+  if (!implicit_) {
+    unconstrained_step(*problem_, state, h, x0, work_);
+    return true;
+  }
+  x0 = state.x + h * state.v;
+  for (const int vertex : problem_->pinned()) x0.col(vertex) = state.x.col(vertex);
+  return implicit_->advance(h, state.v, x0, work_);
 }
 
 StepResult FilterStepper::solve(const State& state, double h, Positions& x) {
   Stopwatch stopwatch(phases_wanted_);
-  if (implicit_) {
-    x = state.x + h * state.v;
-    for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
-    if (!implicit_->advance(h, state.v, x, work_)) return no_forces();
-  } else {
-    unconstrained_step(*problem_, state, h, x, work_);
-  }
+  if (!unconstrained(state, h, x))
+    return {Status::singular, 0, -1, 0, "the system of implicit forces is singular"};
   phases_.unconstrained += stopwatch();
   const StepResult result =
       apply_until_clear(*filter_, contacts_inside(), start_positions(), h, x, work_);

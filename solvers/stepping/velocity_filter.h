@@ -23,10 +23,9 @@ class VelocityFilter {
   VelocityFilter(const VelocityFilter&) = delete;
   VelocityFilter& operator=(const VelocityFilter&) = delete;
 
-  // x_start = x^n and x = x0 (both 3 x n; where new contacts made another round necessary, x is the
-  // last round's result) in, x = x^{n+1} out; the filtered velocity is (x -
-  // x_start) / h. On refusal x is unspecified. Pinned vertices keep their place bit for bit, and
-  // contacts hold when it ends: another settle() would change nothing.
+  // x_start = x^n and x = x0 (both 3 x n; in another round for new contacts, the last one's result)
+  // in, x = x^{n+1} out; the filtered velocity is (x - x_start) / h. On refusal x is unspecified.
+  // Pinned vertices keep their place bit for bit, and another settle() would change nothing.
   virtual StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) = 0;
 
   virtual const char* linear_solver() const { return ""; }
@@ -42,23 +41,27 @@ class VelocityFilter {
 StepResult apply_until_clear(VelocityFilter& filter, Contacts* contacts, const Positions& x_start,
                              double h, Positions& x, WorkCounters& work);
 
-// v* = v - h W grad V(x), x0 = x + h v*, filter: the pipeline of the paper's section 4.4 with V
-// explicit, or, where the problem asks for it, implicit (ImplicitForces).
-class FilterStepper final : public Stepper {
+// An unconstrained step, then the filter. Here the pipeline of the paper's section 4.4,
+// v* = v - h W grad V(x), x0 = x + h v*, with V explicit or, where the problem asks for it,
+// implicit (ImplicitForces).
+class FilterStepper : public Stepper {
  public:
   FilterStepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter);
   const char* linear_solver() const override { return filter_->linear_solver(); }
   double reciprocal_condition() const override { return filter_->reciprocal_condition(); }
   void observe(IterateObserver* observer) override { filter_->observe(observer); }
 
+ protected:
+  // Writes x0, in which pinned vertices are those of `state`. false: the system of implicit forces
+  // is singular.
+  virtual bool unconstrained(const State& state, double h, Positions& x0);
+
+  std::unique_ptr<ImplicitForces> implicit_;  // null: V explicit
+
  private:
-  StepResult solve(const State& state, double h, Positions& x) override;
+  StepResult solve(const State& state, double h, Positions& x) final;
 
   std::unique_ptr<VelocityFilter> filter_;
-  std::unique_ptr<ImplicitForces> implicit_;  // null: V explicit
 };
-
-// The refusal of a step whose system of implicit forces is singular.
-StepResult no_forces();
 
 }  // namespace inextensible

@@ -1,4 +1,4 @@
-// One block of chain_kkt.h: with A the 3 x 3 block of M + H at a vertex less what it has lost to
+// One block of chain_kkt.cpp: with A the 3 x 3 block of M + H at a vertex less what it has lost to
 // blocks before, g the gradient of the edge's C there and k its curvature in H, the block and its
 // coupling to the next vertex are
 //   P = [ A    g ]      [ -k I ]
@@ -9,7 +9,7 @@
 // edge, so nothing needs to be permuted; and K has the right inertia, M + H positive definite on
 // the null space of J, if and only if A across g is positive definite in every block.
 //
-// Spelled out as numbers: see block_tridiagonal.cpp.
+// Spelled out as numbers, as in block_tridiagonal.cpp.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,8 @@
-// Loops: one over blocks to factor, two to solve.
-#include "solvers/systems/chain_kkt.h"
+// The saddle-point matrix on chains, by block elimination along each chain.
+//
+// A block is a vertex and the multiplier of the edge to the next one, (x_i, lambda_i): K is block
+// tridiagonal with blocks of 4 x 4, and what a block takes from the next one is 3 x 3. Loops: one
+// over blocks to factor, two to solve.
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +10,7 @@
 #include <stdexcept>
 
 #include "solvers/systems/chain_block.h"
+#include "solvers/systems/kkt_system.h"
 
 namespace inextensible {
 namespace {
@@ -15,59 +19,79 @@ constexpr int chain_refinement_limit = 4;
 constexpr double numbers_per_block = 16;      // g, s, a, S and the curvature
 constexpr double operations_per_block = 245;  // counted in the text of chain_block.h
 
-}  // namespace
-
-using chain::load;
-using chain::Symmetric;
-using chain::Vector;
-
-ChainKkt::~ChainKkt() = default;
-
-namespace {
-
 // The edge from each vertex to the next one, -1 where there is none; empty if there are others.
 std::vector<int> edges_after(const Problem& problem) {
-  std::vector<int> after(static_cast<std::size_t>(problem.vertices()), -1);
+  std::vector<int> after(problem.vertices(), -1);
   for (int k = 0; k < problem.constraints(); ++k) {
-    const auto [a, b] = problem.edges()[static_cast<std::size_t>(k)];
-    int& edge = after[static_cast<std::size_t>(std::min(a, b))];
+    const auto [a, b] = problem.edges()[k];
+    int& edge = after[std::min(a, b)];
     if (std::abs(a - b) != 1 || edge >= 0) return {};
     edge = k;
   }
   return after;
 }
 
-bool pinned(const Problem& problem, int vertex) {
-  return problem.inverse_mass()[static_cast<std::size_t>(vertex)] == 0;
-}
-
-// The end of the run of free vertices, joined one to the next, that begins at a free vertex.
-int run_end(const Problem& problem, const std::vector<int>& after, int begin) {
-  int end = begin + 1;
-  while (end < problem.vertices() && after[static_cast<std::size_t>(end - 1)] >= 0 &&
-         !pinned(problem, end))
-    ++end;
-  return end;
-}
-bool pin_before(const std::vector<int>& after, int begin) {
-  return begin > 0 && after[static_cast<std::size_t>(begin - 1)] >= 0;
-}
-
-}  // namespace
-
-bool ChainKkt::fits(const Problem& problem) {
-  const std::vector<int> after = edges_after(problem);
-  for (int begin = 0; begin < static_cast<int>(after.size());) {
-    if (pinned(problem, begin)) {
-      ++begin;
-      continue;
-    }
-    const int end = run_end(problem, after, begin);
-    if (pin_before(after, begin) && after[static_cast<std::size_t>(end - 1)] >= 0) return false;
-    begin = end;
+// Free vertices begin ... end - 1, joined one to the next, and whether pins are joined to the ends.
+struct Run {
+  int begin, end;
+  bool pin_before, pin_after;
+};
+std::vector<Run> runs_of(const Problem& problem, const std::vector<int>& after) {
+  std::vector<Run> runs;
+  bool goes_on = false;
+  for (int v = 0; v < static_cast<int>(after.size()); ++v) {
+    const bool free = problem.inverse_mass()[v] > 0;
+    if (free && !goes_on) runs.push_back({v, v, v > 0 && after[v - 1] >= 0, false});
+    if (free) runs.back().end = v + 1, runs.back().pin_after = after[v] >= 0;
+    goes_on = free && after[v] >= 0;
   }
-  return !after.empty();
+  return runs;
 }
+
+using chain::load;
+using chain::Symmetric;
+using chain::Vector;
+
+class ChainKkt final : public KktSolver {
+ public:
+  ChainKkt(const Problem& problem, const EdgeConstraints& edges);
+
+  // A matrix that elimination in this order cannot take is left to UMFPACK.
+  bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, const Contacts* contacts,
+              bool convex, WorkCounters& work) override;
+  bool solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
+             WorkCounters& work) override;
+  double reciprocal_condition() const override;
+
+ private:
+  // A free vertex, in elimination order: towards the pin where there is one.
+  struct Link {
+    int vertex;
+    int edge;        // to the next vertex; -1 at the end of a chain
+    bool turned;     // the vertex is the edge's a
+    bool next_free;  // the next vertex is the next link's
+    double mass;     // over the mean mass
+  };
+
+  bool eliminate(const Eigen::Matrix3Xd& u);
+  void substitute(Positions& p, Eigen::VectorXd& q) const;
+  double subtract_product(const Positions& p, const Eigen::VectorXd& q);
+  bool leave_to_umfpack(WorkCounters& work);
+
+  const Problem& problem_;
+  const EdgeConstraints& edges_;
+  std::vector<Link> links_;
+  std::vector<chain::ChainBlock> blocks_;  // the factor, one a link
+  int negative_pivots_ = 0;
+  double smallest_pivot_ = 1, largest_pivot_ = 1;
+  const Eigen::Matrix3Xd* u_ = nullptr;  // of the last factor(), as is mu_
+  const Eigen::VectorXd* mu_ = nullptr;
+  Eigen::VectorXd curvature_;  // of each edge in H
+  Positions r_, correction_p_;
+  Eigen::VectorXd c_, correction_q_;
+  bool left_to_umfpack_ = false;
+  std::unique_ptr<KktSystem> umfpack_;  // made when first needed
+};
 
 ChainKkt::ChainKkt(const Problem& problem, const EdgeConstraints& edges)
     : KktSolver(problem),
@@ -78,36 +102,25 @@ ChainKkt::ChainKkt(const Problem& problem, const EdgeConstraints& edges)
       correction_p_(3, problem.vertices()),
       c_(problem.constraints()),
       correction_q_(problem.constraints()) {
-  if (!fits(problem)) {
+  if (!forms_chains(problem)) {
     throw std::invalid_argument(
         "the linear solver 'block_tridiagonal' needs vertices that form chains in order, each "
         "pinned once at most between its ends");
   }
   // By place in `edges`, which may have an order of its own.
-  std::vector<int> place(static_cast<std::size_t>(edges.count()));
-  for (int k = 0; k < edges.count(); ++k)
-    place[static_cast<std::size_t>(edges.problem_edge(k))] = k;
+  std::vector<int> place(edges.count());
+  for (int k = 0; k < edges.count(); ++k) place[edges.problem_edge(k)] = k;
   std::vector<int> after = edges_after(problem);
-  for (int& edge : after) edge = edge < 0 ? -1 : place[static_cast<std::size_t>(edge)];
-  for (int begin = 0; begin < problem.vertices();) {
-    const int end = pinned(problem, begin) ? begin + 1 : run_end(problem, after, begin);
-    if (!pinned(problem, begin)) add_run(problem, after, begin, end);
-    begin = end;
+  const std::vector<Run> runs = runs_of(problem, after);
+  for (int& edge : after) edge = edge < 0 ? -1 : place[edge];
+  for (const auto& [begin, end, down, unused] : runs) {  // towards the pin
+    for (int i = 0; i < end - begin; ++i) {
+      const int vertex = down ? end - 1 - i : begin + i, edge = after[down ? vertex - 1 : vertex];
+      links_.push_back({vertex, edge, edge >= 0 && edges_.a[edge] == vertex, i + 1 < end - begin,
+                        problem.mass()[vertex] / mean_mass_});
+    }
   }
   blocks_.resize(links_.size());
-}
-
-// Free vertices begin ... end - 1.
-void ChainKkt::add_run(const Problem& problem, const std::vector<int>& after, int begin, int end) {
-  const bool down = pin_before(after, begin);
-  for (int i = 0; i < end - begin; ++i) {
-    const int vertex = down ? end - 1 - i : begin + i;
-    const int edge = down ? after[static_cast<std::size_t>(vertex - 1)]
-                          : after[static_cast<std::size_t>(vertex)];
-    links_.push_back({vertex, edge, edge >= 0 && edges_.a[static_cast<std::size_t>(edge)] == vertex,
-                      i + 1 < end - begin,
-                      problem.mass()[static_cast<std::size_t>(vertex)] / mean_mass_});
-  }
 }
 
 bool ChainKkt::eliminate(const Eigen::Matrix3Xd& u) {
@@ -148,9 +161,7 @@ bool ChainKkt::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
   for (;; convex = true) {
     convexified_ = convex;
     for (Eigen::Index k = 0; k < mu.size(); ++k) {
-      curvature_[k] = convex && mu[k] < 0
-                          ? 0
-                          : 2 * mu[k] * edges_.inverse_rest_length[static_cast<std::size_t>(k)];
+      curvature_[k] = convex && mu[k] < 0 ? 0 : 2 * mu[k] * edges_.inverse_rest_length[k];
     }
     ++work.assemblies;
     ++work.factorizations;
@@ -247,6 +258,20 @@ bool ChainKkt::solve(const Positions& r, const Eigen::VectorXd& c, Positions& p,
 
 double ChainKkt::reciprocal_condition() const {
   return left_to_umfpack_ ? umfpack_->reciprocal_condition() : smallest_pivot_ / largest_pivot_;
+}
+
+}  // namespace
+
+bool forms_chains(const Problem& problem) {
+  const std::vector<int> after = edges_after(problem);
+  const std::vector<Run> runs = runs_of(problem, after);
+  return !after.empty() && std::none_of(runs.begin(), runs.end(), [](const Run& run) {
+    return run.pin_before && run.pin_after;
+  });
+}
+
+std::unique_ptr<KktSolver> make_chain_kkt(const Problem& problem, const EdgeConstraints& edges) {
+  return std::make_unique<ChainKkt>(problem, edges);
 }
 
 }  // namespace inextensible

@@ -4,44 +4,18 @@
 // part of mu in the null space of A moves nothing.
 #include "solvers/systems/constrained_acceleration.h"
 
-#include <Eigen/SparseCholesky>
-#include <cmath>
 #include <limits>
 
-#include "solvers/problem/edge_constraints.h"
+#include "solvers/linear/spd_solvers.h"
 #include "solvers/problem/forces.h"
+#include "solvers/systems/schur_complement.h"
 
 namespace inextensible {
 namespace {
 
-using Sparse = Eigen::SparseMatrix<double>;
-
 constexpr double relative_shift = 1e-9;  // of the diagonal
 constexpr double free_fall = 1e-12;      // of accelerations over rest lengths: rounding
 constexpr int most_iterations = 50;      // one or two where A is regular
-
-// J W J^T at gradients u, and a little on its diagonal.
-Sparse regular_schur_complement(const EdgeConstraints& edges, const Eigen::Matrix3Xd& u,
-                                int vertices) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int k = 0; k < edges.count(); ++k) {
-    for (int axis = 0; axis < 3; ++axis) {
-      entries.emplace_back(3 * edges.a[k] + axis, k, -std::sqrt(edges.wa[k]) * u(axis, k));
-      entries.emplace_back(3 * edges.b[k] + axis, k, std::sqrt(edges.wb[k]) * u(axis, k));
-    }
-  }
-  Sparse transposed(3 * vertices, edges.count());  // W^(1/2) J^T
-  transposed.setFromTriplets(entries.begin(), entries.end());
-  Sparse schur = (transposed.transpose() * transposed).pruned(0.0, 0.0);
-  const Eigen::VectorXd diagonal = schur.diagonal();
-  Sparse shift(edges.count(), edges.count());
-  shift.setIdentity();
-  for (int k = 0; k < edges.count(); ++k) {
-    // An edge of no length has an empty row: any number will do.
-    shift.coeffRef(k, k) = diagonal[k] > 0 ? relative_shift * diagonal[k] : 1;
-  }
-  return schur + shift;
-}
 
 }  // namespace
 
@@ -53,7 +27,7 @@ Positions constrained_acceleration(const Problem& problem, const State& state) {
   for (const int vertex : problem.pinned()) a.col(vertex).setZero();
   if (problem.constraints() == 0) return a;
 
-  const EdgeConstraints edges(problem, 1);
+  const EdgeConstraints edges(problem, 1, elimination_order(problem));
   Eigen::Matrix3Xd u(3, problem.constraints());
   edges.gradient(state.x, u);
   Eigen::VectorXd curvature(problem.constraints());  // J' v
@@ -67,7 +41,16 @@ Positions constrained_acceleration(const Problem& problem, const State& state) {
   // What falls freely, as a cloth flat in the air does, needs no forces from its edges.
   const double largest = a.colwise().norm().maxCoeff() / problem.shortest_rest_length();
   if (violation.cwiseAbs().maxCoeff() <= free_fall * largest) return a;
-  const Eigen::SimplicialLDLT<Sparse> ldlt(regular_schur_complement(edges, u, problem.vertices()));
+  const SchurComplement schur(edges, problem.vertices(), SymmetricPattern::Triangle::lower);
+  const SymmetricPattern& pattern = schur.pattern();
+  const auto solver = make_spd_solver("multifrontal", pattern);
+  schur.assemble(u, solver->values());
+  for (int k = 0; k < edges.count(); ++k) {
+    double& diagonal = solver->values()[pattern.diagonal(k)];
+    // An edge of no length has an empty row: any number will do.
+    diagonal = diagonal > 0 ? (1 + relative_shift) * diagonal : 1;
+  }
+  if (!solver->factor()) return a;
   double last = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most_iterations; ++i) {
     edges.rate(u, a, violation);
@@ -75,7 +58,7 @@ Positions constrained_acceleration(const Problem& problem, const State& state) {
     const double here = violation.norm();
     if (!(here < 0.5 * last)) break;  // rounding, or what no force can change
     last = here;
-    violation = ldlt.solve(violation).eval();
+    solver->solve(violation.data());
     edges.apply(u, violation, a);
   }
   return a;

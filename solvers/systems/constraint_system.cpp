@@ -11,7 +11,7 @@ namespace {
 std::string choose(std::string_view wanted, const SymmetricPattern& pattern,
                    ConstraintSystem::Digits digits) {
   if (wanted != "auto") return std::string(wanted);
-  if (pattern.entries() == 2 * pattern.n - 1 && pattern.tridiagonal()) return "tridiagonal";
+  if (pattern.chain(1)) return "tridiagonal";
   if (pattern.n >= ConstraintSystem::hybrid_rows) return "hybrid";
   return digits == ConstraintSystem::Digits::few ? "multifrontal_mixed" : "multifrontal";
 }
@@ -19,35 +19,27 @@ std::string choose(std::string_view wanted, const SymmetricPattern& pattern,
 }  // namespace
 
 ConstraintSystem::ConstraintSystem(const Problem& problem, double strain_limit,
-                                   std::string_view linear_solver, Digits digits)
-    : problem_(problem) {
+                                   std::string_view linear_solver, Digits digits) {
   const auto natural = SymmetricPattern::Triangle::upper;
   edges_ = std::make_unique<EdgeConstraints>(problem, strain_limit);
   schur_ = std::make_unique<SchurComplement>(*edges_, problem.vertices(), natural);
   solver_name_ = choose(linear_solver, schur_->pattern(), digits);
-  if (spd_solver(solver_name_).fills) {
+  const SpdSolverRow& row = spd_solver(solver_name_);
+  if (row.fills) {
     edges_ = std::make_unique<EdgeConstraints>(problem, strain_limit,
                                                fill_reducing_order(schur_->pattern()));
-    schur_ =
-        std::make_unique<SchurComplement>(*edges_, problem.vertices(), triangle_of(solver_name_));
+    schur_ = std::make_unique<SchurComplement>(*edges_, problem.vertices(), row.triangle);
   }
   solver_ = make_spd_solver(solver_name_, schur_->pattern());
   solver_->set_least_pivot(least_pivot);
-  chain_ = spd_solver(solver_name_).takes == Takes::tridiagonal;
-  if (problem.contact_inside()) {
-    const SymmetricPattern& pattern = schur_->pattern();
-    contact_terms_ = std::make_unique<ContactTerms>(*edges_, problem.vertices(),
-                                                    pattern.column_start, pattern.row_index);
-  }
+  chain_ = row.takes == Takes::tridiagonal;
 }
 
 bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, const Contacts* contacts,
                               WorkCounters& work, double damping) {
   schur_->assemble(u, solver_->values());
   if (damping > 0) schur_->scale_diagonal(1 + damping, solver_->values());
-  if (contacts) {
-    contact_terms_->subtract(*contacts, problem_.inverse_mass().data(), u, u, solver_->values());
-  }
+  if (contacts) schur_->subtract_contacts(*contacts, u, u, solver_->values());
   ++work.assemblies;
   ++work.factorizations;
   const bool factored = solver_->factor();

@@ -6,36 +6,32 @@
 #include <string>
 #include <string_view>
 
+#include "solvers/linear/spd_solver.h"
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/problem/step_result.h"
-#include "solvers/systems/contact_terms.h"
 #include "solvers/systems/schur_complement.h"
 
 namespace inextensible {
 
 class ConstraintSystem {
  public:
-  // linear_solver: a name of make_spd_solver, or "auto": tridiagonal for a chain, else
-  // multifrontal, which is the fastest factorization from some 200 rows on (kernels measures it),
-  // or multifrontal_mixed where solves are going to ask for few digits, and from hybrid_rows on
-  // hybrid. For direct solvers edges are renumbered once, so that no factorization has to permute.
+  // linear_solver: a name of make_spd_solver, or "auto": tridiagonal for a chain, hybrid from
+  // hybrid_rows on, else multifrontal, or multifrontal_mixed where solves will ask for few digits.
+  // For direct solvers edges are renumbered once, so that no factorization has to permute.
   enum class Digits { all, few };
   ConstraintSystem(const Problem& problem, double strain_limit, std::string_view linear_solver,
                    Digits digits = Digits::all);
 
   const EdgeConstraints& edges() const { return *edges_; }
   const SchurComplement& schur() const { return *schur_; }
-  // Rows from which on `hybrid` is used, a grid of about 101 x 101. Measured on the drape,
-  // processor time of fast projection with hybrid over that with multifrontal: the first 0.2 s of
-  // the fall, 0.24 to 0.33 from 31 vertices a side on; 0.6 s at 1/500 s and 0.1 %, in whose last
-  // third warp and weft become parallel, 0.69, 0.80 and 0.71 at 101, 141 and 201 a side.
+  // A grid of about 101 x 101. From there on hybrid takes 0.7 to 0.8 of multifrontal's time on
+  // the drape (0.6 s at 1/500 s and 0.1 %, in whose last third warp and weft become parallel).
   static constexpr int hybrid_rows = 20'000;
   // J W J^T counts as singular where a pivot keeps less than this of its diagonal entry:
   // multipliers would outgrow the corrections that they make, and cancel.
   static constexpr double least_pivot = 1e-10;
-  // Solvers that have no pivots to look at show it by multipliers this many times the largest
-  // right-hand side over the diagonal: corrections then cancel to so many digits, which momentum
-  // loses. The pivots of a chain are known, and its multipliers may grow with its length squared.
+  // Solvers without pivots show it by multipliers this many times the largest right-hand side over
+  // the diagonal. A chain's may grow with its length squared.
   static constexpr double largest_growth = 1e8;
 
   double reciprocal_condition() const { return solver_->reciprocal_condition(); }
@@ -56,8 +52,6 @@ class ConstraintSystem {
  private:
   bool moderate(const Eigen::VectorXd& mu, double largest) const;
 
-  const Problem& problem_;
-  std::unique_ptr<ContactTerms> contact_terms_;  // where the problem has contact inside
   std::string solver_name_;
   bool chain_ = false;
   std::unique_ptr<EdgeConstraints> edges_;

@@ -1,21 +1,14 @@
 #include "solvers/systems/implicit_forces.h"
 
-#include <algorithm>
-#include <map>
-
 #include "solvers/linear/spd_solvers.h"
 #include "solvers/problem/forces.h"
-#include "solvers/systems/vertex_blocks.h"
 
 namespace inextensible {
 namespace {
 
-// The stiffness between two vertices, or of one with itself.
-using Stiffnesses = std::map<std::pair<int, int>, double>;
-
-Stiffnesses stiffness_matrix(const Problem& problem) {
-  Stiffnesses all;
-  const auto add = [&all](int a, int b, double k) { all[std::minmax(a, b)] += k; };
+// Calls add(a, b, k) for each stiffness k between two vertices, or of one with itself.
+template <class Add>
+void for_each_stiffness(const Problem& problem, Add add) {
   if (const Springs* shear = problem.shear()) {
     for (std::size_t s = 0; s < shear->edges.size(); ++s) {
       const auto [a, b] = shear->edges[s];
@@ -35,46 +28,40 @@ Stiffnesses stiffness_matrix(const Problem& problem) {
       }
     }
   }
-  return all;
 }
 
 }  // namespace
 
 ImplicitForces::ImplicitForces(const Problem& problem) : problem_(problem) {
-  const Stiffnesses stiffness = stiffness_matrix(problem);
-  std::vector<int> place(problem.vertices(), -1);
   for (int v = 0; v < problem.vertices(); ++v) {
-    if (problem.inverse_mass()[v] == 0) continue;
-    place[v] = static_cast<int>(free_vertex_.size());
-    free_vertex_.push_back(v);
+    if (problem.inverse_mass()[v] > 0) free_vertex_.push_back(v);
   }
   const int n = static_cast<int>(free_vertex_.size());
-  const auto graph = [&] {
-    std::vector<Edge> pairs;
-    for (const auto& [pair, k] : stiffness) {
-      const Edge free{place[pair.first], place[pair.second]};
-      if (free.a >= 0 && free.b >= 0 && free.a != free.b) pairs.push_back(free);
-    }
-    return vertex_graph(n, pairs);
+  std::vector<int> place(problem.vertices(), -1);
+  const auto for_each_entry = [&](auto add) {  // of the free vertices
+    for_each_stiffness(problem, [&](int a, int b, double k) {
+      if (place[a] >= 0 && place[b] >= 0) add(place[a], place[b], k);
+    });
   };
-  std::vector<int> ordered(free_vertex_.size());
-  const std::vector<int> order = fill_reducing_order(graph());
-  for (std::size_t f = 0; f < ordered.size(); ++f) ordered[f] = free_vertex_[order[f]];
+  const auto pattern_in = [&](const std::vector<int>& order, SymmetricPattern::Triangle triangle) {
+    for (int f = 0; f < n; ++f) place[order[f]] = f;
+    Pairs pairs;
+    for_each_entry([&](int f, int g, double) { pairs.emplace_back(f, g); });
+    return pattern_of(n, pairs, triangle);
+  };
+  std::vector<int> ordered = free_vertex_;
+  const std::vector<int> order =
+      fill_reducing_order(pattern_in(free_vertex_, SymmetricPattern::Triangle::upper));
+  for (int f = 0; f < n; ++f) ordered[f] = free_vertex_[order[f]];
   free_vertex_ = std::move(ordered);
-  for (int f = 0; f < n; ++f) place[free_vertex_[f]] = f;
 
-  SymmetricPattern pattern = lower_triangle(graph());
-  for (int column = 0; column < n; ++column) {
-    for (int i = pattern.column_start[column]; i < pattern.column_start[column + 1]; ++i) {
-      const int a = free_vertex_[pattern.row_index[i]], b = free_vertex_[column];
-      const auto found = stiffness.find(std::minmax(a, b));
-      Entry entry{i, found == stiffness.end() ? 0 : found->second};
-      if (a == b) {
-        entry.mass = problem.mass()[a];
-        entry.drag = problem.drag(a);
-      }
-      entries_.push_back(entry);
-    }
+  SymmetricPattern pattern = pattern_in(free_vertex_, SymmetricPattern::Triangle::lower);
+  entries_.resize(pattern.entries());
+  for_each_entry([&](int f, int g, double k) { entries_[pattern.place(f, g)].stiffness += k; });
+  for (int f = 0; f < n; ++f) {
+    Entry& entry = entries_[pattern.diagonal(f)];
+    entry.mass = problem.mass()[free_vertex_[f]];
+    entry.drag = problem.drag(free_vertex_[f]);
   }
   solver_ = make_spd_solver("multifrontal", std::move(pattern));
   force_.resize(3, problem.vertices());
@@ -84,8 +71,7 @@ ImplicitForces::ImplicitForces(const Problem& problem) : problem_(problem) {
 bool ImplicitForces::factor(double scale) {
   if (scale == factored_) return true;
   double* values = solver_->values();
-  for (const Entry& e : entries_)
-    values[e.place] = e.mass + scale * e.drag + scale * scale * e.stiffness;
+  for (const Entry& e : entries_) *values++ = e.mass + scale * e.drag + scale * scale * e.stiffness;
   factored_ = solver_->factor() ? scale : 0;
   return factored_ != 0;
 }

@@ -3,12 +3,12 @@
 //
 // About the free flight y, in which nothing but gravity is missing, backward Euler is
 //   (M + h D + h^2 H) (x0 - y) = h^2 (M g - grad V(y)) - h^2 D w,   w the flight's velocity,
-// to first order in x0 - y, with V's Hessian H and the drag coefficients D. In its place stands the
-// constant L >= H: of a spring k I between its ends, of bending the Hessian itself. x0 - y is
-// O(h^2), so that L for H costs an error of O(h^4) a step; and L keeps the step stable at any h as
-// backward Euler is, for the amplification sqrt(1 / (1 + h^2 L)) of a vibration is below 1 for all
-// H <= L. L couples the coordinates of a vertex with none of another kind: one sparse symmetric
-// positive definite n x n matrix, factored once for each h.
+// to first order in x0 - y, with V's Hessian H and the drag coefficients D. The constant L >= H
+// takes the place of H: of a spring k I between its ends, of bending the Hessian itself. x0 - y is
+// O(h^2), so that this costs an error of O(h^4) a step; and the step stays stable at any h, for the
+// amplification sqrt(1 / (1 + h^2 L)) of a vibration is below 1 for all H <= L. L is the same for
+// all three coordinates: one sparse symmetric positive definite n x n matrix, factored once for
+// each h.
 #pragma once
 
 #include <memory>
@@ -33,9 +33,8 @@ class ImplicitForces {
   bool factor(double scale);
 
   const Problem& problem_;
-  std::vector<int> free_vertex_;  // in elimination order
-  struct Entry {
-    int place;                                 // among the matrix's values
+  std::vector<int> free_vertex_;               // in elimination order
+  struct Entry {                               // of the matrix
     double stiffness = 0, drag = 0, mass = 0;  // N/m, N s/m, kg
   };
   std::vector<Entry> entries_;

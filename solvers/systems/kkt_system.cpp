@@ -2,43 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace inextensible {
 namespace {
 
 constexpr double regularization = 1e-10;  // relative to J W J^T, of order one after scaling
 constexpr int refinement_limit = 8;
-
-// Upper-triangular compressed columns of a set of (row, column) places; find() gives an entry's
-// index.
-class UpperPattern {
- public:
-  explicit UpperPattern(int n) : columns_(n) {}
-  void add(int i, int j) { columns_[std::max(i, j)].push_back(std::min(i, j)); }
-  SymmetricPattern compress() {
-    SymmetricPattern pattern;
-    pattern.n = static_cast<int>(columns_.size());
-    pattern.column_start.push_back(0);
-    for (auto& column : columns_) {
-      std::sort(column.begin(), column.end());
-      column.erase(std::unique(column.begin(), column.end()), column.end());
-      pattern.row_index.insert(pattern.row_index.end(), column.begin(), column.end());
-      pattern.column_start.push_back(pattern.entries());
-    }
-    return pattern;
-  }
-
- private:
-  std::vector<std::vector<int>> columns_;
-};
-
-int find(const SymmetricPattern& pattern, int i, int j) {
-  const std::size_t column = std::max(i, j);
-  const auto begin = pattern.row_index.begin() + pattern.column_start[column];
-  const auto end = pattern.row_index.begin() + pattern.column_start[column + 1];
-  return static_cast<int>(std::lower_bound(begin, end, std::min(i, j)) - pattern.row_index.begin());
-}
 
 }  // namespace
 
@@ -67,47 +36,35 @@ KktSystem::KktSystem(const Problem& problem, const EdgeConstraints& edges, By by
 }
 
 void KktSystem::build_pattern(const std::vector<Edge>& ends) {
-  const auto visit = [&](auto&& entry) {  // every entry of the upper triangle, in unknowns
-    for (int i = 0; i < size_; ++i) entry(i, i);
-    for (std::size_t k = 0; k < ends.size(); ++k) {
-      const int multiplier = multiplier_offset_ + static_cast<int>(k);
-      for (int axis = 0; axis < 3; ++axis) {
-        const int a = ends[k].a + axis, b = ends[k].b + axis;
-        if (ends[k].a >= 0) entry(a, multiplier);
-        if (ends[k].b >= 0) entry(b, multiplier);
-        if (ends[k].a >= 0 && ends[k].b >= 0) entry(a, b);
-      }
-    }
-  };
-  UpperPattern unordered(size_);
-  visit([&](int i, int j) { unordered.add(i, j); });
-  const std::vector<int> order = fill_reducing_order(unordered.compress());
-  place_.resize(size_);
-  for (int i = 0; i < size_; ++i) place_[order[i]] = i;
-  const auto place = [&](int unknown) { return place_[unknown]; };
-  UpperPattern ordered(size_);
-  visit([&](int i, int j) { ordered.add(place(i), place(j)); });
-  pattern_ = ordered.compress();
-  matrix_.resize(pattern_.entries());
-
-  const auto index = [&](int i, int j) { return find(pattern_, place(i), place(j)); };
-  vertex_places_.resize(scaled_mass_.size());
-  for (std::size_t v = 0; v < vertex_places_.size(); ++v) {
+  Pairs pairs;  // of unknowns
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    const int multiplier = multiplier_offset_ + static_cast<int>(k);
     for (int axis = 0; axis < 3; ++axis) {
-      const int i = 3 * static_cast<int>(v) + axis;
-      vertex_places_[v].diagonal[axis] = index(i, i);
+      const int a = ends[k].a + axis, b = ends[k].b + axis;
+      if (ends[k].a >= 0) pairs.emplace_back(a, multiplier);
+      if (ends[k].b >= 0) pairs.emplace_back(b, multiplier);
+      if (ends[k].a >= 0 && ends[k].b >= 0) pairs.emplace_back(a, b);
     }
   }
+  const auto upper = SymmetricPattern::Triangle::upper;
+  const std::vector<int> order = fill_reducing_order(pattern_of(size_, pairs, upper));
+  place_.resize(size_);
+  for (int i = 0; i < size_; ++i) place_[order[i]] = i;
+  for (auto& [i, j] : pairs) i = place_[i], j = place_[j];
+  pattern_ = pattern_of(size_, pairs, upper);
+  matrix_.resize(pattern_.entries());
+
+  const auto entry = [&](int i, int j) { return pattern_.place(place_[i], place_[j]); };
+  for (int i = 0; i < size_; ++i) diagonal_.push_back(entry(i, i));
   edge_places_.resize(ends.size());
   for (std::size_t k = 0; k < ends.size(); ++k) {
     const int multiplier = multiplier_offset_ + static_cast<int>(k);
     EdgePlaces& places = edge_places_[k];
-    places.lower = index(multiplier, multiplier);
     for (int axis = 0; axis < 3; ++axis) {
       const int a = ends[k].a + axis, b = ends[k].b + axis;
-      places.at_a[axis] = ends[k].a >= 0 ? index(a, multiplier) : -1;
-      places.at_b[axis] = ends[k].b >= 0 ? index(b, multiplier) : -1;
-      places.coupling[axis] = ends[k].a >= 0 && ends[k].b >= 0 ? index(a, b) : -1;
+      places.at_a[axis] = ends[k].a >= 0 ? entry(a, multiplier) : -1;
+      places.at_b[axis] = ends[k].b >= 0 ? entry(b, multiplier) : -1;
+      places.coupling[axis] = ends[k].a >= 0 && ends[k].b >= 0 ? entry(a, b) : -1;
     }
   }
 }
@@ -115,9 +72,7 @@ void KktSystem::build_pattern(const std::vector<Edge>& ends) {
 void KktSystem::assemble(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex) {
   std::fill(matrix_.begin(), matrix_.end(), 0.0);
   const auto at = [this](int i) -> double& { return matrix_[i]; };
-  for (std::size_t v = 0; v < vertex_places_.size(); ++v) {
-    for (const int diagonal : vertex_places_[v].diagonal) at(diagonal) = scaled_mass_[v];
-  }
+  for (int i = 0; i < multiplier_offset_; ++i) at(diagonal_[i]) = scaled_mass_[i / 3];
   for (std::size_t k = 0; k < edge_places_.size(); ++k) {
     const EdgePlaces& places = edge_places_[k];
     const double multiplier = mu[static_cast<Eigen::Index>(k)];
@@ -128,11 +83,11 @@ void KktSystem::assemble(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, b
     for (int axis = 0; axis < 3; ++axis) {
       const double gradient = u(axis, static_cast<Eigen::Index>(k));
       if (a >= 0) {
-        at(vertex_places_[a / 3].diagonal[axis]) += curvature;
+        at(diagonal_[a + axis]) += curvature;
         at(places.at_a[axis]) -= gradient;
       }
       if (b >= 0) {
-        at(vertex_places_[b / 3].diagonal[axis]) += curvature;
+        at(diagonal_[b + axis]) += curvature;
         at(places.at_b[axis]) += gradient;
       }
       if (a >= 0 && b >= 0) at(places.coupling[axis]) -= curvature;
@@ -149,7 +104,8 @@ bool KktSystem::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
     using_umfpack_ = umfpack_only_;
     if (umfpack_only_) return factor_umfpack(work);
     std::copy(matrix_.begin(), matrix_.end(), ldlt_->values());
-    for (const EdgePlaces& places : edge_places_) ldlt_->values()[places.lower] = -regularization;
+    for (int i = multiplier_offset_; i < size_; ++i)
+      ldlt_->values()[diagonal_[i]] = -regularization;
     ++work.factorizations;
     if (!ldlt_->factor()) return factor_umfpack(work);
     work.factor_nonzeros = ldlt_->factor_nonzeros();
@@ -159,29 +115,18 @@ bool KktSystem::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
 }
 
 bool KktSystem::factor_umfpack(WorkCounters& work) {
-  if (!lu_) {  // the full pattern, made when first needed
-    struct Entry {
-      int column, row, upper;
-    };
-    std::vector<Entry> entries;
+  if (!lu_) {  // with both triangles; made when first needed
+    Pairs pairs;
     for (int j = 0; j < size_; ++j) {
-      for (int i = pattern_.column_start[j]; i < pattern_.column_start[j + 1]; ++i) {
-        const int row = pattern_.row_index[i];
-        entries.push_back({j, row, i});
-        if (row != j) entries.push_back({row, j, i});
-      }
+      for (int e = pattern_.column_start[j]; e < pattern_.column_start[j + 1]; ++e)
+        pairs.emplace_back(pattern_.row_index[e], j);
     }
-    std::sort(entries.begin(), entries.end(), [](const Entry& p, const Entry& q) {
-      return p.column != q.column ? p.column < q.column : p.row < q.row;
-    });
-    std::vector<int> column_start(size_ + 1, 0), row_index;
-    for (const Entry& entry : entries) {
-      ++column_start[entry.column + 1];
-      row_index.push_back(entry.row);
-      full_from_upper_.push_back(entry.upper);
+    SymmetricPattern both = pattern_of(size_, pairs, SymmetricPattern::Triangle::both);
+    for (int j = 0; j < size_; ++j) {
+      for (int e = both.column_start[j]; e < both.column_start[j + 1]; ++e)
+        full_from_upper_.push_back(pattern_.place(both.row_index[e], j));
     }
-    std::partial_sum(column_start.begin(), column_start.end(), column_start.begin());
-    lu_ = make_unsymmetric_solver(std::move(column_start), std::move(row_index));
+    lu_ = make_unsymmetric_solver(std::move(both));
   }
   using_umfpack_ = true;
   for (std::size_t i = 0; i < full_from_upper_.size(); ++i) {

@@ -1,10 +1,9 @@
 // A = M + H is a scalar matrix, the same for x, y and z, and D, its diagonal, is near it where
-// tensions are moderate. So the saddle-point matrix with D in place of A is the preconditioner: its
-// Schur complement J D^-1 J^T has the pattern of fast projection's J W J^T and is factored like it.
-// With a p that solves J p = c to begin with, every correction that it gives lies in J's null
-// space: the iteration is that of conjugate gradients for p alone, on A restricted to there, and
-// the multipliers q fall out of the projections. Residuals have their part along J^T taken off at
-// every step, which keeps the iteration from losing digits to it (section 6 of the paper).
+// tensions are moderate. The saddle-point matrix with D in place of A is the preconditioner: its
+// Schur complement J D^-1 J^T is factored like fast projection's J W J^T. From a p with J p = c on,
+// all corrections lie in J's null space: the iteration is that of conjugate gradients for p alone,
+// on A restricted to there, and the multipliers q fall out of the projections. Residuals lose their
+// part along J^T at every step, lest they lose digits to it (section 6 of the paper).
 //
 // Newton's method needs no more than a few percent of accuracy. Where curvature d^T A d is not
 // positive, A is indefinite on the null space, and the step so far is taken (Dembo and Steihaug
@@ -20,15 +19,8 @@
 
 namespace inextensible {
 
-// Accuracy of solves with J D^-1 J^T: the next Newton step corrects what a projection leaves of J
-// p.
+// Of solves with J D^-1 J^T: the next Newton step corrects what a projection leaves of J p.
 constexpr double projection_tolerance = 1e-4;
-
-std::vector<int> elimination_order(const Problem& problem) {
-  const EdgeConstraints natural(problem, 1);
-  return fill_reducing_order(
-      SchurComplement(natural, problem.vertices(), SymmetricPattern::Triangle::upper).pattern());
-}
 
 ProjectedCg::ProjectedCg(const Problem& problem, const EdgeConstraints& edges,
                          const Settings& settings)
@@ -36,40 +28,16 @@ ProjectedCg::ProjectedCg(const Problem& problem, const EdgeConstraints& edges,
       problem_(problem),
       edges_(edges),
       settings_(settings),
-      pattern_(SchurComplement(edges, problem.vertices(), triangle_of(settings.linear_solver))
-                   .pattern()),
-      solver_(make_spd_solver(settings.linear_solver, pattern_)),
+      schur_(edges, problem.vertices(), spd_solver(settings.linear_solver).triangle),
+      solver_(make_spd_solver(settings.linear_solver, schur_.pattern())),
       mass_(Eigen::Map<const Eigen::VectorXd>(problem.mass().data(), problem.vertices()) /
             mean_mass_),
       curvature_(edges.count()),
-      inverse_metric_(problem.vertices() + 1),
+      inverse_metric_(problem.vertices()),
       dq_(edges.count()) {
   solver_->set_least_pivot(ConstraintSystem::least_pivot);
   for (Positions* p : {&residual_, &direction_, &image_, &correction_})
     p->resize(3, problem.vertices());
-  find_meetings();
-  if (problem.contact_inside()) {
-    contact_terms_ = std::make_unique<ContactTerms>(edges, problem.vertices(),
-                                                    pattern_.column_start, pattern_.row_index);
-  }
-}
-
-void ProjectedCg::find_meetings() {
-  const Meeting nowhere{problem_.vertices(), 0};
-  for (int l = 0; l < pattern_.n; ++l) {
-    for (int i = pattern_.column_start[l]; i < pattern_.column_start[l + 1]; ++i) {
-      const std::size_t k = pattern_.row_index[i];
-      Meeting met[2] = {nowhere, nowhere};
-      int count = 0;
-      for (const bool at_b : {false, true}) {
-        const int vertex = at_b ? edges_.b[l] : edges_.a[l];
-        if (edges_.a[k] == vertex) met[count++] = {vertex, at_b ? -1.0 : 1.0};
-        if (edges_.b[k] == vertex) met[count++] = {vertex, at_b ? 1.0 : -1.0};
-      }
-      first_.push_back(met[0]);
-      second_.push_back(met[1]);
-    }
-  }
 }
 
 void ProjectedCg::set_curvature(bool convex) {
@@ -89,7 +57,7 @@ bool ProjectedCg::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
   direct_in_use_ = false;
   set_curvature(convex);
   // D: M and what tension adds to the diagonal.
-  inverse_metric_.head(problem_.vertices()) = mass_;
+  inverse_metric_ = mass_;
   for (std::size_t k = 0; k < edges_.a.size(); ++k) {
     const double tension = std::max(curvature_[static_cast<Eigen::Index>(k)], 0.0);
     inverse_metric_[edges_.a[k]] += tension;
@@ -97,19 +65,9 @@ bool ProjectedCg::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
   }
   inverse_metric_ = inverse_metric_.cwiseInverse();
   for (const int vertex : problem_.pinned()) inverse_metric_[vertex] = 0;
-  inverse_metric_[problem_.vertices()] = 0;
-
-  double* value = solver_->values();
-  std::size_t i = 0;
-  for (int l = 0; l < pattern_.n; ++l) {
-    const std::size_t end = pattern_.column_start[l + 1];
-    for (; i < end; ++i) {
-      const double weight = first_[i].sign * inverse_metric_[first_[i].vertex] +
-                            second_[i].sign * inverse_metric_[second_[i].vertex];
-      value[i] = weight * u.col(pattern_.row_index[i]).dot(u.col(l));
-    }
-  }
-  if (touches()) contact_terms_->subtract(*contacts_, inverse_metric_.data(), u, u, value);
+  schur_.weigh(inverse_metric_.data());
+  schur_.assemble(u, solver_->values());
+  if (touches()) schur_.subtract_contacts(*contacts_, u, u, solver_->values());
   ++work.assemblies;
   ++work.factorizations;
   if (!solver_->factor()) return factor_directly(work);
@@ -155,15 +113,14 @@ void ProjectedCg::apply_hessian(const Positions& p, Positions& y) const {
 // r -= J^T q, p = D^-1 r.
 bool ProjectedCg::precondition(Positions& r, const Eigen::VectorXd* c, Positions& p,
                                Eigen::VectorXd& q, WorkCounters& work) {
-  const auto metric = inverse_metric_.head(problem_.vertices());
-  p = r * metric.asDiagonal();
+  p = r * inverse_metric_.asDiagonal();
   if (contacts_) contacts_->keep_in_planes(p);
   edges_.rate(*u_, p, q);
   if (c) q -= *c;
   ++work.back_solves;
   if (!solver_->solve_within(projection_tolerance, q.data())) return false;
   subtract_gradients(q, r);
-  p = r * metric.asDiagonal();
+  p = r * inverse_metric_.asDiagonal();
   if (contacts_) contacts_->keep_in_planes(p);
   return true;
 }

@@ -4,15 +4,11 @@
 #include <string_view>
 #include <vector>
 
-#include "solvers/systems/contact_terms.h"
-#include "solvers/systems/kkt_solver.h"
+#include "solvers/linear/spd_solver.h"
 #include "solvers/systems/kkt_system.h"
 #include "solvers/systems/schur_complement.h"
 
 namespace inextensible {
-
-// The order of a problem's edges in which J W J^T factors with little fill.
-std::vector<int> elimination_order(const Problem& problem);
 
 class ProjectedCg final : public KktSolver {
  public:
@@ -34,15 +30,8 @@ class ProjectedCg final : public KktSolver {
   }
 
  private:
-  // Where two edges meet, with the sign of the product of their gradients' ends; the vertex after
-  // the last, of weight 0, where they do not.
-  struct Meeting {
-    int vertex;
-    double sign;
-  };
   enum class Outcome { converged, negative_curvature, failed };
 
-  void find_meetings();
   bool factor_directly(WorkCounters& work);
   bool touches() const { return contacts_ && contacts_->count() > 0; }
   void set_curvature(bool convex);
@@ -57,12 +46,10 @@ class ProjectedCg final : public KktSolver {
   const Problem& problem_;
   const EdgeConstraints& edges_;
   Settings settings_;
-  SymmetricPattern pattern_;
-  std::vector<Meeting> first_, second_;  // an entry of pattern_ each
+  SchurComplement schur_;  // J D^-1 J^T
   std::unique_ptr<SpdSolver> solver_;
   const Contacts* contacts_ = nullptr;
-  std::unique_ptr<ContactTerms> contact_terms_;  // where the problem has contact inside
-  std::unique_ptr<KktSystem> direct_;            // made when first needed
+  std::unique_ptr<KktSystem> direct_;  // made when first needed
   bool direct_in_use_ = false;
 
   const Eigen::Matrix3Xd* u_ = nullptr;
@@ -70,7 +57,7 @@ class ProjectedCg final : public KktSolver {
   bool convex_ = false;
   Eigen::VectorXd mass_;            // scaled by the mean mass
   Eigen::VectorXd curvature_;       // of H, an edge each
-  Eigen::VectorXd inverse_metric_;  // D^-1, a vertex each and one 0
+  Eigen::VectorXd inverse_metric_;  // D^-1, a vertex each
   Positions residual_, direction_, image_, correction_;
   Eigen::VectorXd dq_;
 };

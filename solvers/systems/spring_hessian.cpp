@@ -3,14 +3,24 @@
 #include <algorithm>
 
 #include "solvers/linear/spd_solvers.h"
-#include "solvers/systems/vertex_blocks.h"
 
 namespace inextensible {
 namespace {
 
 // Whether vertices are numbered along chains: every spring joins one to the next.
-bool chains(const std::vector<Edge>& pairs) {
-  return std::all_of(pairs.begin(), pairs.end(), [](Edge e) { return std::abs(e.a - e.b) == 1; });
+bool chains(const Pairs& pairs) {
+  return std::all_of(pairs.begin(), pairs.end(), [](const std::pair<int, int>& pair) {
+    return std::abs(pair.first - pair.second) == 1;
+  });
+}
+
+// Where each column of the block that couples i and j begins among a matrix's values.
+std::array<int, 3> block_begin(const SymmetricPattern& pattern, int i, int j) {
+  if (pattern.triangle ==
+      (i < j ? SymmetricPattern::Triangle::lower : SymmetricPattern::Triangle::upper))
+    std::swap(i, j);
+  const auto at = [&](int c) { return pattern.place(3 * i, 3 * j + c); };
+  return {at(0), at(1), at(2)};
 }
 
 }  // namespace
@@ -33,33 +43,34 @@ SpringHessian::SpringHessian(const Problem& problem, double stiffness, std::stri
       add(shear->edges[k], shear->rest_length[k], shear->stiffness[k]);
   }
   const int n = static_cast<int>(free_vertex.size());
-  std::vector<Edge> pairs = coupled_pairs(problem);
+  Pairs pairs = coupled_pairs(problem);
   // Instructions of a second of plain Newton, in 1e6: on the chain of 80, block_tridiagonal 23,
   // multifrontal 54, cholmod_simplicial 79; on the drape of 21 x 21, multifrontal 3400,
   // cholmod_supernodal 5100, cholmod_simplicial 10000.
   linear_solver = wanted != "auto" ? std::string(wanted)
                   : chains(pairs)  ? "block_tridiagonal"
                                    : "multifrontal";
-  if (spd_solver(linear_solver).takes == Takes::block_tridiagonal) {
+  const SpdSolverRow& row = spd_solver(linear_solver);
+  if (row.takes == Takes::block_tridiagonal) {
     // Where one chain ends and the next begins the matrix holds zeros.
-    for (int f = 1; f < n; ++f) pairs.push_back({f - 1, f});
+    for (int f = 1; f < n; ++f) pairs.emplace_back(f - 1, f);
   } else {
     order_vertices(pairs);
     pairs = coupled_pairs(problem);
   }
   for (const int vertex : free_vertex) free_mass.push_back(problem.mass()[vertex]);
-  SymmetricPattern pattern = expand(vertex_graph(n, pairs), triangle_of(linear_solver));
+  SymmetricPattern pattern = in_blocks(pattern_of(n, pairs, row.triangle), 3);
   locate_blocks(problem, pattern);
   entries = pattern.entries();
   solver = make_spd_solver(linear_solver, std::move(pattern));
 }
 
 // Coupled pairs of free vertices, by their place among these.
-std::vector<Edge> SpringHessian::coupled_pairs(const Problem& problem) const {
-  std::vector<Edge> pairs;
+Pairs SpringHessian::coupled_pairs(const Problem& problem) const {
+  Pairs pairs;
   const auto add = [&](int a, int b) {
-    const Edge pair{free_place[a], free_place[b]};
-    if (pair.a >= 0 && pair.b >= 0 && pair.a != pair.b) pairs.push_back(pair);
+    const int f = free_place[a], g = free_place[b];
+    if (f >= 0 && g >= 0 && f != g) pairs.emplace_back(f, g);
   };
   for (const Spring& s : springs) add(s.a, s.b);
   for (const BendingStencil& s : problem.bending()) {
@@ -70,9 +81,9 @@ std::vector<Edge> SpringHessian::coupled_pairs(const Problem& problem) const {
   return pairs;
 }
 
-void SpringHessian::order_vertices(const std::vector<Edge>& pairs) {
-  const std::vector<int> order =
-      fill_reducing_order(vertex_graph(static_cast<int>(free_vertex.size()), pairs));
+void SpringHessian::order_vertices(const Pairs& pairs) {
+  const std::vector<int> order = fill_reducing_order(
+      pattern_of(static_cast<int>(free_vertex.size()), pairs, SymmetricPattern::Triangle::upper));
   std::vector<int> ordered(free_vertex.size());
   for (std::size_t f = 0; f < ordered.size(); ++f) {
     ordered[f] = free_vertex[order[f]];
@@ -83,17 +94,14 @@ void SpringHessian::order_vertices(const std::vector<Edge>& pairs) {
 
 void SpringHessian::locate_blocks(const Problem& problem, const SymmetricPattern& pattern) {
   for (int f = 0; f < static_cast<int>(free_vertex.size()); ++f) {
-    const auto [x, y, z] = block_begin(pattern, f, f);
-    diagonal.push_back(pattern.triangle == SymmetricPattern::Triangle::upper
-                           ? Places{x, y, y + 1, z, z + 1, z + 2}
-                           : Places{x, x + 1, y, x + 2, y + 1, z});
+    const auto at = [&](int i, int j) { return pattern.place(3 * f + i, 3 * f + j); };
+    diagonal.push_back({at(0, 0), at(0, 1), at(1, 1), at(0, 2), at(1, 2), at(2, 2)});
   }
   for (Spring& s : springs) {
     s.fa = free_place[s.a];
     s.fb = free_place[s.b];
     if (s.fa < 0 || s.fb < 0) continue;
-    const auto begin = block_begin(pattern, s.fa, s.fb);
-    std::copy(begin.begin(), begin.end(), s.coupling);
+    s.coupling = block_begin(pattern, s.fa, s.fb);
   }
   for (const BendingStencil& s : problem.bending()) {
     Hinge hinge{};

@@ -19,10 +19,10 @@ struct SpringHessian {
   SpringHessian(const Problem& problem, double stiffness, std::string_view linear_solver);
 
   struct Spring {
-    int a, b;         // vertices
-    int fa, fb;       // their places among the free vertices in elimination order, -1 if pinned
-    double rest, k;   // m, N/m
-    int coupling[3];  // where each column of the coupling block begins among the matrix's values
+    int a, b;                     // vertices
+    int fa, fb;                   // their places among free vertices, -1 if pinned
+    double rest, k;               // m, N/m
+    std::array<int, 3> coupling;  // where each of its block's columns begins among the values
   };
   struct Hinge {                                 // a bending stencil's places
     std::array<int, 4> f;                        // among the free vertices, -1 if pinned
@@ -43,8 +43,8 @@ struct SpringHessian {
   std::unique_ptr<SpdSolver> solver;
 
  private:
-  std::vector<Edge> coupled_pairs(const Problem& problem) const;
-  void order_vertices(const std::vector<Edge>& pairs);
+  Pairs coupled_pairs(const Problem& problem) const;
+  void order_vertices(const Pairs& pairs);
   void locate_blocks(const Problem& problem, const SymmetricPattern& pattern);
 };
 

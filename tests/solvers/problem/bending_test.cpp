@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 
@@ -145,18 +146,24 @@ TEST(Forces, AreTheEnergysDifferences) {
   }
 }
 
-TEST(Problem, RefusesBendingAndDragThatFitNoVertex) {
-  ProblemParts parts;
-  parts.mass = {1, 1, 1};
-  parts.bending = {yarn_bending(0, 1, 3, 1, 1, 1)};
-  EXPECT_THROW(Problem{parts}, std::invalid_argument);
-  parts.bending = {yarn_bending(0, 1, 2, 1, 1, -1)};
-  EXPECT_THROW(Problem{parts}, std::invalid_argument);
-  parts.bending.clear();
-  parts.drag = {1, 1};
-  EXPECT_THROW(Problem{parts}, std::invalid_argument);
-  parts.drag = {1, 1, -1};
-  EXPECT_THROW(Problem{parts}, std::invalid_argument);
+TEST(Problem, RefusesPartsThatDoNotFit) {
+  const std::function<void(ProblemParts&)> misfits[] = {
+      [](ProblemParts& parts) { parts.bending = {yarn_bending(0, 1, 3, 1, 1, 1)}; },
+      [](ProblemParts& parts) { parts.bending = {yarn_bending(0, 1, 2, 1, 1, -1)}; },
+      [](ProblemParts& parts) {
+        parts.drag = {1, 1};
+      },
+      [](ProblemParts& parts) {
+        parts.drag = {1, 1, -1};
+      },
+      [](ProblemParts& parts) { parts.pins_follow_body = true; }};  // of none
+  for (const auto& change : misfits) {
+    ProblemParts parts;
+    parts.mass = {1, 1, 1};
+    EXPECT_NO_THROW(Problem{parts});
+    change(parts);
+    EXPECT_THROW(Problem{parts}, std::invalid_argument);
+  }
 }
 
 }  // namespace

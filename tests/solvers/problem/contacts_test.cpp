@@ -55,10 +55,10 @@ TEST(Contacts, SettlePushesWhatIsInsideOntoItsPlane) {
     EXPECT_EQ(fallen.work.contacts, fallen.found);
     Positions x = fallen.candidate;
     contacts.settle(x);
-    std::vector<bool> touched(static_cast<std::size_t>(n), false);
+    std::vector<bool> touched(n, false);
     for (int c = 0; c < contacts.count(); ++c) {
       const int v = contacts.vertex(c);
-      touched[static_cast<std::size_t>(v)] = true;
+      touched[v] = true;
       const double depth = -contacts.gap(c, fallen.candidate.col(v));
       EXPECT_GT(depth, 0);
       EXPECT_TRUE(contacts.holds(c));
@@ -67,7 +67,7 @@ TEST(Contacts, SettlePushesWhatIsInsideOntoItsPlane) {
                   1e-14);
     }
     for (int v = 0; v < n; ++v) {
-      if (!touched[static_cast<std::size_t>(v)]) {
+      if (!touched[v]) {
         EXPECT_EQ(x.col(v), fallen.candidate.col(v));
       }
     }
@@ -153,7 +153,7 @@ TEST(Contacts, WhatPushesAndPullsLaterCountsAsIfItHadAtOnce) {
   }
 }
 
-TEST(Contacts, RestoreTakesUpWhatWasSaved) {
+TEST(Contacts, RestoreTakesUpWhatWasSavedAndBeginForgets) {
   Random random(3);
   Fallen fallen(random, 20, 0.3);
   Contacts& contacts = fallen.contacts;
@@ -177,18 +177,12 @@ TEST(Contacts, RestoreTakesUpWhatWasSaved) {
   EXPECT_EQ(contacts.count(), known);  // those found since are forgotten
   EXPECT_EQ(pulled(), first);
   EXPECT_EQ(contacts.find(deep, fallen.work), 20);
-}
-
-TEST(Contacts, BeginForgets) {
-  Random random(4);
-  Fallen fallen(random, 20, 0.3);
-  ASSERT_GT(fallen.contacts.count(), 0);
-  fallen.contacts.begin(fallen.start, 0, 0.01);
-  EXPECT_EQ(fallen.contacts.count(), 0);
-  Positions x = fallen.candidate;
-  fallen.contacts.settle(x);
-  EXPECT_EQ(x, fallen.candidate);
-  EXPECT_EQ(fallen.contacts.find(x, fallen.work), fallen.found);
+  contacts.begin(fallen.start, 0, 0.01);
+  EXPECT_EQ(contacts.count(), 0);
+  Positions untouched = fallen.candidate;
+  contacts.settle(untouched);
+  EXPECT_EQ(untouched, fallen.candidate);
+  EXPECT_EQ(contacts.find(untouched, fallen.work), fallen.found);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "harness/base/statistics.h"
@@ -11,25 +12,29 @@
 #include "harness/scenes/scene.h"
 #include "solvers/problem/forces.h"
 #include "solvers/registry.h"
-#include "solvers/stepping/bdf2_stepper.h"
+#include "solvers/stepping/bdf2.h"
 #include "support/param_name.h"
 
 namespace harness {
 namespace {
 
+using inextensible::Bdf2Stepper;
 using inextensible::make_stepper;
+using inextensible::make_velocity_filter;
 using inextensible::Positions;
+using inextensible::Settings;
 using inextensible::State;
 using inextensible::Stepper;
 
 constexpr double stretch = 0.32;  // s, of smooth motion
 constexpr double tight = 1e-11;   // strain limit: slack must not matter
 
-Scene short_chain() {
-  const auto found_type = find_scene("chain");
-  const SceneType& type = *found_type;
-  return type.build(complete_parameters(type, {{"n", 8}}));
+Scene build(const char* name, const SceneParameters& parameters) {
+  const auto type = find_scene(name);
+  return type->build(complete_parameters(*type, parameters));
 }
+
+Scene short_chain() { return build("chain", {{"n", 8}}); }
 
 Positions pendulum_at(double time) {
   Pendulum pendulum({std::vector<double>(7, 1.0 / 8), std::vector<double>(7, 1.0 / 7), 9.81},
@@ -42,15 +47,23 @@ void run(Stepper& stepper, State& state, double h, double duration = stretch) {
   for (int i = 0; i < std::lround(duration / h); ++i) ASSERT_TRUE(stepper.advance(state, h));
 }
 
+using Made = std::unique_ptr<Stepper>;
+using Make = std::function<Made(const Scene&)>;
+
+Make make(const char* solver, const Settings& settings = {}) {
+  return [=](const Scene& scene) {
+    return make_stepper(solver, scene.problem, {tight, 1, settings});
+  };
+}
+
 // Slope of the error at the end of the stretch over five steps. staggered: velocities begin half a
 // step earlier, as the leapfrog form of SHAKE wants them (at rest: v = -h/2 g).
-Slope order(const std::string& solver, const inextensible::Settings& settings = {},
-            const Positions* truth = nullptr, bool staggered = false) {
+Slope order(const Make& make_one, bool staggered = false, double coarsest = stretch / 40,
+            const Positions& exact = pendulum_at(stretch)) {
   const Scene scene = short_chain();
-  const Positions exact = truth ? *truth : pendulum_at(stretch);
   std::vector<double> steps, errors;
-  for (double h = stretch / 40; steps.size() < 5; h /= 2) {
-    const auto stepper = make_stepper(solver, scene.problem, {tight, 1, settings});
+  for (double h = coarsest; steps.size() < 5; h /= 2) {
+    const Made stepper = make_one(scene);
     State state = scene.start;
     if (staggered) state.v.rightCols(7).colwise() -= 0.5 * h * scene.problem->gravity();
     run(*stepper, state, h);
@@ -60,49 +73,41 @@ Slope order(const std::string& solver, const inextensible::Settings& settings = 
   return log_log_slope(steps, errors);
 }
 
-TEST(Order, OfFastProjectionAndIcdIsOne) {
-  for (const char* solver : {"fast_projection", "icd"}) {
-    const Slope slope = order(solver, solver == std::string("icd")
-                                          ? inextensible::Settings{{"direction_tolerance", 1e6}}
-                                          : inextensible::Settings{});
-    EXPECT_NEAR(slope.value, 1, 0.1) << solver << " +- " << slope.half_width;
-  }
-}
-
-TEST(Order, OfShakeIsTwoWithStaggeredVelocitiesAndOneWithout) {
-  EXPECT_NEAR(order("shake", {}, nullptr, true).value, 2, 0.1);
-  EXPECT_NEAR(order("shake").value, 1, 0.1);
-}
-
-TEST(Order, OfRattleIsTwo) { EXPECT_NEAR(order("rattle").value, 2, 0.1); }
-
 // Why SHAKE has no other stepper than its own: forces along the edges at the start of a step are
 // off by half of what these turn in it, which no formula for x and v takes back.
-TEST(Order, OfShakeInBdf2IsOne) {
-  const Scene scene = short_chain();
-  const Positions exact = pendulum_at(stretch);
-  std::vector<double> steps, errors;
-  for (double h = stretch / 40; steps.size() < 5; h /= 2) {
-    auto filter = inextensible::make_velocity_filter("shake", *scene.problem, {tight});
-    inextensible::Bdf2Stepper stepper(scene.problem, std::move(filter));
-    State state = scene.start;
-    run(stepper, state, h);
-    steps.push_back(h);
-    errors.push_back(rms_distance(scene, state.x, exact));
+Made shake_in_bdf2(const Scene& scene) {
+  return std::make_unique<Bdf2Stepper>(scene.problem,
+                                       make_velocity_filter("shake", *scene.problem, {tight}));
+}
+
+TEST(Order, IsThatOfTheMethodInItsOwnStepper) {
+  const struct {
+    const char* name;
+    Make make;
+    bool staggered;
+    double order, tolerance;
+  } cases[] = {{"fast projection", make("fast_projection"), false, 1, 0.1},
+               {"ICD", make("icd", {{"direction_tolerance", 1e6}}), false, 1, 0.1},
+               {"SHAKE with staggered velocities", make("shake"), true, 2, 0.1},
+               {"SHAKE without", make("shake"), false, 1, 0.1},
+               {"SHAKE in BDF2", shake_in_bdf2, false, 1, 0.15},
+               {"RATTLE", make("rattle"), false, 2, 0.1}};
+  for (const auto& [name, make_one, staggered, expected, tolerance] : cases) {
+    const Slope slope = order(make_one, staggered);
+    EXPECT_NEAR(slope.value, expected, tolerance) << name << " +- " << slope.half_width;
   }
-  EXPECT_NEAR(log_log_slope(steps, errors).value, 1, 0.15);
 }
 
 // Every method that keeps a strain limit, here next to nothing, in a stepper of second order.
 class PairOrder : public testing::TestWithParam<std::string> {
  protected:
   double of(double radius) const {
-    inextensible::Settings settings;
+    Settings settings;
     for (const inextensible::SettingInfo& info : inextensible::find_backend(GetParam())->settings) {
       if (info.name == std::string("target")) settings["target"] = 0.0;
       if (info.name == std::string("spectral_radius")) settings["spectral_radius"] = radius;
     }
-    return order(GetParam(), settings).value;
+    return order(make(GetParam().c_str(), settings)).value;
   }
 };
 
@@ -129,28 +134,21 @@ std::vector<std::string> pairs_of_second_order() {
 INSTANTIATE_TEST_SUITE_P(Pairs, PairOrder, testing::ValuesIn(pairs_of_second_order()),
                          inextensible::names::contestant_name);
 
+// The limit h -> 0 at this stiffness is extrapolated from two fine runs; strain_limit sets how
+// exactly Newton's iteration solves.
 TEST(Order, OfImplicitSpringsTowardsTheirOwnStiffLimitIsOne) {
-  const inextensible::Settings settings{{"stiffness", 1e4}, {"newton_tolerance", 1.0}};
+  const Make springs = [](const Scene& scene) {
+    return make_stepper("implicit_springs", scene.problem,
+                        {1e-9, 1, {{"stiffness", 1e4}, {"newton_tolerance", 1.0}}});
+  };
   const Scene scene = short_chain();
-  // The limit h -> 0 at this stiffness, extrapolated from two fine runs; strain_limit sets how
-  // exactly Newton's iteration solves.
   Positions limit;
   for (const double h : {stretch / 20480, stretch / 40960}) {
-    const auto stepper = make_stepper("implicit_springs", scene.problem, {1e-9, 1, settings});
     State state = scene.start;
-    run(*stepper, state, h);
+    run(*springs(scene), state, h);
     limit = limit.size() == 0 ? state.x : Positions(2 * state.x - limit);
   }
-  std::vector<double> steps, errors;
-  for (double h = stretch / 160; steps.size() < 5; h /= 2) {
-    const auto stepper = make_stepper("implicit_springs", scene.problem, {1e-9, 1, settings});
-    State state = scene.start;
-    run(*stepper, state, h);
-    steps.push_back(h);
-    errors.push_back(rms_distance(scene, state.x, limit));
-  }
-  const Slope slope = log_log_slope(steps, errors);
-  EXPECT_NEAR(slope.value, 1, 0.15) << "+- " << slope.half_width;
+  EXPECT_NEAR(order(springs, false, stretch / 160, limit).value, 1, 0.15);
 }
 
 double energy(const Scene& scene, const State& state) {
@@ -180,9 +178,7 @@ TEST(Energy, IsLostByImplicitMethodsInProportionToTheStepAndKeptByRattle) {
 // Slack within the limit builds up in steps without a correction. Taken back all at once it is a
 // blow; what lies beyond most of the limit is a small one.
 TEST(Energy, IsNotGainedWhereOnlyStrainNearTheLimitIsTakenBack) {
-  const auto found_type = find_scene("patch");
-  const SceneType& type = *found_type;
-  const Scene scene = type.build(complete_parameters(type, {{"n", 15}}));
+  const Scene scene = build("patch", {{"n", 15}});
   const auto gain = [&](double target) {
     const auto stepper =
         make_stepper("fast_projection", scene.problem, {0.01, 1, {{"target", target}}});
@@ -203,16 +199,15 @@ TEST(Energy, IsNotGainedWhereOnlyStrainNearTheLimitIsTakenBack) {
 // energy to the third power of the angle a step; directions of the end of the step lose it to the
 // first.
 TEST(Energy, OfATurningNetIsKeptByDirectionsOfTheMiddle) {
-  const auto type = find_scene("spinning_net");
-  const Scene scene = type->build(complete_parameters(*type, {{"n", 7}}));
+  const Scene scene = build("spinning_net", {{"n", 7}});
   const double start = energy(scene, scene.start);
-  const auto lost = [&](const char* solver, const inextensible::Settings& settings, double h) {
+  const auto lost = [&](const char* solver, const Settings& settings, double h) {
     const auto stepper = make_stepper(solver, scene.problem, {1e-9, 1, settings});
     State state = scene.start;
     run(*stepper, state, h, 0.32);
     return 1 - energy(scene, state) / start;
   };
-  const inextensible::Settings conserving{{"spectral_radius", 1.0}, {"target", 0.0}};
+  const Settings conserving{{"spectral_radius", 1.0}, {"target", 0.0}};
   std::vector<double> steps, errors;
   for (double h = 0.02; steps.size() < 3; h /= 2) {
     steps.push_back(h);
@@ -230,9 +225,9 @@ std::shared_ptr<const inextensible::Problem> free_edge() {
   return std::make_shared<const inextensible::Problem>(parts);
 }
 
-inextensible::Bdf2Stepper bdf2(const std::shared_ptr<const inextensible::Problem>& problem,
-                               double strain_limit = 1e-12) {
-  return {problem, inextensible::make_velocity_filter("fast_projection", *problem, {strain_limit})};
+Bdf2Stepper bdf2(const std::shared_ptr<const inextensible::Problem>& problem,
+                 double strain_limit = 1e-12) {
+  return {problem, make_velocity_filter("fast_projection", *problem, {strain_limit})};
 }
 
 TEST(Bdf2, IsExactInFreeFallWhateverTheSteps) {
@@ -288,10 +283,7 @@ TEST(Bdf2, KeepsItsOrderWhenTheStepChanges) {
 // A body that hits the ground must not bounce off it by a velocity that is extrapolated over the
 // impact.
 TEST(Bdf2, DoesNotBounceOffACollider) {
-  const auto found_type = find_scene("drape");
-  const SceneType& type = *found_type;
-  const Scene scene = type.build(
-      complete_parameters(type, {{"n", 5}, {"side", 0.05}, {"gap", 0.05}, {"shear", 0}}));
+  const Scene scene = build("drape", {{"n", 5}, {"side", 0.05}, {"gap", 0.05}, {"shear", 0}});
   auto stepper = bdf2(scene.problem, 1e-4);
   State state = scene.start;
   double highest_after = -1;

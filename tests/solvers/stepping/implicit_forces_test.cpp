@@ -214,12 +214,9 @@ TEST(Drag, LetsFallAtTheSpeedAtWhichItBearsTheWeight) {
   }
 }
 
-TEST(ImplicitForces, AreRefusedByMethodsThatHaveNone) {
+TEST(ImplicitForces, AreRefusedByMethodsThatHaveNoneAndCostNothingWhereThereAreNone) {
   EXPECT_THROW(make_stepper("rattle", cloth(4, 1, true).problem, {0.01, 1, {}}),
                std::invalid_argument);
-}
-
-TEST(ImplicitForces, CostNothingWhereThereIsNothingToTakeThere) {
   ProblemParts parts;
   parts.mass = {1, 1};
   parts.edges = {{0, 1}};

@@ -80,13 +80,5 @@ TEST(MovingPins, AreWhereTheBodyTakesThem) {
   EXPECT_LT(std::abs((state.x.col(1) - state.x.col(0)).norm() / 0.1 - 1), 1e-6);
 }
 
-TEST(MovingPins, NeedABodyThatMoves) {
-  ProblemParts parts;
-  parts.mass = {1};
-  parts.pinned = {0};
-  parts.pins_follow_body = true;
-  EXPECT_THROW(Problem{parts}, std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace inextensible

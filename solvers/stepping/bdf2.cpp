@@ -1,0 +1,160 @@
+#include "solvers/stepping/bdf2.h"
+
+#include "solvers/problem/forces.h"
+#include "solvers/problem/stopwatch.h"
+
+namespace inextensible {
+namespace {
+
+constexpr double largest_growth = 2;  // the formula is stable below 1 + sqrt 2
+
+}  // namespace
+
+Bdf2History::Bdf2History(const Problem& problem) : problem_(problem) {
+  for (Positions* p : {&x_, &v_, &x_known_, &v_known_}) p->resize(3, problem.vertices());
+}
+
+bool Bdf2History::leads_to(const State& state, double h) {
+  if (problem_.pins_follow_body())
+    for (const int vertex : problem_.pinned()) x_known_.col(vertex) = state.x.col(vertex);
+  return h_ > 0 && h <= largest_growth * h_ && state.x == x_known_ && state.v == v_known_;
+}
+
+void Bdf2History::restart(const State& state, double h, const Positions& acceleration) {
+  x_ = state.x - h * state.v + (0.5 * h * h) * acceleration;
+  v_ = state.v - h * acceleration;
+  h_ = h;
+  ++restarts_;
+}
+
+Bdf2Coefficients Bdf2History::coefficients(double h) const {
+  const double w = h / h_, alpha = (1 + w) * (1 + w) / (1 + 2 * w);
+  return {alpha, 1 - alpha, h * (1 + w) / (1 + 2 * w)};
+}
+
+void Bdf2History::add_step(const State& start, double h, const Positions& x,
+                           const Positions& acceleration, const Contacts* contacts, Positions& v) {
+  x_ = start.x;
+  v_ = start.v;
+  for (int contact = 0; contacts && contact < contacts->count(); ++contact) {
+    if (!contacts->holds(contact)) continue;
+    const int i = contacts->vertex(contact);
+    v.col(i) = (x.col(i) - start.x.col(i)) / h;
+    x_.col(i) = x.col(i) - h * v.col(i) + (0.5 * h * h) * acceleration.col(i);
+    v_.col(i) = v.col(i) - h * acceleration.col(i);
+  }
+  for (const int vertex : problem_.pinned()) v.col(vertex).setZero();
+  x_known_ = x;
+  v_known_ = v;
+  h_ = h;
+}
+
+Bdf2Stepper::Bdf2Stepper(std::shared_ptr<const Problem> problem,
+                         std::unique_ptr<VelocityFilter> filter)
+    : FilterStepper(std::move(problem), std::move(filter)),
+      history_(*problem_),
+      acceleration_(3, problem_->vertices()) {
+  const Eigen::Index n = problem_->vertices();
+  if (problem_->shear() || !problem_->bending().empty() || problem_->implicit_forces())
+    x_ahead_.resize(3, n);
+  if (implicit_) flight_velocity_.resize(3, n);
+}
+
+bool Bdf2Stepper::unconstrained(const State& state, double h, Positions& x) {
+  const bool known = history_.leads_to(state, h);
+  if (!implicit_) {
+    explicit_solve(state, h, known, x);
+  } else if (!implicit_solve(state, h, known, x)) {
+    return false;
+  }
+  for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
+  return true;
+}
+
+void Bdf2Stepper::explicit_solve(const State& state, double h, bool known, Positions& x) {
+  acceleration_.setZero();
+  if (x_ahead_.cols() > 0) x_ahead_ = state.x + h * state.v;
+  add_acceleration(*problem_, x_ahead_, 1, acceleration_, work_);
+  if (problem_->has_drag()) add_drag(*problem_, state.v, 1, acceleration_);
+  for (const int vertex : problem_->pinned()) acceleration_.col(vertex).setZero();
+  if (!known) history_.restart(state, h, acceleration_);
+  const Bdf2Coefficients c = history_.coefficients(h);
+  // In one pass: the formula for x with the formula for v in it.
+  x = c.now * (state.x + c.beta_h * state.v) + c.before * (history_.x() + c.beta_h * history_.v()) +
+      (c.beta_h * c.beta_h) * acceleration_;
+}
+
+// The formulas without acceleration are the flight; what forces at its end add is (beta h)^2 a.
+bool Bdf2Stepper::implicit_solve(const State& state, double h, bool known, Positions& x) {
+  if (!known) {  // the present acceleration, as backward Euler sees it
+    x = x_ahead_ = state.x + h * state.v;
+    if (!implicit_->advance(h, state.v, x, work_)) return false;
+    acceleration_ = (x - x_ahead_) / (h * h);
+    history_.restart(state, h, acceleration_);
+  }
+  const Bdf2Coefficients c = history_.coefficients(h);
+  flight_velocity_ = c.now * state.v + c.before * history_.v();
+  x_ahead_ = c.now * state.x + c.before * history_.x();
+  x_ahead_ += c.beta_h * flight_velocity_;
+  if (problem_->pins_follow_body())
+    for (const int vertex : problem_->pinned()) x_ahead_.col(vertex) = state.x.col(vertex);
+  x = x_ahead_;
+  if (!implicit_->advance(c.beta_h, flight_velocity_, x, work_)) return false;
+  acceleration_ = (x - x_ahead_) / (c.beta_h * c.beta_h);
+  return true;
+}
+
+StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Positions& /*filtered*/,
+                                       const Positions& x, Positions& v) {
+  Stopwatch stopwatch(phases_wanted_);
+  const Bdf2Coefficients c = history_.coefficients(h);
+  v = (x - c.now * start.x - c.before * history_.x()) * (1 / c.beta_h);
+  history_.add_step(start, h, x, acceleration_, contacts_.get(), v);
+  phases_.unconstrained += stopwatch();
+  return {};
+}
+
+Bdf2OfEuler::Bdf2OfEuler(std::shared_ptr<const Problem> problem, std::unique_ptr<Stepper> euler)
+    : Stepper(std::move(problem), ContactsElsewhere{}),
+      euler_(std::move(euler)),
+      history_(*problem_),
+      gravity_(problem_->gravity().replicate(1, problem_->vertices())) {
+  for (Positions* p : {&ahead_.x, &ahead_.v}) p->resize(3, problem_->vertices());
+}
+
+StepResult Bdf2OfEuler::solve(const State& state, double h, Positions& x) {
+  const auto& pinned = problem_->pinned();
+  if (!history_.leads_to(state, h)) history_.restart(state, h, gravity_);
+  const auto [now, before, beta_h] = history_.coefficients(h);
+  ahead_.x = now * state.x + before * history_.x();
+  ahead_.v = now * state.v + before * history_.v();
+  ahead_.time = state.time + (h - beta_h);
+  for (const int vertex : pinned) {
+    ahead_.x.col(vertex) = start_positions().col(vertex);
+    ahead_.v.col(vertex).setZero();
+  }
+  if (problem_->pins_follow_body()) {
+    const BodyMotion& motion = problem_->body_motion();
+    const Pose carry = motion(ahead_.time) * motion(state.time).inverse();
+    for (const int vertex : pinned) ahead_.x.col(vertex) = carry(ahead_.x.col(vertex));
+  }
+  euler_->measure_phases(phases_wanted_);
+  const StepResult result = euler_->advance(ahead_, beta_h);
+  phases_ = euler_->phases();
+  const WorkCounters own = work_;  // steps are those of the pair
+  work_ = euler_->work();
+  work_.steps = own.steps;
+  work_.rejected_steps = own.rejected_steps;
+  work_.iterations = own.iterations;
+  x = ahead_.x;
+  return result;
+}
+
+StepResult Bdf2OfEuler::end_velocities(const State& start, double h, const Positions& /*filtered*/,
+                                       const Positions& x, Positions& v) {
+  v = ahead_.v;
+  history_.add_step(start, h, x, gravity_, euler_->contacts(), v);
+  return {};
+}
+
+}  // namespace inextensible

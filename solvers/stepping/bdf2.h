@@ -1,0 +1,97 @@
+// The variable-step two-step backward differentiation formula BDF2: second order where the one-step
+// pipeline is first. With w = h / h_{n-1},
+//   alpha = (1 + w)^2 / (1 + 2 w), beta = (1 + w) / (1 + 2 w) (equal steps: 4/3 and 2/3):
+//   y^{n+1} = alpha y^n + (1 - alpha) y^{n-1} + beta h y'^{n+1}.
+//
+// The formula assumes that velocities do not jump. A state that is not the one left by the last
+// step, and a vertex that the collider holds, get the history of a free flight that ends here:
+//   x^{n-1} = x^n - h v^n + h^2 a / 2,  v^{n-1} = v^n - h a.
+#pragma once
+
+#include "solvers/stepping/velocity_filter.h"
+
+namespace inextensible {
+
+struct Bdf2Coefficients {
+  double now, before, beta_h;  // alpha, 1 - alpha, s
+};
+
+// What is remembered of the last step.
+class Bdf2History {
+ public:
+  explicit Bdf2History(const Problem& problem);
+  // Whether the last step led to `state`, and a step of h seconds may follow it. Pins that follow a
+  // body have moved since.
+  bool leads_to(const State& state, double h);
+  // The flight under `acceleration` (3 x n) that ends in `state`.
+  void restart(const State& state, double h, const Positions& acceleration);
+  Bdf2Coefficients coefficients(double h) const;
+  // The step from `start` led to x with the velocities v; those of vertices that contacts hold
+  // become (x - x^n) / h, those of pins 0. contacts: null where there is no collider.
+  void add_step(const State& start, double h, const Positions& x, const Positions& acceleration,
+                const Contacts* contacts, Positions& v);
+
+  const Positions& x() const { return x_; }  // x^{n-1}
+  const Positions& v() const { return v_; }  // v^{n-1}
+  std::int64_t restarts() const { return restarts_; }
+
+ private:
+  const Problem& problem_;
+  Positions x_, v_;
+  Positions x_known_, v_known_;  // x^n and v^n, as the last step left them
+  double h_ = 0;                 // s, of the last step; 0: no history
+  std::int64_t restarts_ = 0;
+};
+
+// A velocity filter inside BDF2 (English and Bridson 2008 take constrained dynamics there this
+// way).
+//
+//   x^{n+1} = alpha x^n + (1 - alpha) x^{n-1} + beta h v^{n+1},
+//   v^{n+1} = alpha v^n + (1 - alpha) v^{n-1} + beta h a,
+// the filter moves x^{n+1}, and the first line read backwards gives v^{n+1}. Shear and bending are
+// taken at x^n + h v^n, which is second order and damps (x extrapolated from x^n and x^{n-1}
+// excites), or at x^{n+1}, where the problem asks for it (ImplicitForces).
+class Bdf2Stepper final : public FilterStepper {
+ public:
+  Bdf2Stepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter);
+
+  // How often the whole history was restarted: first step, foreign state, step grown more than
+  // twofold.
+  std::int64_t restarts() const { return history_.restarts(); }
+
+ private:
+  bool unconstrained(const State& state, double h, Positions& x) override;
+  StepResult end_velocities(const State& start, double h, const Positions& filtered,
+                            const Positions& x, Positions& v) override;
+  // x^{n+1} before the filter, and acceleration_. known: the last step's history goes on.
+  void explicit_solve(const State& state, double h, bool known, Positions& x);
+  bool implicit_solve(const State& state, double h, bool known, Positions& x);
+
+  Bdf2History history_;
+  Positions acceleration_;     // m/s^2, at x_ahead_
+  Positions x_ahead_;          // x^n + h v^n, with shear or bending only
+  Positions flight_velocity_;  // with implicit forces only
+};
+
+// BDF2 around a method that is a backward Euler step of its own (Choi and Ko 2002 take implicit
+// springs in BDF2). With s = (x, v), the formula is that step over beta h from the state
+// alpha s^n + (1 - alpha) s^{n-1}, whose time is (1 - beta) h after s^n.
+class Bdf2OfEuler final : public Stepper {
+ public:
+  Bdf2OfEuler(std::shared_ptr<const Problem> problem, std::unique_ptr<Stepper> euler);
+  const Positions& filtered_positions() const override { return euler_->filtered_positions(); }
+  const char* linear_solver() const override { return euler_->linear_solver(); }
+  double reciprocal_condition() const override { return euler_->reciprocal_condition(); }
+
+ private:
+  StepResult solve(const State& state, double h, Positions& x) override;
+  StepResult end_velocities(const State& start, double h, const Positions& filtered,
+                            const Positions& x, Positions& v) override;
+
+  std::unique_ptr<Stepper> euler_;
+  Bdf2History history_;
+  Positions gravity_;  // of every vertex
+  State ahead_;        // alpha s^n + (1 - alpha) s^{n-1}, then s^{n+1}
+};
+
+}  // namespace inextensible

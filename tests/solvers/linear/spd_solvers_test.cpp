@@ -1,0 +1,478 @@
+// What every linear solver of the list promises, on every matrix that it takes, against dense
+// algebra; and what some of them promise beyond that.
+#include "solvers/linear/spd_solvers.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+#include "solvers/linear/hybrid.h"
+#include "solvers/linear/mixed_cholesky.h"
+#include "solvers/problem/edge_constraints.h"
+#include "solvers/registry.h"
+#include "support/random_graph.h"
+
+namespace inextensible {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using testing::Random;
+using testing::uniform;
+using Triangle = SymmetricPattern::Triangle;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+MatrixXd random_matrix(Random& random, Eigen::Index rows, Eigen::Index columns) {
+  return MatrixXd::NullaryExpr(rows, columns, [&] { return uniform(random, -1, 1); });
+}
+
+MatrixXd schur_complement(const Problem& problem, const Positions& x) {
+  const MatrixXd j = testing::dense_gradient(problem, x);
+  return j * testing::inverse_masses3(problem).asDiagonal() * j.transpose();
+}
+
+// Sparse, with couplings of all strengths.
+MatrixXd random_spd(Random& random, int n) {
+  MatrixXd b = MatrixXd::Zero(n, n);
+  for (int j = 0; j < n; ++j) {
+    b(j, j) = uniform(random, 0.1, 1);
+    for (int k = 0; k < 2; ++k)
+      b(static_cast<int>(uniform(random, 0, n)), j) += uniform(random, -1, 1);
+  }
+  return b * b.transpose();
+}
+
+// Diagonally dominant, with one dense row in the middle.
+MatrixXd dominant(Random& random, int n) {
+  MatrixXd matrix = random_matrix(random, n, n);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      if (i != n / 2 && j != n / 2 && uniform(random, 0, 1) > 0.1) matrix(i, j) = 0;
+    }
+  }
+  matrix = (matrix + matrix.transpose()).eval();
+  matrix.diagonal() = VectorXd::Ones(n) + matrix.cwiseAbs().rowwise().sum();
+  return matrix;
+}
+
+// A sum of positive semidefinite matrices of two blocks each, and a little on the diagonal.
+MatrixXd random_chain(Random& random, int rows, int block) {
+  MatrixXd matrix = 1e-3 * MatrixXd::Identity(rows * block, rows * block);
+  for (int row = 0; row < rows; ++row) {
+    const int size = row + 1 < rows ? 2 * block : block;
+    const MatrixXd factor = random_matrix(random, size, size);
+    matrix.block(row * block, row * block, size, size) += factor * factor.transpose();
+  }
+  return matrix;
+}
+
+SymmetricPattern chain_pattern(int rows, int block, Triangle triangle = Triangle::upper) {
+  Pairs links;
+  for (int i = 1; i < rows; ++i) links.emplace_back(i - 1, i);
+  return in_blocks(pattern_of(rows, links, triangle), block);
+}
+
+// The entries that are not exactly 0.
+SymmetricPattern pattern_of(const MatrixXd& matrix, Triangle triangle) {
+  Pairs pairs;
+  for (int j = 0; j < matrix.cols(); ++j) {
+    for (int i = 0; i < j; ++i) {
+      if (matrix(i, j) != 0) pairs.emplace_back(i, j);
+    }
+  }
+  return pattern_of(static_cast<int>(matrix.rows()), pairs, triangle);
+}
+
+void write(const MatrixXd& matrix, const SymmetricPattern& pattern, SpdSolver& solver) {
+  for (int j = 0; j < pattern.n; ++j) {
+    for (int e = pattern.column_start[j]; e < pattern.column_start[j + 1]; ++e)
+      solver.values()[e] = matrix(pattern.row_index[e], j);
+  }
+}
+
+// A matrix of one pattern in a solver.
+struct System {
+  MatrixXd dense;
+  SymmetricPattern pattern;
+  std::unique_ptr<SpdSolver> solver;
+
+  System(const SpdSolverRow& row, MatrixXd matrix, SymmetricPattern its_pattern)
+      : dense(std::move(matrix)),
+        pattern(std::move(its_pattern)),
+        solver(make_spd_solver(row.name, pattern)) {
+    write(dense, pattern, *solver);
+  }
+  System(const SpdSolverRow& row, const MatrixXd& matrix)
+      : System(row, matrix, pattern_of(matrix, row.triangle)) {}
+  bool factor() { return solver->factor(); }
+  bool factor_shifted(double shift) {
+    write(dense - shift * MatrixXd::Identity(pattern.n, pattern.n), pattern, *solver);
+    return solver->factor();
+  }
+};
+
+// Chains of any length, odd and even; for solvers of any pattern also matrices of graphs with
+// unequal masses, of cloth, and without a meaning, in either kind of order.
+System random_system(const SpdSolverRow& row, std::uint64_t seed) {
+  Random random(seed);
+  if (row.takes != Takes::any) {
+    const int rows = 1 + static_cast<int>(seed % 40),
+              block = row.takes == Takes::tridiagonal ? 1 : 3;
+    return {row, random_chain(random, rows, block), chain_pattern(rows, block)};
+  }
+  const auto kind = seed % 4;
+  const auto mesh = kind == 0 ? testing::random_graph(random, 40, 25, 3, row.direct ? 1e-4 : 1e-1)
+                              : testing::random_mesh(random, 5, 7, 2);
+  MatrixXd matrix = kind == 2
+                        ? random_spd(random, 1 + static_cast<int>(random() % 60))
+                        : schur_complement(*mesh.problem, testing::perturbed(random, mesh, 0.1));
+  if (seed % 8 < 4) {
+    const std::vector<int> order = fill_reducing_order(pattern_of(matrix, Triangle::upper));
+    matrix = MatrixXd(matrix(order, order));
+  }
+  return {row, matrix};
+}
+
+double least_eigenvalue(const MatrixXd& matrix) {
+  return Eigen::SelfAdjointEigenSolver<MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
+}
+
+class SpdSolvers : public ::testing::TestWithParam<SpdSolverRow> {};
+INSTANTIATE_TEST_SUITE_P(All, SpdSolvers, ::testing::ValuesIn(spd_solvers()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST_P(SpdSolvers, SolveToTheToleranceAskedForWhateverTheMagnitude) {
+  const SpdSolverRow& row = GetParam();
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    System system = random_system(row, seed);
+    Random random(seed);
+    for (int round = 0; round < 2; ++round) {  // the same pattern, other values
+      system.dense.diagonal().array() += 0.1 * round;
+      ASSERT_TRUE(system.factor_shifted(0));
+      EXPECT_GT(system.solver->reciprocal_condition(), 0);
+      EXPECT_LE(system.solver->reciprocal_condition(), 1);
+      EXPECT_GE(system.solver->factor_nonzeros(), static_cast<double>(system.pattern.n));
+      for (const double tolerance : {1e-1, 1e-4, 1e-10, SpdSolver::tightest}) {
+        const double size = tolerance == 1e-10 ? 1e60 : 1;
+        const VectorXd b = size * random_matrix(random, system.pattern.n, 1);
+        VectorXd x = b;
+        ASSERT_TRUE(system.solver->solve_within(tolerance, x.data()));
+        // Iterations see a residual that drifts from the true one by rounding times the condition.
+        const double rounding = 1e-13 * (system.dense.norm() * x.norm() + b.norm());
+        const bool exact = row.direct && row.precision == Precision::full;
+        EXPECT_LE((system.dense * x - b).norm(),
+                  rounding + (exact ? 0 : 1.01 * tolerance * b.norm()));
+      }
+    }
+  }
+}
+
+// A positive diagonal does not make a matrix positive definite. What is left of a refused matrix
+// must not reach the next one.
+TEST_P(SpdSolvers, RefuseWhatIsNotPositiveDefiniteAndForgetIt) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    System system = random_system(GetParam(), seed);
+    const int n = system.pattern.n;
+    const VectorXd b = VectorXd::LinSpaced(n, -1, 2);
+    const auto solution = [&] {
+      VectorXd x = b;
+      EXPECT_TRUE(system.factor_shifted(0));
+      system.solver->solve(x.data());
+      return x;
+    };
+    const VectorXd fresh = solution();
+    if (GetParam().direct) {
+      const double least = least_eigenvalue(system.dense);
+      EXPECT_TRUE(system.factor_shifted(0.99 * least));
+      EXPECT_FALSE(system.factor_shifted(1.01 * least));
+    }
+    for (const int column : {0, n / 2, n - 1}) {
+      for (const double bad : {-1.0, 0.0, nan, -infinity, infinity}) {
+        write(system.dense, system.pattern, *system.solver);
+        system.solver->values()[system.pattern.diagonal(column)] = bad;
+        EXPECT_FALSE(system.factor()) << "diagonal entry " << column << " is " << bad;
+      }
+    }
+    EXPECT_EQ(solution(), fresh);
+  }
+}
+
+// A chain of springs that hangs on nothing: its Laplacian is singular, and so nearly that of one
+// that is held by a weak spring. (The supernodal code takes any positive pivot.)
+TEST_P(SpdSolvers, RefusePivotsThatLostTheirDigitsWhereToldTo) {
+  const SpdSolverRow& row = GetParam();
+  if (!row.direct || std::string_view(row.name) == "cholmod_supernodal") return;
+  const int block = row.takes == Takes::block_tridiagonal ? 3 : 1;
+  for (const int rows : {2, 3, 12, 13}) {
+    for (const int held : {0, rows / 2, rows - 1}) {
+      SCOPED_TRACE(std::to_string(rows) + " rows, held at " + std::to_string(held));
+      const auto factors = [&](double hold, double least, double* condition = nullptr) {
+        MatrixXd links = MatrixXd::Zero(rows, rows);
+        for (int i = 0; i < rows; ++i) {
+          links(i, i) = (i > 0) + (i + 1 < rows) + (i == held ? hold : 0);
+          if (i > 0) links(i - 1, i) = links(i, i - 1) = -1;
+        }
+        MatrixXd matrix = MatrixXd::Zero(rows * block, rows * block);
+        for (int c = 0; c < block; ++c)
+          matrix(Eigen::seqN(c, rows, block), Eigen::seqN(c, rows, block)) = links;
+        System system(row, matrix, chain_pattern(rows, block, row.triangle));
+        system.solver->set_least_pivot(least);
+        const bool factored = system.factor();
+        if (condition) *condition = system.solver->reciprocal_condition();
+        return factored;
+      };
+      double condition = 0;
+      EXPECT_TRUE(factors(1e-6, 1e-10, &condition));
+      EXPECT_LT(condition, 1e-5);
+      if (rows == 2) {
+        EXPECT_NEAR(condition, 1e-6, 1e-9);
+      }
+      EXPECT_TRUE(factors(1e-12, 0));
+      EXPECT_FALSE(factors(1e-12, 1e-10));
+      EXPECT_FALSE(factors(0, 1e-10));
+    }
+  }
+}
+
+TEST(ChainSolvers, TakeTheirPatternOnly) {
+  EXPECT_THROW(make_spd_solver("tridiagonal", chain_pattern(4, 3)), std::invalid_argument);
+  EXPECT_THROW(make_spd_solver("block_tridiagonal", chain_pattern(6, 1)), std::invalid_argument);
+  EXPECT_THROW(make_spd_solver("block_tridiagonal", chain_pattern(5, 2)), std::invalid_argument);
+  EXPECT_THROW(make_spd_solver("block_tridiagonal", chain_pattern(1, 3, Triangle::lower)),
+               std::invalid_argument);
+}
+
+TEST(FillReducingOrder, IsAPermutation) {
+  Random random(3);
+  const auto mesh = testing::random_mesh(random, 9, 7, 2);
+  const SymmetricPattern pattern =
+      pattern_of(schur_complement(*mesh.problem, mesh.x), Triangle::upper);
+  std::vector<int> order = fill_reducing_order(pattern);
+  std::sort(order.begin(), order.end());
+  for (int i = 0; i < pattern.n; ++i) EXPECT_EQ(order[i], i);
+}
+
+// ---- The multifrontal factorization in single precision ----
+
+TEST(MultifrontalCholesky, InSinglePrecisionAgreesToFiveDigitsWhateverTheMagnitude) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const MatrixXd matrix = dominant(random, 1 + static_cast<int>(seed));
+    const SymmetricPattern pattern = pattern_of(matrix, Triangle::lower);
+    MultifrontalCholesky<float> solver(pattern);
+    write(matrix, pattern, solver);
+    ASSERT_TRUE(solver.factor());
+    VectorXd x = 1e60 * VectorXd::LinSpaced(pattern.n, -1, 2);
+    const VectorXd expected = matrix.ldlt().solve(x);
+    solver.solve(x.data());
+    EXPECT_LT((x - expected).norm(), 1e-5 * expected.norm());
+  }
+}
+
+// A pivot of 1e-6 of its diagonal entry is noise in single precision.
+TEST(MultifrontalCholesky, InSinglePrecisionRefusesPivotsWithoutDigits) {
+  MultifrontalCholesky<float> solver(chain_pattern(2, 1, Triangle::lower));
+  for (const double pivot : {1e-3, 1e-6, 0.0, -1e-6}) {
+    const double values[] = {1, 1, 1 + pivot};
+    std::copy(values, values + 3, solver.values());
+    EXPECT_EQ(solver.factor(), pivot == 1e-3) << pivot;
+  }
+}
+
+// Graphs with edges so nearly parallel that single precision has few digits, or none.
+TEST(MixedCholesky, KeepsWhatItIsAskedForInWhicheverPrecisionItTakes) {
+  int solved[2] = {0, 0};
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    for (const double bend : {1.0, 1e-1, 1e-2, 1e-3}) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", bend " + std::to_string(bend));
+      Random random(seed);
+      const auto graph = testing::random_graph(random, 60, 40, 5, 1e-2);
+      Positions x = graph.x;
+      x.bottomRows(2) *= bend;  // towards a line
+      const MatrixXd matrix = schur_complement(*graph.problem, x);
+      const SymmetricPattern pattern = pattern_of(matrix, Triangle::lower);
+      MixedCholesky solver(pattern);
+      MultifrontalCholesky<double> exact(pattern);
+      write(matrix, pattern, solver);
+      write(matrix, pattern, exact);
+      ASSERT_EQ(solver.factor(), exact.factor());
+      for (const double tolerance : {1e-2, 1e-5, 1e-9}) {
+        const VectorXd b = random_matrix(random, pattern.n, 1);
+        VectorXd found = b;
+        ASSERT_TRUE(solver.solve_within(tolerance, found.data()));
+        EXPECT_LE((matrix * found - b).norm(),
+                  tolerance * b.norm() + 1e-14 * matrix.norm() * found.norm());
+        ++solved[solver.in_double_precision()];
+      }
+    }
+  }
+  EXPECT_GT(solved[false], 0);
+  EXPECT_GT(solved[true], 0);
+}
+
+// ---- Conjugate gradients along lines ----
+
+struct Lines {
+  explicit Lines(const MatrixXd& matrix)
+      : pattern(pattern_of(matrix, Triangle::upper)), solver(pattern) {
+    write(matrix, pattern, solver);
+    EXPECT_TRUE(solver.factor());
+  }
+  SymmetricPattern pattern;
+  LineCgSolver solver;
+};
+
+TEST(LineCg, SolvesASystemOfLinesAloneWithoutIterating) {
+  Random random(1);
+  MatrixXd matrix = 2.1 * MatrixXd::Identity(12, 12);
+  for (int i = 1; i < 12; ++i) {
+    if (i != 7) matrix(i, i - 1) = matrix(i - 1, i) = -1;  // two lines
+  }
+  Lines lines(matrix);
+  LineCgSolver& solver = lines.solver;
+  EXPECT_EQ(solver.lines(), 2);
+  const VectorXd b = random_matrix(random, 12, 1);
+  VectorXd x = b;
+  solver.solve(x.data());
+  EXPECT_LT((x - matrix.ldlt().solve(b)).norm(), 1e-14 * x.norm() * 12);
+  EXPECT_EQ(solver.iterations(), 0);
+}
+
+// Unequal masses and angles break yarns now and then, never into single edges.
+TEST(LineCg, FindsTheYarnsOfACrumpledCloth) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const auto mesh = testing::random_mesh(random, 7, 9, 0);
+    const Lines cloth(schur_complement(*mesh.problem, mesh.x));
+    EXPECT_GE(cloth.solver.lines(), 7 + 9 - 4);
+    EXPECT_LE(cloth.solver.lines(), 3 * (7 + 9));
+  }
+}
+
+// What lines invert is the matrix itself where they have an entry; among eliminated rows, all of
+// it.
+TEST(LineCg, LinesAreASymmetricPositiveDefinitePreconditionerAndThoseEliminatedAreIndependent) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const int n = 40;
+    const MatrixXd matrix = random_spd(random, n);
+    Lines lines(matrix);
+    MatrixXd inverse = MatrixXd::Identity(n, n);
+    for (int j = 0; j < n; ++j) lines.solver.solve_lines(inverse.col(j).data());
+    EXPECT_LT((inverse - inverse.transpose()).norm(), 1e-12 * inverse.norm());
+    EXPECT_GT(least_eigenvalue(inverse), 0);
+    const MatrixXd inverted = inverse.inverse();
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        const bool whole = lines.solver.eliminated(i) && lines.solver.eliminated(j);
+        if (whole || i == j || std::abs(inverted(i, j)) > 1e-6 * inverted.norm()) {
+          EXPECT_NEAR(inverted(i, j), matrix(i, j), 1e-9 * matrix.norm());
+        }
+      }
+    }
+  }
+}
+
+// Weak couplings, none of which makes a line; positive definite without, indefinite with them.
+TEST(LineCg, ReportsIndefiniteMatricesAndTooFewIterationsByReturnValue) {
+  MatrixXd matrix = MatrixXd::Constant(10, 10, -0.2);
+  matrix.diagonal().setOnes();
+  for (const char* name : {"line_cg", "hybrid"}) {
+    System system(spd_solver(name), matrix);
+    ASSERT_TRUE(system.factor());  // every line is positive definite
+    VectorXd x = VectorXd::Ones(10);
+    EXPECT_FALSE(system.solver->solve_within(1e-6, x.data())) << name;
+  }
+  Random random(3);
+  Lines lines(random_spd(random, 50));
+  lines.solver.set_most_iterations(2);
+  VectorXd x = random_matrix(random, 50, 1);
+  EXPECT_FALSE(lines.solver.solve_within(1e-12, x.data()));
+  EXPECT_EQ(lines.solver.iterations(), 2);
+}
+
+// J W J^T of n x n vertices, sums of two curves in the plane: the angle between warp and weft is
+// `angle`, but for random bends of either.
+MatrixXd sheared(Random& random, int n, double angle, double bend) {
+  Positions warp = Positions::Zero(3, n), weft = Positions::Zero(3, n);
+  for (int i = 1; i < n; ++i) {
+    const double p = bend * uniform(random, -1, 1), q = angle + bend * uniform(random, -1, 1);
+    warp.col(i) = warp.col(i - 1) + Eigen::Vector3d(std::cos(p), std::sin(p), 0);
+    weft.col(i) = weft.col(i - 1) + Eigen::Vector3d(std::cos(q), std::sin(q), 0);
+  }
+  ProblemParts parts;
+  parts.mass.assign(n * n, 1);
+  Positions x(3, n * n);
+  for (int v = 0; v < n * n; ++v) {
+    x.col(v) = warp.col(v % n) + weft.col(v / n);
+    if (v % n > 0) parts.edges.push_back({v - 1, v});
+    if (v / n > 0) parts.edges.push_back({v - n, v});
+  }
+  parts.rest_length.assign(parts.edges.size(), 1);
+  return schur_complement(Problem(std::move(parts)), x);
+}
+
+TEST(Hybrid, FactorsWhereConjugateGradientsAreSlowAndComesBackFromThere) {
+  Random random(5);
+  const MatrixXd easy = sheared(random, 20, 1.4, 0.1), hard = sheared(random, 20, 0.02, 0.01);
+  const SymmetricPattern pattern = pattern_of(easy, Triangle::upper);
+  HybridSpdSolver solver(pattern);
+  const auto solve = [&](const MatrixXd& matrix) {
+    write(matrix, pattern, solver);
+    ASSERT_TRUE(solver.factor());
+    const VectorXd b = random_matrix(random, pattern.n, 1);
+    VectorXd x = b;
+    ASSERT_TRUE(solver.solve_within(1e-8, x.data()));
+    EXPECT_LE((matrix * x - b).norm(), 1.1e-8 * b.norm() + 1e-13 * matrix.norm() * x.norm());
+  };
+  solve(easy);
+  EXPECT_FALSE(solver.factors());
+  for (int i = 0; i < 200 && !solver.factors(); ++i) solve(hard);
+  EXPECT_TRUE(solver.factors());
+  const auto iterations = solver.iterations();
+  solve(hard);
+  EXPECT_EQ(solver.iterations(), iterations);  // conjugate gradients have a rest
+  for (int i = 0; i < 200 && solver.factors(); ++i) solve(easy);
+  EXPECT_FALSE(solver.factors());
+}
+
+// Both lie within the limit of the manifold; along it, inner residuals add a fraction of the way
+// that the projection goes.
+TEST(FastProjection, KeepsTheLimitAlikeWithConjugateGradientsAndWithAFactorization) {
+  constexpr double limit = 1e-3;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Random random(seed);
+    const auto mesh = testing::random_mesh(random, 8, 8, static_cast<int>(seed % 3));
+    const Positions candidate = testing::perturbed(random, mesh, 0.05);
+    int exact_iterations = 0;
+    Positions expected;
+    for (const char* name : {"multifrontal", "line_cg", "hybrid"}) {
+      SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
+      Positions x = candidate;
+      WorkCounters work;
+      const auto filter = make_velocity_filter("fast_projection", *mesh.problem,
+                                               {limit, 1, {{"linear_solver", std::string(name)}}});
+      const StepResult result = filter->apply(mesh.x, 0.01, x, work);
+      ASSERT_TRUE(result);
+      EXPECT_EQ(work.linear_iterations > 0, !spd_solver(name).direct);
+      EXPECT_TRUE(EdgeConstraints(*mesh.problem, limit).permissible(x));
+      if (spd_solver(name).direct) {
+        expected = x;
+        exact_iterations = result.iterations;
+      }
+      EXPECT_LE(result.iterations, exact_iterations + 2);
+      EXPECT_LE((x - expected).norm(), 0.05 * (candidate - expected).norm());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace inextensible
