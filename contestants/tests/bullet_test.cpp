@@ -17,12 +17,9 @@ class Bullet : public testing::Test {
   void SetUp() override { load(PLUGIN); }
 };
 
-// Its time stepper is of first order.
-TEST_F(Bullet, SwingsAsAPendulum) {
-  const double coarse = pendulum_error(solver, 1000), fine = pendulum_error(solver, 2000);
-  EXPECT_LT(fine, 0.01);
-  EXPECT_NEAR(std::log2(coarse / fine), 1, 0.1);
-}
+TEST_F(Bullet, IsOfFirstOrder) { expect_first_order(solver); }
+TEST_F(Bullet, TakesAndGivesStates) { expect_free_flight(solver); }
+TEST_F(Bullet, TakesForces) { expect_spring(solver); }
 
 // One pass a step from the pin down leaves link i of N the strain (N - i) g h^2 / l at rest.
 TEST_F(Bullet, OnePassCarriesALoadByOneLink) {
@@ -66,39 +63,12 @@ TEST_F(Bullet, NetSpinsDown) {
   EXPECT_LT(largest_strain(scene, end), 1e-4);
 }
 
-// Nothing is damped: what flies freely goes on as it was, momentum and all.
-TEST_F(Bullet, TakesAndGivesStates) {
-  Scene scene = spinning_net(4, 0);
-  scene.start.v.colwise() = Eigen::Vector3d(3, -2, 1);
-  constexpr double h = 1.0 / 128;  // that single precision holds
-  const State after = run(solver, scene, h, 1);
-  EXPECT_LT(distance(after.x, scene.start.x + h * scene.start.v), 1e-14);
-  EXPECT_LT(distance(after.v, scene.start.v), 1e-12);
-  const State late = run(solver, scene, h, 1000);
-  EXPECT_LT(distance(late.v, scene.start.v), 1e-10);  // never asleep
-}
-
 TEST_F(Bullet, RefusesWithoutTrace) {
   const Scene scene = chain(5);
   State fast = scene.start;
   fast.v.rightCols(2).setConstant(1e300);
   expect_refusal_without_trace(solver, scene, fast, 1e10);
   expect_refusal_without_trace(solver, scene, scene.start, 1e-17);  // no step to Bullet
-}
-
-// Two vertices on a spring alone swing with omega^2 = 2 k / m, and keep their middle.
-TEST_F(Bullet, TakesForces) {
-  inextensible::ProblemParts parts;
-  parts.mass = {1, 1};
-  parts.gravity.setZero();
-  parts.shear = inextensible::Springs{{{0, 1}}, {1}, {50}};
-  Scene scene{std::make_shared<const inextensible::Problem>(parts), {}};
-  scene.start.x.setZero(3, 2);
-  scene.start.v.setZero(3, 2);
-  scene.start.x.row(0) << -0.55, 0.55;
-  const State after = run(solver, scene, std::numbers::pi / 10 / 3200, 3200);  // half a period
-  EXPECT_NEAR(after.x(0, 1), 0.45, 1e-4);
-  EXPECT_NEAR(after.x(0, 0), -0.45, 1e-4);
 }
 
 TEST_F(Bullet, TakesNoImplicitForces) {

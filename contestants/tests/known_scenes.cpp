@@ -147,6 +147,35 @@ void expect_refusal_without_trace(const std::string& solver, const Scene& scene,
   EXPECT_TRUE(after.x == expected.x && after.v == expected.v);
 }
 
+void expect_first_order(const std::string& solver) {
+  const double coarse = pendulum_error(solver, 1000), fine = pendulum_error(solver, 2000);
+  EXPECT_LT(fine, 0.01);
+  EXPECT_NEAR(std::log2(coarse / fine), 1, 0.1);
+}
+
+void expect_free_flight(const std::string& solver) {
+  Scene scene = spinning_net(4, 0);
+  scene.start.v.colwise() = Eigen::Vector3d(3, -2, 1);
+  constexpr double h = 1.0 / 128;  // that single precision holds
+  const State after = run(solver, scene, h, 1);
+  EXPECT_LT(distance(after.x, scene.start.x + h * scene.start.v), 1e-14);
+  EXPECT_LT(distance(after.v, scene.start.v), 1e-12);
+  EXPECT_LT(distance(run(solver, scene, h, 1000).v, scene.start.v), 1e-10);
+}
+
+void expect_spring(const std::string& solver) {
+  ProblemParts parts;
+  parts.mass = {1, 1};
+  parts.gravity.setZero();
+  parts.shear = inextensible::Springs{{{0, 1}}, {1}, {50}};
+  Positions x = Positions::Zero(3, 2);
+  x.row(0) << -0.55, 0.55;
+  const Scene scene = finished(parts, x, Positions::Zero(3, 2));
+  const State after = run(solver, scene, std::numbers::pi / 10 / 3200, 3200);  // half a period
+  EXPECT_NEAR(after.x(0, 1), 0.45, 1e-4);
+  EXPECT_NEAR(after.x(0, 0), -0.45, 1e-4);
+}
+
 void expect_unsupported(const std::string& solver, const Scene& scene, const std::string& why) {
   try {
     make(solver, scene);

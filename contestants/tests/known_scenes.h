@@ -42,6 +42,12 @@ double pendulum_error(const std::string& solver, int steps,
 // An impossible step is refused, leaves the state as it was, and nothing behind for the next.
 void expect_refusal_without_trace(const std::string& solver, const Scene& scene,
                                   const inextensible::State& impossible, double h);
+// For engines of first order that take vertices: the error of a pendulum halves with the step; what
+// flies freely goes on as it was, momentum and all, and never falls asleep; and two vertices on a
+// spring alone swing with omega^2 = 2 k / m, and keep their middle.
+void expect_first_order(const std::string& solver);
+void expect_free_flight(const std::string& solver);
+void expect_spring(const std::string& solver);
 // make() refuses, and says why.
 void expect_unsupported(const std::string& solver, const Scene& scene, const std::string& why);
 

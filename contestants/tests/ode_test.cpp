@@ -19,12 +19,9 @@ class Ode : public testing::Test {
   void SetUp() override { load(PLUGIN); }
 };
 
-// Its time stepper is of first order.
-TEST_F(Ode, SwingsAsAPendulum) {
-  const double coarse = pendulum_error(solver, 1000), fine = pendulum_error(solver, 2000);
-  EXPECT_LT(fine, 0.01);
-  EXPECT_NEAR(std::log2(coarse / fine), 1, 0.1);
-}
+TEST_F(Ode, IsOfFirstOrder) { expect_first_order(solver); }
+TEST_F(Ode, TakesAndGivesStates) { expect_free_flight(solver); }
+TEST_F(Ode, TakesForces) { expect_spring(solver); }
 
 // A chain that hangs at rest stays: the factorization finds its tensions, and few passes do not.
 TEST_F(Ode, HangsAtRest) {
@@ -58,28 +55,6 @@ TEST_F(Ode, NetKeepsSpinning) {
   const State end = run(solver, scene, 1e-3, 500);
   EXPECT_NEAR(angular_momentum(scene, end).y() / angular_momentum(scene, scene.start).y(), 1, 1e-9);
   EXPECT_LT(largest_strain(scene, end), 1e-3);
-}
-
-TEST_F(Ode, TakesAndGivesStates) {
-  Scene scene = spinning_net(4, 0);
-  scene.start.v.colwise() = Eigen::Vector3d(3, -2, 1);
-  const State after = run(solver, scene, 0.01, 1);
-  EXPECT_LT(distance(after.x, scene.start.x + 0.01 * scene.start.v), 1e-14);
-  EXPECT_LT(distance(run(solver, scene, 0.01, 1000).v, scene.start.v), 1e-10);  // never disabled
-}
-
-TEST_F(Ode, TakesForces) {
-  inextensible::ProblemParts parts;
-  parts.mass = {1, 1};
-  parts.gravity.setZero();
-  parts.shear = inextensible::Springs{{{0, 1}}, {1}, {50}};
-  Scene scene{std::make_shared<const inextensible::Problem>(parts), {}};
-  scene.start.x.setZero(3, 2);
-  scene.start.v.setZero(3, 2);
-  scene.start.x.row(0) << -0.55, 0.55;
-  const State after = run(solver, scene, std::numbers::pi / 10 / 3200, 3200);  // half a period
-  EXPECT_NEAR(after.x(0, 1), 0.45, 1e-4);
-  EXPECT_NEAR(after.x(0, 0), -0.45, 1e-4);
 }
 
 TEST_F(Ode, RefusesWithoutTrace) {

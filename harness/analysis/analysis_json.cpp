@@ -7,7 +7,7 @@
 
 #include "harness/analysis/budget.h"
 #include "harness/analysis/findings.h"
-#include "harness/base/fields_json.h"
+#include "harness/base/fields.h"
 
 namespace harness::analysis {
 

@@ -2,6 +2,9 @@
 // ways, schemas, `bench list` and the tests that fill structs at random follow from the table.
 #pragma once
 
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <tuple>
 
@@ -38,6 +41,70 @@ constexpr void for_each_field(const Table& table, Visit&& visit) {
 template <class Row>
 std::string described(const Row& row) {
   return (*row.unit ? std::string(row.unit) + ": " : std::string()) + row.meaning;
+}
+
+// null for a number that is not finite: JSON has no word for it.
+inline nlohmann::json number(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(nullptr);
+}
+inline double number_of(const nlohmann::json& value) {  // NaN for null
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+}
+
+// How a type stands in JSON, and what a schema says of it. Types that JSON does not know specialize
+// it.
+template <class Value>
+struct FieldCodec {
+  static nlohmann::json write(const Value& value, bool nullable) {
+    if constexpr (std::is_same_v<Value, double>) return number(value);
+    if constexpr (std::is_same_v<Value, std::string>) {
+      if (nullable && value.empty()) return nullptr;
+    }
+    return value;
+  }
+
+  static void read(const nlohmann::json& from, Value& value, bool nullable) {
+    if constexpr (std::is_same_v<Value, double>) {
+      value = nullable ? number_of(from) : from.get<double>();
+    } else if (nullable && from.is_null()) {
+      value = {};
+    } else {
+      from.get_to(value);
+    }
+  }
+
+  static nlohmann::ordered_json schema(const FieldTraits& traits) {
+    const auto type = [&traits](const char* name) {
+      return traits.nullable ? nlohmann::ordered_json{{"type", {name, "null"}}}
+                             : nlohmann::ordered_json{{"type", name}};
+    };
+    if constexpr (std::is_same_v<Value, bool>) return type("boolean");
+    if constexpr (std::is_same_v<Value, std::string>) return type("string");
+    if constexpr (!std::is_arithmetic_v<Value>) return type("object");
+    nlohmann::ordered_json schema = type(std::is_integral_v<Value> ? "integer" : "number");
+    if (!traits.nullable) schema[traits.positive ? "exclusiveMinimum" : "minimum"] = 0;
+    return schema;
+  }
+};
+
+template <class Table, class Object>
+void write_fields(nlohmann::json& to, const Table& table, const Object& object) {
+  for_each_field(table, [&](const auto& row) {
+    using Value = typename std::decay_t<decltype(row)>::Type;
+    nlohmann::json& place = *row.traits.inside ? to[row.traits.inside] : to;
+    place[row.name] = FieldCodec<Value>::write(object.*row.member, row.traits.nullable);
+  });
+}
+
+// Throws json::exception where a field is missing or of another type.
+template <class Table, class Object>
+void read_fields(const nlohmann::json& from, const Table& table, Object& object) {
+  for_each_field(table, [&](const auto& row) {
+    using Value = typename std::decay_t<decltype(row)>::Type;
+    const nlohmann::json& place = *row.traits.inside ? from.at(row.traits.inside) : from;
+    if (row.traits.nullable && !place.contains(row.name)) return;  // as null
+    FieldCodec<Value>::read(place.at(row.name), object.*row.member, row.traits.nullable);
+  });
 }
 
 }  // namespace harness

@@ -4,10 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -44,24 +42,23 @@ bool is_special(const std::string& path) {
 // A file beside `path` that no one else has: a name of its own, made exclusively, no link followed.
 class Beside {
  public:
-  explicit Beside(const std::string& path) : name_(path + ".XXXXXX") {
-    file_ = mkostemp(name_.data(), O_CLOEXEC);
-  }
+  explicit Beside(const std::string& path)
+      : name_(path + ".XXXXXX"), file_(mkostemp(name_.data(), O_CLOEXEC)) {}
   ~Beside() {
-    if (file_ >= 0) close(file_);
-    if (file_ >= 0 && !kept_) unlink(name_.c_str());
+    if (file_ && !kept_) unlink(name_.c_str());
   }
   Beside(const Beside&) = delete;
   Beside& operator=(const Beside&) = delete;
 
-  int file() const { return file_; }  // negative: it could not be made, errno says why
+  bool made() const { return static_cast<bool>(file_); }  // false: errno says why
+  bool write(const std::string& text) const { return write_whole(file_.get(), text); }
 
   // Whether it has taken the place of `path`, with its permissions or those of a new file.
   bool replace(const std::string& path) {
     struct stat status {};
     const mode_t mode = stat(path.c_str(), &status) == 0 ? status.st_mode & 07777 : new_file_mode();
-    kept_ =
-        fchmod(file_, mode) == 0 && fsync(file_) == 0 && rename(name_.c_str(), path.c_str()) == 0;
+    kept_ = fchmod(file_.get(), mode) == 0 && fsync(file_.get()) == 0 &&
+            rename(name_.c_str(), path.c_str()) == 0;
     return kept_;
   }
 
@@ -73,19 +70,9 @@ class Beside {
   }
 
   std::string name_;
-  int file_ = -1;
+  OpenFile file_;
   bool kept_ = false;
 };
-
-void write_through(const std::string& path, const std::string& text) {
-  const int file = open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
-  if (file < 0) throw FileError(path, "write");
-  const bool whole = write_whole(file, text);
-  const int reason = errno;
-  close(file);
-  errno = reason;
-  if (!whole) throw FileError(path, "write");
-}
 
 // error: of the attempt, 0 if the file was opened and nothing came.
 std::string unreadable_because(const std::string& path, int error) {
@@ -97,10 +84,16 @@ std::string unreadable_because(const std::string& path, int error) {
   return error == 0 ? "it is empty" : std::strerror(error);
 }
 
-}  // namespace
+std::string temporary_stem() { return "bench-" + std::to_string(getuid()) + "-"; }
 
-FileError::FileError(const std::string& path, const std::string& verb)
-    : FileError(path, verb, std::strerror(errno)) {}
+flock whole_file() {
+  flock region{};
+  region.l_type = F_WRLCK;
+  region.l_whence = SEEK_SET;
+  return region;
+}
+
+}  // namespace
 
 FileError::FileError(const std::string& path, const std::string& verb, const std::string& reason)
     : std::runtime_error("cannot " + verb + " '" + path + "': " + reason) {}
@@ -134,7 +127,7 @@ std::string output_path(const std::string& path) {
     if (link == most_links) throw UsageError("'" + path + "' is a link in a circle");
     const fs::path next = fs::read_symlink(place, error);
     if (error) throw UsageError("cannot follow the link '" + path + "': " + error.message());
-    place = next.is_absolute() ? next : folder_of(place) / next;
+    place = folder_of(place) / next;  // an absolute one stands for itself
   }
   if (fs::is_directory(place, error))
     throw UsageError("'" + path + "' is a folder; --out names a file");
@@ -152,36 +145,27 @@ std::string regular_output_path(const std::string& path) {
 void check_writable(const std::string& path) {
   const std::string place = output_path(path);
   if (is_standard_output(place)) return;
-  if (is_special(place)) {
-    if (access(place.c_str(), W_OK) != 0)
-      throw UsageError("cannot write '" + path + "': " + std::strerror(errno));
-    return;
-  }
   const fs::path folder = folder_of(place);
   std::error_code error;
   if (!fs::is_directory(folder, error))
     throw UsageError("cannot write '" + path + "': there is no folder '" + folder.string() + "'");
-  if (Beside(place).file() < 0)
-    throw UsageError("cannot write '" + path + "': " + std::strerror(errno));
+  const bool writable = is_special(place) ? access(place.c_str(), W_OK) == 0 : Beside(place).made();
+  if (!writable) throw UsageError("cannot write '" + path + "': " + std::strerror(errno));
 }
 
 void write_atomically(const std::string& path, const std::string& text) {
   const std::string place = output_path(path);
   if (is_standard_output(place)) {
     std::cout << text << std::flush;  // whether that went well, main says
-    return;
+  } else if (is_special(place)) {
+    const OpenFile file(open(place.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
+    if (!file || !write_whole(file.get(), text)) throw FileError(path, "write");
+  } else {
+    Beside beside(place);
+    if (!beside.made() || !beside.write(text) || !beside.replace(place))
+      throw FileError(path, "write");
   }
-  if (is_special(place)) return write_through(place, text);
-  Beside beside(place);
-  if (beside.file() < 0 || !write_whole(beside.file(), text) || !beside.replace(place))
-    throw FileError(path, "write");
 }
-
-namespace {
-
-std::string temporary_stem() { return "bench-" + std::to_string(getuid()) + "-"; }
-
-}  // namespace
 
 void remove_left_folders() {
   const std::string stem = temporary_stem();
@@ -196,28 +180,16 @@ void remove_left_folders() {
 
 TemporaryFolder::TemporaryFolder(const std::string& purpose) {
   remove_left_folders();
-  std::string name = (fs::temp_directory_path() /
-                      (temporary_stem() + std::to_string(getpid()) + "-" + purpose + "-XXXXXX"))
-                         .string();
+  const std::string stem = temporary_stem() + std::to_string(getpid()) + "-" + purpose;
+  std::string name = (fs::temp_directory_path() / (stem + "-XXXXXX")).string();
   if (!mkdtemp(name.data())) throw FileError(name, "make");
   path_ = name;
 }
 
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+  fs::remove_all(path_, ignored);
 }
-
-namespace {
-
-flock whole_file() {
-  flock region{};
-  region.l_type = F_WRLCK;
-  region.l_whence = SEEK_SET;
-  return region;
-}
-
-}  // namespace
 
 bool try_lock(int file) {
   flock region = whole_file();

@@ -2,19 +2,41 @@
 // for journals, which are written a line at a time.
 #pragma once
 
-#include <sys/types.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace harness {
 
 // The disk is full, a folder is gone: "cannot write 'a.json': No space left on device".
 class FileError : public std::runtime_error {
  public:
-  FileError(const std::string& path, const std::string& verb);  // the reason is errno's
-  FileError(const std::string& path, const std::string& verb, const std::string& reason);
+  FileError(const std::string& path, const std::string& verb,
+            const std::string& reason = std::strerror(errno));
+};
+
+// A file descriptor, closed at the end; negative: none.
+class OpenFile {
+ public:
+  explicit OpenFile(int file = -1) : file_(file) {}
+  ~OpenFile() {
+    if (file_ >= 0) close(file_);
+  }
+  OpenFile(OpenFile&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+  OpenFile& operator=(OpenFile&& other) noexcept {
+    std::swap(file_, other.file_);
+    return *this;
+  }
+  int get() const { return file_; }
+  explicit operator bool() const { return file_ >= 0; }
+
+ private:
+  int file_;
 };
 
 // All of the text to an open file, from where it stands. False if it cannot; the reason is errno's.

@@ -48,30 +48,25 @@ Journal::Journal(const std::string& out) : path_(out + ".journal") {
 }
 
 Journal::~Journal() {
-  if (file_ < 0) return;
-  if (length_ == 0) unlink(path_.c_str());  // nothing has come of it
-  close(file_);
+  if (file_ && length_ == 0) unlink(path_.c_str());  // nothing has come of it
 }
 
 void Journal::lock(const std::string& out) {
-  for (;;) {
-    file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
-    if (file_ < 0) throw UsageError("cannot write '" + path_ + "': " + std::strerror(errno));
-    if (!try_lock(file_)) {
-      const pid_t other = lock_holder(file_);
-      close(file_);
+  for (struct stat status{}; status.st_nlink == 0;) {  // 0: its owner has just removed it
+    file_ = OpenFile(open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644));
+    if (!file_) throw UsageError("cannot write '" + path_ + "': " + std::strerror(errno));
+    if (!try_lock(file_.get())) {
+      const pid_t other = lock_holder(file_.get());
       throw UsageError("another bench" +
                        (other > 0 ? " (process " + std::to_string(other) + ")" : std::string()) +
                        " is writing '" + out + "'; give another --out");
     }
-    struct stat status {};
-    if (fstat(file_, &status) == 0 && status.st_nlink > 0) return;
-    close(file_);  // its owner has just finished and removed it
+    fstat(file_.get(), &status);
   }
 }
 
 void Journal::read() {
-  const std::string text = content(file_);
+  const std::string text = content(file_.get());
   std::size_t number = 0;
   // A last line without its end was being written when the program ended.
   for (std::size_t end; (end = text.find('\n', length_)) != std::string::npos; length_ = end + 1) {
@@ -99,7 +94,7 @@ const json* Journal::find(const std::string& key) const {
 }
 
 void Journal::start(const json& header) {
-  if (ftruncate(file_, 0) != 0) throw FileError(path_, "empty");
+  if (ftruncate(file_.get(), 0) != 0) throw FileError(path_, "empty");
   length_ = 0;
   known_.clear();
   go_on(header);
@@ -127,14 +122,14 @@ void Journal::forget(const std::string& key) {
 
 void Journal::append(json line) {
   struct stat status {};
-  if (fstat(file_, &status) != 0 || status.st_nlink == 0)
+  if (fstat(file_.get(), &status) != 0 || status.st_nlink == 0)
     throw FileError(path_, "continue", "it has been removed meanwhile");
   line["check"] = check_of(line);
   const std::string text = compact(line) + "\n";
-  if (lseek(file_, static_cast<off_t>(length_), SEEK_SET) < 0 || !write_whole(file_, text) ||
-      fdatasync(file_) != 0) {
+  if (lseek(file_.get(), static_cast<off_t>(length_), SEEK_SET) < 0 ||
+      !write_whole(file_.get(), text) || fdatasync(file_.get()) != 0) {
     const std::string reason = std::strerror(errno);
-    if (ftruncate(file_, static_cast<off_t>(length_)) != 0) {
+    if (ftruncate(file_.get(), static_cast<off_t>(length_)) != 0) {
     }  // a torn last line is understood, too
     throw FileError(path_, "write", reason + "; its lines are safe, --resume continues from there");
   }
@@ -143,8 +138,7 @@ void Journal::append(json line) {
 
 void Journal::remove() {
   unlink(path_.c_str());
-  close(file_);
-  file_ = -1;
+  file_ = OpenFile();
 }
 
 }  // namespace harness

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "harness/base/files.h"
+
 namespace harness {
 
 class Journal {
@@ -48,7 +50,7 @@ class Journal {
   std::string path_, damage_;
   nlohmann::json header_;
   std::map<std::string, nlohmann::json> known_;
-  int file_ = -1;
+  OpenFile file_;
   std::size_t length_ = 0;  // bytes, whole lines
 };
 

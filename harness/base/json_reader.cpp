@@ -11,6 +11,21 @@ namespace harness {
 
 using nlohmann::json;
 
+std::string Bounds::text() const {
+  const auto words = [this](const char* relation, double bound) {
+    return relation + number_text(bound, whole ? 16 : 6);
+  };
+  return (whole ? "a whole number" : "a number") +
+         (least > -huge ? words(above ? " above " : " of at least ", least) : "") +
+         (least > -huge && most < huge ? " and" : "") +
+         (most < huge ? words(below ? " below " : " at most ", most) : "");
+}
+
+bool Bounds::hold(double number) const {
+  return std::isfinite(number) && (above ? number > least : number >= least) &&
+         (below ? number < most : number <= most) && (!whole || number == std::floor(number));
+}
+
 JsonReader::JsonReader(const json& object, std::string where)
     : object_(object), where_(std::move(where)) {
   if (!object.is_object())

@@ -1,5 +1,5 @@
-// Files that users write, in JSON with // comments: read strictly, with messages that name file,
-// key and value.
+// Input from users: numbers within bounds, and JSON with // comments, read strictly, with messages
+// that name file, key and value.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,9 +7,31 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/bounds.h"
-
 namespace harness {
+
+// What a number must be, on the command line or in a file.
+struct Bounds {
+  static constexpr double huge = 1e300;  // as a bound: none
+
+  double least = -huge;
+  bool above = false;  // least itself is not allowed
+  double most = huge;
+  bool below = false;  // most itself is not allowed
+  bool whole = false;
+
+  static Bounds positive() { return {.least = 0, .above = true}; }
+  // A strain limit: at 1 an edge may vanish.
+  static Bounds strain() { return {.least = 0, .above = true, .most = 1, .below = true}; }
+  static Bounds at_least(double least) { return {.least = least}; }
+  // One that fits into an int.
+  static Bounds whole_number(double least) {
+    return {.least = least, .most = 2147483647, .whole = true};
+  }
+  // One that a double holds exactly, for seeds.
+  static Bounds exact_number() { return {.least = 0, .most = 9007199254740992, .whole = true}; }
+  std::string text() const;  // "a whole number of at least 2"
+  bool hold(double number) const;
+};
 
 // A JSON object whose keys are read one by one; finish() refuses keys that were not read. All throw
 // UsageError.
@@ -42,15 +64,14 @@ class JsonReader {
   std::set<std::string> known_;
 };
 
-// A text as JSON; with // comments where users write it themselves. Everything that comes from
-// outside comes in here. Throws UsageError, naming the file, if it is none, if a key stands twice
-// in an object, or if it is nested deeper than anything of ours.
+// JSON from outside; with // comments where users write it themselves. Throws UsageError, naming
+// the file, if it is none, if an object has a key twice, or if it is nested deeper than our own.
 nlohmann::json parse_document(const std::string& text, const std::string& path);
 nlohmann::json parse_commented(const std::string& text, const std::string& path);
-// The same of a text that is no file: `where` begins the message.
+// A text that is no file: `where` begins the message.
 nlohmann::json parse_line(const std::string& text, const std::string& where);
 
-// A value as it may stand in a message: short, whatever it is.
+// A value for a message: short, whatever it is.
 std::string value_text(const nlohmann::json& value);
 
 }  // namespace harness

@@ -47,7 +47,7 @@ void send_output_to_error() {
 }
 
 OutputToError::OutputToError() : output_(fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3)) {
-  if (output_ < 0)
+  if (!output_)
     throw std::runtime_error(std::string("standard output: no descriptor left: ") +
                              std::strerror(errno));
   send_output_to_error();
@@ -56,8 +56,7 @@ OutputToError::OutputToError() : output_(fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3
 OutputToError::~OutputToError() {
   std::cout.flush();
   std::fflush(stdout);
-  dup2(output_, STDOUT_FILENO);
-  close(output_);
+  dup2(output_.get(), STDOUT_FILENO);
 }
 
 }  // namespace harness

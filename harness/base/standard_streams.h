@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "harness/base/files.h"
+
 namespace harness {
 
 // Opens those of descriptors 0 to 2 that are closed, to where nothing can be read or written:
@@ -16,11 +18,9 @@ class OutputToError {
  public:
   OutputToError();
   ~OutputToError();
-  OutputToError(const OutputToError&) = delete;
-  OutputToError& operator=(const OutputToError&) = delete;
 
  private:
-  int output_;
+  OpenFile output_;
 };
 
 // The same to the end of this process.

@@ -36,23 +36,19 @@ std::string timing_lock_path() {
 
 TimingLock::TimingLock(bool wait) {
   const std::string path = timing_lock_path();
-  file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-  if (file_ < 0)
+  file_ = OpenFile(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+  if (!file_)
     throw UsageError("cannot open '" + path + "', the lock on taking times: " +
                      std::strerror(errno) + "; --untimed goes without");
-  while (!try_lock(file_)) {
-    const pid_t other = lock_holder(file_);
+  while (!try_lock(file_.get())) {
+    const pid_t other = lock_holder(file_.get());
     if (is_for_us(other)) {
-      close(file_);
-      file_ = -1;
+      file_ = OpenFile();
       return;
     }
     const std::string holder = other > 0 ? "process " + std::to_string(other) : "another process";
-    if (!wait || interrupted()) {
-      close(file_);
-      if (interrupted()) throw Interrupted();
-      throw UsageError(holder + " is taking times on this machine");
-    }
+    if (interrupted()) throw Interrupted();
+    if (!wait) throw UsageError(holder + " is taking times on this machine");
     if (!waited_)
       std::cerr << "bench: waiting for " << holder << ", which is taking times on this machine"
                 << std::endl;
@@ -63,9 +59,7 @@ TimingLock::TimingLock(bool wait) {
 }
 
 TimingLock::~TimingLock() {
-  if (file_ < 0) return;
-  unsetenv(holder_variable);
-  close(file_);
+  if (file_) unsetenv(holder_variable);
 }
 
 }  // namespace harness

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "harness/base/files.h"
+
 namespace harness {
 
 // Held from construction to destruction, and no longer than the process lives, however it ends.
@@ -14,13 +16,11 @@ class TimingLock {
   // Throws Interrupted.
   explicit TimingLock(bool wait = true);
   ~TimingLock();
-  TimingLock(const TimingLock&) = delete;
-  TimingLock& operator=(const TimingLock&) = delete;
 
   bool waited() const { return waited_; }
 
  private:
-  int file_ = -1;  // -1: the program that started this one holds it
+  OpenFile file_;  // none: the program that started this one holds it
   bool waited_ = false;
 };
 

@@ -17,7 +17,6 @@
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
-#include "harness/judge/reference_file.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/points/point_json.h"
 #include "harness/points/tuned.h"

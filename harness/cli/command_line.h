@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/bounds.h"
+#include "harness/base/json_reader.h"
 
 namespace CLI {
 class App;

@@ -11,8 +11,6 @@
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
-#include "harness/judge/ensemble_runs.h"
-#include "harness/judge/reference_file.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/points/context.h"
 
@@ -55,59 +53,33 @@ void print_ensemble(std::ostream& out, const Ensemble& ensemble) {
   out << '\n';
 }
 
-// A reference's file while it is made: runs that are done are kept beside it, so that one that was
-// stopped goes on after them.
-class PendingReference {
- public:
-  PendingReference(const std::string& path, const std::string& scene,
-                   const SceneParameters& parameters, double finest)
-      : path_(writable(path)),
-        pieces_(path, {{"schema", "inextensible-reference-pieces/1"},
-                       {"scene", scene},
-                       {"scene_parameters", parameters},
-                       {"finest", finest},
-                       {"build", machine_context().at("fingerprint")}}) {
-    for (const std::string& line : pieces_.news()) tell(line);
-  }
+// The runs of a reference, kept beside its file.
+RouteRuns runs_beside(const std::string& path, const std::string& scene,
+                      const SceneParameters& parameters, double finest) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  return RouteRuns(
+      [name](const std::string& line) { std::cerr << name << ": " << line << '\n'; }, path,
+      {{"schema", "inextensible-reference-pieces/1"},
+       {"scene", scene},
+       {"scene_parameters", parameters},
+       {"finest", finest},
+       {"build", machine_context().at("fingerprint")}});
+}
 
-  Tell teller() const {
-    return [this](const std::string& line) { tell(line); };
-  }
-  KeepRun keeper() {
-    return [this](const auto& run, const auto& compute) -> const RouteRun& {
-      return pieces_.run(run, compute);
-    };
-  }
-  // Of cloth.
-  Ensemble ensemble(const Scene& scene, const std::vector<double>& times) {
-    return is_cloth(scene) ? compute_ensemble(scene, times, {}, teller(), keeper()) : Ensemble();
-  }
-  void write(const nlohmann::json& document) {
-    write_atomically(path_, document.dump() + "\n");
-    pieces_.remove();
-  }
+Ensemble ensemble_for(const Scene& scene, const std::vector<double>& times, RouteRuns& runs) {
+  return is_cloth(scene) ? compute_ensemble(scene, times, {}, runs) : Ensemble();
+}
 
- private:
-  static const std::string& writable(const std::string& path) {
-    check_writable(path);
-    return path;
-  }
-  void tell(const std::string& line) const {
-    std::cerr << std::filesystem::path(path_).filename().string() << ": " << line << '\n';
-  }
-
-  std::string path_;
-  ReferencePieces pieces_;
-};
-
-// By both routes, and of cloth an ensemble.
+// By both routes, and of cloth an ensemble. One that was stopped goes on after the runs that were
+// done.
 void make_reference(const std::string& path, const std::string& scene,
                     const SceneParameters& parameters, double finest) {
-  PendingReference making(path, scene, parameters, finest);
-  Reference reference =
-      compute_reference(scene, parameters, finest, making.teller(), making.keeper());
-  reference.ensemble = making.ensemble(find_scene(scene)->build(parameters), reference.times);
-  making.write(to_json(reference));
+  check_writable(path);
+  RouteRuns runs = runs_beside(path, scene, parameters, finest);
+  Reference reference = compute_reference(scene, parameters, finest, runs);
+  reference.ensemble = ensemble_for(find_scene(scene)->build(parameters), reference.times, runs);
+  write_atomically(path, to_json(reference).dump() + "\n");
+  runs.remove();
   print_reference(std::cout, reference);
   print_ensemble(std::cout, reference.ensemble);
   std::cout << path << std::endl;
@@ -115,10 +87,13 @@ void make_reference(const std::string& path, const std::string& scene,
 
 // Makes the ensemble of a reference that is there. Its path stays as it is.
 void add_ensemble(const std::string& path, const Reference& reference) {
-  PendingReference making(path, reference.scene, reference.parameters, 0);
+  check_writable(path);
+  RouteRuns runs = runs_beside(path, reference.scene, reference.parameters, 0);
   const Scene scene = find_scene(reference.scene)->build(reference.parameters);
-  const Ensemble ensemble = making.ensemble(scene, reference.times);
-  making.write(with_ensemble(parse_document(read_file(path, "reference"), path), ensemble));
+  const Ensemble ensemble = ensemble_for(scene, reference.times, runs);
+  const nlohmann::json document = parse_document(read_file(path, "reference"), path);
+  write_atomically(path, with_ensemble(document, ensemble).dump() + "\n");
+  runs.remove();
   std::cout << reference.scene << ":\n";
   print_ensemble(std::cout, ensemble);
   std::cout << path << std::endl;

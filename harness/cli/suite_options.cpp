@@ -9,7 +9,7 @@
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/cli/options.h"
-#include "harness/judge/reference_file.h"
+#include "harness/judge/reference.h"
 
 namespace harness {
 

@@ -10,7 +10,7 @@
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/sweep_run.h"
-#include "harness/judge/reference_file.h"
+#include "harness/judge/reference.h"
 #include "harness/points/context.h"
 #include "harness/points/noise.h"
 #include "harness/points/result_file.h"

@@ -13,16 +13,23 @@
 #include "harness/scenes/scene.h"
 #include "solvers/registry.h"
 #include "solvers/stepping/step_controller.h"
+#include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
 
 // Where a method begins to take steps of h seconds: half a step back where its velocities are those
 // of the middle of a step.
-inextensible::State start_from(const inextensible::Problem& problem,
-                               const inextensible::State& state,
-                               const inextensible::Backend& backend, double h);
+inline inextensible::State start_from(const inextensible::Problem& problem,
+                                      const inextensible::State& state,
+                                      const inextensible::Backend& backend, double h) {
+  const bool half_step = backend.velocities == inextensible::Velocities::half_step;
+  return half_step ? inextensible::start_half_step_back(problem, state, h) : state;
+}
 // The same from the scene's start, where the scene asks for that.
-inextensible::State start_of(const Scene& scene, const inextensible::Backend& backend, double h);
+inline inextensible::State start_of(const Scene& scene, const inextensible::Backend& backend,
+                                    double h) {
+  return scene.staggered ? start_from(*scene.problem, scene.start, backend, h) : scene.start;
+}
 
 struct Pace {
   double step;       // s

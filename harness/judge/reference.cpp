@@ -1,16 +1,112 @@
 #include "harness/judge/reference.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "harness/base/errors.h"
+#include "harness/base/fields.h"
+#include "harness/base/files.h"
+#include "harness/base/json_reader.h"
 #include "harness/base/text.h"
-#include "harness/judge/reference_file.h"
-#include "harness/points/measures.h"
 
 namespace harness {
 
 using inextensible::Positions;
 using nlohmann::json;
+
+namespace {
+
+constexpr const char* reference_schema = "inextensible-reference/2";
+
+constexpr FieldTraits may_be_absent{.nullable = true};
+constexpr auto reference_fields = std::tuple{
+    field("scene", &Reference::scene, "", "its name"),
+    field("scene_parameters", &Reference::parameters, "", "all of the scene's"),
+    field("method", &Reference::method, "", "first route"),
+    field("second_method", &Reference::second_method, "", "second route"),
+    field("times", &Reference::times, "s", "of samples"),
+    field("gap", &Reference::gap, "size", "uncertainty at each time"),
+    field("gap_max", &Reference::gap_max, "size", "the same in the maximum norm"),
+    field("gap_parts", &Reference::gap_parts, "size", "whose largest is the gap", may_be_absent),
+    field("valid_until", &Reference::valid_until, "s", "last time of a gap below 1 %"),
+    field("energy_drift", &Reference::energy_drift, "weight times size", "of the first route"),
+    field("observed_order", &Reference::observed_order, "", "under step halving", may_be_absent),
+    field("expected_order", &Reference::expected_order, "", "by theory")};
+constexpr auto ensemble_fields = std::tuple{
+    field("methods", &Ensemble::methods, "", "of its runs"),
+    field("moved", &Ensemble::moved, "edge lengths", "how far starts are moved at most"),
+    field("runs", &Ensemble::runs, "", "that came to the end"),
+    field("mean", &Ensemble::mean, "", "of each statistic at each time"),
+    field("deviation", &Ensemble::deviation, "", "of one run"),
+    field("kinetic_deviation", &Ensemble::kinetic_deviation, "", "of means up to each time"),
+    field("unknown_because", &Ensemble::unknown_because, "", "why there is none")};
+
+json ensemble_json(const Ensemble& e) {
+  json object;
+  write_fields(object, ensemble_fields, e);
+  for (const auto& info : shape_statistic_infos) object["statistics"].push_back(info.name);
+  return object;
+}
+
+// Lists of the file that belong to its times.
+bool lengths_agree(const Reference& r) {
+  const std::size_t times = r.times.size();
+  const Ensemble& e = r.ensemble;
+  const bool ensemble = !e.known() || (e.mean.size() == times && e.deviation.size() == times &&
+                                       e.kinetic_deviation.size() == times);
+  return ensemble && r.gap.size() == times && r.gap_max.size() == times &&
+         r.positions.size() <= times;
+}
+
+// Why it is of no scene of ours, or not of as many vertices; "": it is.
+std::string mismatch(const Reference& r) {
+  const auto type = find_scene(r.scene);
+  if (!type) return "no scene '" + shortened(r.scene, 40) + "'";
+  if (complete_parameters(*type, r.parameters) != r.parameters)
+    return "'scene_parameters' must hold every parameter of the scene";
+  const int vertices = type->counts(r.parameters).first;
+  for (const Positions& x : r.positions) {
+    if (x.cols() != vertices)
+      return "positions of " + std::to_string(x.cols()) + " vertices, the scene has " +
+             std::to_string(vertices);
+  }
+  return lengths_agree(r) ? "" : "lists of different lengths";
+}
+
+template <int digits>
+double rounded(double value) {
+  constexpr double scale = digits == 9 ? 1e9 : 1e12;
+  return std::round(value * scale) / scale;
+}
+
+json summary_of(const Reference& r) {
+  double squares = 0;
+  for (std::size_t i = 0; i < r.positions.size(); ++i) squares += r.gap[i] * r.gap[i];
+  const auto valid = static_cast<double>(std::max<std::size_t>(r.positions.size(), 1));
+  return {{"name", r.name()},
+          {"method", r.method},
+          {"second_method", r.second_method},
+          {"valid_until", r.valid_until},
+          {"gap", std::sqrt(squares / valid)},
+          {"observed_order", number(r.observed_order)},
+          {"energy_drift", r.energy_drift}};
+}
+
+// Durations differ where names do not.
+std::string key_of(const std::string& name, const SceneParameters& complete) {
+  return name + " " + number_text(complete.at("duration"));
+}
+
+}  // namespace
+
+int Reference::samples_at(double level) const {
+  return static_cast<int>(std::count_if(gap.begin(),
+                                        gap.begin() + static_cast<std::ptrdiff_t>(positions.size()),
+                                        [&](double g) { return sure_gaps * g <= level; }));
+}
+
+std::string Reference::name() const { return exact ? "exact" : reference_name(scene, parameters); }
 
 double rms_distance(const Scene& scene, const Positions& x, const Positions& y) {
   double sum = 0;  // term by term, so that equal runs have equal errors to the last digit
@@ -23,8 +119,6 @@ double max_distance(const Scene& scene, const Positions& x, const Positions& y) 
   return std::sqrt((x - y).colwise().squaredNorm().maxCoeff()) / scene.size;
 }
 
-double expected_order(const SceneType* scene) { return scene && scene->pendulum ? 2 : 1; }
-
 std::vector<double> sample_times(double duration) {
   std::vector<double> times;
   for (int k = 1; k * sample_interval <= duration * (1 + 1e-9); ++k)
@@ -32,46 +126,98 @@ std::vector<double> sample_times(double duration) {
   return times;
 }
 
-std::string Reference::name() const { return exact ? "exact" : reference_name(scene, parameters); }
-
-int Reference::samples_at(double level) const {
-  int count = 0;
-  for (std::size_t i = 0; i < positions.size(); ++i) count += sure_gaps * gap[i] <= level ? 1 : 0;
-  return count;
-}
-
 std::shared_ptr<const Reference> exact_reference(const std::string& scene_name,
                                                  const SceneParameters& complete) {
-  const auto found_type = find_scene(scene_name);
-  const SceneType& type = *found_type;
-  if (!type.exact) return nullptr;
+  const auto type = find_scene(scene_name);
+  if (!type->exact) return nullptr;
   const auto r = std::make_shared<Reference>();
   r->scene = scene_name;
   r->parameters = complete;
   r->method = r->second_method = "exact";
   r->exact = true;
   r->times = sample_times(complete.at("duration"));
-  for (const double time : r->times) r->positions.push_back(type.exact(complete, time));
+  for (const double time : r->times) r->positions.push_back(type->exact(complete, time));
   r->gap.assign(r->times.size(), 0);
   r->gap_max = r->gap;
   r->valid_until = r->duration();
-  r->observed_order = unknown;
   return r;
 }
 
-namespace {
-
-// Durations differ where names do not.
-std::string shelf_key(const std::string& name, const SceneParameters& complete) {
-  return name + " " + number_text(complete.at("duration"));
+std::string reference_name(const std::string& scene, const SceneParameters& complete) {
+  const auto type = find_scene(scene);
+  std::string changed;
+  for (const auto& info : type->parameters) {
+    const std::string name = info.name;
+    if (name == type->resolution || name == "duration") continue;
+    if (complete.at(name) != info.initial)
+      changed += name + "=" + number_text(complete.at(name)) + ";";
+  }
+  return scene + "-n" + number_text(complete.at(type->resolution)) +
+         (changed.empty() ? "" : "-" + fnv1a(changed)) + ".json";
 }
 
-}  // namespace
+json rows_of(const Path& path, double (*coordinate)(double)) {
+  json rows = json::array();
+  for (const Positions& x : path) {
+    std::vector<double> row(x.data(), x.data() + x.size());
+    if (coordinate) std::transform(row.begin(), row.end(), row.begin(), coordinate);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+Path path_of(const json& rows) {
+  Path path;
+  for (const json& row : rows) {
+    const auto numbers = row.get<std::vector<double>>();
+    path.emplace_back(Eigen::Map<const Positions>(numbers.data(), 3,
+                                                  static_cast<Eigen::Index>(numbers.size() / 3)));
+  }
+  return path;
+}
+
+json to_json(const Reference& r) {
+  json object = {{"schema", reference_schema}};
+  write_fields(object, reference_fields, r);
+  // A file holds the digits that its gaps leave standing.
+  const double least = r.gap.empty() ? 0 : *std::min_element(r.gap.begin(), r.gap.end());
+  object["positions"] = rows_of(r.positions, least > 1e-7 ? rounded<9> : rounded<12>);
+  if (r.ensemble.known() || !r.ensemble.unknown_because.empty())
+    object["ensemble"] = ensemble_json(r.ensemble);
+  return object;
+}
+
+json with_ensemble(json document, const Ensemble& ensemble) {
+  document["ensemble"] = ensemble_json(ensemble);
+  return document;
+}
+
+Reference read_reference(const std::string& path) {
+  return reference_of(parse_document(read_file(path, "reference"), path), path);
+}
+
+Reference reference_of(const json& document, const std::string& path) {
+  try {
+    if (document.at("schema") != reference_schema)
+      throw UsageError("'" + path + "': schema is " + value_text(document.at("schema")) +
+                       ", must be \"" + reference_schema + "\"");
+    Reference r;
+    read_fields(document, reference_fields, r);
+    if (document.contains("ensemble"))
+      read_fields(document.at("ensemble"), ensemble_fields, r.ensemble);
+    r.positions = path_of(document.at("positions"));
+    const std::string why = mismatch(r);
+    if (!why.empty()) throw UsageError("'" + path + "': " + why);
+    return r;
+  } catch (const json::exception& error) {
+    throw UsageError("'" + path + "' is not a reference: " + error.what());
+  }
+}
 
 std::shared_ptr<const Reference> ReferenceFolder::find(const std::string& scene,
                                                        const SceneParameters& complete) {
   const std::string name = reference_name(scene, complete);
-  auto [place, fresh] = known_.try_emplace(shelf_key(name, complete), nullptr);
+  auto [place, fresh] = known_.try_emplace(key_of(name, complete), nullptr);
   if (fresh) place->second = exact_reference(scene, complete);
   if (fresh && !place->second) {
     const std::filesystem::path path = std::filesystem::path(folder_) / name;
@@ -85,7 +231,7 @@ std::shared_ptr<const Reference> ReferenceFolder::find(const std::string& scene,
 }
 
 void ReferenceFolder::put(std::shared_ptr<const Reference> reference) {
-  const std::string key = shelf_key(reference->name(), reference->parameters);
+  const std::string key = key_of(reference->name(), reference->parameters);
   known_[key] = std::move(reference);
 }
 

@@ -9,17 +9,19 @@
 #include <string>
 #include <vector>
 
-#include "harness/judge/ensemble.h"
+#include "harness/judge/shape.h"
 #include "harness/scenes/scene.h"
 
 namespace harness {
+
+using Path = std::vector<inextensible::Positions>;  // at sample times, m
 
 struct Reference {
   std::string scene;
   SceneParameters parameters;  // complete
   std::string method, second_method;
-  std::vector<double> times;                       // s, ascending
-  std::vector<inextensible::Positions> positions;  // at times up to valid_until, m
+  std::vector<double> times;  // s, ascending
+  Path positions;             // at times up to valid_until
   // How far the path may be off: the largest of the distance between the routes, of each route from
   // its own run at half as many steps, and of the first one from itself with starts moved a little.
   std::vector<double> gap;
@@ -28,9 +30,9 @@ struct Reference {
   std::map<std::string, std::vector<double>> gap_parts;
   double valid_until = 0;   // s: the last sample before the gap exceeds 1 % of the scene's size
   double energy_drift = 0;  // of the first route, where the scene conserves energy
-  // Order of the stepping route under step halving, and theory's for smooth motion. They
-  // explain a reference and decide nothing: kinks of contact lower an order and leave paths close.
-  double observed_order = 0;
+  // Order of the stepping route under step halving, and theory's for smooth motion. They explain a
+  // reference and decide nothing: kinks of contact lower an order and leave paths close.
+  double observed_order = unknown;
   double expected_order = 1;
   bool exact = false;  // no route: the scene's motion is known
   Ensemble ensemble;   // of cloth, up to the last of the times; chains have none
@@ -51,14 +53,25 @@ double max_distance(const Scene& scene, const inextensible::Positions& x,
 constexpr double sample_interval = 0.04;  // s; every step of the usual ladders meets it
 std::vector<double> sample_times(double duration);
 
-// The order of accuracy that a stepped route has by theory. Smooth motion lets a second-order
-// method have its own; kinks of contact leave none more than the first. Null: a scene of another
-// version.
-double expected_order(const SceneType* scene);
-
 // The motion of a scene that is known exactly, at the sample times. Null for other scenes.
 std::shared_ptr<const Reference> exact_reference(const std::string& scene,
                                                  const SceneParameters& complete);
+
+// The file a reference of this scene is kept in: chain-n80.json, or with a hash of the parameters
+// that are not the defaults. Duration does not count.
+std::string reference_name(const std::string& scene, const SceneParameters& complete);
+
+nlohmann::json to_json(const Reference& reference);
+// A reference's document with this ensemble in place of its own, all else as it is.
+nlohmann::json with_ensemble(nlohmann::json document, const Ensemble& ensemble);
+// Throws UsageError, naming the file, for anything that is not a reference.
+Reference read_reference(const std::string& path);
+// The same of its document; `path` is for messages.
+Reference reference_of(const nlohmann::json& document, const std::string& path);
+
+// A path as rows of coordinates, scaled by `coordinate` on the way out.
+nlohmann::json rows_of(const Path& path, double (*coordinate)(double) = nullptr);
+Path path_of(const nlohmann::json& rows);
 
 // The references of a folder, read when they are asked for, and exact ones.
 class ReferenceFolder {
@@ -68,7 +81,7 @@ class ReferenceFolder {
   std::shared_ptr<const Reference> find(const std::string& scene, const SceneParameters& complete);
   // One that has no file.
   void put(std::shared_ptr<const Reference> reference);
-  // All that find() has found so far.
+  // What a result file says of each reference that its errors were measured against.
   nlohmann::json summaries() const;
 
  private:

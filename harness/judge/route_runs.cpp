@@ -3,35 +3,82 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "solvers/registry.h"
 
 namespace harness {
 
-using inextensible::Positions;
+using nlohmann::json;
 
 namespace {
 
-constexpr double parted = 1e-2;  // gap at which a reference ends, over the scene's size
+// This is the one place that names methods: which to trust for a scene is the maintainer's
+// judgement, which no property of a row can replace.
+const inextensible::Settings some_passes{{"min_iterations", 1.0}, {"smoothing_sweeps", 30.0}};
+// Where a collider makes kinks neither route is better than first order.
+const Route contact_route{"rattle", 1e-9, 1};
+// RATTLE does not survive a J W J^T that is singular at the start (a row straight between its pins:
+// the patch); BDF2 takes its place then, at a limit that keeps off the singularity.
+const Route singular_route{"fast_projection@bdf2", 1e-6, 1, some_passes};
+// Friction inside the solve is no smooth function of the start, and RATTLE's small steps along old
+// directions get stuck on it; the passes that correct it set the limit.
+const Route contact_inside_route{"fast_projection@bdf2", 1e-5, 1, some_passes};
 
 }  // namespace
 
+RouteRuns::RouteRuns(Tell tell, const std::string& out, const json& header)
+    : tell_(std::move(tell)), journal_(out) {
+  if (!journal_->damage().empty())
+    tell_(journal_->path() + ", " + journal_->damage() + ": what is damaged is run again");
+  const std::size_t done = journal_->known().size();
+  const bool same = journal_->header() == header;
+  if (done > 0)
+    tell_(same ? "continues after " + std::to_string(done) + " runs that are done"
+               : "runs of another build or --finest are dropped");
+  if (!same) journal_->start(header);
+}
+
+const RouteRun& RouteRuns::run(const std::string& name, const std::function<RouteRun()>& compute) {
+  if (const auto known = known_.find(name); known != known_.end()) return known->second;
+  if (const json* kept = journal_ ? journal_->find(name) : nullptr)
+    return known_[name] = {path_of(kept->at("path")), kept->at("energy_drift").get<double>(),
+                           kept->value("shape", ShapeSeries())};
+  const RouteRun& run = known_[name] = compute();
+  if (!journal_) return run;
+  json value = {{"energy_drift", run.energy_drift}, {"path", rows_of(run.path)}};
+  if (!run.shape.empty()) value["shape"] = run.shape;
+  journal_->add(name, std::move(value));
+  return run;
+}
+
+std::string Route::name() const { return solver + ", strain limit " + number_text(limit); }
+
+std::pair<Route, Route> contact_routes(const Scene& scene, double h) {
+  const auto with_second = [](const Route& first) {
+    return std::pair{first, Route{"icd", first.limit, 1}};
+  };
+  // The others take no implicit forces either.
+  if (scene.problem->contact_inside() || scene.problem->implicit_forces())
+    return with_second(contact_inside_route);
+  inextensible::State state = scene.start;
+  const auto stepper = inextensible::make_stepper(contact_route.solver, scene.problem,
+                                                  {contact_route.limit, 1, contact_route.settings});
+  return with_second(stepper->advance(state, h) ? contact_route : singular_route);
+}
+
 void follow(const Scene& scene, const inextensible::State& start, const Route& route, double h,
-            const std::vector<double>& times, const Tell& tell, const SampleVisitor& visit) {
-  const std::string& solver = route.solver;
+            const std::vector<double>& times, const RouteRuns& runs, const SampleVisitor& visit) {
   const auto stepper =
-      inextensible::make_stepper(solver, scene.problem, {route.limit, 1, route.settings});
+      inextensible::make_stepper(route.solver, scene.problem, {route.limit, 1, route.settings});
   inextensible::State state =
-      start_from(*scene.problem, start, *inextensible::find_backend(solver), h);
-  const std::string run = solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ";
+      start_from(*scene.problem, start, *inextensible::find_backend(route.solver), h);
+  const std::string run = route.solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ";
   const long per_sample = std::lround(sample_interval / h);
-  tell(run + "...");
+  runs.tell(run + "...");
   const Pace pace{h, per_sample * static_cast<long>(times.size())};
   const DriveState driven =
       drive(*stepper, state, pace, [&](const inextensible::State& now, const DriveState& so_far) {
@@ -39,8 +86,8 @@ void follow(const Scene& scene, const inextensible::State& start, const Route& r
         return true;
       });
   if (driven.end == DriveState::End::refused)
-    tell(run + "stopped before t = " + number_text(times[driven.steps / per_sample]) +
-         " s: " + inextensible::to_string(driven.result.status) + ", " + driven.result.detail);
+    runs.tell(run + "stopped before t = " + number_text(times[driven.steps / per_sample]) +
+              " s: " + inextensible::to_string(driven.result.status) + ", " + driven.result.detail);
 }
 
 std::vector<inextensible::State> moved_starts(const Scene& scene, double by, int count) {
@@ -54,73 +101,6 @@ std::vector<inextensible::State> moved_starts(const Scene& scene, double by, int
       moved.x.col(vertex) = scene.start.x.col(vertex);
   }
   return starts;
-}
-
-const Path& kept_path(const Task& task, const inextensible::State& from, int start,
-                      const Route& route, double h, std::size_t samples) {
-  const std::string name = route.solver + ", strain limit " + number_text(route.limit) + ", step " +
-                           number_text(h, 17) + " s, start " + std::to_string(start) + ", " +
-                           std::to_string(samples) + " samples";
-  const std::vector<double> times(task.r.times.begin(),
-                                  task.r.times.begin() + static_cast<std::ptrdiff_t>(samples));
-  return task
-      .keep(name,
-            [&] {
-              RouteRun run;
-              follow(task.scene, from, route, h, times, task.tell,
-                     [&run](const inextensible::State& state, bool sampled) {
-                       if (sampled) run.path.push_back(state.x);
-                     });
-              return run;
-            })
-      .path;
-}
-
-const Path& path_of(const Task& task, const Route& route, double h) {
-  return kept_path(task, task.scene.start, 0, route, h, task.r.times.size());
-}
-
-const Path& path_to_the_end(const Task& task, const Route& route, double h) {
-  const Path& path = path_of(task, route, h);
-  if (path.size() < task.r.times.size())
-    throw UsageError("no reference: " + route.solver + " with h = " + number_text(h) +
-                     " s fails before t = " + number_text(task.r.times[path.size()]) +
-                     " s (a smaller --finest may help)");
-  return path;
-}
-
-Path extrapolated(const Path& coarse, const Path& fine, int order) {
-  Path path;
-  const double factor = 1 / (std::pow(2.0, order) - 1);
-  for (std::size_t i = 0; i < std::min(fine.size(), coarse.size()); ++i)
-    path.push_back(fine[i] + factor * (fine[i] - coarse[i]));
-  return path;
-}
-
-double mean_distance(const Scene& scene, const Path& a, const Path& b, std::size_t count) {
-  double squares = 0;
-  for (std::size_t i = 0; i < count; ++i) squares += std::pow(rms_distance(scene, a[i], b[i]), 2);
-  return std::sqrt(squares / static_cast<double>(count));
-}
-
-void add_gaps(Reference& r, const Scene& scene, const std::vector<GapPart>& parts) {
-  std::size_t samples = r.times.size();
-  for (const GapPart& part : parts)
-    samples = std::min({samples, part.one->size(), part.other->size()});
-  r.gap.assign(samples, 0);
-  r.gap_max.assign(samples, 0);
-  for (const GapPart& part : parts) {
-    std::vector<double>& own = r.gap_parts[part.name];
-    own.resize(samples, 0);
-    for (std::size_t i = 0; i < samples; ++i) {
-      const Positions &x = (*part.one)[i], &y = (*part.other)[i];
-      own[i] = std::max(own[i], rms_distance(scene, x, y));
-      r.gap[i] = std::max(r.gap[i], own[i]);
-      r.gap_max[i] = std::max(r.gap_max[i], max_distance(scene, x, y));
-    }
-  }
-  r.valid_until = 0;
-  for (std::size_t i = 0; i < r.gap.size() && r.gap[i] < parted; ++i) r.valid_until = r.times[i];
 }
 
 }  // namespace harness

@@ -1,14 +1,47 @@
-// Runs of the routes that a reference is made of, and the distances between them.
+// The runs that references and ensembles are made of: each by one route, at one step, from one
+// start. A run is kept as soon as it is done, so that a computation that was stopped goes on with
+// the next one.
 #pragma once
 
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "harness/base/journal.h"
 #include "harness/judge/reference.h"
-#include "harness/judge/reference_pieces.h"
 
 namespace harness {
+
+using Tell = std::function<void(const std::string&)>;  // a line for people; may throw
+
+struct RouteRun {
+  Path path;                // at the sample times, up to where it fails
+  double energy_drift = 0;  // over weight times size, where the scene conserves energy
+  ShapeSeries shape;        // of an ensemble's runs, which have no path
+};
+
+class RouteRuns {
+ public:
+  // In memory.
+  explicit RouteRuns(Tell tell) : tell_(std::move(tell)) {}
+  // In a journal beside the reference's file `out`. header: what the runs depend on; kept runs of
+  // another one are dropped. Throws UsageError if another process computes this reference.
+  RouteRuns(Tell tell, const std::string& out, const nlohmann::json& header);
+
+  // The run of that name: a kept one, or what `compute` returns. The reference stays valid.
+  const RouteRun& run(const std::string& name, const std::function<RouteRun()>& compute);
+  const std::map<std::string, RouteRun>& known() const { return known_; }  // asked for so far
+  void tell(const std::string& line) const { tell_(line); }
+  void remove() { journal_->remove(); }  // the reference is written
+
+ private:
+  Tell tell_;
+  std::optional<Journal> journal_;
+  std::map<std::string, RouteRun> known_;
+};
 
 // A route that steps.
 struct Route {
@@ -16,10 +49,14 @@ struct Route {
   double limit;  // of strain
   int order;     // of the error that Richardson's rule takes away
   inextensible::Settings settings = {};
+
+  std::string name() const;  // "rattle, strain limit 1e-09"
 };
 
-using Tell = std::function<void(const std::string&)>;
-using Path = std::vector<inextensible::Positions>;  // at the sample times
+// The two routes of a scene that is no pendulum, in steps of h seconds. The second one has the
+// first one's limit; they differ in the direction of constraint forces, the velocity's place in the
+// step and the linear solver.
+std::pair<Route, Route> contact_routes(const Scene& scene, double h);
 
 // After each step; sampled: whether it ends at a sample time.
 using SampleVisitor = std::function<void(const inextensible::State& state, bool sampled)>;
@@ -27,42 +64,9 @@ using SampleVisitor = std::function<void(const inextensible::State& state, bool 
 // A route's run to the last of the sample times, or up to where it fails; h divides the sample
 // interval.
 void follow(const Scene& scene, const inextensible::State& start, const Route& route, double h,
-            const std::vector<double>& times, const Tell& tell, const SampleVisitor& visit);
+            const std::vector<double>& times, const RouteRuns& runs, const SampleVisitor& visit);
 
 // Starts off the scene's by at most so many metres a coordinate, at random; pinned vertices stay.
 std::vector<inextensible::State> moved_starts(const Scene& scene, double by, int count);
-
-// What every part of the computation of a reference needs.
-struct Task {
-  Reference& r;
-  const Scene& scene;
-  double finest;  // s
-  const Tell& tell;
-  const KeepRun& keep;
-};
-
-// A route's path at the sample times, up to where it fails; h divides the sample interval. start:
-// the number of a moved start; 0 is the scene's own. samples: how many of the reference's are
-// wanted.
-const Path& kept_path(const Task& task, const inextensible::State& from, int start,
-                      const Route& route, double h, std::size_t samples);
-// From the scene's start, at all sample times.
-const Path& path_of(const Task& task, const Route& route, double h);
-// Throws UsageError if it fails before the end.
-const Path& path_to_the_end(const Task& task, const Route& route, double h);
-
-// p (finer) beyond itself by Richardson's rule, where the error is of this order.
-Path extrapolated(const Path& coarse, const Path& fine, int order);
-
-// Root mean square over the first `count` samples, over the scene's size.
-double mean_distance(const Scene& scene, const Path& a, const Path& b, std::size_t count);
-
-// Two paths that would be one if a reference were without error.
-struct GapPart {
-  const char* name;
-  const Path *one, *other;
-};
-// Fills in the reference's gaps, at each sample that all paths reach, and valid_until.
-void add_gaps(Reference& r, const Scene& scene, const std::vector<GapPart>& parts);
 
 }  // namespace harness

@@ -1,6 +1,9 @@
 #include "harness/judge/shape.h"
 
 #include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <tuple>
 #include <utility>
 
 #include "harness/judge/mechanics.h"
@@ -45,7 +48,26 @@ double shadow_area(const Scene& scene, const Positions& x) {
   return static_cast<double>(count) * pixel * pixel / (scene.size * scene.size);
 }
 
+// Two passes: a spread that is small beside the mean keeps its digits.
+std::pair<double, double> mean_and_deviation(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  double mean = 0, squares = 0;
+  for (const double value : values) mean += value / n;
+  for (const double value : values) squares += std::pow(value - mean, 2) / (n - 1);
+  return {mean, std::sqrt(squares)};
+}
+
 }  // namespace
+
+void to_json(nlohmann::json& row, const ShapeStatistics& shape) {
+  row = nlohmann::json::array();
+  for (const auto& info : shape_statistic_infos) row.push_back(shape.*info.member);
+}
+
+void from_json(const nlohmann::json& row, ShapeStatistics& shape) {
+  for (std::size_t k = 0; k < shape_statistic_infos.size(); ++k)
+    row.at(k).get_to(shape.*shape_statistic_infos[k].member);
+}
 
 bool is_cloth(const Scene& scene) { return !scene.triangles.empty(); }
 
@@ -64,10 +86,10 @@ ShapeRecord::ShapeRecord(const Scene& scene, std::vector<double> times,
 
 void ShapeRecord::sample(const Positions& x) { series_.push_back(shape_statistics(scene_, x)); }
 
-// Linear through both, and no less than nothing beyond them.
-double ShapeRecord::kinetic_at(double time, const Instant& from, const Instant& to) const {
-  const double slope = (to.kinetic - from.kinetic) / (to.time - from.time);
-  return std::max(0.0, to.kinetic + slope * (time - to.time));
+// Linear through the last two instants, and no less than nothing beyond them.
+double ShapeRecord::kinetic_at(double time) const {
+  const double slope = (last_.kinetic - before_.kinetic) / (last_.time - before_.time);
+  return std::max(0.0, last_.kinetic + slope * (time - last_.time));
 }
 
 void ShapeRecord::step(const State& state, double h) {
@@ -76,20 +98,72 @@ void ShapeRecord::step(const State& state, double h) {
   last_ = {whole ? state.time : state.time - h / 2,
            inextensible::kinetic_energy(*scene_.problem, state.v) / energy_scale(scene_)};
   ++steps_;
-  for (; settled_ < series_.size() && times_[settled_] <= last_.time + same_time; ++settled_) {
-    series_[settled_].kinetic_energy =
-        steps_ == 1 ? last_.kinetic : kinetic_at(times_[settled_], before_, last_);
-  }
+  for (; settled_ < series_.size() && times_[settled_] <= last_.time + same_time; ++settled_)
+    series_[settled_].kinetic_energy = steps_ == 1 ? last_.kinetic : kinetic_at(times_[settled_]);
 }
 
 // No velocity follows the last step: its own, or what the last two foretell if that is less.
 const ShapeSeries& ShapeRecord::finish() {
   for (; settled_ < series_.size(); ++settled_) {
     double kinetic = last_.kinetic;
-    if (steps_ > 1) kinetic = std::min(kinetic, kinetic_at(times_[settled_], before_, last_));
+    if (steps_ > 1) kinetic = std::min(kinetic, kinetic_at(times_[settled_]));
     series_[settled_].kinetic_energy = kinetic;
   }
   return series_;
+}
+
+Ensemble ensemble_of(const std::vector<ShapeSeries>& runs) {
+  Ensemble e;
+  e.runs = static_cast<int>(runs.size());
+  const std::size_t times = runs.front().size();
+  std::vector<double> values(runs.size()), kinetic_sums(runs.size(), 0);
+  for (std::size_t i = 0; i < times; ++i) {
+    ShapeStatistics mean, deviation;
+    for (const auto& [name, member] : shape_statistic_infos) {
+      for (std::size_t k = 0; k < runs.size(); ++k) values[k] = runs[k][i].*member;
+      std::tie(mean.*member, deviation.*member) = mean_and_deviation(values);
+    }
+    e.mean.push_back(mean);
+    e.deviation.push_back(deviation);
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      kinetic_sums[k] += runs[k][i].kinetic_energy;
+      values[k] = kinetic_sums[k] / static_cast<double>(i + 1);
+    }
+    e.kinetic_deviation.push_back(mean_and_deviation(values).second);
+  }
+  return e;
+}
+
+ShapeError shape_error(const Ensemble& ensemble, const std::vector<double>& times,
+                       const ShapeSeries& run) {
+  ShapeError found;
+  const std::size_t count = std::min(run.size(), ensemble.mean.size());
+  if (count > 0) found.error = 0;
+  double own = 0, mean = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const auto& [name, member] : shape_statistic_infos) {
+      const double off = std::abs(run[i].*member - ensemble.mean[i].*member);
+      if (std::isnan(off)) return {};
+      const double error = off - sure_deviations * ensemble.deviation[i].*member;
+      if (error <= found.error) continue;
+      found.error = error;
+      found.statistic = name;
+      found.time = times[i];
+    }
+    own += run[i].kinetic_energy;
+    mean += ensemble.mean[i].kinetic_energy;
+  }
+  if (mean > 0) {
+    found.kinetic_ratio = own / mean;
+    found.kinetic_spread =
+        sure_deviations * ensemble.kinetic_deviation[count - 1] * static_cast<double>(count) / mean;
+  }
+  return found;
+}
+
+bool kinetic_energy_lost(double ratio, double spread) {
+  const bool far = ratio < least_kinetic_ratio || ratio > largest_kinetic_ratio;
+  return far && std::abs(ratio - 1) > spread;
 }
 
 }  // namespace harness

@@ -1,7 +1,7 @@
 // The tables of a point's fields; measures.h and work_counters.h hold the others.
 #pragma once
 
-#include "harness/base/fields_json.h"
+#include "harness/base/fields.h"
 #include "harness/points/point.h"
 
 namespace harness {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/base/fields_json.h"
+#include "harness/base/fields.h"
 #include "harness/points/point.h"
 
 namespace harness {

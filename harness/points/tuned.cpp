@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "harness/base/errors.h"
-#include "harness/base/fields_json.h"
+#include "harness/base/fields.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
 #include "harness/base/paths.h"

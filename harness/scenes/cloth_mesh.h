@@ -1,13 +1,19 @@
 // Quads and triangles of cloth, cut finer, and which of their sides are warp and weft.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "harness/scenes/mesh_file.h"
-
 namespace harness {
+
+// What a file holds of a mesh.
+struct MeshFile {
+  std::vector<Eigen::Vector3d> vertices;  // in the file's unit
+  std::vector<std::vector<int>> faces;    // corners in the order of the file
+};
 
 struct ClothMesh {
   std::vector<Eigen::Vector3d> vertices;

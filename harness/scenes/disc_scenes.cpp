@@ -4,7 +4,6 @@
 
 #include "harness/scenes/cloth_draft.h"
 #include "harness/scenes/fabrics.h"
-#include "harness/scenes/rows.h"
 
 namespace harness {
 namespace {
@@ -12,7 +11,7 @@ namespace {
 // The quads of a square grid whose middle lies in the disc: its area is the disc's, but for what
 // the grid leaves open. In the plane y = 0, pinned where the table is.
 PinnedMesh disc_of(const SceneParameters& p) {
-  const auto n = static_cast<int>(p.at("n"));
+  const auto n = whole(p);
   const double radius = p.at("radius"), link = 2 * radius / (n - 1);
   const auto place = [&](double index) { return link * (index - 0.5 * (n - 1)); };
   const auto quad = [&](int i, int j) {
@@ -51,40 +50,34 @@ Scene build_cusick(const SceneParameters& p) {
     throw std::invalid_argument("a table of " + std::to_string(p.at("table")) +
                                 " m under a disc of " + std::to_string(p.at("radius")) +
                                 " m: nothing hangs over");
-  const PinnedMesh disc = disc_of(p);
-  Draft draft = cloth_draft(disc, p);
+  Draft draft = cloth_draft(disc_of(p), p);
   inextensible::Positions& x = draft.scene.start.x;
   for (Eigen::Index v = 0; v < x.cols(); ++v) x(1, v) = unevenness(p, x(0, v), x(2, v));
   draft.scene.size = 2 * p.at("radius");
   return finished(std::move(draft));
 }
 
-std::pair<int, int> count_disc(const SceneParameters& p) {
-  const PinnedMesh disc = disc_of(p);
-  return count_cloth(disc);
-}
-
 }  // namespace
 
-SceneType cusick_scene() {
+std::vector<SceneType> disc_scenes() {
   const Fabric& cotton = fabric("cotton");
-  return {"cusick",
-          "a disc of cotton broadcloth hangs over the edge of a round table (Cusick's drape test)",
-          "n",
-          with_cloth_parameters(
-              {{"n", 31, "vertices along the disc's diameter", 7, 1000, true},
-               {"radius", 0.15, "of the disc, m", 0, 1e6},
-               {"table", 0.09, "radius on which it is held, m", 0, 1e6},
-               {"uneven", 2e-4, "height of waves along the rim at the start, m", -1e-300, 1e-2}},
-              {.density = cotton.density,
-               .shear = fabric_shear,
-               .bending = cotton.bending,
-               .drag = 1,
-               .duration = 1.5}),
-          build_cusick,
-          count_disc,
-          nullptr,
-          "patch"};
+  return {{.name = "cusick",
+           .summary =
+               "a disc of cotton broadcloth hangs over the edge of a round table (Cusick's drape "
+               "test)",
+           .parameters = with_cloth_parameters(
+               {{"n", 31, "vertices along the disc's diameter", 7, 1000, true},
+                {"radius", 0.15, "of the disc, m", 0, 1e6},
+                {"table", 0.09, "radius on which it is held, m", 0, 1e6},
+                {"uneven", 2e-4, "height of waves along the rim at the start, m", zero_too, 1e-2}},
+               {.density = cotton.density,
+                .shear = fabric_shear,
+                .bending = cotton.bending,
+                .drag = 1,
+                .duration = 1.5}),
+           .build = build_cusick,
+           .counts = [](const SceneParameters& p) { return count_cloth(disc_of(p)); },
+           .like = "patch"}};
 }
 
 }  // namespace harness

@@ -1,12 +1,12 @@
-#include "harness/scenes/hanging_scenes.h"
-
+// Chains that hang, whose motion or rest is known: small oscillations, the catenary, and a chain
+// that whirls about the vertical.
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <stdexcept>
 
+#include "harness/scenes/chain_scenes.h"
 #include "harness/scenes/meshes.h"
-#include "harness/scenes/rows.h"
 
 namespace harness {
 namespace {
@@ -26,7 +26,7 @@ Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> laguerre(int masses, int options)
 }
 
 int chosen_mode(const SceneParameters& p) {
-  const int mode = static_cast<int>(p.at("mode")), masses = static_cast<int>(p.at("n")) - 1;
+  const int mode = whole(p, "mode"), masses = whole(p) - 1;
   if (mode > masses)
     throw std::invalid_argument("mode " + std::to_string(mode) + " of a chain of " +
                                 std::to_string(masses) + " links");
@@ -36,7 +36,7 @@ int chosen_mode(const SceneParameters& p) {
 // Vertex 0 is the pin. Deflections in x are the free end's times L_i(x_k) cos(omega t), i counted
 // from the free end; heights follow from the links.
 Positions swung(const SceneParameters& p, double time) {
-  const int masses = static_cast<int>(p.at("n")) - 1, mode = chosen_mode(p);
+  const int masses = whole(p) - 1, mode = chosen_mode(p);
   const double link = row_link(p);
   const auto laguerres = laguerre(masses, Eigen::ComputeEigenvectors);
   const double omega = std::sqrt(p.at("gravity") / link * laguerres.eigenvalues()(mode - 1));
@@ -67,7 +67,7 @@ Scene build_hanging_chain(const SceneParameters& p) {
 // bears the horizontal tension H at both ends and the weight between. H is where the links reach
 // from pin to pin.
 Positions catenary(const SceneParameters& p) {
-  const int n = static_cast<int>(p.at("n")), links = n - 1;
+  const int n = whole(p), links = n - 1;
   const double link = row_link(p), span = p.at("length") / p.at("slack");
   const double weight = p.at("mass") / n * p.at("gravity");
   const auto direction = [&](int i, double tension) {
@@ -87,7 +87,7 @@ Positions catenary(const SceneParameters& p) {
 
 Scene build_catenary(const SceneParameters& p) {
   Draft chain = vertex_row(p);
-  chain.parts.pinned = {0, static_cast<int>(p.at("n")) - 1};
+  chain.parts.pinned = {0, whole(p) - 1};
   chain.scene.start.x = catenary(p);
   chain.scene.conserves_energy = true;
   return finished(std::move(chain));
@@ -96,14 +96,13 @@ Scene build_catenary(const SceneParameters& p) {
 Positions hung(const SceneParameters& p, double /*time*/) { return catenary(p); }
 
 double whirling_rate(const SceneParameters& p) {  // rad/s
-  return p.at("rate") *
-         hanging_frequency(static_cast<int>(p.at("n")) - 1, row_link(p), p.at("gravity"), 1);
+  return p.at("rate") * hanging_frequency(whole(p) - 1, row_link(p), p.at("gravity"), 1);
 }
 
 // Distances from the axis and depths below the pin, from the free end at the distance `radius`
 // upwards: each link leads along the force that keeps all below it on their circles.
 Eigen::Matrix2Xd whirled(const SceneParameters& p, double radius) {
-  const int n = static_cast<int>(p.at("n"));
+  const int n = whole(p);
   const double link = row_link(p), omega = whirling_rate(p);
   Eigen::Matrix2Xd at(2, n);
   at.col(n - 1) << radius, 0;
@@ -146,15 +145,18 @@ Scene build_whirling_chain(const SceneParameters& p) {
   return finished(std::move(chain));
 }
 
-// The first of every chain here; sizes to which eigenvectors are quick to find.
-std::vector<SceneParameterInfo> hanging_parameters(int n, std::vector<SceneParameterInfo> more) {
-  std::vector<SceneParameterInfo> all{{"n", static_cast<double>(n), "vertices", 3, 2000, true},
-                                      {"length", 1, "m", 0, 1e6},
-                                      {"mass", 1, "total, kg", 0, 1e6},
-                                      {"gravity", 9.81, "m/s^2, along -y", 0, 1e4}};
-  all.insert(all.end(), more.begin(), more.end());
-  all.push_back({"duration", 1, "s", 0, 1e4});
-  return all;
+// Sizes to which eigenvectors are quick to find.
+SceneType hanging(const char* name, const char* summary, const ParameterInfos& own,
+                  Scene (*build)(const SceneParameters&),
+                  Positions (*exact)(const SceneParameters&, double)) {
+  return {.name = name,
+          .summary = summary,
+          .parameters = row_parameters({"n", 21, "vertices", 3, 2000, true},
+                                       joined({{gravity_info(0)}, own})),
+          .build = build,
+          .counts = count_row,
+          .exact = exact,
+          .like = "chain"};
 }
 
 }  // namespace
@@ -164,39 +166,19 @@ double hanging_frequency(int masses, double link, double gravity, int mode) {
                    laguerre(masses, Eigen::EigenvaluesOnly).eigenvalues()(mode - 1));
 }
 
-SceneType hanging_chain_scene() {
-  return {"hanging_chain",
-          "a chain that hangs and swings a little in one of its modes: its motion is known",
-          "n",
-          hanging_parameters(21, {{"mode", 1, "of its oscillations", 1, 1999, true},
-                                  {"amplitude", 1e-3, "of the free end, over the length", 0, 0.1}}),
-          build_hanging_chain,
-          count_row,
-          swung,
-          "chain"};
-}
-
-SceneType catenary_scene() {
-  return {"catenary",
-          "a chain that hangs at rest between two pins: it stays",
-          "n",
-          hanging_parameters(21, {{"slack", 1.2, "length over the distance of the pins", 1, 100}}),
-          build_catenary,
-          count_row,
-          hung,
-          "chain"};
-}
-
-SceneType whirling_chain_scene() {
-  return {
-      "whirling_chain",
-      "a chain that whirls about the vertical as a rigid curve: its motion is known",
-      "n",
-      hanging_parameters(21, {{"rate", 1.5, "of turning, over the slowest oscillation's", 1, 2.2}}),
-      build_whirling_chain,
-      count_row,
-      whirling,
-      "chain"};
+std::vector<SceneType> hanging_scenes() {
+  return {hanging("hanging_chain",
+                  "a chain that hangs and swings a little in one of its modes: its motion is known",
+                  {{"mode", 1, "of its oscillations", 1, 1999, true},
+                   {"amplitude", 1e-3, "of the free end, over the length", 0, 0.1}},
+                  build_hanging_chain, swung),
+          hanging("catenary", "a chain that hangs at rest between two pins: it stays",
+                  {{"slack", 1.2, "length over the distance of the pins", 1, 100}}, build_catenary,
+                  hung),
+          hanging("whirling_chain",
+                  "a chain that whirls about the vertical as a rigid curve: its motion is known",
+                  {{"rate", 1.5, "of turning, over the slowest oscillation's", 1, 2.2}},
+                  build_whirling_chain, whirling)};
 }
 
 }  // namespace harness

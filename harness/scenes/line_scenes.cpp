@@ -1,6 +1,13 @@
-// Scenes of vertices on a line.
+// Chains that begin straight or folded: released, taut between pins, and folded into a U, one arm
+// of which moves along the other: faster and faster, because what moves becomes less and its energy
+// stays.
+#include <gsl/gsl_integration.h>
+
+#include <cmath>
+#include <memory>
+
+#include "harness/scenes/chain_scenes.h"
 #include "harness/scenes/meshes.h"
-#include "harness/scenes/rows.h"
 
 namespace harness {
 namespace {
@@ -8,10 +15,9 @@ namespace {
 // n vertices on a straight horizontal line, vertex 0 pinned, at rest, released.
 Scene build_chain(const SceneParameters& p) {
   Draft chain = vertex_row(p);
-  const int n = static_cast<int>(p.at("n"));
-  const double length = p.at("length");
+  const int n = whole(p);
   chain.parts.pinned = {0};
-  for (int i = 0; i < n; ++i) chain.scene.start.x(0, i) = length * i / (n - 1);
+  for (int i = 0; i < n; ++i) chain.scene.start.x(0, i) = p.at("length") * i / (n - 1);
   chain.scene.conserves_energy = true;
   return finished(std::move(chain));
 }
@@ -19,7 +25,7 @@ Scene build_chain(const SceneParameters& p) {
 // n vertices on a straight horizontal line, both ends pinned `stretch` times its length apart.
 Scene build_taut_row(const SceneParameters& p) {
   Draft row = vertex_row(p);
-  const int n = static_cast<int>(p.at("n"));
+  const int n = whole(p);
   const double span = p.at("length") * p.at("stretch");
   row.parts.pinned = {0, n - 1};
   Scene::Mirror left_right{{1, 0, 0}, {}};
@@ -32,35 +38,74 @@ Scene build_taut_row(const SceneParameters& p) {
   return finished(std::move(row));
 }
 
-}  // namespace
-
-SceneType chain_scene() {
-  SceneType row{"chain",
-                "a straight horizontal chain, pinned at one end, released",
-                "n",
-                {{"n", 80, "vertices", 2, 10'000'000, true},
-                 {"length", 1, "m", 0, 1e6},
-                 {"mass", 1, "total, kg", 0, 1e6},
-                 {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
-                 {"duration", 1, "s", 0, 1e4}},
-                build_chain,
-                count_row};
-  row.pendulum = true;
-  return row;
+// Vertex 0, the pin, is at the top; the still arm hangs from it, and one link across (two, if the
+// number of links is even) leads to the other arm, which ends at the top.
+Scene build_folded(const SceneParameters& p) {
+  Draft chain = vertex_row(p);
+  const int n = whole(p), links = n - 1;
+  const double link = row_link(p), speed = p.contains("speed") ? p.at("speed") : 0;
+  const int arm = (links - 1) / 2, across = links - 2 * arm;
+  inextensible::State& start = chain.scene.start;
+  for (int i = 1; i < n; ++i) {
+    const Eigen::Vector3d along = i <= arm            ? Eigen::Vector3d(0, -link, 0)
+                                  : i <= arm + across ? Eigen::Vector3d(link, 0, 0)
+                                                      : Eigen::Vector3d(0, link, 0);
+    start.x.col(i) = start.x.col(i - 1) + along;
+    if (i >= arm + across) start.v(1, i) = -speed;
+  }
+  chain.parts.pinned = {0};
+  chain.scene.conserves_energy = true;
+  return finished(std::move(chain));
 }
 
-SceneType taut_row_scene() {
-  return {"taut_row",
-          "a straight chain between two pins at its full length: J W J^T is singular",
-          "n",
-          {{"n", 31, "vertices", 3, 10'000'000, true},
-           {"length", 1, "m", 0, 1e6},
-           {"stretch", 1, "distance of the pins over the length; above 1: infeasible", 0, 100},
-           {"mass", 1, "total, kg", 0, 1e6},
-           {"gravity", 9.81, "m/s^2, along -y", -1e4, 1e4},
-           {"duration", 1, "s", 0, 1e4}},
-          build_taut_row,
-          count_row};
+SceneParameterInfo vertices(int n, double least) {
+  return {"n", static_cast<double>(n), "vertices", least, 10'000'000, true};
+}
+
+}  // namespace
+
+// t = integral of L ds / v; with s = u^2 the integrand is smooth.
+double folded_fall_time(double part, double length, double gravity) {
+  const std::unique_ptr<gsl_integration_glfixed_table,
+                        decltype(&gsl_integration_glfixed_table_free)>
+      nodes(gsl_integration_glfixed_table_alloc(32), gsl_integration_glfixed_table_free);
+  gsl_function rate{[](double u, void*) { return 2 * std::sqrt((1 - u * u) / (2 - u * u)); },
+                    nullptr};
+  return std::sqrt(length / gravity) *
+         gsl_integration_glfixed(&rate, 0, std::sqrt(part), nodes.get());
+}
+
+std::vector<SceneType> line_scenes() {
+  return {
+      {.name = "chain",
+       .summary = "a straight horizontal chain, pinned at one end, released",
+       .parameters = row_parameters(vertices(80, 2), {gravity_info()}),
+       .build = build_chain,
+       .counts = count_row,
+       .pendulum = true},
+      {.name = "taut_row",
+       .summary = "a straight chain between two pins at its full length: J W J^T is singular",
+       .parameters = row_parameters(
+           vertices(31, 3),
+           {gravity_info(),
+            {"stretch", 1, "distance of the pins over the length; above 1: infeasible", 0, 100}}),
+       .build = build_taut_row,
+       .counts = count_row},
+      {.name = "folded_chain",
+       .summary = "a chain folded into a U, pinned at one end: the other falls faster than free",
+       .parameters = row_parameters(vertices(80, 4), {gravity_info(0)}, 0.4),
+       .build = build_folded,
+       .counts = count_row,
+       .like = "chain"},
+      {.name = "whip",
+       .summary =
+           "a chain folded into a U without weight, one arm pinned, the other moving: its end "
+           "cracks",
+       .parameters = row_parameters(
+           vertices(80, 4), {{"speed", 1, "of the moving arm at the start, m/s", 0, 1e4}}, 0.7),
+       .build = build_folded,
+       .counts = count_row,
+       .like = "chain"}};
 }
 
 }  // namespace harness

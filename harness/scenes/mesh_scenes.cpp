@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "harness/base/errors.h"
+#include "harness/base/files.h"
 #include "harness/base/text.h"
 #include "harness/scenes/cloth_draft.h"
 #include "solvers/problem/triangle_collider.h"
@@ -53,6 +54,52 @@ std::vector<Comparison> read_pins(const std::string& text) {
     begin = end + 3;
   }
   return all;
+}
+
+// "7", "7/1/3", "7//3", "-1": corners count from 1, or backwards from the last vertex so far.
+int corner_of(const std::string& word, std::size_t vertices, const std::string& where) {
+  std::size_t read = 0;
+  long number = 0;
+  try {
+    number = std::stol(word, &read);
+  } catch (const std::exception&) {
+    read = 0;
+  }
+  if (read == 0 || (read < word.size() && word[read] != '/'))
+    throw UsageError(where + ": '" + word + "' is no corner of a face, like 7 or 7/1/3");
+  const auto count = static_cast<long>(vertices);
+  const long index = number < 0 ? count + number : number - 1;
+  if (number == 0 || index < 0 || index >= count)
+    throw UsageError(where + ": no vertex " + std::to_string(number) + " among the " +
+                     std::to_string(count) + " so far");
+  return static_cast<int>(index);
+}
+
+// Wavefront OBJ: vertices and faces, and nothing else of what a file may hold. Throws UsageError,
+// naming file and line, for what is no OBJ file or has no face.
+MeshFile read_mesh_file(const std::string& path) {
+  std::istringstream lines(read_file(path, "mesh"));
+  MeshFile mesh;
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string where = "'" + path + "', line " + std::to_string(++number);
+    std::istringstream words(line);
+    std::string word;
+    words >> word;
+    if (word == "v") {
+      Eigen::Vector3d v;
+      words >> v.x() >> v.y() >> v.z();
+      if (!words || !v.allFinite()) throw UsageError(where + ": a vertex needs three numbers");
+      mesh.vertices.push_back(v);
+    } else if (word == "f") {
+      std::vector<int>& face = mesh.faces.emplace_back();
+      while (words >> word) face.push_back(corner_of(word, mesh.vertices.size(), where));
+      if (face.size() < 3) throw UsageError(where + ": a face needs three corners or more");
+    }
+  }
+  if (mesh.faces.empty())
+    throw UsageError("'" + path + "' has no faces: is it a mesh in Wavefront's OBJ format?");
+  return mesh;
 }
 
 // What a scene's name says.
@@ -138,7 +185,7 @@ Eigen::Vector3d placed(const Eigen::Vector3d& x, const SceneParameters& p) {
 }
 
 PinnedMesh cloth_for(const MeshModel& model, const SceneParameters& p) {
-  PinnedMesh cloth{refined(model.cloth, static_cast<int>(p.at("n"))), {}};
+  PinnedMesh cloth{refined(model.cloth, whole(p)), {}};
   for (Eigen::Vector3d& v : cloth.mesh.vertices) {
     cloth.held.push_back(model.pinned(v));
     v = placed(v, p);
@@ -147,8 +194,7 @@ PinnedMesh cloth_for(const MeshModel& model, const SceneParameters& p) {
 }
 
 Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
-  const PinnedMesh cloth = cloth_for(model, p);
-  Draft draft = cloth_draft(cloth, p);
+  Draft draft = cloth_draft(cloth_for(model, p), p);
   if (!model.body.triangles.empty()) {
     inextensible::TriangleMesh body = model.body;
     for (Eigen::Vector3d& v : body.vertices) v = placed(v, p);
@@ -158,11 +204,6 @@ Scene build_mesh(const MeshModel& model, const SceneParameters& p) {
   const inextensible::Positions& x = draft.scene.start.x;
   draft.scene.size = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).norm();
   return finished(std::move(draft));
-}
-
-std::pair<int, int> count_mesh(const MeshModel& model, const SceneParameters& p) {
-  const PinnedMesh cloth = cloth_for(model, p);
-  return count_cloth(cloth);
 }
 
 }  // namespace
@@ -185,19 +226,17 @@ std::string with_mesh_parts(const std::string& scene, const std::string& pins,
 
 SceneType mesh_scene(const std::string& name) {
   const std::shared_ptr<const MeshModel> model = read_model(name);
-  return {name,
-          "cloth of your own",
-          "n",
-          with_cloth_parameters(
+  return {.name = name,
+          .summary = "cloth of your own",
+          .parameters = with_cloth_parameters(
               {{"n", 1, "parts that each side of the file's faces is cut into", 1, 64, true},
                {"scale", 1, "m per unit of the files", 0, 1e6},
                {"up", 1, "which of the files' axes is up: 1 is y, 2 is z", 1, 2, true},
-               {"friction", 0.3, "Coulomb coefficient of the body", -1e-300, 1e3}},
+               {"friction", 0.3, "Coulomb coefficient of the body", zero_too, 1e3}},
               {.density = 0.15, .shear = 20, .bending = 1e-5, .drag = 0.05, .duration = 1}),
-          [model](const SceneParameters& p) { return build_mesh(*model, p); },
-          [model](const SceneParameters& p) { return count_mesh(*model, p); },
-          nullptr,
-          model->parts.body.empty() ? "patch" : "drape"};
+          .build = [model](const SceneParameters& p) { return build_mesh(*model, p); },
+          .counts = [model](const SceneParameters& p) { return count_cloth(cloth_for(*model, p)); },
+          .like = model->parts.body.empty() ? "patch" : "drape"};
 }
 
 }  // namespace harness

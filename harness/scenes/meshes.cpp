@@ -5,7 +5,10 @@
 namespace harness {
 namespace {
 
-int whole(const SceneParameters& p, const char* name) { return static_cast<int>(p.at(name)); }
+Eigen::Vector3d gravity_of(const SceneParameters& p) {
+  const auto found = p.find("gravity");
+  return {0, -(found == p.end() ? 0.0 : found->second), 0};
+}
 
 // Springs of one stiffness on both diagonals of each quad.
 inextensible::Springs diagonals(int n, double link, double stiffness) {
@@ -30,11 +33,11 @@ Scene finished(Draft draft) {
 }
 
 Draft vertex_row(const SceneParameters& p) {
-  const int n = whole(p, "n");
+  const int n = whole(p);
   const double link = row_link(p);
   Draft row;
   row.parts.mass.assign(n, p.at("mass") / n);
-  row.parts.gravity = {0, -p.at("gravity"), 0};
+  row.parts.gravity = gravity_of(p);
   row.scene.start.x.setZero(3, n);
   row.scene.start.v.setZero(3, n);
   Scene::Mirror plane{{0, 0, 1}, {}};
@@ -51,13 +54,13 @@ Draft vertex_row(const SceneParameters& p) {
 }
 
 Draft vertex_square(const SceneParameters& p, double y) {
-  const int n = whole(p, "n");
+  const int n = whole(p);
   const double side = p.at("side"), l = square_link(p);
   Draft square;
   inextensible::ProblemParts& parts = square.parts;
   Scene& scene = square.scene;
   parts.mass.assign(n * n, p.at("mass") / (n * n));
-  parts.gravity = {0, -p.at("gravity"), 0};
+  parts.gravity = gravity_of(p);
   scene.start.x.resize(3, n * n);
   scene.start.v.setZero(3, n * n);
   Scene::Mirror left_right{{1, 0, 0}, {}}, front_back{{0, 0, 1}, {}};
@@ -93,7 +96,7 @@ Draft vertex_square(const SceneParameters& p, double y) {
 }
 
 void bend_yarns(Draft& square, const SceneParameters& p, double rigidity) {
-  const int n = whole(p, "n");
+  const int n = whole(p);
   const double l = square_link(p);
   const auto vertex = [n](int i, int j) { return i * n + j; };
   for (int i = 0; i < n; ++i) {
@@ -107,17 +110,17 @@ void bend_yarns(Draft& square, const SceneParameters& p, double rigidity) {
   }
 }
 
-double row_link(const SceneParameters& p) { return p.at("length") / (whole(p, "n") - 1); }
+double row_link(const SceneParameters& p) { return p.at("length") / (whole(p) - 1); }
 
-double square_link(const SceneParameters& p) { return p.at("side") / (whole(p, "n") - 1); }
+double square_link(const SceneParameters& p) { return p.at("side") / (whole(p) - 1); }
 
 std::pair<int, int> count_row(const SceneParameters& p) {
-  const int n = whole(p, "n");
+  const int n = whole(p);
   return {n, n - 1};
 }
 
 std::pair<int, int> count_square(const SceneParameters& p) {
-  const int n = whole(p, "n");
+  const int n = whole(p);
   return {n * n, 2 * n * (n - 1)};
 }
 

@@ -1,4 +1,4 @@
-// Rows and squares of vertices that scenes are made of.
+// Rows and squares of vertices that scenes are made of, and the parameters that scenes share.
 #pragma once
 
 #include "harness/scenes/scene.h"
@@ -14,13 +14,14 @@ struct Draft {
 Scene finished(Draft draft);
 
 // n vertices along x, each constrained to the next, `mass` kg and `length` m in all; at rest, in
-// one place. One mirror, the x-y plane. Parameters: n, length, mass, gravity, duration.
+// one place. One mirror, the x-y plane. Parameters: n, length, mass, duration, and gravity if there
+// is any.
 Draft vertex_row(const SceneParameters& p);
 
 // n x n vertices on a horizontal square, centred over the origin at the height y (m), at rest; row
 // i goes along z, column j along x, and vertex (i, j) has the number i n + j. Warp and weft are
 // constrained; both diagonals of each quad are springs where `shear` is positive. Two mirrors: x
-// and z reversed. Parameters: n, side, mass, gravity, shear, duration.
+// and z reversed. Parameters: n, side, mass, shear, duration, and gravity if there is any.
 Draft vertex_square(const SceneParameters& p, double y);
 
 // Bends every warp and weft yarn of a square: `rigidity` of the cloth, N m, each yarn's is that
@@ -34,5 +35,42 @@ double square_link(const SceneParameters& p);
 // Vertices and constraints of the above.
 std::pair<int, int> count_row(const SceneParameters& p);
 std::pair<int, int> count_square(const SceneParameters& p);
+
+inline int whole(const SceneParameters& p, const char* name = "n") {
+  return static_cast<int>(p.at(name));
+}
+
+// ---- Families of scenes ----
+// To add one: a function that returns its scenes, here and in the list of scene.cpp.
+std::vector<SceneType> line_scenes();
+std::vector<SceneType> cloth_scenes();
+std::vector<SceneType> disc_scenes();
+std::vector<SceneType> worn_scenes();
+std::vector<SceneType> spinning_scenes();
+std::vector<SceneType> hanging_scenes();
+
+// ---- Parameters ----
+using ParameterInfos = std::vector<SceneParameterInfo>;
+
+inline constexpr double zero_too = -1e-300;  // as an exclusive bound: 0 is allowed
+
+inline SceneParameterInfo gravity_info(double least = -1e4) {
+  return {"gravity", 9.81, "m/s^2, along -y", least, 1e4};
+}
+inline SceneParameterInfo duration_info(double seconds = 1) {
+  return {"duration", seconds, "s", 0, 1e4};
+}
+inline ParameterInfos joined(std::initializer_list<ParameterInfos> parts) {
+  ParameterInfos all;
+  for (const ParameterInfos& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+// What vertex_row reads, with the scene's own parameters in between.
+inline ParameterInfos row_parameters(const SceneParameterInfo& n, const ParameterInfos& own,
+                                     double duration = 1) {
+  return joined({{n, {"length", 1, "m", 0, 1e6}, {"mass", 1, "total, kg", 0, 1e6}},
+                 own,
+                 {duration_info(duration)}});
+}
 
 }  // namespace harness

@@ -1,20 +1,32 @@
 #include "harness/scenes/scene.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/scenes/mesh_scenes.h"
-#include "harness/scenes/rows.h"
+#include "harness/scenes/meshes.h"
 
 namespace harness {
 namespace {
 
 const std::vector<SceneType>& table() {
-#define HARNESS_ROW(name) name##_scene(),
-  static const std::vector<SceneType> rows{HARNESS_SCENES(HARNESS_ROW)};
-#undef HARNESS_ROW
-  return rows;
+  static const std::vector<SceneType> types = [] {
+    std::vector<SceneType> all;
+    const auto add = [&](std::vector<SceneType> family) {
+      std::move(family.begin(), family.end(), std::back_inserter(all));
+    };
+    add(line_scenes());
+    add(cloth_scenes());
+    add(disc_scenes());
+    add(worn_scenes());
+    add(spinning_scenes());
+    add(hanging_scenes());
+    return all;
+  }();
+  return types;
 }
 
 }  // namespace

@@ -61,7 +61,6 @@ struct Scene {
 struct SceneType {
   std::string name;
   const char* summary;
-  const char* resolution;  // the parameter that a resolution sweep turns
   std::vector<SceneParameterInfo> parameters;
   std::function<Scene(const SceneParameters& complete)> build;
   // Vertices and constraints, without building anything.
@@ -72,6 +71,7 @@ struct SceneType {
   // Straight from a pinned end, with nothing in its way: the links of a pendulum in a plane, whose
   // smooth motion scenes/pendulum.h integrates in angles.
   bool pendulum = false;
+  const char* resolution = "n";  // the parameter that a resolution sweep turns
 
   std::string kind() const { return *like ? like : name; }
 };

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "harness/base/fields_json.h"
+#include "harness/base/fields.h"
 #include "harness/points/point.h"
 #include "harness/scenes/scene.h"
 

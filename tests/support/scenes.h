@@ -4,11 +4,13 @@
 
 namespace harness::testing {
 
-// A scene by its name; parameters that are not given have the scene's own values.
-inline Scene build(const char* name, const SceneParameters& given) {
-  const auto found_type = find_scene(name);
-  const SceneType& type = *found_type;
-  return type.build(complete_parameters(type, given));
+// A scene's parameters; those that are not given have the scene's own values.
+inline SceneParameters parameters(const std::string& name, const SceneParameters& given = {}) {
+  return complete_parameters(*find_scene(name), given);
+}
+
+inline Scene build(const std::string& name, const SceneParameters& given = {}) {
+  return find_scene(name)->build(parameters(name, given));
 }
 
 }  // namespace harness::testing

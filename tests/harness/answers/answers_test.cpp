@@ -6,8 +6,7 @@
 #include <numbers>
 
 #include "harness/answers/measure.h"
-#include "harness/scenes/folded_scenes.h"
-#include "harness/scenes/hanging_scenes.h"
+#include "harness/scenes/chain_scenes.h"
 #include "harness/scenes/meshes.h"
 #include "solvers/registry.h"
 #include "solvers/systems/constrained_acceleration.h"

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iostream>
 #include <random>
 
 #include "support/effort.h"
@@ -17,11 +16,7 @@ namespace {
 
 using Samples = std::vector<double>;
 
-std::mt19937 seeded() {
-  const unsigned seed = 20071114;
-  std::cout << "seed " << seed << '\n';
-  return std::mt19937(seed);
-}
+std::mt19937 seeded() { return std::mt19937(20071114); }
 
 Samples draw(std::size_t n, const std::function<double()>& one) {
   Samples samples(n);
@@ -61,7 +56,6 @@ TEST(Ratio, IntervalHasItsCoverageWhateverTheDistribution) {
       return ratio_of_times(draw(n, [&] { return 1.3 * skewed(random); }),
                             draw(n, [&] { return skewed(random); }));
     });
-    std::cout << n << " samples: log-normal " << plain << ", skewed " << tailed << '\n';
     const double doubt = 3 * std::sqrt(0.95 * 0.05 / trials);
     EXPECT_GE(plain, 0.95 - doubt);
     EXPECT_GE(tailed, 0.95 - doubt);
@@ -99,7 +93,6 @@ TEST(Ratio, SamplesOfOtherSpreadsHardlyLoseCoverage) {
     return ratio_of_times(draw(9, [&] { return narrow(random); }),
                           draw(9, [&] { return wide(random); }));
   });
-  std::cout << "spreads of 1 % and 10 %: " << covered << '\n';
   EXPECT_GE(covered, 0.90);
 }
 
@@ -144,7 +137,6 @@ TEST(Ratio, AProgramAgainstItselfShowsNoDifference) {
   const double alone = coverage(5000, 1, [&] { return ratio_of_times(sample(), sample()); });
   const double paired =
       coverage(5000, 1, [&] { return ratio_of_times(sample(), sample(), noise); });
-  std::cout << "no difference: by samples alone " << alone << ", with the pair " << paired << '\n';
   EXPECT_LT(alone, 0.6);
   EXPECT_NEAR(paired, 0.95, 0.02);
 }

@@ -6,25 +6,23 @@
 
 #include <cmath>
 
+#include "support/scenes.h"
+
 namespace harness {
 namespace {
 
 using inextensible::State;
 
-Scene small_chain() {
-  const auto found_type = find_scene("chain");
-  const SceneType& type = *found_type;
-  return type.build(complete_parameters(type, {{"n", 4}}));
-}
+const Scene chain_of_four = testing::build("chain", {{"n", 4}});
 
 // Falls by t metres; gaps of 0.001, and of 0.1 from sample 3 on.
-std::shared_ptr<Reference> falling(const Scene& scene) {
+std::shared_ptr<Reference> falling() {
   auto r = std::make_shared<Reference>();
   r->scene = "chain";
-  r->parameters = complete_parameters(*find_scene("chain"), {{"n", 4}});
+  r->parameters = testing::parameters("chain", {{"n", 4}});
   for (int k = 1; k <= 5; ++k) {
     r->times.push_back(0.04 * k);
-    r->positions.push_back(scene.start.x);
+    r->positions.push_back(chain_of_four.start.x);
     r->positions.back().row(1).array() -= 0.04 * k;
     r->gap.push_back(k < 3 ? 0.001 : 0.1);
     r->gap_max.push_back(r->gap.back());
@@ -35,16 +33,14 @@ std::shared_ptr<Reference> falling(const Scene& scene) {
 }
 
 // A run that falls `times_as_far` and is `off` metres beside.
-Measures judged(const Scene& scene, std::shared_ptr<const Reference> reference, double times_as_far,
-                double off) {
-  Judge::Options options;
-  options.reference = std::move(reference);
-  Judge judge(scene, options);
-  State state = scene.start;
-  for (int k = 1; k <= 5; ++k) {
+Measures judged(const std::shared_ptr<const Reference>& reference, double times_as_far, double off,
+                int steps = 5) {
+  Judge judge(chain_of_four, {.reference = reference});
+  State state = chain_of_four.start;
+  for (int k = 1; k <= steps; ++k) {
     judge.before(state, 0.04);
     state.time = 0.04 * k;
-    state.x = scene.start.x;
+    state.x = chain_of_four.start.x;
     state.x.row(1).array() -= times_as_far * state.time;
     state.x.row(2).setConstant(off);
     judge.after(state.x, state, 0.04);
@@ -54,10 +50,9 @@ Measures judged(const Scene& scene, std::shared_ptr<const Reference> reference, 
 
 // However far off a run is, its error is over the sample times at which 3 gap is at most the level.
 TEST(Judge, CountsTheSameSampleTimesForAllRuns) {
-  const Scene scene = small_chain();
-  const auto reference = falling(scene);
+  const auto reference = falling();
   for (const double off : {0.4, 0.01, 0.002, 1e-5}) {
-    const Measures found = judged(scene, reference, 1, off);
+    const Measures found = judged(reference, 1, off);
     EXPECT_EQ(found.error_samples, 2) << off;
     EXPECT_EQ(found.error_samples, reference->samples_at(headline_error));
     EXPECT_DOUBLE_EQ(found.error_until, 0.08);
@@ -77,23 +72,15 @@ TEST(Judge, CountsTheSameSampleTimesForAllRuns) {
 }
 
 TEST(Judge, SaysWhyThereIsNoError) {
-  const Scene scene = small_chain();
-  const auto reference = falling(scene);
+  const auto reference = falling();
   reference->gap.assign(5, 0.01);
-  EXPECT_EQ(judged(scene, reference, 1, 0.4).unknown_because,
+  EXPECT_EQ(judged(reference, 1, 0.4).unknown_because,
             "the reference is not sure to 2 % at any sample time");
-  EXPECT_TRUE(std::isnan(judged(scene, reference, 1, 0.4).trajectory));
-  EXPECT_EQ(judged(scene, nullptr, 1, 0.4).unknown_because,
+  EXPECT_TRUE(std::isnan(judged(reference, 1, 0.4).trajectory));
+  EXPECT_EQ(judged(nullptr, 1, 0.4).unknown_because,
             "no reference of this scene, size and parameters");
   reference->gap.assign(5, 0.001);
-  Judge::Options options;
-  options.reference = reference;
-  Judge judge(scene, options);
-  State state = scene.start;
-  judge.before(state, 0.04);
-  state.time = 0.04;
-  judge.after(state.x, state, 0.04);
-  const Measures cut = judge.finish();  // after one of five samples
+  const Measures cut = judged(reference, 1, 0.4, 1);
   EXPECT_TRUE(std::isnan(cut.trajectory));
   EXPECT_EQ(cut.unknown_because,
             "the run ended after 1 of 5 samples at which the reference is sure to 2 %");
@@ -101,28 +88,24 @@ TEST(Judge, SaysWhyThereIsNoError) {
 
 // What an observed order tells is no verdict on the reference.
 TEST(Judge, AnObservedOrderDoesNotSwitchErrorsOff) {
-  const Scene scene = small_chain();
-  const auto reference = falling(scene);
+  const auto reference = falling();
   reference->observed_order = 0.5;  // of 2
-  EXPECT_NEAR(judged(scene, reference, 1, 0.4).trajectory, 0.4, 1e-12);
+  EXPECT_NEAR(judged(reference, 1, 0.4).trajectory, 0.4, 1e-12);
 }
 
 TEST(Judge, MeasuresHowFarARunHasMoved) {
-  const Scene scene = small_chain();
-  EXPECT_NEAR(judged(scene, falling(scene), 0.3, 0).moved, 0.3, 1e-12);
-  EXPECT_EQ(judged(scene, falling(scene), 0, 0).moved, 0);
+  EXPECT_NEAR(judged(falling(), 0.3, 0).moved, 0.3, 1e-12);
+  EXPECT_EQ(judged(falling(), 0, 0).moved, 0);
 }
 
 TEST(Judge, MeasuresStrainBeforeAndAfterTheObstacle) {
-  const auto found_type = find_scene("drape");
-  const SceneType& type = *found_type;
-  const Scene scene = type.build(complete_parameters(type, {{"n", 3}}));
-  Judge judge(scene, {});
-  State state = scene.start;
+  const Scene drape = testing::build("drape", {{"n", 3}});
+  Judge judge(drape, {});
+  State state = drape.start;
   judge.before(state, 0.01);
   state.time = 0.01;
   state.x(0, 4) += 0.1;  // the middle vertex by a fifth of an edge's length
-  judge.after(scene.start.x, state, 0.01);
+  judge.after(drape.start.x, state, 0.01);
   const Measures found = judge.finish();
   EXPECT_NEAR(found.max_strain, 0, 1e-12);
   EXPECT_NEAR(found.max_strain_after_collision, 0.2, 1e-12);

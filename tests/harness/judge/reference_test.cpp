@@ -1,7 +1,5 @@
 // References: the pendulum in angles against closed forms and against the dense equations of
 // motion, and what is stored.
-#include "harness/judge/reference.h"
-
 #include <gsl/gsl_sf_ellint.h>
 #include <gtest/gtest.h>
 
@@ -13,15 +11,16 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/interrupt.h"
-#include "harness/judge/reference_file.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/scenes/pendulum.h"
+#include "support/scenes.h"
 
 namespace harness {
 namespace {
 
 using inextensible::Positions;
 using nlohmann::json;
+using testing::parameters;
 
 Pendulum::Links uniform_links(int n, double total_mass, double total_length) {
   // As the scene `chain` of n + 1 vertices: mass by vertex, the pinned one has its share.
@@ -96,11 +95,15 @@ TEST(Pendulum, OfEightyVerticesKeepsItsEnergyAndMeetsTheKnownPlaces) {
   EXPECT_NEAR(pendulum.energy() / 9.81, 0, 1e-10);
 }
 
+Reference computed(const std::string& scene, const SceneParameters& given, double finest) {
+  RouteRuns runs([](const std::string&) {});
+  return compute_reference(scene, parameters(scene, given), finest, runs);
+}
+
+Reference short_chain() { return computed("chain", {{"n", 4}, {"duration", 0.2}}, 0.04 / 64); }
+
 TEST(Reference, OfAShortChainIsTheSameByBothRoutes) {
-  const auto found_type = find_scene("chain");
-  const SceneType& type = *found_type;
-  const Reference r = compute_reference("chain", complete_parameters(type, {{"n", 12}}), 0.04 / 256,
-                                        [](const std::string&) {});
+  const Reference r = computed("chain", {{"n", 12}}, 0.04 / 256);
   EXPECT_NEAR(r.observed_order, 2, 0.05);
   EXPECT_EQ(r.times.size(), 25u);
   EXPECT_DOUBLE_EQ(r.valid_until, 1);
@@ -110,11 +113,7 @@ TEST(Reference, OfAShortChainIsTheSameByBothRoutes) {
 
 // RATTLE does not survive a start at which J W J^T is singular; two other routes do, and agree.
 TEST(Reference, OfThePatchIsByTwoRoutesThatSurviveIt) {
-  const auto found_type = find_scene("patch");
-  const SceneType& type = *found_type;
-  const Reference r =
-      compute_reference("patch", complete_parameters(type, {{"n", 5}, {"duration", 0.2}}),
-                        0.04 / 80, [](const std::string&) {});
+  const Reference r = computed("patch", {{"n", 5}, {"duration", 0.2}}, 0.04 / 80);
   EXPECT_TRUE(r.method.starts_with("fast_projection@bdf2")) << r.method;
   EXPECT_TRUE(r.second_method.starts_with("icd")) << r.second_method;
   EXPECT_GE(r.valid_until, 0.12);
@@ -123,11 +122,7 @@ TEST(Reference, OfThePatchIsByTwoRoutesThatSurviveIt) {
 
 // A gap is the largest of its parts; which these are does not depend on the order of runs.
 TEST(Reference, GapIsTheLargestOfItsParts) {
-  const auto found_type = find_scene("drape");
-  const SceneType& type = *found_type;
-  const Reference r =
-      compute_reference("drape", complete_parameters(type, {{"n", 5}, {"duration", 0.2}}),
-                        0.04 / 80, [](const std::string&) {});
+  const Reference r = computed("drape", {{"n", 5}, {"duration", 0.2}}, 0.04 / 80);
   for (const char* name : {"routes", "half_step", "second_half_step", "moved_start"})
     ASSERT_TRUE(r.gap_parts.contains(name)) << name;
   for (std::size_t i = 0; i < r.positions.size(); ++i) {
@@ -140,41 +135,46 @@ TEST(Reference, GapIsTheLargestOfItsParts) {
 
 // A computation that was stopped goes on with the runs that were not done, to the same reference.
 TEST(Reference, IsMadeInPieces) {
-  const auto found_type = find_scene("chain");
-  const SceneType& type = *found_type;
-  const auto parameters = complete_parameters(type, {{"n", 4}, {"duration", 0.2}});
   const std::string out = ::testing::TempDir() + "pieces.json";
   std::filesystem::remove(out + ".journal");
-  const auto compute = [&](const json& header, int most, int* made) {
-    ReferencePieces pieces(out, header);
-    return compute_reference(
-        "chain", parameters, 0.04 / 64, [](const std::string&) {},
-        [&](const std::string& name, const std::function<RouteRun()>& run) -> const RouteRun& {
-          return pieces.run(name, [&] {
-            if (++*made > most) throw Interrupted();
-            return run();
-          });
-        });
+  int made = 0;
+  const auto compute = [&](const json& header, int most) {
+    made = 0;
+    const auto count = [&](const std::string& line) {
+      if (line.ends_with("...") && ++made > most) throw Interrupted();
+    };
+    RouteRuns runs(count, out, header);
+    return compute_reference("chain", parameters("chain", {{"n", 4}, {"duration", 0.2}}), 0.04 / 64,
+                             runs);
   };
-  int whole = 0, first = 0, rest = 0, other = 0;
-  const Reference once = compute_reference("chain", parameters, 0.04 / 64, [](const auto&) {});
-  EXPECT_THROW(static_cast<void>(compute({{"build", 1}}, 3, &first)), Interrupted);
-  const Reference again = compute({{"build", 1}}, 100, &rest);
-  EXPECT_EQ(to_json(again), to_json(once));
-  compute({{"build", 1}}, 100, &whole);
-  EXPECT_EQ(whole, 0) << "all are kept";
-  compute({{"build", 2}}, 100, &other);
-  EXPECT_EQ(other, rest + 3) << "runs of another build do not count";
+  EXPECT_THROW(static_cast<void>(compute({{"build", 1}}, 3)), Interrupted);
+  EXPECT_EQ(to_json(compute({{"build", 1}}, 100)), to_json(short_chain()));
+  const int rest = made;
   EXPECT_GT(rest, 2);
+  compute({{"build", 1}}, 100);
+  EXPECT_EQ(made, 0) << "all are kept";
+  compute({{"build", 2}}, 100);
+  EXPECT_EQ(made, rest + 3) << "runs of another build do not count";
   std::filesystem::remove(out + ".journal");
 }
 
+TEST(RouteRuns, AreReadBackAsTheyWereMade) {
+  const std::string out = ::testing::TempDir() + "runs.json";
+  std::filesystem::remove(out + ".journal");
+  const RouteRun first{{Positions::Random(3, 4)}, 0.1, {{0.1, 0.2, 0.3, 0.4}, {1, 2, 3, 1.0 / 3}}};
+  const auto tell = [](const std::string&) {};
+  RouteRuns(tell, out, {{"build", 1}}).run("a", [&] { return first; });
+  RouteRuns runs(tell, out, {{"build", 1}});
+  const RouteRun& again = runs.run("a", []() -> RouteRun { throw Interrupted(); });
+  EXPECT_EQ(again.path, first.path);
+  EXPECT_EQ(again.energy_drift, first.energy_drift);
+  EXPECT_EQ(json(again.shape), json(first.shape));
+  runs.remove();
+}
+
 TEST(Reference, RefusesStepsThatMissTheSamples) {
-  const auto found_type = find_scene("chain");
-  const auto parameters = complete_parameters(*found_type, {{"n", 4}, {"duration", 0.2}});
-  EXPECT_THROW(
-      static_cast<void>(compute_reference("chain", parameters, 0.0003, [](const auto&) {})),
-      UsageError);
+  EXPECT_THROW(static_cast<void>(computed("chain", {{"n", 4}, {"duration", 0.2}}, 0.0003)),
+               UsageError);
 }
 
 // Of the drape at the sizes that results report: errors of 1 % can be told until 0.3 s after the
@@ -197,27 +197,24 @@ TEST(Reference, OfTheDrapeIsTrustedAtOnePercentPastFirstContact) {
 }
 
 TEST(Reference, SurvivesItsFile) {
-  const auto found_type = find_scene("chain");
-  const SceneType& type = *found_type;
-  const auto parameters = complete_parameters(type, {{"n", 4}, {"duration", 0.2}});
-  const Reference r = compute_reference("chain", parameters, 0.04 / 64, [](const std::string&) {});
+  const Reference r = short_chain();
   const std::string folder = ::testing::TempDir() + "references";
   std::filesystem::create_directories(folder);
-  std::ofstream(folder + "/" + reference_name("chain", parameters)) << to_json(r);
+  std::ofstream(folder + "/" + reference_name("chain", r.parameters)) << to_json(r);
   ReferenceFolder references(folder);
-  const auto again = references.find("chain", parameters);
+  const auto again = references.find("chain", r.parameters);
   ASSERT_TRUE(again);
   EXPECT_EQ(again->times, r.times);
   ASSERT_EQ(again->positions.size(), r.positions.size());
   for (std::size_t i = 0; i < r.positions.size(); ++i)
     EXPECT_LT((again->positions[i] - r.positions[i]).cwiseAbs().maxCoeff(), 1e-12);
-  EXPECT_FALSE(references.find("chain", complete_parameters(type, {{"n", 5}})));
+  EXPECT_FALSE(references.find("chain", parameters("chain", {{"n", 5}})));
   // Another mass is another scene, another duration is not.
-  EXPECT_FALSE(references.find("chain", complete_parameters(type, {{"n", 4}, {"mass", 2}})));
-  EXPECT_TRUE(references.find("chain", complete_parameters(type, {{"n", 4}})));
+  EXPECT_FALSE(references.find("chain", parameters("chain", {{"n", 4}, {"mass", 2}})));
+  EXPECT_TRUE(references.find("chain", parameters("chain", {{"n", 4}})));
 
   // A file under the name of parameters that it is not of does not stand for them.
-  const auto five = complete_parameters(type, {{"n", 5}, {"duration", 0.2}});
+  const auto five = parameters("chain", {{"n", 5}, {"duration", 0.2}});
   std::ofstream(folder + "/" + reference_name("chain", five)) << to_json(r);
   EXPECT_FALSE(ReferenceFolder(folder).find("chain", five));
 
@@ -226,14 +223,11 @@ TEST(Reference, SurvivesItsFile) {
 }
 
 TEST(Reference, ThatIsCommittedIsTheOneThisProgramComputes) {
-  const auto found_type = find_scene("chain");
-  const SceneType& type = *found_type;
-  const auto parameters = complete_parameters(type, {});
   ReferenceFolder references(std::string(SOURCE_DIR) + "/results/references");
-  const auto stored = references.find("chain", parameters);
+  const auto stored = references.find("chain", parameters("chain"));
   ASSERT_TRUE(stored);
   Pendulum pendulum(uniform_links(79, 1, 1), std::vector<double>(79, 0.0));
-  const Scene scene = type.build(parameters);
+  const Scene scene = testing::build("chain");
   for (std::size_t i = 0; i < stored->times.size(); ++i) {
     pendulum.advance(stored->times[i], 1e-13);
     EXPECT_LT(max_distance(scene, pendulum.positions(), stored->positions[i]), 1e-9);

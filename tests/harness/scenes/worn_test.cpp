@@ -1,12 +1,14 @@
-// The garment: a skirt that its rim holds, against the geometry of the body that it is on.
+// The garment: a skirt that its rim holds, against the geometry of the body that it is on; and the
+// cape, which hangs from the body that takes its pins along.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "harness/scenes/scene.h"
+#include "harness/judge/mechanics.h"
 #include "solvers/registry.h"
 #include "solvers/stepping/step_controller.h"
+#include "support/scenes.h"
 
 namespace harness {
 namespace {
@@ -16,12 +18,9 @@ using inextensible::State;
 
 constexpr int around = 24;
 
-Scene garment(const SceneParameters& given) {
-  const auto type = find_scene("garment");
-  return type->build(complete_parameters(*type, given));
-}
+Scene garment(const SceneParameters& given) { return testing::build("garment", given); }
 
-// By strips, and a step that a tight rim refuses is halved: fast projection is thrown off a tight
+// By yarns, and a step that a tight rim refuses is halved: fast projection is thrown off a tight
 // rim in one build and not in another.
 State after(const Scene& scene, double limit, double seconds) {
   const double h = 1.0 / 400;
@@ -80,10 +79,26 @@ TEST(Garment, ItsBodyStartsAtRestWhereItIs) {
   EXPECT_FALSE(garment({{"sway", 0}, {"turn", 0}}).problem->body_motion());
 }
 
-// What makes no garment is said.
-TEST(Garment, ThatTheWaistDoesNotFitIsRefused) {
-  EXPECT_THROW(garment({{"rim", 0.1}}), std::invalid_argument);
+TEST(Cape, HangsFromTheMovingBody) {
+  const Scene scene = testing::build("cape", {{"n", 15}});
+  const inextensible::Problem& problem = *scene.problem;
+  ASSERT_GT(problem.pinned().size(), 2U);
+  ASSERT_LT(problem.pinned().size(), 15U) << "a part of the collar";
+  State state = scene.start;
+  const auto stepper =
+      inextensible::make_stepper("fast_projection", scene.problem, {0.01, 1, {}, &state});
+  while (state.time < 1.5) ASSERT_TRUE(stepper->advance(state, 1.0 / 120));
+  const Pose pose = problem.body_motion()(state.time);
+  EXPECT_GT(pose.translation.norm(), 0.1);
+  for (const int pin : problem.pinned())
+    EXPECT_LT((state.x.col(pin) - pose(scene.start.x.col(pin))).norm(), 1e-9);
+  EXPECT_LT(strain_range(problem, state.x).stretch, 0.0101);
+}
+
+TEST(Worn, WhatDoesNotFitIsRefused) {
+  EXPECT_THROW(garment({{"rim", 0.1}}), std::invalid_argument);  // narrower than the waist
   EXPECT_THROW(garment({{"flare", 10}}), std::invalid_argument);
+  EXPECT_THROW(testing::build("cape", {{"flare", 20}}), std::invalid_argument);
 }
 
 }  // namespace

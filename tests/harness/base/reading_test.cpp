@@ -1,0 +1,117 @@
+// What comes from outside: JSON and expressions are bounded, without second meanings, and never
+// make a long message; what is written for people says no more and no less than it should.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "harness/base/errors.h"
+#include "harness/base/json_reader.h"
+#include "harness/base/json_text.h"
+#include "harness/base/pattern.h"
+#include "harness/base/text.h"
+
+namespace harness {
+namespace {
+
+std::string complaint(const std::string& text) {
+  try {
+    parse_document(text, "a.json");
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string repeated(const std::string& one, int times) {
+  std::string text;
+  for (int i = 0; i < times; ++i) text += one;
+  return text;
+}
+
+TEST(JsonReader, RefusesKeysThatStandTwiceAndWhatIsNestedDeep) {
+  const struct {
+    std::string text, complaint;
+  } cases[] = {{R"({"a": 1, "b": {"a": 2}, "a": 3})", "'a' occurs twice"},
+               {R"({"a": {"x": 1}, "b": {"x": 1}})", ""},
+               {repeated("[", 100000), "nested"},
+               {repeated("{\"a\":", 100000), "nested"},
+               {"[[[[[[[[[[1]]]]]]]]]]", ""}};
+  for (const auto& [text, part] : cases) {
+    const std::string found = complaint(text);
+    EXPECT_TRUE(part.empty() ? found.empty() : found.find(part) != std::string::npos) << found;
+    EXPECT_LT(found.size(), 400u);
+  }
+}
+
+TEST(JsonText, ThatIsNotUtf8LosesNoDocument) {
+  const nlohmann::json value = {{"path",
+                                 "a\xff"
+                                 "b"}};
+  EXPECT_EQ(parse_document(document_text(value), "a.json").at("path"),
+            "a\xEF\xBF\xBD"
+            "b");
+}
+
+TEST(JsonText, SaysTheSameOnOneLineFoldedAndAsADocument) {
+  const auto value = nlohmann::ordered_json::parse(
+      R"({"b": {"x": [1, 2.5], "y": {}}, "a": [[], {"t": "q\"\n"}, 0.1], "c": null})");
+  EXPECT_EQ(line_of(value),
+            R"({"b": {"x": [1, 2.5], "y": {}}, "a": [[], {"t": "q\"\n"}, 0.1], "c": null})");
+  EXPECT_EQ(folded_text(value, 80), line_of(value) + "\n");
+  EXPECT_EQ(
+      folded_text(value, 40),
+      "{\n  \"b\": {\"x\": [1, 2.5], \"y\": {}},\n  \"a\": [[], {\"t\": \"q\\\"\\n\"}, 0.1],\n"
+      "  \"c\": null\n}\n");
+  EXPECT_EQ(
+      document_text(value),
+      "{\n\"b\": {\n\"x\": [1, 2.5],\n\"y\": {}\n},\n\"a\": [\n[],\n{\"t\": \"q\\\"\\n\"},\n0.1\n"
+      "],\n\"c\": null\n}\n");
+}
+
+TEST(Bounds, HoldFiniteNumbersOnly) {
+  for (const double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
+    EXPECT_FALSE(Bounds::positive().hold(bad)) << bad;
+  EXPECT_TRUE(Bounds::positive().hold(1e-300));
+  EXPECT_FALSE(Bounds::whole_number(1).hold(1e300)) << "does not fit into an int";
+  EXPECT_FALSE(Bounds::whole_number(1).hold(1.5));
+  EXPECT_EQ(Bounds::positive().text(), "a number above 0");
+}
+
+TEST(ToldApart, HasEnoughDigitsToDifferAndNoMore) {
+  EXPECT_EQ(told_apart(0.2, 0.1), "0.2");
+  EXPECT_EQ(told_apart(0.0001, 0.0001), "0.0001");
+  EXPECT_EQ(told_apart(0.00010003, 0.0001), "0.00010003");
+  EXPECT_EQ(told_apart(0.000100000002, 0.0001), "0.000100000002");
+  const double next = std::nextafter(0.1, 1);
+  EXPECT_NE(told_apart(next, 0.1), number_text(0.1));
+  EXPECT_EQ(std::stod(told_apart(next, 0.1)), next);
+}
+
+TEST(Pattern, MatchesWholesAndFindsParts) {
+  const Pattern pattern("--solver", "shake|icd");
+  EXPECT_TRUE(pattern.matches("icd"));
+  EXPECT_TRUE(pattern.matches("ICD"));
+  EXPECT_FALSE(pattern.matches("icd_loose"));
+  EXPECT_TRUE(pattern.found_in("chain/icd/n:20"));
+}
+
+// With backtracking they would not, within anybody's time.
+TEST(Pattern, PathologicalOnesEnd) {
+  const Pattern pattern("--filter", "(a*)*(a*)*(a*)*b|(a|aa)+$");
+  EXPECT_FALSE(pattern.found_in(std::string(5000, 'a') + "c"));
+}
+
+TEST(Pattern, NonsenseAndGiantsAreRefusedInALine) {
+  for (const std::string& bad :
+       {std::string("("), std::string("[z-a]"), std::string(100000, '(')}) {
+    try {
+      const Pattern pattern("--filter", bad);
+      ADD_FAILURE() << "taken";
+    } catch (const UsageError& error) {
+      EXPECT_LT(std::string(error.what()).size(), 400u);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace harness
