@@ -18,8 +18,6 @@
 #include <string>
 
 #include "contestants/common/engine.h"
-#include "solvers/plugin.h"
-#include "solvers/problem/forces.h"
 
 namespace {
 
@@ -78,7 +76,7 @@ class BulletSoftBody final : public inextensible::Stepper {
   static constexpr const char* name = "engine_bullet";
 
   BulletSoftBody(std::shared_ptr<const Problem> shared, const inextensible::BackendOptions& options)
-      : Stepper(std::move(shared)), world_(problem()) {
+      : Stepper(std::move(shared)), world_(problem()), forces_(problem()) {
     const int iterations = options.count("iterations"),
               velocity_iterations = options.count("velocity_iterations");
     world_.body->m_cfg.piterations = iterations;
@@ -87,8 +85,6 @@ class BulletSoftBody final : public inextensible::Stepper {
       world_.body->m_cfg.m_vsequence.push_back(btSoftBody::eVSolver::Linear);
     if (options.word("order") == "random") world_.body->randomizeConstraints();
     passes_ = iterations + velocity_iterations;
-    if (problem().shear() || !problem().bending().empty() || problem().has_drag())
-      forces_.resize(3, problem().vertices());
   }
 
   static std::vector<inextensible::SettingInfo> settings() {
@@ -114,7 +110,9 @@ class BulletSoftBody final : public inextensible::Stepper {
     }
     for (const int pin : problem().pinned()) nodes[pin].m_v.setZero();
     phases_.copy += stopwatch();
-    if (forces_.size() > 0) give_forces(state);
+    forces_.give(state, work_, [this](int i, const Eigen::Vector3d& f) {
+      world_.body->addForce(to_bullet(f), i);
+    });
     phases_.unconstrained += stopwatch();
     world_.dynamics.stepSimulation(h, 0);
     work_.edge_projections += std::int64_t{passes_} * problem().constraints();
@@ -123,17 +121,6 @@ class BulletSoftBody final : public inextensible::Stepper {
     for (const int pin : problem().pinned()) x.col(pin) = state.x.col(pin);  // -0 stays -0
     phases_.copy += stopwatch();
     return {Status::ok, passes_};
-  }
-
-  // All but the weight, which is Bullet's own.
-  void give_forces(const State& state) {
-    forces_.setZero();
-    add_forces(problem(), state.x, state.v, forces_, work_);
-    for (int i = 0; i < problem().vertices(); ++i) {
-      if (problem().inverse_mass()[i] == 0) continue;
-      world_.body->addForce(to_bullet(forces_.col(i) - problem().mass()[i] * problem().gravity()),
-                            i);
-    }
   }
 
   StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& /*filtered*/,
@@ -146,30 +133,20 @@ class BulletSoftBody final : public inextensible::Stepper {
   }
 
   World world_;
-  Positions forces_;  // N; empty where there are none but gravity
+  engines::OtherForces forces_;
   int passes_ = 0;
 };
-
-const std::string& version() {
-  static const std::string text =
-      "Bullet " + std::to_string(btGetVersion() / 100) + "." + std::to_string(btGetVersion() % 100);
-  return text;
-}
-
-inextensible::Backend row() {
-  static const std::string summary = version() + ", soft body of links (position-based), double";
-  static const std::string label = version() + " soft body";
-  inextensible::Backend row = engines::engine_row<BulletSoftBody>(summary, label);
-  row.takes_shear = row.takes_bending = row.takes_drag = true;
-  row.direction = inextensible::Direction::local;
-  row.citation = "Coumans 2022";
-  return row;
-}
 
 }  // namespace
 
 extern "C" const InextensiblePlugin* inextensible_plugin() {
-  static const std::vector<inextensible::Backend> rows{row()};
-  static const auto plugin = inextensible_plugin_of(version().c_str(), rows);
-  return &plugin;
+  const std::string version =
+      "Bullet " + std::to_string(btGetVersion() / 100) + "." + std::to_string(btGetVersion() % 100);
+  return engines::plugin_of<BulletSoftBody>(version, "soft body of links (position-based), double",
+                                            "soft body", [](inextensible::Backend& row) {
+                                              row.takes_shear = row.takes_bending = row.takes_drag =
+                                                  true;
+                                              row.direction = inextensible::Direction::local;
+                                              row.citation = "Coumans 2022";
+                                            });
 }

@@ -21,7 +21,6 @@
 
 #include "contestants/common/engine.h"
 #include "contestants/common/links.h"
-#include "solvers/plugin.h"
 
 namespace {
 
@@ -150,7 +149,7 @@ class HingeChain {
     std::memset(data_->warning, 0, sizeof(data_->warning));
   }
 
-  // False if MuJoCo met numbers that it does not take, and started anew from nothing. Throws
+  // False if MuJoCo met numbers that it does not accept and reset itself. Throws
   // MujocoError.
   bool step(double h) {
     model_->opt.timestep = h;
@@ -159,7 +158,7 @@ class HingeChain {
            data_->warning[mjWARN_BADQVEL].number == 0 && data_->warning[mjWARN_BADQACC].number == 0;
   }
 
-  // Of the ends of links, the pin's place being 0.
+  // Positions and velocities of the ends of links, relative to the pin.
   void get(const Links& links, Positions& x, Positions& v) {
     mj_kinematics(model_.get(), data_.get());
     mj_comPos(model_.get(), data_.get());
@@ -256,26 +255,15 @@ class MujocoChain final : public inextensible::Stepper {
   Positions v_;
 };
 
-const std::string& version() {
-  static const std::string text = std::string("MuJoCo ") + mj_versionString();
-  return text;
-}
-
-inextensible::Backend row() {
-  static const std::string summary = version() + ", a chain of hinges (joint coordinates)";
-  static const std::string label = version() + " hinges";
-  inextensible::Backend row = engines::engine_row<MujocoChain>(summary, label);
-  row.citation = "Todorov, Erez and Tassa 2012";
-  row.velocities = inextensible::Velocities::whole_step;
-  return row;
-}
-
 }  // namespace
 
 extern "C" const InextensiblePlugin* inextensible_plugin() {
   mju_user_error = throw_error;
   mju_user_warning = [](const char*) {};  // else it writes them to a file; steps look for them
-  static const std::vector<inextensible::Backend> rows{row()};
-  static const auto plugin = inextensible_plugin_of(version().c_str(), rows);
-  return &plugin;
+  return engines::plugin_of<MujocoChain>(std::string("MuJoCo ") + mj_versionString(),
+                                         "a chain of hinges (joint coordinates)", "hinges",
+                                         [](inextensible::Backend& row) {
+                                           row.citation = "Todorov, Erez and Tassa 2012";
+                                           row.velocities = inextensible::Velocities::whole_step;
+                                         });
 }

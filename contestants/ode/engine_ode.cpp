@@ -15,8 +15,6 @@
 #include <string>
 
 #include "contestants/common/engine.h"
-#include "solvers/plugin.h"
-#include "solvers/problem/forces.h"
 
 namespace {
 
@@ -48,11 +46,10 @@ class OdeBalls final : public inextensible::Stepper {
       : Stepper(std::move(shared)),
         options_(options),
         direct_(options.word("solver") == "direct"),
+        forces_(problem()),
         random_(options.seed) {
     dAllocateODEDataForThread(dAllocateMaskAll);
     build();
-    if (problem().shear() || !problem().bending().empty() || problem().has_drag())
-      forces_.resize(3, problem().vertices());
   }
 
   // iterations and cfm are ODE's own by default.
@@ -72,13 +69,14 @@ class OdeBalls final : public inextensible::Stepper {
  private:
   void build();
   void put_in(const State& state);
-  void give_forces(const State& state);
 
   StepResult solve(const State& state, double h, Positions& x) override {
     Stopwatch stopwatch(phases_wanted_);
     put_in(state);
     phases_.copy += stopwatch();
-    if (forces_.size() > 0) give_forces(state);
+    forces_.give(state, work_, [this](int i, const Eigen::Vector3d& f) {
+      dBodyAddForce(bodies_[i], f.x(), f.y(), f.z());
+    });
     phases_.unconstrained += stopwatch();
     if (!take(h)) return {Status::not_finite, 0, -1, 0, "ODE met numbers that it does not take"};
     phases_.filter += stopwatch();
@@ -112,7 +110,7 @@ class OdeBalls final : public inextensible::Stepper {
   World world_;
   std::vector<dBodyID> bodies_;   // null: pinned, which is the world to ODE
   std::vector<dJointID> joints_;  // one an edge
-  Positions forces_;              // N; empty where there are none but gravity
+  engines::OtherForces forces_;
   unsigned long random_, next_random_ = 0;
 };
 
@@ -143,8 +141,8 @@ void OdeBalls::build() {
   }
 }
 
-// Anchors are kept relative to bodies. Those on pins are places of the world, and may be set anew;
-// setting one measures the distance, which is put right after that.
+// Anchors are kept relative to bodies. Those on pins are places of the world, which can be set
+// again; setting one measures the distance, which is put right after that.
 void OdeBalls::put_in(const State& state) {
   constexpr dMatrix3 unturned = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   for (int i = 0; i < problem().vertices(); ++i) {
@@ -162,17 +160,6 @@ void OdeBalls::put_in(const State& state) {
     dJointSetDBallAnchor1(joints_[k], state.x(0, a), state.x(1, a), state.x(2, a));
     dJointSetDBallAnchor2(joints_[k], state.x(0, b), state.x(1, b), state.x(2, b));
     dJointSetDBallDistance(joints_[k], problem().rest_length()[k]);
-  }
-}
-
-// All but the weight, which is ODE's own.
-void OdeBalls::give_forces(const State& state) {
-  forces_.setZero();
-  add_forces(problem(), state.x, state.v, forces_, work_);
-  for (int i = 0; i < problem().vertices(); ++i) {
-    if (!bodies_[i]) continue;
-    const Eigen::Vector3d f = forces_.col(i) - problem().mass()[i] * problem().gravity();
-    dBodyAddForce(bodies_[i], f.x(), f.y(), f.z());
   }
 }
 
@@ -195,19 +182,6 @@ bool OdeBalls::take(double h) {
   return taken;
 }
 
-constexpr const char* version = "ODE " ENGINE_VERSION;  // of the package; the library does not say
-
-inextensible::Backend row() {
-  static const std::string summary =
-      std::string(version) + ", point bodies and joints of fixed distance, double";
-  static const std::string label = std::string(version) + " joints";
-  inextensible::Backend row = engines::engine_row<OdeBalls>(summary, label);
-  row.takes_shear = row.takes_bending = row.takes_drag = true;
-  row.direction = inextensible::Direction::start;
-  row.citation = "Smith 2001";
-  return row;
-}
-
 }  // namespace
 
 extern "C" const InextensiblePlugin* inextensible_plugin() {
@@ -215,7 +189,12 @@ extern "C" const InextensiblePlugin* inextensible_plugin() {
   dSetErrorHandler(throw_error);
   dSetDebugHandler(throw_error);
   dSetMessageHandler([](int, const char*, va_list) {});
-  static const std::vector<inextensible::Backend> rows{row()};
-  static const auto plugin = inextensible_plugin_of(version, rows);
-  return &plugin;
+  return engines::plugin_of<OdeBalls>(
+      "ODE " ENGINE_VERSION,  // of the package; the library does not say
+      "point bodies and joints of fixed distance, double", "joints",
+      [](inextensible::Backend& row) {
+        row.takes_shear = row.takes_bending = row.takes_drag = true;
+        row.direction = inextensible::Direction::start;
+        row.citation = "Smith 2001";
+      });
 }

@@ -6,13 +6,12 @@
 // Loops: over links, five times an internal step.
 //
 // Departure: none from Simbody. Where a step begins with what the last one ended with, bit for bit,
-// Simbody goes on from its own state, else it is set anew, which takes another first step.
+// Simbody continues from its own state; otherwise it is set again, which takes another first step.
 #include <string>
 
 #include "contestants/common/engine.h"
 #include "contestants/common/links.h"
 #include "contestants/simbody/mobilizer_chain.h"
-#include "solvers/plugin.h"
 
 namespace {
 
@@ -41,8 +40,8 @@ class SimbodyChain final : public inextensible::Stepper {
   }
 
   static std::vector<inextensible::SettingInfo> settings() {
-    return {{"accuracy", 1e-3, "of the internal steps, relative",
-             inextensible::Range{1e-12, 0.5}, inextensible::SearchRange{1e-6, 0.5}},
+    return {{"accuracy", 1e-3, "of the internal steps, relative", inextensible::Range{1e-12, 0.5},
+             inextensible::SearchRange{1e-6, 0.5}},
             inextensible::word_setting(
                 "integrator", MobilizerChain::integrators[0],
                 "Runge, Kutta and Merson's, Fehlberg's, or Verlet's of order 2",
@@ -115,25 +114,14 @@ class SimbodyChain final : public inextensible::Stepper {
   State ours_{{}, {}, -1};  // what the last step ended with; time -1: none
 };
 
-const std::string& version() {
-  static const std::string text = "Simbody " + engines::simbody_version();
-  return text;
-}
-
-inextensible::Backend row() {
-  static const std::string summary =
-      version() + ", a chain of mobilizers (joint coordinates), Runge-Kutta-Merson";
-  static const std::string label = version() + " mobilizers";
-  inextensible::Backend row = engines::engine_row<SimbodyChain>(summary, label);
-  row.citation = "Sherman, Seth and Delp 2011";
-  row.velocities = inextensible::Velocities::whole_step;
-  return row;
-}
-
 }  // namespace
 
 extern "C" const InextensiblePlugin* inextensible_plugin() {
-  static const std::vector<inextensible::Backend> rows{row()};
-  static const auto plugin = inextensible_plugin_of(version().c_str(), rows);
-  return &plugin;
+  return engines::plugin_of<SimbodyChain>(
+      "Simbody " + engines::simbody_version(),
+      "a chain of mobilizers (joint coordinates), Runge-Kutta-Merson", "mobilizers",
+      [](inextensible::Backend& row) {
+        row.citation = "Sherman, Seth and Delp 2011";
+        row.velocities = inextensible::Velocities::whole_step;
+      });
 }

@@ -30,7 +30,7 @@ TEST_F(Simbody, ErrorFollowsAccuracy) {
   }
 }
 
-// Going on from its own state and being set anew are the same motion.
+// Continuing from its own state and being set again give the same motion.
 TEST_F(Simbody, MayBeInterrupted) {
   const Scene scene = swirling_chain(5);
   const inextensible::Settings fine{{"accuracy", 1e-9}};

@@ -18,14 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int most_links = 40;  // Linux's own bound
+constexpr int most_links = 40;  // Linux's limit
 
 fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-// "-", or a name of what it is connected to: /dev/stdout, also where that is a regular file, which
-// must not be replaced under the program that has it open.
+// "-", or another name of what standard output is connected to (/dev/stdout). A regular file there
+// must not be replaced, since the program has it open.
 bool is_standard_output(const std::string& path) {
   struct stat named {
   }, open{};
@@ -33,13 +33,13 @@ bool is_standard_output(const std::string& path) {
                          named.st_dev == open.st_dev && named.st_ino == open.st_ino);
 }
 
-// Exists, and is no regular file.
+// A device or pipe.
 bool is_special(const std::string& path) {
   struct stat status {};
   return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
-// A file beside `path` that no one else has: a name of its own, made exclusively, no link followed.
+// A new file beside `path`, created exclusively under a unique name; no link is followed.
 class Beside {
  public:
   explicit Beside(const std::string& path)
@@ -53,7 +53,7 @@ class Beside {
   bool made() const { return static_cast<bool>(file_); }  // false: errno says why
   bool write(const std::string& text) const { return write_whole(file_.get(), text); }
 
-  // Whether it has taken the place of `path`, with its permissions or those of a new file.
+  // Renames the file to `path`, with the permissions of the old file there or of a new one.
   bool replace(const std::string& path) {
     struct stat status {};
     const mode_t mode = stat(path.c_str(), &status) == 0 ? status.st_mode & 07777 : new_file_mode();
@@ -74,7 +74,7 @@ class Beside {
   bool kept_ = false;
 };
 
-// error: of the attempt, 0 if the file was opened and nothing came.
+// error: errno of the attempt; 0 if the file was opened and is empty.
 std::string unreadable_because(const std::string& path, int error) {
   std::error_code unknown;
   if (fs::is_directory(path, unknown)) return "it is a folder";
@@ -127,7 +127,7 @@ std::string output_path(const std::string& path) {
     if (link == most_links) throw UsageError("'" + path + "' is a link in a circle");
     const fs::path next = fs::read_symlink(place, error);
     if (error) throw UsageError("cannot follow the link '" + path + "': " + error.message());
-    place = folder_of(place) / next;  // an absolute one stands for itself
+    place = folder_of(place) / next;  // an absolute path replaces the folder
   }
   if (fs::is_directory(place, error))
     throw UsageError("'" + path + "' is a folder; --out names a file");

@@ -1,5 +1,5 @@
-// Files read and written whole. Everything that this program leaves on a disk is opened here, but
-// for journals, which are written a line at a time.
+// Files read and written as a whole. Everything that this program leaves on a disk is opened here,
+// except journals, which are written line by line.
 #pragma once
 
 #include <unistd.h>
@@ -13,7 +13,7 @@
 
 namespace harness {
 
-// The disk is full, a folder is gone: "cannot write 'a.json': No space left on device".
+// A full disk or a missing folder: "cannot write 'a.json': No space left on device".
 class FileError : public std::runtime_error {
  public:
   FileError(const std::string& path, const std::string& verb,
@@ -39,36 +39,36 @@ class OpenFile {
   int file_;
 };
 
-// All of the text to an open file, from where it stands. False if it cannot; the reason is errno's.
+// Writes all of the text at the current position. False if that fails; errno has the reason.
 bool write_whole(int file, const std::string& text);
 
-// Throws UsageError, with what the file is to the user, if it cannot be read.
+// what: the role of the file ("suite"), for messages. Throws UsageError if it cannot be read.
 std::string read_file(const std::string& path, const std::string& what);
 
-// Where writing to `path` ends up: symbolic links followed, of a file that is yet to be made too.
-// Two names of one output are one, so locks hold. Throws UsageError for "", a folder, and links in
-// a circle.
+// The file that writing to `path` changes: symbolic links are followed, even to a file that does
+// not exist yet, so that two names of one output share a lock. Throws UsageError for "", a folder,
+// and circular links.
 std::string output_path(const std::string& path);
 
-// As output_path, and a regular file: what is written with a journal beside it, and found again
-// later. Throws UsageError for devices, pipes and "-" too.
+// The same for an output with a journal beside it. Throws UsageError for devices, pipes and "-"
+// too.
 std::string regular_output_path(const std::string& path);
 
-// Throws UsageError unless something can be written at `path`; makes missing folders. Nothing is
-// left behind and no other file is touched.
+// Throws UsageError unless `path` can be written. Nothing is left behind, no other file is touched,
+// and no folder is made.
 void check_writable(const std::string& path);
 
-// A regular file is written beside, synced and renamed: the old one or the new one is there, never
-// half of one, and a link to it stays a link. Devices and pipes are written to; "-" is standard
-// output. Throws FileError.
+// Replaces a regular file by a temporary file in the same folder, which is written, synced and
+// renamed: the old or the new file is there, never a part of one, and a link stays a link. Devices
+// and pipes are written to; "-" is standard output. Throws FileError.
 void write_atomically(const std::string& path, const std::string& text);
 
-// Removes temporary folders whose process is gone.
+// Removes the temporary folders of processes that have ended.
 void remove_left_folders();
 
 class TemporaryFolder {
  public:
-  // purpose: a word of its name. Throws FileError.
+  // purpose: a word for its name. Throws FileError.
   explicit TemporaryFolder(const std::string& purpose);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
@@ -81,9 +81,9 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-// Whether the lock is held now; does not wait.
+// Takes the lock without waiting; whether this process holds it now.
 bool try_lock(int file);
-// The process that holds it; 0 if none does, or it cannot be seen from here.
+// The process that holds the lock; 0 if none does or it is not visible from here.
 pid_t lock_holder(int file);
 
 }  // namespace harness

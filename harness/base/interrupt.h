@@ -1,4 +1,4 @@
-// Ctrl-C as a flag that loops ask for.
+// Ctrl-C as a flag that loops poll.
 #pragma once
 
 #include <csignal>
@@ -8,14 +8,14 @@ namespace harness {
 
 inline volatile std::sig_atomic_t interrupt_requested = 0;
 
-// SIGINT, SIGTERM and SIGHUP become a flag from here on; whether one has come.
+// From here on SIGINT, SIGTERM and SIGHUP set a flag.
 inline void catch_interrupts() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     std::signal(signal, [](int) { interrupt_requested = 1; });
 }
 inline bool interrupted() { return interrupt_requested != 0; }
 
-// What a loop throws that was asked to stop.
+// Thrown by a loop that was asked to stop.
 class Interrupted : public std::exception {};
 
 }  // namespace harness

@@ -48,11 +48,11 @@ Journal::Journal(const std::string& out) : path_(out + ".journal") {
 }
 
 Journal::~Journal() {
-  if (file_ && length_ == 0) unlink(path_.c_str());  // nothing has come of it
+  if (file_ && length_ == 0) unlink(path_.c_str());  // nothing was recorded
 }
 
 void Journal::lock(const std::string& out) {
-  for (struct stat status{}; status.st_nlink == 0;) {  // 0: its owner has just removed it
+  for (struct stat status{}; status.st_nlink == 0;) {  // 0: its owner removed it meanwhile
     file_ = OpenFile(open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644));
     if (!file_) throw UsageError("cannot write '" + path_ + "': " + std::strerror(errno));
     if (!try_lock(file_.get())) {

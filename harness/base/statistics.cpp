@@ -53,20 +53,19 @@ std::vector<double> ways_to_sum(const std::vector<int>& ranks, std::size_t n) {
   return ways[n];
 }
 
-// Fraction of all ways to choose n of these ranks whose sum is at least `least`.
-double exact_tail(const std::vector<int>& ranks, std::size_t n, int least) {
-  const std::vector<double> ways = ways_to_sum(ranks, n);
-  return std::accumulate(ways.begin() + least, ways.end(), 0.0) /
-         std::accumulate(ways.begin(), ways.end(), 0.0);
+// Deviations of U, the number of pairs whose first member is the larger one, from its mean, where
+// both come from one distribution.
+double normal_spread(double n1, double n2, double ties) {
+  const double n = n1 + n2;
+  return std::sqrt(n1 * n2 / 12 * (n + 1 - ties / (n * (n - 1))));
 }
 
-// The largest c for which U, the number of pairs whose first member is the larger one, is below c
-// with a probability of at most 2.5 %, if both come from one distribution; 0 if there is none.
+// The largest c for which U is below c with a probability of at most 2.5 %, if both come from one
+// distribution; 0 if there is none.
 std::size_t critical_count(std::size_t n1, std::size_t n2) {
   if (n1 + n2 > exact_up_to) {
     const auto a = static_cast<double>(n1), b = static_cast<double>(n2);
-    const double spread = std::sqrt(a * b * (a + b + 1) / 12);
-    const double c = a * b / 2 - gsl_cdf_ugaussian_Pinv(0.975) * spread;
+    const double c = a * b / 2 - gsl_cdf_ugaussian_Pinv(0.975) * normal_spread(a, b, 0);
     return c > 0 ? static_cast<std::size_t>(c) : 0;
   }
   std::vector<int> ranks(n1 + n2);
@@ -74,19 +73,10 @@ std::size_t critical_count(std::size_t n1, std::size_t n2) {
   const std::vector<double> ways = ways_to_sum(ranks, n1);
   const double all = std::accumulate(ways.begin(), ways.end(), 0.0);
   const std::size_t least_sum = n1 * (n1 + 1) / 2;  // U is the sum of ranks less this
-  double below = 0;
-  for (std::size_t c = 0; c <= n1 * n2; ++c) {
-    below += ways[least_sum + c] / all;
-    if (below > 0.025) return c;
-  }
-  return 0;
-}
-
-double normal_tail(double u, double n1, double n2, double ties) {
-  const double n = n1 + n2;
-  const double variance = n1 * n2 / 12 * (n + 1 - ties / (n * (n - 1)));
-  if (variance <= 0) return 1;  // all values are equal
-  return gsl_cdf_ugaussian_Q((u - n1 * n2 / 2 - 0.5) / std::sqrt(variance));
+  std::size_t c = 0;
+  for (double below = ways[least_sum] / all; below <= 0.025 && c < n1 * n2;)
+    below += ways[least_sum + ++c] / all;
+  return c;
 }
 
 }  // namespace
@@ -94,11 +84,17 @@ double normal_tail(double u, double n1, double n2, double ties) {
 double mann_whitney_greater(const std::vector<double>& a, const std::vector<double>& b) {
   if (a.empty() || b.empty()) return 1;
   const Ranking ranking = rank_all(a, b);
-  const int sum = std::accumulate(
-      ranking.doubled.begin(), ranking.doubled.begin() + static_cast<std::ptrdiff_t>(a.size()), 0);
-  if (a.size() + b.size() <= exact_up_to) return exact_tail(ranking.doubled, a.size(), sum);
+  const auto& ranks = ranking.doubled;
+  const int sum =
+      std::accumulate(ranks.begin(), ranks.begin() + static_cast<std::ptrdiff_t>(a.size()), 0);
+  if (a.size() + b.size() <= exact_up_to) {
+    const std::vector<double> ways = ways_to_sum(ranks, a.size());
+    return std::accumulate(ways.begin() + sum, ways.end(), 0.0) /
+           std::accumulate(ways.begin(), ways.end(), 0.0);
+  }
   const auto n1 = static_cast<double>(a.size()), n2 = static_cast<double>(b.size());
-  return normal_tail(sum / 2.0 - n1 * (n1 + 1) / 2, n1, n2, ranking.ties);
+  const double u = sum / 2.0 - n1 * (n1 + 1) / 2, spread = normal_spread(n1, n2, ranking.ties);
+  return spread > 0 ? gsl_cdf_ugaussian_Q((u - n1 * n2 / 2 - 0.5) / spread) : 1;  // 1: all equal
 }
 
 double least_possible_p(std::size_t a, std::size_t b) {

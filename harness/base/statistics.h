@@ -21,13 +21,9 @@ double least_possible_p(std::size_t a, std::size_t b);
 double quantile(std::vector<double> samples, double fraction);
 
 // The one time of a point: the least of its samples, which are all positive. Not-a-number for none.
-//
-// What disturbs a run (other processes, interrupts, a cache that others use) makes it longer, never
-// shorter. A sample is the time of the program plus something positive, so that the least one is
-// nearest to the program's own time, and the median moves with how much was disturbed that minute.
-// Chen and Revels, Robust benchmarking in noisy environments (2016, arXiv:1608.04295), derive this
-// and show it on machines like ours. It needs samples far longer than a read of the clock, which
-// could make a single run look too short: hence batches (run/measure_point.cpp).
+// What disturbs a run makes it longer, never shorter, so that the least sample is nearest to the
+// program's own time (Chen and Revels 2016, arXiv:1608.04295). It needs samples far longer than a
+// read of the clock, hence batches (run/measure_point.cpp).
 double time_of(const std::vector<double>& samples);
 
 // A positive number with its 95 % confidence interval; nothing known: from 0 to infinity.
@@ -44,15 +40,12 @@ struct Ratio {
 //
 // The interval has two sources, and is the wider of the two on each side. (1) The samples: all
 // factors between the two that the exact two-sided Mann-Whitney test does not reject (Hodges and
-// Lehmann 1963; Hollander and Wolfe, Nonparametric Statistical Methods, 4.3). It assumes that times
-// of the two are distributed alike up to that factor, and nothing else. If
-// the two are distributed alike up to a factor, then that is the factor between their least values,
-// too, so the interval is one for the ratio of minima as for any other quantile's. A bootstrap is
-// no way to it: that of a minimum is not consistent (Bickel and Freedman 1981). Three samples each
-// cannot exclude anything at 95 %, four can. (2) noise: what 95 % of |log ratio|s stayed below that
-// were measured of a program against itself (an A/A pair; not-a-number: there is none). It holds
-// what no repetition shows: where code and data happened to lie, and what a machine does for
-// minutes.
+// Lehmann 1963; Hollander and Wolfe, Nonparametric Statistical Methods, 4.3), if times of the two
+// are distributed alike up to a factor, which is then that of their least values, too. (A bootstrap
+// of a minimum is not consistent: Bickel and Freedman 1981.) Three samples each cannot exclude
+// anything at 95 %, four can. (2) noise: what 95 % of |log ratio|s stayed below that were measured
+// of a program against itself (an A/A pair; not-a-number: there is none). It holds what no
+// repetition shows: where code and data happened to lie, and what a machine does for minutes.
 Ratio ratio_of_times(const std::vector<double>& a, const std::vector<double>& b,
                      double noise = std::numeric_limits<double>::quiet_NaN());
 

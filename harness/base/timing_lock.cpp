@@ -18,12 +18,12 @@
 namespace harness {
 namespace {
 
-// Tells programs that this one starts which process holds the lock for them.
+// Names the process that holds the lock for the programs it starts.
 constexpr const char* holder_variable = "INEXTENSIBLE_TIMING_LOCK";
 
 bool is_for_us(pid_t process) {
-  const char* told = std::getenv(holder_variable);
-  return told && process > 0 && std::to_string(process) == told;
+  const char* holder = std::getenv(holder_variable);
+  return holder && process > 0 && std::to_string(process) == holder;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
@@ -15,14 +16,14 @@ using inextensible::State;
 
 namespace {
 
+constexpr const char* no_reference = "no reference of this scene, size and parameters";
 constexpr double time_tolerance = 1e-9;  // s; states add up their steps
 
 // To six digits: a series is for pictures and sums, and files shall stay small.
 double six_digits(double value) { return std::isfinite(value) ? rounded_to(value) : value; }
 
 double root_mean_square(const std::vector<double>& numbers) {
-  double squares = 0;
-  for (const double number : numbers) squares += number * number;
+  const double squares = std::inner_product(numbers.begin(), numbers.end(), numbers.begin(), 0.0);
   return std::sqrt(squares / static_cast<double>(numbers.size()));
 }
 
@@ -73,50 +74,47 @@ void Judge::compare_positions(const Positions& x) {
 }
 
 // A run that ended before the last sample of the set has no error: others have that of all.
-std::string Judge::why_no_error(const ErrorAtLevel& at) const {
-  const Reference& reference = *options_.reference;
-  const int wanted = reference.samples_at(headline_error);
-  const std::string level = number_text(100 * headline_error) + " %";
-  if (wanted == 0) return "the reference is not sure to " + level + " at any sample time";
-  if (at.samples == wanted) return "";
-  return "the run ended after " + std::to_string(at.samples) + " of " + std::to_string(wanted) +
-         " samples at which the reference is sure to " + level;
-}
-
 void Judge::add_errors(Measures& measures) const {
   const ErrorAtLevel at = error_at(measures, headline_error);
-  measures.unknown_because = why_no_error(at);
   measures.error_samples = at.samples;
   if (at.samples > 0) measures.error_until = at.until;
-  if (!measures.unknown_because.empty()) return;
-  measures.trajectory = at.distance;
-  measures.trajectory_max = at.largest;
-  measures.gap = at.gap;
+  const int wanted = options_.reference->samples_at(headline_error);
+  const std::string level = number_text(100 * headline_error) + " %";
+  if (wanted == 0) {
+    measures.unknown_because = "the reference is not sure to " + level + " at any sample time";
+  } else if (at.samples < wanted) {
+    measures.unknown_because = "the run ended after " + std::to_string(at.samples) + " of " +
+                               std::to_string(wanted) +
+                               " samples at which the reference is sure to " + level;
+  } else {
+    measures.trajectory = at.distance;
+    measures.trajectory_max = at.largest;
+    measures.gap = at.gap;
+  }
 }
 
 // "": there is one.
 std::string Judge::why_no_shape() const {
   if (!is_cloth(scene_)) return "the scene is no cloth";
-  if (!options_.reference) return "no reference of this scene, size and parameters";
-  const Reference& reference = *options_.reference;
-  if (!reference.ensemble.known()) {
-    const std::string& why = reference.ensemble.unknown_because;
-    return why.empty() ? "the reference has no ensemble" : "no ensemble: " + why;
-  }
+  if (!options_.reference) return no_reference;
+  const Ensemble& ensemble = options_.reference->ensemble;
+  if (!ensemble.known())
+    return ensemble.unknown_because.empty() ? "the reference has no ensemble"
+                                            : "no ensemble: " + ensemble.unknown_because;
   std::size_t wanted = 0;
-  for (const double time : reference.times) wanted += time <= scene_.duration + time_tolerance;
+  for (const double time : options_.reference->times)
+    wanted += time <= scene_.duration + time_tolerance;
   if (wanted == 0) return "the run is shorter than the first sample time";
   if (next_ >= wanted) return "";
   return "the run ended after " + std::to_string(next_) + " of " + std::to_string(wanted) +
          " sample times";
 }
 
-void Judge::add_shape(Measures& measures) const {
+void Judge::add_shape(Measures& measures) {
   measures.shape_unknown_because = why_no_shape();
   if (!measures.shape_unknown_because.empty()) return;
-  ShapeRecord record = *shape_;
   const Reference& reference = *options_.reference;
-  const ShapeError found = shape_error(reference.ensemble, reference.times, record.finish());
+  const ShapeError found = shape_error(reference.ensemble, reference.times, shape_->finish());
   measures.shape = found.error;
   measures.shape_statistic = found.statistic;
   measures.shape_time = found.time;
@@ -174,10 +172,6 @@ void Judge::sample(const Positions& filtered, const State& state) {
 
 Measures Judge::finish() {
   energy_.finish();
-  return measures();
-}
-
-Measures Judge::measures() const {
   Measures measures = running_;
   measures.energy_gain = energy_.gain();
   measures.energy_gain_time = energy_.gain_time();
@@ -206,7 +200,7 @@ Measures Judge::measures() const {
   }
   add_shape(measures);
   if (!options_.reference) {
-    measures.unknown_because = "no reference of this scene, size and parameters";
+    measures.unknown_because = no_reference;
     return measures;
   }
   measures.reference = options_.reference->name();

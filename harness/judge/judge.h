@@ -43,10 +43,8 @@ class Judge {
   void compare(const inextensible::State& state);
   void compare_positions(const inextensible::Positions& x);
   void add_errors(Measures& measures) const;
-  void add_shape(Measures& measures) const;
-  std::string why_no_error(const ErrorAtLevel& at) const;
+  void add_shape(Measures& measures);
   std::string why_no_shape() const;
-  Measures measures() const;
 
   const Scene& scene_;
   Options options_;

@@ -3,71 +3,25 @@
 #include <algorithm>
 
 namespace harness {
-namespace {
-
-double length(const ClothMesh& mesh, int a, int b) {
-  return (mesh.vertices[a] - mesh.vertices[b]).norm();
-}
-
-void hold_yarns(const PinnedMesh& cloth, inextensible::ProblemParts& parts) {
-  const ClothMesh& mesh = cloth.mesh;
-  const std::vector<char>& held = cloth.held;
-  for (const auto& [a, b] : sides_of_quads(mesh)) {
-    if (held[a] && held[b]) continue;
-    parts.edges.push_back({a, b});
-    parts.rest_length.push_back(length(mesh, a, b));
-  }
-}
-
-void resist_shear(const PinnedMesh& cloth, double stiffness, inextensible::ProblemParts& parts) {
-  const ClothMesh& mesh = cloth.mesh;
-  const std::vector<char>& held = cloth.held;
-  inextensible::Springs springs;
-  const auto join = [&](int a, int b) {
-    if (held[a] && held[b]) return;
-    springs.edges.push_back({a, b});
-    springs.rest_length.push_back(length(mesh, a, b));
-    springs.stiffness.push_back(stiffness);
-  };
-  for (const auto& [a, b, c, d] : mesh.quads) {
-    join(a, c);
-    join(b, d);
-  }
-  for (const auto& [a, b] : sides_of_triangles(mesh)) join(a, b);
-  if (!springs.edges.empty()) parts.shear = std::move(springs);
-}
-
-// area: of each vertex, m^2; rigidity: of the cloth, N m.
-void resist_bending(const PinnedMesh& cloth, const std::vector<double>& area, double rigidity,
-                    inextensible::ProblemParts& parts) {
-  const ClothMesh& mesh = cloth.mesh;
-  const std::vector<char>& held = cloth.held;
-  for (const auto& [a, b, c] : yarns_of(mesh)) {
-    if (held[a] && held[b] && held[c]) continue;
-    const double before = length(mesh, a, b), after = length(mesh, b, c);
-    const double width = area[b] / (0.5 * (before + after));
-    parts.bending.push_back(inextensible::yarn_bending(a, b, c, before, after, rigidity * width));
-  }
-}
-
-}  // namespace
 
 std::vector<SceneParameterInfo> with_cloth_parameters(std::vector<SceneParameterInfo> own,
                                                       const ClothDefaults& cloth) {
   own.insert(own.end(),
              {{"density", cloth.density, "kg/m^2", 0, 1e4},
               {"gravity", 9.81, "m/s^2, downwards", -1e4, 1e4},
-              {"shear", cloth.shear, "shear stiffness, N/m; 0: none", -1e-300, 1e9},
+              {"shear", cloth.shear, "shear stiffness, N/m; 0: none", zero_too, 1e9},
               {"bending", cloth.bending,
-               "bending rigidity of warp and weft, straight at rest, N m; 0: none", -1e-300, 1e6},
+               "bending rigidity of warp and weft, straight at rest, N m; 0: none", zero_too, 1e6},
               {"drag", cloth.drag, "of still air, N s/m^3: force per area and speed; 0: none",
-               -1e-300, 1e6},
+               zero_too, 1e6},
               {"duration", cloth.duration, "s", 0, 1e4}});
   return own;
 }
 
 Draft cloth_draft(const PinnedMesh& cloth, const SceneParameters& p) {
-  const auto& [mesh, held] = cloth;
+  const ClothMesh& mesh = cloth.mesh;
+  const auto length = [&](int a, int b) { return (mesh.vertices[a] - mesh.vertices[b]).norm(); };
+  const auto held = [&](auto... vertices) { return (cloth.held[vertices] && ...); };
   Draft draft;
   inextensible::ProblemParts& parts = draft.parts;
   Scene& scene = draft.scene;
@@ -77,19 +31,43 @@ Draft cloth_draft(const PinnedMesh& cloth, const SceneParameters& p) {
   scene.start.v.setZero(3, n);
   for (int v = 0; v < n; ++v) {
     scene.start.x.col(v) = mesh.vertices[v];
-    if (held[v]) parts.pinned.push_back(v);
+    if (held(v)) parts.pinned.push_back(v);
     parts.mass.push_back(p.at("density") * area[v]);
     if (p.at("drag") > 0) parts.drag.push_back(p.at("drag") * area[v]);
   }
   parts.gravity = {0, -p.at("gravity"), 0};
-  hold_yarns(cloth, parts);
-  if (p.at("shear") > 0) resist_shear(cloth, p.at("shear"), parts);
-  if (p.at("bending") > 0) resist_bending(cloth, area, p.at("bending"), parts);
-  parts.implicit_forces = true;
-  for (const auto& [a, b, c, d] : mesh.quads) {
-    scene.triangles.push_back({a, b, d});
-    scene.triangles.push_back({c, d, b});
+  for (const auto& [a, b] : sides_of_quads(mesh)) {
+    if (held(a, b)) continue;
+    parts.edges.push_back({a, b});
+    parts.rest_length.push_back(length(a, b));
   }
+  if (p.at("shear") > 0) {
+    inextensible::Springs springs;
+    const auto join = [&](int a, int b) {
+      if (held(a, b)) return;
+      springs.edges.push_back({a, b});
+      springs.rest_length.push_back(length(a, b));
+      springs.stiffness.push_back(p.at("shear"));
+    };
+    for (const auto& [a, b, c, d] : mesh.quads) {
+      join(a, c);
+      join(b, d);
+    }
+    for (const auto& [a, b] : sides_of_triangles(mesh)) join(a, b);
+    if (!springs.edges.empty()) parts.shear = std::move(springs);
+  }
+  if (p.at("bending") > 0) {
+    for (const auto& [a, b, c] : yarns_of(mesh)) {
+      if (held(a, b, c)) continue;
+      const double before = length(a, b), after = length(b, c);
+      const double width = area[b] / (0.5 * (before + after));
+      parts.bending.push_back(
+          inextensible::yarn_bending(a, b, c, before, after, p.at("bending") * width));
+    }
+  }
+  parts.implicit_forces = true;
+  for (const auto& [a, b, c, d] : mesh.quads)
+    scene.triangles.insert(scene.triangles.end(), {{a, b, d}, {c, d, b}});
   scene.triangles.insert(scene.triangles.end(), mesh.triangles.begin(), mesh.triangles.end());
   scene.staggered = false;
   scene.duration = p.at("duration");
@@ -97,10 +75,10 @@ Draft cloth_draft(const PinnedMesh& cloth, const SceneParameters& p) {
 }
 
 std::pair<int, int> count_cloth(const PinnedMesh& cloth) {
-  const std::vector<char>& held = cloth.held;
   const std::vector<Side> sides = sides_of_quads(cloth.mesh);
-  const auto constrained = std::count_if(
-      sides.begin(), sides.end(), [&](const Side& s) { return !held[s.first] || !held[s.second]; });
+  const auto constrained = std::count_if(sides.begin(), sides.end(), [&](const Side& s) {
+    return !cloth.held[s.first] || !cloth.held[s.second];
+  });
   return {static_cast<int>(cloth.mesh.vertices.size()), static_cast<int>(constrained)};
 }
 

@@ -48,51 +48,39 @@ void add_ball(Draft& cloth, const SceneParameters& p) {
 }
 
 void add_drag(Draft& cloth, const SceneParameters& p) {
-  const double l = square_link(p);
-  if (p.at("drag") > 0) cloth.parts.drag.assign(cloth.parts.mass.size(), p.at("drag") * l * l);
+  const double l = square_link(p), drag = value_or_zero(p, "drag");
+  if (drag > 0) cloth.parts.drag.assign(cloth.parts.mass.size(), drag * l * l);
 }
 
-// Above the ball.
-Scene build_drape(const SceneParameters& p) {
-  const double y = p.at("radius") + p.at("gap");
-  Draft cloth = vertex_square(p, y);
-  if (p.contains("folds") && p.at("folds") > 0) fold(cloth.scene, p, y);
-  cloth.parts.implicit_forces = p.contains("implicit") && p.at("implicit") != 0;
-  if (p.contains("speed")) cloth.scene.start.v.row(1).setConstant(-p.at("speed"));
-  add_ball(cloth, p);
-  return finished(std::move(cloth));
-}
-
-// With a fabric's own forces, in physical units, at the end of the step. Each diagonal of a quad,
-// as a spring of stiffness G, gives the cloth the shear stiffness G: turned by gamma they change by
-// l gamma / sqrt(2) each, and bear G (l gamma)^2 / 2 together.
-Scene build_fabric_drape(const SceneParameters& given) {
+// Above the ball. A fabric has its own forces, in physical units, at the end of the step: each
+// diagonal of a quad, as a spring of stiffness G, gives the cloth the shear stiffness G, since
+// turned by gamma both change by l gamma / sqrt(2), and bear G (l gamma)^2 / 2 together.
+Scene build_drape(const SceneParameters& given) {
   SceneParameters p = given;
-  p["mass"] = p.at("density") * p.at("side") * p.at("side");
-  const double y = p.at("radius") + p.at("gap");
+  const bool fabric = p.contains("density"), folded = p.contains("folds");
+  if (fabric) p["mass"] = p.at("density") * p.at("side") * p.at("side");
+  const double y = p.at("radius") + p.at("gap"), bending = value_or_zero(p, "bending");
   Draft cloth = vertex_square(p, y);
-  if (p.at("bending") > 0) bend_yarns(cloth, p, p.at("bending"));
+  if (bending > 0) bend_yarns(cloth, p, bending);
   add_drag(cloth, p);
-  cloth.parts.implicit_forces = true;
+  if (folded) {
+    if (p.at("folds") > 0) fold(cloth.scene, p, y);
+    cloth.scene.start.v.row(1).setConstant(-p.at("speed"));
+    // For speed at sizes at which the start's acceleration would take longer to find than a step,
+    // and a few steps only, whose path is compared with nothing.
+    cloth.scene.staggered = false;
+  }
+  cloth.parts.implicit_forces = fabric || value_or_zero(p, "implicit") != 0;
   add_ball(cloth, p);
   return finished(std::move(cloth));
-}
-
-// For speed at sizes at which the start's acceleration would take longer to find than a step, and a
-// few steps only, whose path is compared with nothing.
-Scene build_folded_drape(const SceneParameters& p) {
-  Scene scene = build_drape(p);
-  scene.staggered = false;
-  return scene;
 }
 
 // Pinned at two corners of one edge, which is straight at full length between them.
 Scene build_patch(const SceneParameters& p) {
   Draft cloth = vertex_square(p, 0);
-  cloth.parts.pinned = {cloth.scene.corners[0], cloth.scene.corners[1]};
   cloth.scene.mirrors.pop_back();  // the pins break front to back
-  cloth.scene.conserves_energy = true;
-  return finished(std::move(cloth));
+  const std::vector<int> pins = {cloth.scene.corners[0], cloth.scene.corners[1]};
+  return released(std::move(cloth), pins);
 }
 
 // Below its pins, turned by `tilt` out of the vertical so that it may fold, in air that brings it
@@ -125,7 +113,7 @@ ParameterInfos cloth_parameters(int n) {
        zero_too, 1e9}};
 }
 
-// Of a cloth of 71 that falls onto a sphere.
+// Parameters of a cloth that falls onto a sphere.
 ParameterInfos drape_parameters(const ParameterInfos& cloth, const ParameterInfos& own,
                                 double duration = 1) {
   return joined(
@@ -156,7 +144,7 @@ SceneType fabric_on_ball(const char* name, const char* summary, double density, 
            {"bending", bending, "bending rigidity of warp and weft, N m; 0: none", zero_too, 1e6}},
           {{"drag", 0.05, "of still air, N s/m^3: force per area and speed; 0: none", zero_too,
             1e6}}),
-      .build = build_fabric_drape,
+      .build = build_drape,
       .counts = count_square,
       .like = "drape"};
 }
@@ -194,7 +182,7 @@ std::vector<SceneType> cloth_scenes() {
            {{"folds", 0.8, "slope of three waves each way, rad; 0: flat", zero_too, 1.2},
             {"speed", 0, "downwards, at the start, m/s", -1e4, 1e4}},
            0.02),
-       .build = build_folded_drape,
+       .build = build_drape,
        .counts = count_square,
        .like = "drape"},
       {.name = "hung_patch",

@@ -57,10 +57,8 @@ Positions swung(const SceneParameters& p, double time) {
 
 Scene build_hanging_chain(const SceneParameters& p) {
   Draft chain = vertex_row(p);
-  chain.parts.pinned = {0};
   chain.scene.start.x = swung(p, 0);
-  chain.scene.conserves_energy = true;
-  return finished(std::move(chain));
+  return released(std::move(chain), {0});
 }
 
 // Link i of N, from the left, leads in the direction (H, V_i), V_i = m g (i - (N + 1) / 2): what
@@ -87,10 +85,8 @@ Positions catenary(const SceneParameters& p) {
 
 Scene build_catenary(const SceneParameters& p) {
   Draft chain = vertex_row(p);
-  chain.parts.pinned = {0, whole(p) - 1};
   chain.scene.start.x = catenary(p);
-  chain.scene.conserves_energy = true;
-  return finished(std::move(chain));
+  return released(std::move(chain), {0, whole(p) - 1});
 }
 
 Positions hung(const SceneParameters& p, double /*time*/) { return catenary(p); }
@@ -136,13 +132,11 @@ Positions whirling(const SceneParameters& p, double time) {
 
 Scene build_whirling_chain(const SceneParameters& p) {
   Draft chain = vertex_row(p);
-  chain.parts.pinned = {0};
   chain.scene.mirrors.clear();  // it leaves every plane
   inextensible::State& start = chain.scene.start;
   start.x = whirling(p, 0);
   start.v.row(2) = -whirling_rate(p) * start.x.row(0);
-  chain.scene.conserves_energy = true;
-  return finished(std::move(chain));
+  return released(std::move(chain), {0});
 }
 
 // Sizes to which eigenvectors are quick to find.

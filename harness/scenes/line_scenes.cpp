@@ -16,10 +16,8 @@ namespace {
 Scene build_chain(const SceneParameters& p) {
   Draft chain = vertex_row(p);
   const int n = whole(p);
-  chain.parts.pinned = {0};
   for (int i = 0; i < n; ++i) chain.scene.start.x(0, i) = p.at("length") * i / (n - 1);
-  chain.scene.conserves_energy = true;
-  return finished(std::move(chain));
+  return released(std::move(chain), {0});
 }
 
 // n vertices on a straight horizontal line, both ends pinned `stretch` times its length apart.
@@ -27,15 +25,13 @@ Scene build_taut_row(const SceneParameters& p) {
   Draft row = vertex_row(p);
   const int n = whole(p);
   const double span = p.at("length") * p.at("stretch");
-  row.parts.pinned = {0, n - 1};
   Scene::Mirror left_right{{1, 0, 0}, {}};
   for (int i = 0; i < n; ++i) {
     row.scene.start.x(0, i) = 0.5 * span * (2 * i - (n - 1)) / (n - 1);
     left_right.image.push_back(n - 1 - i);
   }
   row.scene.mirrors.push_back(std::move(left_right));
-  row.scene.conserves_energy = true;
-  return finished(std::move(row));
+  return released(std::move(row), {0, n - 1});
 }
 
 // Vertex 0, the pin, is at the top; the still arm hangs from it, and one link across (two, if the
@@ -43,7 +39,7 @@ Scene build_taut_row(const SceneParameters& p) {
 Scene build_folded(const SceneParameters& p) {
   Draft chain = vertex_row(p);
   const int n = whole(p), links = n - 1;
-  const double link = row_link(p), speed = p.contains("speed") ? p.at("speed") : 0;
+  const double link = row_link(p), speed = value_or_zero(p, "speed");
   const int arm = (links - 1) / 2, across = links - 2 * arm;
   inextensible::State& start = chain.scene.start;
   for (int i = 1; i < n; ++i) {
@@ -53,9 +49,7 @@ Scene build_folded(const SceneParameters& p) {
     start.x.col(i) = start.x.col(i - 1) + along;
     if (i >= arm + across) start.v(1, i) = -speed;
   }
-  chain.parts.pinned = {0};
-  chain.scene.conserves_energy = true;
-  return finished(std::move(chain));
+  return released(std::move(chain), {0});
 }
 
 SceneParameterInfo vertices(int n, double least) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <sstream>
 #include <stdexcept>
 
@@ -38,19 +40,15 @@ std::vector<Comparison> read_pins(const std::string& text) {
   while (begin <= text.size()) {
     const std::size_t end = std::min(text.find("and", begin), text.size());
     const std::string part = text.substr(begin, end - begin);
-    std::size_t read = 0;
-    Comparison one{part.empty() ? -1 : part[0] - 'x', false, 0};
-    try {
-      if (part.size() > 2) one.value = std::stod(part.substr(2), &read);
-    } catch (const std::exception&) {
-      read = 0;
-    }
-    if (one.axis < 0 || one.axis > 2 || (part[1] != '>' && part[1] != '<') || read == 0 ||
-        read + 2 != part.size())
+    char axis = 0, relation = 0;
+    double value = 0;
+    int read = 0;
+    if (std::sscanf(part.c_str(), "%c%c%lf%n", &axis, &relation, &value, &read) != 3 ||
+        read != static_cast<int>(part.size()) || axis < 'x' || axis > 'z' ||
+        (relation != '>' && relation != '<'))
       throw UsageError("pins are '" + text +
                        "', must be like y>1.2, or several such joined by 'and'");
-    one.above = part[1] == '>';
-    all.push_back(one);
+    all.push_back({axis - 'x', relation == '>', value});
     begin = end + 3;
   }
   return all;
@@ -58,14 +56,9 @@ std::vector<Comparison> read_pins(const std::string& text) {
 
 // "7", "7/1/3", "7//3", "-1": corners count from 1, or backwards from the last vertex so far.
 int corner_of(const std::string& word, std::size_t vertices, const std::string& where) {
-  std::size_t read = 0;
-  long number = 0;
-  try {
-    number = std::stol(word, &read);
-  } catch (const std::exception&) {
-    read = 0;
-  }
-  if (read == 0 || (read < word.size() && word[read] != '/'))
+  char* rest = nullptr;
+  const long number = std::strtol(word.c_str(), &rest, 10);
+  if (rest == word.c_str() || (*rest != '\0' && *rest != '/'))
     throw UsageError(where + ": '" + word + "' is no corner of a face, like 7 or 7/1/3");
   const auto count = static_cast<long>(vertices);
   const long index = number < 0 ? count + number : number - 1;

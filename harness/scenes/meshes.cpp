@@ -5,11 +5,6 @@
 namespace harness {
 namespace {
 
-Eigen::Vector3d gravity_of(const SceneParameters& p) {
-  const auto found = p.find("gravity");
-  return {0, -(found == p.end() ? 0.0 : found->second), 0};
-}
-
 // Springs of one stiffness on both diagonals of each quad.
 inextensible::Springs diagonals(int n, double link, double stiffness) {
   inextensible::Springs springs;
@@ -32,12 +27,18 @@ Scene finished(Draft draft) {
   return std::move(draft.scene);
 }
 
+Scene released(Draft draft, std::vector<int> pinned) {
+  draft.parts.pinned = std::move(pinned);
+  draft.scene.conserves_energy = true;
+  return finished(std::move(draft));
+}
+
 Draft vertex_row(const SceneParameters& p) {
   const int n = whole(p);
   const double link = row_link(p);
   Draft row;
   row.parts.mass.assign(n, p.at("mass") / n);
-  row.parts.gravity = gravity_of(p);
+  row.parts.gravity = {0, -value_or_zero(p, "gravity"), 0};
   row.scene.start.x.setZero(3, n);
   row.scene.start.v.setZero(3, n);
   Scene::Mirror plane{{0, 0, 1}, {}};
@@ -60,7 +61,7 @@ Draft vertex_square(const SceneParameters& p, double y) {
   inextensible::ProblemParts& parts = square.parts;
   Scene& scene = square.scene;
   parts.mass.assign(n * n, p.at("mass") / (n * n));
-  parts.gravity = gravity_of(p);
+  parts.gravity = {0, -value_or_zero(p, "gravity"), 0};
   scene.start.x.resize(3, n * n);
   scene.start.v.setZero(3, n * n);
   Scene::Mirror left_right{{1, 0, 0}, {}}, front_back{{0, 0, 1}, {}};

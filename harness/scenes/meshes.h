@@ -12,6 +12,8 @@ struct Draft {
 };
 // Throws std::invalid_argument for parts that make no problem.
 Scene finished(Draft draft);
+// The same with these vertices pinned, where nothing dissipates.
+Scene released(Draft draft, std::vector<int> pinned);
 
 // n vertices along x, each constrained to the next, `mass` kg and `length` m in all; at rest, in
 // one place. One mirror, the x-y plane. Parameters: n, length, mass, duration, and gravity if there
@@ -38,6 +40,10 @@ std::pair<int, int> count_square(const SceneParameters& p);
 
 inline int whole(const SceneParameters& p, const char* name = "n") {
   return static_cast<int>(p.at(name));
+}
+
+inline double value_or_zero(const SceneParameters& p, const char* name) {
+  return p.contains(name) ? p.at(name) : 0;
 }
 
 // ---- Families of scenes ----

@@ -36,7 +36,7 @@ std::span<const SceneType> scene_types() { return table(); }
 std::shared_ptr<const SceneType> find_scene(std::string_view name) {
   if (names_mesh(name)) return std::make_shared<const SceneType>(mesh_scene(std::string(name)));
   for (const SceneType& type : table()) {
-    if (type.name == name) return {std::shared_ptr<const SceneType>(), &type};  // lives for ever
+    if (type.name == name) return {std::shared_ptr<const SceneType>(), &type};  // static
   }
   return nullptr;
 }

@@ -1,4 +1,4 @@
-// What spins in its plane, free and without weight: each a rigid rotation for ever, held by its
+// Bodies that spin in their plane, free and weightless: a perpetual rigid rotation, held by their
 // edges against the centrifugal force.
 #include <Eigen/Geometry>
 #include <cmath>

@@ -18,27 +18,15 @@ inline std::string corrupt_text(std::string text, std::mt19937_64& random) {
       "\"\xff", "//",  "/*",      "NaN",    "2147483648"};
   for (std::size_t i = 1 + below(4); i > 0 && !text.empty(); --i) {
     const std::size_t at = below(text.size());
-    switch (below(5)) {
-      case 0:
-        text[at] = static_cast<char>(random());
-        break;
-      case 1:
-        text.erase(at, 1 + below(20));
-        break;
-      case 2:
-        text.insert(at, text.substr(below(text.size()), 1 + below(40)));
-        break;
-      case 3:
-        text.insert(at, nuisances[below(nuisances.size())]);
-        break;
-      default: {  // a whole value
-        const std::size_t colon = text.find(':', at);
-        if (colon == std::string::npos) break;
-        const std::size_t end = text.find_first_of(",}\n", colon);
-        if (end == std::string::npos) break;
-        text.replace(colon + 1, end - colon - 1, nuisances[below(nuisances.size())]);
-      }
-    }
+    const std::size_t kind = below(5);
+    if (kind == 0) text[at] = static_cast<char>(random());
+    if (kind == 1) text.erase(at, 1 + below(20));
+    if (kind == 2) text.insert(at, text.substr(below(text.size()), 1 + below(40)));
+    if (kind == 3) text.insert(at, nuisances[below(nuisances.size())]);
+    if (kind < 4) continue;
+    const std::size_t colon = text.find(':', at), end = text.find_first_of(",}\n", colon);
+    if (end != std::string::npos)  // a whole value
+      text.replace(colon + 1, end - colon - 1, nuisances[below(nuisances.size())]);
   }
   return text;
 }
@@ -57,29 +45,10 @@ inline nlohmann::json& some_value(nlohmann::json& document, std::mt19937_64& ran
 // One to three values that are another's, gone, or of another kind or size.
 inline std::string corrupt_values(nlohmann::json document, std::mt19937_64& random) {
   using nlohmann::json;
-  static const std::vector<json> nuisances{nullptr,
-                                           true,
-                                           -1,
-                                           0,
-                                           1,
-                                           2,
-                                           1e-320,
-                                           1e308,
-                                           -1e308,
-                                           1e-9,
-                                           2147483648.0,
-                                           1.5,
-                                           "",
-                                           "x",
-                                           "../x",
-                                           std::string(5000, 'y'),
-                                           "a\nb",
-                                           json::array(),
-                                           json::object(),
-                                           json::array({1, 2, 3}),
-                                           json{{"a", 1}},
-                                           18446744073709551615ULL,
-                                           -9223372036854775807LL};
+  static const std::vector<json> nuisances = json::parse(
+      R"([null, true, -1, 0, 1, 2, 1e-320, 1e308, -1e308, 1e-9, 2147483648.0, 1.5, "", "x", "../x",
+          "a\nb", [], {}, [1, 2, 3], {"a": 1}, 18446744073709551615, -9223372036854775807, ")" +
+      std::string(5000, 'y') + "\"]");
   for (std::size_t i = 1 + random() % 3; i > 0; --i) {
     json& value = some_value(document, random);
     switch (random() % 5) {

@@ -89,7 +89,7 @@ inline void strain_curve(std::vector<json>& points, const std::string& scene,
                            at_ten_percent * std::pow(limit / 0.1, exponent)));
 }
 
-// Of a step sweep: the error is the step's, the time that of error^exponent.
+// A step sweep: the error is the step, the time follows error^exponent.
 inline void error_curve(std::vector<json>& points, const std::string& solver, double at_ten_percent,
                         double exponent, double gap = 1e-9) {
   for (const double error : limits) {

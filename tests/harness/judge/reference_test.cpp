@@ -177,7 +177,7 @@ TEST(Reference, RefusesStepsThatMissTheSamples) {
                UsageError);
 }
 
-// Of the drape at the sizes that results report: errors of 1 % can be told until 0.3 s after the
+// The drape at the sizes that results report: errors of 1 % are certain until 0.3 s after the
 // cloth has touched the sphere, which it does after the fall through the gap at the start.
 TEST(Reference, OfTheDrapeIsTrustedAtOnePercentPastFirstContact) {
   int drapes = 0;
