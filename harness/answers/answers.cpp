@@ -2,9 +2,8 @@
 
 #include "harness/answers/answer.h"
 #include "harness/answers/readings.h"
+#include "harness/scenes/chain_scenes.h"
 #include "harness/scenes/fabrics.h"
-#include "harness/scenes/folded_scenes.h"
-#include "harness/scenes/hanging_scenes.h"
 #include "harness/scenes/meshes.h"
 
 namespace harness {

@@ -8,7 +8,7 @@
 
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
-#include "harness/base/fields_json.h"
+#include "harness/base/fields.h"
 #include "harness/base/small_runs.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
