@@ -16,48 +16,27 @@ using inextensible::State;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// |d|^2 / l^2: one root for all edges instead of one each.
-double squared_ratio(const Problem& problem, const Positions& x, std::size_t k) {
-  const auto [a, b] = problem.edges()[k];
-  const double l = problem.rest_length()[k];
-  return (x.col(b) - x.col(a)).squaredNorm() / (l * l);
-}
-
-struct SquaredRatios {
-  double low = 1, high = 1;
-  bool finite = true;
-};
-
-SquaredRatios squared_ratios(const Problem& problem, const Positions& x) {
-  SquaredRatios all;
-  for (std::size_t k = 0; k < problem.edges().size(); ++k) {
-    const double q = squared_ratio(problem, x, k);
-    all.finite = all.finite && std::isfinite(q);
-    all.low = std::min(all.low, q);
-    all.high = std::max(all.high, q);
-  }
-  return all;
-}
-
 }  // namespace
 
 StrainRange strain_range(const Problem& problem, const Positions& x) {
-  const SquaredRatios ratios = squared_ratios(problem, x);
-  if (!ratios.finite) return {infinity, infinity};
-  const double stretch = std::sqrt(ratios.high) - 1;
-  return {std::max(stretch, 1 - std::sqrt(ratios.low)), stretch};
-}
-
-WorstEdge worst_edge(const Problem& problem, const Positions& x) {
-  const SquaredRatios ratios = squared_ratios(problem, x);
-  const double stretch = std::sqrt(ratios.high) - 1, squeeze = 1 - std::sqrt(ratios.low);
-  const double wanted = stretch >= squeeze ? ratios.high : ratios.low;
+  double low = 1, high = 1;  // |d|^2 / l^2: one root for all edges instead of one each
+  std::size_t shortest = 0, longest = 0;
   for (std::size_t k = 0; k < problem.edges().size(); ++k) {
-    const double q = squared_ratio(problem, x, k);
-    if (!ratios.finite && !std::isfinite(q)) return {infinity, k};
-    if (ratios.finite && q == wanted) return {std::max(stretch, squeeze), k};
+    const auto [a, b] = problem.edges()[k];
+    const double l = problem.rest_length()[k];
+    const double q = (x.col(b) - x.col(a)).squaredNorm() / (l * l);
+    if (!std::isfinite(q)) return {infinity, infinity, k};
+    if (q < low) {
+      low = q;
+      shortest = k;
+    }
+    if (q > high) {
+      high = q;
+      longest = k;
+    }
   }
-  return {};  // every edge is as long as it should be, or there is none
+  const double stretch = std::sqrt(high) - 1, squeeze = 1 - std::sqrt(low);
+  return {std::max(stretch, squeeze), stretch, stretch >= squeeze ? longest : shortest};
 }
 
 void append_strains(const Problem& problem, const Positions& x, std::vector<double>& strains) {

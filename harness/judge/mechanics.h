@@ -14,18 +14,12 @@ constexpr double diverged_strain = 10;
 
 // Strain of an edge: |d| / l - 1. All infinite if a position is not finite.
 struct StrainRange {
-  double most = 0;     // largest |strain|
-  double stretch = 0;  // largest strain, at least 0
+  double most = 0;       // largest |strain|
+  double stretch = 0;    // largest strain, at least 0
+  std::size_t edge = 0;  // of the largest |strain|, the first of several
 };
 // x: 3 x vertices, m.
 StrainRange strain_range(const inextensible::Problem& problem, const inextensible::Positions& x);
-
-// The edge of largest |strain|, the first of several.
-struct WorstEdge {
-  double strain = 0;
-  std::size_t edge = 0;
-};
-WorstEdge worst_edge(const inextensible::Problem& problem, const inextensible::Positions& x);
 
 // |strain| of the edge from a to b.
 inline double strain_size(const inextensible::Positions& x, int a, int b, double rest_length) {

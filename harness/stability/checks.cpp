@@ -164,9 +164,9 @@ void Ordinary::look(const Case& c, const Stepper& stepper, const State& state) {
       first_moved =
           text("vertex ", pin, " is pinned but moved by ", (now - start).norm(), " m at ", place);
   }
-  const WorstEdge edge = worst_edge(problem, stepper.filtered_positions());
-  if (edge.strain / c.limit > worst) {
-    worst = edge.strain / c.limit;
+  const StrainRange edge = strain_range(problem, stepper.filtered_positions());
+  if (edge.most / c.limit > worst) {
+    worst = edge.most / c.limit;
     worst_place = text("edge ", edge.edge, " at ", place);
   }
 }
@@ -356,8 +356,8 @@ Findings permissible_candidate(const Examinee& solver) {
     if (!stepper_for(solver, c)->advance(state, c.step))
       return {judged(false, check, "refused", "there is nothing to correct: return ok at once")};
     moved = std::max(moved, (state.x - candidate).cwiseAbs().maxCoeff());
-    worst = std::max(worst, worst_edge(*c.scene.problem, state.x).strain);
-    worst_candidate = std::max(worst_candidate, worst_edge(*c.scene.problem, candidate).strain);
+    worst = std::max(worst, strain_range(*c.scene.problem, state.x).most);
+    worst_candidate = std::max(worst_candidate, strain_range(*c.scene.problem, candidate).most);
   }
   return {judged(moved == 0 || worst <= worst_candidate, check,
                  moved == 0 ? "left alone"

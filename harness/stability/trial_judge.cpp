@@ -24,7 +24,7 @@ TrialJudge::TrialJudge(const Trial& trial, const inextensible::Backend& backend,
       energy_(problem_, energy_scale(trial.scene), backend.velocities) {
   judged_ = trial.energy_tolerance >= 0 && !trial.disturb && energy_.scale() > 0;
   // What a start that violates the limit releases is known after the first step.
-  energy_known_ = worst_edge(problem_, trial.scene.start.x).strain <= trial.strain_limit;
+  energy_known_ = strain_range(problem_, trial.scene.start.x).most <= trial.strain_limit;
   energy_.begin(trial.scene.start);
 }
 
@@ -69,31 +69,31 @@ Outcome TrialJudge::finish() {
 bool TrialJudge::judge_strain(const Positions& filtered, const State& state) {
   constexpr double rounding = 1e-6;          // s
   constexpr double diverged_distance = 1e6;  // in scene sizes
-  const WorstEdge worst = worst_edge(problem_, filtered);
-  raise(result_.max_strain, worst.strain);
+  const StrainRange worst = strain_range(problem_, filtered);
+  raise(result_.max_strain, worst.most);
   const double time = state.time - trial_.scene.start.time, duration = trial_.steps * trial_.step;
   if (duration > 2 - rounding) {
-    if (time < 1 + rounding) raise(result_.strain_first_second, worst.strain);
-    if (time > duration - 1 + rounding) raise(result_.strain_last_second, worst.strain);
+    if (time < 1 + rounding) raise(result_.strain_first_second, worst.most);
+    if (time > duration - 1 + rounding) raise(result_.strain_last_second, worst.most);
   }
-  if (worst.strain > diverged_strain ||
+  if (worst.most > diverged_strain ||
       state.x.cwiseAbs().maxCoeff() > diverged_distance * trial_.scene.size)
-    return fail(Outcome::diverged, "strain " + number_text(worst.strain));
+    return fail(Outcome::diverged, "strain " + number_text(worst.most));
   return judge_limit(worst, "");
 }
 
-bool TrialJudge::judge_limit(const WorstEdge& worst, const char* when) {
-  if (!limit_promised_ || worst.strain <= trial_.strain_limit * (1 + 1e-9)) return true;
+bool TrialJudge::judge_limit(const StrainRange& worst, const char* when) {
+  if (!limit_promised_ || worst.most <= trial_.strain_limit * (1 + 1e-9)) return true;
   return fail(Outcome::wrong, std::string("success claimed, but ") + when + "edge " +
                                   std::to_string(worst.edge) + " is strained by " +
-                                  told_apart(worst.strain, trial_.strain_limit));
+                                  told_apart(worst.most, trial_.strain_limit));
 }
 
 // Looks at what is delivered: positions after everything that a step does.
 bool TrialJudge::judge_contact(const State& state) {
   constexpr double visible_depth = 1e-6;  // in scene sizes
   if (!problem_.contact_inside()) return true;
-  if (!judge_limit(worst_edge(problem_, state.x), "after the collision filter ")) return false;
+  if (!judge_limit(strain_range(problem_, state.x), "after the collision filter ")) return false;
   inextensible::WorkCounters work;
   if (!obstacle_) obstacle_.emplace(problem_);
   obstacle_->place(state.time);

@@ -31,7 +31,7 @@ class TrialJudge : public Observer {
   // Each returns whether nothing is wrong.
   bool fail(Outcome outcome, const std::string& why);
   bool judge_strain(const inextensible::Positions& filtered, const inextensible::State& state);
-  bool judge_limit(const WorstEdge& worst, const char* when);
+  bool judge_limit(const StrainRange& worst, const char* when);
   bool judge_contact(const inextensible::State& state);
   bool judge_momentum(const inextensible::State& state, double h);
   bool judge_energy(const inextensible::State& state, double h);
