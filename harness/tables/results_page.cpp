@@ -8,7 +8,7 @@
 #include "harness/analysis/growth.h"
 #include "harness/analysis/words.h"
 #include "harness/base/errors.h"
-#include "harness/base/fields_json.h"
+#include "harness/base/fields.h"
 #include "harness/base/in_order.h"
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
