@@ -21,8 +21,7 @@
 #include "harness/points/point_json.h"
 #include "harness/points/tuned.h"
 #include "harness/run/choose.h"
-#include "harness/run/frame_times.h"
-#include "harness/run/isolation.h"
+#include "harness/run/execute.h"
 
 namespace harness {
 namespace {

@@ -13,7 +13,7 @@
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
-#include "harness/points/point_fields.h"
+#include "harness/points/point_json.h"
 #include "harness/points/schema.h"
 #include "harness/stability/hard_case.h"
 
@@ -70,6 +70,7 @@ json metrics() {
   for_each_field(spec_fields, add);
   for_each_field(size_fields, add);
   for_each_field(measure_fields, add);
+  for_each_field(sample_fields, add);
   for_each_field(result_fields, add);
   for_each_field(phase_fields, add);
   return rows;

@@ -17,7 +17,7 @@
 #include "harness/cli/verbs.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
-#include "harness/run/isolation.h"
+#include "harness/run/execute.h"
 #include "harness/run/tune.h"
 
 namespace harness {

@@ -14,12 +14,10 @@
 #include "harness/points/context.h"
 #include "harness/points/noise.h"
 #include "harness/points/result_file.h"
-#include "harness/run/isolation.h"
-#include "harness/run/journaled.h"
-#include "harness/run/measure_point.h"
-#include "harness/run/noise_probe.h"
+#include "harness/run/execute.h"
+#include "harness/run/machine_noise.h"
 #include "harness/run/plan.h"
-#include "harness/run/quiet_samples.h"
+#include "harness/run/point_runner.h"
 #include "harness/tables/terminal.h"
 #include "solvers/registry.h"
 
@@ -60,28 +58,26 @@ nlohmann::json selection(const SweepCommand& options) {
   return chosen;
 }
 
+// Runs that look at the machine between them, and take disturbed samples again while the budget
+// lasts.
 SweepRunners watched(const SweepRunners& inner, NoiseProbe& noise_probe, bool timed) {
-  SweepRunners runners = inner;
   const auto budget = std::make_shared<RetakeBudget>();
-  const auto own = [timed, budget](RunLimits limits) {
+  SweepRunners runners = limited(inner, [timed, budget](RunLimits limits) {
     limits.timed = timed;
     limits.most_retaken = budget->most();
     return limits;
-  };
-  runners.run = [own, budget, run = inner.run, &noise_probe](const auto& spec, const auto& limits,
-                                                             auto guess) {
+  });
+  const auto watch = [budget, &noise_probe](const auto& run) {
     noise_probe.sample_if_due();
-    PointResult point = run(spec, own(limits), guess);
-    budget->add(point.samples.size(), point.retaken);
-    return point;
+    auto result = run();
+    budget->add(result.samples.size(), result.retaken);
+    return result;
   };
-  runners.repeat = [own, budget, repeat = inner.repeat, &noise_probe](auto& point,
-                                                                      const auto& limits) {
-    noise_probe.sample_if_due();
-    const std::size_t samples = point.samples.size();
-    const int retaken = point.retaken;
-    repeat(point, own(limits));
-    budget->add(point.samples.size() - samples, point.retaken - retaken);
+  runners.run = [watch, run = runners.run](const auto& spec, const auto& limits, auto guess) {
+    return watch([&] { return run(spec, limits, guess); });
+  };
+  runners.repeat = [watch, repeat = runners.repeat](const auto& point, const auto& limits) {
+    return watch([&] { return repeat(point, limits); });
   };
   return runners;
 }

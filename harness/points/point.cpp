@@ -76,40 +76,16 @@ double PointResult::mean_step() const {
   return spec.step * steps_planned / static_cast<double>(work.steps);
 }
 
-namespace {
-
-template <class List>
-List rest_of(const List& list, const List& before) {
-  return List(list.begin() + static_cast<std::ptrdiff_t>(before.size()), list.end());
-}
-
-template <class List>
-void add_all(const List& more, List& list) {
-  list.insert(list.end(), more.begin(), more.end());
-}
-
-}  // namespace
-
-Repetition samples_of(const PointResult& point) {
-  return {point.samples, point.cpu_samples, point.filter_samples, point.sample_runs, point.retaken};
-}
-
-Repetition added_since(const Repetition& before, const PointResult& point) {
-  return {rest_of(point.samples, before.samples),
-          rest_of(point.cpu_samples, before.cpu_samples),
-          rest_of(point.filter_samples, before.filter_samples),
-          rest_of(point.sample_runs, before.sample_runs),
-          point.retaken - before.retaken,
-          point.frame_times};
-}
-
-void append(const Repetition& repetition, PointResult& point) {
-  add_all(repetition.samples, point.samples);
-  add_all(repetition.cpu_samples, point.cpu_samples);
-  add_all(repetition.filter_samples, point.filter_samples);
-  add_all(repetition.sample_runs, point.sample_runs);
-  point.retaken += repetition.retaken;
-  if (!repetition.frame_times.empty()) point.frame_times = repetition.frame_times;
+void append(const Samples& more, PointResult& point) {
+  const auto add = [&](auto Samples::*list) {
+    (point.*list).insert((point.*list).end(), (more.*list).begin(), (more.*list).end());
+  };
+  add(&Samples::samples);
+  add(&Samples::cpu_samples);
+  add(&Samples::filter_samples);
+  add(&Samples::sample_runs);
+  point.retaken += more.retaken;
+  if (!more.frame_times.empty()) point.frame_times = more.frame_times;
 }
 
 }  // namespace harness

@@ -2,8 +2,10 @@
 // means.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/points/measures.h"
@@ -32,6 +34,9 @@ struct PointSpec {
       const;  // drape/fast_projection/n:5041/strain:0.01/h:0.004 (adaptive: /h:adaptive)
 };
 
+// Frames a second of film, television and games.
+inline constexpr std::array frame_rates{24.0, 30.0, 60.0};
+
 // Wall time of a frame at a rate of pictures, over the frames of a run, s.
 struct FrameTime {
   double rate;  // frames a second
@@ -39,22 +44,30 @@ struct FrameTime {
   bool operator==(const FrameTime&) const = default;
 };
 
-struct PointResult {
+// Samples of a point's time, and what was measured beside them.
+struct Samples {
+  // Wall seconds per simulated second. A sample is one run, or of a short run the mean of several.
+  std::vector<double> samples = {};
+  std::vector<double> cpu_samples = {};  // processor time of the thread in the same runs; may be empty
+  std::vector<double> filter_samples = {};   // the same, spent in the inextensibility filter
+  std::vector<int> sample_runs = {};         // runs that each sample is the mean of; may be empty
+  int retaken = 0;                           // samples taken again because something disturbed them
+  std::vector<FrameTime> frame_times = {};   // of a run of the fastest sample
+};
+
+struct PointResult : Samples {
+  PointResult() = default;
+  explicit PointResult(PointSpec what, PointStatus how = PointStatus::skipped)
+      : spec(std::move(what)), status(how) {}
+
   PointSpec spec;
   PointStatus status = PointStatus::skipped;
   std::string detail;
-  // Wall seconds per simulated second. A sample is one run, or of a short run the mean of several.
-  std::vector<double> samples;
-  std::vector<double> cpu_samples;  // processor time of the thread in the same runs; may be empty
-  std::vector<int> sample_runs;     // how many runs each sample is the mean of; may be empty
-  int retaken = 0;                  // samples taken again because something disturbed them
-  std::vector<double> filter_samples;  // the same, spent in the inextensibility filter
   double setup_seconds = 0, calibration_seconds = 0;
   int calibration_runs = 0;
   double calibration_guess = unknown;  // N, where the search began; unknown: at an estimate
   std::optional<double> stiffness;     // EA, N, found by calibration
   inextensible::PhaseSeconds phases;   // of the run of the first filter sample
-  std::vector<FrameTime> frame_times;  // of a run of the fastest sample
   inextensible::WorkCounters work;
   Measures measures;
   double smallest_step = unknown;  // s, of the accepted ones of a step controller
@@ -74,17 +87,8 @@ struct PointResult {
   double mean_step() const;         // s; the spec's, but for adaptive steps
 };
 
-// What one more look at a point adds to it: mostly one sample, none where the run failed.
-struct Repetition {
-  std::vector<double> samples, cpu_samples, filter_samples;
-  std::vector<int> sample_runs;
-  int retaken = 0;
-  std::vector<FrameTime> frame_times = {};  // the point's from then on; empty: as before
-};
-// What `point` has that `before` has not.
-Repetition added_since(const Repetition& before, const PointResult& point);
-Repetition samples_of(const PointResult& point);
-void append(const Repetition& repetition, PointResult& point);
+// Frame times replace the point's if there are any: they are those of a faster sample.
+void append(const Samples& more, PointResult& point);
 
 // Half the width of the median's 95 % confidence interval over the median, from order statistics
 // (no assumption on the distribution); infinite below six samples, which cannot tell.

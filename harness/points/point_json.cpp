@@ -1,7 +1,6 @@
 #include "harness/points/point_json.h"
 
 #include "harness/base/statistics.h"
-#include "harness/points/point_fields.h"
 
 namespace harness {
 
@@ -87,9 +86,28 @@ inextensible::WorkCounters work_of(const json& object) {
   return work;
 }
 
+json to_json(const Samples& samples) {
+  json object;
+  write_fields(object, sample_fields, samples);
+  object["seconds_per_simulated_second"] = seconds_json(samples.samples);
+  object["filter_seconds_per_simulated_second"] = seconds_json(samples.filter_samples);
+  return object;
+}
+
+Samples samples_of(const json& object) {
+  Samples samples;
+  read_fields(object, sample_fields, samples);
+  for (const auto& [key, list] :
+       {std::pair("seconds_per_simulated_second", &samples.samples),
+        std::pair("filter_seconds_per_simulated_second", &samples.filter_samples)})
+    if (const json& seconds = object.at(key); !seconds.is_null())
+      seconds.at("samples").get_to(*list);
+  return samples;
+}
+
 json to_json(const PointResult& point) {
   const PointSpec spec = named(point.spec);
-  json object;
+  json object = to_json(static_cast<const Samples&>(point));
   write_fields(object, spec_fields, spec);
   write_fields(object, size_fields, spec);
   object["work"] = to_json(point.work);
@@ -102,30 +120,7 @@ json to_json(const PointResult& point) {
   // For readers, from the others.
   object["id"] = spec.id();
   object["duration"] = spec.scene_parameters.at("duration");
-  object["seconds_per_simulated_second"] = seconds_json(point.samples);
-  object["filter_seconds_per_simulated_second"] = seconds_json(point.filter_samples);
   return object;
-}
-
-json to_json(const Repetition& repetition) {
-  return {
-      {"seconds", repetition.samples},
-      {"cpu", repetition.cpu_samples},
-      {"filter", repetition.filter_samples},
-      {"runs", repetition.sample_runs},
-      {"retaken", repetition.retaken},
-      {"frame_times", FieldCodec<std::vector<FrameTime>>::write(repetition.frame_times, false)}};
-}
-
-Repetition repetition_of(const json& object) {
-  Repetition repetition;
-  object.at("seconds").get_to(repetition.samples);
-  object.at("cpu").get_to(repetition.cpu_samples);
-  object.at("filter").get_to(repetition.filter_samples);
-  object.at("runs").get_to(repetition.sample_runs);
-  object.at("retaken").get_to(repetition.retaken);
-  FieldCodec<std::vector<FrameTime>>::read(object.at("frame_times"), repetition.frame_times, false);
-  return repetition;
 }
 
 PointSpec spec_of(const json& object) {
@@ -138,17 +133,13 @@ PointSpec spec_of(const json& object) {
 }
 
 PointResult point_of(const json& object) {
-  PointResult point;
-  point.spec = spec_of(object);
+  PointResult point(spec_of(object));
+  static_cast<Samples&>(point) = samples_of(object);
   if (!(point.spec.step > 0)) throw json::other_error::create(504, "a point without step", nullptr);
   point.work = work_of(object.at("work"));
   read_fields(object, result_fields, point);
   read_fields(object, phase_fields, point.phases);
   read_fields(object, measure_fields, point.measures);
-  if (const json& seconds = object.at("seconds_per_simulated_second"); !seconds.is_null())
-    seconds.at("samples").get_to(point.samples);
-  if (const json& seconds = object.at("filter_seconds_per_simulated_second"); !seconds.is_null())
-    seconds.at("samples").get_to(point.filter_samples);
   const json& options = object.at("options");
   if (options.contains("stiffness") && !point.spec.settings.contains("stiffness"))
     point.stiffness = options.at("stiffness").get<double>();

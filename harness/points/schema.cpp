@@ -12,7 +12,7 @@
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/points/answer_row.h"
-#include "harness/points/point_fields.h"
+#include "harness/points/point_json.h"
 #include "harness/points/suite.h"
 
 namespace harness {
@@ -115,6 +115,7 @@ ordered_json point_schema() {
   values_of("options", {"number", "string"});
   point["properties"]["options"]["properties"] = {{"linear_solver", {{"type", "string"}}},
                                                   {"stiffness", {{"type", "number"}}}};
+  add_fields(point, sample_fields);
   add_fields(point, result_fields);
   add(point, "seconds_per_simulated_second", reference_to("seconds"));
   add(point, "filter_seconds_per_simulated_second", reference_to("seconds"));

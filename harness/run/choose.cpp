@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "harness/base/text.h"
-#include "harness/judge/drive.h"
-#include "harness/judge/mechanics.h"
 #include "harness/run/calibration.h"
+#include "harness/run/point_runner.h"
 
 namespace harness {
 namespace {
@@ -54,23 +54,6 @@ std::vector<PointResult> screen_all(const std::vector<Search>& searches, const C
   return screened;
 }
 
-// Runs whose samples are not taken again where the machine was disturbed: on a busy one that would
-// take most of the time. Finalists have more samples.
-SweepRunners hasty(const SweepRunners& inner) {
-  const auto once = [](RunLimits limits) {
-    limits.most_retaken = 0;
-    return limits;
-  };
-  SweepRunners runners = inner;
-  runners.run = [once, run = inner.run](const auto& spec, const auto& limits, auto guess) {
-    return run(spec, once(limits), guess);
-  };
-  runners.repeat = [once, repeat = inner.repeat](auto& point, const auto& limits) {
-    repeat(point, once(limits));
-  };
-  return runners;
-}
-
 std::vector<PointResult*> fastest_runs(std::vector<PointResult>& points, const Wish& wish) {
   std::vector<PointResult*> list;
   for (PointResult& point : points) {
@@ -89,7 +72,7 @@ void repeat_finalists(std::vector<PointResult>& points, const Suite& suite, cons
     for (std::size_t round = 1; round < final_samples; ++round) {
       for (PointResult* point : fastest_runs(points, wish)) {
         if (stop()) return;
-        runners.repeat(*point, {suite.timeout, 1e300, stop});
+        append(runners.repeat(*point, {.timeout = suite.timeout, .interrupted = stop}), *point);
       }
     }
   } catch (const Interrupted&) {
@@ -123,7 +106,12 @@ Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, 
   for (const std::size_t i : ladder_order(trials.screened)) ordered.push_back(searches[i]);
   SweepEvents until = events;
   until.interrupted = stop_at(limits, search_share);
-  SweepOutcome outcome = run_sweep(suite, ordered, until, hasty(runners));
+  // On a busy machine, taking disturbed samples again would take most of the time. Finalists have
+  // more samples.
+  SweepOutcome outcome = run_sweep(suite, ordered, until, limited(runners, [](RunLimits each) {
+                                     each.most_retaken = 0;
+                                     return each;
+                                   }));
   trials.points = std::move(outcome.points);
   trials.complete = outcome.complete;
   repeat_finalists(trials.points, suite, wish, limits, runners);
@@ -210,58 +198,31 @@ std::string why_not(const std::string& contestant, const Trials& trials, const W
 
 namespace {
 
-using inextensible::State;
-using inextensible::StrainControl;
-
-// Times each step, and looks at its strain off the clock.
-struct FirstSteps : Observer {
-  const inextensible::Stepper& stepper;
-  double strain = 0, first = 0, later = 0;  // s: of the first step and of the later ones
-  int steps = 0;
-  Clock::time_point begin;
-
-  explicit FirstSteps(const inextensible::Stepper& s) : stepper(s) {}
-  int before(const State& /*state*/, const DriveState& /*driven*/) {
-    begin = Clock::now();
-    return 1;
-  }
-  void all(const State& /*state*/, const DriveState& driven) {
-    if (driven.taken == 0) return;
-    (steps++ == 0 ? first : later) += since(begin);
-  }
-  bool after(const State& /*state*/, const DriveState& /*driven*/) {
-    raise(strain, strain_range(stepper.problem(), stepper.filtered_positions()).most);
-    return true;
-  }
-  // The first step sets up what the others use.
-  double seconds_of_a_step() const { return steps == 1 ? first : later / (steps - 1); }
-};
-
-void screen(PointResult& point, double look, std::optional<double> guess) {
+void screen(PointResult& point, const RunLimits& limits, std::optional<double> guess) {
+  using inextensible::StrainControl;
   const PointSpec& spec = point.spec;
-  const Scene scene = find_scene(spec.scene)->build(spec.scene_parameters);
-  const auto& backend = *inextensible::find_backend(spec.solver);
+  const PointRunner runner(spec, limits);
+  const StrainControl control = runner.backend().strain_control;
   inextensible::Settings settings = spec.settings;
-  const bool springs =
-      backend.strain_control == StrainControl::stiffness && !settings.contains("stiffness");
-  if (springs) settings["stiffness"] = guess.value_or(first_stiffness(scene, spec.strain_limit));
-  State state = start_of(scene, backend, spec.step);
-  const auto stepper = inextensible::make_stepper(spec.solver, scene.problem,
-                                                  {spec.strain_limit, spec.seed, settings, &state});
-  FirstSteps seen(*stepper);
-  const DriveState driven =
-      drive(*stepper, state, {spec.step, std::lround(std::ceil(scene.duration / spec.step))}, seen,
-            {.timeout = look});
-  if (seen.steps > 0) point.samples = {seen.seconds_of_a_step() / spec.step};
-  if (driven.end == DriveState::End::refused) {
-    point.status = PointStatus::not_converged;
-    point.detail = driven.result.detail;
-  } else if (!springs && backend.strain_control != StrainControl::none &&
-             !(seen.strain <= spec.strain_limit * (1 + 1e-9))) {
+  const bool springs = control == StrainControl::stiffness && !settings.contains("stiffness");
+  if (springs)
+    settings["stiffness"] = guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
+  const Run run = runner.run(settings, true, std::numeric_limits<double>::infinity());
+  const auto steps = static_cast<double>(run.stepper->work().steps);
+  // The first step sets up what the others use.
+  if (steps > 0)
+    point.samples = {
+        (steps == 1 ? run.seconds : (run.seconds - run.first_step_seconds) / (steps - 1)) /
+        spec.step};
+  point.status = PointStatus::ok;
+  if (run.status == PointStatus::not_converged || run.status == PointStatus::diverged) {
+    point.status = run.status;
+    point.detail = run.detail;
+  } else if (const double strain = run.measures.max_strain;
+             !springs && control != StrainControl::none &&
+             !(strain <= spec.strain_limit * (1 + 1e-9))) {
     point.status = PointStatus::strain_missed;
-    point.detail = "strain " + told_apart(seen.strain, spec.strain_limit);
-  } else {
-    point.status = PointStatus::ok;
+    point.detail = "strain " + told_apart(strain, spec.strain_limit);
   }
 }
 
@@ -269,10 +230,9 @@ void screen(PointResult& point, double look, std::optional<double> guess) {
 
 PointResult screen_point(const PointSpec& spec, const RunLimits& limits,
                          std::optional<double> guess) {
-  PointResult point;
-  point.spec = spec;
+  PointResult point(spec);
   try {
-    screen(point, limits.hopeless, guess);
+    screen(point, limits, guess);
   } catch (const std::bad_alloc&) {
     point.status = PointStatus::out_of_memory;
     point.detail = "an allocation failed";

@@ -9,8 +9,8 @@
 
 #include "harness/judge/mechanics.h"
 #include "harness/run/calibration.h"
+#include "harness/run/machine_noise.h"
 #include "harness/run/point_runner.h"
-#include "harness/run/quiet_samples.h"
 
 namespace harness {
 namespace {
@@ -63,15 +63,16 @@ class Sampler {
  public:
   // short_steps: reads of the clock between phases are part of the time of a short step, so that it
   // is timed without them, and the phases in runs of their own.
-  Sampler(PointResult& point, PointRunner& runner, const inextensible::Settings& settings,
+  Sampler(const PointResult& point, PointRunner& runner, const inextensible::Settings& settings,
           bool short_steps, const RunLimits& limits)
-      : point_(point),
+      : fastest_(point.seconds()),
         runner_(runner),
         settings_(settings),
         short_steps_(short_steps),
         limits_(limits) {}
 
-  // Appends a sample; the run that failed, if one did. retaken: tries that were dropped before.
+  // Takes a sample; returns the run that failed, if one did. retaken: tries that were dropped
+  // before.
   std::optional<Run> add(int retaken) {
     if (short_steps_) {
       Batch phases = batch(least_filter_sample, true);
@@ -82,7 +83,7 @@ class Sampler {
     auto taken = limits_.timed ? take_quietly(quiet_probe(), take, may_be_retaken, retaken,
                                               limits_.most_retaken)
                                : QuietSample<Batch>{take()};
-    point_.retaken += taken.retaken;
+    taken_.retaken += taken.retaken;
     return record(std::move(taken.sample));
   }
 
@@ -90,13 +91,15 @@ class Sampler {
     if (!sample.ok()) return std::move(sample.last);
     if (!short_steps_) record_filter(sample);
     const double seconds = of_a_second(sample.seconds, sample);
-    if (point_.samples.empty() || seconds < point_.seconds())
-      point_.frame_times = sample.last.frame_times;
-    point_.samples.push_back(seconds);
-    point_.cpu_samples.push_back(of_a_second(sample.cpu_seconds, sample));
-    point_.sample_runs.push_back(sample.runs);
+    if (!(seconds >= fastest_)) taken_.frame_times = sample.last.frame_times;
+    taken_.samples.push_back(seconds);
+    taken_.cpu_samples.push_back(of_a_second(sample.cpu_seconds, sample));
+    taken_.sample_runs.push_back(sample.runs);
     return std::nullopt;
   }
+
+  const Samples& taken() const { return taken_; }
+  const inextensible::PhaseSeconds& phases() const { return phases_; }  // of the filter sample
 
  private:
   // As many runs as take at least that long together, s; each has the whole time-out to itself.
@@ -110,19 +113,21 @@ class Sampler {
   }
 
   void record_filter(const Batch& batch) {
-    if (point_.filter_samples.empty()) point_.phases = batch.last.stepper->phases();
-    point_.filter_samples.push_back(of_a_second(batch.filter_seconds, batch));
+    phases_ = batch.last.stepper->phases();
+    taken_.filter_samples.push_back(of_a_second(batch.filter_seconds, batch));
   }
 
   double of_a_second(double seconds, const Batch& batch) const {
-    return seconds / batch.runs / (runner_.steps() * point_.spec.step);
+    return seconds / batch.runs / (runner_.steps() * runner_.spec().step);
   }
 
-  PointResult& point_;
+  double fastest_;  // s/s, of the samples before; not-a-number without one
   PointRunner& runner_;
   const inextensible::Settings& settings_;
   bool short_steps_;
   const RunLimits& limits_;
+  Samples taken_;
+  inextensible::PhaseSeconds phases_;
 };
 
 // The stiffness that a point's springs need, in its settings too. False: there is none, and the
@@ -173,6 +178,8 @@ void measure(PointResult& point, PointRunner& runner, const inextensible::Settin
                          quiet_probe().disturbed(std::max(before, after));
   const auto failed =
       a_sample && !disturbed ? sampler.record(std::move(judged)) : sampler.add(a_sample ? 1 : 0);
+  append(sampler.taken(), point);
+  if (!point.filter_samples.empty()) point.phases = sampler.phases();
   if (failed) {
     point.status = failed->status;  // without a time it is no result
     point.detail = failed->detail;
@@ -182,8 +189,7 @@ void measure(PointResult& point, PointRunner& runner, const inextensible::Settin
 }  // namespace
 
 PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optional<double> guess) {
-  PointResult point;
-  point.spec = spec;
+  PointResult point(spec);
   reset_peak_rss();
   try {
     PointRunner runner(spec, limits);
@@ -205,12 +211,14 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
   return point;
 }
 
-void repeat_point(PointResult& point, const RunLimits& limits) {
+Samples repeat_point(const PointResult& point, const RunLimits& limits) {
   inextensible::Settings settings = point.spec.settings;
   if (point.stiffness) settings["stiffness"] = *point.stiffness;
   PointRunner runner(point.spec, limits);
   const bool short_steps = point.seconds() * point.spec.step < shortest_judged_step;
-  Sampler(point, runner, settings, short_steps, limits).add(0);
+  Sampler sampler(point, runner, settings, short_steps, limits);
+  sampler.add(0);
+  return sampler.taken();
 }
 
 }  // namespace harness

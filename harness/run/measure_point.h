@@ -38,9 +38,9 @@ struct RunLimits {
 PointResult run_point(const PointSpec& spec, const RunLimits& limits,
                       std::optional<double> guess = {});
 
-// For time alone: the judge stays out. Appends a sample. That is the mean time of as many runs as
-// take least_sample together; it is taken again where the machine was disturbed
-// (quiet_samples.h), unless it takes longer than longest_retaken.
-void repeat_point(PointResult& point, const RunLimits& limits);
+// One sample more, for time alone: the judge stays out. It is the mean time of as many runs as take
+// least_sample together; it is taken again where the machine was disturbed (machine_noise.h),
+// unless it takes longer than longest_retaken. Without a sample where the run failed.
+Samples repeat_point(const PointResult& point, const RunLimits& limits);
 
 }  // namespace harness

@@ -5,12 +5,12 @@
 #include <sstream>
 
 #include "harness/base/child_process.h"
+#include "harness/base/statistics.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/judge.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/calibration.h"
-#include "harness/run/frame_times.h"
 
 namespace harness {
 
@@ -34,6 +34,8 @@ constexpr double shortest_block = 2e-5;  // s
 // Nominal times are right within a factor of two: work that is a few times too much is hopeless.
 constexpr double work_patience = 4;
 
+constexpr double rounding = 1e-6;  // of a frame: times add up their steps
+
 std::string refusal(const inextensible::StepResult& result, std::int64_t step, double time) {
   std::ostringstream text;
   text << "step " << step << " (t = " << time << " s): " << inextensible::to_string(result.status)
@@ -45,6 +47,35 @@ std::string refusal(const inextensible::StepResult& result, std::int64_t step, d
 }
 
 }  // namespace
+
+FrameTimes::FrameTimes(double step) {
+  for (const double rate : frame_rates) {
+    if (step * rate <= 1 + rounding) films_.push_back({rate, {}});
+  }
+}
+
+void FrameTimes::add(int steps, double step, double time, double seconds) {
+  time_ = time;
+  for (Film& film : films_) {
+    for (int k = 0; k < steps; ++k) {
+      const double end = (time - k * step) * film.rate;  // in frames
+      const auto frame = static_cast<std::size_t>(std::max(0.0, std::ceil(end - rounding) - 1));
+      if (film.seconds.size() <= frame) film.seconds.resize(frame + 1, 0.0);
+      film.seconds[frame] += seconds / steps;
+    }
+  }
+}
+
+std::vector<FrameTime> FrameTimes::summary() const {
+  std::vector<FrameTime> all;
+  for (const Film& film : films_) {
+    std::vector<double> whole = film.seconds;
+    whole.resize(static_cast<std::size_t>(time_ * film.rate + rounding));
+    if (whole.empty()) continue;
+    all.push_back({film.rate, quantile(whole, 0.5), quantile(whole, 0.99), quantile(whole, 1)});
+  }
+  return all;
+}
 
 PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
     : spec_(spec),
@@ -95,6 +126,7 @@ class PointRunner::RunObserver : public Observer {
 
   void all(const State& state, const DriveState& driven) {
     const double seconds = since(begin_);
+    if (run_.seconds == 0) run_.first_step_seconds = seconds;
     run_.seconds += seconds;
     const double cpu_seconds = thread_seconds() - cpu_begin_;
     if (judge_) run_.cpu_seconds += cpu_seconds;
@@ -241,4 +273,26 @@ void PointRunner::beat(long step, double time) const {
   limits_.heartbeat->time.store(time, std::memory_order_relaxed);
 }
 
+double harness_seconds_per_step() {
+  PointSpec spec;
+  spec.scene = "chain";
+  spec.scene_parameters = complete_parameters(*find_scene(spec.scene), {{"n", 2}});
+  spec.solver = "null";
+  spec.strain_limit = 1;
+  constexpr int steps = 4096, rounds = 25;
+  spec.step = spec.scene_parameters.at("duration") / steps;
+  Heartbeat heartbeat;
+  RunLimits limits;
+  limits.interrupted = [] { return false; };
+  limits.heartbeat = &heartbeat;
+  const PointRunner runner(spec, limits);
+  double with = 1e300, without = 1e300;
+  for (int round = 0; round < rounds; ++round) {  // the least of each: what else runs only adds
+    with = std::min(with, runner.seconds_per_step(runner.run({}, false, diverged_strain)));
+    without = std::min(without, runner.bare_seconds_per_step());
+  }
+  return std::max(0.0, with - without);
+}
+
 }  // namespace harness
+

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "harness/base/clock.h"
 #include "harness/judge/drive.h"
@@ -12,10 +13,33 @@
 
 namespace harness {
 
+// The wall time of a run cut into the frames of a film or a game.
+class FrameTimes {
+ public:
+  // step: s, the run's; no figures are given for frames that are shorter.
+  explicit FrameTimes(double step);
+
+  // `steps` equal ones that ended at `time` (s, of the scene) took `seconds` of wall time together.
+  // A step belongs to the frame in which it ends.
+  void add(int steps, double step, double time, double seconds);
+
+  // Times of whole frames; a rate without any is left out.
+  std::vector<FrameTime> summary() const;
+
+ private:
+  struct Film {
+    double rate;                  // frames a second
+    std::vector<double> seconds;  // of wall time, of each frame so far
+  };
+  std::vector<Film> films_;
+  double time_ = 0;  // s, that has been simulated
+};
+
 struct Run {
   PointStatus status = PointStatus::ok;
   std::string detail;
   double seconds = 0;      // of stepping alone
+  double first_step_seconds = 0;
   double cpu_seconds = 0;  // of the thread, the same
   Measures measures;
   std::unique_ptr<inextensible::Stepper> stepper;
@@ -70,5 +94,9 @@ class PointRunner {
   inextensible::State first_state_;  // the scene's, or half a step back where velocities ask for it
   std::shared_ptr<const Reference> reference_;
 };
+
+// What a timed step costs beyond the step, in seconds: the runner's time for steps of the solver
+// `null` on two vertices, less the time of the same steps called one after the other.
+double harness_seconds_per_step();
 
 }  // namespace harness

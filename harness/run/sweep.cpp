@@ -40,90 +40,16 @@ const char* ladder_end(std::size_t rung, std::size_t rungs) {
 // By the times of all samples so far.
 void choose(const std::vector<Choice>& choices, std::vector<PointResult>& points) {
   for (const Choice& choice : choices) {
-    const auto best = std::min_element(
-        choice.candidates.begin(), choice.candidates.end(), [&](const auto& a, const auto& b) {
-          return points[a.second].seconds() < points[b.second].seconds();
-        });
-    if (best == choice.candidates.end()) continue;
-    PointResult& point = points[best->second];
+    if (choice.candidates.empty()) continue;
+    const auto [rung, place] = *std::ranges::min_element(
+        choice.candidates, {}, [&](const auto& one) { return points[one.second].seconds(); });
+    PointResult& point = points[place];
     if (choice.level == any_motion) {
       point.best = true;
     } else {
       point.best_at_errors.push_back(choice.level);
     }
-    point.at_ladder_end = ladder_end(best->first, choice.rungs);
-  }
-}
-
-// The points that are to have more samples, and when they have enough.
-class Repetitions {
- public:
-  Repetitions(const Suite& suite, const std::vector<Choice>& choices,
-              std::vector<PointResult>& points)
-      : suite_(suite), points_(points) {
-    for (const Choice& choice : choices) {
-      for (const auto& candidate : choice.candidates) candidates_.insert(candidate.second);
-    }
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      tries_.push_back(static_cast<int>(points[i].samples.size()));
-      const bool wanted = points[i].spec.sweep == "step" ? points[i].ok() : candidates_.contains(i);
-      if (wanted) order_.push_back(i);
-    }
-  }
-
-  // Points that lack samples, in the order in which they were run; may be empty.
-  std::vector<std::size_t>& next_round() {
-    std::erase_if(order_, [this](std::size_t i) { return enough(i); });
-    return order_;
-  }
-  void tried(std::size_t i) { ++tries_[i]; }
-  // About how many samples are still to be taken.
-  std::size_t left() const {
-    int sum = 0;
-    for (const std::size_t i : order_) sum += std::max(1, least(i) - tries_[i]);
-    return static_cast<std::size_t>(sum);
-  }
-
- private:
-  int least(std::size_t i) const {
-    return candidates_.contains(i) ? suite_.reps : std::min(suite_.reps, other_reps);
-  }
-
-  bool enough(std::size_t i) const {
-    const double seconds = points_[i].measured_seconds();
-    if (seconds >= repeat_for) return true;
-    if (tries_[i] < least(i)) return false;
-    if (tries_[i] < suite_.most_reps && median_uncertainty(points_[i].samples) > suite_.rel_ci)
-      return false;
-    const bool full = candidates_.contains(i) && suite_.reps >= full_reps;
-    return !full || seconds >= least_measured || tries_[i] >= 2 * suite_.reps;
-  }
-
-  const Suite& suite_;
-  const std::vector<PointResult>& points_;
-  std::set<std::size_t> candidates_;
-  std::vector<std::size_t> order_;
-  std::vector<int> tries_;  // of each point
-};
-
-void repeat_candidates(const Suite& suite, const std::vector<Choice>& choices,
-                       std::vector<PointResult>& points, const SweepEvents& events,
-                       const SweepRunners& runners) {
-  const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
-                                                                 gsl_rng_free);
-  gsl_rng_set(random.get(), suite.seed);
-  Repetitions repetitions(suite, choices, points);
-  std::size_t done = 0;
-  for (;;) {
-    std::vector<std::size_t>& round = repetitions.next_round();
-    if (round.empty()) return;  // GSL's shuffle does not take nothing
-    const std::size_t all = done + repetitions.left();
-    gsl_ran_shuffle(random.get(), round.data(), round.size(), sizeof(std::size_t));
-    for (const std::size_t i : round) {
-      runners.repeat(points[i], {suite.timeout, 1e300, events.interrupted, nullptr});
-      repetitions.tried(i);
-      events.repetition(++done, all);
-    }
+    point.at_ladder_end = ladder_end(rung, choice.rungs);
   }
 }
 
@@ -180,15 +106,70 @@ struct Sweep {
   const PointResult& add(PointResult point, std::size_t search) {
     // A point that no judge has seen: it was skipped, or its process ended early.
     Measures& measures = point.measures;
-    if (std::isnan(measures.trajectory) && measures.unknown_because.empty())
-      measures.unknown_because = "no run came to an end that could be judged";
-    if (std::isnan(measures.shape) && measures.shape_unknown_because.empty())
-      measures.shape_unknown_because = "no run came to an end that could be judged";
+    for (auto [figure, because] : {std::pair(measures.trajectory, &measures.unknown_because),
+                                   std::pair(measures.shape, &measures.shape_unknown_because)}) {
+      if (std::isnan(figure) && because->empty())
+        *because = "no run came to an end that could be judged";
+    }
     points.push_back(std::move(point));
     events.point(points.back(), search, searches.size());
     return points.back();
   }
+
+  void repeat(PointResult& point) {
+    append(runners.repeat(point, {.timeout = suite.timeout, .interrupted = events.interrupted}),
+           point);
+  }
+
+  void repeat_candidates();
 };
+
+// Rounds of one sample each, in a shuffled order, of the points that may be best (of a step sweep:
+// of all that ran to the end), until each has enough.
+void Sweep::repeat_candidates() {
+  struct Repeated {
+    std::size_t point;
+    bool may_be_best;
+    int tries, least;  // samples
+  };
+  std::set<std::size_t> candidates;
+  for (const Choice& choice : choices) {
+    for (const auto& [rung, place] : choice.candidates) candidates.insert(place);
+  }
+  std::vector<Repeated> round;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool may_be_best = candidates.contains(i);
+    if (points[i].spec.sweep == "step" ? points[i].ok() : may_be_best)
+      round.push_back({i, may_be_best, static_cast<int>(points[i].samples.size()),
+                       may_be_best ? suite.reps : std::min(suite.reps, other_reps)});
+  }
+  const auto enough = [this](const Repeated& one) {
+    const PointResult& point = points[one.point];
+    const double seconds = point.measured_seconds();
+    if (seconds >= repeat_for) return true;
+    if (one.tries < one.least) return false;
+    if (one.tries < suite.most_reps && median_uncertainty(point.samples) > suite.rel_ci)
+      return false;
+    const bool full = one.may_be_best && suite.reps >= full_reps;
+    return !full || seconds >= least_measured || one.tries >= 2 * suite.reps;
+  };
+  const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> random(gsl_rng_alloc(gsl_rng_mt19937),
+                                                                 gsl_rng_free);
+  gsl_rng_set(random.get(), suite.seed);
+  for (std::size_t done = 0;;) {
+    std::erase_if(round, enough);
+    if (round.empty()) return;  // GSL's shuffle does not take nothing
+    std::size_t all = done;     // about
+    for (const Repeated& one : round)
+      all += static_cast<std::size_t>(std::max(1, one.least - one.tries));
+    gsl_ran_shuffle(random.get(), round.data(), round.size(), sizeof(Repeated));
+    for (Repeated& one : round) {
+      repeat(points[one.point]);
+      ++one.tries;
+      events.repetition(++done, all);
+    }
+  }
+}
 
 // One search: each rung of its ladder is run when it is first asked for.
 class LadderRun {
@@ -248,9 +229,7 @@ class LadderRun {
   // With one sample more, unless its runs have taken long already.
   const PointResult& again(std::size_t rung) {
     PointResult& point = sweep_.points[point_of_rung_.at(rung)];
-    if (point.measured_seconds() < repeat_for)
-      sweep_.runners.repeat(point,
-                            {sweep_.suite.timeout, 1e300, sweep_.events.interrupted, nullptr});
+    if (point.measured_seconds() < repeat_for) sweep_.repeat(point);
     return point;
   }
 
@@ -272,14 +251,6 @@ class LadderRun {
   bool was_far_behind_ = false;
 };
 
-PointResult skipped_point(const Search& search) {
-  PointResult skipped;
-  skipped.spec = search.base;
-  skipped.spec.step = search.ladder.front();
-  skipped.detail = "every step timed out at the neighbouring point of the axis already";
-  return skipped;
-}
-
 }  // namespace
 
 SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
@@ -291,12 +262,15 @@ SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
     for (std::size_t s = 0; s < searches.size(); ++s) {
       Neighbour& neighbour = neighbours[searches[s].family];
       if (neighbour.hopeless) {
-        sweep.add(skipped_point(searches[s]), s);
+        PointResult skipped(searches[s].base);
+        skipped.spec.step = searches[s].ladder.front();
+        skipped.detail = "every step timed out at the neighbouring point of the axis already";
+        sweep.add(std::move(skipped), s);
       } else {
         LadderRun(sweep, s, neighbour).find_best();
       }
     }
-    repeat_candidates(suite, sweep.choices, outcome.points, events, runners);
+    sweep.repeat_candidates();
   } catch (const Interrupted&) {
     outcome.complete = false;
   }

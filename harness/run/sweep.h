@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "harness/run/measure_point.h"
+#include "harness/run/execute.h"
 #include "harness/run/plan.h"
 
 namespace harness {
@@ -29,14 +29,6 @@ struct SweepEvents {
 struct SweepOutcome {
   std::vector<PointResult> points;
   bool complete = true;  // false: interrupted
-};
-
-// run and repeat stand for run_point and repeat_point; tests put a fake clock there.
-struct SweepRunners {
-  std::function<PointResult(const PointSpec&, const RunLimits&, std::optional<double>)> run =
-      run_point;
-  std::function<void(PointResult&, const RunLimits&)> repeat = repeat_point;
-  std::shared_ptr<ReferenceFolder> references = nullptr;  // null: no errors against references
 };
 
 SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,

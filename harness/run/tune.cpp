@@ -101,6 +101,14 @@ class Tuner {
     return point;
   }
 
+  // With a sample more.
+  const PointResult& repeated(PointResult& point) const {
+    append(runners_.repeat(point,
+                           {.timeout = options_.timeout, .interrupted = options_.interrupted}),
+           point);
+    return point;
+  }
+
   // The ladder's best step with the settings that the search begins with, at a smaller size where
   // that takes too long, and longer with `guess` too: a default must not decide at which size a
   // method is tuned.
@@ -134,8 +142,7 @@ class Tuner {
       return at->second;
     };
     const auto again = [&](std::size_t rung) -> const PointResult& {
-      runners_.repeat(known.at(rung), {options_.timeout, 1e300, options_.interrupted, nullptr});
-      return known.at(rung);
+      return repeated(known.at(rung));
     };
     StepSearch(place_.search.ladder.size(), run, again, {headline_error}).find(std::nullopt);
     for (const auto& [rung, point] : known)
@@ -154,8 +161,7 @@ class Tuner {
                   in_race ? 1 : 2, hopeless, fastest);
     // One run is enough to say of what is slower that it is not better.
     if (rung && (!in_race || fastest.seconds() < place_.best_seconds)) {
-      for (int i = 1; i < samples; ++i)
-        runners_.repeat(fastest, {options_.timeout, 1e300, options_.interrupted, nullptr});
+      for (int i = 1; i < samples; ++i) repeated(fastest);
     }
     if (rung && fastest.seconds() > hopeless) rung.reset();
     options_.tell(scene_.scene + "/" + place_.search.base.solver + " " + to_json(settings).dump() +
@@ -205,10 +211,6 @@ class Tuner {
   Place place_;
   std::map<Values, Found> last_;  // of the last time that it was measured
 };
-
-}  // namespace
-
-namespace {
 
 Values values_of(const inextensible::Settings& settings, const std::vector<TunedNumber>& numbers) {
   Values values;

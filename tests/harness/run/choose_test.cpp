@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <map>
 
+#include "harness/run/fake_machine.h"
+
 namespace harness {
 namespace {
 
@@ -67,17 +69,15 @@ TEST(Choose, ABudgetIsKeptByTheFramesAndNotByTheMean) {
 }
 
 TEST(Choose, LaddersFollowWhatScreeningSaw) {
-  std::vector<PointResult> screened(6);
-  const auto seen = [&screened](std::size_t i, PointStatus status, std::vector<double> seconds) {
-    screened[i].status = status;
-    screened[i].samples = std::move(seconds);
-  };
-  seen(0, PointStatus::unsupported, {});
-  seen(1, PointStatus::strain_missed, {0.1});
-  seen(2, PointStatus::ok, {3});
-  seen(3, PointStatus::not_converged, {0.01});
-  seen(4, PointStatus::ok, {2});
-  seen(5, PointStatus::timeout, {});
+  std::vector<PointResult> screened;
+  for (const auto& [status, seconds] : std::vector<std::pair<PointStatus, std::vector<double>>>{
+           {PointStatus::unsupported, {}},
+           {PointStatus::strain_missed, {0.1}},
+           {PointStatus::ok, {3}},
+           {PointStatus::not_converged, {0.01}},
+           {PointStatus::ok, {2}},
+           {PointStatus::timeout, {}}})
+    screened.emplace_back(PointSpec{}, status).samples = seconds;
   EXPECT_EQ(ladder_order(screened), (std::vector<std::size_t>{4, 2, 1, 3, 0, 5}));
 }
 
@@ -94,17 +94,13 @@ class InventedMachine {
   double latest = 0;  // s: when the last run ended or was stopped
 
   Trials choose(double for_seconds) {
-    Suite suite;
+    Suite suite = suite_of_chain({0.01});
     suite.reps = 1;
     suite.far_behind = 4;
-    SweepSpec& sweep = suite.sweeps.emplace_back();
-    sweep.refine = false;
-    sweep.sweep = "strain";
-    sweep.scene = "chain";
+    SweepSpec& sweep = suite.sweeps.front();
+    sweep.contestants.clear();
     for (const auto& [name, s] : seconds) sweep.contestants.push_back({name, name});
-    std::reverse(sweep.contestants.begin(), sweep.contestants.end());
-    sweep.limits = {0.01};
-    sweep.resolutions = {10};
+    std::ranges::reverse(sweep.contestants);
     sweep.coarsest = 1.0 / 60;
     sweep.finest = 1.0 / 240;
     ChooseRunners runners;
@@ -117,10 +113,10 @@ class InventedMachine {
       calls.push_back("run " + spec.solver);
       return spend(spec, std::min(cost(spec), limits.hopeless), limits);
     };
-    runners.repeat = [this](PointResult& point, const RunLimits& limits) {
+    runners.repeat = [this](const PointResult& point, const RunLimits& limits) {
       calls.push_back("repeat " + point.spec.solver);
       spend(point.spec, cost(point.spec), limits);
-      point.samples.push_back(cost(point.spec));
+      return Samples{{cost(point.spec)}};
     };
     return try_contestants(
         suite, plan(suite, {}), {},
@@ -144,17 +140,12 @@ class InventedMachine {
   }
 };
 
-TEST(Choose, ScreensEveryContestantBeforeTheFirstLadder) {
+TEST(Choose, ScreensAllBeforeTheFirstLadderAndFindsTheFastestWhateverTheOrderOfTheList) {
   InventedMachine machine;
-  machine.choose(60);
+  const Trials trials = machine.choose(60);
   for (std::size_t i = 0; i < 6; ++i)
     EXPECT_TRUE(machine.calls[i].starts_with("screen")) << machine.calls[i];
   EXPECT_EQ(machine.calls[6], "run yarn_projection@bdf2") << "the fastest when screened";
-}
-
-TEST(Choose, FindsTheFastestWhateverTheOrderOfTheList) {
-  InventedMachine machine;
-  const Trials trials = machine.choose(60);
   const Recommendation found = recommend(trials.points, {});
   ASSERT_TRUE(found.best);
   EXPECT_EQ(found.best->point->spec.solver, "yarn_projection@bdf2");

@@ -13,7 +13,7 @@
 #include "harness/points/joined.h"
 #include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
-#include "harness/run/journaled.h"
+#include "harness/run/fake_machine.h"
 
 namespace harness {
 namespace {
@@ -23,37 +23,29 @@ namespace fs = std::filesystem;
 
 // Two scenes, two limits, three sizes: 60 searches of up to ten steps.
 Suite suite_of(const std::string& axis) {
-  return parse_suite(axis == "strain" ? R"({"name": "test", "seed": 3, "reps": 3, "sweeps": [
-      {"sweep": "strain", "scene": "chain", "limits": [0.1, 0.01], "solvers": ["shake", "icd"],
-       "scene_parameters": {"n": 7}, "steps": {"finest": 0.002}},
-      {"sweep": "strain", "scene": "drape", "limits": [0.1, 0.01], "solvers": ["shake", "icd"],
-       "scene_parameters": {"n": 5}, "steps": {"finest": 0.002}}]})"
-                                      : R"({"name": "test", "seed": 3, "reps": 3, "sweeps": [
-      {"sweep": "resolution", "scene": "chain", "limit": 0.01, "resolutions": [5, 7, 9],
-       "solvers": ["shake", "icd"], "steps": {"finest": 0.002}},
-      {"sweep": "resolution", "scene": "drape", "limit": 0.01, "resolutions": [5, 7],
-       "solvers": ["shake", "icd"], "steps": {"finest": 0.002}}]})",
+  const auto sweep = [&axis](const std::string& scene, const std::string& sizes, int n) {
+    const std::string rest = R"("solvers": ["shake", "icd"], "steps": {"finest": 0.002}, )";
+    return R"({"scene": ")" + scene + R"(", "sweep": ")" + axis + "\", " + rest +
+           (axis == "strain"
+                ? R"("limits": [0.1, 0.01], "scene_parameters": {"n": )" + std::to_string(n) + "}}"
+                : R"("limit": 0.01, "resolutions": )" + sizes + "}");
+  };
+  return parse_suite(R"({"name": "test", "seed": 3, "reps": 3, "sweeps": [)" +
+                         sweep("chain", "[5, 7, 9]", 7) + ", " + sweep("drape", "[5, 7]", 5) + "]}",
                      "test");
 }
 
-// A clock that depends on what is run alone, fails now and then, and counts.
-SweepRunners fake(int& runs) {
-  SweepRunners runners;
-  runners.run = [&runs](const PointSpec& spec, const RunLimits&, std::optional<double>) {
-    ++runs;
-    PointResult point;
-    point.spec = spec;
-    point.steps_planned = static_cast<int>(std::lround(1 / spec.step));
-    const std::size_t hash = std::hash<std::string>{}(key_of(spec));
-    point.status = hash % 5 == 0 ? PointStatus::not_converged : PointStatus::ok;
-    if (point.ok()) point.samples = {1 + static_cast<double>(hash % 1000)};
-    return point;
+// Times depend on what is run alone; runs fail now and then.
+FakeMachine hashing_machine() {
+  const auto hash = [](const PointSpec& spec) { return std::hash<std::string>{}(key_of(spec)); };
+  FakeMachine machine{[hash](const PointSpec& spec) {
+    return 1 + static_cast<double>(hash(spec) % 1000);
+  }};
+  machine.status = [hash](const PointSpec& spec) {
+    return hash(spec) % 5 == 0 ? PointStatus::not_converged : PointStatus::ok;
   };
-  runners.repeat = [&runs](PointResult& point, const RunLimits&) {
-    ++runs;
-    point.samples.push_back(point.samples.back() + 0.25);
-  };
-  return runners;
+  machine.again = [](const PointResult& point) { return point.samples.back() + 0.25; };
+  return machine;
 }
 
 json points_json(const std::vector<PointResult>& points) {
@@ -77,12 +69,15 @@ class JournalTest : public ::testing::Test {
   std::string out() const { return (folder_ / "out.json").string(); }
   std::string journal() const { return out() + ".journal"; }
 
-  // The whole sweep with a journal; what it took.
+  // The whole sweep with a journal, and how many runs it took.
   json run(const Suite& suite, int& runs) {
     Journal journal(out());
     if (journal.header().is_null()) journal.start(header_of(suite));
-    return points_json(
-        run_sweep(suite, plan(suite, {}), {}, journaled(fake(runs), journal)).points);
+    FakeMachine machine = hashing_machine();
+    const auto outcome =
+        run_sweep(suite, plan(suite, {}), {}, journaled(machine.runners(), journal));
+    runs = static_cast<int>(machine.specs.size()) + machine.repetitions;
+    return points_json(outcome.points);
   }
 
  private:
@@ -127,32 +122,22 @@ TEST_F(JournalTest, ACorruptedLineInTheMiddleIsToldByNumberAndTheOthersStand) {
   EXPECT_EQ(journal.damage(), "");
 }
 
-TEST_F(JournalTest, ForgottenFailuresAreRunAgainAndNothingElse) {
+// A journal without its failures, and one that is made from the result file.
+TEST_F(JournalTest, RemembersAllButFailuresAndAsMuchOfAResultFile) {
   const Suite suite = suite_of("strain");
   int runs = 0;
   const json whole = run(suite, runs);
-  const auto failures = std::count_if(whole.begin(), whole.end(),
-                                      [](const json& p) { return p.at("status") != "ok"; });
+  const auto failures =
+      std::ranges::count_if(whole, [](const json& p) { return p.at("status") != "ok"; });
   ASSERT_GT(failures, 0);
-  {
-    Journal journal(out());
-    forget_failures(journal);
-  }
-  runs = 0;
+  forget_failures(*std::make_unique<Journal>(out()));
   EXPECT_EQ(run(suite, runs), whole);
   EXPECT_EQ(runs, failures);
-}
-
-TEST_F(JournalTest, AResultFileRemembersAsMuch) {
-  const Suite suite = suite_of("strain");
-  int runs = 0;
-  const json whole = run(suite, runs);
   {
     Journal journal(out());
     journal.start(header_of(suite));
     add_runs_of({{"points", whole}}, journal);
   }
-  runs = 0;
   EXPECT_EQ(run(suite, runs), whole);
   EXPECT_EQ(runs, 0);
 }
@@ -212,10 +197,10 @@ class ShardTest : public ::testing::TestWithParam<const char*> {};
 TEST_P(ShardTest, JoinedAreTheWhole) {
   const Suite suite = suite_of(GetParam());
   const auto searches = plan(suite, {});
-  int runs = 0;
+  FakeMachine machine = hashing_machine();
   const auto result = [&](const std::vector<Search>& some, const std::string& name) {
     return result_document(context_of(name), suite, {"bench"}, true,
-                           run_sweep(suite, some, {}, fake(runs)).points);
+                           run_sweep(suite, some, {}, machine.runners()).points);
   };
   const json whole = result(searches, "");
   for (std::size_t count = 1; count <= 8; ++count) {

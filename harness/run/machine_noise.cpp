@@ -1,21 +1,14 @@
-#include "harness/run/noise_probe.h"
+#include "harness/run/machine_noise.h"
 
-#include <algorithm>
 #include <array>
 #include <fstream>
-#include <limits>
 #include <string>
-
-#include "harness/base/child_process.h"
-#include "harness/base/clock.h"
-#include "harness/judge/mechanics.h"
-#include "harness/run/point_runner.h"
-#include "harness/run/quiet_samples.h"
 
 namespace harness {
 namespace {
 
 constexpr std::size_t doubles = 32768;
+constexpr int first_looks = 10;
 
 // A recurrence that waits for every result (a tridiagonal solve), over an array that fills the
 // second-level cache.
@@ -40,6 +33,20 @@ double fixed_work() {
   return since(start) + 0 * carried;
 }
 
+double QuietProbe::look() {
+  if (least_ == std::numeric_limits<double>::infinity()) {
+    for (int i = 0; i < first_looks; ++i) least_ = std::min(least_, work_());
+  }
+  const double seconds = work_();
+  least_ = std::min(least_, seconds);
+  return seconds;
+}
+
+QuietProbe& quiet_probe() {
+  static QuietProbe probe;
+  return probe;
+}
+
 // Long enough, 50 ms or so, that a processor shared with others is seen: they get turns of some
 // milliseconds.
 void NoiseProbe::sample() {
@@ -61,10 +68,8 @@ void NoiseProbe::sample_if_due() {
 
 double NoiseProbe::spread() const {
   if (samples_.empty()) return 0;
-  const auto [low, high] =
-      std::minmax_element(samples_.begin(), samples_.end(),
-                          [](const Sample& a, const Sample& b) { return a.seconds < b.seconds; });
-  return high->seconds / low->seconds - 1;
+  const auto [low, high] = std::ranges::minmax(samples_, {}, &Sample::seconds);
+  return high.seconds / low.seconds - 1;
 }
 
 nlohmann::json NoiseProbe::to_json() const {
@@ -91,27 +96,6 @@ ProcessorTicks processor_ticks() {
 
 double stolen_share(const ProcessorTicks& before, const ProcessorTicks& after) {
   return after.all > before.all ? (after.stolen - before.stolen) / (after.all - before.all) : 0;
-}
-
-double harness_seconds_per_step() {
-  PointSpec spec;
-  spec.scene = "chain";
-  spec.scene_parameters = complete_parameters(*find_scene(spec.scene), {{"n", 2}});
-  spec.solver = "null";
-  spec.strain_limit = 1;
-  constexpr int steps = 4096, rounds = 25;
-  spec.step = spec.scene_parameters.at("duration") / steps;
-  Heartbeat heartbeat;
-  RunLimits limits;
-  limits.interrupted = [] { return false; };
-  limits.heartbeat = &heartbeat;
-  const PointRunner runner(spec, limits);
-  double with = 1e300, without = 1e300;
-  for (int round = 0; round < rounds; ++round) {  // the least of each: what else runs only adds
-    with = std::min(with, runner.seconds_per_step(runner.run({}, false, diverged_strain)));
-    without = std::min(without, runner.bare_seconds_per_step());
-  }
-  return std::max(0.0, with - without);
 }
 
 }  // namespace harness

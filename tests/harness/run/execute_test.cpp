@@ -1,5 +1,5 @@
 // Points in child processes: whatever a child does to itself is one point's status.
-#include "harness/run/isolation.h"
+#include "harness/run/execute.h"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -24,9 +24,7 @@ PointSpec chain_of_ten() {
   PointSpec spec;
   spec.sweep = "strain";
   spec.scene = "chain";
-  const auto found_type = find_scene("chain");
-  const SceneType& type = *found_type;
-  spec.scene_parameters = complete_parameters(type, {{"n", 10}});
+  spec.scene_parameters = complete_parameters(*find_scene("chain"), {{"n", 10}});
   spec.resolution = spec.vertices = 10;
   spec.constraints = 9;
   spec.solver = "gauss_seidel";
@@ -40,10 +38,7 @@ PointResult run_isolated(const Work& work, const RunLimits& limits, double memor
     inner.heartbeat->step = 5;
     inner.heartbeat->time = 0.25;
     work(*inner.heartbeat);
-    PointResult point;
-    point.spec = spec;
-    point.status = PointStatus::ok;
-    return point;
+    return PointResult(spec, PointStatus::ok);
   };
   return isolated(runners, memory).run(chain_of_ten(), limits, {});
 }
@@ -53,40 +48,22 @@ void sleep_for_ever() {
 }
 
 TEST(Isolation, ARunInAChildIsTheRunInTheParent) {
-  RunLimits limits;
-  SweepRunners here, there = isolated(here, 0);
-  PointResult a = here.run(chain_of_ten(), limits, {}), b = there.run(chain_of_ten(), limits, {});
-  here.repeat(a, limits);
-  there.repeat(b, limits);
-  ASSERT_EQ(a.samples.size(), 2u);
-  ASSERT_EQ(b.samples.size(), 2u);
-  nlohmann::json one = to_json(a), other = to_json(b);
-  for (nlohmann::json* point : {&one, &other}) {
+  const SweepRunners here, there = isolated(here, 0);
+  nlohmann::json both[2];
+  for (const bool in_child : {false, true}) {
+    const SweepRunners& runners = in_child ? there : here;
+    PointResult point = runners.run(chain_of_ten(), {}, {});
+    append(runners.repeat(point, {}), point);
+    EXPECT_EQ(point.samples.size(), 2u);
+    EXPECT_GT(point.peak_rss_bytes, 1e6);
+    both[in_child] = to_json(point);
     for (const char* timing :
          {"seconds_per_simulated_second", "filter_seconds_per_simulated_second", "setup_seconds",
           "phases", "peak_rss_bytes", "frame_times", "cpu_seconds_per_simulated_second",
           "runs_per_sample", "retaken"})
-      point->erase(timing);
+      both[in_child].erase(timing);
   }
-  EXPECT_EQ(one, other);
-  EXPECT_GT(b.peak_rss_bytes, 1e6);
-}
-
-TEST(Isolation, ACrashIsAStatusWithSignalAndStep) {
-  const PointResult point = run_isolated([](Heartbeat&) { std::abort(); }, {});
-  EXPECT_EQ(point.status, PointStatus::crashed);
-  EXPECT_NE(point.detail.find("SIGABRT"), std::string::npos) << point.detail;
-  EXPECT_NE(point.detail.find("in step 5 (t = 0.25 s)"), std::string::npos) << point.detail;
-  EXPECT_EQ(point.spec.id(), chain_of_ten().id());
-}
-
-TEST(Isolation, AnExitAndAnExceptionAreStatusesToo) {
-  PointResult point = run_isolated([](Heartbeat&) { _exit(9); }, {});
-  EXPECT_EQ(point.status, PointStatus::crashed);
-  EXPECT_NE(point.detail.find("exit code 9"), std::string::npos) << point.detail;
-  point = run_isolated([](Heartbeat&) { throw std::runtime_error("no such luck"); }, {});
-  EXPECT_EQ(point.status, PointStatus::crashed);
-  EXPECT_NE(point.detail.find("no such luck"), std::string::npos) << point.detail;
+  EXPECT_EQ(both[0], both[1]);
 }
 
 // Hangs, and its time is up at once: nothing here waits for a clock.
@@ -95,22 +72,29 @@ void hang(Heartbeat& heartbeat) {
   sleep_for_ever();
 }
 
-TEST(Isolation, AHangIsEndedAtItsTimeOut) {
-  const PointResult point = run_isolated(hang, {});
-  EXPECT_EQ(point.status, PointStatus::timeout);
-  EXPECT_NE(point.detail.find("SIGTERM"), std::string::npos) << point.detail;
-  EXPECT_NE(point.detail.find("in step 5"), std::string::npos) << point.detail;
-}
-
-TEST(Isolation, AHangThatIgnoresSigtermIsKilled) {
-  const PointResult point = run_isolated(
-      [](Heartbeat& heartbeat) {
-        std::signal(SIGTERM, SIG_IGN);
-        hang(heartbeat);
-      },
-      {});
-  EXPECT_EQ(point.status, PointStatus::timeout);
-  EXPECT_NE(point.detail.find("SIGKILL"), std::string::npos) << point.detail;
+TEST(Isolation, WhateverARunDoesIsAStatusThatSaysHowAndWhere) {
+  struct Row {
+    Work work;
+    PointStatus status;
+    const char *how, *where;
+  };
+  for (const Row& row : {Row{[](Heartbeat&) { std::abort(); }, PointStatus::crashed, "SIGABRT",
+                             "in step 5 (t = 0.25 s)"},
+                         Row{[](Heartbeat&) { _exit(9); }, PointStatus::crashed, "exit code 9", ""},
+                         Row{[](Heartbeat&) { throw std::runtime_error("no such luck"); },
+                             PointStatus::crashed, "no such luck", ""},
+                         Row{hang, PointStatus::timeout, "SIGTERM", "in step 5"},
+                         Row{[](Heartbeat& heartbeat) {
+                               std::signal(SIGTERM, SIG_IGN);
+                               hang(heartbeat);
+                             },
+                             PointStatus::timeout, "SIGKILL", ""}}) {
+    const PointResult point = run_isolated(row.work, {});
+    EXPECT_EQ(point.status, row.status) << point.detail;
+    EXPECT_NE(point.detail.find(row.how), std::string::npos) << point.detail;
+    EXPECT_NE(point.detail.find(row.where), std::string::npos) << point.detail;
+    EXPECT_EQ(point.spec.id(), chain_of_ten().id());
+  }
 }
 
 TEST(Isolation, ATimeOutIsCountedFromTheLastRestart) {
@@ -159,35 +143,23 @@ TEST(Isolation, ATrialThatCrashesIsAnOutcomeAndOthersComeBackWhole) {
   EXPECT_NE(crash.detail.find("SIGABRT"), std::string::npos);
 }
 
-TEST(Isolation, AnInterruptEndsTheChildAtOnce) {
+// A child that sleeps; a series of children that are done before they are asked whether to go on;
+// and as a scheduler cancels a job: every process gets the signal, the child may be the first.
+TEST(Isolation, AnInterruptEndsTheChildAtOnceAndNoOtherIsMade) {
   RunLimits limits;
   int asked = 0;
   limits.interrupted = [&asked] { return ++asked > 3; };
   EXPECT_THROW(run_isolated([](Heartbeat&) { sleep_for_ever(); }, limits), Interrupted);
-}
-
-// A series of children that are done before they are asked whether to go on.
-TEST(Isolation, AnInterruptIsSeenBetweenChildrenThatEndAtOnce) {
-  RunLimits limits;
-  bool interrupted = false;
-  limits.interrupted = [&interrupted] { return interrupted; };
-  const Work nothing = [](Heartbeat&) {};
-  EXPECT_EQ(run_isolated(nothing, limits).status, PointStatus::ok);
-  interrupted = true;
-  EXPECT_THROW(run_isolated(nothing, limits), Interrupted);
-}
-
-// As a scheduler cancels a job: every process of it gets the signal, the child may be the first.
-TEST(Isolation, ASigtermForAllIsAnInterruptAndOneForTheChildIsACrash) {
-  RunLimits limits;
   const Work terminate = [](Heartbeat&) {
     raise(SIGTERM);
     sleep_for_ever();
   };
-  int asked = 0;
-  limits.interrupted = [&asked] { return ++asked > 2; };
+  asked = 0;
   EXPECT_THROW(run_isolated(terminate, limits), Interrupted);
+  const Work nothing = [](Heartbeat&) {};
+  EXPECT_THROW(run_isolated(nothing, limits), Interrupted);
   limits.interrupted = [] { return false; };
+  EXPECT_EQ(run_isolated(nothing, limits).status, PointStatus::ok);
   EXPECT_EQ(run_isolated(terminate, limits).status, PointStatus::crashed);
 }
 

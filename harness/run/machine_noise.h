@@ -1,14 +1,22 @@
-// Samples of times that are taken again where something else was running beside them.
+// What else the machine does while times are taken, by the time of a fixed piece of work: samples
+// that something disturbed are taken again, and a sweep says how noisy it was.
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <functional>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
+#include <vector>
+
+#include "harness/base/clock.h"
 
 namespace harness {
+
+// About a millisecond of what solvers do; s. Data stay in the second-level cache, and are brought
+// there before the clock starts.
+double fixed_work();
 
 // Looks at the machine by the time of a fixed piece of work, about a millisecond.
 class QuietProbe {
@@ -18,22 +26,23 @@ class QuietProbe {
   static constexpr int most_retaken = 3;  // times that one sample is taken again
 
   using Work = std::function<double()>;  // does the work; s that it took
-  QuietProbe();                          // the noise probe's work
-  explicit QuietProbe(Work work) : work_(std::move(work)) {}
+  explicit QuietProbe(Work work = fixed_work) : work_(std::move(work)) {}
 
   // Works once; s. The first look of all works several times, to know what is usual.
   double look();
   // What a long look around took at least, s. It replaces what was seen before the last of these: a
   // processor changes its clock rate for good, too.
-  void renew(double least);
+  void renew(double least) { least_ = std::min(std::exchange(renewed_, least), least); }
   bool disturbed(double seconds) const { return seconds > disturbed_from * least_; }
-  double least() const { return least_; }
 
  private:
   Work work_;
   double least_ = std::numeric_limits<double>::infinity();    // s
   double renewed_ = std::numeric_limits<double>::infinity();  // s, by renew()
 };
+
+// That of this process and of those that it forks.
+QuietProbe& quiet_probe();
 
 // How often samples of a sweep may still be taken again. On a machine that is never quiet it would
 // only take time: so not any more when more than a quarter of all samples were.
@@ -49,9 +58,6 @@ class RetakeBudget {
   static constexpr double granted = 80;  // samples, before any was taken
   double samples_ = 0, retaken_ = 0;
 };
-
-// That of this process and of those that it forks.
-QuietProbe& quiet_probe();
 
 template <class Sample>
 struct QuietSample {
@@ -81,5 +87,42 @@ auto take_quietly(QuietProbe& probe, Take take, Again again, int retaken = 0,
     before = after;
   }
 }
+
+// Looks around every minute while a sweep runs.
+class NoiseProbe {
+ public:
+  // Spread (largest over smallest time, less 1) from which on the machine counts as noisy.
+  static constexpr double noisy_from = 0.1;
+
+  // every: s between samples.
+  explicit NoiseProbe(double every = 60, QuietProbe::Work work = fixed_work)
+      : every_(every), work_(std::move(work)) {}
+
+  void sample();
+  void sample_if_due();
+
+  struct Sample {
+    double at, seconds;  // s since construction; the work's mean time
+  };
+  const std::vector<Sample>& samples() const { return samples_; }
+  double spread() const;
+  bool noisy() const { return spread() > noisy_from; }
+  // {"at": [...], "seconds": [...], "spread": x, "noisy": b}
+  nlohmann::json to_json() const;
+
+ private:
+  double every_;
+  QuietProbe::Work work_;
+  Clock::time_point start_ = Clock::now();
+  std::vector<Sample> samples_;
+};
+
+// Processor time of all processors since boot, in ticks; 0 where the system does not tell. Stolen:
+// what a hypervisor gave to others.
+struct ProcessorTicks {
+  double stolen = 0, all = 0;
+};
+ProcessorTicks processor_ticks();
+double stolen_share(const ProcessorTicks& before, const ProcessorTicks& after);  // 0 to 1
 
 }  // namespace harness

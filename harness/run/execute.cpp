@@ -1,0 +1,190 @@
+#include "harness/run/execute.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "harness/base/child_process.h"
+#include "harness/base/json_text.h"
+#include "harness/base/text.h"
+#include "harness/points/point_json.h"
+
+namespace harness {
+namespace {
+
+using nlohmann::json;
+using End = ChildOutcome::End;
+
+// What `run` returns in a child; none where the child did not come back with it.
+template <class Run, class Read>
+auto in_child(const RunLimits& limits, double memory, const Run& run, const Read& read,
+              ChildOutcome& outcome) {
+  outcome = run_in_child(
+      [&](Heartbeat& heartbeat) {
+        RunLimits inner = limits;
+        inner.interrupted = nullptr;  // the parent's business
+        inner.heartbeat = &heartbeat;
+        return compact(to_json(run(inner)));
+      },
+      {limits.timeout, memory, limits.interrupted});
+  if (outcome.end == End::interrupted) throw Interrupted();
+  return answer(outcome, read);
+}
+
+// The point whose child did not come back.
+PointResult lost_point(const PointSpec& spec, const ChildOutcome& outcome, double timeout) {
+  const std::string place = outcome.step < 0
+                                ? std::string("before the first step")
+                                : "in step " + std::to_string(outcome.step) +
+                                      " (t = " + number_text(outcome.time) + " s)";
+  PointResult point(spec);
+  if (outcome.end == End::timed_out) {
+    const bool calibrating = outcome.part == static_cast<int>(RunPart::calibration);
+    point.status = calibrating ? PointStatus::skipped : PointStatus::timeout;
+    point.detail = std::string(calibrating ? "timed out while calibrating: " : "") +
+                   "longer than " + number_text(timeout) + " s, stuck " + place + "; ended with " +
+                   signal_text(outcome.code);
+  } else {
+    const bool starved = outcome.end == End::killed && outcome.out_of_memory;
+    point.status = starved ? PointStatus::out_of_memory : PointStatus::crashed;
+    point.detail =
+        ending(outcome) + " " + place + (starved ? "; the kernel was out of memory" : "");
+  }
+  point.peak_rss_bytes = outcome.peak_rss_bytes;
+  return point;
+}
+
+constexpr const char* repetition_mark = " #";
+
+std::string key_of_repetition(const std::string& key, int i) {
+  return key + repetition_mark + std::to_string(i);
+}
+
+bool is_point(const std::string& key) { return key.find(repetition_mark) == std::string::npos; }
+
+void forget_point(const std::string& key, Journal& journal) {
+  for (int i = 1; journal.find(key_of_repetition(key, i)); ++i)
+    journal.forget(key_of_repetition(key, i));
+  journal.forget(key);
+}
+
+// Leaves a point of a result file its first sample. Lists without an entry for each sample stay
+// whole.
+std::vector<Samples> cut_off_repetitions(PointResult& point) {
+  const std::size_t samples = point.samples.size();
+  std::vector<Samples> repetitions(samples > 1 ? samples - 1 : 0);
+  const auto cut = [&](auto Samples::*member) {
+    auto& list = point.*member;
+    if (samples < 2 || list.size() != samples) return;
+    for (std::size_t i = 1; i < samples; ++i) (repetitions[i - 1].*member).push_back(list[i]);
+    list.resize(1);
+  };
+  cut(&Samples::cpu_samples);
+  cut(&Samples::filter_samples);
+  cut(&Samples::sample_runs);
+  cut(&Samples::samples);
+  return repetitions;
+}
+
+// A search for a stiffness goes another way from another start, where a neighbouring point failed
+// then and does not now: its run is another one.
+bool same_start(const PointResult& point, std::optional<double> guess) {
+  if (!point.ok() || !point.stiffness) return true;
+  return guess ? *guess == point.calibration_guess : std::isnan(point.calibration_guess);
+}
+
+// Reads the reference, once and for all children, so that the result names it.
+void find_reference(const RunLimits& limits, const PointSpec& spec) {
+  if (limits.references) limits.references->find(spec.scene, spec.scene_parameters);
+}
+
+}  // namespace
+
+SweepRunners limited(const SweepRunners& inner, const std::function<RunLimits(RunLimits)>& change) {
+  return {[change, run = inner.run](const auto& spec, const auto& limits, auto guess) {
+            return run(spec, change(limits), guess);
+          },
+          [change, repeat = inner.repeat](const auto& point, const auto& limits) {
+            return repeat(point, change(limits));
+          },
+          inner.references};
+}
+
+SweepRunners isolated(const SweepRunners& inner, double memory) {
+  SweepRunners runners;
+  runners.references = inner.references;
+  runners.run = [run = inner.run, memory](const PointSpec& spec, const RunLimits& limits,
+                                          std::optional<double> guess) {
+    find_reference(limits, spec);
+    ChildOutcome outcome;
+    const auto there = [&](const RunLimits& inside) { return run(spec, inside, guess); };
+    if (auto point = in_child(limits, memory, there, point_of, outcome)) return *std::move(point);
+    return lost_point(spec, outcome, limits.timeout);
+  };
+  runners.repeat = [repeat = inner.repeat, memory](const PointResult& point,
+                                                   const RunLimits& limits) {
+    ChildOutcome outcome;
+    const auto there = [&](const RunLimits& inside) { return repeat(point, inside); };
+    return in_child(limits, memory, there, samples_of, outcome).value_or(Samples{});
+  };
+  return runners;
+}
+
+SweepRunners journaled(const SweepRunners& inner, Journal& journal) {
+  SweepRunners runners;
+  runners.references = inner.references;
+  runners.run = [run = inner.run, &journal](const PointSpec& spec, const RunLimits& limits,
+                                            std::optional<double> guess) {
+    const std::string key = key_of(spec);
+    if (const json* known = journal.find(key)) {
+      PointResult point = point_of(*known);
+      if (same_start(point, guess)) {
+        find_reference(limits, spec);
+        return point;
+      }
+      forget_point(key, journal);
+    }
+    PointResult point = run(spec, limits, guess);
+    journal.add(key, to_json(point));
+    return point;
+  };
+  const auto repeated = std::make_shared<std::map<std::string, int>>();
+  runners.repeat = [repeat = inner.repeat, repeated, &journal](const PointResult& point,
+                                                               const RunLimits& limits) {
+    const std::string key = key_of(point.spec);
+    return samples_of(journal.once(key_of_repetition(key, ++(*repeated)[key]),
+                                   [&] { return to_json(repeat(point, limits)); }));
+  };
+  return runners;
+}
+
+void add_runs_of(const json& result, Journal& journal) {
+  for (const json& entry : result.at("points")) {
+    PointResult point = point_of(entry);
+    if (point.status == PointStatus::skipped) continue;
+    point.best = false;  // to be decided again
+    point.best_at_errors.clear();
+    point.at_ladder_end.clear();
+    const std::vector<Samples> repetitions = cut_off_repetitions(point);
+    const std::string key = key_of(point.spec);
+    journal.add(key, to_json(point));
+    for (std::size_t i = 0; i < repetitions.size(); ++i)
+      journal.add(key_of_repetition(key, static_cast<int>(i) + 1), to_json(repetitions[i]));
+  }
+}
+
+void forget_failures(Journal& journal) {
+  std::vector<std::string> failed;
+  for (const auto& [key, value] : journal.known()) {
+    if (is_point(key) && value.at("status") != "ok") failed.push_back(key);
+  }
+  for (const std::string& key : failed) forget_point(key, journal);
+}
+
+std::size_t points_in(const Journal& journal) {
+  return static_cast<std::size_t>(
+      std::count_if(journal.known().begin(), journal.known().end(),
+                    [](const auto& entry) { return is_point(entry.first); }));
+}
+
+}  // namespace harness

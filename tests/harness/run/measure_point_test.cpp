@@ -1,0 +1,176 @@
+// Real runs: their samples, which of short ones are means of batches, their frames, and what becomes
+// of runs whose kinetic energy is not the ensemble's.
+#include "harness/run/measure_point.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "harness/judge/ensemble_runs.h"
+#include "harness/judge/reference_file.h"
+#include "harness/run/calibration.h"
+#include "harness/run/point_runner.h"
+
+namespace harness {
+namespace {
+
+// A small scene at a limit of 1 %.
+PointSpec spec_at(const std::string& scene, const SceneParameters& parameters,
+                  const std::string& solver, double step) {
+  PointSpec spec;
+  spec.sweep = "strain";
+  spec.scene = scene;
+  spec.scene_parameters = complete_parameters(*find_scene(scene), parameters);
+  spec.solver = solver;
+  spec.step = step;
+  return spec;
+}
+
+TEST(Batches, ASampleOfAShortRunTakesAtLeastTwentyMilliseconds) {
+  PointResult point = run_point(spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.01), {});
+  ASSERT_TRUE(point.ok()) << point.detail;
+  for (int i = 1; i < 4; ++i) append(repeat_point(point, {}), point);
+  ASSERT_EQ(point.samples.size(), 4u);
+  ASSERT_EQ(point.sample_runs.size(), 4u);
+  ASSERT_EQ(point.cpu_samples.size(), 4u);
+  ASSERT_EQ(point.filter_samples.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double a_run = point.samples[i] * point.spec.step * point.steps_planned;
+    EXPECT_GE(a_run * point.sample_runs[i], least_sample * (1 - 1e-9));
+    EXPECT_GT(point.cpu_samples[i], 0);
+  }
+  EXPECT_GE(point.measured_seconds(), 4 * least_sample * (1 - 1e-9));
+  EXPECT_EQ(point.seconds(), *std::min_element(point.samples.begin(), point.samples.end()));
+}
+
+TEST(Batches, ProcessorTimeIsNoMoreThanWallTime) {
+  const PointResult point = run_point(spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.001), {});
+  ASSERT_TRUE(point.ok()) << point.detail;
+  // Reads of the clock between blocks of steps are part of it, and not of the wall time.
+  EXPECT_LT(point.cpu_samples[0], 1.5 * point.samples[0]);
+}
+
+// Work is that of one run, however many a sample has.
+TEST(Batches, WithoutAReaderOfTimesOneRunIsASample) {
+  const PointSpec spec = spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.01);
+  const RunLimits untimed{.timed = false};
+  PointResult point = run_point(spec, untimed);
+  append(repeat_point(point, untimed), point);
+  EXPECT_EQ(point.sample_runs, (std::vector<int>{1, 1}));
+  EXPECT_EQ(point.retaken, 0);
+  EXPECT_EQ(run_point(spec, {}).work, point.work);
+}
+
+Reference small_reference(const SceneParameters& parameters) {
+  const Scene scene = find_scene("drape")->build(parameters);
+  Reference r;
+  r.scene = "drape";
+  r.parameters = parameters;
+  r.times = sample_times(scene.duration);
+  r.gap.assign(r.times.size(), 1);
+  r.gap_max = r.gap;
+  std::map<std::string, RouteRun> runs;
+  EnsemblePlan plan;
+  plan.step = sample_interval / 20;
+  r.ensemble = compute_ensemble(
+      scene, r.times, plan, [](const std::string&) {},
+      [&runs](const std::string& name, const auto& compute) -> const RouteRun& {
+        return runs.emplace(name, compute()).first->second;
+      });
+  return r;
+}
+
+TEST(PointRunner, ARunThatHangsOrShakesHasLostItsMotion) {
+  const PointSpec spec =
+      spec_at("drape", {{"n", 5}, {"duration", 0.2}}, "fast_projection", 0.005);
+  const Reference truth = small_reference(spec.scene_parameters);
+  ASSERT_TRUE(truth.ensemble.known()) << truth.ensemble.unknown_because;
+  const std::string folder = ::testing::TempDir() + "motion_references";
+  std::filesystem::create_directories(folder);
+  // What the ensemble has in kinetic energy, over its own, and how far its runs are apart in that.
+  const auto against = [&](double times_as_much, double deviation) {
+    Reference other = truth;
+    for (ShapeStatistics& at : other.ensemble.mean) at.kinetic_energy *= times_as_much;
+    for (double& d : other.ensemble.kinetic_deviation) d += deviation;
+    std::ofstream(folder + "/" + reference_name("drape", spec.scene_parameters)) << to_json(other);
+    RunLimits limits;
+    limits.references = std::make_shared<ReferenceFolder>(folder);
+    return run_point(spec, limits);
+  };
+  const PointResult good = against(1, 0);
+  EXPECT_EQ(good.status, PointStatus::ok) << good.detail;
+  EXPECT_NEAR(good.measures.kinetic_ratio, 1, 0.1);
+  EXPECT_LT(good.measures.shape, 0.05);
+  const PointResult hangs = against(2, 0);
+  EXPECT_EQ(hangs.status, PointStatus::motion_lost);
+  EXPECT_NEAR(hangs.measures.kinetic_ratio, good.measures.kinetic_ratio / 2, 1e-9);
+  EXPECT_NE(hangs.detail.find("mean kinetic energy"), std::string::npos);
+  EXPECT_EQ(against(0.5, 0).status, PointStatus::motion_lost) << "it shakes";
+  EXPECT_EQ(against(2, 1).status, PointStatus::ok) << "the ensemble's runs are as far apart";
+}
+
+// Two runs of one command agree: what a search for a stiffness may take is work, not time.
+TEST(PointRunner, ACalibrationIsCutOffByItsWorkAlone) {
+  const PointSpec spec =
+      spec_at("drape", {{"n", 7}, {"duration", 0.5}}, "vertex_block_descent", 0.01);
+  const PointResult whole = run_point(spec, {.timed = false});
+  ASSERT_TRUE(whole.stiffness) << whole.detail;
+  const auto [vertices, edges] = find_scene("drape")->counts(spec.scene_parameters);
+  const double work = nominal_seconds(whole.work, edges);
+  for (const double hopeless : {work / 2, work / 3}) {
+    const PointResult again = run_point(spec, {.hopeless = hopeless, .timed = false});
+    EXPECT_EQ(again.stiffness, whole.stiffness) << again.detail;
+    EXPECT_EQ(again.calibration_runs, whole.calibration_runs);
+  }
+  const PointResult cut = run_point(spec, {.hopeless = work / 50, .timed = false});
+  EXPECT_EQ(cut.status, PointStatus::skipped);
+  EXPECT_FALSE(cut.stiffness);
+}
+
+// Steps of known length and time, cut into frames.
+TEST(FrameTimes, AddUpTheStepsThatEndInAFrame) {
+  FrameTimes frames(1.0 / 120);
+  for (int i = 1; i <= 240; ++i)  // two seconds; the 100th step is slow
+    frames.add(1, 1.0 / 120, i / 120.0, i == 100 ? 1.0 : 0.001);
+  const std::vector<FrameTime> rates = frames.summary();
+  ASSERT_EQ(rates.size(), 3u);
+  const double steps[] = {5, 4, 2};  // a frame
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(rates[i].rate, 120 / steps[i]);
+    EXPECT_NEAR(rates[i].median, 0.001 * steps[i], 1e-12);
+    EXPECT_NEAR(rates[i].worst, 1 + 0.001 * (steps[i] - 1), 1e-12);
+    EXPECT_LE(rates[i].slow, rates[i].worst);
+    EXPECT_GE(rates[i].slow, rates[i].median);
+  }
+}
+
+TEST(FrameTimes, OfStepsThatAreTimedTogetherAreThoseOfEachAlone) {
+  FrameTimes one(1.0 / 1000), blocks(1.0 / 1000);
+  for (int i = 1; i <= 1000; ++i) one.add(1, 1.0 / 1000, i / 1000.0, 0.002);
+  for (int i = 40; i <= 1000; i += 40) blocks.add(40, 1.0 / 1000, i / 1000.0, 0.08);
+  const auto a = one.summary(), b = blocks.summary();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_NEAR(a[i].median, b[i].median, 1e-12);
+    EXPECT_NEAR(a[i].worst, b[i].worst, 1e-12);
+  }
+}
+
+TEST(FrameTimes, OfPartsOfAFrameAndOfFramesShorterThanAStepAreLeftOut) {
+  FrameTimes coarse(1.0 / 25);
+  for (int i = 1; i <= 25; ++i) coarse.add(1, 1.0 / 25, i / 25.0, 0.5);
+  ASSERT_EQ(coarse.summary().size(), 1u);
+  EXPECT_EQ(coarse.summary()[0].rate, 24);
+  FrameTimes cut(0.01);
+  for (int i = 1; i <= 5; ++i) cut.add(1, 0.01, 0.01 * i, i == 5 ? 9.0 : 0.5);  // 1.2 frames
+  EXPECT_EQ(cut.summary()[0].worst, 2);
+  FrameTimes none(0.01);
+  none.add(1, 0.01, 0.01, 1);
+  EXPECT_TRUE(none.summary().empty());
+}
+
+}  // namespace
+}  // namespace harness
