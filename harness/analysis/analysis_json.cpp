@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <tuple>
 
 #include "harness/analysis/budget.h"
 #include "harness/analysis/findings.h"
-#include "harness/base/fields.h"
+#include "harness/points/point_json.h"
 
 namespace harness::analysis {
 
@@ -32,11 +33,12 @@ json entry_json(const Entry& entry) {
           {"counts", entry.counts},
           {"id", entry.point.id()},
           {"seconds", number(entry.point.seconds())},
-          {"step", number(entry.point.number("step"))},
+          {"step", number(entry.point.spec().step)},
           {"error", number(entry.error)},
-          {"shape_error", number(entry.point.error("shape"))},
+          {"shape_error", number(entry.point.measures().shape)},
           {"delivered_strain", number(entry.point.delivered_strain())},
-          {"frame_times", entry.point.document().value("frame_times", json())}};
+          {"frame_times",
+           FieldCodec<std::vector<FrameTime>>::write(entry.point.result().frame_times, false)}};
 }
 
 json name_of(const Entry* entry) { return entry ? json(entry->row) : json(nullptr); }
@@ -91,8 +93,8 @@ json growth_json(const Growth& growth) {
                     {"low", sure ? json(row.exponent.low()) : json(nullptr)},
                     {"high", sure ? json(row.exponent.high()) : json(nullptr)},
                     {"sizes", row.exponent.points},
-                    {"smallest", row.smallest.number("vertices")},
-                    {"largest", row.largest.number("vertices")}});
+                    {"smallest", row.smallest.spec().vertices},
+                    {"largest", row.largest.spec().vertices}});
   }
   return {{"scene", growth.scene}, {"strain_limit", growth.strain_limit}, {"rows", rows}};
 }
@@ -115,73 +117,56 @@ json budget_json(const BudgetTable& table) {
           {"rows", std::move(rows)}};
 }
 
-json finding_json(const Finding& finding) {
-  return {{"scene", finding.scene},
-          {"sweep", finding.sweep},
-          {"vertices", finding.vertices},
-          {"subject", finding.subject},
-          {"sentences", finding.sentences}};
-}
-
 // ---- curves of cost ----
 
 // The least sample, and the median of three or more: between them lies what disturbed the runs.
 // Null: not timed.
-json time_json(const json& timing) {
-  if (!timing.is_object()) return nullptr;
-  const std::vector<double> samples = timing.at("samples");
+json time_json(const std::vector<double>& samples) {
   const double least = time_of(samples);
   if (!(least > 0)) return nullptr;
   return {least, samples.size() < 3 ? least : quantile(samples, 0.5)};
 }
 
-json best_json(double x, const Point& point, bool adaptive) {
-  const json& p = point.document();
-  const double mean = point.number("duration") / point.work("steps");
+json best_json(double x, const Point& point) {
+  const PointResult& p = point.result();
   return {{"x", x},
-          {"time", time_json(p.at("seconds_per_simulated_second"))},
-          {"filter", time_json(p.value("filter_seconds_per_simulated_second", json()))},
-          {"step", number(adaptive ? mean : point.number("step"))},
-          {"ladder_end", p.value("at_ladder_end", "")}};
+          {"time", time_json(p.samples)},
+          {"filter", time_json(p.filter_samples)},
+          {"step", number(p.mean_step())},
+          {"ladder_end", p.at_ladder_end}};
 }
 
 // Why none of a contestant's runs counts: the letters of their statuses, from the coarsest step to
 // the finest. "": one does count, perhaps at a tighter limit. runs: of one plane, coarsest first.
-std::string failure_letters(const std::vector<const Point*>& runs, double limit, double level,
-                            const std::map<std::string, std::string>& letters) {
+std::string failure_letters(const std::vector<Point>& runs, double limit, double level) {
   std::string found;
-  for (const Point* run : runs) {
-    const double kept = run->number("strain_limit");
+  for (const Point& run : runs) {
+    const double kept = run.spec().strain_limit;
     if (kept > limit) continue;
-    if (run->ok() && !(run->error("trajectory") > level)) return "";
-    const std::string letter = run->ok() ? "X" : letters.at(run->text("status"));
+    if (run.ok() && !(run.measures().trajectory > level)) return "";
+    const std::string letter =
+        run.ok() ? "X" : point_statuses[static_cast<std::size_t>(run.result().status)].letter;
     if (kept == limit && found.find(letter) == found.npos) found += letter;
   }
   return found;
 }
 
 // A figure for each scene and sweep, and for what the sweep leaves fixed: vertices, or the limit.
-json curves_json(const json& document, const std::vector<Plane>& planes, bool adaptive) {
-  std::map<std::string, std::string> letters;
-  for (const json& status : document.at("legend").at("statuses"))
-    letters.emplace(status.at("name"), status.at("letter"));
-  const ContestantRoles roles(document);
-  std::vector<Point> points;
-  for (const json& p : document.at("points")) {
-    if (!p.value("adaptive", false)) points.emplace_back(p);
-  }
-  std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
-    return a.number("step") > b.number("step");
+void add_curves(json& list, const Runs& runs, const std::vector<Plane>& planes, bool adaptive) {
+  std::vector<Point> points = runs.points;
+  std::erase_if(points, [&](const Point& p) {
+    return p.spec().adaptive != adaptive || runs.roles.of(p.contestant()).again;
   });
+  std::ranges::stable_sort(points, std::greater(), [](const Point& p) { return p.spec().step; });
   std::map<std::tuple<std::string, std::string, double>, json> figures;
   for (const Plane& plane : planes) {
     const bool sizes = plane.sweep == "resolution";
     if (!sizes && plane.sweep != "strain") continue;
-    std::map<std::string, std::vector<const Point*>> runs;
+    std::map<std::string, std::vector<Point>> own_runs;
     for (const Point& p : points) {
-      if (p.is("scene", plane.scene) && p.is("sweep", plane.sweep) &&
-          p.number("vertices") == plane.vertices && !roles.of(p.contestant()).again)
-        runs[p.contestant()].push_back(&p);
+      if (p.spec().scene == plane.scene && p.spec().sweep == plane.sweep &&
+          p.spec().vertices == plane.vertices)
+        own_runs[p.contestant()].push_back(p);
     }
     for (const double limit : plane.limits) {
       const double fixed = sizes ? limit : plane.vertices, x = sizes ? plane.vertices : limit;
@@ -191,43 +176,44 @@ json curves_json(const json& document, const std::vector<Plane>& planes, bool ad
         json& curves = figure[panel];
         for (const Entry& entry : plane.cell(limit, level).entries) {
           if (!entry.role.again)
-            curves[entry.role.name]["best"].push_back(best_json(x, entry.point, adaptive));
+            curves[entry.role.name]["best"].push_back(best_json(x, entry.point));
         }
-        for (const auto& [name, own] : runs) {
-          const std::string why = failure_letters(own, limit, level, letters);
+        for (const auto& [name, own] : own_runs) {
+          const std::string why = failure_letters(own, limit, level);
           if (!why.empty()) curves[name]["failures"].push_back({x, why});
         }
       }
     }
   }
-  json list = json::array();
   for (auto& [place, figure] : figures) {
     std::tie(figure["scene"], figure["sweep"], figure["fixed"]) = place;
     figure["adaptive"] = adaptive;
     list.push_back(std::move(figure));
   }
-  return list;
 }
 
 }  // namespace
 
 json findings_json(const std::vector<Plane>& planes) {
   json findings = json::array();
-  for (const Finding& each : findings_of(planes)) findings.push_back(finding_json(each));
+  for (const Finding& finding : findings_of(planes))
+    findings.push_back({{"scene", finding.scene},
+                        {"sweep", finding.sweep},
+                        {"vertices", finding.vertices},
+                        {"subject", finding.subject},
+                        {"sentences", finding.sentences}});
   return findings;
 }
 
-json analysis_of(const json& document) {
-  const std::vector<Plane> planes = planes_of(document);
+json analysis_of(const Runs& runs) {
+  const std::vector<Plane> planes = planes_of(runs);
   json list = json::array(), growth = json::array(), budgets = json::array();
   for (const Plane& plane : planes) list.push_back(plane_json(plane));
   for (const Growth& each : growth_in(planes)) growth.push_back(growth_json(each));
-  for (const BudgetTable& each : budget_tables(document, {})) budgets.push_back(budget_json(each));
-  // Runs with a step controller have figures of their own.
-  json curves = curves_json(document, planes, false), adaptive = document;
-  for (json& p : adaptive.at("points")) p["adaptive"] = !p.value("adaptive", false);
-  for (json& figure : curves_json(adaptive, planes_of(adaptive), true))
-    curves.push_back(std::move(figure));
+  for (const BudgetTable& each : budget_tables(runs, {})) budgets.push_back(budget_json(each));
+  json curves = json::array();  // runs with a step controller have figures of their own
+  add_curves(curves, runs, planes, false);
+  add_curves(curves, runs, planes_of(runs, true), true);
   return {{"schema", "inextensible-analysis/1"}, {"headline_error", headline_error},
           {"findings", findings_json(planes)},   {"planes", std::move(list)},
           {"curves", std::move(curves)},         {"growth", std::move(growth)},

@@ -9,8 +9,7 @@
 
 namespace harness::analysis {
 
-// document: of schema inextensible-bench/1.
-nlohmann::json analysis_of(const nlohmann::json& document);
+nlohmann::json analysis_of(const Runs& runs);
 // Its part "findings".
 nlohmann::json findings_json(const std::vector<Plane>& planes);
 

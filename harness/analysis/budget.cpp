@@ -3,43 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <tuple>
 
-#include "harness/base/in_order.h"
-#include "harness/points/suite.h"
-
 namespace harness::analysis {
-
-using nlohmann::json;
 
 namespace {
 
 // Wall time that 99 % of the frames stay within, s; not-a-number: not measured.
 double frame_seconds(const Point& point) {
-  const auto frames = point.document().find("frame_times");
-  if (frames == point.document().end()) return std::nan("");
-  for (const json& frame : *frames) {  // rate, median, 99 %, worst
-    if (frame.at(0) == frame_rate && frame.at(2).is_number()) return frame.at(2);
+  for (const FrameTime& frame : point.result().frame_times) {
+    if (frame.rate == frame_rate) return frame.slow;
   }
   return std::nan("");
 }
 
-struct Run {
-  std::string row, family;
-  Reach reach;
-};
-
-std::optional<Run> run_of(const json& document, const ContestantRoles& roles, double noise) {
-  const Point point(document, noise);
-  if (document.value("adaptive", false) || !point.ok()) return std::nullopt;
-  const Role role = roles.of(point.contestant());
-  const double frame = frame_seconds(point);
-  if (!role.competes || role.again || !(frame > 0)) return std::nullopt;
+Reach reach_of(const Point& point) {
   const double error = point.error_at(headline_error).distance;
-  return Run{roles.at_any_settings(point.contestant()),
-             role.family,
-             {point.number("strain_limit"), error, frame, error <= headline_error, point}};
+  return {point.spec().strain_limit, error, frame_seconds(point), error <= headline_error, point};
 }
 
 // Whether a is more than b.
@@ -51,29 +31,20 @@ bool more(const Reach& a, const Reach& b) {
   return worth(a) < worth(b);
 }
 
-BudgetTable table_of(const std::vector<const Run*>& runs, const std::vector<double>& budgets) {
-  const Point& one = runs.front()->reach.point;
-  BudgetTable table{one.text("scene"),
-                    static_cast<int>(one.number("resolution")),
-                    static_cast<int>(one.number("vertices")),
-                    budgets,
-                    {}};
-  std::vector<const Run*> ascending = runs;
-  std::stable_sort(ascending.begin(), ascending.end(), [](const Run* a, const Run* b) {
-    return a->reach.frame_seconds < b->reach.frame_seconds;
-  });
-  for (const std::string& row : in_order(runs, [](const Run* run) { return run->row; })) {
-    Budgeted line{row, "", {}, {}};
-    for (const Run* run : ascending) {
-      if (run->row != row) continue;
-      line.family = run->family;
-      if (line.stairs.empty() || more(run->reach, line.stairs.back()))
-        line.stairs.push_back(run->reach);
+BudgetTable table_of(std::vector<Point> points, const ContestantRoles& roles,
+                     const std::vector<double>& budgets) {
+  const PointSpec& one = points.front().spec();
+  BudgetTable table{one.scene, one.resolution, one.vertices, budgets, {}};
+  const auto row_of = [&](const Point& p) { return roles.at_any_settings(p.contestant()); };
+  for (auto& [row, own] : grouped(points, row_of)) {
+    Budgeted line{row, roles.of(own.front().contestant()).family, {}, {}};
+    std::ranges::stable_sort(own, {}, frame_seconds);
+    for (const Point& point : own) {
+      const Reach reach = reach_of(point);
+      if (line.stairs.empty() || more(reach, line.stairs.back())) line.stairs.push_back(reach);
     }
     for (const double budget : budgets) {
-      const auto beyond =
-          std::find_if(line.stairs.begin(), line.stairs.end(),
-                       [budget](const Reach& reach) { return reach.frame_seconds > budget; });
+      const auto beyond = std::ranges::upper_bound(line.stairs, budget, {}, &Reach::frame_seconds);
       line.reached.push_back(beyond == line.stairs.begin() ? std::nullopt
                                                            : std::optional(*std::prev(beyond)));
     }
@@ -95,27 +66,18 @@ BudgetTable table_of(const std::vector<const Run*>& runs, const std::vector<doub
 
 }  // namespace
 
-std::vector<BudgetTable> budget_tables(const json& document, const std::vector<double>& budgets) {
-  std::vector<Run> runs;
-  const ContestantRoles roles(document);
-  const double noise = pair_noise_of(document);
-  for (const json& p : document.at("points")) {
-    if (auto run = run_of(p, roles, noise)) runs.push_back(std::move(*run));
-  }
-  const auto place_of = [](const Run& run) {
-    const json& p = run.reach.point.document();
-    return std::tuple(run.reach.point.text("scene"),
-                      p.value("scene_parameters", json::object()).dump(),
-                      run.reach.point.number("vertices"));
+std::vector<BudgetTable> budget_tables(const Runs& runs, const std::vector<double>& budgets) {
+  std::vector<Point> points = runs.points;
+  std::erase_if(points, [&](const Point& p) {
+    const Role role = runs.roles.of(p.contestant());
+    return p.spec().adaptive || !p.ok() || !role.competes || role.again || !(frame_seconds(p) > 0);
+  });
+  const auto place_of = [](const Point& p) {
+    return std::tuple(p.spec().scene, p.spec().scene_parameters, p.spec().vertices);
   };
   std::vector<BudgetTable> tables;
-  for (const auto& place : in_order(runs, place_of)) {
-    std::vector<const Run*> here;
-    for (const Run& run : runs) {
-      if (place_of(run) == place) here.push_back(&run);
-    }
-    tables.push_back(table_of(here, budgets));
-  }
+  for (const auto& [place, here] : grouped(points, place_of))
+    tables.push_back(table_of(here, runs.roles, budgets));
   return tables;
 }
 

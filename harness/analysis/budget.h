@@ -37,9 +37,7 @@ struct BudgetTable {
   std::vector<Budgeted> rows;
 };
 
-// document: of schema inextensible-bench/1, which must outlive the tables. Runs with a step
-// controller do not take part.
-std::vector<BudgetTable> budget_tables(const nlohmann::json& document,
-                                       const std::vector<double>& budgets);
+// Runs with a step controller do not take part.
+std::vector<BudgetTable> budget_tables(const Runs& runs, const std::vector<double>& budgets);
 
 }  // namespace harness::analysis

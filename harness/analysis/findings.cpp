@@ -117,8 +117,8 @@ std::string sentence_of(const Cell& cell) {
                                 ? " and an error of " + number_text(100 * first->error, 2) + " %"
                                 : "";
   return place + ", " + leader_words(cell, equals) + ": " + time_words(first->point.seconds()) +
-         " a simulated second with steps of " + step_text(first->point.number("step")) + " s" +
-         error + rival_words(cell, equals) + ".";
+         " a simulated second with steps of " + step_text(first->point.spec().step) + " s" + error +
+         rival_words(cell, equals) + ".";
 }
 
 std::string sentence_of(const Growth& growth) {
@@ -132,8 +132,8 @@ std::string sentence_of(const Growth& growth) {
   if (whole.size() < 2) return "";
   const RowGrowth &least = whole.front(), &most = whole.back();
   if (least.exponent.high() >= most.exponent.low()) return "";
-  return "From " + number_text(least.smallest.number("vertices"), 7) + " to " +
-         number_text(least.largest.number("vertices"), 7) +
+  return "From " + number_text(least.smallest.spec().vertices, 7) + " to " +
+         number_text(least.largest.spec().vertices, 7) +
          " vertices the time of a step grows least with " + least.row +
          ", as their number to the power " + exponent_words(least.exponent) + ", and most with " +
          most.row + ", " + exponent_words(most.exponent) + ".";

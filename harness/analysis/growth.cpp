@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 
 #include "harness/base/in_order.h"
 #include "harness/base/text.h"
@@ -9,66 +11,41 @@
 namespace harness::analysis {
 namespace {
 
-// Cells of any motion at one limit, from few vertices to many.
-using Sizes = std::vector<std::pair<int, const Cell*>>;
-
-const Entry* entry_of(const Cell& cell, const std::string& row) {
-  const auto found =
-      std::find_if(cell.entries.begin(), cell.entries.end(),
-                   [&](const Entry& entry) { return entry.counts && entry.row == row; });
-  return found == cell.entries.end() ? nullptr : &*found;
-}
-
-std::vector<std::string> rows_of(const Sizes& sizes) {
-  std::vector<std::string> names;
-  for (const auto& [vertices, cell] : sizes) {
-    for (const Entry& entry : cell->entries) {
-      if (entry.counts) names.push_back(entry.row);
-    }
+// Of one row of the ranking at one limit, from few vertices to many.
+RowGrowth growth_of(const std::string& row, const std::vector<Entry>& entries) {
+  std::vector<double> vertices, seconds;
+  for (const Entry& entry : entries) {
+    vertices.push_back(entry.point.spec().vertices);
+    seconds.push_back(entry.point.seconds() * entry.point.spec().step);
   }
-  return in_order(names, [](const std::string& name) { return name; });
-}
-
-std::vector<RowGrowth> rows_in(const Sizes& sizes) {
-  std::vector<RowGrowth> rows;
-  for (const std::string& row : rows_of(sizes)) {
-    std::vector<double> vertices, seconds;
-    std::vector<Point> points;
-    for (const auto& [size, cell] : sizes) {
-      const Entry* entry = entry_of(*cell, row);
-      if (!entry) continue;
-      vertices.push_back(size);
-      seconds.push_back(entry->point.seconds() * entry->point.number("step"));
-      points.push_back(entry->point);
-    }
-    if (points.size() < 2) continue;
-    rows.push_back({row, log_log_slope(vertices, seconds), points.front(), points.back()});
-  }
-  std::stable_sort(rows.begin(), rows.end(), [](const RowGrowth& a, const RowGrowth& b) {
-    return a.exponent.value < b.exponent.value;
-  });
-  return rows;
+  return {row, log_log_slope(vertices, seconds), entries.front().point, entries.back().point};
 }
 
 }  // namespace
 
 std::vector<Growth> growth_in(const std::vector<Plane>& planes) {
-  std::vector<Growth> all;
-  std::vector<std::pair<std::string, double>> places;
+  std::vector<const Plane*> sizes;
   for (const Plane& plane : planes) {
-    if (plane.sweep != "resolution") continue;
-    for (const double limit : plane.limits) places.emplace_back(plane.scene, limit);
+    if (plane.sweep == "resolution") sizes.push_back(&plane);
   }
-  for (const auto& [scene, limit] : in_order(places, [](const auto& place) { return place; })) {
-    Sizes sizes;
-    for (const Plane& plane : planes) {
-      const bool has =
-          std::find(plane.limits.begin(), plane.limits.end(), limit) != plane.limits.end();
-      if (plane.sweep == "resolution" && plane.scene == scene && has)
-        sizes.emplace_back(plane.vertices, &plane.cell(limit, any_motion));
+  std::vector<std::pair<std::string, double>> places;
+  for (const Plane* plane : sizes) {
+    for (const double limit : plane->limits) places.emplace_back(plane->scene, limit);
+  }
+  std::ranges::stable_sort(sizes, {}, &Plane::vertices);
+  std::vector<Growth> all;
+  for (const auto& [scene, limit] : in_order(places, std::identity())) {
+    std::vector<Entry> entries;
+    for (const Plane* plane : sizes) {
+      if (plane->scene != scene || !std::ranges::count(plane->limits, limit)) continue;
+      std::ranges::copy_if(plane->cell(limit, any_motion).entries, std::back_inserter(entries),
+                           &Entry::counts);
     }
-    std::sort(sizes.begin(), sizes.end());
-    Growth growth{scene, limit, rows_in(sizes)};
+    Growth growth{scene, limit, {}};
+    for (const auto& [row, own] : grouped(entries, [](const Entry& e) { return e.row; })) {
+      if (own.size() > 1) growth.rows.push_back(growth_of(row, own));
+    }
+    std::ranges::stable_sort(growth.rows, {}, [](const RowGrowth& r) { return r.exponent.value; });
     if (!growth.rows.empty()) all.push_back(std::move(growth));
   }
   return all;

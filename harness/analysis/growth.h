@@ -22,8 +22,7 @@ struct Growth {
   std::vector<RowGrowth> rows;  // with runs at two sizes at least; slowest growth first
 };
 
-// One for each scene and strain limit that resolution sweeps have. The planes' document must
-// outlive it.
+// One for each scene and strain limit that resolution sweeps have.
 std::vector<Growth> growth_in(const std::vector<Plane>& planes);
 
 // "1.13 (1.05 to 1.21)"; without an interval where two sizes are all.

@@ -1,59 +1,32 @@
 #include "harness/analysis/measured_point.h"
 
 #include <algorithm>
+#include <type_traits>
+
+#include "harness/points/point_json.h"
 
 namespace harness::analysis {
 
 using nlohmann::json;
 
-double Point::filter_seconds() const {
-  return timed() ? time_of(samples_of("filter_seconds_per_simulated_second")) : std::nan("");
-}
-
-std::vector<double> Point::samples_of(const char* key) const {
-  const auto seconds = p_->find(key);
-  if (seconds == p_->end() || !seconds->is_object()) return {};
-  return seconds->at("samples");
-}
-
-double Point::delivered_strain() const {
-  for (const char* key : {"max_strain_after_collision", "max_strain"}) {
-    if (const double strain = number(key); std::isfinite(strain)) return strain;
-  }
-  return std::nan("");
-}
-
-ErrorAtLevel Point::error_at(double level) const {
-  Measures measures;
-  measures.trajectory = error("trajectory");
-  measures.trajectory_max = error("trajectory_max");
-  measures.gap = error("gap");
-  measures.valid_until = error("valid_until");
-  const auto or_unknown = [](const json& value) {
-    return value.is_number() ? value.get<double>() : unknown;
-  };
-  const auto series = p_->at("error").find("error_series");
-  if (series != p_->at("error").end()) {
-    for (const auto& sample : *series)  // time, error, largest, gap, its largest
-      measures.error_series.push_back({or_unknown(sample.at(0)), or_unknown(sample.at(1)),
-                                       or_unknown(sample.at(2)), or_unknown(sample.at(3)),
-                                       or_unknown(sample.at(4))});
-  }
-  return harness::error_at(measures, level == any_motion ? headline_error : level);
-}
-
-bool Point::within_error(double level) const {
-  return level == any_motion || error_at(level).distance <= level;
-}
-
-bool Point::marked_best(double level) const {
-  if (level == any_motion) return flag("best");
-  const auto levels = p_->find("best_at_errors");
-  return levels != p_->end() &&
-         std::find(levels->begin(), levels->end(), json(level)) != levels->end();
-}
-
 namespace {
+
+// Puts the member of that name, if its type is Value, into `value`.
+template <class Value, class Table, class Object>
+void look_up(const Table& table, const Object& object, const std::string& key, Value& value) {
+  for_each_field(table, [&](const auto& row) {
+    using Member = typename std::decay_t<decltype(row)>::Type;
+    constexpr bool both_numbers = std::is_arithmetic_v<Member> && std::is_arithmetic_v<Value>;
+    if constexpr (both_numbers || std::is_same_v<Member, Value>) {
+      if (row.name == key) value = static_cast<Value>(object.*row.member);
+    }
+  });
+}
+
+double entry_of(const SceneParameters& numbers, const char* key) {
+  const auto place = numbers.find(key);
+  return place == numbers.end() ? std::nan("") : place->second;
+}
 
 Ratio times(Ratio ratio, double factor) {
   return {ratio.value * factor, ratio.low * factor, ratio.high * factor};
@@ -61,30 +34,79 @@ Ratio times(Ratio ratio, double factor) {
 
 }  // namespace
 
+Point::Point(const json& document, double noise)
+    : result_(std::make_shared<PointResult>(point_of(document))),
+      id_(document.at("id")),
+      noise_(noise) {}
+
+std::string Point::text(const char* key) const {
+  std::string found;
+  look_up(spec_fields, spec(), key, found);
+  return found;
+}
+
+double Point::number(const char* key) const {
+  double found = scene_parameter(key);  // of these, the duration stands in points, too
+  look_up(spec_fields, spec(), key, found);
+  look_up(size_fields, spec(), key, found);
+  look_up(result_fields, result(), key, found);
+  look_up(measure_fields, measures(), key, found);
+  return found;
+}
+
+double Point::work(const char* key) const {
+  const json counters = to_json(result_->work);
+  return counters.contains(key) ? counters.at(key).get<double>() : number(key);
+}
+
+double Point::option(const char* key) const {
+  if (key == std::string("stiffness") && result_->stiffness) return *result_->stiffness;
+  const auto given = spec().settings.find(key);
+  if (given == spec().settings.end()) return std::nan("");
+  const double* value = std::get_if<double>(&given->second);
+  return value ? *value : std::nan("");
+}
+
+double Point::scene_parameter(const char* key) const {
+  return entry_of(spec().scene_parameters, key);
+}
+
+double Point::delivered_strain() const {
+  const double after = measures().max_strain_after_collision;
+  return std::isfinite(after) ? after : measures().max_strain;
+}
+
+ErrorAtLevel Point::error_at(double level) const {
+  return harness::error_at(measures(), level == any_motion ? headline_error : level);
+}
+
+bool Point::marked_best(double level) const {
+  const auto& levels = result_->best_at_errors;
+  return level == any_motion ? result_->best
+                             : std::find(levels.begin(), levels.end(), level) != levels.end();
+}
+
 Ratio ratio(const Point& a, const Point& b) {
   return ratio_of_times(a.samples(), b.samples(), std::fmax(a.noise(), b.noise()));
 }
 
 Ratio ratio_of_steps(const Point& a, const Point& b) {
-  return times(ratio(a, b), a.number("step") / b.number("step"));
+  return times(ratio(a, b), a.spec().step / b.spec().step);
 }
 
 ContestantRoles::ContestantRoles(const json& document) {
   const json legend = document.value("legend", json::object());
-  for (const char* list : {"contestants", "solvers"}) {
-    for (const json& entry : legend.value(list, json::array())) {
-      const std::string name = entry.at("name");
-      known_.try_emplace(name, Role{.name = name,
-                                    .family = entry.value("family", name),
-                                    .solver = entry.value("solver", name),
-                                    .competes = entry.value("contestant", true),
-                                    .unranked = entry.value("unranked", false)});
-    }
+  for (const json& entry : legend.value("solvers", json::array())) {
+    const std::string name = entry.at("name");
+    known_.try_emplace(name, Role{.name = name,
+                                  .family = entry.value("family", name),
+                                  .solver = entry.value("solver", name),
+                                  .competes = entry.value("contestant", true),
+                                  .unranked = entry.value("unranked", false)});
   }
-  const json noise = document.value("context", json::object()).value("noise", json());
-  if (noise.is_object() && noise.contains("pair")) {
-    const json& pair = noise.at("pair");
-    const std::string second = pair.is_array() ? pair.at(1) : pair;
+  const json pair = document.value(json::json_pointer("/context/noise/pair"), json());
+  if (pair.is_array()) {
+    const std::string second = pair.at(1);
     known_.try_emplace(second, Role{.name = second, .family = second, .solver = second});
     known_.at(second).again = true;
   }
@@ -107,10 +129,18 @@ void ContestantRoles::add(const ContestantRoles& other) {
 }
 
 double pair_noise_of(const json& document) {
-  const json noise = document.value("context", json::object()).value("noise", json());
-  return noise.is_object() && noise.contains("q95") && noise.at("q95").is_number()
-             ? noise.at("q95").get<double>()
-             : std::nan("");
+  const json q95 = document.value(json::json_pointer("/context/noise/q95"), json());
+  return q95.is_number() ? q95.get<double>() : std::nan("");
+}
+
+Runs::Runs(const json& document) : roles(document), levels{any_motion} {
+  const double noise = pair_noise_of(document);
+  for (const json& p : document.at("points")) points.emplace_back(p, noise);
+  const double finest =
+      document.value(json::json_pointer("/context/suite/finest_error"), answer_levels.back());
+  for (const double level : answer_levels) {
+    if (level >= finest) levels.push_back(level);
+  }
 }
 
 }  // namespace harness::analysis

@@ -1,48 +1,51 @@
-// What analysis looks at: the points of a result file, and its contestants.
+// What analysis looks at: the runs of a result file, and its contestants.
 #pragma once
 
 #include <cmath>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/base/statistics.h"
-#include "harness/points/measures.h"
+#include "harness/points/point.h"
 
 namespace harness::analysis {
 
-// A point of a result file, as far as analysis needs it; numbers that it lacks are not-a-number.
-// The document must outlive it.
+// A point of a result file. Copies share what they hold.
 class Point {
  public:
   // noise: of the file's A/A pair, see ratio_of_times.
-  explicit Point(const nlohmann::json& document, double noise = std::nan(""))
-      : p_(&document), noise_(noise) {}
+  explicit Point(const nlohmann::json& document, double noise = std::nan(""));
 
-  std::string id() const { return p_->at("id"); }
-  std::string text(const char* key) const { return p_->at(key); }
-  std::string contestant() const { return p_->at("contestant"); }  // a solver with its settings
-  bool is(const char* key, const std::string& value) const { return p_->at(key) == value; }
-  bool flag(const char* key) const { return p_->value(key, false); }
-  bool ok() const { return is("status", "ok"); }
-  bool timed() const { return !p_->at("seconds_per_simulated_second").is_null(); }
-  double number(const char* key) const { return figure(*p_, key); }
-  double work(const char* key) const { return figure(p_->at("work"), key); }
-  double error(const char* key) const { return figure(p_->at("error"), key); }
-  double option(const char* key) const { return figure(p_->at("options"), key); }
-  double scene_parameter(const char* key) const { return figure(p_->at("scene_parameters"), key); }
+  const PointResult& result() const { return *result_; }
+  const PointSpec& spec() const { return result_->spec; }
+  const Measures& measures() const { return result_->measures; }
+  const std::string& id() const { return id_; }
+  const std::string& contestant() const { return spec().name(); }  // a solver with its settings
+  bool ok() const { return result_->ok(); }
+  bool timed() const { return !result_->samples.empty(); }
+
+  // A field by its name in files; numbers that are not there are not-a-number.
+  std::string text(const char* key) const;
+  double number(const char* key) const;
+  double work(const char* key) const;
+  double error(const char* key) const { return number(key); }
+  double option(const char* key) const;
+  double scene_parameter(const char* key) const;
+  bool is(const char* key, const std::string& value) const { return text(key) == value; }
+  bool flag(const char* key) const { return number(key) > 0; }
   bool solves_by(const std::string& linear_solver) const {
-    return p_->at("options").value("linear_solver", "") == linear_solver;
+    return result_->linear_solver == linear_solver;
   }
-  const nlohmann::json& document() const { return *p_; }
 
-  double seconds() const { return time_of(samples()); }  // not-a-number where nothing was timed
-  // Time of the inextensibility filter alone.
-  double filter_seconds() const;
-  std::vector<double> samples() const { return samples_of("seconds_per_simulated_second"); }
+  double seconds() const { return result_->seconds(); }  // not-a-number where nothing was timed
+  double filter_seconds() const { return result_->filter_seconds(); }
+  const std::vector<double>& samples() const { return result_->samples; }
   double noise() const { return noise_; }
-  double steps() const { return number("duration") / number("step"); }
+  double steps() const { return scene_parameter("duration") / spec().step; }
   // The largest strain after the collision filter, which is what a user gets.
   double delivered_strain() const;
   // The paper's order: the obstacle pushes vertices out after the solve (contact 0).
@@ -50,17 +53,13 @@ class Point {
   // Its distance to the reference at a level (points/measures.h); any_motion: at the headline's.
   ErrorAtLevel error_at(double level) const;
   // Whether that is known to be within the level; any_motion: always.
-  bool within_error(double level) const;
+  bool within_error(double level) const { return harness::within_error(measures(), level); }
   // Whether it is marked as its contestant's fastest within a level.
   bool marked_best(double level) const;
 
  private:
-  std::vector<double> samples_of(const char* key) const;
-  static double figure(const nlohmann::json& object, const char* key) {
-    const auto place = object.find(key);
-    return place == object.end() || !place->is_number() ? std::nan("") : place->get<double>();
-  }
-  const nlohmann::json* p_;
+  std::shared_ptr<const PointResult> result_;
+  std::string id_;
   double noise_;
 };
 
@@ -95,5 +94,29 @@ class ContestantRoles {
 };
 
 double pair_noise_of(const nlohmann::json& document);  // not-a-number: it has no A/A pair
+
+// A result file of schema inextensible-bench/1, which views are functions of.
+struct Runs {
+  std::vector<Point> points;  // in the file's order
+  ContestantRoles roles;
+  std::vector<double> levels;  // any_motion, then loose to tight, down to the sweep's finest one
+
+  Runs(const nlohmann::json& document);
+};
+
+// The items by their key, in the order in which keys first appear.
+template <class Items, class Key>
+auto grouped(const Items& items, Key key) {
+  using Item = std::decay_t<decltype(*items.begin())>;
+  std::vector<std::pair<std::decay_t<decltype(key(*items.begin()))>, std::vector<Item>>> groups;
+  for (const Item& item : items) {
+    auto value = key(item);
+    auto group = groups.begin();
+    while (group != groups.end() && group->first != value) ++group;
+    if (group == groups.end()) group = groups.insert(group, {std::move(value), {}});
+    group->second.push_back(item);
+  }
+  return groups;
+}
 
 }  // namespace harness::analysis

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <functional>
 #include <stdexcept>
+#include <tuple>
 
 #include "harness/analysis/words.h"
 #include "harness/base/in_order.h"
@@ -12,12 +13,10 @@
 
 namespace harness::analysis {
 
-using nlohmann::json;
-
 namespace {
 
 bool may_answer(const Point& p) {
-  return p.ok() && p.timed() && p.number("step") <= longest_step * (1 + 1e-9);
+  return p.ok() && p.timed() && p.spec().step <= longest_step * (1 + 1e-9);
 }
 
 bool is_of_paper(const std::string& method) {
@@ -28,20 +27,16 @@ bool is_of_paper(const std::string& method) {
 std::string level_text(double level) { return number_text(100 * level) + " %"; }
 
 // Why there is no entry: the first of the reasons that holds of all.
-std::string why_empty(const std::vector<const Point*>& here, double level, double known_until) {
-  const auto any = [&](auto has) { return std::any_of(here.begin(), here.end(), has); };
-  if (!any([](const Point* p) { return may_answer(*p); })) return "no run keeps the strain limit";
+std::string why_empty(const std::vector<Point>& here, double level, double known_until) {
+  const auto any = [&](auto has) { return std::ranges::any_of(here, has); };
+  if (!any(may_answer)) return "no run keeps the strain limit";
   if (known_until > 0)
     return "no run that was tried has a motion error of at most " + level_text(level);
-  const auto has = [&](const char* key) {
-    return any([key](const Point* p) {
-      const auto place = p->document().at("error").find(key);
-      return place != p->document().at("error").end() && !place->empty();  // null is empty
-    });
-  };
-  if (!has("reference")) return "there is no reference";
-  return has("error_series") ? "the reference is not sure to " + level_text(level)
-                             : "the file has no errors";
+  if (!any([](const Point& p) { return !p.measures().reference.empty(); }))
+    return "there is no reference";
+  return any([](const Point& p) { return !p.measures().error_series.empty(); })
+             ? "the reference is not sure to " + level_text(level)
+             : "the file has no errors";
 }
 
 // An unranked contestant and its solver are one row, of which the fastest counts.
@@ -57,25 +52,20 @@ void rank(std::vector<Entry>& entries) {
   }
 }
 
-Cell cell_of(const std::vector<const Point*>& here, double limit, double level,
+Cell cell_of(const std::vector<Point>& here, double limit, double level,
              const ContestantRoles& roles) {
   Cell cell;
   cell.strain_limit = limit;
   cell.level = level;
-  for (const Point* p : here) {
-    const ErrorAtLevel error = p->error_at(level);
+  for (const Point& p : here) {
+    const ErrorAtLevel error = p.error_at(level);
     if (error.samples > 0 && std::isfinite(error.until))
       cell.known_until = std::max(cell.known_until, error.until);
   }
-  for (const std::string& name : in_order(here, [](const Point* p) { return p->contestant(); })) {
-    std::vector<const Point*> own;
-    for (const Point* p : here) {
-      if (p->contestant() == name) own.push_back(p);
-    }
-    const Point* entry = fastest_of(own, level);
-    if (!entry) continue;
-    cell.entries.push_back({roles.of(name), roles.at_any_settings(name), false, *entry,
-                            entry->error_at(level).distance});
+  for (const auto& [name, own] : grouped(here, [](const Point& p) { return p.contestant(); })) {
+    if (const auto entry = fastest_of(own, level))
+      cell.entries.push_back({roles.of(name), roles.at_any_settings(name), false, *entry,
+                              entry->error_at(level).distance});
   }
   rank(cell.entries);
   if (!cell.first()) cell.empty_because = why_empty(here, level, cell.known_until);
@@ -104,36 +94,16 @@ void take_tighter_runs(std::vector<Cell>& cells, std::size_t levels) {
   }
 }
 
-// Down to the finest one that the file's sweep went on for.
-std::vector<double> levels_in(const json& document) {
-  const json suite = document.value("context", json::object()).value("suite", json::object());
-  const double finest = suite.value("finest_error", answer_levels.back());
-  std::vector<double> levels{any_motion};
-  for (const double level : answer_levels) {
-    if (level >= finest) levels.push_back(level);
-  }
-  return levels;
-}
-
-Plane plane_of(const std::vector<const Point*>& points, const json& document,
-               const ContestantRoles& roles) {
-  const Point& one = *points.front();
-  Plane plane;
-  plane.scene = one.text("scene");
-  plane.sweep = one.text("sweep");
-  plane.scene_parameters = one.document().value("scene_parameters", json::object());
-  plane.resolution = static_cast<int>(one.number("resolution"));
-  plane.vertices = static_cast<int>(one.number("vertices"));
-  plane.limits = in_order(points, [](const Point* p) { return p->number("strain_limit"); });
-  std::sort(plane.limits.rbegin(), plane.limits.rend());
-  plane.levels = levels_in(document);
-  for (const double limit : plane.limits) {
-    std::vector<const Point*> here;
-    for (const Point* p : points) {
-      if (p->number("strain_limit") == limit) here.push_back(p);
-    }
+Plane plane_of(const std::vector<Point>& points, const Runs& runs) {
+  const PointSpec& one = points.front().spec();
+  Plane plane{one.scene,    one.sweep, one.scene_parameters, one.resolution,
+              one.vertices, {},        runs.levels,          {}};
+  auto by_limit = grouped(points, [](const Point& p) { return p.spec().strain_limit; });
+  std::ranges::sort(by_limit, std::greater(), [](const auto& group) { return group.first; });
+  for (const auto& [limit, here] : by_limit) {
+    plane.limits.push_back(limit);
     for (const double level : plane.levels)
-      plane.cells.push_back(cell_of(here, limit, level, roles));
+      plane.cells.push_back(cell_of(here, limit, level, runs.roles));
   }
   take_tighter_runs(plane.cells, plane.levels.size());
   return plane;
@@ -141,17 +111,17 @@ Plane plane_of(const std::vector<const Point*>& points, const json& document,
 
 }  // namespace
 
-const Point* fastest_of(const std::vector<const Point*>& points, double level) {
-  const Point* best = nullptr;
+std::optional<Point> fastest_of(const std::vector<Point>& points, double level) {
+  std::optional<Point> best;
   for (const bool marked : {true, false}) {
-    for (const Point* p : points) {
-      if (!may_answer(*p) || (marked && !p->marked_best(level))) continue;
-      if (best && p->seconds() >= best->seconds()) continue;
-      if (p->within_error(level)) best = p;
+    for (const Point& p : points) {
+      if (!may_answer(p) || (marked && !p.marked_best(level))) continue;
+      if (best && p.seconds() >= best->seconds()) continue;
+      if (p.within_error(level)) best = p;
     }
     if (best) return best;
   }
-  return nullptr;
+  return best;
 }
 
 const Entry* Cell::counting(std::size_t place) const {
@@ -240,26 +210,15 @@ std::vector<std::string> Plane::leaders() const {
   return in_order(rows, [](const std::string& row) { return row; });
 }
 
-std::vector<Plane> planes_of(const json& document) {
-  const ContestantRoles roles(document);
-  const double noise = pair_noise_of(document);
-  std::vector<Point> points;
-  for (const json& p : document.at("points")) {
-    if (!p.value("adaptive", false)) points.emplace_back(p, noise);
-  }
+std::vector<Plane> planes_of(const Runs& runs, bool adaptive) {
+  std::vector<Point> points = runs.points;
+  std::erase_if(points, [&](const Point& p) { return p.spec().adaptive != adaptive; });
   const auto place_of = [](const Point& p) {
-    return std::tuple(p.text("scene"), p.text("sweep"),
-                      p.document().value("scene_parameters", json::object()).dump(),
-                      p.number("vertices"));
+    return std::tuple(p.spec().scene, p.spec().sweep, p.spec().scene_parameters, p.spec().vertices);
   };
   std::vector<Plane> planes;
-  for (const auto& place : in_order(points, place_of)) {
-    std::vector<const Point*> here;
-    for (const Point& p : points) {
-      if (place_of(p) == place) here.push_back(&p);
-    }
-    planes.push_back(plane_of(here, document, roles));
-  }
+  for (const auto& [place, here] : grouped(points, place_of))
+    planes.push_back(plane_of(here, runs));
   return planes;
 }
 

@@ -14,8 +14,8 @@ namespace harness::analysis {
 // The run that stands for a contestant at a strain limit and a level of error (any_motion:
 // whatever its error): the one that its sweep marked, in files without such marks the fastest. Only
 // runs that kept their limit count, with steps of a frame at most. points: of one contestant,
-// scene, size and limit. Null: none.
-const Point* fastest_of(const std::vector<const Point*>& points, double level);
+// scene, size and limit.
+std::optional<Point> fastest_of(const std::vector<Point>& points, double level);
 
 // What stands for one contestant in a cell: its fastest run at the cell's strain limit or at a
 // tighter one, which keeps the cell's as well.
@@ -65,7 +65,7 @@ std::string stepper_of(const std::string& row);
 // One scene and size in one kind of sweep.
 struct Plane {
   std::string scene, sweep;
-  nlohmann::json scene_parameters;
+  SceneParameters scene_parameters;
   int resolution = 0, vertices = 0;
   std::vector<double> limits;  // loose to tight
   std::vector<double> levels;  // any_motion, then loose to tight
@@ -77,8 +77,7 @@ struct Plane {
   std::vector<std::string> leaders() const;
 };
 
-// In the document's order. The document must outlive them. Runs with a step controller do not take
-// part.
-std::vector<Plane> planes_of(const nlohmann::json& document);
+// In the order of runs; of those with a step controller, or of those without.
+std::vector<Plane> planes_of(const Runs& runs, bool adaptive = false);
 
 }  // namespace harness::analysis

@@ -87,11 +87,11 @@ struct FieldCodec {
   }
 };
 
-template <class Table, class Object>
-void write_fields(nlohmann::json& to, const Table& table, const Object& object) {
+template <class Json, class Table, class Object>
+void write_fields(Json& to, const Table& table, const Object& object) {
   for_each_field(table, [&](const auto& row) {
     using Value = typename std::decay_t<decltype(row)>::Type;
-    nlohmann::json& place = *row.traits.inside ? to[row.traits.inside] : to;
+    Json& place = *row.traits.inside ? to[row.traits.inside] : to;
     place[row.name] = FieldCodec<Value>::write(object.*row.member, row.traits.nullable);
   });
 }

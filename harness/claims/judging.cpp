@@ -127,14 +127,14 @@ Curve Points::best(const std::string& scene, const std::string& sweep,
                    std::optional<double> vertices) const {
   const char* axis = sweep == "strain" ? "strain_limit" : "vertices";
   const std::vector<Point> points = in(scene, sweep, vertices);
-  std::map<std::pair<double, std::string>, std::vector<const Point*>> places;
+  std::map<std::pair<double, std::string>, std::vector<Point>> places;
   for (const Point& p : points) {
     if (roles.at_any_settings(p.contestant()) == contestant)
-      places[{p.number(axis), p.contestant()}].push_back(&p);
+      places[{p.number(axis), p.contestant()}].push_back(p);
   }
   Curve curve;
   for (const auto& [place, here] : places) {
-    if (const Point* answer = fastest_of(here, level)) keep_faster(curve, place.first, *answer);
+    if (const auto answer = fastest_of(here, level)) keep_faster(curve, place.first, *answer);
   }
   return curve;
 }

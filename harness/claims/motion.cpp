@@ -23,10 +23,8 @@ struct Residuals {
 
 Residuals iterated(const Point& p) {
   Residuals sums;
-  const json series = p.document().at("error").value("residuals", json());
-  for (const auto& sample : series) {
-    if (!sample.at(1).is_number() || !sample.at(2).is_number()) continue;
-    const double first = sample.at(1), last = sample.at(2);
+  for (const auto& [time, first, last] : p.measures().residuals) {
+    if (!std::isfinite(first) || !std::isfinite(last)) continue;
     if (last == first) continue;
     ++sums.samples;
     sums.first += first;
@@ -196,9 +194,9 @@ double parabola_sag(double length, double strain) {
 }
 
 Slip slip_of(const Point& point) {
-  const json& sag = point.document().at("sag");
+  const auto& sag = point.measures().sag;
   const double drop = point.scene_parameter("drop");
-  const double rim = sag.at("rim").get<double>(), across = sag.at("rim_across").get<double>();
+  const double rim = sag.at("rim"), across = sag.at("rim_across");
   return {std::min(rim, across) / drop, std::max(rim, across) / drop};
 }
 
@@ -235,8 +233,7 @@ Verdict patch_sag(const Points& points) {
       [](const std::vector<Point>& at, const char* words) {
         constexpr double visible = 0.01;  // of the patch's side
         const auto hangs = [&](std::size_t i) {
-          return at[i].document().at("sag").at("lower_edge").get<double>() /
-                 at[i].scene_parameter("side");
+          return at[i].measures().sag.at("lower_edge") / at[i].scene_parameter("side");
         };
         const double first = hangs(0) - hangs(1), second = hangs(1) - hangs(2);
         return std::pair(first >= visible && second >= visible,

@@ -125,7 +125,6 @@ std::vector<SettingsAt> read_settings_at(const json& places, const std::string& 
     at.limit = reader.number("limit", 0, Bounds::strain());
     if (const json* settings = reader.find("settings"))
       at.settings = read_settings(*settings, where, backend);
-    check_settings(at.settings, where, backend);
     reader.finish();
   }
   return all;
@@ -139,9 +138,7 @@ inextensible::Settings Contestant::settings_for(int resolution, double limit) co
     return std::hypot(std::log(at.resolution / static_cast<double>(resolution)),
                       std::log(at.limit / limit));
   };
-  const auto nearest =
-      std::min_element(settings_at.begin(), settings_at.end(),
-                       [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  const auto nearest = std::ranges::min_element(settings_at, {}, distance);
   if (nearest != settings_at.end()) all.insert(nearest->settings.begin(), nearest->settings.end());
   return all;
 }

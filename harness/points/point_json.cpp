@@ -46,7 +46,7 @@ void FieldCodec<inextensible::Settings>::read(const json& from, inextensible::Se
 }
 
 ordered_json FieldCodec<inextensible::Settings>::schema(const FieldTraits&) {
-  return {{"type", "object"}};
+  return {{"type", "object"}, {"additionalProperties", {{"type", {"number", "string"}}}}};
 }
 
 json FieldCodec<PointStatus>::write(PointStatus status, bool) { return to_string(status); }

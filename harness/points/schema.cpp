@@ -1,5 +1,7 @@
 #include "harness/points/schema.h"
 
+#include <algorithm>
+#include <array>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
@@ -18,10 +20,12 @@
 namespace harness {
 namespace {
 
+using nlohmann::json;
 using nlohmann::ordered_json;
 
-ordered_json reference_to(const char* definition) {
-  return {{"$ref", std::string("#/definitions/") + definition}};
+const char* word_of(inextensible::Origin origin) {
+  constexpr std::array words{"paper", "project", "literature", "engine", "elsewhere"};
+  return words.at(static_cast<std::size_t>(origin));
 }
 
 ordered_json closed_object() {
@@ -31,28 +35,10 @@ ordered_json closed_object() {
           {"properties", ordered_json::object()}};
 }
 
-const char* word_of(inextensible::Origin origin) {
-  switch (origin) {
-    case inextensible::Origin::paper:
-      return "paper";
-    case inextensible::Origin::project:
-      return "project";
-    case inextensible::Origin::literature:
-      return "literature";
-    case inextensible::Origin::engine:
-      return "engine";
-    case inextensible::Origin::elsewhere:
-      break;
-  }
-  return "elsewhere";
-}
-
-enum class Presence { required, optional };
-
-void add(ordered_json& object, const char* name, ordered_json schema,
-         Presence presence = Presence::required) {
-  if (presence == Presence::required) object["required"].push_back(name);
+void add(ordered_json& object, const char* name, ordered_json schema, bool required = true) {
   object["properties"][name] = std::move(schema);
+  ordered_json& names = object["required"];
+  if (required && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
 template <class Table>
@@ -62,12 +48,11 @@ void add_fields(ordered_json& object, const Table& table) {
     ordered_json schema = FieldCodec<Value>::schema(row.traits);
     schema["description"] = described(row);
     const char* inside = row.traits.inside;
-    // May be absent, as null.
-    const Presence presence = row.traits.nullable ? Presence::optional : Presence::required;
-    if (!*inside) return add(object, row.name, schema, presence);
+    const bool required = !row.traits.nullable;  // others may be absent, as null
+    if (!*inside) return add(object, row.name, schema, required);
     if (inside == std::string("work")) return;  // work_schema's
     if (!object["properties"].contains(inside)) add(object, inside, closed_object());
-    add(object["properties"][inside], row.name, schema, presence);
+    add(object["properties"][inside], row.name, schema, required);
   });
 }
 
@@ -93,35 +78,17 @@ ordered_json work_schema() {
   return work;
 }
 
-ordered_json point_schema() {
-  ordered_json point = closed_object();
-  add(point, "id",
-      {{"type", "string"}, {"description", "scene/contestant/n:vertices/strain:limit/h:step"}});
+// What no table has, such as what is written for readers, stays as it is.
+ordered_json point_schema(ordered_json point) {
   add_fields(point, spec_fields);
   point["properties"]["sweep"] = {{"enum", sweep_kinds()}};
-  const auto values_of = [&point](const char* name, ordered_json type) {
-    point["properties"][name]["additionalProperties"] = {{"type", std::move(type)}};
-  };
-  values_of("scene_parameters", "number");
-  point["properties"]["scene_parameters"]["required"] = {"duration"};
-  values_of("settings", {"number", "string"});
+  point["properties"]["scene_parameters"].update(
+      {{"additionalProperties", {{"type", "number"}}}, {"required", {"duration"}}});
   add_fields(point, size_fields);
-  add(point, "duration", {{"type", "number"}, {"exclusiveMinimum", 0}, {"description", "s"}});
-  add(point, "options",
-      {{"type", "object"},
-       {"description",
-        "the solver's settings as given, the stiffness that was found (N), the linear solver in "
-        "use"}});
-  values_of("options", {"number", "string"});
-  point["properties"]["options"]["properties"] = {{"linear_solver", {{"type", "string"}}},
-                                                  {"stiffness", {{"type", "number"}}}};
   add_fields(point, sample_fields);
   add_fields(point, result_fields);
-  add(point, "seconds_per_simulated_second", reference_to("seconds"));
-  add(point, "filter_seconds_per_simulated_second", reference_to("seconds"));
   add_fields(point, phase_fields);
   add_fields(point, measure_fields);
-  add(point, "work", reference_to("work"));
   return point;
 }
 
@@ -129,39 +96,6 @@ ordered_json answer_row_schema() {
   ordered_json row = closed_object();
   add_fields(row, answer_row_fields);
   return row;
-}
-
-// A list of objects with these entries.
-ordered_json list_of(const std::vector<std::pair<const char*, const char*>>& entries) {
-  ordered_json item = closed_object();
-  for (const auto& [name, type] : entries) add(item, name, {{"type", type}});
-  return {{"type", "array"}, {"items", item}};
-}
-
-ordered_json legend_schema() {
-  ordered_json schema = closed_object();
-  add(schema, "solvers",
-      list_of({{"name", "string"},
-               {"label", "string"},
-               {"family", "string"},
-               {"contestant", "boolean"}}));
-  ordered_json& item = schema["properties"]["solvers"]["items"];
-  const auto may_add = [&item](const char* name, ordered_json type) {
-    add(item, name, std::move(type), Presence::optional);
-  };
-  may_add("origin", {{"type", "string"},
-                     {"description",
-                      "origin of the method: paper, project, literature, engine or elsewhere"}});
-  may_add("method", {{"type", "string"}});
-  may_add("stepper", {{"type", "string"}, {"description", "its time stepper"}});
-  may_add("stepper_origin", {{"type", "string"}, {"description", "origin of the stepper"}});
-  may_add("solver",
-          {{"type", "string"}, {"description", "the solver of a contestant with another name"}});
-  may_add("unranked",
-          {{"type", "boolean"}, {"description", "beside the ranking, drawn with hollow marks"}});
-  add(schema, "statuses",
-      list_of({{"name", "string"}, {"letter", "string"}, {"meaning", "string"}}));
-  return schema;
 }
 
 }  // namespace
@@ -175,8 +109,7 @@ ordered_json with_tables(ordered_json schema) {
   renew("status", status_schema);
   renew("counter", [] { return ordered_json{{"enum", counter_names()}}; });
   renew("work", work_schema);
-  renew("point", point_schema);
-  renew("legend", legend_schema);
+  renew("point", [&definitions] { return point_schema(definitions["point"]); });
   renew("answer_row", answer_row_schema);
   return schema;
 }
@@ -229,8 +162,6 @@ std::vector<std::string> counter_names() {
   });
   return names;
 }
-
-using nlohmann::json;
 
 void check_schema(const json& document, const std::string& schema, const std::string& path) {
   const json rules = schema_document(schema);

@@ -11,7 +11,7 @@
 namespace harness {
 
 // The schema with those of its definitions replaced that follow from tables: "status", "counter",
-// "work", "point", "legend", "answer_row".
+// "work", "point", "answer_row".
 nlohmann::ordered_json with_tables(nlohmann::ordered_json schema);
 
 // configs/<name>.schema.json, with_tables.

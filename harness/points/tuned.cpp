@@ -5,13 +5,13 @@
 #include <variant>
 
 #include "harness/base/errors.h"
-#include "harness/base/fields.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
+#include "harness/points/schema.h"
 #include "harness/scenes/scene.h"
 
 namespace harness {
@@ -20,51 +20,32 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr const char* schema = "inextensible-tuned/3";
-
-const json& list_in(JsonReader& reader, const char* key) {
-  const json* list = reader.find(key);
-  if (!list || !list->is_array()) throw UsageError(reader.where(key) + " must be a list");
-  return *list;
-}
-
-TunedPlace read_place(const json& object, const std::string& where,
-                      const inextensible::Backend& backend) {
-  JsonReader reader(object, where);
-  TunedPlace place;
-  place.resolution =
-      static_cast<int>(reader.number("resolution", 0, {.least = 1, .most = 1e6, .whole = true}));
-  for (const auto& [key, member] :
-       {std::pair("limit", &TunedPlace::limit),
-        std::pair("default_seconds", &TunedPlace::default_seconds),
-        std::pair("default_step", &TunedPlace::default_step),
-        std::pair("seconds", &TunedPlace::seconds), std::pair("step", &TunedPlace::step)})
-    place.*member = reader.number(key, 0, Bounds::positive());
-  place.evaluations =
-      static_cast<int>(reader.number("evaluations", 0, {.least = 0, .most = 1e9, .whole = true}));
-  if (const json* settings = reader.find("settings")) {
-    place.settings = read_settings(*settings, where + ": 'settings'", backend);
-    check_settings(place.settings, where + ": 'settings'", backend);
-  }
-  reader.finish();
-  return place;
-}
+constexpr std::tuple place_fields{
+    field("resolution", &SettingsAt::resolution, "", "vertices along an edge"),
+    field("limit", &SettingsAt::limit, "", "permissible strain"),
+    field("settings", &SettingsAt::settings, "", "those that are not the default"),
+    field("evaluations", &TunedPlace::evaluations, "", "sets of settings that were tried"),
+    field("default_seconds", &TunedPlace::default_seconds, "s", "a simulated second"),
+    field("default_step", &TunedPlace::default_step, "s", ""),
+    field("seconds", &TunedPlace::seconds, "s", "with the settings"),
+    field("step", &TunedPlace::step, "s", "")};
+constexpr std::tuple entry_fields{field("kind", &TunedEntry::kind, "", "of scene"),
+                                  field("solver", &TunedEntry::solver, "", ""),
+                                  field("budget", &TunedEntry::budget, "", "at a place")};
 
 TunedEntry read_entry(const json& object, const std::string& where) {
-  JsonReader reader(object, where);
   TunedEntry entry;
-  entry.kind = reader.one_of("kind", "", scene_kinds(), "kind of scene");
-  entry.solver = reader.text("solver", "");
+  read_fields(object, entry_fields, entry);
+  const auto kinds = scene_kinds();
+  if (std::ranges::count(kinds, entry.kind) == 0)
+    throw UsageError(where + ": " + unknown_name("kind of scene", entry.kind, kinds).what());
   const auto& backend = checked_backend(entry.solver, where);
-  entry.budget =
-      static_cast<int>(reader.number("budget", 0, {.least = 0, .most = 1e9, .whole = true}));
-  for (const json& place : list_in(reader, "places"))
-    entry.places.push_back(read_place(place, where + ": 'places'", backend));
-  const json* rule = reader.find("rule");
-  if (!rule || !rule->is_object()) throw UsageError(reader.where("rule") + " must be an object");
-  entry.rule = *rule;
-  if (const json* context = reader.find("context")) entry.context = *context;
-  reader.finish();
+  for (const json& place : object.at("places")) {
+    read_fields(place, place_fields, entry.places.emplace_back());
+    check_settings(entry.places.back().settings, where + ": 'settings'", backend);
+  }
+  entry.rule = object.at("rule");
+  entry.context = object.at("context");
   return entry;
 }
 
@@ -78,11 +59,7 @@ std::string hash_of(const std::vector<TunedEntry>& entries) {
 
 }  // namespace
 
-std::vector<SettingsAt> TunedEntry::settings_at() const {
-  std::vector<SettingsAt> all;
-  for (const TunedPlace& p : places) all.push_back({p.resolution, p.limit, p.settings});
-  return all;
-}
+std::vector<SettingsAt> TunedEntry::settings_at() const { return {places.begin(), places.end()}; }
 
 const TunedEntry* Tuned::find(const std::string& kind, const std::string& solver) const {
   const auto place = std::find_if(entries.begin(), entries.end(), [&](const TunedEntry& e) {
@@ -99,21 +76,17 @@ Tuned read_tuned(const std::string& file) {
 
 Tuned parse_tuned(const std::string& text, const std::string& file) {
   const json document = parse_commented(text, file);
-  const std::string where = "tuned settings '" + file + "'";
-  JsonReader reader(document, where);
-  if (reader.text("schema", "") != schema)
-    throw UsageError(where + ": 'schema' must be \"" + schema + "\"");
+  check_schema(document, "tuned", file);
   Tuned tuned;
   tuned.file = std::filesystem::path(file).filename().string();  // results name no folders
-  const json& list = list_in(reader, "tuned");
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string place = where + ": tuned[" + std::to_string(i) + "]";
-    TunedEntry entry = read_entry(list[i], place);
+  for (const json& object : document.at("tuned")) {
+    const std::string place =
+        "tuned settings '" + file + "': tuned[" + std::to_string(tuned.entries.size()) + "]";
+    TunedEntry entry = read_entry(object, place);
     if (tuned.find(entry.kind, entry.solver))
       throw UsageError(place + ": " + entry.kind + " and " + entry.solver + " stand there twice");
     tuned.entries.push_back(std::move(entry));
   }
-  reader.finish();
   tuned.hash = hash_of(tuned.entries);
   return tuned;
 }
@@ -121,24 +94,16 @@ Tuned parse_tuned(const std::string& text, const std::string& file) {
 ordered_json tuned_document(const std::vector<TunedEntry>& entries) {
   ordered_json list = ordered_json::array();
   for (const TunedEntry& entry : entries) {
-    ordered_json places = ordered_json::array();
-    for (const TunedPlace& p : entry.places)
-      places.push_back({{"resolution", p.resolution},
-                        {"limit", p.limit},
-                        {"settings", to_json(p.settings)},
-                        {"evaluations", p.evaluations},
-                        {"default_seconds", p.default_seconds},
-                        {"default_step", p.default_step},
-                        {"seconds", p.seconds},
-                        {"step", p.step}});
-    list.push_back({{"kind", entry.kind},
-                    {"solver", entry.solver},
-                    {"budget", entry.budget},
-                    {"places", places},
-                    {"rule", entry.rule},
-                    {"context", entry.context}});
+    ordered_json object, places = ordered_json::array();
+    for (const TunedPlace& place : entry.places)
+      write_fields(places.emplace_back(), place_fields, place);
+    write_fields(object, entry_fields, entry);
+    object["places"] = places;
+    object["rule"] = entry.rule;
+    object["context"] = entry.context;
+    list.push_back(object);
   }
-  return {{"schema", schema}, {"tuned", list}};
+  return {{"schema", "inextensible-tuned/3"}, {"tuned", list}};
 }
 
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
@@ -168,8 +133,6 @@ void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
 }
 
 namespace {
-
-using nlohmann::json;
 
 SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarsest,
                        double duration) {

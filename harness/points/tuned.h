@@ -13,10 +13,7 @@ namespace harness {
 
 // What was found at one size and strain limit of a tuning scene. Times are those of the best step
 // of those tried.
-struct TunedPlace {
-  int resolution = 0;
-  double limit = 0;
-  inextensible::Settings settings;               // those that are not the default
+struct TunedPlace : SettingsAt {                 // settings: those that are not the default
   int evaluations = 0;                           // sets of settings that were tried
   double default_seconds = 0, default_step = 0;  // s/s, s
   double seconds = 0, step = 0;                  // with the settings

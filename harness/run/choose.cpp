@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "harness/base/text.h"
 #include "harness/run/calibration.h"
@@ -119,52 +120,53 @@ Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, 
   return trials;
 }
 
-std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& wish,
-                            const std::string& not_by) {
-  std::optional<Pick> best;
-  for (const PointResult& point : points) {
-    const auto pick = pick_of(point, wish);
-    if (!pick || point.spec.name() == not_by || !within(point, wish)) continue;
-    if (!best || point.seconds() < best->point->seconds()) best = pick;
-  }
-  return best;
-}
-
-std::optional<Pick> most_accurate(const std::vector<PointResult>& points, const Wish& wish,
-                                  double seconds) {
-  const auto better = [](const Pick& a, const Pick& b) {
-    if (std::isnan(a.error) || std::isnan(b.error))
-      return std::isnan(a.error) && std::isnan(b.error) ? a.point->spec.step < b.point->spec.step
-                                                        : std::isnan(b.error);
-    return a.error < b.error;
-  };
-  std::optional<Pick> best;
-  for (const PointResult& point : points) {
-    const auto pick = pick_of(point, wish);
-    if (!pick || pick->frame.slow > seconds) continue;
-    if (!best || better(*pick, *best)) best = pick;
-  }
-  return best;
-}
-
 Kept kept(const FrameTime& frame, double budget) {
   if (!(budget > 0) || frame.slow <= budget) return Kept::nearly_all;
   return frame.median <= budget ? Kept::half : Kept::fewer;
 }
 
-Recommendation recommend(const std::vector<PointResult>& points, const Wish& wish) {
-  Recommendation found;
+namespace {
+
+// The pick of least rank, of those that may be taken.
+template <class May, class Rank>
+std::optional<Pick> least(const std::vector<PointResult>& points, const Wish& wish, May may,
+                          Rank rank) {
+  std::optional<Pick> best;
   for (const PointResult& point : points) {
     const auto pick = pick_of(point, wish);
-    if (!pick || !within(point, wish)) continue;
-    const Kept keeps = kept(pick->frame, wish.budget);
-    if (found.best && (keeps > found.budget ||
-                       (keeps == found.budget && point.seconds() >= found.best->point->seconds())))
-      continue;
-    found.best = pick;
-    found.budget = keeps;
+    if (pick && may(*pick) && (!best || rank(*pick) < rank(*best))) best = pick;
   }
-  if (found.best) found.next = fastest(points, wish, found.best->point->spec.name());
+  return best;
+}
+
+}  // namespace
+
+std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& wish,
+                            const std::string& not_by) {
+  return least(
+      points, wish,
+      [&](const Pick& p) { return p.point->spec.name() != not_by && within(*p.point, wish); },
+      [](const Pick& p) { return p.point->seconds(); });
+}
+
+std::optional<Pick> most_accurate(const std::vector<PointResult>& points, const Wish& wish,
+                                  double seconds) {
+  return least(
+      points, wish, [&](const Pick& p) { return p.frame.slow <= seconds; },
+      [](const Pick& p) {
+        const bool known = !std::isnan(p.error);
+        return std::pair(!known, known ? p.error : p.point->spec.step);
+      });
+}
+
+Recommendation recommend(const std::vector<PointResult>& points, const Wish& wish) {
+  Recommendation found;
+  found.best = least(
+      points, wish, [&](const Pick& p) { return within(*p.point, wish); },
+      [&](const Pick& p) { return std::pair(kept(p.frame, wish.budget), p.point->seconds()); });
+  if (!found.best) return found;
+  found.budget = kept(found.best->frame, wish.budget);
+  found.next = fastest(points, wish, found.best->point->spec.name());
   return found;
 }
 

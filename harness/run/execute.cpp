@@ -33,10 +33,9 @@ auto in_child(const RunLimits& limits, double memory, const Run& run, const Read
 
 // The point whose child did not come back.
 PointResult lost_point(const PointSpec& spec, const ChildOutcome& outcome, double timeout) {
-  const std::string place = outcome.step < 0
-                                ? std::string("before the first step")
-                                : "in step " + std::to_string(outcome.step) +
-                                      " (t = " + number_text(outcome.time) + " s)";
+  const std::string place = outcome.step < 0 ? std::string("before the first step")
+                                             : "in step " + std::to_string(outcome.step) +
+                                                   " (t = " + number_text(outcome.time) + " s)";
   PointResult point(spec);
   if (outcome.end == End::timed_out) {
     const bool calibrating = outcome.part == static_cast<int>(RunPart::calibration);

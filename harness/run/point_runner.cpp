@@ -88,40 +88,37 @@ PointRunner::PointRunner(const PointSpec& spec, const RunLimits& limits)
   if (limits.references) reference_ = limits.references->find(spec.scene, spec.scene_parameters);
 }
 
-Judge::Options PointRunner::judging(bool errors) const {
-  Judge::Options options{steps_ / sampled_instants};
-  options.velocities = backend_.velocities;
-  if (errors) {
-    options.reference = reference_;
-    // Where growth is the question, memory for iterates would be part of the answer.
-    options.residual = backend_.shows_iterates && !spec_.adaptive && spec_.sweep != "resolution";
-    // A figure draws the series of step sweeps; for the others it would fill files unread.
-    options.residual_series = spec_.sweep == "step";
-  }
-  return options;
-}
-
-// Judges the steps of a run, and times them.
-class PointRunner::RunObserver : public Observer {
+// Times the steps of a run, judges them, and says in its status why it ended.
+class PointRunner::Observed : public Observer {
  public:
-  // judge: null leaves all time to the steps.
-  RunObserver(const PointRunner& runner, Judge* judge, double stop_at, bool by_work, Run& run)
+  // Without the judge, all time is left to the steps.
+  Observed(const PointRunner& runner, bool judged, double stop_at, bool by_work, Run& run)
       : runner_(runner),
-        judge_(judge),
+        spec_(runner.spec_),
+        limits_(runner.limits_),
+        backend_(runner.backend_),
         stop_at_(stop_at),
         by_work_(by_work),
         run_(run),
-        frames_(runner.spec_.step) {}
+        frames_(spec_.step) {
+    if (!judged) return;
+    judge_.emplace(runner.scene_, judging());
+    run.stepper->observe(judge_->observer());
+    run.observed = judge_->observer() != nullptr;
+  }
 
   int before(const State& state, const DriveState& /*driven*/) {
-    if (judge_) judge_->before(state, runner_.spec_.step);
+    if (judge_) judge_->before(state, spec_.step);
     cpu_begin_ = thread_seconds();
     begin_ = Clock::now();
     return block_;
   }
 
+  // Where this run is, for the process that watches over it. In whatever order it sees that.
   void each(const State& state, const DriveState& driven) {
-    runner_.beat(driven.steps, state.time);
+    if (!limits_.heartbeat) return;
+    limits_.heartbeat->step.store(driven.steps, std::memory_order_relaxed);
+    limits_.heartbeat->time.store(state.time, std::memory_order_relaxed);
   }
 
   void all(const State& state, const DriveState& driven) {
@@ -133,24 +130,52 @@ class PointRunner::RunObserver : public Observer {
     const double time = state.time - runner_.first_state_.time;
     // Where another process had the processor, the frame is not to blame.
     if (driven.taken > 0)
-      frames_.add(runner_.spec_.adaptive ? 1 : driven.taken, runner_.spec_.step, time,
+      frames_.add(spec_.adaptive ? 1 : driven.taken, spec_.step, time,
                   std::min(seconds, cpu_seconds));
     if (!judge_ && seconds < shortest_block) block_ *= 2;
   }
 
   bool after(const State& state, const DriveState& driven) {
-    if (runner_.spec_.adaptive) run_.smallest_step = driven.smallest;
-    if (judge_) {
-      const double strain =
-          judge_->after(run_.stepper->filtered_positions(), state, driven.last, driven.whole);
-      if (runner_.overstrained(strain, stop_at_, run_)) return false;
-    }
-    return driven.steps == runner_.steps_ || !(stepped() > runner_.limits_.hopeless);
+    if (spec_.adaptive) run_.smallest_step = driven.smallest;
+    if (judge_ && overstrained(judge_->after(run_.stepper->filtered_positions(), state, driven.last,
+                                             driven.whole)))
+      return false;
+    return driven.steps == runner_.steps_ || !(stepped() > limits_.hopeless);
   }
 
-  std::vector<FrameTime> frame_times() const { return frames_.summary(); }
+  void finish(const DriveState& driven, double time) {
+    if (run_.status == PointStatus::ok) tell_end(driven, time);
+    run_.frame_times = frames_.summary();
+    if (!judge_) return;
+    run_.stepper->observe(nullptr);
+    run_.measures = judge_->finish();
+    if (run_.status == PointStatus::ok) decide();
+  }
 
  private:
+  Judge::Options judging() const {
+    Judge::Options options{runner_.steps_ / sampled_instants};
+    options.velocities = backend_.velocities;
+    if (stop_at_ != diverged_strain) return options;  // no errors, and nothing beside them
+    options.reference = runner_.reference_;
+    // Where growth is the question, memory for iterates would be part of the answer.
+    options.residual = backend_.shows_iterates && !spec_.adaptive && spec_.sweep != "resolution";
+    // A figure draws the series of step sweeps; for the others it would fill files unread.
+    options.residual_series = spec_.sweep == "step";
+    return options;
+  }
+
+  bool keeps_strain() const { return backend_.strain_control != inextensible::StrainControl::none; }
+
+  // Whether the strain of a step ends the run.
+  bool overstrained(double strain) {
+    if (!keeps_strain() || strain <= stop_at_) return false;
+    run_.status = !(strain <= diverged_strain) ? PointStatus::diverged : PointStatus::strain_missed;
+    run_.detail = "strain " + std::to_string(strain) + " at step " +
+                  std::to_string(run_.stepper->work().steps - 1);
+    return true;
+  }
+
   // s, as far as it counts against limits_.hopeless.
   double stepped() const {
     if (!by_work_) return run_.seconds;
@@ -158,42 +183,65 @@ class PointRunner::RunObserver : public Observer {
            work_patience;
   }
 
+  // Why the drive ended before the scene did.
+  void tell_end(const DriveState& driven, double time) {
+    using End = DriveState::End;
+    if (driven.end == End::arrived) return;
+    if (driven.end == End::refused) {
+      run_.status = driven.result.status == Status::not_finite ? PointStatus::diverged
+                                                               : PointStatus::not_converged;
+      run_.detail = refusal(driven.result, run_.stepper->work().steps, time);
+      if (spec_.adaptive)
+        run_.detail += "; at the smallest step, " + number_text(driven.next) + " s";
+      return;
+    }
+    const bool slow = driven.end == End::stopped;
+    run_.status = PointStatus::timeout;
+    std::ostringstream text;
+    text << "longer than " << (slow ? limits_.hopeless : limits_.timeout) << " s"
+         << (slow ? ", far above the best time so far" : "") << "; stopped at t = " << time << " s";
+    run_.detail = text.str();
+  }
+
+  // What kept a run that reached its end from being one of this motion.
+  void decide() {
+    const Measures& found = run_.measures;
+    if (keeps_strain() && !(found.max_strain <= spec_.strain_limit * (1 + 1e-9))) {
+      run_.status = PointStatus::strain_missed;
+      run_.detail = "maximum strain " + told_apart(found.max_strain, spec_.strain_limit) +
+                    " above " + number_text(spec_.strain_limit);
+    } else if (const std::string gained = energy_gained(
+                   judge_->energy(), runner_.scene_.energy_bound, runner_.scene_.duration);
+               !gained.empty()) {
+      run_.status = PointStatus::energy_gained;
+      run_.detail = gained;
+    } else if (found.moved < least_motion) {
+      run_.status = PointStatus::motion_lost;
+      run_.detail = "its vertices moved " + number_text(found.moved, 3) +
+                    " times as far as the reference's, " + number_text(least_motion) +
+                    " are needed";
+    } else if (kinetic_energy_lost(found.kinetic_ratio, found.kinetic_spread)) {
+      run_.status = PointStatus::motion_lost;
+      run_.detail = "its mean kinetic energy is " + number_text(found.kinetic_ratio, 3) +
+                    " times that of the ensemble, permitted are " +
+                    number_text(least_kinetic_ratio) + " to " + number_text(largest_kinetic_ratio) +
+                    " and what the ensemble's runs have";
+    }
+  }
+
   const PointRunner& runner_;
-  Judge* judge_;
+  const PointSpec& spec_;
+  const RunLimits& limits_;
+  const inextensible::Backend& backend_;
   double stop_at_;
   bool by_work_;
   Run& run_;
+  std::optional<Judge> judge_;
   FrameTimes frames_;
   int block_ = 1;  // steps that are timed as one
   double cpu_begin_ = 0;
   Clock::time_point begin_;
 };
-
-bool PointRunner::overstrained(double strain, double stop_at, Run& run) const {
-  if (backend_.strain_control == inextensible::StrainControl::none || strain <= stop_at)
-    return false;
-  run.status = !(strain <= diverged_strain) ? PointStatus::diverged : PointStatus::strain_missed;
-  run.detail = "strain " + std::to_string(strain) + " at step " +
-               std::to_string(run.stepper->work().steps - 1);
-  return true;
-}
-
-void PointRunner::tell_end(const DriveState& driven, double time, Run& run) const {
-  if (driven.end == DriveState::End::arrived || run.status != PointStatus::ok) return;
-  if (driven.end == DriveState::End::refused) {
-    run.status = driven.result.status == Status::not_finite ? PointStatus::diverged
-                                                            : PointStatus::not_converged;
-    run.detail = refusal(driven.result, run.stepper->work().steps, time);
-    if (spec_.adaptive) run.detail += "; at the smallest step, " + number_text(driven.next) + " s";
-    return;
-  }
-  const bool slow = driven.end == DriveState::End::stopped;
-  run.status = PointStatus::timeout;
-  std::ostringstream text;
-  text << "longer than " << (slow ? limits_.hopeless : limits_.timeout) << " s"
-       << (slow ? ", far above the best time so far" : "") << "; stopped at t = " << time << " s";
-  run.detail = text.str();
-}
 
 Run PointRunner::run(const inextensible::Settings& settings, bool judged, double stop_at,
                      bool phases, bool by_work) const {
@@ -203,74 +251,22 @@ Run PointRunner::run(const inextensible::Settings& settings, bool judged, double
       spec_.solver, scene_.problem, {spec_.strain_limit, spec_.seed, settings, &first_state_});
   run.setup_seconds = since(setup);
   run.stepper->measure_phases(phases);
-  std::optional<Judge> judge;
-  if (judged) {
-    judge.emplace(scene_, judging(stop_at == diverged_strain));
-    run.stepper->observe(judge->observer());
-    run.observed = judge->observer() != nullptr;
-  }
   State state = first_state_;
-  beat(0, 0);
-  RunObserver observer(*this, judge ? &*judge : nullptr, stop_at, by_work, run);
+  Observed observer(*this, judged, stop_at, by_work, run);
+  observer.each({}, {});
   // Between blocks there is little but reads of the clock; the judge takes longer than steps do.
   const double cpu_begin = thread_seconds();
   const DriveState driven =
       drive(*run.stepper, state, {spec_.step, steps_, spec_.adaptive ? usual_halvings : 0},
             observer, {limits_.timeout, start_, limits_.interrupted});
   if (!judged) run.cpu_seconds = thread_seconds() - cpu_begin;
-  tell_end(driven, state.time, run);
-  run.frame_times = observer.frame_times();
-  if (judge) {
-    run.stepper->observe(nullptr);
-    run.measures = judge->finish();
-    if (run.status == PointStatus::ok) decide(*judge, run);
-  }
+  observer.finish(driven, state.time);
   return run;
-}
-
-void PointRunner::decide(const Judge& judge, Run& run) const {
-  const Measures& found = run.measures;
-  if (backend_.strain_control != inextensible::StrainControl::none &&
-      !(found.max_strain <= spec_.strain_limit * (1 + 1e-9))) {
-    run.status = PointStatus::strain_missed;
-    run.detail = "maximum strain " + told_apart(found.max_strain, spec_.strain_limit) + " above " +
-                 number_text(spec_.strain_limit);
-  } else if (const std::string gained =
-                 energy_gained(judge.energy(), scene_.energy_bound, scene_.duration);
-             !gained.empty()) {
-    run.status = PointStatus::energy_gained;
-    run.detail = gained;
-  } else if (found.moved < least_motion) {
-    run.status = PointStatus::motion_lost;
-    run.detail = "its vertices moved " + number_text(found.moved, 3) +
-                 " times as far as the reference's, " + number_text(least_motion) + " are needed";
-  } else if (kinetic_energy_lost(found.kinetic_ratio, found.kinetic_spread)) {
-    run.status = PointStatus::motion_lost;
-    run.detail = "its mean kinetic energy is " + number_text(found.kinetic_ratio, 3) +
-                 " times that of the ensemble, permitted are " + number_text(least_kinetic_ratio) +
-                 " to " + number_text(largest_kinetic_ratio) + " and what the ensemble's runs have";
-  }
-}
-
-double PointRunner::bare_seconds_per_step() const {
-  const auto stepper = inextensible::make_stepper(
-      spec_.solver, scene_.problem, {spec_.strain_limit, spec_.seed, {}, &first_state_});
-  State state = first_state_;
-  const auto before = Clock::now();
-  for (int i = 0; i < steps_; ++i) stepper->advance(state, spec_.step);
-  return since(before) / steps_;
 }
 
 void PointRunner::restart_clock(RunPart part) {
   start_ = Clock::now();
   if (limits_.heartbeat) limits_.heartbeat->restart(static_cast<int>(part));
-}
-
-// Where this run is, for the process that watches over it. In whatever order it sees that.
-void PointRunner::beat(long step, double time) const {
-  if (!limits_.heartbeat) return;
-  limits_.heartbeat->step.store(step, std::memory_order_relaxed);
-  limits_.heartbeat->time.store(time, std::memory_order_relaxed);
 }
 
 double harness_seconds_per_step() {
@@ -289,10 +285,14 @@ double harness_seconds_per_step() {
   double with = 1e300, without = 1e300;
   for (int round = 0; round < rounds; ++round) {  // the least of each: what else runs only adds
     with = std::min(with, runner.seconds_per_step(runner.run({}, false, diverged_strain)));
-    without = std::min(without, runner.bare_seconds_per_step());
+    State state = start_of(runner.scene(), runner.backend(), spec.step);
+    const auto stepper = inextensible::make_stepper(spec.solver, runner.scene().problem,
+                                                    {spec.strain_limit, spec.seed, {}, &state});
+    const auto before = Clock::now();
+    for (int i = 0; i < steps; ++i) stepper->advance(state, spec.step);
+    without = std::min(without, since(before) / steps);
   }
   return std::max(0.0, with - without);
 }
 
 }  // namespace harness
-

@@ -38,7 +38,7 @@ class FrameTimes {
 struct Run {
   PointStatus status = PointStatus::ok;
   std::string detail;
-  double seconds = 0;      // of stepping alone
+  double seconds = 0;  // of stepping alone
   double first_step_seconds = 0;
   double cpu_seconds = 0;  // of the thread, the same
   Measures measures;
@@ -63,9 +63,6 @@ class PointRunner {
   Run run(const inextensible::Settings& settings, bool judged, double stop_at, bool phases = true,
           bool by_work = false) const;
 
-  // The same steps with nothing around them.
-  double bare_seconds_per_step() const;
-
   // For the next run.
   void restart_clock(RunPart part);
   const inextensible::Backend& backend() const { return backend_; }
@@ -75,15 +72,7 @@ class PointRunner {
   double seconds_per_step(const Run& run) const { return run.seconds / steps_; }
 
  private:
-  // The status of a run that reached its end: what kept it from being one of this motion.
-  void decide(const Judge& judge, Run& run) const;
-  Judge::Options judging(bool errors) const;  // errors: and what is measured beside them
-  class RunObserver;
-  // Says in the run's status why its drive ended before the scene did.
-  void tell_end(const DriveState& driven, double time, Run& run) const;
-  // Whether the strain of a step ends the run; if so, says it in its status.
-  bool overstrained(double strain, double stop_at, Run& run) const;
-  void beat(long step, double time) const;
+  class Observed;  // a run in progress
 
   const PointSpec& spec_;
   const RunLimits& limits_;

@@ -21,20 +21,12 @@ bool counts(const PointResult& point) {
   return point.ok() && within_known_error(point.measures, headline_error);
 }
 
-// One size and strain limit of the scene, and what is known there.
-struct Place {
-  Search search = {};
-  std::optional<double> stiffness = {};  // to begin calibrations from
-  std::size_t best_rung = 0;             // of the best time so far; where the next search begins
-  double best_seconds = 1e300;           // s/s
-};
-
 struct Found {
   std::size_t rung = 0;  // of the best step
   double seconds = 0;    // s/s
 };
 
-// At one place.
+// At one size and strain limit of the scene.
 class Tuner {
  public:
   Tuner(const SweepSpec& scene, const TuneOptions& options, const SweepRunners& runners,
@@ -43,15 +35,13 @@ class Tuner {
         runners_(runners),
         scene_(scene),
         numbers_(numbers),
-        start_(std::move(start)) {
-    place_ = place_at(scene.resolutions.front());
-  }
+        start_(std::move(start)) {}
 
   // Nothing where no step counts at any size: that says nothing about settings. `guess` is tried
   // first and takes the values found.
   std::optional<TunedPlace> run(Values& guess) {
     begin(guess);
-    if (place_.best_seconds >= 1e300) return {};
+    if (best_.seconds >= 1e300) return {};
     const auto seconds = [this](const Values& values, double hopeless) {
       return evaluate(values, hopeless);
     };
@@ -62,23 +52,25 @@ class Tuner {
     if (was == last_.end() || is == last_.end()) return {};
     guess = outcome.values;
     const Found &before = was->second, &now = is->second;
-    const PointSpec& base = place_.search.base;
-    return TunedPlace{base.resolution,
-                      base.strain_limit,
-                      settings_of(outcome.values),
-                      outcome.evaluations,
-                      before.seconds,
-                      place_.search.ladder[before.rung],
-                      now.seconds,
-                      place_.search.ladder[now.rung]};
+    return TunedPlace{
+        {search_.base.resolution, search_.base.strain_limit, settings_of(outcome.values)},
+        outcome.evaluations,
+        before.seconds,
+        search_.ladder[before.rung],
+        now.seconds,
+        search_.ladder[now.rung]};
   }
 
  private:
-  Place place_at(int size) const {
+  // At this size of the scene; nothing is known there.
+  void take_size(int size) {
     Suite suite;
     suite.sweeps = {scene_};
     suite.sweeps.front().resolutions = {size};
-    return {.search = plan(suite, {}).front()};
+    search_ = plan(suite, {}).front();
+    stiffness_.reset();
+    best_ = {0, 1e300};
+    last_.clear();
   }
 
   inextensible::Settings settings_of(const Values& values) const {
@@ -90,22 +82,21 @@ class Tuner {
 
   PointResult run_once(std::size_t rung, const inextensible::Settings& settings,
                        double most_seconds) {
-    PointSpec what = place_.search.base;
-    what.step = place_.search.ladder[rung];
+    PointSpec what = search_.base;
+    what.step = search_.ladder[rung];
     what.settings = settings;
     const double hopeless = std::max(0.05, most_seconds * duration());
-    PointResult point =
-        runners_.run(what, {options_.timeout, hopeless, options_.interrupted, runners_.references},
-                     place_.stiffness);
-    if (point.stiffness) place_.stiffness = point.stiffness;
+    PointResult point = runners_.run(
+        what, {options_.timeout, hopeless, options_.interrupted, runners_.references}, stiffness_);
+    if (point.stiffness) stiffness_ = point.stiffness;
     return point;
   }
 
   // With a sample more.
   const PointResult& repeated(PointResult& point) const {
-    append(runners_.repeat(point,
-                           {.timeout = options_.timeout, .interrupted = options_.interrupted}),
-           point);
+    append(
+        runners_.repeat(point, {.timeout = options_.timeout, .interrupted = options_.interrupted}),
+        point);
     return point;
   }
 
@@ -113,24 +104,22 @@ class Tuner {
   // that takes too long, and longer with `guess` too: a default must not decide at which size a
   // method is tuned.
   void begin(const Values& guess) {
+    take_size(scene_.resolutions.front());
     const std::vector<int> smaller_ones = smaller_sizes(scene_.scene);
     find_best(far_too_long * options_.longest_run);
     for (const int size : smaller_ones) {
-      if (place_.best_seconds < 1e300 && takes_too_long() && !guess.empty())
-        evaluate(guess, give_up_at * place_.best_seconds);
+      if (best_.seconds < 1e300 && takes_too_long() && !guess.empty())
+        evaluate(guess, give_up_at * best_.seconds);
       if (!takes_too_long()) break;
-      if (size >= place_.search.base.resolution) continue;
-      place_ = place_at(size);
-      last_.clear();
+      if (size >= search_.base.resolution) continue;
+      take_size(size);
       find_best(size == smaller_ones.back() ? 1e300 : far_too_long * options_.longest_run);
     }
   }
 
-  bool takes_too_long() const {
-    return !(place_.best_seconds * duration() <= options_.longest_run);
-  }
+  bool takes_too_long() const { return !(best_.seconds * duration() <= options_.longest_run); }
 
-  double duration() const { return place_.search.base.scene_parameters.at("duration"); }
+  double duration() const { return search_.base.scene_parameters.at("duration"); }
 
   void find_best(double most_seconds) {
     std::map<std::size_t, PointResult> known;
@@ -144,7 +133,7 @@ class Tuner {
     const auto again = [&](std::size_t rung) -> const PointResult& {
       return repeated(known.at(rung));
     };
-    StepSearch(place_.search.ladder.size(), run, again, {headline_error}).find(std::nullopt);
+    StepSearch(search_.ladder.size(), run, again, {headline_error}).find(std::nullopt);
     for (const auto& [rung, point] : known)
       if (counts(point)) learn({rung, point.seconds()});
   }
@@ -157,15 +146,15 @@ class Tuner {
     const auto own = last_.find(values);
     PointResult fastest;
     std::optional<std::size_t> rung =
-        best_step(settings, own == last_.end() ? place_.best_rung : own->second.rung,
-                  in_race ? 1 : 2, hopeless, fastest);
+        best_step(settings, own == last_.end() ? best_.rung : own->second.rung, in_race ? 1 : 2,
+                  hopeless, fastest);
     // One run is enough to say of what is slower that it is not better.
-    if (rung && (!in_race || fastest.seconds() < place_.best_seconds)) {
+    if (rung && (!in_race || fastest.seconds() < best_.seconds)) {
       for (int i = 1; i < samples; ++i) repeated(fastest);
     }
     if (rung && fastest.seconds() > hopeless) rung.reset();
-    options_.tell(scene_.scene + "/" + place_.search.base.solver + " " + to_json(settings).dump() +
-                  ": " + (rung ? duration_text(fastest.seconds()) + "/s" : "too slow"));
+    options_.tell(scene_.scene + "/" + search_.base.solver + " " + to_json(settings).dump() + ": " +
+                  (rung ? duration_text(fastest.seconds()) + "/s" : "too slow"));
     if (!rung) return {};
     last_[values] = {*rung, fastest.seconds()};
     learn(last_[values]);
@@ -173,9 +162,7 @@ class Tuner {
   }
 
   void learn(const Found& found) {
-    if (found.seconds >= place_.best_seconds) return;
-    place_.best_seconds = found.seconds;
-    place_.best_rung = found.rung;
+    if (found.seconds < best_.seconds) best_ = found;
   }
 
   // The rung of the fastest step, whose run goes to `fastest`: from `start` to both sides, until
@@ -191,15 +178,13 @@ class Tuner {
       return true;
     };
     faster(start);
-    const auto go = [&](int direction) {
+    for (const int direction : {1, -1}) {
       int in_vain = 0;
       for (auto at = static_cast<int>(start) + direction;
-           in_vain < patience && at >= 0 && at < static_cast<int>(place_.search.ladder.size());
+           in_vain < patience && at >= 0 && at < static_cast<int>(search_.ladder.size());
            at += direction)
         in_vain = faster(static_cast<std::size_t>(at)) ? 0 : in_vain + 1;
-    };
-    go(1);
-    go(-1);
+    }
     return best;
   }
 
@@ -208,8 +193,10 @@ class Tuner {
   const SweepSpec& scene_;  // one size and limit
   const std::vector<TunedNumber>& numbers_;
   const Values start_;  // what the search begins with, and must better
-  Place place_;
-  std::map<Values, Found> last_;  // of the last time that it was measured
+  Search search_;
+  std::optional<double> stiffness_;  // to begin calibrations from
+  Found best_;                       // so far; where the next search begins
+  std::map<Values, Found> last_;     // of the last time that it was measured
 };
 
 Values values_of(const inextensible::Settings& settings, const std::vector<TunedNumber>& numbers) {

@@ -128,10 +128,10 @@ void print_sag(std::ostream& out, const NamedResult& result) {
                   "that uses up its strain and bears an even load is a parabola, which sags by " +
                   parabolas,
               table_of(fastest, "mm (m/s)", [](const Point& p) {
-                const json& sag = p.document().at("sag");
-                return plain(1e3 * sag.at("top_row").get<double>(), 3) + ", " +
-                       plain(1e3 * sag.at("lower_edge").get<double>(), 3) + " (" +
-                       plain(p.number("rest_speed"), 2) + ")";
+                const auto& sag = p.measures().sag;
+                return plain(1e3 * sag.at("top_row"), 3) + ", " +
+                       plain(1e3 * sag.at("lower_edge"), 3) + " (" +
+                       plain(p.measures().rest_speed, 2) + ")";
               }));
 }
 

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "harness/claims/claims.h"
+#include "support/invented_runs.h"
 
 namespace harness {
 
@@ -50,7 +51,8 @@ inline json point(const std::string& scene, const std::string& sweep, const std:
 
 // noise: q95 of the A/A pair; 0: there is none.
 inline json document(const std::vector<json>& points, double noise = 0) {
-  json result{{"points", points}};
+  json result{{"points", json::array()}};
+  for (const json& point : points) result["points"].push_back(invented::completed(point));
   if (noise > 0)
     result["context"]["noise"] = {{"pair", {"fast_projection", "fast_projection_again"}},
                                   {"places", 20},

@@ -1,10 +1,10 @@
 // Result documents whose times are made up, for tests of what is concluded from them.
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
+
+#include "harness/points/point_json.h"
 
 namespace harness::invented {
 
@@ -14,28 +14,33 @@ using nlohmann::json;
 // 0.1 % at 0.5 s, and to 6 % at 1 s, where every run is off by 40 %.
 inline json run(const std::string& contestant, double limit, double step, double seconds,
                 double error, bool best = false, const std::vector<double>& best_at_errors = {}) {
-  std::ostringstream id;
-  id << "chain/" << contestant << "/n:80/strain:" << limit << "/h:" << step;
-  json samples = json::array();
-  for (int i = -4; i <= 4; ++i) samples.push_back(seconds * (1 + 0.001 * i));
-  return {{"id", id.str()},
-          {"scene", "chain"},
-          {"sweep", "strain"},
-          {"contestant", contestant},
-          {"solver", contestant.substr(0, contestant.find("_untuned"))},
-          {"status", "ok"},
-          {"best", best},
-          {"best_at_errors", best_at_errors},
-          {"strain_limit", limit},
-          {"vertices", 80},
-          {"resolution", 80},
-          {"step", step},
-          {"scene_parameters", {{"n", 80.0}, {"duration", 1.0}}},
-          {"error",
-           {{"reference", "chain-n80.json"},
-            {"trajectory", error},
-            {"error_series", {{0.5, error, error, 0.0003, 0.0003}, {1.0, 0.4, 0.4, 0.02, 0.02}}}}},
-          {"seconds_per_simulated_second", {{"median", seconds}, {"samples", samples}}}};
+  PointResult point;
+  PointSpec& spec = point.spec;
+  spec.sweep = "strain";
+  spec.scene = "chain";
+  spec.scene_parameters = {{"n", 80}, {"duration", 1}};
+  spec.resolution = spec.vertices = 80;
+  spec.contestant = contestant;
+  spec.solver = contestant.substr(0, contestant.find("_untuned"));
+  spec.strain_limit = limit;
+  spec.step = step;
+  point.status = PointStatus::ok;
+  for (int i = -4; i <= 4; ++i) point.samples.push_back(seconds * (1 + 0.001 * i));
+  point.best = best;
+  point.best_at_errors = best_at_errors;
+  point.measures.reference = "chain-n80.json";
+  point.measures.trajectory = error;
+  point.measures.error_series = {{0.5, error, error, 0.0003, 0.0003}, {1.0, 0.4, 0.4, 0.02, 0.02}};
+  return to_json(point);
+}
+
+// A point of which a test says a part.
+inline json completed(const json& part) {
+  PointResult point;
+  point.spec.scene_parameters = {{"duration", 1}};
+  json whole = to_json(point);
+  whole.merge_patch(part);
+  return whole;
 }
 
 inline json document(const std::vector<json>& points) {

@@ -25,7 +25,7 @@ std::string write_tuned(const std::vector<TunedEntry>& entries) {
 }
 
 TunedPlace place_at(int resolution, double limit, const inextensible::Settings& settings) {
-  return {resolution, limit, settings, 12, 2, 0.005, 1, 0.01};
+  return {{resolution, limit, settings}, 12, 2, 0.005, 1, 0.01};
 }
 
 TunedEntry of_the_drape(const std::string& solver, const inextensible::Settings& settings) {
@@ -35,7 +35,7 @@ TunedEntry of_the_drape(const std::string& solver, const inextensible::Settings&
           40,
           {place_at(25, 0.02, settings)},
           tuning_rule(scene, *inextensible::find_backend(solver)),
-          {}};
+          {{"date", ""}, {"cpu_model", ""}, {"commit", ""}}};
 }
 
 Suite suite_with(const std::string& everywhere, const std::string& of_sweep,
@@ -49,43 +49,33 @@ std::vector<std::string> names(const Suite& suite) {
   return names_of(suite.sweeps.at(0).contestants);
 }
 
-std::string complaint(const std::string& everywhere, const std::string& of_sweep) {
-  try {
-    static_cast<void>(suite_with(everywhere, of_sweep));
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "accepted";
+// Whether a contestant is among those of a suite that names none, or those of `solvers`.
+bool stands(const char* scene, const std::string& name,
+            const std::string& solvers = R"("also": ["null"], )") {
+  const auto all = names(suite_with("", solvers + R"("steps": {"finest": 0.001})", scene));
+  return std::ranges::count(all, name) > 0;
 }
 
 double setting(const Search& search, const char* name) {
   return std::get<double>(search.base.settings.at(name));
 }
 
-// Suites that name no solvers; named ones are listed whatever parts they take.
 TEST(Contestants, TakeEveryPartOfTheScene) {
   for (const char* scene : {"chain", "patch", "drape", "fabric_drape"}) {
     const auto type = find_scene(scene);
     const Scene built = type->build(complete_parameters(*type, {}));
-    const auto all = names(suite_with("", R"("also": ["null"])", scene));
     for (const auto& backend : inextensible::backends()) {
       const bool another = type->kind() == "chain" && *backend.same_on_chains;
-      EXPECT_EQ(std::find(all.begin(), all.end(), backend.name) != all.end(),
+      EXPECT_EQ(stands(scene, backend.name),
                 backend.name == std::string("null") ||
                     (backend.contestant && !another && !part_not_taken(backend, *built.problem)))
           << scene << ", " << backend.name;
     }
   }
-  const auto has = [](const char* scene, const char* solver) {
-    const auto all = names(suite_with("", R"("also": [])", scene));
-    return std::find(all.begin(), all.end(), solver) != all.end();
-  };
-  EXPECT_TRUE(has("patch", "soft_step"));
-  EXPECT_FALSE(has("drape", "soft_step"));
-  EXPECT_TRUE(has("drape", "vertex_block_descent"));
-  EXPECT_FALSE(has("fabric_drape", "vertex_block_descent"));
-  EXPECT_EQ(names(suite_with("", R"("solvers": ["soft_step"])", "drape")),
-            std::vector<std::string>{"soft_step"});
+  EXPECT_TRUE(stands("patch", "soft_step"));
+  EXPECT_FALSE(stands("drape", "soft_step"));
+  EXPECT_TRUE(stands("drape", "soft_step", R"("solvers": ["soft_step"], )")) << "it is named";
+  EXPECT_FALSE(stands("fabric_drape", "vertex_block_descent"));
 }
 
 TEST(Contestants, HaveTheirOwnNamesAndSettings) {
@@ -108,15 +98,9 @@ TEST(Contestants, HaveTheirOwnNamesAndSettings) {
 }
 
 TEST(Contestants, ThatAreAnotherOneOnAChainAreLeftOutThereUnlessTheyAreNamed) {
-  const auto stands = [](const std::string& solvers, const char* scene, const std::string& name) {
-    const auto all = names(suite_with("", solvers + R"("steps": {"finest": 0.001})", scene));
-    return std::find(all.begin(), all.end(), name) != all.end();
-  };
-  EXPECT_FALSE(stands("", "chain", "yarn_projection@bdf2"));
-  EXPECT_FALSE(stands("", "whip", "yarn_projection@bdf2"));
-  EXPECT_TRUE(stands("", "drape", "yarn_projection@bdf2"));
-  EXPECT_TRUE(stands("", "chain", "fast_projection_adaptive@bdf2"));
-  EXPECT_TRUE(stands(R"("solvers": ["yarn_projection@bdf2"], )", "chain", "yarn_projection@bdf2"));
+  EXPECT_TRUE(stands("whip", "fast_projection_adaptive@bdf2"));
+  EXPECT_FALSE(stands("whip", "yarn_projection@bdf2"));
+  EXPECT_TRUE(stands("chain", "yarn_projection@bdf2", R"("solvers": ["yarn_projection@bdf2"], )"));
   for (const auto& backend : inextensible::backends()) {
     if (*backend.same_on_chains) {
       EXPECT_TRUE(inextensible::find_backend(backend.same_on_chains)) << backend.name;
@@ -124,23 +108,63 @@ TEST(Contestants, ThatAreAnotherOneOnAChainAreLeftOutThereUnlessTheyAreNamed) {
   }
 }
 
-TEST(Contestants, ThatAreWrongAreRefusedByName) {
-  const auto says = [](const std::string& message, const std::string& part) {
+// What a wrong suite is told: each message names the key or value.
+TEST(Suite, NamesFileKeyAndValueOfWhatIsWrong) {
+  const auto says = [](const std::string& text, const std::string& part) {
+    std::string message = "accepted";
+    try {
+      static_cast<void>(parse_suite(text, "suite.json"));
+    } catch (const UsageError& error) {
+      message = error.what();
+    }
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
-  says(complaint("", R"("solvers": ["jacobi", "jacobi"])"), "'jacobi' is there twice");
-  says(complaint("", R"("solvers": [{"name": "icd", "solver": "jacobi"}])"), "another solver");
-  says(complaint("", R"("solvers": [{"name": "my solver", "solver": "icd"}])"), "a-z, 0-9 and _");
-  says(complaint("", R"("solvers": [{"name": "x", "solver": "idc"}])"), "did you mean 'icd'");
-  says(complaint("", R"("solvers": [{"name": "x", "solver": "icd", "settings": {"relax": 1}}])"),
-       "no setting of solver icd 'relax'");
-  says(complaint("", R"("solvers": [{"name": "x", "solver": "icd", "unranked": 1}])"),
-       "'unranked'");
-  says(complaint("", R"("solvers": [5])"), "solvers' names");
-  says(complaint(R"("same": "idc", )", R"("solvers": ["icd"])"), "did you mean 'icd'");
-  says(complaint(R"("untuned": true, )", R"("solvers": ["icd"])"), "goes with 'tuned'");
-  says(complaint("", R"("solvers": ["icd"], "untuned": true)"), "goes with 'tuned'");
-  says(complaint(R"("tuned": "no_such.json", )", R"("solvers": ["icd"])"), "no_such.json");
+  says("{ nonsense", "is not JSON");
+  says("[]", "must be an object");
+  says(R"({"reps": 0, "sweeps": []})", "'reps' is 0");
+  struct Row {
+    const char *everywhere, *of_sweep, *part;
+  };
+  for (const auto& [everywhere, of_sweep, part] : {
+           Row{"", R"("limits": [0.1])", "accepted"},
+           Row{"", R"("limits": [0])", "'limits' is 0"},
+           Row{"", R"("limits": "all")", "'limits' is \"all\""},
+           Row{"", R"("limit": -1)", "'limit' is -1"},
+           Row{"", R"("limit": 0.1, "scene": "drap")", "did you mean 'drape'"},
+           Row{"", R"("limit": 0.1, "solver": ["icd"])", "did you mean 'solvers'"},
+           Row{"", R"("limit": 0.1, "solvers": ["fast_projetion"])",
+               "did you mean 'fast_projection'"},
+           Row{"", R"("limit": 0.1, "scene_parameters": {"n": 1})", "'n' is 1"},
+           Row{"", R"("limit": 0.1, "scene_parameters": {"m": 1})",
+               "no parameter of scene chain 'm'"},
+           Row{"", R"("limit": 0.1, "resolutions": [2.5])", "'resolutions' is 2.5"},
+           Row{"", R"("limit": 0.1, "solver_options": {"icd": {"max_iteration": 3}})",
+               "did you mean 'max_iterations'"},
+           Row{"", R"("limit": 0.1, "solvers": ["jacobi", "jacobi"])", "'jacobi' is there twice"},
+           Row{"", R"("limit": 0.1, "solvers": [{"name": "icd", "solver": "jacobi"}])",
+               "another solver"},
+           Row{"", R"("limit": 0.1, "solvers": [{"name": "my solver", "solver": "icd"}])",
+               "a-z, 0-9 and _"},
+           Row{"", R"("limit": 0.1, "solvers": [{"name": "x", "solver": "idc"}])",
+               "did you mean 'icd'"},
+           Row{"", R"("limit": 0.1, "solvers": [{"name": "x", "solver": "icd",
+                   "settings": {"relax": 1}}])",
+               "no setting of solver icd 'relax'"},
+           Row{"", R"("limit": 0.1, "solvers": [{"name": "x", "solver": "icd", "unranked": 1}])",
+               "'unranked'"},
+           Row{"", R"("limit": 0.1, "solvers": [5])", "solvers' names"},
+           Row{R"("same": "idc", )", R"("limit": 0.1, "solvers": ["icd"])", "did you mean 'icd'"},
+           Row{R"("untuned": true, )", R"("limit": 0.1, "solvers": ["icd"])", "goes with 'tuned'"},
+           Row{"", R"("limit": 0.1, "solvers": ["icd"], "untuned": true)", "goes with 'tuned'"},
+           Row{R"("tuned": "no_such.json", )", R"("limit": 0.1, "solvers": ["icd"])",
+               "no_such.json"},
+       }) {
+    const std::string scene =
+        std::string(of_sweep).find("\"scene\"") == std::string::npos ? R"("scene": "chain", )" : "";
+    says("{" + std::string(everywhere) + R"("sweeps": [{"sweep": "strain", )" + scene + of_sweep +
+             "}]}",
+         part);
+  }
 }
 
 TEST(Tuned, SettingsAreUsedForTheirKindOfSceneAndBelowWhatASuiteSays) {
@@ -192,9 +216,7 @@ TEST(Tuned, SettingsAreThoseOfTheNearestSizeAndLimit) {
 }
 
 TEST(Tuned, AFileIsReadAsItIsWrittenAndItsHashIsThatOfItsSettings) {
-  TunedEntry e{
-      "chain",           "jacobi",           40, {place_at(50, 0.01, {{"relaxation", 1.7}})},
-      {{"error", 0.02}}, {{"date", "today"}}};
+  TunedEntry e = of_the_drape("jacobi", {{"relaxation", 1.7}});
   const std::string text = tuned_document({e}).dump();
   const Tuned once = parse_tuned(text, "t");
   ASSERT_EQ(once.entries.size(), 1u);
@@ -205,22 +227,23 @@ TEST(Tuned, AFileIsReadAsItIsWrittenAndItsHashIsThatOfItsSettings) {
   EXPECT_NE(parse_tuned(tuned_document({e}).dump(), "t").hash, once.hash);
   for (const auto& [from, to] :
        {std::pair("1.7", "7.5"), std::pair("relaxation", "relation"), std::pair("jacobi", "jakobi"),
-        std::pair("chain", "train"), std::pair("0.005", "-1"), std::pair("tuned/3", "tuned/9")}) {
+        std::pair("drape", "grape"), std::pair("0.005", "-1"), std::pair("tuned/3", "tuned/9")}) {
     std::string wrong = text;
     wrong.replace(wrong.find(from), std::string(from).size(), to);
     EXPECT_THROW(static_cast<void>(parse_tuned(wrong, "t")), UsageError) << to;
   }
 }
 
-PointResult timed(const std::string& contestant, double limit, double step, double seconds) {
-  PointResult point;
-  point.spec.sweep = "strain";
-  point.spec.scene = "chain";
-  point.spec.contestant = contestant;
-  point.spec.solver = "icd";
-  point.spec.strain_limit = limit;
-  point.spec.step = step;
-  point.status = PointStatus::ok;
+PointResult timed(const std::string& contestant, double limit, double step, double seconds,
+                  const char* sweep = "strain") {
+  PointSpec spec;
+  spec.sweep = sweep;
+  spec.scene = "chain";
+  spec.contestant = contestant;
+  spec.solver = "icd";
+  spec.strain_limit = limit;
+  spec.step = step;
+  PointResult point(spec, PointStatus::ok);
   point.samples = {seconds};
   point.best = true;
   return point;
@@ -245,19 +268,14 @@ TEST(Noise, IsTheSpreadOfThePairsRatiosWhateverItsSteps) {
   EXPECT_EQ(noise_of({{"noise", to_json(*noise)}})->q95, noise->q95);
   EXPECT_FALSE(noise_of(json::object()));
   EXPECT_FALSE(pair_noise(points, "jacobi"));
-}
-
-TEST(Noise, OfAStepSweepComparesEqualSteps) {
-  std::vector<PointResult> points{timed("icd", 0.1, 0.01, 1), timed("icd", 0.1, 0.005, 2),
-                                  timed("icd_again", 0.1, 0.005, 2.2)};
-  for (PointResult& point : points) {
-    point.spec.sweep = "step";
-    point.best = false;
-  }
-  const auto noise = pair_noise(points, "icd");
-  ASSERT_TRUE(noise);
-  EXPECT_EQ(noise->places, 1);
-  EXPECT_NEAR(noise->q95, std::log(1.1), 1e-12);
+  // A step sweep compares equal steps.
+  const auto of_steps =
+      pair_noise({timed("icd", 0.1, 0.01, 1, "step"), timed("icd", 0.1, 0.005, 2, "step"),
+                  timed("icd_again", 0.1, 0.005, 2.2, "step")},
+                 "icd");
+  ASSERT_TRUE(of_steps);
+  EXPECT_EQ(of_steps->places, 1);
+  EXPECT_NEAR(of_steps->q95, std::log(1.1), 1e-12);
 }
 
 TEST(Same, StandsThereOnceMoreWithTheSameSettings) {

@@ -1,11 +1,9 @@
 // Corrupted suites and result files, by the thousand: what the fuzzer does, repeatably and in CI.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <random>
-#include <sstream>
 
+#include "harness/base/files.h"
 #include "harness/points/context.h"
 #include "harness/points/fuzz_documents.h"
 #include "support/corrupt.h"
@@ -16,13 +14,6 @@ namespace {
 using harness::testing::corrupt;
 using harness::testing::read_as_result;
 using harness::testing::read_as_suite;
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 void corrupt_and_read(const std::string& text, std::string (*read)(const std::string&), int cases) {
   int refused = 0;
@@ -39,25 +30,26 @@ void corrupt_and_read(const std::string& text, std::string (*read)(const std::st
 
 TEST(Documents, CorruptedSuitesAreReadOrRefusedInALine) {
   for (const char* name : {"quick.json", "default.json", "paper.json", "large.json"}) {
-    const std::string text = text_of(std::filesystem::path(SOURCE_DIR) / "configs" / name);
+    const std::string text =
+        harness::read_file(std::string(SOURCE_DIR) + "/configs/" + name, "suite");
     ASSERT_EQ(read_as_suite(text), "") << name;
     corrupt_and_read(text, read_as_suite, inextensible::testing::trials(500));
   }
 }
 
 TEST(Documents, CorruptedResultsAreReadOrRefusedInALine) {
-  harness::PointResult point;
-  point.spec.scene = "chain";
-  point.spec.solver = "fast_projection";
-  point.spec.sweep = "strain";
-  point.spec.scene_parameters["duration"] = 1;
-  point.spec.resolution = point.spec.vertices = 80;
-  point.spec.constraints = 79;
-  point.status = harness::PointStatus::ok;
-  point.samples = {0.5};
-  point.best = true;
-  std::vector<harness::PointResult> points{point, point};
-  points[1].spec.solver = "implicit_springs";
+  harness::PointSpec spec;
+  spec.sweep = "strain";
+  spec.scene = "chain";
+  spec.scene_parameters["duration"] = 1;
+  spec.resolution = spec.vertices = 80;
+  spec.constraints = 79;
+  std::vector<harness::PointResult> points;
+  for (const char* solver : {"fast_projection", "implicit_springs"}) {
+    spec.solver = solver;
+    points.emplace_back(spec, harness::PointStatus::ok).samples = {0.5};
+    points.back().best = true;
+  }
   const std::string text = harness::result_document(harness::machine_context(), harness::Suite{},
                                                     {"bench"}, true, points)
                                .dump(1);

@@ -48,11 +48,11 @@ TEST(Calibration, FindsItsWay) {
     double guess;
     std::size_t most_runs;
   };
-  for (const Row& row : {Row{tension_law, 320, 1}, Row{tension_law, 400, 2},
-                         Row{tension_law, 3000, 2}, Row{tension_law, 3e6, 2},
-                         Row{tension_law, 290, 8}, Row{tension_law, 100, 8},
-                         Row{tension_law, 10, 8}, Row{tension_law, 0.1, 8}, Row{growing, 1, 16},
-                         Row{growing, 100, 16}, Row{growing, 1e4, 16}, Row{growing, 1e6, 16}}) {
+  for (const Row& row :
+       {Row{tension_law, 320, 1}, Row{tension_law, 400, 2}, Row{tension_law, 3000, 2},
+        Row{tension_law, 3e6, 2}, Row{tension_law, 290, 8}, Row{tension_law, 100, 8},
+        Row{tension_law, 10, 8}, Row{tension_law, 0.1, 8}, Row{growing, 1, 16},
+        Row{growing, 100, 16}, Row{growing, 1e4, 16}, Row{growing, 1e6, 16}}) {
     const Found outcome = search(row.guess, row.strain);
     ASSERT_TRUE(outcome.stiffness) << row.guess;
     EXPECT_LE(row.strain(*outcome.stiffness), limit);

@@ -1,4 +1,5 @@
-// A machine whose runs are formulas: plans are tested with it, without a solver and without a clock.
+// A machine whose runs are formulas: plans are tested with it, without a solver and without a
+// clock.
 #pragma once
 
 #include <cmath>
@@ -18,9 +19,9 @@ struct FakeMachine {
   std::function<double(const PointResult&)> again = [](const PointResult& point) {
     return point.samples.front();
   };
-  bool stops = false;             // runs that are hopeless
-  std::vector<PointSpec> specs;   // in the order of their runs
-  std::vector<double> hopeless;   // s, from which these were
+  bool stops = false;                 // runs that are hopeless
+  std::vector<PointSpec> specs = {};  // in the order of their runs
+  std::vector<double> hopeless = {};  // s, from which these were
   int repetitions = 0;
 
   // The machine must outlive them.
@@ -48,8 +49,7 @@ struct FakeMachine {
 
   std::vector<int> steps() const {  // as 1/n s
     std::vector<int> all;
-    for (const PointSpec& spec : specs)
-      all.push_back(static_cast<int>(std::lround(1 / spec.step)));
+    for (const PointSpec& spec : specs) all.push_back(static_cast<int>(std::lround(1 / spec.step)));
     return all;
   }
 };

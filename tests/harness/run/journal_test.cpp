@@ -38,9 +38,8 @@ Suite suite_of(const std::string& axis) {
 // Times depend on what is run alone; runs fail now and then.
 FakeMachine hashing_machine() {
   const auto hash = [](const PointSpec& spec) { return std::hash<std::string>{}(key_of(spec)); };
-  FakeMachine machine{[hash](const PointSpec& spec) {
-    return 1 + static_cast<double>(hash(spec) % 1000);
-  }};
+  FakeMachine machine{
+      [hash](const PointSpec& spec) { return 1 + static_cast<double>(hash(spec) % 1000); }};
   machine.status = [hash](const PointSpec& spec) {
     return hash(spec) % 5 == 0 ? PointStatus::not_converged : PointStatus::ok;
   };

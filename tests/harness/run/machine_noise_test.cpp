@@ -1,5 +1,5 @@
-// Which samples are taken again, and what tells a noisy machine from a quiet one, with noise of our own
-// making.
+// Which samples are taken again, and what tells a noisy machine from a quiet one, with noise of our
+// own making.
 #include "harness/run/machine_noise.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Real runs: their samples, which of short ones are means of batches, their frames, and what becomes
-// of runs whose kinetic energy is not the ensemble's.
+// Real runs: their samples, which of short ones are means of batches, their frames, and what
+// becomes of runs whose kinetic energy is not the ensemble's.
 #include "harness/run/measure_point.h"
 
 #include <gtest/gtest.h>
@@ -84,8 +84,7 @@ Reference small_reference(const SceneParameters& parameters) {
 }
 
 TEST(PointRunner, ARunThatHangsOrShakesHasLostItsMotion) {
-  const PointSpec spec =
-      spec_at("drape", {{"n", 5}, {"duration", 0.2}}, "fast_projection", 0.005);
+  const PointSpec spec = spec_at("drape", {{"n", 5}, {"duration", 0.2}}, "fast_projection", 0.005);
   const Reference truth = small_reference(spec.scene_parameters);
   ASSERT_TRUE(truth.ensemble.known()) << truth.ensemble.unknown_because;
   const std::string folder = ::testing::TempDir() + "motion_references";

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <random>
 
-#include "harness/run/fake_machine.h"
 #include "harness/base/statistics.h"
+#include "harness/run/fake_machine.h"
 
 namespace harness {
 namespace {
@@ -71,7 +71,8 @@ struct Ladder {
 };
 
 TEST(NoisySearch, IsNotMisledByFirstSamples) {
-  const std::vector<double> equal{1.0, 1.02, 1.01, 1.025, 0.7, 0.9, 1.6}, clear{3.2, 1, 3.2, 6.4, 9};
+  const std::vector<double> equal{1.0, 1.02, 1.01, 1.025, 0.7, 0.9, 1.6},
+      clear{3.2, 1, 3.2, 6.4, 9};
   for (const Ladder& ladder :
        {Ladder{"two false rises that look clear",
                {1.0, 0.9, 1.5, 1.5, 0.6, 0.5, 0.9, 2.0, 4.0},
