@@ -46,26 +46,21 @@ json name_of(const Entry* entry) { return entry ? json(entry->row) : json(nullpt
 json cell_json(const Cell& cell) {
   json entries = json::array();
   for (const Entry& entry : cell.entries) entries.push_back(entry_json(entry));
-  const bool any = cell.first() != nullptr;
-  return {
-      {"strain_limit", cell.strain_limit},
-      {"error_level", number(cell.level)},  // null: any motion
-      {"known_until", cell.known_until},
-      {"empty_because", cell.empty_because},
-      {"first", name_of(cell.first())},
-      {"clear", cell.clear()},
-      {"next_family", any ? name_of(cell.next_family()) : json(nullptr)},
-      {"lead_over_next_family",
-       ratio_json(any ? cell.lead_over(cell.next_family()) : std::nullopt)},
-      {"paper_best", name_of(cell.paper_best())},
-      {"lead_over_paper_best", ratio_json(cell.lead_over(cell.paper_best()))},
-      {"first_as_published", name_of(cell.first_as_published())},
-      {"lead_by_stepper", ratio_json(cell.lead_over(cell.first_as_published()))},
-      {"rival_in_stepper", name_of(cell.rival_in_stepper())},
-      {"lead_by_method", ratio_json(cell.lead_over(cell.rival_in_stepper()))},
-      {"paper_in_any_stepper", name_of(cell.paper_in_any_stepper())},
-      {"lead_over_paper_in_any_stepper", ratio_json(cell.lead_over(cell.paper_in_any_stepper()))},
+  json object = {
+      {"strain_limit", cell.strain_limit}, {"error_level", number(cell.level)},  // null: any motion
+      {"known_until", cell.known_until},   {"empty_because", cell.empty_because},
+      {"first", name_of(cell.first())},    {"clear", cell.clear()},
       {"entries", std::move(entries)}};
+  for (const auto& [name, lead, other] :
+       {std::tuple("next_family", "lead_over_next_family", cell.next_family()),
+        {"paper_best", "lead_over_paper_best", cell.paper_best()},
+        {"first_as_published", "lead_by_stepper", cell.first_as_published()},
+        {"rival_in_stepper", "lead_by_method", cell.rival_in_stepper()},
+        {"paper_in_any_stepper", "lead_over_paper_in_any_stepper", cell.paper_in_any_stepper()}}) {
+    object[name] = name_of(other);
+    object[lead] = ratio_json(cell.lead_over(other));
+  }
+  return object;
 }
 
 json plane_json(const Plane& plane) {

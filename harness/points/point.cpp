@@ -63,7 +63,6 @@ bool within_known_error(const Measures& measures, double level) {
 }
 
 double PointResult::seconds() const { return time_of(samples); }
-double PointResult::run_seconds() const { return seconds() * spec.step * steps_planned; }
 double PointResult::measured_seconds() const {
   double sum = 0;
   for (std::size_t i = 0; i < samples.size(); ++i)
@@ -73,7 +72,7 @@ double PointResult::measured_seconds() const {
 double PointResult::filter_seconds() const { return time_of(filter_samples); }
 double PointResult::mean_step() const {
   if (!spec.adaptive || work.steps == 0) return spec.step;
-  return spec.step * steps_planned / static_cast<double>(work.steps);
+  return spec.scene_parameters.at("duration") / static_cast<double>(work.steps);
 }
 
 void append(const Samples& more, PointResult& point) {

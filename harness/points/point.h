@@ -82,7 +82,6 @@ struct PointResult : Samples {
 
   bool ok() const { return status == PointStatus::ok; }
   double seconds() const;           // the point's time: of its samples, by time_of()
-  double run_seconds() const;       // s that a run takes
   double measured_seconds() const;  // s that the runs of all samples took together
   double filter_seconds() const;    // of the filter's samples, by time_of()
   double mean_step() const;         // s; the spec's, but for adaptive steps

@@ -180,17 +180,6 @@ TEST(Difference, NamesTheFirstThingThatDiffers) {
 
 // ---- Shards ----
 
-json context_of(const std::string& shard) {
-  return {{"date", "2026-01-01"},
-          {"host_name", "h"},
-          {"cpu_model", "c"},
-          {"fingerprint", "f"},
-          {"load_avg", {0, 0, 0}},
-          {"libraries", {}},
-          {"build", {{"compiler", "g"}, {"flags", ""}, {"git", ""}}},
-          {"selection", {{"shard", shard}}}};
-}
-
 class ShardTest : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ShardTest, JoinedAreTheWhole) {
@@ -198,7 +187,7 @@ TEST_P(ShardTest, JoinedAreTheWhole) {
   const auto searches = plan(suite, {});
   FakeMachine machine = hashing_machine();
   const auto result = [&](const std::vector<Search>& some, const std::string& name) {
-    return result_document(context_of(name), suite, {"bench"}, true,
+    return result_document({{"selection", {{"shard", name}}}}, suite, {"bench"}, true,
                            run_sweep(suite, some, {}, machine.runners()).points);
   };
   const json whole = result(searches, "");
