@@ -40,6 +40,7 @@ Point::Point(const json& document, double noise)
       noise_(noise) {}
 
 std::string Point::text(const char* key) const {
+  if (key == std::string("status")) return to_string(result_->status);
   std::string found;
   look_up(spec_fields, spec(), key, found);
   return found;

@@ -50,7 +50,8 @@ TEST(Terminal, IsNoWiderThanItMayBeAndLosesNoWord) {
 
 TEST(Terminal, NamesPluginsAndTheCostOfCopying) {
   json engine = run("engine", 0.1, 0.04, 1e-3, 0.008), other = run("filter", 0.1, 0.04, 2e-3, 0.01);
-  engine["phases"] = {{"unconstrained", 0.1}, {"filter", 0.7}, {"collision", 0}, {"copy", 0.2}};
+  engine["phases"].update(
+      {{"unconstrained", 0.1}, {"filter", 0.7}, {"collision", 0}, {"copy", 0.2}});
   json failed = engine;
   failed["status"] = "diverged";
   failed["phases"]["copy"] = 9;
