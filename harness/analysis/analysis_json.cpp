@@ -33,7 +33,7 @@ json entry_json(const Entry& entry) {
           {"counts", entry.counts},
           {"id", entry.point.id()},
           {"seconds", number(entry.point.seconds())},
-          {"step", number(entry.point.spec().step)},
+          {"step", number(entry.point.step())},
           {"error", number(entry.error)},
           {"shape_error", number(entry.point.measures().shape)},
           {"delivered_strain", number(entry.point.delivered_strain())},
@@ -88,8 +88,8 @@ json growth_json(const Growth& growth) {
                     {"low", sure ? json(row.exponent.low()) : json(nullptr)},
                     {"high", sure ? json(row.exponent.high()) : json(nullptr)},
                     {"sizes", row.exponent.points},
-                    {"smallest", row.smallest.spec().vertices},
-                    {"largest", row.largest.spec().vertices}});
+                    {"smallest", row.smallest.vertices()},
+                    {"largest", row.largest.vertices()}});
   }
   return {{"scene", growth.scene}, {"strain_limit", growth.strain_limit}, {"rows", rows}};
 }

@@ -1,7 +1,6 @@
 #include "harness/analysis/measured_point.h"
 
 #include <algorithm>
-#include <type_traits>
 
 #include "harness/points/point_json.h"
 
@@ -10,23 +9,6 @@ namespace harness::analysis {
 using nlohmann::json;
 
 namespace {
-
-// Puts the member of that name, if its type is Value, into `value`.
-template <class Value, class Table, class Object>
-void look_up(const Table& table, const Object& object, const std::string& key, Value& value) {
-  for_each_field(table, [&](const auto& row) {
-    using Member = typename std::decay_t<decltype(row)>::Type;
-    constexpr bool both_numbers = std::is_arithmetic_v<Member> && std::is_arithmetic_v<Value>;
-    if constexpr (both_numbers || std::is_same_v<Member, Value>) {
-      if (row.name == key) value = static_cast<Value>(object.*row.member);
-    }
-  });
-}
-
-double entry_of(const SceneParameters& numbers, const char* key) {
-  const auto place = numbers.find(key);
-  return place == numbers.end() ? std::nan("") : place->second;
-}
 
 Ratio times(Ratio ratio, double factor) {
   return {ratio.value * factor, ratio.low * factor, ratio.high * factor};
@@ -39,37 +21,15 @@ Point::Point(const json& document, double noise)
       id_(document.at("id")),
       noise_(noise) {}
 
-std::string Point::text(const char* key) const {
-  if (key == std::string("status")) return to_string(result_->status);
-  std::string found;
-  look_up(spec_fields, spec(), key, found);
-  return found;
+double Point::scene_parameter(const char* name) const {
+  const auto place = spec().scene_parameters.find(name);
+  return place == spec().scene_parameters.end() ? std::nan("") : place->second;
 }
 
-double Point::number(const char* key) const {
-  double found = scene_parameter(key);  // of these, the duration stands in points, too
-  look_up(spec_fields, spec(), key, found);
-  look_up(size_fields, spec(), key, found);
-  look_up(result_fields, result(), key, found);
-  look_up(measure_fields, measures(), key, found);
-  return found;
-}
-
-double Point::work(const char* key) const {
-  const json counters = to_json(result_->work);
-  return counters.contains(key) ? counters.at(key).get<double>() : number(key);
-}
-
-double Point::option(const char* key) const {
-  if (key == std::string("stiffness") && result_->stiffness) return *result_->stiffness;
-  const auto given = spec().settings.find(key);
-  if (given == spec().settings.end()) return std::nan("");
-  const double* value = std::get_if<double>(&given->second);
-  return value ? *value : std::nan("");
-}
-
-double Point::scene_parameter(const char* key) const {
-  return entry_of(spec().scene_parameters, key);
+double Point::stiffness() const {
+  if (result_->stiffness) return *result_->stiffness;
+  const auto given = spec().settings.find("stiffness");
+  return given == spec().settings.end() ? std::nan("") : std::get<double>(given->second);
 }
 
 double Point::delivered_strain() const {

@@ -28,15 +28,15 @@ class Point {
   bool ok() const { return result_->ok(); }
   bool timed() const { return !result_->samples.empty(); }
 
-  // A field by its name in files; numbers that are not there are not-a-number.
-  std::string text(const char* key) const;
-  double number(const char* key) const;
-  double work(const char* key) const;
-  double error(const char* key) const { return number(key); }
-  double option(const char* key) const;
-  double scene_parameter(const char* key) const;
-  bool is(const char* key, const std::string& value) const { return text(key) == value; }
-  bool flag(const char* key) const { return number(key) > 0; }
+  const std::string& scene() const { return spec().scene; }
+  const std::string& sweep() const { return spec().sweep; }
+  const char* status() const { return to_string(result_->status); }
+  double vertices() const { return spec().vertices; }
+  double strain_limit() const { return spec().strain_limit; }
+  double step() const { return spec().step; }                      // s
+  double duration() const { return scene_parameter("duration"); }  // s
+  double scene_parameter(const char* name) const;                  // not-a-number: none
+  double stiffness() const;  // EA, N, as given or found; not-a-number: none
   bool solves_by(const std::string& linear_solver) const {
     return result_->linear_solver == linear_solver;
   }
@@ -45,7 +45,7 @@ class Point {
   double filter_seconds() const { return result_->filter_seconds(); }
   const std::vector<double>& samples() const { return result_->samples; }
   double noise() const { return noise_; }
-  double steps() const { return scene_parameter("duration") / spec().step; }
+  double steps() const { return duration() / step(); }
   // The largest strain after the collision filter, which is what a user gets.
   double delivered_strain() const;
   // The paper's order: the obstacle pushes vertices out after the solve (contact 0).

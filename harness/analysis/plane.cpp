@@ -98,7 +98,7 @@ Plane plane_of(const std::vector<Point>& points, const Runs& runs) {
   const PointSpec& one = points.front().spec();
   Plane plane{one.scene,    one.sweep, one.scene_parameters, one.resolution,
               one.vertices, {},        runs.levels,          {}};
-  auto by_limit = grouped(points, [](const Point& p) { return p.spec().strain_limit; });
+  auto by_limit = grouped(points, [](const Point& p) { return p.strain_limit(); });
   std::ranges::sort(by_limit, std::greater(), [](const auto& group) { return group.first; });
   for (const auto& [limit, here] : by_limit) {
     plane.limits.push_back(limit);

@@ -44,9 +44,10 @@ Ways growth_at_levels(const Points& points, const char* sweep,
 }
 
 std::string effort(const Point& p) {
-  const double iterations = p.work("iterations");
-  return text(p.steps(), 5) + " steps of " + text(iterations / p.work("steps"), 2) +
-         " iterations of " + text(1e6 * p.seconds() * p.number("duration") / iterations, 3) + " us";
+  const auto iterations = static_cast<double>(p.result().work.iterations);
+  return text(p.steps(), 5) + " steps of " +
+         text(iterations / static_cast<double>(p.result().work.steps), 2) + " iterations of " +
+         text(1e6 * p.seconds() * p.duration() / iterations, 3) + " us";
 }
 
 }  // namespace
@@ -69,7 +70,7 @@ Verdict chain_speed(const Points& points) {
       return at(points.best("chain", "strain", method.name, level), 0.01);
     };
     const auto springs = at_one_percent(implicit_springs), fast = at_one_percent(fast_projection);
-    if (!springs || !fast || springs->number("vertices") != 80) return {};  // the paper's chain
+    if (!springs || !fast || springs->vertices() != 80) return {};  // the paper's chain
     const Ratio slower = ratio(*springs, *fast);
     const auto inside = [&](double low, double high) {
       return slower.above(low) && slower.below(high);
@@ -185,7 +186,7 @@ Verdict drape_over_strain(const Points& points, double level, double vertices) {
 Verdict drape_time_over_strain(const Points& points) {
   std::map<double, int, std::greater<>> sizes;
   for (const Point& p : points.all) {
-    if (p.is("scene", "drape") && p.is("sweep", "strain")) ++sizes[p.number("vertices")];
+    if (p.scene() == "drape" && p.sweep() == "strain") ++sizes[p.vertices()];
   }
   return in_ways(at_levels([&](double level) {
     Verdict found;
@@ -240,13 +241,13 @@ Verdict matrix_sizes(const Points& points) {
   Verdict found;
   std::map<double, std::map<std::string, double>> nonzeros;  // by vertices and method
   for (const Point& p : points.all) {
-    if (!p.is("scene", "drape") || !p.ok() || !(p.work("factor_nonzeros") > 0) ||
+    if (p.scene() != "drape" || !p.ok() || !(p.result().work.factor_nonzeros > 0) ||
         p.solves_by("projected_cg") || p.solves_by("hybrid") ||
         (p.contestant() != fast_projection.name && p.contestant() != icd.name))
       continue;
-    double& place = nonzeros[p.number("vertices")][p.contestant()];
+    double& place = nonzeros[p.vertices()][p.contestant()];
     if (place == 0) found.points.push_back(p.id());
-    place = p.work("factor_nonzeros");
+    place = p.result().work.factor_nonzeros;
   }
   bool all = true;
   for (const auto& [vertices, of] : nonzeros) {
@@ -275,17 +276,16 @@ struct Steps {
 };
 
 Steps steps_of(const Points& points, const Point& best, double level) {
-  const double step = best.number("step");
+  const double step = best.step();
   Steps steps{step, step, step};
   for (const Point& p : points.all) {
-    if (!p.ok() || !p.timed() || p.contestant() != best.contestant() ||
-        !p.is("scene", best.text("scene")) || !p.is("sweep", best.text("sweep")) ||
-        p.number("vertices") != best.number("vertices") ||
-        p.number("strain_limit") != best.number("strain_limit") || !p.within_error(level) ||
+    if (!p.ok() || !p.timed() || p.contestant() != best.contestant() || p.scene() != best.scene() ||
+        p.sweep() != best.sweep() || p.vertices() != best.vertices() ||
+        p.strain_limit() != best.strain_limit() || !p.within_error(level) ||
         (p.id() != best.id() && above(ratio(p, best), 1) == Answer::yes))
       continue;
-    steps.smallest = std::min(steps.smallest, p.number("step"));
-    steps.largest = std::max(steps.largest, p.number("step"));
+    steps.smallest = std::min(steps.smallest, p.step());
+    steps.largest = std::max(steps.largest, p.step());
   }
   return steps;
 }
@@ -307,14 +307,15 @@ Verdict shake_small_steps(const Points& points) {
       Curve compared, compared_icd;
       for (const auto& [place, p] : points.best("drape", sweep, shake.name, level)) {
         const auto other = at(icd_curve, place);
-        if (!other || std::isnan(p.error("energy_gain")) || std::isnan(other->error("energy_gain")))
+        if (!other || std::isnan(p.measures().energy_gain) ||
+            std::isnan(other->measures().energy_gain))
           continue;
         const Steps steps = steps_of(points, p, level), larger = steps_of(points, *other, level);
         const Ratio costlier = ratio_of_steps(*other, p);
         answers.push_back(all_of({smaller(steps, larger), above(costlier, 1)}));
-        told += "; " + vertices_of(p.number("vertices")) + " at " +
-                percent(p.number("strain_limit")) + ": SHAKE " + steps.words() + ", ICD " +
-                larger.words() + ", whose step takes " + text(costlier) + " times as long";
+        told += "; " + vertices_of(p.vertices()) + " at " + percent(p.strain_limit()) + ": SHAKE " +
+                steps.words() + ", ICD " + larger.words() + ", whose step takes " + text(costlier) +
+                " times as long";
         compared.try_emplace(place, p);
         compared_icd.try_emplace(place, *other);
       }

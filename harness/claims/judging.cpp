@@ -83,8 +83,8 @@ Points::Points(const std::vector<json>& results) {
     std::set<Key> here;
     for (const json& p : result.at("points")) {
       const Point point(p, pair_noise_of(result));
-      if (point.flag("adaptive")) continue;
-      const Key key(point.id(), point.contestant(), point.text("sweep"), point.collides_last());
+      if (point.spec().adaptive) continue;
+      const Key key(point.id(), point.contestant(), point.sweep(), point.collides_last());
       repeated = repeated || seen.contains(key);
       if (seen.contains(key)) continue;
       here.insert(key);
@@ -103,13 +103,13 @@ std::vector<Point> Points::where(const std::function<bool(const Point&)>& wanted
 std::vector<Point> Points::in(const std::string& scene, const std::string& sweep,
                               std::optional<double> vertices) const {
   std::vector<Point> chosen =
-      where([&](const Point& p) { return p.is("scene", scene) && p.is("sweep", sweep); });
+      where([&](const Point& p) { return p.scene() == scene && p.sweep() == sweep; });
   if (sweep == "resolution") return chosen;
   double size = vertices.value_or(0);
   for (const Point& p : chosen) {
-    if (!vertices) size = std::max(size, p.number("vertices"));
+    if (!vertices) size = std::max(size, p.vertices());
   }
-  std::erase_if(chosen, [size](const Point& p) { return p.number("vertices") != size; });
+  std::erase_if(chosen, [size](const Point& p) { return p.vertices() != size; });
   return chosen;
 }
 
@@ -125,12 +125,11 @@ void keep_faster(Curve& curve, double x, const Point& point) {
 Curve Points::best(const std::string& scene, const std::string& sweep,
                    const std::string& contestant, double level,
                    std::optional<double> vertices) const {
-  const char* axis = sweep == "strain" ? "strain_limit" : "vertices";
   const std::vector<Point> points = in(scene, sweep, vertices);
   std::map<std::pair<double, std::string>, std::vector<Point>> places;
   for (const Point& p : points) {
     if (roles.at_any_settings(p.contestant()) == contestant)
-      places[{p.number(axis), p.contestant()}].push_back(p);
+      places[{sweep == "strain" ? p.strain_limit() : p.vertices(), p.contestant()}].push_back(p);
   }
   Curve curve;
   for (const auto& [place, here] : places) {

@@ -40,9 +40,9 @@ std::map<double, std::map<double, Point>> iterated_runs(const Points& points, co
   constexpr int enough = 10;  // samples of a run
   std::map<double, std::map<double, Point>> by_limit;
   for (const Point& p : points.all) {
-    if (p.is("scene", scene) && p.is("sweep", "step") && p.ok() &&
+    if (p.scene() == scene && p.sweep() == "step" && p.ok() &&
         p.contestant() == fast_projection.name && iterated(p).samples >= enough)
-      by_limit[p.number("strain_limit")].try_emplace(p.number("step"), p);
+      by_limit[p.strain_limit()].try_emplace(p.step(), p);
   }
   return by_limit;
 }
@@ -160,10 +160,10 @@ Verdict strain_after_collision(const Points& points) {
   int all = 0, kept = 0;
   std::map<std::string, std::vector<double>> over_limit;  // by contestant
   for (const Point& p : points.all) {
-    if (!p.is("scene", "drape") || !p.collides_last() || !p.ok() || !p.flag("best") ||
+    if (p.scene() != "drape" || !p.collides_last() || !p.ok() || !p.result().best ||
         !points.roles.of(p.contestant()).ranked() || !std::isfinite(p.delivered_strain()))
       continue;
-    const double over = p.delivered_strain() / p.number("strain_limit");
+    const double over = p.delivered_strain() / p.strain_limit();
     over_limit[p.contestant()].push_back(over);
     ++all;
     kept += over <= 1.5 ? 1 : 0;

@@ -17,17 +17,17 @@ namespace {
 // What a calibrated point says of the tension: EA x strain over the weight that hangs on a strand,
 // which is all of a chain's, and of a square cloth what falls to one of its rows and columns.
 double tension_over_weight(const Point& p) {
-  const double strands = p.is("scene", "chain") ? 1 : 2 * std::sqrt(p.number("vertices"));
-  return p.option("stiffness") * p.number("max_strain") * strands /
+  const double strands = p.scene() == "chain" ? 1 : 2 * std::sqrt(p.vertices());
+  return p.stiffness() * p.measures().max_strain * strands /
          (p.scene_parameter("mass") * p.scene_parameter("gravity"));
 }
 
 constexpr double calibration_tolerance = 0.85;  // of the limit, the least strain that meets it
 
 bool calibrated(const Point& p) {
-  return p.contestant() == implicit_springs.name && p.ok() && p.is("sweep", "strain") &&
-         std::isfinite(p.option("stiffness")) && std::isfinite(tension_over_weight(p)) &&
-         p.number("max_strain") >= 0.999 * calibration_tolerance * p.number("strain_limit");
+  return p.contestant() == implicit_springs.name && p.ok() && p.sweep() == "strain" &&
+         std::isfinite(p.stiffness()) && std::isfinite(tension_over_weight(p)) &&
+         p.measures().max_strain >= 0.999 * calibration_tolerance * p.strain_limit();
 }
 
 }  // namespace
@@ -40,8 +40,7 @@ Verdict springs_stiffness(const Points& points) {
   };
   std::map<double, Places> by_step;  // then by scene and vertices
   for (const Point& p : points.where(calibrated))
-    by_step[p.number("step")][{p.text("scene"), p.number("vertices")}].push_back(
-        tension_over_weight(p));
+    by_step[p.step()][{p.scene(), p.vertices()}].push_back(tension_over_weight(p));
   if (by_step.empty()) return {};
   const auto size_of = [](const auto& list) { return list.size(); };
   const auto [step, places] = most(by_step, [](const Places& at) {
@@ -50,7 +49,7 @@ Verdict springs_stiffness(const Points& points) {
     return all;
   });
   for (const Point& p : points.where(calibrated)) {
-    if (p.number("step") == step) found.points.push_back(p.id());
+    if (p.step() == step) found.points.push_back(p.id());
   }
   if (found.points.size() < 3) return {};
   // Where most was calibrated at one step: what it says is to be true elsewhere.

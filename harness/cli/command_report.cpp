@@ -13,7 +13,6 @@
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/film/recording.h"
-#include "harness/points/joined.h"
 #include "harness/points/result_file.h"
 #include "harness/points/tuned.h"
 #include "harness/tables/results_page.h"

@@ -20,8 +20,6 @@
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
-#include "harness/points/joined.h"
-#include "harness/points/noise.h"
 #include "harness/points/result_file.h"
 #include "harness/tables/results_page.h"
 #include "harness/tables/terminal.h"

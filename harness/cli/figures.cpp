@@ -13,7 +13,6 @@
 #include "harness/base/paths.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/exit_codes.h"
-#include "harness/points/joined.h"
 #include "harness/points/result_file.h"
 
 namespace harness {

@@ -12,12 +12,11 @@
 #include "harness/cli/sweep_run.h"
 #include "harness/judge/reference.h"
 #include "harness/points/context.h"
-#include "harness/points/noise.h"
 #include "harness/points/result_file.h"
 #include "harness/run/execute.h"
 #include "harness/run/machine_noise.h"
-#include "harness/run/plan.h"
 #include "harness/run/point_runner.h"
+#include "harness/run/sweep.h"
 #include "harness/tables/terminal.h"
 #include "solvers/registry.h"
 

@@ -9,7 +9,7 @@
 
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
-#include "harness/points/noise.h"
+#include "harness/points/result_file.h"
 
 namespace harness {
 namespace {

@@ -1,10 +1,18 @@
 #include "harness/points/result_file.h"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
 #include "harness/base/json_text.h"
-#include "harness/points/noise.h"
+#include "harness/base/shard.h"
+#include "harness/base/statistics.h"
+#include "harness/base/text.h"
+#include "harness/points/contestant.h"
 #include "harness/points/point_json.h"
 #include "harness/points/schema.h"
 
@@ -127,6 +135,165 @@ void check_result(const json& document, const std::string& path) {
                      "' is not a result file: its schema is neither \"inextensible-bench/1\" nor "
                      "\"inextensible-stability/1\"");
   }
+}
+
+namespace {
+
+// Where a point stands in a comparison: everything but its contestant and the step, which the best
+// ones choose.
+std::string place_of(const PointSpec& spec) {
+  PointSpec place = spec;
+  place.contestant = place.solver = "";
+  place.settings.clear();
+  if (spec.sweep != "step") place.step = 0;
+  return key_of(place);
+}
+
+bool counts(const PointResult& point) {
+  return point.ok() && (point.best || point.spec.sweep == "step");
+}
+
+}  // namespace
+
+std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
+                                    const std::string& one) {
+  PairNoise noise{one, double_of(one)};
+  std::map<std::string, double> first;
+  for (const PointResult& point : points) {
+    if (counts(point) && point.spec.name() == noise.one)
+      first[place_of(point.spec)] = point.seconds();
+  }
+  std::vector<double> distances;
+  for (const PointResult& point : points) {
+    if (!counts(point) || point.spec.name() != noise.other) continue;
+    if (const auto twin = first.find(place_of(point.spec)); twin != first.end())
+      distances.push_back(std::abs(std::log(point.seconds() / twin->second)));
+  }
+  if (distances.empty()) return {};
+  noise.places = static_cast<int>(distances.size());
+  noise.median = quantile(distances, 0.5);
+  noise.q95 = quantile(distances, 0.95);
+  return noise;
+}
+
+std::string noise_warning(const PairNoise& noise) {
+  constexpr double most = 0.06;
+  if (noise.q95 <= most) return {};
+  return "noisy: equal programs differ by " + number_text(100 * std::expm1(noise.q95), 2) +
+         " % here, more than the 6 % that a result to be quoted may have";
+}
+
+json to_json(const PairNoise& noise) {
+  return {{"pair", {noise.one, noise.other}},
+          {"places", noise.places},
+          {"median", noise.median},
+          {"q95", noise.q95}};
+}
+
+std::optional<PairNoise> noise_of(const json& context) {
+  if (!context.contains("noise")) return {};
+  const json& noise = context.at("noise");
+  return PairNoise{noise.at("pair").at(0), noise.at("pair").at(1), noise.at("places"),
+                   noise.at("median"), noise.at("q95")};
+}
+
+namespace {
+
+using Pointer = json::json_pointer;
+
+// What a point's search for a best step has in common; of a hard case: case and solver.
+std::string owner_of(const json& row) {
+  json owner = json::array();
+  for (const char* key : {"case", "sweep", "scene", "scene_parameters", "vertices", "contestant",
+                          "solver", "strain_limit"})
+    owner.push_back(row.value(key, json()));
+  return owner.dump();
+}
+
+void add_rows(json& all, const json& more, const json& again, std::set<std::string>& taken) {
+  std::set<std::string> here;
+  for (const json& row : more) {
+    if (!again.is_null() && row.value("contestant", json()) == again) continue;
+    const std::string owner = owner_of(row);
+    if (taken.contains(owner)) continue;
+    here.insert(owner);
+    all.push_back(row);
+  }
+  taken.merge(here);
+}
+
+// Entries whose name is new.
+void add_named(json& all, const json& more) {
+  for (const json& entry : more) {
+    if (std::none_of(all.begin(), all.end(),
+                     [&](const json& one) { return one.at("name") == entry.at("name"); }))
+      all.push_back(entry);
+  }
+}
+
+void add_stability(json& all, const json& more) {
+  for (const char* list : {"largest_steps", "degrees_of_freedom", "same_frame"})
+    all[list].insert(all[list].end(), more.at(list).begin(), more.at(list).end());
+  for (auto& [name, count] : all["counts"].items())
+    count = count.get<long>() + more.at("counts").at(name).get<long>();
+  json& differences = all["known_differences"];
+  const json& others = more.at("known_differences");
+  for (std::size_t i = 0; i < std::min(differences.size(), others.size()); ++i) {
+    if (differences[i].at("seen").is_null()) differences[i]["seen"] = others[i].at("seen");
+  }
+}
+
+// Whether documents that are shards are all there.
+bool all_shards(const std::vector<json>& documents) {
+  std::set<std::size_t> found;
+  std::size_t count = 0;
+  for (const json& document : documents) {
+    const std::string text = document.value(Pointer("/context/selection/shard"), std::string());
+    if (text.empty()) continue;
+    const Shard shard = parse_shard(text);
+    count = shard.count;
+    found.insert(shard.index);
+  }
+  return found.size() == count;
+}
+
+}  // namespace
+
+json joined(const std::vector<json>& documents) {
+  json all = documents.front();
+  all["complete"] =
+      all_shards(documents) && std::all_of(documents.begin(), documents.end(),
+                                           [](const json& d) { return d.value("complete", true); });
+  if (documents.size() == 1) return all;
+  const bool sweep = all.contains("points");
+  const char* rows = sweep ? "points" : "matrix";
+  const Pointer q95("/context/noise/q95"), again("/context/noise/pair/1"),
+      legend("/legend/solvers");
+  all.erase("benchmarks");
+  all[rows] = json::array();
+  double noise = std::nan("");
+  std::set<std::string> taken;
+  for (const json& document : documents) {
+    if (document.value("schema", "") != all.value("schema", ""))
+      throw UsageError("results of different kinds of sweeps are no one table");
+    add_rows(all[rows], document.at(rows), document.value(again, json()), taken);
+    if (document.contains(legend)) add_named(all[legend], document.at(legend));
+    if (document.contains("references")) add_named(all["references"], document.at("references"));
+    if (const json own = document.value(q95, json()); own.is_number())
+      noise = std::fmax(noise, own.get<double>());
+    if (!is_timed(document)) all["context"]["timed"] = false;
+    if (!sweep && &document != &documents.front()) add_stability(all, document);
+  }
+  if (std::isfinite(noise)) all[q95] = noise;
+  if (all.contains(Pointer("/context/selection"))) all["context"]["selection"]["shard"] = "";
+  return all;
+}
+
+json read_results(const std::vector<std::string>& paths) {
+  std::vector<json> documents;
+  documents.reserve(paths.size());
+  for (const std::string& path : paths) documents.push_back(read_result(path));
+  return joined(documents);
 }
 
 }  // namespace harness

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,5 +41,34 @@ struct NamedResult {
   std::string name;
   nlohmann::json document;
 };
+
+// Over all places where both stand: |log(time of one / time of the other)|, of the times of
+// their best points, in a step sweep of all points that ran to the end. A difference below q95 is
+// none.
+struct PairNoise {
+  std::string one, other;  // contestants
+  int places = 0;
+  double median = 0, q95 = 0;
+};
+
+// None where `one` and double_of(one) have no place in common.
+std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points, const std::string& one);
+
+// In words, where that is more than a result to be quoted may have, 6 %; else empty.
+std::string noise_warning(const PairNoise& noise);
+
+// `context.noise` of a result file; none in files without a pair.
+nlohmann::json to_json(const PairNoise& noise);
+std::optional<PairNoise> noise_of(const nlohmann::json& context);
+
+// documents: results of one kind (check_result), at least one. Points that belong to one search for
+// a best step, or hard cases of one name, are taken from the first document that has any. The
+// second contestant of an A/A pair is left out; the largest noise of all pairs stands for all. The
+// rest of the context is the first one's. The table is complete if every document is, and all
+// shards of a sweep that has shards are there. Throws UsageError for documents of different kinds.
+nlohmann::json joined(const std::vector<nlohmann::json>& documents);
+
+// The same of files; throws UsageError, naming the file, for what is no result.
+nlohmann::json read_results(const std::vector<std::string>& paths);
 
 }  // namespace harness

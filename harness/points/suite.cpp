@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <tuple>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
@@ -17,26 +16,10 @@ namespace {
 
 using nlohmann::json;
 
-// What a suite says of the contestants of all its sweeps.
-struct Everywhere {
-  std::optional<Tuned> tuned;
-  bool untuned = false;
-  std::string same;
-};
-
 bool read_untuned(JsonReader& reader, bool tuned, bool otherwise) {
   const bool untuned = reader.flag("untuned", otherwise);
   if (untuned && !tuned) throw UsageError(reader.where("untuned") + " goes with 'tuned'");
   return untuned;
-}
-
-Everywhere read_everywhere(JsonReader& reader) {
-  Everywhere all;
-  if (const std::string file = reader.text("tuned", ""); !file.empty())
-    all.tuned = read_tuned_up_to_date(file);
-  all.untuned = read_untuned(reader, all.tuned.has_value(), false);
-  all.same = reader.text("same", "");
-  return all;
 }
 
 void read_limits(JsonReader& reader, const std::string& where, SweepSpec& spec) {
@@ -108,12 +91,12 @@ void fit_steps_to_duration(const SceneType& type, bool coarsest_given, SweepSpec
                      " s ('steps': 'finest')");
 }
 
-SweepSpec read_sweep(const json& object, const std::string& where, const Everywhere& all) {
+SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* tuned,
+                     bool untuned_everywhere, const std::string& same) {
   JsonReader reader(object, where);
   SweepSpec spec;
   spec.sweep = reader.text("sweep", "");
-  const auto kinds = sweep_kinds();
-  if (std::find(kinds.begin(), kinds.end(), spec.sweep) == kinds.end())
+  if (const auto kinds = sweep_kinds(); std::ranges::count(kinds, spec.sweep) == 0)
     throw UsageError(where + ": " + unknown_name("sweep", spec.sweep, kinds).what());
   spec.scene = reader.text("scene", "");
   const auto type = find_scene(spec.scene);
@@ -126,7 +109,7 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
   read_scene_parameters(reader, *type, spec);
   read_steps(reader, where, spec);
   read_solver_options(reader, where, spec);
-  const bool untuned = read_untuned(reader, all.tuned.has_value(), all.untuned);
+  const bool untuned = read_untuned(reader, tuned, untuned_everywhere);
   const json* steps = reader.find("steps");
   reader.finish();
   Contestants missing;
@@ -137,8 +120,8 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Everywh
     throw UsageError(where + ": 'scene_parameters': " + error.what());
   }
   spec.contestants = read_contestants(solvers, also, missing, where);
-  if (all.tuned) tune(spec.contestants, *all.tuned, type->kind(), spec.solver_options, untuned);
-  add_double(spec.contestants, all.same);
+  if (tuned) tune(spec.contestants, *tuned, type->kind(), spec.solver_options, untuned);
+  add_double(spec.contestants, same);
   return spec;
 }
 
@@ -153,11 +136,9 @@ void check_contestants(const Suite& suite, const JsonReader& reader) {
     }
   }
   if (!suite.same.empty() && !solvers.contains(suite.same)) {
-    std::vector<std::string> names;
-    names.reserve(solvers.size());
-    for (const auto& entry : solvers) names.push_back(entry.first);
-    throw UsageError(reader.where("same") + ": " +
-                     unknown_name("contestant", suite.same, names).what());
+    throw UsageError(
+        reader.where("same") + ": " +
+        unknown_name("contestant", suite.same, names_of(contestants_of(suite))).what());
   }
 }
 
@@ -201,16 +182,21 @@ Suite parse_suite(const std::string& text, const std::string& path) {
   suite.rel_ci = reader.number("rel_ci", suite.rel_ci, Bounds::positive());
   suite.timeout = reader.number("timeout", 60, Bounds::positive());
   suite.finest_error = reader.number("finest_error", suite.finest_error, Bounds::positive());
-  const Everywhere all = read_everywhere(reader);
-  suite.same = all.same;
-  if (all.tuned)
-    std::tie(suite.tuned_file, suite.tuned_hash) = std::tie(all.tuned->file, all.tuned->hash);
+  std::optional<Tuned> tuned;
+  if (const std::string file = reader.text("tuned", ""); !file.empty()) {
+    tuned = read_tuned_up_to_date(file);
+    suite.tuned_file = tuned->file;
+    suite.tuned_hash = tuned->hash;
+  }
+  const bool untuned = read_untuned(reader, tuned.has_value(), false);
+  suite.same = reader.text("same", "");
   const json* sweeps = reader.find("sweeps");
   if (!sweeps || !sweeps->is_array() || sweeps->empty())
     throw UsageError(reader.where("sweeps") + " must be a list of sweeps");
   for (std::size_t i = 0; i < sweeps->size(); ++i) {
-    suite.sweeps.push_back(
-        read_sweep((*sweeps)[i], "suite '" + path + "': sweeps[" + std::to_string(i) + "]", all));
+    suite.sweeps.push_back(read_sweep((*sweeps)[i],
+                                      "suite '" + path + "': sweeps[" + std::to_string(i) + "]",
+                                      tuned ? &*tuned : nullptr, untuned, suite.same));
   }
   check_contestants(suite, reader);
   reader.finish();

@@ -1,8 +1,7 @@
-#include "harness/run/plan.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <functional>
 #include <map>
 #include <span>
 
@@ -60,8 +59,8 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
   std::vector<Search> searches;
   std::size_t family = 0;
   for (const SweepSpec& sweep : suite.sweeps) {
-    const auto found_type = find_scene(sweep.scene);
-    const SceneType& type = *found_type;
+    const auto found = find_scene(sweep.scene);
+    const SceneType& type = *found;
     std::vector<double> limits = sweep.limits;
     std::sort(limits.rbegin(), limits.rend());  // loose to tight
     std::vector<int> resolutions = sweep.resolutions;
@@ -87,9 +86,7 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
         const auto* backend = inextensible::find_backend(contestant.solver);
         const bool limited =
             !backend || backend->strain_control != inextensible::StrainControl::none;
-        const std::vector<double> own_limits =
-            limited ? limits : std::vector<double>(limits.begin(), limits.begin() + 1);
-        for (const double limit : own_limits) {
+        for (const double limit : std::span(limits).first(limited ? limits.size() : 1)) {
           Search search;
           search.base = base;
           search.base.strain_limit = limit;
@@ -113,19 +110,15 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
 
 std::vector<Search> shard(std::vector<Search> searches, const Shard& part) {
   // Work grows with constraints times limits.
-  std::map<std::pair<std::string, SceneParameters>, double> load;
-  const auto group = [](const Search& s) {
-    return std::pair(s.base.scene, s.base.scene_parameters);
-  };
+  using Group = std::pair<std::string, SceneParameters>;
+  std::map<Group, double> load;
+  const auto group = [](const Search& s) { return Group(s.base.scene, s.base.scene_parameters); };
   for (const Search& s : searches) load[group(s)] += s.base.constraints;
-  std::vector<std::pair<double, std::pair<std::string, SceneParameters>>> largest;
-  largest.reserve(load.size());
-  for (const auto& [name, size] : load) largest.emplace_back(size, name);
-  std::stable_sort(largest.begin(), largest.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::pair<Group, double>> largest(load.begin(), load.end());
+  std::ranges::stable_sort(largest, std::greater(), [](const auto& entry) { return entry.second; });
   std::vector<double> filled(part.count, 0);
-  std::map<std::pair<std::string, SceneParameters>, std::size_t> place;
-  for (const auto& [size, name] : largest) {
+  std::map<Group, std::size_t> place;
+  for (const auto& [name, size] : largest) {
     const auto least = std::min_element(filled.begin(), filled.end());
     *least += size;
     place[name] = static_cast<std::size_t>(least - filled.begin()) + 1;

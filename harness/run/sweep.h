@@ -9,10 +9,49 @@
 #include <optional>
 #include <vector>
 
+#include "harness/base/pattern.h"
+#include "harness/base/shard.h"
+#include "harness/points/suite.h"
 #include "harness/run/execute.h"
-#include "harness/run/plan.h"
 
 namespace harness {
+
+struct SweepFilters {
+  std::optional<Pattern> solver;   // must match the contestant's whole name
+  std::optional<Pattern> include;  // must be found in a point's id
+  std::optional<Pattern> exclude;  // must not
+};
+
+// One best step to be found.
+struct Search {
+  PointSpec base;              // all but the step
+  std::vector<double> ladder;  // s, coarse to fine; those that the filters leave
+  // Rungs to a halving: every stride-th is one of coarsest / 2^k, those between are steps that a
+  // best step is refined by.
+  std::size_t stride = 1;
+  // Searches of one family (same sweep, scene, size and contestant) come from loose to tight; each
+  // starts from the step that was best in the one before.
+  std::size_t family = 0;
+  bool every_step = false;  // the whole ladder, whatever the times are
+};
+
+// Throws UsageError if no point is left.
+std::vector<Search> plan(const Suite& suite, const SweepFilters& filters);
+
+// All searches of one (sweep, scene, size) are in one part, large sizes spread first, so that no
+// comparison crosses machines; possibly none. The parts of a plan are the whole, and a search does
+// not depend on the part it is in.
+std::vector<Search> shard(std::vector<Search> searches, const Shard& part);
+
+struct Estimate {
+  double seconds = 0;  // of the sweep
+  int timed = 0;       // (scene, size, contestant)s, a few steps of each
+};
+
+// Times a few steps of each contestant at each size, at the middle limit and a middle step, and
+// takes every search for what most searches are: a handful of runs, and repetitions of one. Within
+// a factor of three, mostly. Takes a second or so for each ten contestants and sizes.
+Estimate estimate(const Suite& suite, const std::vector<Search>& searches);
 
 // A point is not repeated any more when its runs have taken so long together: what disturbs a
 // machine averages out within long runs. s.

@@ -1,10 +1,10 @@
-#include "harness/run/tune_search.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 #include <set>
+
+#include "harness/run/tune.h"
 
 namespace harness {
 namespace {

@@ -8,7 +8,7 @@
 #include "harness/analysis/words.h"
 #include "harness/base/in_order.h"
 #include "harness/base/text.h"
-#include "harness/points/joined.h"
+#include "harness/points/result_file.h"
 #include "harness/tables/page.h"
 
 namespace harness::tables {
@@ -21,12 +21,12 @@ std::string cell_text(const Cell& cell) {
   const std::string name = quoted(first->row) + (first->role.unranked ? " `u`" : "");
   std::string text = (cell.clear() ? "**" + name + "**" : name) + " " +
                      plain(1e3 * first->point.seconds(), 3) + " ms, " +
-                     step_text(first->point.number("step"));
-  if (const double kept = first->point.number("strain_limit"); kept < cell.strain_limit)
+                     step_text(first->point.step());
+  if (const double kept = first->point.strain_limit(); kept < cell.strain_limit)
     text += " at " + percent(kept);
   if (cell.level == any_motion && std::isfinite(first->error))
     text += ", off by " + number_text(100 * first->error, 2) + " %";
-  const double shape = first->point.error("shape");
+  const double shape = first->point.measures().shape;
   if (cell.level == any_motion && std::isfinite(shape))
     text += ", shape by " + number_text(100 * shape, 2) + " %";
   if (const Entry* paper = cell.paper_best(); paper && paper != first)
@@ -37,7 +37,7 @@ std::string cell_text(const Cell& cell) {
 bool has_shapes(const std::vector<const Plane*>& planes) {
   return std::any_of(planes.begin(), planes.end(), [](const Plane* plane) {
     return std::any_of(plane->cells.begin(), plane->cells.end(), [](const Cell& cell) {
-      return cell.first() && std::isfinite(cell.first()->point.error("shape"));
+      return cell.first() && std::isfinite(cell.first()->point.measures().shape);
     });
   });
 }
@@ -50,7 +50,7 @@ std::string span_of_errors(const std::vector<const Plane*>& planes) {
       if (cell.level != headline_error || !cell.first() || cell.known_until == 0) continue;
       first = std::min(first, cell.known_until);
       last = std::max(last, cell.known_until);
-      duration = std::max(duration, cell.first()->point.number("duration"));
+      duration = std::max(duration, cell.first()->point.duration());
     }
   }
   if (last == 0 || first > duration * (1 - 1e-9)) return "";

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "harness/analysis/growth.h"
+#include "harness/analysis/findings.h"
 #include "harness/analysis/words.h"
 #include "harness/base/errors.h"
 #include "harness/base/fields.h"
@@ -50,8 +50,7 @@ void print_growth(std::ostream& out, const std::vector<NamedResult>& results) {
   std::vector<std::string> names;
   for (const Growth& growth : all) {
     table.head.push_back(scene_words(growth.scene) + " at " + percent(growth.strain_limit) +
-                         ", from " +
-                         number_text(growth.rows.front().smallest.number("vertices"), 7));
+                         ", from " + number_text(growth.rows.front().smallest.vertices(), 7));
     for (const RowGrowth& row : growth.rows) names.push_back(row.row);
   }
   for (const std::string& name : in_order(names, itself)) {
@@ -60,11 +59,10 @@ void print_growth(std::ostream& out, const std::vector<NamedResult>& results) {
       const auto row = std::find_if(growth.rows.begin(), growth.rows.end(),
                                     [&](const RowGrowth& each) { return each.row == name; });
       table.rows.back().push_back(
-          row == growth.rows.end()
-              ? "-"
-              : exponent_words(row->exponent) + "; " +
-                    time_words(row->largest.seconds() * row->largest.number("step")) + " at " +
-                    number_text(row->largest.number("vertices"), 7));
+          row == growth.rows.end() ? "-"
+                                   : exponent_words(row->exponent) + "; " +
+                                         time_words(row->largest.seconds() * row->largest.step()) +
+                                         " at " + number_text(row->largest.vertices(), 7));
     }
   }
   print_table(out,
@@ -85,11 +83,11 @@ Fastest fastest_in(const json& document, const std::string& scene) {
   const ContestantRoles roles(document);
   for (const json& p : document.at("points")) {
     const Point point(p);
-    if (point.is("sweep", "strain") && !point.flag("adaptive") && point.is("scene", scene) &&
-        point.ok() && point.flag("best") && roles.of(point.contestant()).ranked())
+    if (point.sweep() == "strain" && !point.spec().adaptive && point.scene() == scene &&
+        point.ok() && point.result().best && roles.of(point.contestant()).ranked())
       found.points.push_back(point);
   }
-  found.limits = in_order(found.points, [](const Point& p) { return p.number("strain_limit"); });
+  found.limits = in_order(found.points, [](const Point& p) { return p.strain_limit(); });
   std::sort(found.limits.rbegin(), found.limits.rend());
   return found;
 }
@@ -104,7 +102,7 @@ Table table_of(const Fastest& fastest, const std::string& unit, Cell cell) {
     for (const double limit : fastest.limits) {
       const auto found =
           std::find_if(fastest.points.begin(), fastest.points.end(), [&](const Point& p) {
-            return p.contestant() == contestant && p.number("strain_limit") == limit;
+            return p.contestant() == contestant && p.strain_limit() == limit;
           });
       table.rows.back().push_back(found == fastest.points.end() ? "-" : cell(*found));
     }

@@ -68,7 +68,7 @@ std::string percent_or_unknown(double fraction) {
 // Name, time, step and error.
 std::vector<std::string> entry_cells(const Entry& entry, const std::string& name,
                                      const Unit& unit) {
-  return {name, unit.text(entry.point.seconds()), step_text(entry.point.number("step")),
+  return {name, unit.text(entry.point.seconds()), step_text(entry.point.step()),
           percent_or_unknown(entry.error)};
 }
 
@@ -107,7 +107,7 @@ void print_shapes(std::ostream& out, const Plane& plane) {
   std::string words;
   for (const Cell& cell : plane.cells) {
     const Entry* first = cell.level == any_motion ? cell.first() : nullptr;
-    const double shape = first ? first->point.error("shape") : unknown;
+    const double shape = first ? first->point.measures().shape : unknown;
     if (!std::isnan(shape))
       words += (words.empty() ? "" : ", ") + percent(cell.strain_limit) + ": " +
                number_text(100 * shape, 2) + " %";
@@ -168,11 +168,11 @@ void print_growth(std::ostream& out, const analysis::Growth& growth) {
   Table table{{"", "power (95 %)", "vertices", "ms a step", "GiB at the largest"}, {}};
   for (const analysis::RowGrowth& row : growth.rows) {
     const analysis::Point& largest = row.largest;
-    table.rows.push_back({row.row, analysis::exponent_words(row.exponent),
-                          number_text(row.smallest.number("vertices"), 7) + ".." +
-                              number_text(largest.number("vertices"), 7),
-                          number_text(1e3 * largest.seconds() * largest.number("step"), 3),
-                          number_text(largest.number("peak_rss_bytes") / (1 << 30), 3)});
+    table.rows.push_back(
+        {row.row, analysis::exponent_words(row.exponent),
+         number_text(row.smallest.vertices(), 7) + ".." + number_text(largest.vertices(), 7),
+         number_text(1e3 * largest.seconds() * largest.step(), 3),
+         number_text(largest.result().peak_rss_bytes / (1 << 30), 3)});
   }
   out << '\n'
       << analysis::scene_words(growth.scene) << " at " << percent(growth.strain_limit)
@@ -188,8 +188,8 @@ void print_failures(std::ostream& out, const nlohmann::json& document, bool all)
     const analysis::Point point(p);
     if (point.ok()) continue;
     ++failed;
-    ++statuses[point.text("status")];
-    ++of_contestants[point.text("scene") + ", " + point.contestant() + ": " + point.text("status")];
+    ++statuses[point.status()];
+    ++of_contestants[point.scene() + ", " + point.contestant() + ": " + point.status()];
   }
   if (failed == 0) return;
   std::string counts;

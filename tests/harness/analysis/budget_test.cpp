@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/points/joined.h"
+#include "harness/points/result_file.h"
 #include "support/invented_runs.h"
 
 namespace harness::analysis {

@@ -1,7 +1,11 @@
-// Answers in words, of times that are made up.
+// What is found in result files whose times are made up: sentences, and exponents that are known
+// beforehand.
 #include "harness/analysis/findings.h"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
 
 #include "support/invented_runs.h"
 
@@ -54,6 +58,77 @@ TEST(Findings, AnswerTheNearestQuestionThatHasAnAnswer) {
   EXPECT_EQ(
       told({failed}).at(0),
       "At 1 % strain, whatever the motion, there is no answer: no run keeps the strain limit.");
+}
+
+json resolution_run(const std::string& solver, int n, double seconds_a_step) {
+  json p = run(solver, 0.01, 0.001, seconds_a_step / 0.001, 0.3, true);
+  p["id"] = solver + std::to_string(n);
+  p["sweep"] = "resolution";
+  p["scene"] = "drape";
+  p["resolution"] = n;
+  p["vertices"] = n * n;
+  p["scene_parameters"]["n"] = n;
+  return p;
+}
+
+TEST(Growth, RecoversAKnownExponent) {
+  std::vector<json> points;
+  for (const int n : {1001, 101, 317}) {
+    points.push_back(resolution_run("yarn_projection", n, 3e-7 * std::pow(n * n, 1.25)));
+    points.push_back(resolution_run("icd", n, 3e-9 * std::pow(n * n, 1.5)));
+    if (n < 1000) points.push_back(resolution_run("shake", n, 1));  // at two sizes, all the same
+  }
+  const json result = document(points);
+  const auto found = growth_in(planes_of(result));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].scene, "drape");
+  ASSERT_EQ(found[0].rows.size(), 3u);
+  EXPECT_EQ(found[0].rows[0].row, "shake") << "the slowest growth first";
+  const RowGrowth& strips = found[0].rows[1];
+  EXPECT_EQ(strips.row, "yarn_projection");
+  EXPECT_NEAR(strips.exponent.value, 1.25, 1e-9);
+  EXPECT_LT(strips.exponent.half_width, 1e-6);
+  EXPECT_EQ(strips.smallest.spec().resolution, 101);
+  EXPECT_EQ(strips.largest.spec().resolution, 1001);
+  EXPECT_EQ(sentence_of(found[0]),
+            "From 10201 to 1002001 vertices the time of a step grows least with yarn_projection, "
+            "as their "
+            "number to the power 1.25 (1.25 to 1.25), and most with icd, 1.5 (1.5 to 1.5).");
+}
+
+// Exponents that may be the same, or anything, are no finding.
+TEST(Growth, IsToldWhereIntervalsAreApart) {
+  const auto told_with = [](double strips, double scatter) {
+    std::vector<json> points;
+    for (const int n : {101, 317, 1001}) {
+      const double off = n == 317 ? scatter : 1 / scatter;
+      points.push_back(resolution_run("yarn_projection", n, off * 3e-7 * std::pow(n * n, strips)));
+      points.push_back(resolution_run("icd", n, 3e-9 / off * std::pow(n * n, 1.5)));
+    }
+    const json result = document(points);
+    return sentence_of(growth_in(planes_of(result)).at(0));
+  };
+  EXPECT_NE(told_with(1.25, 1.001), "");
+  EXPECT_EQ(told_with(1.5 - 1e-6, 1.001), "") << "the same, as far as is known";
+  EXPECT_EQ(told_with(1.25, 5), "") << "anything";
+}
+
+// Of 95 % intervals, some 95 % hold the truth: of 400, fewer than 360 with a chance below 1e-4.
+TEST(Growth, IntervalsHoldTheTruthAsOftenAsTheySay) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> noise(0, 0.1);
+  int inside = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    std::vector<json> points;
+    for (const int n : {101, 201, 317, 501, 1001})
+      points.push_back(
+          resolution_run("icd", n, std::exp(noise(random)) * 1e-7 * std::pow(n * n, 1.1)));
+    const json result = document(points);
+    const Slope slope = growth_in(planes_of(result)).at(0).rows.at(0).exponent;
+    inside += slope.low() <= 1.1 && 1.1 <= slope.high();
+  }
+  EXPECT_GE(inside, 360);
+  EXPECT_LT(inside, 400);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "harness/analysis/words.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
-#include "harness/points/joined.h"
+#include "harness/points/result_file.h"
 #include "harness/points/schema.h"
 #include "solvers/registry.h"
 #include "support/invented_runs.h"

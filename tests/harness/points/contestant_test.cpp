@@ -8,10 +8,10 @@
 #include <fstream>
 
 #include "harness/base/errors.h"
-#include "harness/points/noise.h"
+#include "harness/points/result_file.h"
 #include "harness/points/suite.h"
 #include "harness/points/tuned.h"
-#include "harness/run/plan.h"
+#include "harness/run/sweep.h"
 
 namespace harness {
 namespace {

@@ -10,7 +10,6 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/points/context.h"
-#include "harness/points/joined.h"
 #include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
 #include "harness/run/fake_machine.h"
