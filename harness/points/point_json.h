@@ -2,7 +2,7 @@
 // tables of its fields are here, and in measures.h and work_counters.h.
 #pragma once
 
-#include "harness/base/fields_json.h"
+#include "harness/base/fields.h"
 #include "harness/points/point.h"
 
 namespace harness {
