@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <random>
 #include <sstream>
 #include <utility>
@@ -17,12 +18,12 @@
 #include "harness/scenes/pendulum.h"
 #include "harness/stability/cases.h"
 #include "harness/stability/stability.h"
+#include "harness/stability/trial_judge.h"
 #include "solvers/problem/forces.h"
 
 namespace harness {
 namespace {
 
-using Eigen::Vector3d;
 using inextensible::Positions;
 using inextensible::Problem;
 using inextensible::State;
@@ -32,14 +33,23 @@ using inextensible::StrainControl;
 using inextensible::WorkCounters;
 using Grade = Finding::Grade;
 
-// Some steps of one scene.
-struct Case {
+// Some steps of one scene, judged as those of a hard case are; not their energy.
+struct Case : Trial {
   std::string name;
-  Scene scene;
-  double step;  // s
-  int steps;
-  double limit = 0.01;  // strain
 };
+
+Case case_of(std::string name, Scene scene, double h, int steps, double limit = 0.01) {
+  Case c;
+  c.name = std::move(name);
+  c.scene = std::move(scene);
+  c.step = h;
+  c.steps = steps;
+  c.strain_limit = limit;
+  c.energy_tolerance = -1;
+  // Rounding, and the 1e-10 to which the KKT system's residual is refined.
+  c.momentum_tolerance = 1e-9;
+  return c;
+}
 
 // All parts in a row, numbers with three digits.
 template <class... Parts>
@@ -92,7 +102,8 @@ Case net(std::uint64_t seed, int n, int pins, double speed, double step, int ste
     if (row > 0) join(v, v - n);  // both orientations occur
   }
   scene.problem = std::make_shared<const Problem>(std::move(parts));
-  return {text("net of ", n, " x ", n, ", seed ", seed), std::move(scene), step, steps, limit};
+  return case_of(text("net of ", n, " x ", n, ", seed ", seed), std::move(scene), step, steps,
+                 limit);
 }
 
 // The drape without the parts that the solver does not take.
@@ -100,7 +111,7 @@ Case drape(const inextensible::Backend& solver, double step, int steps) {
   SceneParameters given{{"n", 9}};
   if (!solver.takes_shear) given["shear"] = 0;
   if (!solver.takes_collider) given["radius"] = 0;
-  return {"drape of 9 x 9", cases::scene_of("drape", given), step, steps};
+  return case_of("drape of 9 x 9", cases::scene_of("drape", given), step, steps);
 }
 
 bool keeps_a_limit(const inextensible::Backend& solver) {
@@ -111,7 +122,7 @@ std::unique_ptr<Stepper> stepper_for(const Examinee& solver, const Case& c,
                                      const inextensible::Settings& settings = {}) {
   try {
     return inextensible::make_stepper(solver.backend.name, c.scene.problem,
-                                      {c.limit, solver.options.seed, settings});
+                                      {c.strain_limit, solver.options.seed, settings});
   } catch (const std::invalid_argument& error) {
     throw NotTaken(error.what());
   }
@@ -140,132 +151,117 @@ std::vector<std::int64_t> counts_of(const WorkCounters& w) {
   return counts;
 }
 
-// All that ordinary runs tell, in one pass over them.
-struct Ordinary {
-  int steps = 0, smaller = 0;  // smaller: accepted ones shorter than the case's own
-  std::string stopped;
-  int moved_pins = 0, places = 0;
-  std::string first_moved;
-  double worst = 0;  // strain over limit
-  std::string worst_place;
-  std::string wrong_count;
+// Looks at the counters as well, and says what is wrong with them.
+struct CountingJudge : TrialJudge {
+  CountingJudge(const Case& c, const inextensible::Backend& backend, const Stepper& counting,
+                TrialResult& result)
+      : TrialJudge(c, backend, counting, result), stepper(counting) {}
 
-  void look(const Case& c, const Stepper& stepper, const State& state);
-  void take_steps(const Examinee& solver, const Case& c);
+  bool after(const State& state, const DriveState& driven) {
+    const std::vector<std::int64_t> now = counts_of(stepper.work());
+    const bool falls = !std::ranges::equal(counts, now, std::less_equal<>());
+    counts = now;
+    if (wrong.empty() &&
+        (falls || stepper.work().steps != ++accepted || driven.result.iterations < 0))
+      wrong = falls ? "a counter fell" : "steps or iterations are wrong";
+    return TrialJudge::after(state, driven);
+  }
+
+  const Stepper& stepper;
+  std::vector<std::int64_t> counts = counts_of(stepper.work());
+  std::int64_t accepted = 0;
+  std::string wrong;
 };
 
-void Ordinary::look(const Case& c, const Stepper& stepper, const State& state) {
-  const Problem& problem = *c.scene.problem;
-  const std::string place = text(c.name, ", step ", stepper.work().steps);
-  for (const int pin : problem.pinned()) {
-    ++places;
-    const Positions now = state.x.col(pin), start = c.scene.start.x.col(pin);
-    if (!same_bits(now, start) && moved_pins++ == 0)
-      first_moved =
-          text("vertex ", pin, " is pinned but moved by ", (now - start).norm(), " m at ", place);
-  }
-  const StrainRange edge = strain_range(problem, stepper.filtered_positions());
-  if (edge.most / c.limit > worst) {
-    worst = edge.most / c.limit;
-    worst_place = text("edge ", edge.edge, " at ", place);
-  }
-}
+// What runs tell: how far they went, and where they first broke each promise.
+struct Runs {
+  std::int64_t steps = 0;
+  double worst = 0;  // strain over limit
+  double momentum_defect = 0;
+  std::string stopped, wrong_count;
+  std::map<Promise, std::string> broken;
 
-void Ordinary::take_steps(const Examinee& solver, const Case& c) {
-  const auto stepper = stepper_for(solver, c);
-  State state = c.scene.start;
-  std::int64_t accepted = 0;
-  std::vector<std::int64_t> before = counts_of(stepper->work());
-  const auto look_on = [&](const State& now, const DriveState& driven) {
-    ++accepted;
-    ++steps;
-    if (driven.last < c.step) ++smaller;
-    look(c, *stepper, now);
-    const std::vector<std::int64_t> counts = counts_of(stepper->work());
-    const bool falls =
-        !std::equal(before.begin(), before.end(), counts.begin(), std::less_equal<>());
-    if (wrong_count.empty() &&
-        (falls || stepper->work().steps != accepted || driven.result.iterations < 0))
-      wrong_count = text(falls ? "a counter fell" : "steps or iterations are wrong", " at ", c.name,
-                         ", step ", accepted);
-    before = counts;
-    return true;
-  };
-  const DriveState driven = drive(*stepper, state, {c.step, c.steps, 10}, look_on);
-  if (driven.end == DriveState::End::refused && stopped.empty())
-    stopped = text(c.name, " at t = ", state.time, " s, steps down to ", driven.next,
-                   " s: ", to_string(driven.result.status), ", ", driven.result.detail);
-}
+  void take(const Examinee& solver, const Case& c) {
+    const auto stepper = stepper_for(solver, c);
+    TrialResult result;
+    CountingJudge judge(c, solver.backend, *stepper, result);
+    State state = c.scene.start;
+    const DriveState driven = drive(*stepper, state, {c.step, c.steps, 10}, judge);
+    steps += stepper->work().steps;
+    raise(worst, result.max_strain / c.strain_limit);
+    raise(momentum_defect, result.momentum_defect);
+    const std::string place = text(" at ", c.name, ", step ", stepper->work().steps);
+    if (wrong_count.empty() && !judge.wrong.empty()) wrong_count = judge.wrong + place;
+    if (result.broken != Promise::none) broken.try_emplace(result.broken, result.detail + place);
+    if (driven.end == DriveState::End::refused && stopped.empty())
+      stopped = text(c.name, " at t = ", state.time, " s, steps down to ", driven.next,
+                     " s: ", to_string(driven.result.status), ", ", driven.result.detail);
+    if (judge.finish() == Outcome::diverged || result.broken == Promise::finite)
+      stopped = c.name + ": " + result.detail;
+  }
+  // Where it was broken, or nothing.
+  std::string where(Promise promise) const {
+    const auto found = broken.find(promise);
+    return found == broken.end() ? "" : found->second;
+  }
+};
 
 Findings ordinary_runs(const Examinee& solver) {
-  Ordinary all;
-  all.take_steps(solver, {"chain of 20", cases::scene_of("chain", {{"n", 20}}), 1.0 / 400, 80});
-  all.take_steps(solver, drape(solver.backend, 1.0 / 400, 60));
+  Runs all;
+  all.take(solver, case_of("chain of 20", cases::scene_of("chain", {{"n", 20}}), 1.0 / 400, 80));
+  all.take(solver, drape(solver.backend, 1.0 / 400, 60));
   for (std::uint64_t seed = 1; seed <= 4; ++seed)
-    all.take_steps(solver, net(seed, 5, 2, 2, 0.005, 10, 0.005));
-  const std::string worst = number_text(all.worst, 4);
+    all.take(solver, net(seed, 5, 2, 2, 0.005, 10, 0.005));
+  const std::string pins = all.where(Promise::pins),
+                    limit = all.where(Promise::strain) + all.where(Promise::contact),
+                    worst = number_text(all.worst, 4);
   return {
       judged(all.stopped.empty(), "steps",
-             all.stopped.empty() ? text(all.steps, " steps of a chain, a drape and nets, ",
-                                        all.smaller, " of them smaller than asked for")
+             all.stopped.empty() ? text(all.steps, " steps of a chain, a drape and nets")
                                  : "it does not get through " + all.stopped,
              "easy scenes: at small steps the candidate nearly meets the limit; look at the "
              "iteration limit and at what ends the iteration"),
-      judged(
-          all.moved_pins == 0, "pins",
-          text(all.moved_pins, " of ", all.places,
-               " places of pinned vertices changed (allowed 0)"),
-          all.first_moved +
-              ": a pinned vertex's inverse mass is 0; do not write to it, rounding moves it too"),
+      judged(pins.empty(), "pins",
+             pins.empty() ? text("none moved in ", all.steps, " steps") : pins,
+             "a pinned vertex's inverse mass is 0; do not write to it, rounding moves it too"),
       keeps_a_limit(solver.backend)
-          ? judged(all.worst <= 1 + 1e-9, "limit",
+          ? judged(limit.empty(), "limit",
                    text("largest strain ", worst, " of the limit (allowed 1)"),
-                   all.worst_place +
-                       ": return ok only where every edge keeps | |d| / l - 1 | <= strain_limit "
-                       "(EdgeConstraints::permissible), before the collision filter; refuse "
-                       "otherwise")
+                   limit + ": return ok only where every edge keeps | |d| / l - 1 | <= "
+                           "strain_limit (EdgeConstraints::permissible), before the collision "
+                           "filter; refuse otherwise")
           : not_applicable("limit", text(solver.backend.strain_control == StrainControl::stiffness
                                              ? "no limit of its own, sweeps search its stiffness"
                                              : "promises no limit",
                                          "; here ", worst, " of it")),
       judged(all.wrong_count.empty(), "counters",
              all.wrong_count.empty() ? "steps are counted and no counter falls" : all.wrong_count,
-             "only add to the WorkCounters that apply() is given, and return the iterations of "
-             "this step alone")};
+             "only add to the WorkCounters that apply() is given, and return the iterations "
+             "of this step alone")};
 }
 
 // ---- Linear and angular momentum of a free, weightless net ----
 
-constexpr double momentum_duration = 0.04;  // s
 // A hundredth of the strain that a step causes. An edge that is within its limit is not corrected:
 // with a limit near that strain, which edges are depends on the step, and the loss has no order in
 // it.
 constexpr double momentum_limit = 1e-5;
-// Rounding, and the 1e-10 to which the KKT system's residual is refined.
-constexpr double momentum_tolerance = 1e-9;
 // What edges may do within their limit has no order in the step: a hundredth of it is let pass.
 constexpr double spin_tolerance = 0.01 * momentum_limit;
 // Defect at a quarter of the step over this one: 1/4 for an error of first order in h, 1 for one
 // that steps do not lessen; between the two, on a logarithmic scale.
 constexpr double vanishing = 0.5;
 
-// Raises `linear` to the largest relative change of linear momentum in a step; infinite if refused.
-double loss_of_spin(const Examinee& solver, const Case& c, double step, double& linear) {
+// Infinite if a step is refused.
+double loss_of_spin(const Examinee& solver, const Case& c, int refinement) {
   const Problem& problem = *c.scene.problem;
   const auto stepper = stepper_for(solver, c);
   State state = c.scene.start;
-  const Vector3d start = angular_momentum(problem, state);
+  const Eigen::Vector3d start = angular_momentum(problem, state);
   double scale = 0;
   for (Eigen::Index i = 0; i < state.v.cols(); ++i)
     scale += problem.mass()[i] * state.v.col(i).norm();
-  Vector3d before = linear_momentum(problem, state.v);
-  const auto look = [&](const State& now, const DriveState& /*driven*/) {
-    const Vector3d after = linear_momentum(problem, now.v);
-    linear = std::max(linear, (after - std::exchange(before, after)).norm() / scale);
-    return true;
-  };
-  const DriveState driven =
-      drive(*stepper, state, {step, std::lround(momentum_duration / step)}, look);
+  const DriveState driven = drive(*stepper, state, {c.step / refinement, refinement * c.steps});
   if (driven.end == DriveState::End::refused) return std::numeric_limits<double>::infinity();
   return (angular_momentum(problem, state) - start).norm() / (scale * c.scene.size);
 }
@@ -276,11 +272,13 @@ Findings momentum(const Examinee& solver) {
         "vertices are moved one by one, or forces turn: conserved only where it has converged";
     return {not_applicable("linear momentum", why), not_applicable("angular momentum", why)};
   }
-  double linear = 0, coarse = 0, fine = 0;
+  Runs all;
+  double coarse = 0, fine = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    const Case c = net(seed, 5, 0, 0.5, 0.002, 0, momentum_limit);
-    coarse += loss_of_spin(solver, c, c.step, linear) / 4;
-    fine += loss_of_spin(solver, c, c.step / 4, linear) / 4;
+    const Case c = net(seed, 5, 0, 0.5, 0.002, 20, momentum_limit);
+    all.take(solver, c);
+    coarse += loss_of_spin(solver, c, 1) / 4;
+    fine += loss_of_spin(solver, c, 4) / 4;
   }
   if (std::isinf(coarse + fine)) {
     const char* refuses = "not measured: it refuses a step of 0.002 s of a free net";
@@ -290,23 +288,23 @@ Findings momentum(const Examinee& solver) {
             judged(false, "angular momentum", refuses, easy)};
   }
   const double allowed = std::max(vanishing * coarse, spin_tolerance);
-  return {judged(linear <= momentum_tolerance, "linear momentum",
-                 text("changes by ", linear, " of its scale in a step (allowed ",
-                      momentum_tolerance, ")"),
-                 "nothing outside acts: corrections of an edge's two ends, times their masses, "
-                 "must cancel (share by inverse mass)"),
-          judged(fine <= allowed, "angular momentum",
-                 text("changes by ", coarse, " of its scale at h, ", fine, " at h/4 (allowed ",
-                      allowed, ": it vanishes with the step)"),
-                 "corrections must act along their edge, at its direction within the step; about "
-                 "the origin or along fixed axes they do torque")};
+  return {
+      judged(all.where(Promise::momentum).empty(), "linear momentum",
+             text("changes by ", all.momentum_defect, " of what flows in a step (allowed 1e-9)"),
+             "nothing outside acts: corrections of an edge's two ends, times their masses, "
+             "must cancel (share by inverse mass)"),
+      judged(fine <= allowed, "angular momentum",
+             text("changes by ", coarse, " of its scale at h, ", fine, " at h/4 (allowed ", allowed,
+                  ": it vanishes with the step)"),
+             "corrections must act along their edge, at its direction within the step; about "
+             "the origin or along fixed axes they do torque")};
 }
 
 // ---- Steps that no method can take ----
 
 Findings refusal(const Examinee& solver) {
-  const Case torn{"a row between pins 20 % farther apart than it is long",
-                  cases::scene_of("taut_row", {{"stretch", 1.2}, {"n", 12}}), 0.01, 1};
+  const Case torn = case_of("a row between pins 20 % farther apart than it is long",
+                            cases::scene_of("taut_row", {{"stretch", 1.2}, {"n", 12}}), 0.01, 1);
   Case overflow = net(1, 4, 1, 2, 0.01, 1, 0.005);
   overflow.name = "speeds of 1e300 m/s";
   overflow.scene.start.v *= 1e300;
@@ -414,7 +412,8 @@ Findings consistency(const Examinee& solver) {
   // Distances from a run of h/16: (1/2 - 1/16) / (1 - 1/16) = 0.47 for a method of first order, 1
   // for what does not vanish with h; between the two, on a logarithmic scale.
   constexpr double not_vanishing = 0.68;
-  const Case c{"chain of 8", cases::scene_of("chain", {{"n", links + 1}}), 0.32 / 80, 80, 1e-6};
+  const Case c =
+      case_of("chain of 8", cases::scene_of("chain", {{"n", links + 1}}), 0.32 / 80, 80, 1e-6);
   // How far a step is iterated is a tolerance, not a part of the formula: it must not be what
   // shows.
   inextensible::Settings settings;

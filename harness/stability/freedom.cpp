@@ -1,9 +1,8 @@
-#include "harness/stability/freedom.h"
-
 #include <Eigen/SPQRSupport>
 #include <random>
 
 #include "harness/stability/cases.h"
+#include "harness/stability/stability.h"
 
 namespace harness {
 namespace {

@@ -1,11 +1,10 @@
-#include "harness/stability/same_frame.h"
-
 #include <cmath>
 #include <random>
 
 #include "harness/base/text.h"
 #include "harness/judge/mechanics.h"
 #include "harness/stability/cases.h"
+#include "harness/stability/stability.h"
 #include "solvers/problem/forces.h"
 #include "solvers/registry.h"
 

@@ -2,7 +2,8 @@
 // degrees of freedom that constraints leave, and the same frames from fast projection and ICD.
 #pragma once
 
-#include <functional>
+#include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
@@ -12,9 +13,8 @@
 #include "harness/base/pattern.h"
 #include "harness/base/shard.h"
 #include "harness/base/small_runs.h"
-#include "harness/stability/freedom.h"
+#include "harness/judge/reference.h"
 #include "harness/stability/hard_case.h"
-#include "harness/stability/same_frame.h"
 #include "harness/stability/trial.h"
 
 namespace harness {
@@ -43,6 +43,60 @@ struct LargestStep {
   double failing_step = unknown;  // s, the next larger one that was tried and failed
   std::string detail;             // why that one failed
 };
+
+// ---- Degrees of freedom that constraints leave to a cloth ----
+
+// 3 per free vertex less the rank of J (SuiteSparseQR), at randomly displaced positions, so that
+// the figure is that of a cloth in general position (claim C14).
+struct Freedom {
+  // "quads" or "triangles": all of their edges are constrained; "midpoints": edges between the
+  // midpoints of triangles' edges.
+  std::string mesh;
+  int vertices;  // of quads and triangles
+  int constraints, rank, degrees_of_freedom;
+};
+// The three meshes of n x n vertices.
+std::vector<Freedom> degrees_of_freedom(int n);
+
+// ---- The same frames ----
+//
+// Figure 6 of the paper by direct comparison (claim C8): one cloth at one step by fast projection,
+// by ICD, and by fast projection from a start that was moved by next to nothing, which tells how
+// far apart runs come that should be the same. A drape falls freely until it touches the sphere;
+// the patch hangs from two pins, so that constraints act on it from the first step on, and nothing
+// else does.
+
+struct SameFrameScene {
+  std::string scene;    // "drape" or "patch"
+  int side;             // vertices along the cloth
+  double strain_limit;  // of both solvers
+  double step;          // s
+  double moved;  // of the start's vertices in each coordinate, over the scene's size, at most
+
+  std::string name() const;
+};
+std::vector<SameFrameScene> same_frame_scenes();
+
+// Numbers over the times of frames, by name.
+using FrameSeries = std::map<std::string, std::vector<double>>;
+
+// How far frames are apart: "rms" and "largest" distance over the scene's size, and the difference
+// of each shape statistic.
+struct SameFrame {
+  SameFrameScene scene;
+  double first_contact = unknown;  // s, the first step's end at which the sphere moved a vertex, in
+                                   // the run of fast projection; unknown where there is no sphere
+  std::vector<double> times;       // s
+  FrameSeries icd;                 // from fast projection to ICD
+  FrameSeries moved;               // to fast projection from the moved start
+  // Standard deviations of the reference's ensemble at its sample times; else unknown.
+  FrameSeries deviation;
+  std::string stopped;  // empty: all three ran to the end
+};
+
+SameFrame same_frame(const SameFrameScene& scene, std::uint64_t seed, ReferenceFolder& references);
+
+// ---- The sweep ----
 
 struct StabilityFilters {
   std::optional<Pattern> solver;     // must match the solver's whole name

@@ -60,6 +60,8 @@ struct Trial {
   double timeout = 60, timeout_smaller = 10;
 };
 
+enum class Promise { none, finite, strain, contact, pins, momentum, energy };
+
 struct TrialResult {
   Outcome fixed = Outcome::refused;  // at the trial's own step
   Outcome outcome =
@@ -74,6 +76,7 @@ struct TrialResult {
   double reciprocal_condition = unknown;  // worst of the linear systems
   double seconds = 0;                     // wall, both attempts
   inextensible::WorkCounters work;        // of the last attempt
+  Promise broken = Promise::none;         // of a wrong outcome; not in files
 };
 
 // Never throws: what goes wrong is the outcome. `build` makes the trial; a std::invalid_argument

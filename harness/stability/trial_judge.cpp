@@ -28,8 +28,9 @@ TrialJudge::TrialJudge(const Trial& trial, const inextensible::Backend& backend,
   energy_.begin(trial.scene.start);
 }
 
-bool TrialJudge::fail(Outcome outcome, const std::string& why) {
+bool TrialJudge::fail(Outcome outcome, const std::string& why, Promise broken) {
   outcome_ = outcome;
+  result_.broken = broken;
   result_.detail = why;
   return false;
 }
@@ -51,11 +52,11 @@ bool TrialJudge::after(const State& state, const DriveState& driven) {
 
 bool TrialJudge::after(const Positions& filtered, const State& state, double h) {
   if (!state.x.allFinite() || !state.v.allFinite())
-    return fail(Outcome::wrong, "a state that is not finite was accepted");
+    return broke(Promise::finite, "a state that is not finite was accepted");
   if (!judge_strain(filtered, state) || !judge_contact(state)) return false;
   for (const int pin : problem_.pinned()) {
     if (state.x.col(pin) != start_.x.col(pin))
-      return fail(Outcome::wrong, "pinned vertex " + std::to_string(pin) + " moved");
+      return broke(Promise::pins, "pinned vertex " + std::to_string(pin) + " moved");
   }
   return judge_momentum(state, h) && judge_energy(state, h);
 }
@@ -84,9 +85,9 @@ bool TrialJudge::judge_strain(const Positions& filtered, const State& state) {
 
 bool TrialJudge::judge_limit(const StrainRange& worst, const char* when) {
   if (!limit_promised_ || worst.most <= trial_.strain_limit * (1 + 1e-9)) return true;
-  return fail(Outcome::wrong, std::string("success claimed, but ") + when + "edge " +
-                                  std::to_string(worst.edge) + " is strained by " +
-                                  told_apart(worst.most, trial_.strain_limit));
+  return broke(Promise::strain, std::string("success claimed, but ") + when + "edge " +
+                                    std::to_string(worst.edge) + " is strained by " +
+                                    told_apart(worst.most, trial_.strain_limit));
 }
 
 // Looks at what is delivered: positions after everything that a step does.
@@ -99,9 +100,9 @@ bool TrialJudge::judge_contact(const State& state) {
   obstacle_->place(state.time);
   obstacle_->find(state.x, visible_depth * trial_.scene.size, inside_, work);
   if (inside_.empty()) return true;
-  return fail(Outcome::wrong, "success claimed, but vertex " +
-                                  std::to_string(inside_.front().vertex) +
-                                  " is inside the obstacle");
+  return broke(Promise::contact, "success claimed, but vertex " +
+                                     std::to_string(inside_.front().vertex) +
+                                     " is inside the obstacle");
 }
 
 // The defect is |change of momentum - weight h| over what flows in the step; positions are known to
@@ -116,7 +117,7 @@ bool TrialJudge::judge_momentum(const State& state, double h) {
   const double defect = (linear_momentum(problem_, state.v) - expected).norm() / flow;
   raise(result_.momentum_defect, defect);
   return defect <= trial_.momentum_tolerance ||
-         fail(Outcome::wrong, "momentum is not conserved, by " + number_text(defect));
+         broke(Promise::momentum, "momentum is not conserved, by " + number_text(defect));
 }
 
 bool TrialJudge::judge_energy(const State& state, double h) {
@@ -135,7 +136,7 @@ bool TrialJudge::judge_gain(std::optional<double> gain, double release) {
   if (!gain) return true;
   raise(result_.energy_gain, *gain);
   return *gain <= trial_.energy_tolerance + release ||
-         fail(Outcome::wrong, "energy out of nothing, " + number_text(*gain) + " of its scale");
+         broke(Promise::energy, "energy out of nothing, " + number_text(*gain) + " of its scale");
 }
 
 }  // namespace harness

@@ -29,7 +29,8 @@ class TrialJudge : public Observer {
 
  private:
   // Each returns whether nothing is wrong.
-  bool fail(Outcome outcome, const std::string& why);
+  bool fail(Outcome outcome, const std::string& why, Promise broken = Promise::none);
+  bool broke(Promise promise, const std::string& why) { return fail(Outcome::wrong, why, promise); }
   bool judge_strain(const inextensible::Positions& filtered, const inextensible::State& state);
   bool judge_limit(const StrainRange& worst, const char* when);
   bool judge_contact(const inextensible::State& state);
