@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iomanip>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "harness/base/clock.h"
@@ -83,25 +84,17 @@ Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double 
   return {{.detail = calibration.detail()}};
 }
 
-// The order of accuracy that deviations show, from step to step of half the size.
-class Order {
- public:
-  // continuum: against what small steps lead to, from three steps, instead of the exact value.
-  // strain_limit: what it permits is no error of the method, below a few times of it there is no
-  // order to be seen.
-  Order(bool continuum, double strain_limit) : continuum_(continuum), least_(10 * strain_limit) {}
-
-  double next(double deviation) {
-    const double error = continuum_ ? deviation - std::exchange(last_, deviation) : deviation;
-    const double coarser = std::exchange(error_, error);
-    return std::abs(error) > least_ ? std::log2(std::abs(coarser / error)) : unknown;
-  }
-
- private:
-  bool continuum_;
-  double least_;
-  double last_ = unknown, error_ = unknown;
-};
+// The order of accuracy that the last deviations show, from step to step of half the size: of a
+// continuum against what small steps lead to, from three steps, instead of the exact value. What
+// the strain limit permits is no error of the method: below a few times of it no order shows.
+double order_of(const KnownAnswer& answer, std::vector<double> deviations) {
+  if (answer.continuum)
+    std::adjacent_difference(deviations.begin(), deviations.end(), deviations.begin());
+  const std::size_t n = deviations.size();
+  if (n < (answer.continuum ? 3 : 2)) return unknown;
+  const double coarse = deviations[n - 2], fine = deviations[n - 1];
+  return std::abs(fine) > 10 * answer.strain_limit ? std::log2(std::abs(coarse / fine)) : unknown;
+}
 
 nlohmann::json to_json(const Ending& ending) {
   return {{"value", number(ending.value)}, {"detail", ending.detail}};
@@ -159,7 +152,7 @@ AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
   for (const AnswerRun& run : plan) all += run.answer->steps.size();
   for (const AnswerRun& run : plan) {
     const double exact = run.answer->exact(scene_of(*run.answer));
-    Order order(run.answer->continuum, run.answer->strain_limit);
+    std::vector<double> deviations;
     for (const double step : run.answer->steps) {
       if (events.interrupted()) throw Interrupted();
       const std::string name = std::string(run.answer->name) + "/" + run.solver;
@@ -168,8 +161,9 @@ AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
                                  timeout, events.interrupted));
       }));
       const double deviation = exact == 0 ? ending.value : ending.value / exact - 1;
+      deviations.push_back(deviation);
       outcome.rows.push_back({run.answer->name, run.solver, step, ending.value, deviation,
-                              order.next(deviation), ending.detail});
+                              order_of(*run.answer, deviations), ending.detail});
       events.done(name, outcome.rows.size(), all);
     }
   }

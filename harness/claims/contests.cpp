@@ -1,5 +1,6 @@
 // C1 to C3, C5, C6, C11 and C15: which method is fast, how its time grows, and what its steps take.
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
@@ -205,7 +206,7 @@ Verdict drape_time_over_resolution(const Points& points) {
       if (method.name != fast_projection.name)
         others[method.words] = points.best("drape", "resolution", method.name, level);
     }
-    std::string told;
+    std::string details;
     std::vector<Answer> sizes;
     for (const auto& [vertices, point] : fast) {
       std::vector<Answer> here;
@@ -225,15 +226,15 @@ Verdict drape_time_over_resolution(const Points& points) {
       const char* word = sizes.back() == Answer::yes  ? "fastest"
                          : sizes.back() == Answer::no ? "not fastest"
                                                       : "undecided";
-      append(told, count_of(vertices) + ": " + word + ", " + rival + " takes " + text(closest) +
-                       " of its time");
+      append(details, count_of(vertices) + ": " + word + ", " + rival + " takes " + text(closest) +
+                          " of its time");
     }
     if (fast.size() < 2 || sizes.empty()) return {};
     const Answer all = all_of(sizes), largest = sizes.back();
     return {largest == Answer::yes && all == Answer::no ? changed
             : largest == Answer::yes                    ? verdict_of(all)
                                                         : verdict_of(largest),
-            told + first_of_all(points, "resolution", fast, level, count_of), ids_of({fast})};
+            details + first_of_all(points, "resolution", fast, level, count_of), ids_of({fast})};
   }));
 }
 
@@ -300,7 +301,7 @@ Answer smaller(const Steps& a, const Steps& b) {
 Verdict shake_small_steps(const Points& points) {
   return in_ways(at_levels([&](double level) -> Verdict {
     std::vector<Answer> answers;
-    std::string told;
+    std::string details;
     std::vector<Curve> evidence;
     for (const char* sweep : {"strain", "resolution"}) {
       const Curve icd_curve = points.best("drape", sweep, icd.name, level);
@@ -313,7 +314,7 @@ Verdict shake_small_steps(const Points& points) {
         const Steps steps = steps_of(points, p, level), larger = steps_of(points, *other, level);
         const Ratio costlier = ratio_of_steps(*other, p);
         answers.push_back(all_of({smaller(steps, larger), above(costlier, 1)}));
-        told += "; " + vertices_of(p.vertices()) + " at " + percent(p.strain_limit()) + ": SHAKE " +
+        details += "; " + vertices_of(p.vertices()) + " at " + percent(p.strain_limit()) + ": SHAKE " +
                 steps.words() + ", ICD " + larger.words() + ", whose step takes " + text(costlier) +
                 " times as long";
         compared.try_emplace(place, p);
@@ -327,7 +328,7 @@ Verdict shake_small_steps(const Points& points) {
                no = static_cast<int>(std::ranges::count(answers, Answer::no));
     return {verdict_of_counts(yes, no, all),
             "so at " + std::to_string(yes) + " of " + std::to_string(all) + " places, not so at " +
-                std::to_string(no) + told,
+                std::to_string(no) + details,
             ids_of(evidence)};
   }));
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <tuple>
 
 #include "harness/analysis/plane.h"
 #include "harness/base/text.h"

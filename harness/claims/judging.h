@@ -2,8 +2,6 @@
 // and curves of each contestant's best points.
 #pragma once
 
-#include <array>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>

@@ -58,16 +58,16 @@ Verdict springs_stiffness(const Points& points) {
   for (const double tension : there) log_sum += std::log(tension);
   const double expected = std::exp(log_sum / static_cast<double>(there.size()));
   double factor = 1;
-  std::string told;
+  std::string details;
   for (const auto& [place, here] : places) {
     const auto [least, largest] = std::ranges::minmax(here);
     const double low = least / expected, high = largest / expected;
     factor = std::max({factor, high, 1 / low});
-    append(told, place.first + " of " + text(place.second, 6) + " " + text(low, 2) +
-                     (high > low ? " to " + text(high, 2) : ""));
+    append(details, place.first + " of " + text(place.second, 6) + " " + text(low, 2) +
+                        (high > low ? " to " + text(high, 2) : ""));
   }
   found.measured = "at a step of " + step_text(step) + " s, calibrated on " + known.first + " of " +
-                   text(known.second, 6) + " vertices: the strain over its limit is " + told +
+                   text(known.second, 6) + " vertices: the strain over its limit is " + details +
                    "; off by a factor of " + text(factor, 2) + " at most";
   found.verdict = verdict_of(
       above(Ratio{factor, factor * calibration_tolerance, factor / calibration_tolerance}, 2));
@@ -77,7 +77,7 @@ Verdict springs_stiffness(const Points& points) {
 Verdict failure_configurations(const Points& points) {
   Verdict found;
   bool shake_always = true, shake_sometimes = false, others = true;
-  std::string told;
+  std::string details;
   for (const std::string q : {"Q1", "Q2", "Q3", "Q4"}) {
     for (const std::string solver : {shake.name, fast_projection.name, icd.name}) {
       const auto cell = std::ranges::find_if(points.matrix, [&](const json* c) {
@@ -91,13 +91,13 @@ Verdict failure_configurations(const Points& points) {
         others = others && (fixed == "survived" || (q == "Q3" && smaller));
         continue;
       }
-      append(told, q + " " + fixed + (smaller ? " (but survived with smaller steps)" : ""));
+      append(details, q + " " + fixed + (smaller ? " (but survived with smaller steps)" : ""));
       shake_always = shake_always && (q == "Q3" || outcome == "refused");
       shake_sometimes = shake_sometimes || (q != "Q3" && fixed == "refused");
     }
   }
   found.measured =
-      "SHAKE: " + told + "; fast projection and ICD: " +
+      "SHAKE: " + details + "; fast projection and ICD: " +
       (others ? "all four survived, Q3 at least with smaller steps" : "not all survived");
   found.verdict = !others || !shake_sometimes ? not_reproduced
                   : shake_always              ? reproduced

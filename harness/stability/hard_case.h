@@ -9,6 +9,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/stability/trial.h"
@@ -78,7 +79,7 @@ std::vector<HardCase> hard_cases(const HardCaseValues& values);
 // Outcomes of a solver that are known and are not what theory expects.
 struct KnownDifference {
   struct Cause {
-    const char *reason, *mends;  // mends: what would make the outcome the expected one
+    const char *reason, *remedy;  // what would make the outcome the expected one
   };
   const char* solver;
   Outcome fixed;    // at the case's own step

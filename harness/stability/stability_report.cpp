@@ -76,7 +76,7 @@ void print_expectations(std::ostream& out, const StabilityOutcome& outcome) {
     if (cell.result.fixed != cell.result.outcome)
       out << " (" << to_string(cell.result.fixed) << ")";
     out << ", expected " << to_string(cell.expectation.outcome) << "; " << cell.result.detail;
-    if (cell.known) out << "\n    " << cell.known->cause.reason << "; " << cell.known->cause.mends;
+    if (cell.known) out << "\n    " << cell.known->cause.reason << "; " << cell.known->cause.remedy;
     out << '\n';
   }
 }
@@ -95,7 +95,7 @@ json known_json(const StabilityOutcome& outcome) {
                       {"at_fixed_step", to_string(known.fixed)},
                       {"outcome", to_string(known.outcome)},
                       {"reason", known.cause.reason},
-                      {"mends", known.cause.mends},
+                      {"mends", known.cause.remedy},
                       {"seen", seen}});
     }
   }
