@@ -20,10 +20,55 @@
 namespace inextensible {
 namespace {
 
+Springs penalties(const Problem& problem, double penalty) {
+  Springs springs{problem.edges(), problem.rest_length(), {}};
+  for (const auto [a, b] : problem.edges())
+    springs.stiffness.push_back(penalty / (problem.inverse_mass()[a] + problem.inverse_mass()[b]));
+  return springs;
+}
+
 class AugmentedVbd final : public VelocityFilter {
  public:
-  AugmentedVbd(const Problem& problem, const BackendOptions& options);
-  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
+  AugmentedVbd(const Problem& problem, const BackendOptions& options)
+      : problem_(problem),
+        edges_(problem, options.strain_limit),
+        strain_limit_(options.strain_limit),
+        max_iterations_(options.count("max_iterations")),
+        most_(options.number("direction_tolerance") * options.strain_limit *
+              problem.shortest_rest_length() / options.number("penalty")),
+        passes_(problem, penalties(problem, options.number("penalty"))),
+        target_(3, problem.vertices()),
+        tension_(passes_.tensions()) {}
+
+  StepResult apply(const Positions& /*x_start*/, double h, Iterate x, WorkCounters& work) override {
+    if (edges_.permissible(x)) return {Status::ok, 0};
+    x.without_pushes(target_);
+    Contacts* contacts = x.contacts();
+    passes_.load(x, target_, problem_.mass());
+    passes_.set_planes(contacts);
+    passes_.tensions() = h * h * tension_;
+    passes_.follow_tensions();
+    bool again = false;
+    for (int j = 1; j <= max_iterations_; ++j) {
+      const bool still = passes_.visit_all(1) <= most_ * most_;
+      work.edge_projections += problem_.constraints();
+      const bool ends = passes_.update_tensions(strain_limit_) && still;
+      if (!ends && (j % 64 != 0 || passes_.finite())) continue;
+      if (!ends && !again) {
+        again = true;
+        passes_.load(x, target_, problem_.mass());
+        passes_.tensions().setZero();
+        continue;
+      }
+      passes_.store(x);
+      if (!edges_.permissible(x)) return refuse(Status::not_converged, j, edges_, x, "overflow");
+      tension_ = passes_.tensions() / (h * h);
+      if (contacts) passes_.read_pushes(*contacts);
+      return {Status::ok, j};
+    }
+    passes_.store(x);
+    return refuse(Status::not_converged, max_iterations_, edges_, x, "pass limit");
+  }
 
  private:
   const Problem& problem_;
@@ -35,55 +80,6 @@ class AugmentedVbd final : public VelocityFilter {
   Positions target_;        // the candidate without what planes pushed it
   Eigen::ArrayXd tension_;  // of the last accepted step, N, by the passes' entries
 };
-
-Springs penalties(const Problem& problem, double penalty) {
-  Springs springs{problem.edges(), problem.rest_length(), {}};
-  for (const auto [a, b] : problem.edges())
-    springs.stiffness.push_back(penalty / (problem.inverse_mass()[a] + problem.inverse_mass()[b]));
-  return springs;
-}
-
-AugmentedVbd::AugmentedVbd(const Problem& problem, const BackendOptions& options)
-    : problem_(problem),
-      edges_(problem, options.strain_limit),
-      strain_limit_(options.strain_limit),
-      max_iterations_(options.count("max_iterations")),
-      most_(options.number("direction_tolerance") * options.strain_limit *
-            problem.shortest_rest_length() / options.number("penalty")),
-      passes_(problem, penalties(problem, options.number("penalty"))),
-      target_(3, problem.vertices()),
-      tension_(passes_.tensions()) {}
-
-StepResult AugmentedVbd::apply(const Positions& /*x_start*/, double h, Iterate x,
-                               WorkCounters& work) {
-  if (edges_.permissible(x)) return {Status::ok, 0};
-  x.without_pushes(target_);
-  Contacts* contacts = x.contacts();
-  passes_.load(x, target_, problem_.mass());
-  passes_.set_planes(contacts);
-  passes_.tensions() = h * h * tension_;
-  passes_.follow_tensions();
-  bool again = false;
-  for (int j = 1; j <= max_iterations_; ++j) {
-    const bool still = passes_.visit_all(1) <= most_ * most_;
-    work.edge_projections += problem_.constraints();
-    const bool ends = passes_.update_tensions(strain_limit_) && still;
-    if (!ends && (j % 64 != 0 || passes_.finite())) continue;
-    if (!ends && !again) {
-      again = true;
-      passes_.load(x, target_, problem_.mass());
-      passes_.tensions().setZero();
-      continue;
-    }
-    passes_.store(x);
-    if (!edges_.permissible(x)) return refuse(Status::not_converged, j, edges_, x, "overflow");
-    tension_ = passes_.tensions() / (h * h);
-    if (contacts) passes_.read_pushes(*contacts);
-    return {Status::ok, j};
-  }
-  passes_.store(x);
-  return refuse(Status::not_converged, max_iterations_, edges_, x, "pass limit");
-}
 
 }  // namespace
 

@@ -53,37 +53,24 @@ struct ColoredEdges::Link {
 // The colors that are taken at each place.
 class ColoredEdges::Palette {
  public:
-  explicit Palette(std::size_t places) : taken_(places), first_free_(places, 0) {}
+  explicit Palette(std::size_t places) : taken_(places) {}
 
   bool fits(const Link& link, int color) const {
     return is_free(link.a, color) && is_free(link.b, color);
   }
-  int first_fit(const Link& link) const {
-    int color = std::max(first_free_[link.a], first_free_[link.b]);
-    while (!fits(link, color)) ++color;
-    return color;
-  }
   void paint(Link& link, int color) {
     link.color = color;
-    take(link.a, color);
-    take(link.b, color);
+    for (const int place : {link.a, link.b}) {
+      taken_[place].resize(std::max(taken_[place].size(), std::size_t(color) + 1), false);
+      taken_[place][color] = true;
+    }
   }
 
  private:
   bool is_free(int place, int color) const {
-    const auto& taken = taken_[place];
-    return color >= std::ssize(taken) || !taken[color];
+    return color >= std::ssize(taken_[place]) || !taken_[place][color];
   }
-  void take(int place, int color) {
-    auto& taken = taken_[place];
-    if (std::ssize(taken) <= color) taken.resize(color + 1, false);
-    taken[color] = true;
-    int& first = first_free_[place];
-    while (!is_free(place, first)) ++first;
-  }
-
   std::vector<std::vector<bool>> taken_;
-  std::vector<int> first_free_;
 };
 
 ColoredEdges::ColoredEdges(const Problem& problem) {
@@ -129,28 +116,25 @@ void ColoredEdges::color(std::vector<Link>& links) const {
                        }));
   }
   std::stable_sort(kinds.begin(), kinds.end(), [](Kind p, Kind q) { return p.size() > q.size(); });
-  // No place twice, neither as the first end nor as the first of one and the second of another.
   const auto is_matching = [](Kind kind) {
-    const auto by_a = [](const Link& p, const Link& q) { return p.a < q.a; };
-    const auto same_a = [](const Link& p, const Link& q) { return p.a == q.a; };
-    return std::adjacent_find(kind.begin(), kind.end(), same_a) == kind.end() &&
-           std::none_of(kind.begin(), kind.end(), [&](Link link) {
-             link.a = link.b;
-             return std::binary_search(kind.begin(), kind.end(), link, by_a);
-           });
+    std::vector<int> ends;
+    for (const Link& link : kind) ends.insert(ends.end(), {link.a, link.b});
+    std::sort(ends.begin(), ends.end());
+    return std::adjacent_find(ends.begin(), ends.end()) == ends.end();
   };
   Palette palette(vertex_.size());
+  const auto paint = [&](Kind together) {  // in the first color that all of them fit
+    int color = 0;
+    while (!std::all_of(together.begin(), together.end(),
+                        [&](const Link& link) { return palette.fits(link, color); }))
+      ++color;
+    for (Link& link : together) palette.paint(link, color);
+  };
   for (const Kind kind : kinds) {
-    const auto fits = [&](int color) {
-      return std::all_of(kind.begin(), kind.end(),
-                         [&](const Link& link) { return palette.fits(link, color); });
-    };
     if (kind.size() >= least_run && is_matching(kind)) {
-      int color = 0;
-      while (!fits(color)) ++color;
-      for (Link& link : kind) palette.paint(link, color);
+      paint(kind);
     } else {
-      for (Link& link : kind) palette.paint(link, palette.first_fit(link));
+      for (std::size_t i = 0; i < kind.size(); ++i) paint(kind.subspan(i, 1));
     }
   }
 }

@@ -16,17 +16,6 @@
 namespace inextensible {
 namespace {
 
-class DenseNewton final : public VelocityFilter {
- public:
-  DenseNewton(const Problem& problem, const BackendOptions& options);
-  StepResult apply(const Positions& x_start, double h, Iterate iterate,
-                   WorkCounters& work) override;
-
- private:
-  const Problem& problem_;
-  EdgeConstraints edges_;
-};
-
 constexpr int largest_problem = 600;  // vertices
 constexpr double tolerance = 1e-12;   // of C and F, in rest lengths
 
@@ -42,65 +31,72 @@ Eigen::MatrixXd dense_jacobian(const EdgeConstraints& edges, const Positions& x)
   return jacobian;
 }
 
-DenseNewton::DenseNewton(const Problem& problem, const BackendOptions& /*options*/)
-    : problem_(problem), edges_(problem, tolerance) {
-  if (problem.vertices() > largest_problem) {
-    throw std::invalid_argument("solver 'dense_newton' is dense, for at most " +
-                                std::to_string(largest_problem) + " vertices; this problem has " +
-                                std::to_string(problem.vertices()));
-  }
-}
-
-StepResult DenseNewton::apply(const Positions& /*x_start*/, double /*h*/, Iterate iterate,
-                              WorkCounters& work) {
-  Positions& x = iterate;
-  const Eigen::Index n3 = 3 * x.cols(), m = edges_.count();
-  if (m == 0) return {};  // no constraint: the candidate it is
-  const Positions x0 = x;
-  Eigen::VectorXd mass(n3), mu = Eigen::VectorXd::Zero(m), c(m);
-  for (Eigen::Index i = 0; i < n3; ++i) mass[i] = problem_.mass()[i / 3];
-  Eigen::Matrix3Xd u(3, m);
-  const double goal = tolerance * problem_.shortest_rest_length();
-  constexpr int iteration_limit = 200;
-  for (int j = 0; j < iteration_limit; ++j) {
-    edges_.linearize(x, u, c);
-    const Eigen::MatrixXd jacobian = dense_jacobian(edges_, x);
-    const Positions displacement = x - x0;
-    const Eigen::VectorXd force =
-        mass.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(displacement.data(), n3)) +
-        jacobian.transpose() * mu;
-    if (c.cwiseAbs().maxCoeff() <= goal &&
-        (force.cwiseQuotient(mass)).cwiseAbs().maxCoeff() <= goal)
-      return {Status::ok, j};
-    Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(n3 + m, n3 + m);
-    kkt.diagonal().head(n3) = mass;
-    for (Eigen::Index k = 0; k < m; ++k) {
-      const double curvature = 2 * mu[k] * edges_.inverse_rest_length[k];
-      for (int axis = 0; axis < 3; ++axis) {
-        const Eigen::Index a = 3 * edges_.a[k] + axis, b = 3 * edges_.b[k] + axis;
-        if (edges_.wa[k] > 0) kkt(a, a) += curvature;
-        if (edges_.wb[k] > 0) kkt(b, b) += curvature;
-        if (edges_.wa[k] > 0 && edges_.wb[k] > 0) kkt(a, b) = kkt(b, a) = kkt(a, b) - curvature;
-      }
+class DenseNewton final : public VelocityFilter {
+ public:
+  DenseNewton(const Problem& problem, const BackendOptions& /*options*/)
+      : problem_(problem), edges_(problem, tolerance) {
+    if (problem.vertices() > largest_problem) {
+      throw std::invalid_argument("solver 'dense_newton' is dense, for at most " +
+                                  std::to_string(largest_problem) + " vertices; this problem has " +
+                                  std::to_string(problem.vertices()));
     }
-    kkt.bottomLeftCorner(m, n3) = jacobian;
-    kkt.topRightCorner(n3, m) = jacobian.transpose();
-    Eigen::VectorXd rhs(n3 + m);
-    rhs << -force, -c;
-    const Eigen::VectorXd step = kkt.fullPivLu().solve(rhs);
-    ++work.assemblies;
-    ++work.factorizations;
-    ++work.back_solves;
-    // A step may not move a vertex by more than a quarter of an edge: slow, but it stays with the
-    // nearest solution.
-    const double longest = step.head(n3).cwiseAbs().maxCoeff();
-    const double scale = std::min(1.0, 0.25 * problem_.shortest_rest_length() / longest);
-    x += scale * Eigen::Map<const Positions>(step.data(), 3, x.cols());
-    mu += scale * step.tail(m);
-    if (!x.allFinite()) break;
   }
-  return refuse(Status::not_converged, iteration_limit, edges_, x, "iteration limit");
-}
+
+  StepResult apply(const Positions& /*x_start*/, double /*h*/, Iterate iterate,
+                   WorkCounters& work) override {
+    Positions& x = iterate;
+    const Eigen::Index n3 = 3 * x.cols(), m = edges_.count();
+    if (m == 0) return {};  // no constraint: the candidate it is
+    const Positions x0 = x;
+    Eigen::VectorXd mass(n3), mu = Eigen::VectorXd::Zero(m), c(m);
+    for (Eigen::Index i = 0; i < n3; ++i) mass[i] = problem_.mass()[i / 3];
+    Eigen::Matrix3Xd u(3, m);
+    const double goal = tolerance * problem_.shortest_rest_length();
+    constexpr int iteration_limit = 200;
+    for (int j = 0; j < iteration_limit; ++j) {
+      edges_.linearize(x, u, c);
+      const Eigen::MatrixXd jacobian = dense_jacobian(edges_, x);
+      const Positions displacement = x - x0;
+      const Eigen::VectorXd force =
+          mass.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(displacement.data(), n3)) +
+          jacobian.transpose() * mu;
+      if (c.cwiseAbs().maxCoeff() <= goal &&
+          (force.cwiseQuotient(mass)).cwiseAbs().maxCoeff() <= goal)
+        return {Status::ok, j};
+      Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(n3 + m, n3 + m);
+      kkt.diagonal().head(n3) = mass;
+      for (Eigen::Index k = 0; k < m; ++k) {
+        const double curvature = 2 * mu[k] * edges_.inverse_rest_length[k];
+        for (int axis = 0; axis < 3; ++axis) {
+          const Eigen::Index a = 3 * edges_.a[k] + axis, b = 3 * edges_.b[k] + axis;
+          if (edges_.wa[k] > 0) kkt(a, a) += curvature;
+          if (edges_.wb[k] > 0) kkt(b, b) += curvature;
+          if (edges_.wa[k] > 0 && edges_.wb[k] > 0) kkt(a, b) = kkt(b, a) = kkt(a, b) - curvature;
+        }
+      }
+      kkt.bottomLeftCorner(m, n3) = jacobian;
+      kkt.topRightCorner(n3, m) = jacobian.transpose();
+      Eigen::VectorXd rhs(n3 + m);
+      rhs << -force, -c;
+      const Eigen::VectorXd step = kkt.fullPivLu().solve(rhs);
+      ++work.assemblies;
+      ++work.factorizations;
+      ++work.back_solves;
+      // A step may not move a vertex by more than a quarter of an edge: slow, but it stays with the
+      // nearest solution.
+      const double longest = step.head(n3).cwiseAbs().maxCoeff();
+      const double scale = std::min(1.0, 0.25 * problem_.shortest_rest_length() / longest);
+      x += scale * Eigen::Map<const Positions>(step.data(), 3, x.cols());
+      mu += scale * step.tail(m);
+      if (!x.allFinite()) break;
+    }
+    return refuse(Status::not_converged, iteration_limit, edges_, x, "iteration limit");
+  }
+
+ private:
+  const Problem& problem_;
+  EdgeConstraints edges_;
+};
 
 struct Unconstrained final : VelocityFilter {
   Unconstrained(const Problem& /*problem*/, const BackendOptions& /*options*/) {}

@@ -28,22 +28,183 @@
 namespace inextensible {
 namespace {
 
+// Iterations without a new least |C|: Newton often recovers from a rise or two. Not, however, from
+// a rise of |C|^2 by this factor, where J W J^T was singular but for rounding, and digits are lost.
+constexpr int patience = 8;
+constexpr double overshoot = 1e8, overshoot_in_contact = 100;
+constexpr double least_forcing = 1e-8, damped_forcing = 1e-4;
+constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1e8;
+
 class FastProjection final : public VelocityFilter {
  public:
-  FastProjection(const Problem& problem, const BackendOptions& options, Along along);
-  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
+  FastProjection(const Problem& problem, const BackendOptions& options, Along along)
+      : system_(problem, options.strain_limit, options.word("linear_solver"),
+                ConstraintSystem::Digits::few),
+        along_(along),
+        max_iterations_(options.count("max_iterations")),
+        min_iterations_(options.count("min_iterations")),
+        sweeps_before_(options.count("sweeps_before")),
+        smoothing_sweeps_(options.count("smoothing_sweeps")),
+        target_(options.number("target")),
+        inner_band_(options.number("inner_band")),
+        first_forcing_(options.number("first_forcing")),
+        best_{Positions(3, problem.vertices()), {}},
+        u_(3, problem.constraints()),
+        u_start_(3, along == Along::middle ? problem.constraints() : 0),
+        mu_(problem.constraints()),
+        excess_(problem.constraints()) {
+    if ((smoothing_sweeps_ > 0 || sweeps_before_ > 0) && !system_.chain()) {
+      passes_ = std::make_unique<StrainPasses>(
+          StrainPasses::by_mass(problem, {options.strain_limit, options.number("smoothing_target")},
+                                options.number("smoothing_relaxation")));
+    }
+  }
+
+  StepResult apply(const Positions& x_start, double /*h*/, Iterate x, WorkCounters& work) override {
+    const EdgeConstraints& edges = system_.edges();
+    if (along_ == Along::middle) {
+      edges.gradient(x_start, u_start_);
+      if (passes_) passes_->take_middle_from(x_start);
+    }
+    double least_error = std::numeric_limits<double>::infinity();  // |C~|^2 at best_
+    double last_error = least_error, forcing = first_forcing_;
+    for (int j = 0, best_j = 0;; ++j) {
+      if (observer_) show(j, x);
+      bool permissible = linearize(target_, x);
+      if (j == 0 && !permissible && sweeps_before_ > 0) {
+        pass(sweeps_before_, x, work);
+        permissible = linearize(target_, x);
+      }
+      if (permissible && j >= min_iterations_) return {Status::ok, j};
+      if (j == max_iterations_)
+        return refuse(Status::not_converged, j, edges, x, "iteration limit");
+
+      const double error = mu_.squaredNorm();
+      if (error == 0) return {Status::ok, j};  // nothing left to project
+      if (error < least_error) {
+        least_error = error;
+        best_j = j;
+        keep_best(x);
+      } else if (j == 0) {
+        return refuse(Status::not_finite, j, edges, x, "overflow");
+      }
+      if (j > 0) forcing = std::clamp(0.9 * error / last_error, least_forcing, first_forcing_);
+      last_error = error;
+      const double most = (x.contact_count() > 0 ? overshoot_in_contact : overshoot) * least_error;
+      if (j - best_j == patience || !(error < most)) return damped(j, x, work);
+
+      if (!system_.factor(u_, x.contacts(), work)) return damped(j, x, work);  // J W J^T
+      if (!system_.solve(mu_, work, forcing)) return damped(j, x, work);       // (7)
+      correct(x);                                                              // (5)
+      pass(smoothing_sweeps_, x, work);
+      x.renew_planes(work);
+    }
+  }
+
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
   double reciprocal_condition() const override { return system_.reciprocal_condition(); }
 
  private:
-  bool linearize(double target, const Positions& x);
-  void correct(Iterate x);
-  void keep_best(Iterate x);
-  void restore_best(Iterate x);
-  void pass(int most, Iterate x, WorkCounters& work);
-  void show(int j, const Positions& x);
-  StepResult damped(int j, Iterate x, WorkCounters& work);
-  double damped_prediction(double damping) const;
+  // C~(x) for this target to mu_, the gradient of C to u_; that of the middle of the step makes of
+  // the iteration Newton's with J(m) W J(m)^T for J(x_j) W J(m)^T. Returns whether x is
+  // permissible.
+  bool linearize(double target, const Positions& x) {
+    const bool permissible = system_.edges().linearize(x, u_, mu_);
+    if (along_ == Along::middle) to_middle(u_start_, u_);
+    if (target > 0) system_.edges().excess(target, mu_);
+    return permissible;
+  }
+
+  void correct(Iterate x) {
+    system_.edges().apply(u_, mu_, x);  // (5)
+    x.settle();
+  }
+
+  void keep_best(Iterate x) {
+    x.save(best_);
+    if (observer_) best_multipliers_ = multipliers_;
+  }
+
+  void restore_best(Iterate x) {
+    x.restore(best_);
+    if (observer_) multipliers_ = best_multipliers_;
+  }
+
+  // Colored Gauss-Seidel, at most so many passes.
+  void pass(int most, Iterate x, WorkCounters& work) {
+    if (!passes_ || most == 0) return;
+    passes_->load(x);
+    passes_->in_turn(most, work);
+    passes_->settle_contacts();
+    passes_->store(x);
+  }
+
+  // Before mu_, the step to x_j, is overwritten. Passes move vertices without multipliers.
+  void show(int j, const Positions& x) {
+    if (passes_) return;
+    if (j == 0) {
+      multipliers_.setZero(mu_.size());
+    } else {
+      multipliers_ += mu_;
+    }
+    observer_->iterate(system_.edges(), j, x, multipliers_);
+  }
+
+  // From best_ on; j iterations are done.
+  StepResult damped(int j, Iterate x, WorkCounters& work) {
+    const EdgeConstraints& edges = system_.edges();
+    double damping = first_damping, growth = 2;
+    double error = 0;
+    for (bool taken_back = true;; ++j) {
+      if (taken_back) {
+        ++work.line_search_steps;
+        restore_best(x);
+        linearize(inner_band_, x);
+        error = mu_.squaredNorm();
+      }
+      if (j >= max_iterations_)
+        return refuse(Status::not_converged, j, edges, x, "iteration limit");
+      excess_ = mu_;
+      while (damping < largest_damping && !(system_.factor(u_, x.contacts(), work, damping) &&
+                                            system_.solve(mu_, work, damped_forcing))) {
+        damping *= 10;
+        mu_ = excess_;
+      }
+      if (!(damping < largest_damping)) {
+        return refuse(Status::not_converged, j, edges, x,
+                      "no damped projection lowers the constraint error");
+      }
+      const double predicted_error = damped_prediction(damping);
+      correct(x);
+      if (observer_) show(j + 1, x);
+      if (linearize(inner_band_, x)) return {Status::ok, j + 1};
+      const double next_error = mu_.squaredNorm();
+      taken_back = !(next_error < error);
+      if (taken_back) {
+        damping *= growth;
+        growth *= 2;
+      } else {
+        const double gain = (error - next_error) / (error - predicted_error);
+        damping *= std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3));
+        damping = std::max(damping, least_damping);
+        growth = 2;
+        error = next_error;
+        keep_best(x);
+      }
+    }
+  }
+
+  // |C~ + J dx|^2 = |damping D mu|^2: what the linear model leaves of the error.
+  double damped_prediction(double damping) const {
+    const EdgeConstraints& edges = system_.edges();
+    double sum = 0;
+    for (std::size_t k = 0; k < edges.wa.size(); ++k) {
+      const auto e = static_cast<Eigen::Index>(k);
+      const double d = (edges.wa[k] + edges.wb[k]) * u_.col(e).squaredNorm();
+      sum += std::pow(damping * d * mu_[e], 2);
+    }
+    return sum;
+  }
 
   ConstraintSystem system_;
   Along along_;
@@ -58,176 +219,6 @@ class FastProjection final : public VelocityFilter {
   // With an observer only: h^2 lambda at x_j and at best_.
   Eigen::VectorXd multipliers_, best_multipliers_;
 };
-
-// Iterations without a new least |C|: Newton often recovers from a rise or two. Not, however, from
-// a rise of |C|^2 by this factor, where J W J^T was singular but for rounding, and digits are lost.
-constexpr int patience = 8;
-constexpr double overshoot = 1e8, overshoot_in_contact = 100;
-constexpr double least_forcing = 1e-8, damped_forcing = 1e-4;
-constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1e8;
-
-StepResult FastProjection::apply(const Positions& x_start, double /*h*/, Iterate x,
-                                 WorkCounters& work) {
-  const EdgeConstraints& edges = system_.edges();
-  if (along_ == Along::middle) {
-    edges.gradient(x_start, u_start_);
-    if (passes_) passes_->take_middle_from(x_start);
-  }
-  double least_error = std::numeric_limits<double>::infinity();  // |C~|^2 at best_
-  double last_error = least_error, forcing = first_forcing_;
-  for (int j = 0, best_j = 0;; ++j) {
-    if (observer_) show(j, x);
-    bool permissible = linearize(target_, x);
-    if (j == 0 && !permissible && sweeps_before_ > 0) {
-      pass(sweeps_before_, x, work);
-      permissible = linearize(target_, x);
-    }
-    if (permissible && j >= min_iterations_) return {Status::ok, j};
-    if (j == max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
-
-    const double error = mu_.squaredNorm();
-    if (error == 0) return {Status::ok, j};  // nothing left to project
-    if (error < least_error) {
-      least_error = error;
-      best_j = j;
-      keep_best(x);
-    } else if (j == 0) {
-      return refuse(Status::not_finite, j, edges, x, "overflow");
-    }
-    if (j > 0) forcing = std::clamp(0.9 * error / last_error, least_forcing, first_forcing_);
-    last_error = error;
-    const double most = (x.contact_count() > 0 ? overshoot_in_contact : overshoot) * least_error;
-    if (j - best_j == patience || !(error < most)) return damped(j, x, work);
-
-    if (!system_.factor(u_, x.contacts(), work)) return damped(j, x, work);  // J W J^T
-    if (!system_.solve(mu_, work, forcing)) return damped(j, x, work);       // (7)
-    correct(x);                                                              // (5)
-    pass(smoothing_sweeps_, x, work);
-    x.renew_planes(work);
-  }
-}
-
-// C~(x) for this target to mu_, the gradient of C to u_; that of the middle of the step makes of
-// the iteration Newton's with J(m) W J(m)^T for J(x_j) W J(m)^T. Returns whether x is permissible.
-bool FastProjection::linearize(double target, const Positions& x) {
-  const bool permissible = system_.edges().linearize(x, u_, mu_);
-  if (along_ == Along::middle) to_middle(u_start_, u_);
-  if (target > 0) system_.edges().excess(target, mu_);
-  return permissible;
-}
-
-void FastProjection::correct(Iterate x) {
-  system_.edges().apply(u_, mu_, x);  // (5)
-  x.settle();
-}
-
-void FastProjection::keep_best(Iterate x) {
-  x.save(best_);
-  if (observer_) best_multipliers_ = multipliers_;
-}
-
-void FastProjection::restore_best(Iterate x) {
-  x.restore(best_);
-  if (observer_) multipliers_ = best_multipliers_;
-}
-
-// Before mu_, the step to x_j, is overwritten. Passes move vertices without multipliers.
-void FastProjection::show(int j, const Positions& x) {
-  if (passes_) return;
-  if (j == 0) {
-    multipliers_.setZero(mu_.size());
-  } else {
-    multipliers_ += mu_;
-  }
-  observer_->iterate(system_.edges(), j, x, multipliers_);
-}
-
-// Colored Gauss-Seidel, at most so many passes.
-void FastProjection::pass(int most, Iterate x, WorkCounters& work) {
-  if (!passes_ || most == 0) return;
-  passes_->load(x);
-  passes_->in_turn(most, work);
-  passes_->settle_contacts();
-  passes_->store(x);
-}
-
-// From best_ on; j iterations are done.
-StepResult FastProjection::damped(int j, Iterate x, WorkCounters& work) {
-  const EdgeConstraints& edges = system_.edges();
-  double damping = first_damping, growth = 2;
-  double error = 0;
-  for (bool taken_back = true;; ++j) {
-    if (taken_back) {
-      ++work.line_search_steps;
-      restore_best(x);
-      linearize(inner_band_, x);
-      error = mu_.squaredNorm();
-    }
-    if (j >= max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
-    excess_ = mu_;
-    while (damping < largest_damping && !(system_.factor(u_, x.contacts(), work, damping) &&
-                                          system_.solve(mu_, work, damped_forcing))) {
-      damping *= 10;
-      mu_ = excess_;
-    }
-    if (!(damping < largest_damping)) {
-      return refuse(Status::not_converged, j, edges, x,
-                    "no damped projection lowers the constraint error");
-    }
-    const double predicted_error = damped_prediction(damping);
-    correct(x);
-    if (observer_) show(j + 1, x);
-    if (linearize(inner_band_, x)) return {Status::ok, j + 1};
-    const double next_error = mu_.squaredNorm();
-    taken_back = !(next_error < error);
-    if (taken_back) {
-      damping *= growth;
-      growth *= 2;
-    } else {
-      const double gain = (error - next_error) / (error - predicted_error);
-      damping *= std::max(1.0 / 3, 1 - std::pow(2 * gain - 1, 3));
-      damping = std::max(damping, least_damping);
-      growth = 2;
-      error = next_error;
-      keep_best(x);
-    }
-  }
-}
-
-// |C~ + J dx|^2 = |damping D mu|^2: what the linear model leaves of the error.
-double FastProjection::damped_prediction(double damping) const {
-  const EdgeConstraints& edges = system_.edges();
-  double sum = 0;
-  for (std::size_t k = 0; k < edges.wa.size(); ++k) {
-    const auto e = static_cast<Eigen::Index>(k);
-    const double d = (edges.wa[k] + edges.wb[k]) * u_.col(e).squaredNorm();
-    sum += std::pow(damping * d * mu_[e], 2);
-  }
-  return sum;
-}
-
-FastProjection::FastProjection(const Problem& problem, const BackendOptions& options, Along along)
-    : system_(problem, options.strain_limit, options.word("linear_solver"),
-              ConstraintSystem::Digits::few),
-      along_(along),
-      max_iterations_(options.count("max_iterations")),
-      min_iterations_(options.count("min_iterations")),
-      sweeps_before_(options.count("sweeps_before")),
-      smoothing_sweeps_(options.count("smoothing_sweeps")),
-      target_(options.number("target")),
-      inner_band_(options.number("inner_band")),
-      first_forcing_(options.number("first_forcing")),
-      best_{Positions(3, problem.vertices()), {}},
-      u_(3, problem.constraints()),
-      u_start_(3, along == Along::middle ? problem.constraints() : 0),
-      mu_(problem.constraints()),
-      excess_(problem.constraints()) {
-  if ((smoothing_sweeps_ > 0 || sweeps_before_ > 0) && !system_.chain()) {
-    passes_ = std::make_unique<StrainPasses>(
-        StrainPasses::by_mass(problem, {options.strain_limit, options.number("smoothing_target")},
-                              options.number("smoothing_relaxation")));
-  }
-}
 
 }  // namespace
 

@@ -24,39 +24,6 @@
 namespace inextensible {
 namespace {
 
-class Icd final : public VelocityFilter {
- public:
-  Icd(const Problem& problem, const BackendOptions& options);
-  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
-  const char* linear_solver() const override { return linear_solver_.c_str(); }
-  double reciprocal_condition() const override { return kkt_->reciprocal_condition(); }
-
- private:
-  void evaluate(const Positions& dx);
-  StepResult closest(double h, Iterate x, WorkCounters& work);
-  bool direction(const Contacts* contacts, bool convex, WorkCounters& work);
-  bool line_search(WorkCounters& work);
-  StepResult newton(double h, Iterate x, WorkCounters& work);
-
-  const Problem& problem_;
-  std::string linear_solver_;
-  EdgeConstraints edges_;
-  std::unique_ptr<KktSolver> kkt_;
-  int max_iterations_, min_iterations_;
-  double target_;
-  double direction_tolerance_;  // m
-  Eigen::VectorXd mass_;        // scaled by the mean mass, as mu is
-  ActiveContacts active_;
-
-  Positions x0_, trial_, dx_, trial_dx_, f_, dp_;  // f_ = M F = M dx + J^T mu
-  Eigen::Matrix3Xd u_;
-  Eigen::VectorXd c_, mu_, trial_mu_, dq_;  // c_: what of C lies beyond the target
-  bool permissible_ = false;
-  double largest_f_ = 0;             // m, over vertices
-  double merit_ = 0;                 // sum of |F|^2 and C^2, m^2
-  Eigen::VectorXd previous_lambda_;  // mu / h^2 of the last solve that converged
-};
-
 constexpr int line_search_limit = 12;
 constexpr int most_rounds = 20;
 constexpr double sufficient_decrease = 1e-4;
@@ -82,150 +49,176 @@ std::unique_ptr<KktSolver> make_kkt_solver(std::string_view name, const Problem&
   return std::make_unique<KktSystem>(problem, edges);
 }
 
-Icd::Icd(const Problem& problem, const BackendOptions& options)
-    : problem_(problem),
-      linear_solver_(choose(options.word("linear_solver"), problem)),
-      edges_(problem, options.strain_limit,
-             linear_solver_ == projected_cg ? elimination_order(problem) : std::vector<int>{}),
-      kkt_(make_kkt_solver(linear_solver_, problem, edges_, options.number("cg_tolerance"))),
-      max_iterations_(options.count("max_iterations")),
-      min_iterations_(options.count("min_iterations")),
-      target_(options.number("target")),
-      direction_tolerance_(options.number("direction_tolerance") * options.strain_limit *
-                           problem.shortest_rest_length()),
-      mass_(Eigen::Map<const Eigen::VectorXd>(problem.mass().data(), problem.vertices()) /
-            problem.total_mass() * problem.vertices()),
-      active_(problem) {
-  for (Positions* p : {&x0_, &trial_, &dx_, &trial_dx_, &f_, &dp_})
-    p->resize(3, problem.vertices());
-  u_.resize(3, problem.constraints());
-  for (Eigen::VectorXd* v : {&c_, &mu_, &trial_mu_, &dq_}) v->resize(problem.constraints());
-  previous_lambda_ = Eigen::VectorXd::Zero(problem.constraints());
-}
+class Icd final : public VelocityFilter {
+ public:
+  Icd(const Problem& problem, const BackendOptions& options)
+      : problem_(problem),
+        linear_solver_(choose(options.word("linear_solver"), problem)),
+        edges_(problem, options.strain_limit,
+               linear_solver_ == projected_cg ? elimination_order(problem) : std::vector<int>{}),
+        kkt_(make_kkt_solver(linear_solver_, problem, edges_, options.number("cg_tolerance"))),
+        max_iterations_(options.count("max_iterations")),
+        min_iterations_(options.count("min_iterations")),
+        target_(options.number("target")),
+        direction_tolerance_(options.number("direction_tolerance") * options.strain_limit *
+                             problem.shortest_rest_length()),
+        mass_(Eigen::Map<const Eigen::VectorXd>(problem.mass().data(), problem.vertices()) /
+              problem.total_mass() * problem.vertices()),
+        active_(problem) {
+    for (Positions* p : {&x0_, &trial_, &dx_, &trial_dx_, &f_, &dp_})
+      p->resize(3, problem.vertices());
+    u_.resize(3, problem.constraints());
+    for (Eigen::VectorXd* v : {&c_, &mu_, &trial_mu_, &dq_}) v->resize(problem.constraints());
+    previous_lambda_ = Eigen::VectorXd::Zero(problem.constraints());
+  }
 
-// u_, c_, f_, largest_f_ and merit_ at x0 + dx (in trial_) with multipliers trial_mu_.
-void Icd::evaluate(const Positions& dx) {
-  permissible_ = edges_.linearize(trial_, u_, c_);  // (4) and (2)
-  if (target_ > 0) edges_.excess(target_, c_);
-  f_ = dx * mass_.asDiagonal();  // M times the F of section 4.1
-  for (std::size_t k = 0; k < edges_.a.size(); ++k) {
-    const auto e = static_cast<Eigen::Index>(k);
-    f_.col(edges_.a[k]) -= trial_mu_[e] * u_.col(e);
-    f_.col(edges_.b[k]) += trial_mu_[e] * u_.col(e);
-  }
-  for (const int vertex : problem_.pinned()) f_.col(vertex).setZero();
-  active_.take_reactions(mass_, f_);
-  double sum = 0, largest = 0;
-  for (Eigen::Index v = 0; v < f_.cols(); ++v) {
-    const double squared = f_.col(v).squaredNorm() / (mass_[v] * mass_[v]);
-    sum += squared;
-    if (!(squared <= largest)) largest = squared;
-  }
-  largest_f_ = std::sqrt(largest);
-  merit_ = sum + c_.squaredNorm();
-}
-
-StepResult Icd::apply(const Positions& /*x_start*/, double h, Iterate x, WorkCounters& work) {
-  // dx = 0 and lambda = 0 solve both equations as far as is asked.
-  if (min_iterations_ == 0 && edges_.permissible(x)) return {Status::ok, 0};
-  if (x.contact_count() > 0 && !kkt_->takes_contacts()) {
-    return refuse(Status::not_converged, 0, edges_, x,
-                  "this linear solver cannot hold contacts, projected_cg can");
-  }
-  active_.begin(x);
-  active_.write_candidate(x);
-  x0_ = x;
-  for (int round = 0, iterations = 0;; ++round) {
-    StepResult result = closest(h, x, work);
-    result.iterations = iterations += result.iterations;
-    if (!result || !active_.update(x)) return result;
-    if (round == most_rounds) {
-      return refuse(Status::not_converged, iterations, edges_, x,
-                    "the set of contacts that hold keeps changing");
+  StepResult apply(const Positions& /*x_start*/, double h, Iterate x, WorkCounters& work) override {
+    // dx = 0 and lambda = 0 solve both equations as far as is asked.
+    if (min_iterations_ == 0 && edges_.permissible(x)) return {Status::ok, 0};
+    if (x.contact_count() > 0 && !kkt_->takes_contacts()) {
+      return refuse(Status::not_converged, 0, edges_, x,
+                    "this linear solver cannot hold contacts, projected_cg can");
     }
-    active_.write_candidate(x0_);
-    active_.hold(x);
-  }
-}
-
-// The point on the manifold that is closest to x0_.
-StepResult Icd::closest(double h, Iterate x, WorkCounters& work) {
-  mu_ = previous_lambda_ * (h * h);
-  StepResult result = newton(h, x, work);
-  if (!result && previous_lambda_.squaredNorm() > 0) {
-    const int spent = result.iterations;
-    x.positions() = x0_;
-    mu_.setZero();
-    result = newton(h, x, work);
-    result.iterations += spent;
-  }
-  return result;
-}
-
-bool Icd::direction(const Contacts* contacts, bool convex, WorkCounters& work) {
-  return kkt_->factor(u_, mu_, contacts, convex, work) && kkt_->solve(f_, c_, dp_, dq_, work);
-}
-
-// Leaves the accepted step in trial_dx_, trial_mu_ and trial_.
-bool Icd::line_search(WorkCounters& work) {
-  const double merit = merit_;
-  const double nu = 2 * (mu_ - dq_).cwiseAbs().maxCoeff();
-  const auto penalty = [&](const Positions& dx) {
-    return 0.5 * dx.colwise().squaredNorm().dot(mass_) + nu * c_.cwiseAbs().sum();
-  };
-  const double penalty_here = penalty(dx_);
-  const double slope =
-      -(dx_.cwiseProduct(dp_).colwise().sum()).dot(mass_) - nu * c_.cwiseAbs().sum();
-  double step = 1;
-  for (int halvings = 0; halvings <= line_search_limit; ++halvings, step *= 0.5) {
-    trial_dx_ = dx_ - step * dp_;
-    trial_ = x0_ + trial_dx_;
-    trial_mu_ = mu_ - step * dq_;
-    evaluate(trial_dx_);
-    if (merit_ <= (1 - 2 * sufficient_decrease * step) * merit) return true;  // false on NaN
-    if (slope < 0 && penalty(trial_dx_) <= penalty_here + sufficient_decrease * step * slope)
-      return true;
-    ++work.line_search_steps;
-  }
-  return false;
-}
-
-StepResult Icd::newton(double h, Iterate x, WorkCounters& work) {
-  trial_ = x;
-  dx_ = trial_ - x0_;
-  trial_mu_ = mu_;
-  evaluate(dx_);
-  for (int j = 0;; ++j) {
-    const bool solved = permissible_ && largest_f_ <= direction_tolerance_;
-    const auto accept = [&] {
-      previous_lambda_ = mu_ / (h * h);
-      return StepResult{Status::ok, j};
-    };
-    if (solved && (j >= min_iterations_ || merit_ == 0)) return accept();
-    if (j == max_iterations_)
-      return refuse(Status::not_converged, j, edges_, trial_, "iteration limit");
-    if (!direction(x.contacts(), false, work)) {
-      if (solved) return accept();
-      return refuse(Status::singular, j, edges_, trial_, "the Newton matrix is singular");
-    }
-    if (!line_search(work)) {
-      // Once more with the convex matrix, from the same place; evaluate() restores what the search
-      // overwrote.
-      const bool was_convex = kkt_->convexified();
-      trial_ = x0_ + dx_;
-      trial_mu_ = mu_;
-      evaluate(dx_);
-      if (solved) return accept();  // rounding stops iterations that only min_iterations asked for
-      if (was_convex || !direction(x.contacts(), true, work) || !line_search(work)) {
-        return refuse(Status::not_converged, j, edges_, trial_,
-                      "no step along Newton's direction makes progress");
+    active_.begin(x);
+    active_.write_candidate(x);
+    x0_ = x;
+    for (int round = 0, iterations = 0;; ++round) {
+      StepResult result = closest(h, x, work);
+      result.iterations = iterations += result.iterations;
+      if (!result || !active_.update(x)) return result;
+      if (round == most_rounds) {
+        return refuse(Status::not_converged, iterations, edges_, x,
+                      "the set of contacts that hold keeps changing");
       }
+      active_.write_candidate(x0_);
+      active_.hold(x);
     }
-    dx_.swap(trial_dx_);
-    mu_.swap(trial_mu_);
-    x.positions() = trial_;
   }
-}
+
+  const char* linear_solver() const override { return linear_solver_.c_str(); }
+  double reciprocal_condition() const override { return kkt_->reciprocal_condition(); }
+
+ private:
+  // u_, c_, f_, largest_f_ and merit_ at x0 + dx (in trial_) with multipliers trial_mu_.
+  void evaluate(const Positions& dx) {
+    permissible_ = edges_.linearize(trial_, u_, c_);  // (4) and (2)
+    if (target_ > 0) edges_.excess(target_, c_);
+    f_ = dx * mass_.asDiagonal();  // M times the F of section 4.1
+    for (std::size_t k = 0; k < edges_.a.size(); ++k) {
+      const auto e = static_cast<Eigen::Index>(k);
+      f_.col(edges_.a[k]) -= trial_mu_[e] * u_.col(e);
+      f_.col(edges_.b[k]) += trial_mu_[e] * u_.col(e);
+    }
+    for (const int vertex : problem_.pinned()) f_.col(vertex).setZero();
+    active_.take_reactions(mass_, f_);
+    double sum = 0, largest = 0;
+    for (Eigen::Index v = 0; v < f_.cols(); ++v) {
+      const double squared = f_.col(v).squaredNorm() / (mass_[v] * mass_[v]);
+      sum += squared;
+      if (!(squared <= largest)) largest = squared;
+    }
+    largest_f_ = std::sqrt(largest);
+    merit_ = sum + c_.squaredNorm();
+  }
+
+  // The point on the manifold that is closest to x0_.
+  StepResult closest(double h, Iterate x, WorkCounters& work) {
+    mu_ = previous_lambda_ * (h * h);
+    StepResult result = newton(h, x, work);
+    if (!result && previous_lambda_.squaredNorm() > 0) {
+      const int spent = result.iterations;
+      x.positions() = x0_;
+      mu_.setZero();
+      result = newton(h, x, work);
+      result.iterations += spent;
+    }
+    return result;
+  }
+
+  bool direction(const Contacts* contacts, bool convex, WorkCounters& work) {
+    return kkt_->factor(u_, mu_, contacts, convex, work) && kkt_->solve(f_, c_, dp_, dq_, work);
+  }
+
+  // Leaves the accepted step in trial_dx_, trial_mu_ and trial_.
+  bool line_search(WorkCounters& work) {
+    const double merit = merit_;
+    const double nu = 2 * (mu_ - dq_).cwiseAbs().maxCoeff();
+    const auto penalty = [&](const Positions& dx) {
+      return 0.5 * dx.colwise().squaredNorm().dot(mass_) + nu * c_.cwiseAbs().sum();
+    };
+    const double penalty_here = penalty(dx_);
+    const double slope =
+        -(dx_.cwiseProduct(dp_).colwise().sum()).dot(mass_) - nu * c_.cwiseAbs().sum();
+    double step = 1;
+    for (int halvings = 0; halvings <= line_search_limit; ++halvings, step *= 0.5) {
+      trial_dx_ = dx_ - step * dp_;
+      trial_ = x0_ + trial_dx_;
+      trial_mu_ = mu_ - step * dq_;
+      evaluate(trial_dx_);
+      if (merit_ <= (1 - 2 * sufficient_decrease * step) * merit) return true;  // false on NaN
+      if (slope < 0 && penalty(trial_dx_) <= penalty_here + sufficient_decrease * step * slope)
+        return true;
+      ++work.line_search_steps;
+    }
+    return false;
+  }
+
+  StepResult newton(double h, Iterate x, WorkCounters& work) {
+    trial_ = x;
+    dx_ = trial_ - x0_;
+    trial_mu_ = mu_;
+    evaluate(dx_);
+    for (int j = 0;; ++j) {
+      const bool solved = permissible_ && largest_f_ <= direction_tolerance_;
+      const auto accept = [&] {
+        previous_lambda_ = mu_ / (h * h);
+        return StepResult{Status::ok, j};
+      };
+      if (solved && (j >= min_iterations_ || merit_ == 0)) return accept();
+      if (j == max_iterations_)
+        return refuse(Status::not_converged, j, edges_, trial_, "iteration limit");
+      if (!direction(x.contacts(), false, work)) {
+        if (solved) return accept();
+        return refuse(Status::singular, j, edges_, trial_, "the Newton matrix is singular");
+      }
+      if (!line_search(work)) {
+        // Once more with the convex matrix, from the same place; evaluate() restores what the
+        // search overwrote.
+        const bool was_convex = kkt_->convexified();
+        trial_ = x0_ + dx_;
+        trial_mu_ = mu_;
+        evaluate(dx_);
+        if (solved)
+          return accept();  // rounding stops iterations that only min_iterations asked for
+        if (was_convex || !direction(x.contacts(), true, work) || !line_search(work)) {
+          return refuse(Status::not_converged, j, edges_, trial_,
+                        "no step along Newton's direction makes progress");
+        }
+      }
+      dx_.swap(trial_dx_);
+      mu_.swap(trial_mu_);
+      x.positions() = trial_;
+    }
+  }
+
+  const Problem& problem_;
+  std::string linear_solver_;
+  EdgeConstraints edges_;
+  std::unique_ptr<KktSolver> kkt_;
+  int max_iterations_, min_iterations_;
+  double target_;
+  double direction_tolerance_;  // m
+  Eigen::VectorXd mass_;        // scaled by the mean mass, as mu is
+  ActiveContacts active_;
+
+  Positions x0_, trial_, dx_, trial_dx_, f_, dp_;  // f_ = M F = M dx + J^T mu
+  Eigen::Matrix3Xd u_;
+  Eigen::VectorXd c_, mu_, trial_mu_, dq_;  // c_: what of C lies beyond the target
+  bool permissible_ = false;
+  double largest_f_ = 0;             // m, over vertices
+  double merit_ = 0;                 // sum of |F|^2 and C^2, m^2
+  Eigen::VectorXd previous_lambda_;  // mu / h^2 of the last solve that converged
+};
 
 }  // namespace
 

@@ -53,11 +53,8 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared,
 
 double ImplicitSprings::energy(const Positions& x, double h) const {
   double inertia = 0, potential = 0;
-  for (std::size_t f = 0; f < hessian_.free_vertex.size(); ++f) {
-    inertia +=
-        hessian_.free_mass[f] *
-        (x.col(hessian_.free_vertex[f]) - inertial_.col(hessian_.free_vertex[f])).squaredNorm();
-  }
+  for (const int v : hessian_.free_vertex)
+    inertia += problem().mass()[v] * (x.col(v) - inertial_.col(v)).squaredNorm();
   if (problem().has_drag()) {  // backward Euler's drag is the gradient of h / 2 |x - x^n|_D^2
     for (const int v : hessian_.free_vertex)
       inertia += h * problem().drag(v) * (x.col(v) - before_.col(v)).squaredNorm();
@@ -81,21 +78,15 @@ void ImplicitSprings::assemble(const Positions& x, double h, bool matrix) {
   const double* p = x.data();
   double* g = gradient_.data();
   for (std::size_t f = 0; f < hessian_.free_vertex.size(); ++f) {
-    const double m = hessian_.free_mass[f];
-    const Places& at = hessian_.diagonal[f];
-    if (matrix) value[at.xx] = value[at.yy] = value[at.zz] = m;
-    const double* from = inertial_.data() + 3 * hessian_.free_vertex[f];
-    const double* to = p + 3 * hessian_.free_vertex[f];
-    for (std::size_t i = 0; i < 3; ++i) g[3 * f + i] = m * (to[i] - from[i]);
-  }
-  if (problem().has_drag()) {
-    for (std::size_t f = 0; f < hessian_.free_vertex.size(); ++f) {
-      const int v = hessian_.free_vertex[f];
-      const double drag = h * problem().drag(v);
-      const Places& at = hessian_.diagonal[f];
-      if (matrix) value[at.xx] += drag, value[at.yy] += drag, value[at.zz] += drag;
-      for (int i = 0; i < 3; ++i) g[3 * f + i] += drag * (x(i, v) - before_(i, v));
+    const int v = hessian_.free_vertex[f];
+    const double mass = hessian_.free_mass[f];
+    const double drag = problem().has_drag() ? h * problem().drag(v) : 0;
+    for (int i = 0; i < 3; ++i) {
+      g[3 * f + i] = mass * (x(i, v) - inertial_(i, v));
+      if (problem().has_drag()) g[3 * f + i] += drag * (x(i, v) - before_(i, v));
     }
+    const Places& at = hessian_.diagonal[f];
+    if (matrix) value[at.xx] = value[at.yy] = value[at.zz] = mass + drag;
   }
   assemble_bending(x, h, matrix);
   for (std::size_t k = 0; k < hessian_.springs.size(); ++k) {

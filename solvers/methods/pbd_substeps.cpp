@@ -23,30 +23,6 @@
 namespace inextensible {
 namespace {
 
-class PbdSubsteps final : public VelocityFilter {
- public:
-  // The start is taken for the shape at rest, which straight attachments need. Throws
-  // std::invalid_argument if they do not have it.
-  PbdSubsteps(const Problem& problem, const BackendOptions& options, Along along);
-  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
-
- private:
-  // Long-range attachments (Kim, Chentanez and Mueller 2012): no vertex is farther from a pinned
-  // one than its rest distance, along edges, which inextensible edges imply, or straight, which
-  // holds only where nothing shears. Momentum is not kept.
-  struct Attachment {
-    int vertex, pin;
-    double distance;  // m
-  };
-  void attach(const Problem& problem, const Positions* rest);
-  void keep_nearest(const Problem& problem);
-
-  int most_;
-  Along along_;
-  StrainPasses passes_;
-  std::vector<Attachment> attachments_;
-};
-
 constexpr int most_attachments = 4;  // of a vertex: to the nearest pins
 
 // Along edges, from one vertex to all (Dijkstra 1959); infinite where there is no way.
@@ -71,68 +47,87 @@ std::vector<double> distances_from(int start, const Problem& problem,
   return distance;
 }
 
-PbdSubsteps::PbdSubsteps(const Problem& problem, const BackendOptions& options, Along along)
-    : most_(options.count("sweeps")),
-      along_(along),
-      passes_(StrainPasses::by_mass(problem, {0, 0}, options.number("relaxation"))) {
-  const std::string& attachments = options.word("attachments");
-  if (attachments == "straight" && !options.start)
-    throw std::invalid_argument("straight attachments need the positions at rest");
-  if (attachments != "none")
-    attach(problem, attachments == "straight" ? &options.start->x : nullptr);
-}
-
-// Straight through the positions at rest, or, if these are null, along edges.
-void PbdSubsteps::attach(const Problem& problem, const Positions* rest) {
-  const auto neighbours = neighbours_of(problem);
-  for (const int pin : problem.pinned()) {
-    std::vector<double> distance(problem.vertices());
-    if (rest) {
-      for (int v = 0; v < problem.vertices(); ++v)
-        distance[v] = (rest->col(v) - rest->col(pin)).norm();
-    } else {
-      distance = distances_from(pin, problem, neighbours);
-    }
-    for (int v = 0; v < problem.vertices(); ++v) {
-      if (std::isfinite(distance[v])) attachments_.push_back({v, pin, distance[v]});
-    }
-    keep_nearest(problem);
+class PbdSubsteps final : public VelocityFilter {
+ public:
+  // The start is taken for the shape at rest, which straight attachments need. Throws
+  // std::invalid_argument if they do not have it.
+  PbdSubsteps(const Problem& problem, const BackendOptions& options, Along along)
+      : most_(options.count("sweeps")),
+        along_(along),
+        passes_(StrainPasses::by_mass(problem, {0, 0}, options.number("relaxation"))) {
+    const std::string& attachments = options.word("attachments");
+    if (attachments == "straight" && !options.start)
+      throw std::invalid_argument("straight attachments need the positions at rest");
+    if (attachments != "none")
+      attach(problem, attachments == "straight" ? &options.start->x : nullptr);
   }
-}
 
-// Keeps the nearest attachments of each free vertex; sorted by vertex, nearest first.
-void PbdSubsteps::keep_nearest(const Problem& problem) {
-  std::erase_if(attachments_,
-                [&](const Attachment& a) { return problem.inverse_mass()[a.vertex] == 0; });
-  std::stable_sort(attachments_.begin(), attachments_.end(),
-                   [](const Attachment& p, const Attachment& q) {
-                     return p.vertex != q.vertex ? p.vertex < q.vertex : p.distance < q.distance;
-                   });
-  int vertex = -1, count = 0;
-  std::erase_if(attachments_, [&](const Attachment& a) {
-    count = a.vertex == vertex ? count + 1 : 1;
-    vertex = a.vertex;
-    return count > most_attachments;
-  });
-}
-
-StepResult PbdSubsteps::apply(const Positions& x_start, double /*h*/, Iterate iterate,
-                              WorkCounters& work) {
-  passes_.load(iterate);
-  if (along_ == Along::middle) passes_.take_middle_from(x_start);
-  for (int i = 0; i < most_; ++i) work.edge_projections += passes_.in_turn();
-  passes_.settle_contacts();
-  if (!passes_.finite()) return {Status::not_finite, most_, -1, 0, "overflow"};
-  Positions& x = iterate;
-  passes_.store(x);
-  for (const Attachment& a : attachments_) {
-    const Eigen::Vector3d d = x.col(a.vertex) - x.col(a.pin);
-    const double square = d.squaredNorm();
-    if (square > a.distance * a.distance)
-      x.col(a.vertex) = x.col(a.pin) + a.distance / std::sqrt(square) * d;
+  StepResult apply(const Positions& x_start, double /*h*/, Iterate iterate,
+                   WorkCounters& work) override {
+    passes_.load(iterate);
+    if (along_ == Along::middle) passes_.take_middle_from(x_start);
+    for (int i = 0; i < most_; ++i) work.edge_projections += passes_.in_turn();
+    passes_.settle_contacts();
+    if (!passes_.finite()) return {Status::not_finite, most_, -1, 0, "overflow"};
+    Positions& x = iterate;
+    passes_.store(x);
+    for (const Attachment& a : attachments_) {
+      const Eigen::Vector3d d = x.col(a.vertex) - x.col(a.pin);
+      const double square = d.squaredNorm();
+      if (square > a.distance * a.distance)
+        x.col(a.vertex) = x.col(a.pin) + a.distance / std::sqrt(square) * d;
+    }
+    return {Status::ok, most_};
   }
-  return {Status::ok, most_};
-}
+
+ private:
+  // Long-range attachments (Kim, Chentanez and Mueller 2012): no vertex is farther from a pinned
+  // one than its rest distance, along edges, which inextensible edges imply, or straight, which
+  // holds only where nothing shears. Momentum is not kept.
+  struct Attachment {
+    int vertex, pin;
+    double distance;  // m
+  };
+
+  // Straight through the positions at rest, or, if these are null, along edges.
+  void attach(const Problem& problem, const Positions* rest) {
+    const auto neighbours = neighbours_of(problem);
+    for (const int pin : problem.pinned()) {
+      std::vector<double> distance(problem.vertices());
+      if (rest) {
+        for (int v = 0; v < problem.vertices(); ++v)
+          distance[v] = (rest->col(v) - rest->col(pin)).norm();
+      } else {
+        distance = distances_from(pin, problem, neighbours);
+      }
+      for (int v = 0; v < problem.vertices(); ++v) {
+        if (std::isfinite(distance[v])) attachments_.push_back({v, pin, distance[v]});
+      }
+      keep_nearest(problem);
+    }
+  }
+
+  // Keeps the nearest attachments of each free vertex; sorted by vertex, nearest first.
+  void keep_nearest(const Problem& problem) {
+    std::erase_if(attachments_,
+                  [&](const Attachment& a) { return problem.inverse_mass()[a.vertex] == 0; });
+    std::stable_sort(attachments_.begin(), attachments_.end(),
+                     [](const Attachment& p, const Attachment& q) {
+                       return p.vertex != q.vertex ? p.vertex < q.vertex : p.distance < q.distance;
+                     });
+    int vertex = -1, count = 0;
+    std::erase_if(attachments_, [&](const Attachment& a) {
+      count = a.vertex == vertex ? count + 1 : 1;
+      vertex = a.vertex;
+      return count > most_attachments;
+    });
+  }
+
+  int most_;
+  Along along_;
+  StrainPasses passes_;
+  std::vector<Attachment> attachments_;
+};
 
 }  // namespace
 

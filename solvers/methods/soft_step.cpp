@@ -26,14 +26,74 @@ namespace {
 
 class SoftStep final : public Stepper {
  public:
-  SoftStep(std::shared_ptr<const Problem> problem, const BackendOptions& options);
+  SoftStep(std::shared_ptr<const Problem> shared, const BackendOptions& options)
+      : Stepper(std::move(shared)), passes_(options.count("passes")), edges_(problem(), 0) {
+    const double angle = 2 * std::numbers::pi * options.number("frequency");  // h omega
+    const double s = 2 * options.number("damping") + angle, c = angle * s;
+    hardness_ = c / (1 + c);
+    give_ = 1 / (1 + c);
+    rate_ = angle / s;
+    n_.resize(3, edges_.count());
+    length_.resize(edges_.count());
+    impulse_.resize(edges_.count());
+    last_force_.setZero(edges_.count());
+  }
 
  private:
-  StepResult solve(const State& state, double h, Positions& x) override;
-  StepResult end_velocities(const State& start, double h, const Positions& filtered,
-                            const Positions& x, Positions& v) override;
-  void directions(const Positions& x);
-  void pull(int k, double impulse, Positions& x) const;
+  // Velocities are differences to the start of the step, times h.
+  StepResult solve(const State& state, double h, Positions& x) override {
+    Stopwatch stopwatch(phases_wanted_);
+    unconstrained_step(problem(), state, h, x, work_);
+    phases_.unconstrained += stopwatch();
+    directions(start_positions());
+    impulse_ = h * h * last_force_;
+    for (int k = 0; k < edges_.count(); ++k) pull(k, impulse_[k], x);
+    for (int pass = 0; pass < passes_; ++pass) {
+      for (int k = 0; k < edges_.count(); ++k) {
+        const double way = n_.col(k).dot(x.col(edges_.b[k]) - x.col(edges_.a[k])) - length_[k];
+        const double mass = 1 / (edges_.wa[k] + edges_.wb[k]);
+        const double change =
+            -mass * hardness_ * (way + rate_ * (length_[k] - edges_.rest_length[k])) -
+            give_ * impulse_[k];
+        impulse_[k] += change;
+        pull(k, change, x);
+      }
+    }
+    work_.edge_projections += std::int64_t{passes_} * edges_.count();
+    phases_.filter += stopwatch();
+    return {Status::ok, passes_};
+  }
+
+  StepResult end_velocities(const State& start, double h, const Positions& /*filtered*/,
+                            const Positions& x, Positions& v) override {
+    v = (x - start.x) * (1 / h);
+    directions(x);
+    for (int pass = 0; pass < passes_; ++pass) {
+      for (int k = 0; k < edges_.count(); ++k) {
+        const double rate = n_.col(k).dot(v.col(edges_.b[k]) - v.col(edges_.a[k]));
+        const double change = -rate / (edges_.wa[k] + edges_.wb[k]);
+        impulse_[k] += h * change;
+        pull(k, change, v);
+      }
+    }
+    work_.edge_projections += std::int64_t{passes_} * edges_.count();
+    if (std::isfinite(v.sum())) last_force_ = impulse_ / (h * h);
+    return {};
+  }
+
+  void directions(const Positions& x) {
+    for (int k = 0; k < edges_.count(); ++k) {
+      n_.col(k) = x.col(edges_.b[k]) - x.col(edges_.a[k]);
+      length_[k] = n_.col(k).norm();
+      if (length_[k] > 0) n_.col(k) /= length_[k];
+    }
+  }
+
+  // A pinned end is not written to: adding 0 would make -0 of it.
+  void pull(int k, double impulse, Positions& x) const {
+    if (edges_.wa[k] > 0) x.col(edges_.a[k]) -= edges_.wa[k] * impulse * n_.col(k);
+    if (edges_.wb[k] > 0) x.col(edges_.b[k]) += edges_.wb[k] * impulse * n_.col(k);
+  }
 
   int passes_;
   double hardness_, give_, rate_;  // massScale, impulseScale and h times bias of the source
@@ -43,74 +103,6 @@ class SoftStep final : public Stepper {
   Eigen::VectorXd impulse_;     // of this step, kg m: h times impulse
   Eigen::VectorXd last_force_;  // of the last accepted step, N
 };
-
-SoftStep::SoftStep(std::shared_ptr<const Problem> shared, const BackendOptions& options)
-    : Stepper(std::move(shared)), passes_(options.count("passes")), edges_(problem(), 0) {
-  const double angle = 2 * std::numbers::pi * options.number("frequency");  // h omega
-  const double s = 2 * options.number("damping") + angle, c = angle * s;
-  hardness_ = c / (1 + c);
-  give_ = 1 / (1 + c);
-  rate_ = angle / s;
-  n_.resize(3, edges_.count());
-  length_.resize(edges_.count());
-  impulse_.resize(edges_.count());
-  last_force_.setZero(edges_.count());
-}
-
-void SoftStep::directions(const Positions& x) {
-  for (int k = 0; k < edges_.count(); ++k) {
-    n_.col(k) = x.col(edges_.b[k]) - x.col(edges_.a[k]);
-    length_[k] = n_.col(k).norm();
-    if (length_[k] > 0) n_.col(k) /= length_[k];
-  }
-}
-
-// A pinned end is not written to: adding 0 would make -0 of it.
-void SoftStep::pull(int k, double impulse, Positions& x) const {
-  if (edges_.wa[k] > 0) x.col(edges_.a[k]) -= edges_.wa[k] * impulse * n_.col(k);
-  if (edges_.wb[k] > 0) x.col(edges_.b[k]) += edges_.wb[k] * impulse * n_.col(k);
-}
-
-// Velocities are differences to the start of the step, times h.
-StepResult SoftStep::solve(const State& state, double h, Positions& x) {
-  Stopwatch stopwatch(phases_wanted_);
-  unconstrained_step(problem(), state, h, x, work_);
-  phases_.unconstrained += stopwatch();
-  directions(start_positions());
-  impulse_ = h * h * last_force_;
-  for (int k = 0; k < edges_.count(); ++k) pull(k, impulse_[k], x);
-  for (int pass = 0; pass < passes_; ++pass) {
-    for (int k = 0; k < edges_.count(); ++k) {
-      const double way = n_.col(k).dot(x.col(edges_.b[k]) - x.col(edges_.a[k])) - length_[k];
-      const double mass = 1 / (edges_.wa[k] + edges_.wb[k]);
-      const double change =
-          -mass * hardness_ * (way + rate_ * (length_[k] - edges_.rest_length[k])) -
-          give_ * impulse_[k];
-      impulse_[k] += change;
-      pull(k, change, x);
-    }
-  }
-  work_.edge_projections += std::int64_t{passes_} * edges_.count();
-  phases_.filter += stopwatch();
-  return {Status::ok, passes_};
-}
-
-StepResult SoftStep::end_velocities(const State& start, double h, const Positions& /*filtered*/,
-                                    const Positions& x, Positions& v) {
-  v = (x - start.x) * (1 / h);
-  directions(x);
-  for (int pass = 0; pass < passes_; ++pass) {
-    for (int k = 0; k < edges_.count(); ++k) {
-      const double rate = n_.col(k).dot(v.col(edges_.b[k]) - v.col(edges_.a[k]));
-      const double change = -rate / (edges_.wa[k] + edges_.wb[k]);
-      impulse_[k] += h * change;
-      pull(k, change, v);
-    }
-  }
-  work_.edge_projections += std::int64_t{passes_} * edges_.count();
-  if (std::isfinite(v.sum())) last_force_ = impulse_ / (h * h);
-  return {};
-}
 
 }  // namespace
 

@@ -2,11 +2,7 @@
 // limit, which near convergence is most groups, square roots and divisions are left out, elsewhere
 // a mask keeps the edges within the limit as they are. Each step is a loop of fixed length without
 // branches, which compilers turn into a few vector instructions (GCC 12: two vectors of eight).
-//
-// Square roots and divisions are 60 % of a pass that corrects every edge (floor_ratio in kernels);
-// the rest is positions and constants from the second-level cache, 120 bytes an edge, and fillers.
-// Seeds in single precision with a step of Halley's method halve the floor, but not the pass: GCC
-// 12 spends the gain on conversions.
+// Square roots and divisions are 60 % of a pass that corrects every edge (floor_ratio in kernels).
 #include "solvers/methods/strain_passes.h"
 
 #include <algorithm>
@@ -277,18 +273,14 @@ PlacedContacts::PlacedContacts(const ColoredEdges& edges, bool contact) {
 
 void PlacedContacts::load(const Contacts& contacts, const ColoredEdges& edges) {
   for (const int first : blocks_) {
-    normal_.middleRows<width>(first).setZero();
-    held_.middleRows<width>(first).setZero();
-    offset_.segment<width>(first).setZero();
-    push_.segment<width>(first).setZero();
+    for (ColoredEdges::Places* p : {&normal_, &held_}) p->middleRows<width>(first).setZero();
+    for (Eigen::ArrayXd* a : {&offset_, &push_}) a->segment<width>(first).setZero();
   }
   blocks_.clear();
   for (int c = 0; c < contacts.count(); ++c) {
-    const int place = edges.place(contacts.vertex(c));
-    const Eigen::Vector3d n = contacts.normal(c);
-    if (normal_.middleRows<width>(place - place % width).isZero(0))
-      blocks_.push_back(place - place % width);
-    normal_.row(place) = n.transpose();
+    const int place = edges.place(contacts.vertex(c)), first = place - place % width;
+    if (normal_.middleRows<width>(first).isZero(0)) blocks_.push_back(first);
+    normal_.row(place) = contacts.normal(c).transpose();
     offset_[place] = -contacts.gap(c, Eigen::Vector3d::Zero());
     push_[place] = contacts.push(c);
   }

@@ -8,8 +8,8 @@
 namespace inextensible {
 namespace {
 
-using Shared = std::shared_ptr<const Problem>;
 using Made = std::unique_ptr<Stepper>;
+using Shared = std::shared_ptr<const Problem>;
 
 Made backward_euler(Shared problem, const Backend& method, const BackendOptions& options) {
   if (method.make) return method.make(std::move(problem), options);
@@ -31,46 +31,30 @@ constexpr const char* spectral_radius = "spectral_radius";
 Made midpoint(Shared problem, const Backend& method, const BackendOptions& options) {
   auto filter = method.make_filter(*problem, options, Along::middle);
   return std::make_unique<MidpointStepper>(std::move(problem), std::move(filter),
-                                           std::get<double>(options.settings.at(spectral_radius)));
-}
-
-std::vector<TimeStepper> all_steppers() {
-  using enum Origin;
-  using enum Velocities;
-  const SettingInfo rho{
-      .name = spectral_radius,
-      .initial = 0.8,
-      .meaning = "what an edge keeps of its rate when it bounces off its limit; 1 conserves",
-      .range = {0, 1},
-      .tunable = SearchRange{0, 1}};
-  return {{"backward_euler", "", "", paper, half_step, Along::edges, true, {}, backward_euler},
-          // Symplectic where forces act along the start of the step. With velocities of half steps
-          // it is the arithmetic of backward_euler.
-          {"verlet", "", "Verlet 1967", paper, half_step, Along::edges, true, {}, backward_euler},
-          {"bdf2",
-           "in BDF2",
-           "Choi and Ko 2002; English and Bridson 2008",
-           literature,
-           whole_step,
-           Along::edges,
-           true,
-           {},
-           bdf2},
-          {"midpoint",
-           "in the midpoint rule",
-           "Simo and Tarnow 1992; Gonzalez 1999",
-           literature,
-           whole_step,
-           Along::middle,
-           false,
-           {rho},
-           midpoint}};
+                                           options.number(spectral_radius));
 }
 
 }  // namespace
 
 std::span<const TimeStepper> time_steppers() {
-  static const std::vector<TimeStepper> all = all_steppers();
+  static const std::vector<TimeStepper> all{
+      {"backward_euler", backward_euler},
+      // Symplectic where forces act along the start of the step. With velocities of half steps it
+      // is the arithmetic of backward_euler.
+      {"verlet", backward_euler, Origin::paper, "Verlet 1967"},
+      {"bdf2", bdf2, Origin::literature, "Choi and Ko 2002; English and Bridson 2008", "in BDF2",
+       Velocities::whole_step},
+      {"midpoint",
+       midpoint,
+       Origin::literature,
+       "Simo and Tarnow 1992; Gonzalez 1999",
+       "in the midpoint rule",
+       Velocities::whole_step,
+       Along::middle,
+       false,
+       {{spectral_radius, 0.8,
+         "what an edge keeps of its rate when it bounces off its limit; 1 conserves", Range{0, 1},
+         SearchRange{0, 1}}}}};
   return all;
 }
 

@@ -9,16 +9,16 @@
 namespace inextensible {
 
 struct TimeStepper {
-  const char* name;    // what follows the @
-  const char* phrase;  // after a method's label: "in BDF2"; empty for a published stepper
-  const char* citation;
-  Origin origin;
-  Velocities velocities;
-  Along along;  // where corrections of a filter point
-  bool takes_implicit_forces;
-  std::vector<SettingInfo> settings;  // the stepper's own
+  const char* name;  // what follows the @
   std::unique_ptr<Stepper> (*around)(std::shared_ptr<const Problem>, const Backend& method,
                                      const BackendOptions&);
+  Origin origin = Origin::paper;
+  const char* citation = "";
+  const char* phrase = "";  // after a method's label: "in BDF2"; empty for a published stepper
+  Velocities velocities = Velocities::half_step;
+  Along along = Along::edges;  // where corrections of a filter point
+  bool takes_implicit_forces = true;
+  std::vector<SettingInfo> settings = {};  // the stepper's own
 };
 
 std::span<const TimeStepper> time_steppers();

@@ -19,25 +19,6 @@
 namespace inextensible {
 namespace {
 
-class VertexBlockDescent final : public Stepper {
- public:
-  VertexBlockDescent(std::shared_ptr<const Problem> problem, const BackendOptions& options);
-
- private:
-  StepResult solve(const State& state, double h, Positions& x) override;
-  void start(const State& state, double h, Positions& x) const;
-  StepResult end_velocities(const State& before, double h, const Positions& filtered,
-                            const Positions& x, Positions& v) override;
-
-  int iterations_;
-  double relaxation_;
-  VertexPasses passes_;
-  Positions inertial_;           // x + h v + h^2 g, drag's included
-  std::vector<double> inertia_;  // m + h times drag, kg
-  Positions v_before_;           // v^{n-1}
-  double time_before_ = std::numeric_limits<double>::infinity();  // s, of v_before_
-};
-
 constexpr int most_contact_rounds = 30;
 
 Springs all_springs(const Problem& problem, double stiffness) {
@@ -50,79 +31,90 @@ Springs all_springs(const Problem& problem, double stiffness) {
   return all;
 }
 
-VertexBlockDescent::VertexBlockDescent(std::shared_ptr<const Problem> shared,
-                                       const BackendOptions& options)
-    : Stepper(std::move(shared)),
-      iterations_(options.count("iterations")),
-      relaxation_(options.number("relaxation")),
-      passes_(problem(), all_springs(problem(), options.number("stiffness"))),
-      inertial_(3, problem().vertices()),
-      inertia_(problem().mass()),
-      v_before_(3, problem().vertices()) {}
+class VertexBlockDescent final : public Stepper {
+ public:
+  VertexBlockDescent(std::shared_ptr<const Problem> shared, const BackendOptions& options)
+      : Stepper(std::move(shared)),
+        iterations_(options.count("iterations")),
+        relaxation_(options.number("relaxation")),
+        passes_(problem(), all_springs(problem(), options.number("stiffness"))),
+        inertial_(3, problem().vertices()),
+        inertia_(problem().mass()),
+        v_before_(3, problem().vertices()) {}
 
-// The paper's adaptive initialization: gravity counts as far as the last step's acceleration
-// says that nothing bears it; the first step starts from the free flight.
-void VertexBlockDescent::start(const State& state, double h, Positions& x) const {
-  x = inertial_;
-  const double gravity = problem().gravity().norm();
-  const double since = state.time - time_before_;  // within BDF2 not the last step's length
-  if (since <= 0 || gravity == 0) return;
-  const Eigen::Vector3d down = problem().gravity() / gravity;
-  for (int v = 0; v < problem().vertices(); ++v) {
-    if (problem().inverse_mass()[v] == 0) continue;
-    const double fall = down.dot(state.v.col(v) - v_before_.col(v)) / since;
-    x.col(v) = state.x.col(v) + h * state.v.col(v) + h * h * std::clamp(fall, 0.0, gravity) * down;
+ private:
+  StepResult solve(const State& state, double h, Positions& x) override {
+    Stopwatch stopwatch(phases_wanted_);
+    const Eigen::Vector3d fall = h * h * problem().gravity();
+    inertial_ = state.x + h * state.v;
+    inertial_.colwise() += fall;
+    for (const int vertex : problem().pinned()) inertial_.col(vertex) = state.x.col(vertex);
+    for (int v = 0; problem().has_drag() && v < problem().vertices(); ++v) {
+      const double mass = problem().mass()[v], drag = h * problem().drag(v);
+      inertia_[v] = mass + drag;
+      inertial_.col(v) += drag / (mass + drag) * (state.x.col(v) - inertial_.col(v));
+    }
+    Contacts* contacts = contacts_inside();
+    if (contacts) {
+      contacts->apply_friction(inertial_, work_);
+      contacts->find(inertial_, work_);
+    }
+    start(state, h, x);
+    if (contacts) contacts->find(x, work_);
+    passes_.load(x, inertial_, inertia_);
+    StepResult result;
+    for (int round = 0;; ++round) {
+      passes_.set_planes(contacts);
+      for (int i = 0; i < iterations_; ++i) passes_.visit_all(h * h, relaxation_);
+      result.iterations += iterations_;
+      work_.spring_evaluations += std::int64_t{iterations_} * passes_.entries();
+      passes_.store(x);
+      if (!passes_.finite())
+        return {Status::not_finite, result.iterations, -1, 0, "a position overflowed"};
+      if (!contacts) break;
+      passes_.read_pushes(*contacts);
+      if (contacts->find(x, work_) == 0) break;
+      if (round == most_contact_rounds) {
+        return {Status::not_converged, result.iterations, -1, 0,
+                "ever more vertices in the obstacle"};
+      }
+    }
+    phases_.unconstrained += stopwatch();
+    return result;
   }
-}
 
-StepResult VertexBlockDescent::solve(const State& state, double h, Positions& x) {
-  Stopwatch stopwatch(phases_wanted_);
-  const Eigen::Vector3d fall = h * h * problem().gravity();
-  inertial_ = state.x + h * state.v;
-  inertial_.colwise() += fall;
-  for (const int vertex : problem().pinned()) inertial_.col(vertex) = state.x.col(vertex);
-  for (int v = 0; problem().has_drag() && v < problem().vertices(); ++v) {
-    const double mass = problem().mass()[v], drag = h * problem().drag(v);
-    inertia_[v] = mass + drag;
-    inertial_.col(v) += drag / (mass + drag) * (state.x.col(v) - inertial_.col(v));
-  }
-  Contacts* contacts = contacts_inside();
-  if (contacts) {
-    contacts->apply_friction(inertial_, work_);
-    contacts->find(inertial_, work_);
-  }
-  start(state, h, x);
-  if (contacts) contacts->find(x, work_);
-  passes_.load(x, inertial_, inertia_);
-  StepResult result;
-  for (int round = 0;; ++round) {
-    passes_.set_planes(contacts);
-    for (int i = 0; i < iterations_; ++i) passes_.visit_all(h * h, relaxation_);
-    result.iterations += iterations_;
-    work_.spring_evaluations += std::int64_t{iterations_} * passes_.entries();
-    passes_.store(x);
-    if (!passes_.finite())
-      return {Status::not_finite, result.iterations, -1, 0, "a position overflowed"};
-    if (!contacts) break;
-    passes_.read_pushes(*contacts);
-    if (contacts->find(x, work_) == 0) break;
-    if (round == most_contact_rounds) {
-      return {Status::not_converged, result.iterations, -1, 0,
-              "ever more vertices in the obstacle"};
+  // The paper's adaptive initialization: gravity counts as far as the last step's acceleration says
+  // that nothing bears it; the first step starts from the free flight.
+  void start(const State& state, double h, Positions& x) const {
+    x = inertial_;
+    const double gravity = problem().gravity().norm();
+    const double since = state.time - time_before_;  // within BDF2 not the last step's length
+    if (since <= 0 || gravity == 0) return;
+    const Eigen::Vector3d down = problem().gravity() / gravity;
+    for (int v = 0; v < problem().vertices(); ++v) {
+      if (problem().inverse_mass()[v] == 0) continue;
+      const double fall = down.dot(state.v.col(v) - v_before_.col(v)) / since;
+      x.col(v) =
+          state.x.col(v) + h * state.v.col(v) + h * h * std::clamp(fall, 0.0, gravity) * down;
     }
   }
-  phases_.unconstrained += stopwatch();
-  return result;
-}
 
-// The history is of accepted steps, so that one tried again after a refusal starts as it did.
-StepResult VertexBlockDescent::end_velocities(const State& before, double h,
-                                              const Positions& filtered, const Positions& x,
-                                              Positions& v) {
-  v_before_ = before.v;
-  time_before_ = before.time;
-  return Stepper::end_velocities(before, h, filtered, x, v);
-}
+  // The history is of accepted steps, so that one tried again after a refusal starts as it did.
+  StepResult end_velocities(const State& before, double h, const Positions& filtered,
+                            const Positions& x, Positions& v) override {
+    v_before_ = before.v;
+    time_before_ = before.time;
+    return Stepper::end_velocities(before, h, filtered, x, v);
+  }
+
+  int iterations_;
+  double relaxation_;
+  VertexPasses passes_;
+  Positions inertial_;           // x + h v + h^2 g, drag's included
+  std::vector<double> inertia_;  // m + h times drag, kg
+  Positions v_before_;           // v^{n-1}
+  double time_before_ = std::numeric_limits<double>::infinity();  // s, of v_before_
+};
 
 }  // namespace
 

@@ -1,15 +1,24 @@
-// Yarns of the cloth (yarns.h), each projected as a whole: what yarn_projection and
-// fast_projection_adaptive share.
+// The yarns of woven cloth, each projected as a whole.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "solvers/methods/strain_passes.h"
-#include "solvers/methods/yarns.h"
 #include "solvers/problem/work_counters.h"
 
 namespace inextensible {
+
+// Edges of the problem in a row, each sharing a vertex with the next; no vertex comes twice.
+struct Yarn {
+  std::vector<int> vertices;  // one more than edges
+  std::vector<int> edges;
+  int color;  // yarns of one color share no vertex
+};
+
+// The yarns of the problem, found from its edges alone. Every edge is in one. Longest first within
+// a color; colors from 0 on, the one with most edges first.
+std::vector<Yarn> yarns_of(const Problem& problem);
 
 class YarnPass {
  public:

@@ -38,8 +38,23 @@ enum Way { rounds_alone, with_the_whole };  // how a step is done
 // Which way is cheaper, as far as steps have shown.
 class Experience {
  public:
-  Way choose();
-  bool too_expensive(int rounds, double cost) const;  // rounds alone
+  Way choose() {
+    if (mean_[with_the_whole] == 0) return rounds_alone;
+    const Way cheaper =
+        mean_[rounds_alone] <= mean_[with_the_whole] ? rounds_alone : with_the_whole;
+    if (cheaper != cheaper_) {
+      cheaper_ = cheaper;
+      until_retry_ = retry_interval_ = first_retry;
+    }
+    if (--until_retry_ > 0) return cheaper;
+    until_retry_ = retry_interval_ = std::min(2 * retry_interval_, longest_retry);
+    return cheaper == rounds_alone ? with_the_whole : rounds_alone;
+  }
+
+  bool too_expensive(int rounds, double cost) const {  // rounds alone
+    const double other = mean_[with_the_whole];
+    return other == 0 ? rounds >= first_rounds : cost > 2 * other;
+  }
   void learn(Way way, double cost) {
     mean_[way] = mean_[way] == 0 ? cost : memory * mean_[way] + (1 - memory) * cost;
   }
@@ -54,36 +69,80 @@ class Experience {
   int retry_interval_ = 0, until_retry_ = 0;  // steps until the more expensive way is tried again
 };
 
-Way Experience::choose() {
-  if (mean_[with_the_whole] == 0) return rounds_alone;
-  const Way cheaper = mean_[rounds_alone] <= mean_[with_the_whole] ? rounds_alone : with_the_whole;
-  if (cheaper != cheaper_) {
-    cheaper_ = cheaper;
-    until_retry_ = retry_interval_ = first_retry;
-  }
-  if (--until_retry_ > 0) return cheaper;
-  until_retry_ = retry_interval_ = std::min(2 * retry_interval_, longest_retry);
-  return cheaper == rounds_alone ? with_the_whole : rounds_alone;
-}
-
-bool Experience::too_expensive(int rounds, double cost) const {
-  const double other = mean_[with_the_whole];
-  return other == 0 ? rounds >= first_rounds : cost > 2 * other;
-}
-
 // Projection of the whole cloth.
 class WholeCloth {
  public:
-  WholeCloth(const Problem& problem, const BackendOptions& options);
+  WholeCloth(const Problem& problem, const BackendOptions& options)
+      : system_(problem, options.strain_limit, options.word("linear_solver"),
+                ConstraintSystem::Digits::few),
+        target_(options.number("target")),
+        forcing_(options.number("forcing")),
+        x_(3, problem.vertices()),
+        u_(3, problem.constraints()),
+        mu_(problem.constraints()),
+        before_{Positions(3, problem.vertices()), {}} {}
+
   void begin(const Positions& x) { x_ = x; }  // pinned vertices are where they are to be
-  void take_middle_from(const Positions& x_start);
+
+  void take_middle_from(const Positions& x_start) {
+    u_start_.resize(3, u_.cols());
+    system_.edges().gradient(x_start, u_start_);
+  }
+
   // Moves the positions of `passes`; adds to `cost`. false: no damping helps, nothing has moved.
-  bool project(StrainPasses& passes, Contacts* contacts, double& cost, WorkCounters& work);
+  // Where J W J^T is singular, or so nearly that the projection overshoots, as it may happen to
+  // cloth that lies on an obstacle, it is damped (fast_projection.cpp), more and more.
+  bool project(StrainPasses& passes, Contacts* contacts, double& cost, WorkCounters& work) {
+    constexpr double least_whole_damping = 1e-4, most_whole_damping = 1;  // of the diagonal
+    // Largest growth of |C~|^2 that is accepted in contact: passes correct that much.
+    constexpr double most_overshoot = 100;
+    const WorkCounters at_first = work;
+    passes.settle_contacts();
+    passes.store(x_);
+    Iterate x{x_, contacts};
+    x.save(before_);
+    const double error = linearize();
+    bool projected = false;
+    for (double damping = 0; !projected && damping <= most_whole_damping;
+         damping = damping == 0 ? least_whole_damping : 10 * damping) {
+      if (damping > 0) {
+        x.restore(before_);
+        linearize();
+      }
+      if (!system_.factor(u_, contacts, work, damping)) continue;
+      if (!system_.solve(mu_, work, forcing_)) continue;  // (7)
+      system_.edges().apply(u_, mu_, x_);                 // (5)
+      x.settle();
+      projected = !contacts || linearize() < most_overshoot * error;
+    }
+    if (projected) {
+      passes.load(x);
+    } else {
+      x.restore(before_);
+    }
+    cost += cost_since(at_first, work);
+    return projected;
+  }
+
   const ConstraintSystem& system() const { return system_; }
 
  private:
-  double linearize();
-  double cost_since(const WorkCounters& before, const WorkCounters& now) const;
+  // The gradient to u_, C~ to mu_, both at x_. Returns |C~|^2.
+  double linearize() {
+    system_.edges().linearize(x_, u_, mu_);
+    if (u_start_.cols() > 0) to_middle(u_start_, u_);
+    system_.edges().excess(target_, mu_);
+    return mu_.squaredNorm();
+  }
+
+  double cost_since(const WorkCounters& before, const WorkCounters& now) const {
+    const auto factorizations = static_cast<double>(now.factorizations - before.factorizations);
+    const auto solves = static_cast<double>(now.back_solves - before.back_solves +
+                                            now.linear_iterations - before.linear_iterations);
+    return system_.edges().count() * (row_cost + 4 * solves) +
+           solves * nonzero_cost * now.factor_nonzeros +
+           factorizations * operation_cost * now.factor_flops;
+  }
 
   ConstraintSystem system_;
   double target_, forcing_;
@@ -94,78 +153,72 @@ class WholeCloth {
   Iterate::Record before_;    // the projection
 };
 
-WholeCloth::WholeCloth(const Problem& problem, const BackendOptions& options)
-    : system_(problem, options.strain_limit, options.word("linear_solver"),
-              ConstraintSystem::Digits::few),
-      target_(options.number("target")),
-      forcing_(options.number("forcing")),
-      x_(3, problem.vertices()),
-      u_(3, problem.constraints()),
-      mu_(problem.constraints()),
-      before_{Positions(3, problem.vertices()), {}} {}
-
-void WholeCloth::take_middle_from(const Positions& x_start) {
-  u_start_.resize(3, u_.cols());
-  system_.edges().gradient(x_start, u_start_);
-}
-
-// Where J W J^T is singular, or so nearly that the projection overshoots, as it may happen to cloth
-// that lies on an obstacle, it is damped (fast_projection.cpp), more and more.
-bool WholeCloth::project(StrainPasses& passes, Contacts* contacts, double& cost,
-                         WorkCounters& work) {
-  constexpr double least_whole_damping = 1e-4, most_whole_damping = 1;  // of the diagonal
-  // Largest growth of |C~|^2 that is accepted in contact: passes correct that much.
-  constexpr double most_overshoot = 100;
-  const WorkCounters at_first = work;
-  passes.settle_contacts();
-  passes.store(x_);
-  Iterate x{x_, contacts};
-  x.save(before_);
-  const double error = linearize();
-  bool projected = false;
-  for (double damping = 0; !projected && damping <= most_whole_damping;
-       damping = damping == 0 ? least_whole_damping : 10 * damping) {
-    if (damping > 0) {
-      x.restore(before_);
-      linearize();
-    }
-    if (!system_.factor(u_, contacts, work, damping)) continue;
-    if (!system_.solve(mu_, work, forcing_)) continue;  // (7)
-    system_.edges().apply(u_, mu_, x_);                 // (5)
-    x.settle();
-    projected = !contacts || linearize() < most_overshoot * error;
-  }
-  if (projected) {
-    passes.load(x);
-  } else {
-    x.restore(before_);
-  }
-  cost += cost_since(at_first, work);
-  return projected;
-}
-
-// The gradient to u_, C~ to mu_, both at x_. Returns |C~|^2.
-double WholeCloth::linearize() {
-  system_.edges().linearize(x_, u_, mu_);
-  if (u_start_.cols() > 0) to_middle(u_start_, u_);
-  system_.edges().excess(target_, mu_);
-  return mu_.squaredNorm();
-}
-
-double WholeCloth::cost_since(const WorkCounters& before, const WorkCounters& now) const {
-  const auto factorizations = static_cast<double>(now.factorizations - before.factorizations);
-  const auto solves = static_cast<double>(now.back_solves - before.back_solves +
-                                          now.linear_iterations - before.linear_iterations);
-  return system_.edges().count() * (row_cost + 4 * solves) +
-         solves * nonzero_cost * now.factor_nonzeros +
-         factorizations * operation_cost * now.factor_flops;
-}
-
 class YarnProjection final : public VelocityFilter {
  public:
   YarnProjection(const Problem& problem, const BackendOptions& options, Along along,
-                 std::unique_ptr<WholeCloth> whole = nullptr);
-  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
+                 std::unique_ptr<WholeCloth> whole = nullptr)
+      : edges_(problem, options.strain_limit),
+        along_(along),
+        max_iterations_(options.count("max_iterations")),
+        passes_(StrainPasses::by_mass(problem,
+                                      {options.strain_limit, options.number("sweep_target")},
+                                      options.number("relaxation"))),
+        yarns_(problem, options.strain_limit, options.number("target"), passes_.edges()),
+        sweeps_(yarns_.crossing() ? options.count("sweeps") : 0),
+        whole_(std::move(whole)) {}
+
+  StepResult apply(const Positions& x_start, double /*h*/, Iterate x, WorkCounters& work) override {
+    if (edges_.permissible(x)) return {Status::ok, 0};
+    passes_.begin(x);
+    if (along_ == Along::middle)
+      yarns_.take_middle_from(x_start);  // passes: along edges as they are
+    if (whole_) {
+      whole_->begin(x);
+      if (along_ == Along::middle) {
+        whole_->take_middle_from(x_start);
+        passes_.take_middle_from(x_start);
+      }
+    }
+    bool whole = whole_ && yarns_.crossing();
+    Way way = whole ? experience_.choose() : rounds_alone;
+    double cost = 0;
+    for (int rounds = 0;; ++rounds) {
+      if (x.contact_count() > 0 && rounds == StrainPasses::most_rounds_in_contact) {
+        experience_ = {};
+        return passes_.passes_alone(edges_, x, work);
+      }
+      const bool stops = passes_.gives_up(rounds, max_iterations_);
+      passes_.settle_contacts();
+      const std::int64_t corrected =
+          stops ? 0 : yarns_.project(passes_.positions(), passes_.held_normals(), work);
+      work.edge_projections += corrected;
+      StrainPasses::Passed done{corrected, 0};
+      if (corrected > 0) done = passes_.in_turn(sweeps_, work);
+      const double round = (link_cost + done.passes) * edges_.count() +
+                           contact_cost * (1 + done.passes) * x.contact_count();
+      cost += round;
+      if (done.left == 0) {
+        passes_.store(x);
+        if (whole_ && !stops && x.find_contacts(work) > 0) {
+          passes_.load(x);
+          continue;
+        }
+        const StepResult result =
+            StrainPasses::verdict(rounds, stops ? "round limit" : nullptr, edges_, x);
+        experience_.learn(way, cost);
+        if (!result) experience_ = {};  // a refused step leaves nothing behind
+        return result;
+      }
+      if (!whole) continue;
+      if (way == rounds_alone && experience_.too_expensive(rounds + 1, cost)) {
+        experience_.learn(rounds_alone, 2 * cost);
+        way = with_the_whole;
+        cost = round;
+      }
+      if (way == with_the_whole) whole = whole_->project(passes_, x.contacts(), cost, work);
+    }
+  }
+
   const char* linear_solver() const override {
     return whole_ ? whole_->system().solver_name().c_str() : "";
   }
@@ -183,69 +236,6 @@ class YarnProjection final : public VelocityFilter {
   std::unique_ptr<WholeCloth> whole_;  // of fast_projection_adaptive
   Experience experience_;
 };
-
-YarnProjection::YarnProjection(const Problem& problem, const BackendOptions& options, Along along,
-                               std::unique_ptr<WholeCloth> whole)
-    : edges_(problem, options.strain_limit),
-      along_(along),
-      max_iterations_(options.count("max_iterations")),
-      passes_(StrainPasses::by_mass(problem, {options.strain_limit, options.number("sweep_target")},
-                                    options.number("relaxation"))),
-      yarns_(problem, options.strain_limit, options.number("target"), passes_.edges()),
-      sweeps_(yarns_.crossing() ? options.count("sweeps") : 0),
-      whole_(std::move(whole)) {}
-
-StepResult YarnProjection::apply(const Positions& x_start, double /*h*/, Iterate x,
-                                 WorkCounters& work) {
-  if (edges_.permissible(x)) return {Status::ok, 0};
-  passes_.begin(x);
-  if (along_ == Along::middle) yarns_.take_middle_from(x_start);  // passes: along edges as they are
-  if (whole_) {
-    whole_->begin(x);
-    if (along_ == Along::middle) {
-      whole_->take_middle_from(x_start);
-      passes_.take_middle_from(x_start);
-    }
-  }
-  bool whole = whole_ && yarns_.crossing();
-  Way way = whole ? experience_.choose() : rounds_alone;
-  double cost = 0;
-  for (int rounds = 0;; ++rounds) {
-    if (x.contact_count() > 0 && rounds == StrainPasses::most_rounds_in_contact) {
-      experience_ = {};
-      return passes_.passes_alone(edges_, x, work);
-    }
-    const bool stops = passes_.gives_up(rounds, max_iterations_);
-    passes_.settle_contacts();
-    const std::int64_t corrected =
-        stops ? 0 : yarns_.project(passes_.positions(), passes_.held_normals(), work);
-    work.edge_projections += corrected;
-    StrainPasses::Passed done{corrected, 0};
-    if (corrected > 0) done = passes_.in_turn(sweeps_, work);
-    const double round = (link_cost + done.passes) * edges_.count() +
-                         contact_cost * (1 + done.passes) * x.contact_count();
-    cost += round;
-    if (done.left == 0) {
-      passes_.store(x);
-      if (whole_ && !stops && x.find_contacts(work) > 0) {
-        passes_.load(x);
-        continue;
-      }
-      const StepResult result =
-          StrainPasses::verdict(rounds, stops ? "round limit" : nullptr, edges_, x);
-      experience_.learn(way, cost);
-      if (!result) experience_ = {};  // a refused step leaves nothing behind
-      return result;
-    }
-    if (!whole) continue;
-    if (way == rounds_alone && experience_.too_expensive(rounds + 1, cost)) {
-      experience_.learn(rounds_alone, 2 * cost);
-      way = with_the_whole;
-      cost = round;
-    }
-    if (way == with_the_whole) whole = whole_->project(passes_, x.contacts(), cost, work);
-  }
-}
 
 std::unique_ptr<VelocityFilter> make_adaptive(const Problem& problem, const BackendOptions& options,
                                               Along along) {

@@ -1,10 +1,12 @@
-#include "solvers/methods/yarns.h"
-
+// A yarn goes on through the edge that lies opposite at a vertex, the one with which it shares no
+// quad and no triangle.
 #include <algorithm>
 #include <array>
 #include <map>
 #include <numeric>
 #include <set>
+
+#include "solvers/methods/yarn_pass.h"
 
 namespace inextensible {
 namespace {
@@ -22,30 +24,29 @@ bool share_a_face(const Neighbours& at, int v, int a, int b) {
                      [&](const auto& n) { return n.vertex != v && joined(at, n.vertex, b); });
 }
 
+// Which end of an edge v is, and the vertex at the other.
+int end_of(const Edge& edge, int v) { return edge.a == v ? 0 : 1; }
+int other_end(const Edge& edge, int v) { return edge.a == v ? edge.b : edge.a; }
+
 // The edges that continue each edge at its ends a and b; -1: none.
 std::vector<std::array<int, 2>> continuations(const Problem& problem, const Neighbours& at) {
   std::vector<std::array<int, 2>> next(problem.constraints(), {-1, -1});
-  const auto end_of = [&](int edge, int v) { return problem.edges()[edge].a == v ? 0 : 1; };
   for (int v = 0; v < problem.vertices(); ++v) {
+    const auto after = [&](int edge) -> int& {
+      return next[edge][end_of(problem.edges()[edge], v)];
+    };
     // In the order of the mesh, each edge takes the first free one that lies opposite.
-    for (std::size_t i = 0; i < at[v].size(); ++i) {
-      const auto [a, edge] = at[v][i];
-      if (next[edge][end_of(edge, v)] >= 0) continue;
-      for (std::size_t j = i + 1; j < at[v].size(); ++j) {
-        const auto [b, other] = at[v][j];
-        if (next[other][end_of(other, v)] >= 0 || share_a_face(at, v, a, b)) continue;
-        next[edge][end_of(edge, v)] = other;
-        next[other][end_of(other, v)] = edge;
-        break;
-      }
+    for (auto one = at[v].begin(); one != at[v].end(); ++one) {
+      if (after(one->edge) >= 0) continue;
+      const auto other = std::find_if(one + 1, at[v].end(), [&](const Neighbour& n) {
+        return after(n.edge) < 0 && !share_a_face(at, v, one->vertex, n.vertex);
+      });
+      if (other == at[v].end()) continue;
+      after(one->edge) = other->edge;
+      after(other->edge) = one->edge;
     }
   }
   return next;
-}
-
-int other_end(const Problem& problem, int edge, int v) {
-  const Edge e = problem.edges()[edge];
-  return e.a == v ? e.b : e.a;
 }
 
 // The first color that none of a yarn's vertices has yet.
@@ -67,9 +68,6 @@ void paint(std::vector<Yarn>& yarns, int vertices) {
 std::vector<Yarn> yarns_of(const Problem& problem) {
   const Neighbours at = neighbours_of(problem);
   const auto next = continuations(problem, at);
-  const auto at_end = [&](int edge, int v) {
-    return next[edge][problem.edges()[edge].a == v ? 0 : 1];
-  };
   std::vector<bool> used(problem.constraints(), false);
   std::vector<bool> seen(problem.vertices(), false);
   std::vector<Yarn> yarns;
@@ -78,12 +76,12 @@ std::vector<Yarn> yarns_of(const Problem& problem) {
     Yarn yarn{{v}, {}, 0};
     seen[v] = true;
     while (edge >= 0 && !used[edge]) {
-      const int to = other_end(problem, edge, v);
+      const int to = other_end(problem.edges()[edge], v);
       if (seen[to]) break;
       used[edge] = seen[to] = true;
       yarn.edges.push_back(edge);
       yarn.vertices.push_back(to);
-      edge = at_end(edge, to);
+      edge = next[edge][end_of(problem.edges()[edge], to)];
       v = to;
     }
     for (const int vertex : yarn.vertices) seen[vertex] = false;

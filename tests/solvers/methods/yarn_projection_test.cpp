@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "solvers/methods/yarns.h"
+#include "solvers/methods/yarn_pass.h"
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/registry.h"
 #include "support/motion.h"
