@@ -6,13 +6,11 @@
 // direction method of multipliers with weights r_k (kg; D: the differences x_b - x_a):
 //   (M + D^T r D) x = M x0 + D^T r (z - u),
 //   z_k = l_k (D x + u)_k / |(D x + u)_k|,   u += D x - z,
-// over-relaxed with alpha D x + (1 - alpha) z in place of D x (Eckstein and Bertsekas 1992).
-// Its fixed points are those of ICD (Goldenthal et al. 2007), r u = h^2 times an
-// edge's force. As r is at the inertia's scale, h is not in the matrix, which is one for x, y and
-// z. A step starts from the last accepted one's forces.
-//
-// Each iterate conserves linear momentum. u turns towards its edge as z does, so that angular
-// momentum is conserved as far as the iteration has converged.
+// over-relaxed with alpha D x + (1 - alpha) z in place of D x (Eckstein and Bertsekas 1992). Its
+// fixed points are those of ICD (Goldenthal et al. 2007), r u = h^2 times an edge's force. r is at
+// the inertia's scale, so that the matrix does not depend on h. A step starts from the last
+// accepted one's forces. Linear momentum is conserved by each iterate, angular momentum as far as
+// the iteration has converged, since u turns towards its edge as z does.
 //
 // With contact inside, a vertex that touches is one more term, z_v = x_v within its half-space, and
 // the others pull towards where they are, so that the matrix stays. Loops: three solves, one pass

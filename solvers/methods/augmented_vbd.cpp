@@ -2,17 +2,15 @@
 // multipliers are sought by the method of multipliers, and vertices moved one by one in between.
 //
 // An iteration is one pass over vertices with f_k = r_k C_k + mu_k along each edge, C_k = d_k -
-// l_k, and mu_k += r_k C_k after it: the paper's hard constraints, mu = h^2 lambda. Two departures
-// from it. The penalty r_k stays at the inertia's scale, 1 / (w_a + w_b), instead of growing
-// without end, which leaves passes that converge. And as C is what is judged, all of it is
-// corrected, not only what the step added (the paper's alpha is 0), so that nothing is left for a
-// stabilization afterwards. A step ends at the closest point of Goldenthal et al. 2007, Theorem 1,
-// where it is iterated to the end: C = 0, and M (x - x0) + J^T mu = 0 at x itself.
+// l_k, and mu_k += r_k C_k after it: the paper's hard constraints, mu = h^2 lambda. Departures: the
+// penalty r_k stays at the inertia's scale, 1 / (w_a + w_b), so that passes converge; and all of C
+// is corrected (the paper's alpha is 0), which leaves nothing for a stabilization. Iterated to the
+// end, a step ends at the closest point of Goldenthal et al. 2007, Theorem 1.
 //
 // Multipliers start from the last accepted step's forces, and vertices from where these would take
-// the candidate: what is at rest is solved before the first pass. Where a step is too unlike the
-// last one for that, and passes overflow, they begin once more at the candidate, without
-// multipliers. Loops: two over vertices and the ends of their edges a pass.
+// the candidate: what is at rest is solved before the first pass. Where that makes passes overflow,
+// they begin once more at the candidate, without multipliers. Loops: two over vertices and the ends
+// of their edges a pass.
 #include "solvers/methods/rows.h"
 #include "solvers/methods/vertex_passes.h"
 #include "solvers/systems/constraint_system.h"

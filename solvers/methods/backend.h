@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -65,9 +66,8 @@ struct BackendOptions {
 enum class StrainControl { strain_limit, stiffness, none, time_step };
 
 // Where a method's constraint forces take their direction from: each edge from its own ends in turn
-// (local), the gradient at the start of the step, at the current iterate (or halfway to it), from
-// springs, or the gradient at the end of the step, which is solved for together with the
-// multipliers.
+// (local), from springs, or the gradient at the start of the step, at the current iterate (or
+// halfway to it), or at the end, which is solved for together with the multipliers.
 enum class Direction { none, local, start, current, springs, end };
 
 // What time the velocities of a state belong to. half_step: v^n = (x^n - x^{n-1}) / h is that of
@@ -81,7 +81,7 @@ enum class Velocities { half_step, whole_step };
 enum class Origin { paper, project, literature, engine, elsewhere };
 
 // A method in its published time stepper. The registry completes it, and adds a row for each other
-// time stepper that suits it (time_steppers.h): a contestant is method@stepper.
+// time stepper that suits it: a contestant is method@stepper.
 struct Backend {
   const char* name;     // a-z, 0-9 and _; in another stepper than the published one, method@stepper
   const char* summary;  // one line
@@ -116,12 +116,32 @@ struct Backend {
   // `make` is backward Euler, and does not depend on which states it is given: BDF2 takes it from
   // one that it extrapolates.
   bool backward_euler = false;
-  // The time stepper (time_steppers.h), and who offers that; `method`: the name without it. The
+  // The time stepper, and who offers that; `method`: the name without it. The
   // registry fills them in; a published stepper that is not backward Euler the row names.
   const char* stepper = "";
   Origin stepper_origin = Origin::paper;
   const char* method = "";
 };
+
+// The second axis of contestants: the time steppers that a method may work in. A method enforces
+// constraints or carries stiff springs; the stepper takes it from one state to the next.
+struct TimeStepper {
+  const char* name;  // what follows the @
+  std::unique_ptr<Stepper> (*around)(std::shared_ptr<const Problem>, const Backend& method,
+                                     const BackendOptions&);
+  Origin origin = Origin::paper;
+  const char* citation = "";
+  const char* phrase = "";  // after a method's label: "in BDF2"; empty for a published stepper
+  Velocities velocities = Velocities::half_step;
+  Along along = Along::edges;  // where corrections of a filter point
+  bool takes_implicit_forces = true;
+  std::vector<SettingInfo> settings = {};  // the stepper's own
+};
+
+std::span<const TimeStepper> time_steppers();
+
+// Why the pair makes no sense, as the end of a sentence; null: it does.
+const char* mismatch(const Backend& method, const TimeStepper& stepper);
 
 // The part of the problem that the method does not take, in words; null: it takes all.
 const char* part_not_taken(const Backend& backend, const Problem& problem);

@@ -4,9 +4,9 @@
 // lanes at one distance. A chain is a single row; elsewhere this is a numbering as good as any.
 //
 // Coloring. Edges that leave one lane by one distance are of one kind. A kind that is a matching
-// takes the first color that all of it fits, larger kinds first; other edges take their first color
-// one by one (greedy). That makes four colors on cloth and two on a chain. Colors are not kept few:
-// they cost nothing, short blocks do.
+// takes the first color that all of it fits, larger kinds first; other edges take theirs one by
+// one. That makes four colors on cloth and two on a chain; more colors cost nothing, short blocks
+// do.
 //
 // Blocks. In a kind, runs of consecutive places become blocks, across gaps of up to `bridge`. Edges
 // outside of runs are listed, in one more block of their color.

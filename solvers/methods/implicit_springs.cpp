@@ -4,13 +4,12 @@
 // Ko 2002, Teran et al. 2005) always descends; backtracking on E. Loops: one assembly,
 // factorization and solve, and one or more energy evaluations, an iteration.
 //
-// Three things make it cheap. They change where Newton starts and which positive definite matrix it
-// steps with; the energy, its gradient, the descent test and the criterion to stop stay. (1) The
-// start is the lowest of the free flight, the start of the step, and its extrapolation to second
-// order. (2) Stiff springs are almost constraints, and stretch across their direction by the square
-// of the motion: their tension at an iterate is far off, that of the linearization is not. It is
-// the Hessian's stiffness across the spring (as primal-dual methods keep a multiplier). (3) Near
-// the end a factorization is kept for further iterations while these shrink.
+// Three things make it cheap without changing E, its gradient, the descent test or the criterion to
+// stop. (1) Newton starts at the lowest of the free flight, the start of the step, and its
+// extrapolation to second order. (2) Stiff springs are almost constraints: their tension at an
+// iterate is far off, that of the last linearization is not, and is the Hessian's stiffness across
+// the spring (as primal-dual methods keep a multiplier). (3) Near the end a factorization is kept
+// for further iterations while these shrink.
 #include "solvers/methods/implicit_springs.h"
 
 #include <algorithm>

@@ -1,15 +1,11 @@
 // PBD with substeps, which is XPBD with small steps (Macklin et al. 2016, 2019) without compliance:
 // a fixed number of passes a step, one as a rule, without a test of convergence. It promises no
-// strain limit. On a hanging yarn strain falls as h^2; on large cloth in contact more passes help
-// where shorter steps do not.
+// strain limit. At rest under gravity an edge keeps a strain of about g h^2 / l times the edges
+// below it, for one pass carries a load by one edge, or by one color.
 //
-// Compliance is 0, so that with one pass from lambda = 0 an edge's multiplier is its correction
-// (Macklin et al. 2016, eq. 18), and no multiplier is read again: every edge is brought to its rest
-// length, warp and weft, one color after the other. Loops: `sweeps` passes over edges and one
-// over attachments a step.
-//
-// At rest under gravity an edge keeps a strain of about g h^2 / l times the edges below it: one
-// pass carries a load by one edge, or by one color.
+// With compliance 0 and one pass from lambda = 0 an edge's multiplier is its correction (Macklin et
+// al. 2016, eq. 18), and no multiplier is read again: every edge is brought to its rest length, one
+// color after the other. Loops: `sweeps` passes over edges and one over attachments a step.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -23,7 +19,7 @@
 namespace inextensible {
 namespace {
 
-constexpr int most_attachments = 4;  // of a vertex: to the nearest pins
+constexpr std::size_t most_attachments = 4;  // of a vertex: to the nearest pins
 
 // Along edges, from one vertex to all (Dijkstra 1959); infinite where there is no way.
 std::vector<double> distances_from(int start, const Problem& problem,
@@ -89,38 +85,25 @@ class PbdSubsteps final : public VelocityFilter {
     double distance;  // m
   };
 
-  // Straight through the positions at rest, or, if these are null, along edges.
+  // Of each free vertex to its nearest pins, straight through the positions at rest, or, if these
+  // are null, along edges.
   void attach(const Problem& problem, const Positions* rest) {
     const auto neighbours = neighbours_of(problem);
+    std::vector<std::vector<Attachment>> nearest(problem.vertices());
     for (const int pin : problem.pinned()) {
-      std::vector<double> distance(problem.vertices());
-      if (rest) {
-        for (int v = 0; v < problem.vertices(); ++v)
-          distance[v] = (rest->col(v) - rest->col(pin)).norm();
-      } else {
-        distance = distances_from(pin, problem, neighbours);
-      }
+      const std::vector<double> along_edges =
+          rest ? std::vector<double>{} : distances_from(pin, problem, neighbours);
       for (int v = 0; v < problem.vertices(); ++v) {
-        if (std::isfinite(distance[v])) attachments_.push_back({v, pin, distance[v]});
+        const double distance = rest ? (rest->col(v) - rest->col(pin)).norm() : along_edges[v];
+        if (problem.inverse_mass()[v] == 0 || !std::isfinite(distance)) continue;
+        const auto farther = std::find_if(nearest[v].begin(), nearest[v].end(),
+                                          [&](auto& a) { return a.distance > distance; });
+        nearest[v].insert(farther, {v, pin, distance});
+        if (nearest[v].size() > most_attachments) nearest[v].pop_back();
       }
-      keep_nearest(problem);
     }
-  }
-
-  // Keeps the nearest attachments of each free vertex; sorted by vertex, nearest first.
-  void keep_nearest(const Problem& problem) {
-    std::erase_if(attachments_,
-                  [&](const Attachment& a) { return problem.inverse_mass()[a.vertex] == 0; });
-    std::stable_sort(attachments_.begin(), attachments_.end(),
-                     [](const Attachment& p, const Attachment& q) {
-                       return p.vertex != q.vertex ? p.vertex < q.vertex : p.distance < q.distance;
-                     });
-    int vertex = -1, count = 0;
-    std::erase_if(attachments_, [&](const Attachment& a) {
-      count = a.vertex == vertex ? count + 1 : 1;
-      vertex = a.vertex;
-      return count > most_attachments;
-    });
+    for (const auto& some : nearest)
+      attachments_.insert(attachments_.end(), some.begin(), some.end());
   }
 
   int most_;

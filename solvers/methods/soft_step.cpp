@@ -1,6 +1,6 @@
 // Soft step, or TGS soft (Catto 2024): velocity constraints by Gauss-Seidel, positions by a spring
 // of the step's own frequency, and a second stage that takes the spring's velocity away again. It
-// promises no strain limit: strain falls as h^2, and the step is what buys it.
+// promises no strain limit: strain falls as h^2.
 //
 // With n_k the directions and C_k the elongations at the start, p_k the impulses, which the last
 // step's forces begin, m_k = 1 / (w_a + w_b), omega = 2 pi frequency / h and zeta the damping
@@ -8,11 +8,9 @@
 //   s = 2 zeta + h omega,  c = h omega s,  bias = omega / s,
 //   first stage: dp = -m_k c / (1 + c) (n.(v_b - v_a) + bias C_k) - p_k / (1 + c);   x += h v;
 //   second stage: dp = -m_k n.(v_b - v_a).
-// Each step is one of his substeps. He bounds the frequency by 60 Hz, for what is drawn; here the
-// step's own is the bound. Departure: n_k is that of the end in the second stage.
-//
-// At rest p_k is the load times h, and the first stage must leave it: C_k = load / (m_k omega^2).
-// Loops: two passes over edges, in the mesh's order.
+// Departures: n_k is that of the end in the second stage; the frequency is bounded by the step, not
+// by 60 Hz. At rest the first stage leaves C_k = load / (m_k omega^2). Loops: two passes over
+// edges, in the mesh's order.
 #include <cmath>
 #include <numbers>
 

@@ -155,10 +155,9 @@ class PassLimiter final : public VelocityFilter {
 // Gauss-Seidel in colors: edges that share no vertex are corrected side by side, as limiters for
 // parallel processors do (Fratarcangeli, Tibaldo and Pellacini 2016).
 //
-// Within a color no edge sees another's correction, so that a pass equals one that visits edges
-// one after the other, color after color. The order is the same in every pass; the random one of
-// gauss_seidel takes about a third more passes. What colors win on one processor is vectors, see
-// strain_passes.cpp. Loops: one pass over edges.
+// A pass equals one that visits edges one after the other, color after color. The order is the same
+// in every pass; the random one of gauss_seidel takes about a third more passes. What colors win on
+// one processor is vectors (strain_passes.cpp). Loops: one pass over edges.
 std::unique_ptr<VelocityFilter> make_colored(const Problem& problem, const BackendOptions& options,
                                              Along along) {
   return std::make_unique<PassLimiter>(
@@ -177,10 +176,7 @@ std::unique_ptr<VelocityFilter> make_colored(const Problem& problem, const Backe
 // not). Linearized, the pass is x -= W J^T S J x with every row of S J W J^T summing in absolute
 // value to at most 1, hence all its eigenvalues lie in [0, 1]: it converges at any valence and any
 // masses, and up to relaxation 2. The default, 1.8, takes about a third fewer passes than the plain
-// average on the drape.
-//
-// All edges are independent, so that they are done in colors and summed without conflicts. Loops:
-// one pass over edges, one over vertices.
+// average on the drape. Loops: one pass over edges, one over vertices.
 std::unique_ptr<VelocityFilter> make_jacobi(const Problem& problem, const BackendOptions& options,
                                             Along along) {
   std::vector<int> valence(problem.vertices(), 0);

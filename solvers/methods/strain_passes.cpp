@@ -305,10 +305,8 @@ void PlacedContacts::settle(ColoredEdges::Places& x) {
 const ColoredEdges::Places& PlacedContacts::held_normals() {
   for (const int first : blocks_) {
     for (int axis = 0; axis < 3; ++axis) {
-      const double* n = normal_.col(axis).data() + first;
-      const double* pushed = push_.data() + first;
-      double* held = held_.col(axis).data() + first;
-      for (int i = 0; i < width; ++i) held[i] = pushed[i] > 0 ? n[i] : 0;
+      held_.col(axis).segment<width>(first) =
+          (push_.segment<width>(first) > 0).select(normal_.col(axis).segment<width>(first), 0);
     }
   }
   return held_;

@@ -1,7 +1,6 @@
-#include "solvers/methods/time_steppers.h"
-
 #include <string_view>
 
+#include "solvers/methods/backend.h"
 #include "solvers/stepping/bdf2.h"
 #include "solvers/stepping/midpoint_stepper.h"
 

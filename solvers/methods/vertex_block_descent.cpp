@@ -1,15 +1,12 @@
 // Vertex block descent (Chen, Liu, Yang and Yuksel 2024): the implicit springs' energy, backward
-// Euler's, lowered by a given number of passes that move one vertex at a time. It has no strain
-// limit of its own, as they have none; and as passes end before the minimum, less stiffness than
+// Euler's, lowered by a given number of passes that move one vertex at a time, x_i += H_i^-1 f_i.
+// It has no strain limit of its own; and as passes end before the minimum, less stiffness than
 // asked for is what shows.
 //
-// G(x) = 1/2 |x - (x^n + h v^n + h^2 g)|_M^2 + h^2 V(x), V = stretch and shear springs, one
-// vertex after the other: x_i += H_i^-1 f_i. A spring's negative stiffness across its direction is
-// dropped, as implicit_springs does: the paper's Hessian is indefinite under compression. No line
-// search, as in the paper. Momentum is conserved only as far as the iteration has converged: a pass
-// moves vertices one by one.
-//
-// A vertex in contact takes the minimum within its plane. Loops: one over vertices a pass.
+// A spring's negative stiffness across its direction is dropped, as implicit_springs does: the
+// paper's Hessian is indefinite under compression. No line search, as in the paper. Momentum is
+// conserved only as far as the iteration has converged. A vertex in contact takes the minimum
+// within its plane. Loops: one over vertices a pass.
 #include <algorithm>
 #include <limits>
 

@@ -1,11 +1,10 @@
 // Methods whose strain the time step controls, PBD with substeps and soft step: the strain that
-// theory gives a loaded rope, and what attachments promise.
+// theory gives a loaded rope.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "solvers/problem/edge_constraints.h"
 #include "solvers/registry.h"
 #include "support/hanging_rope.h"
 #include "support/motion.h"
@@ -17,12 +16,11 @@ constexpr int rope_links = 10;
 constexpr double link_length = 0.1, vertex_mass = 0.1;
 
 // What each link is longer than at rest after some time of hanging.
-std::vector<double> elongations(const char* solver, double step, const Settings& settings,
-                                double seconds = 20) {
+std::vector<double> elongations(const char* solver, double step, const Settings& settings) {
   const testing::HangingRope rope(rope_links, link_length, vertex_mass);
-  const auto stepper = make_stepper(solver, rope.problem, {0.01, 1, settings, &rope.start});
+  const auto stepper = make_stepper(solver, rope.problem, {0.01, 1, settings});
   State state = rope.start;
-  while (state.time < seconds) EXPECT_TRUE(stepper->advance(state, step));
+  while (state.time < 20) EXPECT_TRUE(stepper->advance(state, step));
   std::vector<double> longer;
   for (int k = 1; k <= rope_links; ++k)
     longer.push_back((state.x.col(k) - state.x.col(k - 1)).norm() - link_length);
@@ -41,21 +39,6 @@ TEST(PbdSubsteps, LeaveAHangingRopeTheStrainOfTheory) {
       EXPECT_NEAR(longer[k - 1], k % 2 == 0 ? 2 * (rope_links - k + 1) * fall : 0, 1e-3 * fall)
           << "link " << k << ", " << step;
   }
-}
-
-TEST(PbdSubsteps, AttachmentsHoldAHangingRopeAtItsLength) {
-  const auto largest = [](const char* attachments) {
-    double sum = 0, most = 0;
-    for (const double longer :
-         elongations("pbd_substeps", 0.002, {{"attachments", std::string(attachments)}}, 2)) {
-      sum += longer;
-      most = std::max(most, longer);
-      EXPECT_TRUE(attachments == std::string("none") || sum <= 1e-12);  // from the pin
-    }
-    return most;
-  };
-  EXPECT_LT(largest("edges"), 0.1 * largest("none"));
-  EXPECT_LT(largest("straight"), 0.1 * largest("none"));
 }
 
 // The way along edges, here around a corner of a net.
@@ -114,25 +97,6 @@ TEST(SoftStep, LeavesNoVelocityAlongALink) {
   const Eigen::Vector3d d = state.x.col(1), free(0, 2, 0);
   EXPECT_NEAR(state.v.col(1).dot(d), 0, 1e-15);
   EXPECT_NEAR((state.v.col(1) - (free - d.dot(free) / d.squaredNorm() * d)).norm(), 0, 1e-14);
-}
-
-// Elongations fall as h^2 in motion too.
-TEST(SoftStep, StretchesASwingingRopeWithTheSquareOfTheStep) {
-  const testing::HangingRope rope(rope_links, link_length, vertex_mass);
-  const auto largest = [&](double step) {
-    State state = rope.start;
-    state.x.row(0) = -state.x.row(1);  // horizontal
-    state.x.row(1).setZero();
-    const auto stepper = make_stepper("soft_step", rope.problem, {});
-    const EdgeConstraints edges(*rope.problem, 1);
-    double worst = 0;
-    while (state.time < 0.3) {
-      EXPECT_TRUE(stepper->advance(state, step));
-      worst = std::max(worst, std::abs(edges.worst(state.x).strain));
-    }
-    return worst;
-  };
-  EXPECT_NEAR(std::log2(largest(1e-3) / largest(5e-4)), 2, 0.3);
 }
 
 }  // namespace
