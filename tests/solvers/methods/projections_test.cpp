@@ -156,17 +156,6 @@ TEST(Icd, SolutionIsTheClosestPointOfTheManifold) {
   });
 }
 
-// The unsteady part of C11: matrices of fast projection and ICD on the same mesh.
-TEST(Counters, FastProjectionFactorsAMuchSmallerMatrixThanIcd) {
-  Random random(5);
-  const auto mesh = random_mesh(random, 15, 15, 0);
-  const Positions x = testing::perturbed(random, mesh, 0.02);
-  const Filtered fast("fast_projection", mesh, x, {1e-6}),
-      icd("icd", mesh, x, {1e-6, 1, {{"linear_solver", std::string("quasi_definite")}}});
-  EXPECT_LT(2 * fast.work.factor_nonzeros, icd.work.factor_nonzeros);
-  EXPECT_LT(2 * fast.work.factor_flops, icd.work.factor_flops);
-}
-
 // An edge far beyond the limit, iterated to the end: what is left of C is `target` of what is
 // permissible. One within the target stays where it is.
 TEST(ProjectionMethods, BringEdgesToTheirTarget) {
