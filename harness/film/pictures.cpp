@@ -1,11 +1,9 @@
 #include "harness/film/pictures.h"
 
-#include <sched.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <exception>
+#include <future>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -52,35 +50,17 @@ std::string ppm(const Pixels& pixels) {
          std::string(pixels.rgb.begin(), pixels.rgb.end());
 }
 
-unsigned own_cores() {
-  cpu_set_t cores;
-  CPU_ZERO(&cores);
-  if (sched_getaffinity(0, sizeof cores, &cores) != 0) return 1;
-  return static_cast<unsigned>(std::max(1, CPU_COUNT(&cores)));
-}
-
-// Calls work(0) to work(count - 1) on several threads. Rethrows what the first of them threw.
+// Calls work(0) to work(count - 1) on all cores. Rethrows what one of them threw.
 void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next{0};
-  std::exception_ptr thrown;
-  std::mutex lock;
   const auto loop = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      try {
-        work(i);
-      } catch (...) {
-        const std::lock_guard held(lock);
-        if (!thrown) thrown = std::current_exception();
-        next = count;
-      }
-    }
+    for (std::size_t i = next++; i < count; i = next++) work(i);
   };
-  {
-    std::vector<std::jthread> others;
-    for (unsigned i = 1; i < own_cores(); ++i) others.emplace_back(loop);
-    loop();
-  }
-  if (thrown) std::rethrow_exception(thrown);
+  std::vector<std::future<void>> others;
+  for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i)
+    others.push_back(std::async(std::launch::async, loop));
+  loop();
+  for (std::future<void>& other : others) other.get();
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 #include "harness/base/clock.h"
 #include "harness/base/text.h"
-#include "harness/film/orientation.h"
 #include "harness/film/recording.h"
+#include "harness/film/weave.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"
@@ -49,10 +49,7 @@ inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contes
   point.settings = settings;
   point.strain_limit = limit;
   point.step = step;
-  RunLimits limits;
-  limits.timed = false;
-  limits.interrupted = interrupted;
-  const PointResult found = run_point(point, limits);
+  const PointResult found = run_point(point, {.interrupted = interrupted, .timed = false});
   if (found.stiffness) settings["stiffness"] = *found.stiffness;
   return settings;
 }
@@ -77,66 +74,6 @@ std::string gave_up(double time, const std::string& why) {
   return "gave up at t = " + number_text(time, 3) + " s: " + why;
 }
 
-// Records one run.
-class Recorder {
- public:
-  Recorder(const Scene& scene, const FilmScene& stage, const inextensible::Stepper& stepper,
-           inextensible::Velocities velocities, double energy_bound, FilmRun& take,
-           const std::function<void(const FilmRun&)>& told)
-      : scene_(scene),
-        stage_(stage),
-        stepper_(stepper),
-        energy_(*scene.problem, energy_scale(scene), velocities),
-        energy_bound_(energy_bound),
-        take_(take),
-        told_(told) {
-    energy_.begin(scene.start);
-  }
-
-  void keep(const State& at) {
-    take_.frames.push_back(at.x);
-    const std::vector<double> all = strains(stage_, at.x);
-    take_.largest_strain.push_back(all.empty() ? 0 : *std::max_element(all.begin(), all.end()));
-    told_(take_);
-    begin_ = Clock::now();
-  }
-
-  // Whether to go on.
-  bool after(const State& at, const DriveState& driven) {
-    const double seconds = since(begin_);
-    energy_.after(at, driven.last);
-    judge_energy();
-    if (driven.whole && driven.steps % take_.steps_per_frame == 0) {
-      take_.smallest_step = driven.smallest;
-      take_.seconds.push_back(seconds);
-      keep(at);
-    }
-    const std::string work = too_much_work(stepper_.work(), driven.steps);
-    if (!work.empty()) take_.detail = gave_up(at.time, work);
-    return work.empty();
-  }
-
-  void finish() {
-    energy_.finish();
-    judge_energy();
-  }
-
- private:
-  void judge_energy() {
-    if (take_.energy_gained.empty())
-      take_.energy_gained = energy_gained(energy_, energy_bound_, scene_.duration);
-  }
-
-  const Scene& scene_;
-  const FilmScene& stage_;
-  const inextensible::Stepper& stepper_;
-  EnergyRecord energy_;
-  double energy_bound_;
-  FilmRun& take_;
-  const std::function<void(const FilmRun&)>& told_;
-  Clock::time_point begin_;
-};
-
 // What the runs of a film have in common.
 struct FilmSetup {
   const FilmSpec& spec;
@@ -150,31 +87,55 @@ struct FilmSetup {
 // Ends early where energy is gained, unless `to_the_end`.
 FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double limit, double step,
                 bool to_the_end) {
-  const double rate = setup.spec.frames_per_second;
+  const FilmSpec& spec = setup.spec;
+  const Scene& scene = setup.scene;
+  const double rate = spec.frames_per_second;
   FilmRun take;
   take.solver = contestant.name;
   take.label = label_of(contestant);
   take.strain_limit = limit;
   take.steps_per_frame = std::max(1, static_cast<int>(std::ceil(1 / (rate * step) - 1e-9)));
   take.step = take.smallest_step = 1 / (rate * take.steps_per_frame);
-  const auto settings = calibrated(setup.spec, contestant, limit, take.step, setup.interrupted);
+  const auto settings = calibrated(spec, contestant, limit, take.step, setup.interrupted);
   const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
-  State state = start_of(setup.scene, backend, take.step);
-  const auto stepper = inextensible::make_stepper(contestant.solver, setup.scene.problem,
-                                                  {limit, 1, settings, &state});
-  Recorder recorder(setup.scene, setup.stage, *stepper, backend.velocities, setup.energy_bound,
-                    take, setup.told);
-  recorder.keep(state);
-  const long steps = take.steps_per_frame * (static_cast<long>(frames_in(setup.spec)) - 1);
-  const DriveState driven =
-      drive(*stepper, state, {take.step, steps, most_halvings},
-            [&](const State& at, const DriveState& so_far) {
-              return recorder.after(at, so_far) && (to_the_end || take.energy_gained.empty());
-            },
-            {.interrupted = setup.interrupted});
+  State state = start_of(scene, backend, take.step);
+  const auto stepper =
+      inextensible::make_stepper(contestant.solver, scene.problem, {limit, 1, settings, &state});
+  EnergyRecord energy(*scene.problem, energy_scale(scene), backend.velocities);
+  energy.begin(scene.start);
+  Clock::time_point begin;
+  const auto keep = [&](const State& at) {
+    take.frames.push_back(at.x);
+    const std::vector<double> all = strains(setup.stage, at.x);
+    take.largest_strain.push_back(all.empty() ? 0 : *std::max_element(all.begin(), all.end()));
+    setup.told(take);
+    begin = Clock::now();
+  };
+  const auto judge_energy = [&] {
+    if (take.energy_gained.empty())
+      take.energy_gained = energy_gained(energy, setup.energy_bound, scene.duration);
+  };
+  const auto go_on = [&](const State& at, const DriveState& driven) {
+    const double seconds = since(begin);
+    energy.after(at, driven.last);
+    judge_energy();
+    if (driven.whole && driven.steps % take.steps_per_frame == 0) {
+      take.smallest_step = driven.smallest;
+      take.seconds.push_back(seconds);
+      keep(at);
+    }
+    const std::string work = too_much_work(stepper->work(), driven.steps);
+    if (!work.empty()) take.detail = gave_up(at.time, work);
+    return work.empty() && (to_the_end || take.energy_gained.empty());
+  };
+  keep(state);
+  const long steps = take.steps_per_frame * (static_cast<long>(frames_in(spec)) - 1);
+  const DriveState driven = drive(*stepper, state, {take.step, steps, most_halvings}, go_on,
+                                  {.interrupted = setup.interrupted});
   if (driven.end == DriveState::End::refused)
     take.detail = gave_up(state.time, driven.result.detail);
-  recorder.finish();
+  energy.finish();
+  judge_energy();
   return take;
 }
 

@@ -9,6 +9,9 @@
 #include "harness/judge/mechanics.h"
 
 namespace harness {
+
+using nlohmann::json;
+
 namespace {
 
 constexpr double strain_unit = 1.0 / 60;  // of a take's limit; colours end at four times that
@@ -46,18 +49,17 @@ namespace {
 
 // Sag of each mark at each frame: how far below the height where it would hang if nothing
 // stretched, m.
-nlohmann::json sags(const FilmScene& stage, const FilmRun& take) {
-  nlohmann::json all = nlohmann::json::object();
+json sags(const FilmScene& stage, const FilmRun& take) {
+  json all = json::object();
   for (const Scene::Mark& mark : stage.marks) {
-    nlohmann::json& sag = all[mark.name] = nlohmann::json::array();
+    json& sag = all[mark.name] = json::array();
     for (const auto& frame : take.frames) sag.push_back(mark.height - frame(1, mark.vertex));
   }
   return all;
 }
 
-nlohmann::json film_header(const Recording& recording) {
-  nlohmann::json takes = nlohmann::json::array(), body = nlohmann::json::array(),
-                 poses = nlohmann::json::array();
+json film_header(const Recording& recording) {
+  json takes = json::array(), body = json::array(), poses = json::array();
   for (const FilmRun& take : recording.takes)
     takes.push_back({{"solver", take.solver},
                      {"label", take.label},
@@ -71,9 +73,10 @@ nlohmann::json film_header(const Recording& recording) {
                      {"seconds", take.seconds}});
   for (const Eigen::Vector3d& v : recording.stage.body) body.push_back({v.x(), v.y(), v.z()});
   for (const inextensible::Pose& pose : recording.stage.body_poses) {
-    const auto& r = pose.turn;
-    poses.push_back({r(0, 0), r(0, 1), r(0, 2), pose.translation[0], r(1, 0), r(1, 1), r(1, 2),
-                     pose.translation[1], r(2, 0), r(2, 1), r(2, 2), pose.translation[2]});
+    json& rows = poses.emplace_back(json::array());
+    for (Eigen::Index i = 0; i < 3; ++i)
+      for (Eigen::Index k = 0; k < 4; ++k)
+        rows.push_back(k < 3 ? pose.turn(i, k) : pose.translation[i]);
   }
   return {{"schema", "inextensible-film/1"},
           {"scene", recording.spec.scene},
@@ -89,27 +92,11 @@ nlohmann::json film_header(const Recording& recording) {
           {"takes", takes}};
 }
 
-std::string film_strains(const Recording& recording) {
+template <class Append>
+std::string of_every_frame(const Recording& recording, Append append) {
   std::string bytes;
   for (const FilmRun& take : recording.takes) {
-    for (const inextensible::Positions& frame : take.frames) {
-      for (const double strain : strains_of_vertices(recording.stage, frame))
-        bytes += static_cast<char>(static_cast<unsigned char>(
-            std::min(255.0, std::round(strain / take.strain_limit / strain_unit))));
-    }
-  }
-  return bytes;
-}
-
-std::string film_positions(const Recording& recording) {
-  static_assert(std::endian::native == std::endian::little);
-  std::string bytes;
-  for (const FilmRun& take : recording.takes) {
-    for (const inextensible::Positions& frame : take.frames) {
-      const Eigen::Matrix3Xf single = frame.cast<float>();
-      bytes.append(reinterpret_cast<const char*>(single.data()),
-                   static_cast<std::size_t>(single.size()) * sizeof(float));
-    }
+    for (const inextensible::Positions& frame : take.frames) append(bytes, take, frame);
   }
   return bytes;
 }
@@ -122,8 +109,20 @@ void write_film_header(const std::string& folder, const Recording& recording) {
 
 void write_recording(const std::string& folder, const Recording& recording) {
   write_film_header(folder, recording);
-  write_atomically(folder + "/film.f32", film_positions(recording));
-  write_atomically(folder + "/film.u8", film_strains(recording));
+  static_assert(std::endian::native == std::endian::little);
+  const auto positions = [](std::string& bytes, const FilmRun&, const inextensible::Positions& x) {
+    const Eigen::Matrix3Xf single = x.cast<float>();
+    bytes.append(reinterpret_cast<const char*>(single.data()),
+                 static_cast<std::size_t>(single.size()) * sizeof(float));
+  };
+  const auto strains = [&](std::string& bytes, const FilmRun& take,
+                           const inextensible::Positions& x) {
+    for (const double strain : strains_of_vertices(recording.stage, x))
+      bytes += static_cast<char>(static_cast<unsigned char>(
+          std::min(255.0, std::round(strain / take.strain_limit / strain_unit))));
+  };
+  write_atomically(folder + "/film.f32", of_every_frame(recording, positions));
+  write_atomically(folder + "/film.u8", of_every_frame(recording, strains));
 }
 
 }  // namespace harness

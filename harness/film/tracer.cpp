@@ -1,10 +1,14 @@
 #include "harness/film/tracer.h"
 
+#include <embree3/rtcore.h>
+
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
-#include <numbers>
+#include <memory>
 #include <stdexcept>
+#include <type_traits>
 
 #include "harness/film/colours.h"
 
@@ -36,6 +40,91 @@ Matrix3Xd normals_of(const Positions& x, const Triangles& triangles) {
   return sums;
 }
 
+// ---- Embree ----
+
+struct Release {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+template <class Handle>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
+using Ball = std::array<float, 4>;  // middle and radius
+
+template <class Value>
+Value* buffer(const Owned<RTCGeometry>& geometry, RTCBufferType type, RTCFormat format,
+              std::size_t count) {
+  return static_cast<Value*>(
+      rtcSetNewGeometryBuffer(geometry.get(), type, 0, format, sizeof(Value), count));
+}
+
+Owned<RTCGeometry> triangle_geometry(RTCDevice device, const Positions& x,
+                                     const Triangles& triangles) {
+  Owned<RTCGeometry> made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
+  auto* points = buffer<float[3]>(made, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
+                                  static_cast<std::size_t>(x.cols()));
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    for (Eigen::Index k = 0; k < 3; ++k) points[i][k] = static_cast<float>(x(k, i));
+  auto* corners =
+      buffer<std::array<int, 3>>(made, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles.size());
+  std::copy(triangles.begin(), triangles.end(), corners);
+  rtcCommitGeometry(made.get());
+  return made;
+}
+
+Ball ball(const Shot& shot, Eigen::Index vertex, double radius) {
+  const Vector3f p = shot.cloth.col(vertex).cast<float>();
+  return {p.x(), p.y(), p.z(), static_cast<float>(radius)};
+}
+
+// A cylinder with round ends for each edge of a rope.
+Owned<RTCGeometry> rope_geometry(RTCDevice device, const Shot& shot) {
+  Owned<RTCGeometry> made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE));
+  auto* points =
+      buffer<Ball>(made, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 2 * shot.edges.size());
+  auto* first = buffer<unsigned>(made, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, shot.edges.size());
+  for (std::size_t k = 0; k < shot.edges.size(); ++k) {
+    for (std::size_t end = 0; end < 2; ++end)
+      points[2 * k + end] = ball(shot, shot.edges[k][end], shot.yarn);
+    first[k] = static_cast<unsigned>(2 * k);
+  }
+  rtcCommitGeometry(made.get());
+  return made;
+}
+
+// A ball for each vertex of a rope.
+Owned<RTCGeometry> knot_geometry(RTCDevice device, const Shot& shot) {
+  Owned<RTCGeometry> made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT));
+  auto* points = buffer<Ball>(made, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
+                              static_cast<std::size_t>(shot.cloth.cols()));
+  for (Eigen::Index i = 0; i < shot.cloth.cols(); ++i) points[i] = ball(shot, i, 1.8 * shot.yarn);
+  rtcCommitGeometry(made.get());
+  return made;
+}
+
+Owned<RTCScene> scene_of(RTCDevice device, std::initializer_list<RTCGeometry> parts) {
+  Owned<RTCScene> made(rtcNewScene(device));
+  rtcSetSceneFlags(made.get(), RTC_SCENE_FLAG_ROBUST);
+  for (const RTCGeometry part : parts) rtcAttachGeometry(made.get(), part);
+  rtcCommitScene(made.get());
+  return made;
+}
+
+RTCRay ray(const Vector3d& from, const Vector3d& to, double begin = 0) {
+  const Vector3f o = from.cast<float>(), d = to.cast<float>();
+  return {o.x(),       o.y(), o.z(), static_cast<float>(begin), d.x(), d.y(), d.z(), 0, far_away,
+          0xFFFFFFFFU, 0,     0};
+}
+
+// 1 if a ray meets nothing, else 0.
+double open(RTCScene scene, const Vector3d& from, const Vector3d& to, double begin) {
+  RTCRay query = ray(from, to, begin);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &query);
+  return query.tfar > 0 ? 1 : 0;
+}
+
 // ---- Light ----
 
 // The nearest point that a ray meets.
@@ -59,27 +148,6 @@ Vector3d in_disk(int i, int count) {
   const double radius = std::sqrt((i + 0.5) / count), angle = golden * i;
   return {radius * std::cos(angle), radius * std::sin(angle), 0};
 }
-
-// Four rays at once.
-struct Packet {
-  alignas(16) int valid[4];
-  RTCRay4 rays;
-  Packet() : valid{-1, -1, -1, -1}, rays{} {}
-  void set(int i, const Vector3d& from, const Vector3d& to, double begin) {
-    const Vector3f o = from.cast<float>(), d = to.cast<float>();
-    rays.org_x[i] = o.x(), rays.org_y[i] = o.y(), rays.org_z[i] = o.z();
-    rays.dir_x[i] = d.x(), rays.dir_y[i] = d.y(), rays.dir_z[i] = d.z();
-    rays.tnear[i] = static_cast<float>(begin);
-    rays.tfar[i] = far_away;
-    rays.mask[i] = 0xFFFFFFFFU;
-  }
-  void test(RTCScene scene) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded4(valid, scene, &context, &rays);
-  }
-  double free(int i) const { return rays.tfar[i] > 0 ? 1 : 0; }  // whether it meets nothing
-};
 
 class Tracer {
  public:
@@ -133,9 +201,7 @@ Tracer::Tracer(const Shot& shot, const View& view, int samples)
 }
 
 Hit Tracer::first(RTCScene scene, const Vector3d& from, const Vector3d& to) {
-  RTCRayHit query{};
-  const Vector3f o = from.cast<float>(), d = to.cast<float>();
-  query.ray = {o.x(), o.y(), o.z(), 0, d.x(), d.y(), d.z(), 0, far_away, 0xFFFFFFFFU, 0, 0};
+  RTCRayHit query{ray(from, to), {}};
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -225,20 +291,18 @@ Vector3d Tracer::lit(const Surface& surface, const Vector3d& direction, int samp
   const Vector3d across = n.unitOrthogonal(), along = n.cross(across);
   const Vector3d from = surface.point + 0.02 * begin * n;
   const double direct = std::max(0.0, n.dot(light_));
-  Packet rays;
+  double sun = 0, sky_seen = 0;
   for (int i = 0; i < 2; ++i) {
     const auto number = static_cast<std::size_t>(sample + count_ * i);
-    rays.set(i, from, to_light_[number], begin);
     const Vector3d& s = to_sky_[number];
-    rays.set(2 + i, from, s.x() * across + s.y() * along + s.z() * n, begin);
+    sun += 0.5 * direct * open(all_.get(), from, to_light_[number], begin);
+    sky_seen += 0.5 * open(all_.get(), from, s.x() * across + s.y() * along + s.z() * n, begin);
   }
-  rays.test(all_.get());
-  const double sun = direct * 0.5 * (rays.free(0) + rays.free(1));
-  const double open = 0.5 * (rays.free(2) + rays.free(3));
   const double above = 0.75 + 0.25 * n.y();  // the sky is brighter than the ground
   const Vector3d half = (light_ - direction).normalized();
   const double gleam = direct > 0 ? std::pow(std::max(0.0, n.dot(half)), 24) * sun : 0;
-  const double light = key * sun + sky * above * open + camera * std::max(0.0, -n.dot(direction));
+  const double light =
+      key * sun + sky * above * sky_seen + camera * std::max(0.0, -n.dot(direction));
   return light * surface.colour + surface.shine * gleam * Vector3d::Ones();
 }
 
@@ -279,72 +343,6 @@ Pixels trace(const Shot& shot, const View& view, int width, int samples) {
     }
   }
   return pixels;
-}
-
-using Eigen::Vector3d;
-using Eigen::Vector3f;
-
-namespace {
-
-template <class Value>
-Value* buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) {
-  return static_cast<Value*>(
-      rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Value), count));
-}
-
-}  // namespace
-
-Owned<RTCGeometry> triangle_geometry(RTCDevice device, const inextensible::Positions& x,
-                                     const std::vector<std::array<int, 3>>& triangles) {
-  Owned<RTCGeometry> made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-  auto* points = buffer<std::array<float, 3>>(made.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
-                                              static_cast<std::size_t>(x.cols()));
-  for (Eigen::Index i = 0; i < x.cols(); ++i)
-    for (int k = 0; k < 3; ++k)
-      points[i][static_cast<std::size_t>(k)] = static_cast<float>(x(k, i));
-  auto* corners = buffer<std::array<unsigned, 3>>(made.get(), RTC_BUFFER_TYPE_INDEX,
-                                                  RTC_FORMAT_UINT3, triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) corners[i][k] = static_cast<unsigned>(triangles[i][k]);
-  rtcCommitGeometry(made.get());
-  return made;
-}
-
-Owned<RTCGeometry> rope_geometry(RTCDevice device, const Shot& shot) {
-  Owned<RTCGeometry> made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE));
-  auto* points = buffer<std::array<float, 4>>(made.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
-                                              2 * shot.edges.size());
-  auto* first =
-      buffer<unsigned>(made.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, shot.edges.size());
-  for (std::size_t k = 0; k < shot.edges.size(); ++k) {
-    for (std::size_t end = 0; end < 2; ++end) {
-      const Vector3f p = shot.cloth.col(shot.edges[k][end]).cast<float>();
-      points[2 * k + end] = {p.x(), p.y(), p.z(), static_cast<float>(shot.yarn)};
-    }
-    first[k] = static_cast<unsigned>(2 * k);
-  }
-  rtcCommitGeometry(made.get());
-  return made;
-}
-
-Owned<RTCGeometry> knot_geometry(RTCDevice device, const Shot& shot) {
-  Owned<RTCGeometry> made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT));
-  auto* points = buffer<std::array<float, 4>>(made.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
-                                              static_cast<std::size_t>(shot.cloth.cols()));
-  for (Eigen::Index i = 0; i < shot.cloth.cols(); ++i) {
-    const Vector3f p = shot.cloth.col(i).cast<float>();
-    points[i] = {p.x(), p.y(), p.z(), static_cast<float>(1.8 * shot.yarn)};
-  }
-  rtcCommitGeometry(made.get());
-  return made;
-}
-
-Owned<RTCScene> scene_of(RTCDevice device, std::initializer_list<RTCGeometry> parts) {
-  Owned<RTCScene> made(rtcNewScene(device));
-  rtcSetSceneFlags(made.get(), RTC_SCENE_FLAG_ROBUST);
-  for (const RTCGeometry part : parts) rtcAttachGeometry(made.get(), part);
-  rtcCommitScene(made.get());
-  return made;
 }
 
 }  // namespace harness

@@ -2,13 +2,8 @@
 // from all of the sky where nothing is in its way, and yarns as lines on the cloth.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <array>
 #include <cstdint>
-#include <initializer_list>
-#include <memory>
-#include <type_traits>
 #include <vector>
 
 #include "harness/film/view.h"
@@ -36,21 +31,5 @@ struct Pixels {
 // Samples a pixel: samples x samples. Every pixel takes the same pattern of rays, so that flat
 // cloth has one shade. Usable from several threads.
 Pixels trace(const Shot& shot, const View& view, int width, int samples);
-
-struct Release {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-template <class Handle>
-using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
-
-Owned<RTCGeometry> triangle_geometry(RTCDevice device, const inextensible::Positions& x,
-                                     const std::vector<std::array<int, 3>>& triangles);
-// A cylinder with round ends for each edge of a rope, and a ball for each vertex.
-Owned<RTCGeometry> rope_geometry(RTCDevice device, const Shot& shot);
-Owned<RTCGeometry> knot_geometry(RTCDevice device, const Shot& shot);
-
-Owned<RTCScene> scene_of(RTCDevice device, std::initializer_list<RTCGeometry> parts);
 
 }  // namespace harness

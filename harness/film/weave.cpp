@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <tuple>
 
 namespace harness {
 namespace {
@@ -32,6 +33,35 @@ std::vector<Quad> quads_of(const FilmScene& stage, const std::set<Side>& edges) 
   return quads;
 }
 
+// Visits faces from the first of each connected part on, over common sides: begin(face) of the
+// first, then reach(from, k, to) of each face beyond side k of one that was visited.
+template <class Face, class Begin, class Reach>
+void walk(const std::vector<Face>& faces, Begin begin, Reach reach) {
+  constexpr std::size_t corners = std::tuple_size_v<Face>;
+  std::map<Side, std::vector<std::size_t>> beside;
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (std::size_t k = 0; k < corners; ++k)
+      beside[side(faces[i][k], faces[i][(k + 1) % corners])].push_back(i);
+  std::vector<char> seen(faces.size(), 0);
+  std::deque<std::size_t> queue;
+  for (std::size_t first = 0; first < faces.size(); ++first) {
+    if (seen[first]) continue;
+    seen[first] = 1;
+    begin(first);
+    for (queue.push_back(first); !queue.empty(); queue.pop_front()) {
+      const Face face = faces[queue.front()];
+      for (std::size_t k = 0; k < corners; ++k) {
+        for (const std::size_t next : beside[side(face[k], face[(k + 1) % corners])]) {
+          if (seen[next]) continue;
+          seen[next] = 1;
+          reach(face, k, next);
+          queue.push_back(next);
+        }
+      }
+    }
+  }
+}
+
 using Cells = std::vector<std::optional<Cell>>;
 
 // The quad beyond the side from corner k of `quad` to the next: its other corners lie as far
@@ -48,39 +78,20 @@ void number_beyond(const Quad& quad, std::size_t k, const Quad& beyond, Cells& c
   }
 }
 
-// Numbers yarns from the first quad of each piece on, over common sides. Where a cloth closes to a
-// ring, the numbers jump once.
+// Numbers yarns from 0, so that the outermost are drawn. Where a cloth closes to a ring, the
+// numbers jump once.
 Cells number_yarns(const std::vector<Quad>& quads, std::size_t vertices) {
   Cells cells(vertices);
-  std::map<Side, std::vector<std::size_t>> beside;
-  for (std::size_t q = 0; q < quads.size(); ++q)
-    for (std::size_t k = 0; k < 4; ++k)
-      beside[side(quads[q][k], quads[q][(k + 1) % 4])].push_back(q);
-  std::vector<char> seen(quads.size(), 0);
-  std::deque<std::size_t> queue;
-  for (std::size_t first = 0; first < quads.size(); ++first) {
-    if (seen[first]) continue;
-    seen[first] = 1;
-    constexpr std::array<Cell, 4> corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-    for (std::size_t k = 0; k < 4; ++k)
-      if (!cells[quads[first][k]]) cells[quads[first][k]] = corners[k];
-    for (queue.push_back(first); !queue.empty(); queue.pop_front()) {
-      const Quad quad = quads[queue.front()];
-      for (std::size_t k = 0; k < 4; ++k) {
-        for (const std::size_t next : beside[side(quad[k], quad[(k + 1) % 4])]) {
-          if (seen[next]) continue;
-          seen[next] = 1;
-          number_beyond(quad, k, quads[next], cells);
-          queue.push_back(next);
-        }
-      }
-    }
-  }
-  return cells;
-}
-
-// So that the outermost yarns are drawn.
-void number_from_zero(Cells& cells) {
+  constexpr std::array<Cell, 4> corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  walk(
+      quads,
+      [&](std::size_t first) {
+        for (std::size_t k = 0; k < 4; ++k)
+          if (!cells[quads[first][k]]) cells[quads[first][k]] = corners[k];
+      },
+      [&](const Quad& quad, std::size_t k, std::size_t next) {
+        number_beyond(quad, k, quads[next], cells);
+      });
   for (std::size_t way = 0; way < 2; ++way) {
     int least = std::numeric_limits<int>::max();
     for (const auto& cell : cells)
@@ -88,6 +99,7 @@ void number_from_zero(Cells& cells) {
     for (auto& cell : cells)
       if (cell) (*cell)[way] -= least;
   }
+  return cells;
 }
 
 bool on_drawn_yarn(const std::optional<Cell>& a, const std::optional<Cell>& b, int every) {
@@ -98,6 +110,20 @@ bool on_drawn_yarn(const std::optional<Cell>& a, const std::optional<Cell>& b, i
 
 }  // namespace
 
+std::vector<std::array<int, 3>> oriented(std::vector<std::array<int, 3>> triangles) {
+  walk(
+      triangles, [](std::size_t) {},
+      [&](const std::array<int, 3>& from, std::size_t k, std::size_t next) {
+        auto& t = triangles[next];
+        for (std::size_t i = 0; i < 3; ++i) {
+          if (t[i] != from[k] || t[(i + 1) % 3] != from[(k + 1) % 3]) continue;
+          std::swap(t[1], t[2]);  // it passes the side in the same direction
+          break;
+        }
+      });
+  return triangles;
+}
+
 std::vector<std::uint8_t> drawn_sides(const FilmScene& stage, int every) {
   std::set<Side> edges;
   int last = -1;
@@ -107,10 +133,7 @@ std::vector<std::uint8_t> drawn_sides(const FilmScene& stage, int every) {
   }
   for (const auto& t : stage.triangles) last = std::max({last, t[0], t[1], t[2]});
   Cells cells;
-  if (every > 1) {
-    cells = number_yarns(quads_of(stage, edges), static_cast<std::size_t>(last + 1));
-    number_from_zero(cells);
-  }
+  if (every > 1) cells = number_yarns(quads_of(stage, edges), static_cast<std::size_t>(last + 1));
   std::vector<std::uint8_t> sides;
   sides.reserve(stage.triangles.size());
   for (const auto& t : stage.triangles) {

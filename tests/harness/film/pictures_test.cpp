@@ -10,7 +10,6 @@
 
 #include "harness/base/files.h"
 #include "harness/film/colours.h"
-#include "harness/film/orientation.h"
 #include "harness/film/weave.h"
 
 namespace harness {
