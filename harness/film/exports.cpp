@@ -10,12 +10,6 @@
 namespace harness {
 namespace {
 
-std::string numbered(const std::string& name, std::size_t frame, const char* extension) {
-  char digits[16];
-  std::snprintf(digits, sizeof digits, "-%04zu", frame + 1);
-  return name + digits + extension;
-}
-
 std::string written(const std::string& path, const std::string& text) {
   check_writable(path);
   write_atomically(path, text);
@@ -92,7 +86,9 @@ struct Part {
   std::function<inextensible::Positions(std::size_t frame)> at;
 
   std::string file(std::size_t frame, const char* extension) const {
-    return stays ? name + extension : numbered(name, frame, extension);
+    char number[16] = "";
+    if (!stays) std::snprintf(number, sizeof number, "-%04zu", frame + 1);
+    return name + number + extension;
   }
 };
 

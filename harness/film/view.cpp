@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace harness {
@@ -16,19 +15,12 @@ constexpr double margin = 1.06;
 // How far cloth is followed, over the radius of all at the start: about a body, and without one.
 constexpr double near_body = 1.1, near_start = 3;
 
-// Points seen along three axes, and the box about them.
-struct Box {
-  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+using Box = Eigen::AlignedBox3d;
 
-  void add(const Positions& x) {
-    for (const auto& point : x.colwise()) {
-      if (!point.allFinite()) continue;
-      low = low.cwiseMin(point);
-      high = high.cwiseMax(point);
-    }
-  }
-  Vector3d middle() const { return 0.5 * (low + high); }
-};
+void extend(Box& box, const Positions& x) {
+  for (const auto& point : x.colwise())
+    if (point.allFinite()) box.extend(Vector3d(point));
+}
 
 double reach(const Positions& x, const Vector3d& from) {
   return x.cols() == 0 ? 0 : (x.colwise() - from).colwise().norm().maxCoeff();
@@ -51,14 +43,15 @@ std::vector<Positions> in_sight(const Recording& recording,
   const bool body = !stage.body.empty();
   const Positions body_start = body ? body_at(stage, 0) : start;
   Box about;
-  about.add(body_start);
+  extend(about, body_start);
+  const Vector3d at_first = about.center();
   const double followed = (body ? near_body : near_start) *
-                          std::max(reach(start, about.middle()), reach(body_start, about.middle()));
+                          std::max(reach(start, at_first), reach(body_start, at_first));
   std::vector<Positions> all;
   for (const FilmRun& take : recording.takes) {
     for (const std::size_t shown : frames) {
       const std::size_t frame = std::min(shown, take.frames.size() - 1);
-      Vector3d middle = about.middle();
+      Vector3d middle = at_first;
       if (!stage.body_poses.empty())
         middle = stage.body_poses.at(frame)(stage.body_poses[0].inverse()(middle));
       all.push_back(near(take.frames[frame], middle, followed));
@@ -70,9 +63,8 @@ std::vector<Positions> in_sight(const Recording& recording,
 
 bool in_a_plane(const std::vector<Positions>& all) {
   Box box;
-  for (const Positions& x : all) box.add(x);
-  const Vector3d span = box.high - box.low;
-  return span.z() < 1e-3 * span.maxCoeff();
+  for (const Positions& x : all) extend(box, x);
+  return box.sizes().z() < 1e-3 * box.sizes().maxCoeff();
 }
 
 }  // namespace
@@ -101,8 +93,8 @@ View view_of(const Recording& recording, const std::vector<std::size_t>& frames)
   Eigen::Matrix3d axes;
   axes << view.right.transpose(), view.up.transpose(), view.towards.transpose();
   Box box;
-  for (const Positions& x : all) box.add(axes * x);
-  const Vector3d middle = box.middle(), half = (0.5 * (box.high - box.low)).cwiseMax(1e-6);
+  for (const Positions& x : all) extend(box, axes * x);
+  const Vector3d middle = box.center(), half = (0.5 * box.sizes()).cwiseMax(1e-6);
   view.aspect = std::clamp(half.y() / half.x(), 0.5, 1.3);
   double distance = 0;
   for (const Positions& x : all) {
