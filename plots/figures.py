@@ -10,10 +10,9 @@ its analysis of a sweep into. Needs Debian's python3-matplotlib and nothing else
 they share.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Callable
@@ -46,11 +45,11 @@ FIGURES = [import_module(f"drawings.{name}") for name in (
 def all_figures(result: Result) -> dict[str, Callable[[], Figure]]:
     """Names of the figures that the result has runs for, and what draws them."""
     figures: dict[str, Callable[[], Figure]] = {}
-    for name, draw in (named for drawing in FIGURES for named in drawing.figures_of(result)):
+    for name, draw, *of in (figure for drawing in FIGURES for figure in drawing.figures_of(result)):
         unique, number = name, 2
         while unique in figures:  # names that differ only in what no file name can hold
             unique, number = f"{name}-{number}", number + 1
-        figures[unique] = draw
+        figures[unique] = partial(draw, *of)
     return figures
 
 

@@ -7,8 +7,6 @@ FOLDER holds film.json (harness/film/recording.h), and pictures.json with the pi
 draws captions and writes .webp and .png; ffmpeg writes .mp4.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import shutil
@@ -16,7 +14,6 @@ import statistics
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Iterator
 
@@ -37,28 +34,17 @@ class FilmError(Exception):
     """One line for the user."""
 
 
-@dataclass
 class Film:
-    folder: Path
-    header: dict[str, Any]
-    pictures: dict[str, Any]
+    """What a folder holds, and the font that its pictures have room for."""
 
-    def __post_init__(self) -> None:
-        self.width, self.height = self.pictures["width"], self.pictures["height"]
-        self.takes = self.header["takes"]
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.header, self.pictures = (json.loads((folder / name).read_text(encoding="utf-8")) for name in ("film.json", "pictures.json"))
+        self.width, self.height, self.frames = (self.pictures[key] for key in ("width", "height", "frames"))
+        self.takes, self.rate = self.header["takes"], self.header["frames_per_second"]
         size = max(9, min(15, self.width // 26))
         self.font = ImageFont.truetype(FONT, size) if Path(FONT).exists() else ImageFont.load_default()
         self.line = round(1.35 * size)
-
-    def time(self, frame: int) -> float:
-        return frame / self.header["frames_per_second"]
-
-    def gave_up(self, take: int, frame: int) -> bool:
-        return frame >= self.takes[take]["frames"]
-
-
-def load(folder: Path) -> Film:
-    return Film(folder, *(json.loads((folder / name).read_text(encoding="utf-8")) for name in ("film.json", "pictures.json")))
 
 
 # ---- Words ------------------------------------------------------------------------------------------------------------
@@ -67,30 +53,18 @@ def percent(strain: float) -> str:
     return f"{100 * strain:.3g} %" if strain >= 1e-5 else "below 0.001 %"
 
 
-def length(metres: float) -> str:
-    return f"{1000 * metres:.1f} mm" if abs(metres) < 1 else f"{metres:.2f} m"
-
-
-def status(take: dict[str, Any]) -> str:
-    if take["energy_gained"]:
-        return "gains energy"
-    if take["detail"]:
-        return "gave up"
-    return "ok" if max(take["largest_strain"]) <= take["strain_limit"] * (1 + 1e-6) else "strained more than permitted"
-
-
 def caption(film: Film, take: int, frame: int) -> list[str]:
     """What stands under a panel."""
     of = film.takes[take]
     frame = min(frame, of["frames"] - 1)
-    lines = [of["label"], f"steps of 1/{1 / of['step']:.6g} s: {status(of)}",
+    strained = max(of["largest_strain"]) > of["strain_limit"] * (1 + 1e-6)
+    status = "gains energy" if of["energy_gained"] else "gave up" if of["detail"] else "strained more than permitted" if strained else "ok"
+    lines = [of["label"], f"steps of 1/{1 / of['step']:.6g} s: {status}",
              f"strain limit {percent(of['strain_limit'])}, largest so far {percent(max(of['largest_strain'][:frame + 1]))}"]
     if of["seconds"]:
-        seconds = statistics.median(of["seconds"]) * film.header["frames_per_second"] / FRAME_RATE
-        lines.append(f"{1000 * seconds:.3g} ms for a frame of 1/{FRAME_RATE} s")
-    sag = of.get("sag", {})
-    if sag:
-        lines.append("sag: " + ", ".join(f"{name.replace('_', ' ')} {length(at[frame])}" for name, at in sag.items()))
+        lines.append(f"{1000 * statistics.median(of['seconds']) * film.rate / FRAME_RATE:.3g} ms for a frame of 1/{FRAME_RATE} s")
+    if sags := {name.replace("_", " "): at[frame] for name, at in of["sag"].items()}:
+        lines.append("sag: " + ", ".join(f"{name} {1000 * sag:.1f} mm" if abs(sag) < 1 else f"{name} {sag:.2f} m" for name, sag in sags.items()))
     return lines
 
 
@@ -107,6 +81,13 @@ def wrapped(text: str, font: Any, width: float) -> list[str]:
 
 # ---- Sheets -----------------------------------------------------------------------------------------------------------
 
+def write(picture: Image.Image, film: Film, lines: list[str], top: float, left: float | None = MARGIN, fill: Any = INK) -> None:
+    """Line by line; left None: in the middle."""
+    for number, line in enumerate(lines):
+        start = (film.width - film.font.getlength(line)) / 2 if left is None else left
+        ImageDraw.Draw(picture).text((start, top + number * film.line), line, fill=fill, font=film.font)
+
+
 def greyed(picture: Image.Image, text: str, film: Film) -> Image.Image:
     """Without colour and pale, with a word on it: this run does not go on."""
     pale = Image.blend(picture.convert("L").convert("RGB"), Image.new("RGB", picture.size, (235, 235, 235)), GREY)
@@ -120,26 +101,24 @@ def alarmed(picture: Image.Image, text: str, film: Film) -> Image.Image:
     lines = wrapped(text, film.font, film.width - 4 * MARGIN)
     top = film.height - len(lines) * film.line - 3 * MARGIN
     draw.rectangle((MARGIN, top - MARGIN, film.width - MARGIN, top + len(lines) * film.line + MARGIN), fill=BACKGROUND, outline=ALARM)
-    for number, line in enumerate(lines):
-        draw.text(((film.width - film.font.getlength(line)) / 2, top + number * film.line), line, fill=ALARM, font=film.font)
+    write(picture, film, lines, top, left=None, fill=ALARM)
     return picture
 
 
 def panel(film: Film, take: int, frame: int) -> Image.Image:
     """A picture and its caption."""
-    with Image.open(film.folder / f"{take}-{min(frame, film.takes[take]['frames'] - 1)}.ppm") as opened:
+    of = film.takes[take]
+    with Image.open(film.folder / f"{take}-{min(frame, of['frames'] - 1)}.ppm") as opened:
         picture = opened.convert("RGB")
-    if film.gave_up(take, frame):
-        picture = greyed(picture, film.takes[take]["detail"] or "ended", film)
-    elif film.takes[take]["energy_gained"]:
+    if frame >= of["frames"]:
+        picture = greyed(picture, of["detail"] or "ended", film)
+    elif of["energy_gained"]:
         picture = alarmed(picture, "this run gains energy: its motion is wrong", film)
     lines = caption(film, take, frame)
     whole = Image.new("RGB", (film.width, film.height + (len(lines) + 1) * film.line), BACKGROUND)
     whole.paste(picture, (0, 0))
-    draw = ImageDraw.Draw(whole)
-    draw.text((MARGIN, MARGIN // 2), f"t = {film.time(frame):.2f} s", fill=INK, font=film.font)
-    for number, line in enumerate(lines):
-        draw.text((MARGIN, film.height + MARGIN // 2 + number * film.line), line, fill=INK, font=film.font)
+    write(whole, film, [f"t = {frame / film.rate:.2f} s"], MARGIN // 2)
+    write(whole, film, lines, film.height + MARGIN // 2)
     return whole
 
 
@@ -151,13 +130,11 @@ def legend(film: Film, width: int) -> Image.Image:
     row = Image.new("RGB", (len(shades), 1))
     row.putdata([tuple(shade) for shade in shades])
     strip.paste(row.resize((bar, film.line - 6), Image.BILINEAR), (MARGIN, 3))
-    draw = ImageDraw.Draw(strip)
     for stop in range(end + 1):
         label = "0" if stop == 0 else "limit" if stop == 1 else f"{stop} x"
-        at = MARGIN + bar * stop / end
-        draw.text((min(at, MARGIN + bar - film.font.getlength(label)), film.line - 2), label, fill=INK, font=film.font)
+        write(strip, film, [label], film.line - 2, min(MARGIN + bar * stop / end, MARGIN + bar - film.font.getlength(label)))
     if MARGIN + bar + 12 + film.font.getlength("strain") < width:
-        draw.text((MARGIN + bar + 12, 0), "strain", fill=INK, font=film.font)
+        write(strip, film, ["strain"], 0, MARGIN + bar + 12)
     return strip
 
 
@@ -176,45 +153,45 @@ def sheet(film: Film, cells: list[list[tuple[int, int]]]) -> Image.Image:
 
 def stills(film: Film) -> Image.Image:
     """One time: takes side by side. Several: a row for each take."""
-    takes, frames = range(len(film.takes)), film.pictures["frames"]
-    if len(frames) == 1:
-        return sheet(film, [[(take, frames[0]) for take in takes]])
-    return sheet(film, [[(take, frame) for frame in frames] for take in takes])
+    takes = range(len(film.takes))
+    if len(film.frames) == 1:
+        return sheet(film, [[(take, film.frames[0]) for take in takes]])
+    return sheet(film, [[(take, frame) for frame in film.frames] for take in takes])
 
 
 def moving(film: Film) -> Iterator[Image.Image]:
-    for frame in film.pictures["frames"]:
+    for frame in film.frames:
         yield sheet(film, [[(take, frame) for take in range(len(film.takes))]])
 
 
 # ---- Files ------------------------------------------------------------------------------------------------------------
 
-def write_mp4(film: Film, out: Path) -> None:
-    with tempfile.TemporaryFile() as errors:
-        command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "image2pipe", "-c:v", "ppm", "-framerate",
-                   str(film.header["frames_per_second"]), "-i", "-", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", str(out)]
-        with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=errors) as ffmpeg:
-            assert ffmpeg.stdin is not None
-            try:
-                for image in moving(film):  # of even width and height, which the format asks for
-                    image.crop((0, 0, image.width // 2 * 2, image.height // 2 * 2)).save(ffmpeg.stdin, "PPM")
-                ffmpeg.stdin.close()
-            except BrokenPipeError:
-                pass
-        if ffmpeg.returncode != 0:
+def save_mp4(film: Film, out: Path) -> None:
+    if not shutil.which("ffmpeg"):
+        raise FilmError("ffmpeg missing (Debian: apt-get install ffmpeg); .webp needs none")
+    command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "image2pipe", "-c:v", "ppm", "-framerate", str(film.rate), "-i", "-",
+               "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", str(out)]
+    with tempfile.TemporaryFile() as errors, subprocess.Popen(command, stdin=subprocess.PIPE, stderr=errors) as ffmpeg:
+        assert ffmpeg.stdin is not None
+        try:
+            for image in moving(film):  # of even width and height, which the format asks for
+                image.crop((0, 0, image.width // 2 * 2, image.height // 2 * 2)).save(ffmpeg.stdin, "PPM")
+            ffmpeg.stdin.close()
+        except BrokenPipeError:
+            pass
+        if ffmpeg.wait() != 0:
             errors.seek(0)
             raise FilmError("ffmpeg failed: " + (errors.read().decode(errors="replace").strip().splitlines() or ["no message"])[-1][:200])
 
 
-def write(film: Film, out: Path) -> None:
+def save(film: Film, out: Path) -> None:
     if out.suffix == ".png":
         stills(film).save(out, optimize=True)
     elif out.suffix == ".mp4":
-        write_mp4(film, out)
+        save_mp4(film, out)
     else:
         images = moving(film)
-        next(images).save(out, save_all=True, append_images=images, duration=round(1000 / film.header["frames_per_second"]), loop=0,
-                          quality=86, method=2)
+        next(images).save(out, save_all=True, append_images=images, duration=round(1000 / film.rate), loop=0, quality=86, method=2)
 
 
 def main() -> int:
@@ -223,9 +200,7 @@ def main() -> int:
     parser.add_argument("--out", type=Path, required=True)
     given = parser.parse_args()
     try:
-        if given.out.suffix == ".mp4" and not shutil.which("ffmpeg"):
-            raise FilmError("ffmpeg missing (Debian: apt-get install ffmpeg); .webp needs none")
-        write(load(given.folder), given.out)
+        save(Film(given.folder), given.out)
     except (FilmError, OSError, ValueError) as error:
         print(f"film.py: {error}", file=sys.stderr)
         return 2

@@ -8,8 +8,6 @@ the paper's claims, and scenes in motion. It needs nothing but a browser, and no
 recordings. page/ has what the browser runs. Needs Debian's python3-matplotlib and python3-numpy.
 """
 
-from __future__ import annotations
-
 import argparse
 import base64
 import csv

@@ -1,10 +1,5 @@
 """What a frame costs: from which time a frame on each method keeps each strain limit with the right motion."""
 
-from __future__ import annotations
-
-from functools import partial
-from typing import Callable
-
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
@@ -13,7 +8,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from parts.axes import grid
 from parts.colors import DARK_GREY, LIGHT_GREY
-from parts.result import Json, Result
+from parts.result import Figures, Json, Result
 from parts.sheet import RIGHT, make_sheet
 from parts.words import percent, place_part, shorten, subject
 
@@ -21,9 +16,9 @@ BUDGETS = (1, 4, 16)  # ms of a frame of 1/60 s, as in `bench budget`
 WIDTH, ROW, NAMES = 6.0, 0.24, 2.6
 
 
-def figures_of(result: Result) -> list[tuple[str, Callable[[], Figure]]]:
+def figures_of(result: Result) -> Figures:
     places = [place for place in result.analysis.get("budgets", []) if len(_limits(place)) > 1]
-    return [(f"budget-{place_part(place, places)}", partial(draw, place, result)) for place in places]
+    return [(f"budget-{place_part(place, places)}", draw, place, result) for place in places]
 
 
 def draw(place: Json, result: Result) -> Figure:

@@ -3,11 +3,7 @@ are known, beside it of motion that is right; beneath it the best steps and, whe
 what a step costs as cloth gets finer. The paper's axes are linear; with methods that differ a hundredfold such axes show the slowest
 alone."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import Callable
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -16,7 +12,7 @@ from parts.axes import draw_slopes, grid, log_x, log_y
 from parts.caption import sampling, scene_sentence, settings_of_the_run
 from parts.curves import (Curve, Curves, Rows, add_strip, all_best, curves_in, draw_curves, draw_noise, draw_steps, ends_of,
                           failed_rows, letters_in)
-from parts.result import Json, Result
+from parts.result import Figures, Json, Result
 from parts.sheet import (BETWEEN, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, STEPS_HEIGHT, TIME_LABEL, Sheet,
                          label_ends, labels_height, make_sheet)
 from parts.style import Styles, receding_sentences, styles_for
@@ -27,13 +23,13 @@ AXIS_LABELS = {"strain": "strain limit (%)", "resolution": "vertices (dotted: sl
 HEADING = 0.22  # inches, above two columns
 
 
-def figures_of(result: Result) -> list[tuple[str, Callable[[], Figure]]]:
+def figures_of(result: Result) -> Figures:
     figures = []
     for figure in result.analysis.get("curves", []):
         name = _name(figure, result.analysis["curves"])
-        figures.append((name, partial(draw, figure, result)))
+        figures.append((name, draw, figure, result))
         if figure["sweep"] == "resolution":
-            figures.append((f"{name}-growth", partial(draw_growth, figure, result)))
+            figures.append((f"{name}-growth", draw_growth, figure, result))
     return figures
 
 

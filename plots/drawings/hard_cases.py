@@ -1,17 +1,13 @@
 """Draws a stability result: the matrix of hard cases and solvers, and the largest stable steps beneath it."""
 
-from __future__ import annotations
-
 import math
-from functools import partial
-from typing import Callable
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from parts.colors import ALARM
-from parts.result import Json, Result
+from parts.result import Figures, Json, Result
 from parts.sheet import make_sheet
 from parts.style import Styles, styles_for
 from parts.words import clean, inches, shorten
@@ -31,9 +27,9 @@ STEPS_TITLE = "largest step (s) at which one simulated second is survived, strai
 TOLD_GAIN = 0.05  # energy gained, over its scale, from which on a cell says so
 
 
-def figures_of(result: Result) -> list[tuple[str, Callable[[], Figure]]]:
+def figures_of(result: Result) -> Figures:
     document = result.document
-    return [("matrix", partial(draw, result))] if document.get("matrix") or document.get("largest_steps") else []
+    return [("matrix", draw, result)] if document.get("matrix") or document.get("largest_steps") else []
 
 
 def draw(result: Result) -> Figure:

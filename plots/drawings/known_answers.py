@@ -1,15 +1,10 @@
 """Deviation from answers that theory knows, over the step: one panel an answer, orders of accuracy as slopes."""
 
-from __future__ import annotations
-
-from functools import partial
-from typing import Callable
-
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from parts.axes import draw_slopes, grid, log_log, steps_on_x
-from parts.result import Json, Result
+from parts.result import Figures, Json, Result
 from parts.sheet import LEFT, LEGEND_WIDTH, X_LABEL, add_legend, legend_height, make_sheet
 from parts.style import Styles, line_of, styles_for
 from parts.words import clean, wrap
@@ -20,8 +15,8 @@ ACROSS, DOWN = 0.75, 0.95  # between panels
 TITLE_SIZE = 7.5
 
 
-def figures_of(result: Result) -> list[tuple[str, Callable[[], Figure]]]:
-    return [("deviations", partial(draw, result))] if _answers(result) else []
+def figures_of(result: Result) -> Figures:
+    return [("deviations", draw, result)] if _answers(result) else []
 
 
 def _answers(result: Result) -> list[Json]:

@@ -2,16 +2,11 @@
 published time stepper (the stepper's share), and how many times as long the next method takes in the leader's stepper (the method's
 share)."""
 
-from __future__ import annotations
-
-from functools import partial
-from typing import Callable
-
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from parts.colors import BLACK, BLUE, GREY, ORANGE, SKY
-from parts.result import Json, Result
+from parts.result import Figures, Json, Result
 from parts.sheet import RIGHT, make_sheet
 from parts.words import percent, place_part, subject
 
@@ -26,9 +21,9 @@ SHARES = (
 )
 
 
-def figures_of(result: Result) -> list[tuple[str, Callable[[], Figure]]]:
+def figures_of(result: Result) -> Figures:
     planes = [plane for plane in result.analysis.get("planes", []) if plane["sweep"] == "strain" and _cells(plane, result)]
-    return [(f"lead-{place_part(plane, planes)}", partial(draw, plane, result)) for plane in planes]
+    return [(f"lead-{place_part(plane, planes)}", draw, plane, result) for plane in planes]
 
 
 def _cells(plane: Json, result: Result) -> list[Json]:

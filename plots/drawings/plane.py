@@ -1,17 +1,12 @@
 """The plane strain x error of each scene and size: who is fastest within a strain limit and an error, and how far ahead of the best
 of the paper's six."""
 
-from __future__ import annotations
-
-from functools import partial
-from typing import Callable
-
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from parts.colors import DARK_GREY, LIGHT_GREY
-from parts.result import Json, Result
+from parts.result import Figures, Json, Result
 from parts.sheet import LEFT, RIGHT, make_sheet
 from parts.style import Styles, styles_for
 from parts.words import clean, percent, place_part, subject, wrap
@@ -20,9 +15,9 @@ CELL_WIDTH, CELL_HEIGHT, NAME_SIZE, SMALL = 1.75, 0.72, 7.5, 6.5
 NARROW = 1.0  # the column of limits' words
 
 
-def figures_of(result: Result) -> list[tuple[str, Callable[[], Figure]]]:
+def figures_of(result: Result) -> Figures:
     planes = [plane for plane in result.analysis.get("planes", []) if plane["sweep"] == "strain"]
-    return [(f"plane-{place_part(plane, planes)}", partial(draw, plane, result)) for plane in planes]
+    return [(f"plane-{place_part(plane, planes)}", draw, plane, result) for plane in planes]
 
 
 def draw(plane: Json, result: Result) -> Figure:

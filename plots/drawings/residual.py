@@ -1,11 +1,6 @@
 """What a solver that reports a residual leaves of the constraint direction's equation, mean |F|, over time and over the step
 (Figure 3 of the paper). Drawn for whoever has a series of residuals."""
 
-from __future__ import annotations
-
-from functools import partial
-from typing import Callable
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -14,7 +9,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from parts.axes import grid, log_log, steps_on_x
 from parts.caption import scene_sentence
 from parts.colors import GREY
-from parts.result import Result
+from parts.result import Figures, Result
 from parts.runs import Series, StepSweep, step_sweeps_in
 from parts.sheet import GAP, LEFT, MAIN_HEIGHT, MAIN_WIDTH, make_sheet
 from parts.words import file_part, percent, scene_words, step_name
@@ -22,13 +17,13 @@ from parts.words import file_part, percent, scene_words, step_name
 ByStep = dict[float, Series]
 
 
-def figures_of(result: Result) -> list[tuple[str, Callable[[], Figure]]]:
+def figures_of(result: Result) -> Figures:
     figures = []
     for sweep in step_sweeps_in(result):
         shown = {solver: limit for solver in sweep.residuals if (limit := _tightest(sweep, solver)) is not None}
         for solver, limit in shown.items():
             name = f"residual-{sweep.name}" if len(shown) == 1 else f"residual-{file_part(solver)}-{sweep.name}"
-            figures.append((name, partial(draw, sweep, result, solver, limit)))
+            figures.append((name, draw, sweep, result, solver, limit))
     return figures
 
 

@@ -1,18 +1,13 @@
 """Time against error: one curve a solver through its cheapest runs at any step and limit, all others as dots, the front of
 all solvers underneath."""
 
-from __future__ import annotations
-
-from functools import partial
-from typing import Callable
-
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from parts.axes import grid, log_log
 from parts.caption import scene_sentence, settings_of_the_run
 from parts.curves import Rows, add_strip, draw_noise, letters_in
-from parts.result import Result
+from parts.result import Figures, Result
 from parts.runs import Run, StepSweep, cheapest, step_sweeps_in
 from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, TIME_LABEL, label_ends, labels_height,
                          make_sheet)
@@ -25,8 +20,8 @@ FRONT = "#FFE08A"
 WIDTH, HEIGHT = 1.25 * MAIN_WIDTH, 1.25 * MAIN_HEIGHT
 
 
-def figures_of(result: Result) -> list[tuple[str, Callable[[], Figure]]]:
-    return [(f"work-precision-{sweep.name}", partial(draw, sweep, result)) for sweep in step_sweeps_in(result) if any(sweep.runs.values())]
+def figures_of(result: Result) -> Figures:
+    return [(f"work-precision-{sweep.name}", draw, sweep, result) for sweep in step_sweeps_in(result) if any(sweep.runs.values())]
 
 
 def draw(sweep: StepSweep, result: Result) -> Figure:

@@ -1,7 +1,5 @@
 """Logarithmic axes: where they end, which values have ticks and words, and lines of known slope to read curves against."""
 
-from __future__ import annotations
-
 import math
 
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """The words around a figure: warnings, and a caption that says what was measured, where, and how."""
 
-from __future__ import annotations
-
 from parts.result import Json, Result
 from parts.words import clean, percent, plain, scene_words
 

@@ -1,7 +1,5 @@
 """Curves of time, the steps beneath them, and the strip of failures above them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """What the report's scripts work on, as one JSON document: solvers with their looks, a row a point, and scenes in motion."""
 
-from __future__ import annotations
-
 import base64
 import json
 import shlex

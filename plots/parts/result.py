@@ -1,7 +1,5 @@
 """A result file that `bench` has checked, with what it says of it: the analysis of a sweep, and the legend of its solvers."""
 
-from __future__ import annotations
-
 import json
 import math
 import sys
@@ -13,6 +11,7 @@ from typing import Any, Iterable
 from parts.words import clean
 
 Json = dict[str, Any]
+Figures = list[tuple]  # of a file: the name of each, the function that draws it, and its arguments
 
 MORE_LETTERS = {"X": "trajectory error above the limit", "L": "the ladder ended"}  # of runs that are ok
 

@@ -1,7 +1,5 @@
 """The runs of a step sweep: each one's time, error and residuals, and which steps failed."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from parts.result import Json, Result, seconds_of

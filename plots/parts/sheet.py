@@ -1,7 +1,5 @@
 """A sheet that panels are placed on by inches, with title, warnings, caption and the names of curves; and how it is saved."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes

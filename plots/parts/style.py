@@ -5,8 +5,6 @@ colour-blind eyes. Colours are Okabe and Ito's (https://jfly.uni-koeln.de/color/
 their order, comes from the result file's legend: a solver that is added at a family's end changes no other's look.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any, Iterable
 

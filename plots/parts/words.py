@@ -1,7 +1,5 @@
 """Words that fit: texts from result files made harmless, measured, cut and wrapped to a width."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any
 

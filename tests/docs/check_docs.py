@@ -22,8 +22,6 @@ Links between documents and paths in backticks must exist, Markdown files that c
 code. Pictures of results and docs/results.md must be of the commits that the results in the tree are of.
 """
 
-from __future__ import annotations
-
 import functools
 import json
 import math

@@ -1,7 +1,5 @@
 """Small result files as bench writes them, drawn as bench draws them: it checks and analyses each. And what the tests ask of a figure."""
 
-from __future__ import annotations
-
 import copy
 import json
 import os

@@ -1,7 +1,5 @@
 """Figures show what their runs ask for: scales, curves, names, failures, uncertainty and words; and hostile names do no harm."""
 
-from __future__ import annotations
-
 import copy
 import json
 import subprocess

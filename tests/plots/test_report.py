@@ -1,7 +1,5 @@
 """The report: what is computed for it, and the page in a browser (Debian: chromium-driver, python3-selenium; skipped without)."""
 
-from __future__ import annotations
-
 import base64
 import csv
 import io

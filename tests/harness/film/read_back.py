@@ -1,7 +1,5 @@
 """Reads what film_test.sh has exported, each format by its published layout, and holds one against the other."""
 
-from __future__ import annotations
-
 import struct
 import xml.etree.ElementTree as xml
 from pathlib import Path

@@ -1,6 +1,4 @@
 // The page of results says no more than its files do: bold and intervals only beyond the noise.
-#include "harness/tables/page.h"
-
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -84,19 +82,6 @@ TEST(ResultsPage, SaysUpToWhenErrorsCountUnlessItIsTheWholeRun) {
   };
   has(with(0.36), "An error of at most 2 % is a mean up to 0.36 s of 1 s");
   EXPECT_EQ(with(1.0).find("is a mean up to"), std::string::npos);
-}
-
-TEST(ResultsPage, ErrorsCountWhereTheReferenceIsSure) {
-  json p = point("chain", "step", "icd", 0.01, 80, 0.01, 1);
-  p["error"] = {{"trajectory", 0.5}, {"gap", 0.2}};
-  EXPECT_FALSE(tables::Point(invented::completed(p)).within_error(0.1));
-  // At 0.1 s the error is 0.01 and sure, at 0.2 s the two references have parted.
-  p["error"]["error_series"] = {{0.1, 0.01, 0.02, 1e-6, 1e-6}, {0.2, 0.7, 0.9, 0.5, 0.5}};
-  EXPECT_TRUE(tables::Point(invented::completed(p)).within_error(0.1));
-  EXPECT_TRUE(tables::Point(invented::completed(p)).within_error(0.01));
-  EXPECT_FALSE(tables::Point(invented::completed(p)).within_error(0.009));
-  p["error"]["error_series"] = {{0.1, 0.01, 0.02, 0.05, 0.05}};
-  EXPECT_FALSE(tables::Point(invented::completed(p)).within_error(0.1));  // 3 gaps are more
 }
 
 }  // namespace

@@ -15,19 +15,6 @@ using invented::document;
 using invented::run;
 using nlohmann::json;
 
-TEST(Terminal, PrintsThePlane) {
-  const json result =
-      document({run("yarn_projection", 0.1, 0.04, 1e-3, 0.008), run("icd", 0.1, 0.04, 3e-3, 0.03),
-                run("shake", 0.1, 0.02, 2e-3, 0.01)});
-  std::ostringstream out;
-  print_sweep(out, result);
-  EXPECT_NE(out.str().find("chain of 80 vertices"), std::string::npos);
-  EXPECT_NE(out.str().find("yarn_projection"), std::string::npos) << out.str();
-  EXPECT_NE(out.str().find("2.00 (1.99-2.01) by shake"), std::string::npos) << out.str();
-  std::istringstream lines(out.str());
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
-}
-
 std::vector<std::string> words_of(const std::string& text) {
   std::istringstream stream(text);
   return {std::istream_iterator<std::string>(stream), {}};
@@ -39,6 +26,8 @@ TEST(Terminal, IsNoWiderThanItMayBeAndLosesNoWord) {
                 run("icd", 0.1, 0.04, 3e-3, 0.03), run("fast_projection", 0.1, 0.02, 2e-3, 0.01)});
   std::ostringstream whole;
   print_sweep(whole, result, true, 1000);
+  for (const char* words : {"chain of 80 vertices", "2.00 (1.99-2.01) by fast_projection"})
+    EXPECT_NE(whole.str().find(words), std::string::npos) << whole.str();
   for (const std::size_t columns : {60, 80, 100}) {
     std::ostringstream out;
     print_sweep(out, result, true, columns);
