@@ -16,7 +16,6 @@
 #include "harness/cli/options.h"
 #include "harness/cli/output.h"
 #include "harness/cli/verbs.h"
-#include "harness/film/exports.h"
 #include "harness/film/pictures.h"
 #include "harness/points/suite.h"
 #include "harness/points/tuned.h"

@@ -1,11 +1,10 @@
-#include "harness/film/exports.h"
-
 #include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <sstream>
 
 #include "harness/base/files.h"
+#include "harness/film/recording.h"
 
 namespace harness {
 namespace {
@@ -121,33 +120,37 @@ std::string pc2_bytes(const Part& part, std::size_t frames) {
   return bytes;
 }
 
+// One file a frame, or one of a body that stays; their paths.
+std::vector<std::string> write_frames(const std::vector<Part>& parts, const FilmRun& take,
+                                      const std::string& folder, const char* extension,
+                                      std::string (*text)(const FilmScene&,
+                                                          const inextensible::Positions&)) {
+  std::vector<std::string> paths;
+  for (const Part& part : parts) {
+    for (std::size_t i = 0; i < (part.stays ? 1 : take.frames.size()); ++i)
+      paths.push_back(written(folder + "/" + part.file(i, extension), text(part.mesh, part.at(i))));
+  }
+  return paths;
+}
+
 }  // namespace
 
 std::vector<std::string> write_obj(const Recording& recording, const FilmRun& take,
                                    const std::string& folder, const std::string& name) {
-  std::vector<std::string> paths;
-  for (const Part& part : parts_of(recording, take, name)) {
-    for (std::size_t i = 0; i < (part.stays ? 1 : take.frames.size()); ++i)
-      paths.push_back(
-          written(folder + "/" + part.file(i, ".obj"), obj_text(part.mesh, part.at(i))));
-  }
-  return paths;
+  return write_frames(parts_of(recording, take, name), take, folder, ".obj", obj_text);
 }
 
 std::vector<std::string> write_vtk(const Recording& recording, const FilmRun& take,
                                    const std::string& folder, const std::string& name) {
   const std::vector<Part> parts = parts_of(recording, take, name);
+  write_frames(parts, take, folder, ".vtp", vtp_text);
   std::ostringstream play;
   play << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
           "byte_order=\"LittleEndian\">\n<Collection>\n";
   for (std::size_t i = 0; i < take.frames.size(); ++i) {
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-      const std::string file = parts[p].file(i, ".vtp");
-      if (i == 0 || !parts[p].stays)
-        written(folder + "/" + file, vtp_text(parts[p].mesh, parts[p].at(i)));
+    for (std::size_t p = 0; p < parts.size(); ++p)
       play << "<DataSet timestep=\"" << static_cast<double>(i) / recording.spec.frames_per_second
-           << "\" part=\"" << p << "\" file=\"" << file << "\"/>\n";
-    }
+           << "\" part=\"" << p << "\" file=\"" << parts[p].file(i, ".vtp") << "\"/>\n";
   }
   play << "</Collection>\n</VTKFile>\n";
   return {written(folder + "/" + name + ".pvd", play.str())};

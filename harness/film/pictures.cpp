@@ -12,14 +12,33 @@
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/json_text.h"
-#include "harness/film/colours.h"
-#include "harness/film/weave.h"
 
 namespace harness {
 namespace {
 
 constexpr int legend_end = 4;       // strain over its limit
 constexpr double line_spacing = 7;  // pixels between lines of yarns, at least
+
+// Cloth's own colour up to the limit, warm beyond it; linear. `over_limit`: strain over its limit.
+Eigen::Vector3d strain_colour(double over_limit) {
+  struct Stop {
+    double at;
+    Eigen::Vector3d rgb;
+  };
+  // Four times the limit is as red as it gets.
+  static const std::array<Stop, 5> stops{{{0, {0.80, 0.78, 0.72}},
+                                          {0.5, {0.58, 0.70, 0.80}},
+                                          {1, {0.25, 0.50, 0.75}},
+                                          {1.5, {0.95, 0.70, 0.25}},
+                                          {4, {0.80, 0.12, 0.10}}}};
+  for (std::size_t i = 1; i < stops.size(); ++i) {
+    if (!(over_limit < stops[i].at)) continue;
+    const double part =
+        std::max(0.0, over_limit - stops[i - 1].at) / (stops[i].at - stops[i - 1].at);
+    return linear(Eigen::Vector3d(stops[i - 1].rgb + part * (stops[i].rgb - stops[i - 1].rgb)));
+  }
+  return linear(stops.back().rgb);
+}
 
 // Color of each vertex, by the largest strain of its edges.
 Eigen::Matrix3Xd colours_of(const FilmScene& stage, const inextensible::Positions& x,

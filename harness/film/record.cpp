@@ -4,8 +4,7 @@
 
 #include "harness/base/clock.h"
 #include "harness/base/text.h"
-#include "harness/film/recording.h"
-#include "harness/film/weave.h"
+#include "harness/film/pictures.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"

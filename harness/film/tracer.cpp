@@ -1,5 +1,3 @@
-#include "harness/film/tracer.h"
-
 #include <embree3/rtcore.h>
 
 #include <algorithm>
@@ -10,15 +8,42 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "harness/film/colours.h"
+#include "harness/film/pictures.h"
 
 namespace harness {
-namespace {
 
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using inextensible::Positions;
+
+namespace {
+
+double decoded(double shade) {  // of sRGB
+  return shade <= 0.04045 ? shade / 12.92 : std::pow((shade + 0.055) / 1.055, 2.4);
+}
+
+double encoded(double light) {
+  light = std::clamp(light, 0.0, 1.0);
+  return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+}
+
+}  // namespace
+
+Vector3d linear(const Vector3d& srgb) {
+  return srgb.unaryExpr([](double c) { return decoded(c); });
+}
+
+std::array<std::uint8_t, 3> shade(const Vector3d& rgb) {
+  std::array<std::uint8_t, 3> bytes{};
+  for (int k = 0; k < 3; ++k)
+    bytes[static_cast<std::size_t>(k)] =
+        static_cast<std::uint8_t>(std::lround(255 * encoded(rgb[k])));
+  return bytes;
+}
+
+namespace {
+
 using Triangles = std::vector<std::array<int, 3>>;
 
 constexpr float far_away = std::numeric_limits<float>::infinity();

@@ -1,8 +1,8 @@
-#include "harness/film/view.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "harness/film/pictures.h"
 
 namespace harness {
 namespace {

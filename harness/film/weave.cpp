@@ -1,5 +1,3 @@
-#include "harness/film/weave.h"
-
 #include <algorithm>
 #include <deque>
 #include <limits>
@@ -8,6 +6,8 @@
 #include <optional>
 #include <set>
 #include <tuple>
+
+#include "harness/film/pictures.h"
 
 namespace harness {
 namespace {

@@ -17,6 +17,7 @@
   }
   for (const name of contests.keys()) choice.append(element("option", {value: name}, name));
 
+  const solversOf = (points) => [...new Set(points.map((point) => point.solver))].sort((a, b) => a - b);
   const shown = () => contests.get(choice.value).filter((point) => !hidden.has(point.solver));
   const axis = (point) => point.sweep === "strain" ? point.limit : point.vertices;
   const axisText = (point) => point.sweep === "strain" ? percent(point.limit) : `${point.vertices} vertices`;
@@ -36,6 +37,9 @@
     return `M ${places.join(" L ")} Z`;
   }
 
+  const symbol = (solver, more) => drawn("path", {d: outline(solver.marker), stroke: solver.color, "stroke-width": 1.5,
+    fill: solver.hollow ? "transparent" : solver.color, ...more});
+
   function fillPlaces() {
     const texts = new Map(contests.get(choice.value).map((point) => [axis(point), axisText(point)]));
     const was = place.value;
@@ -43,15 +47,14 @@
     if ([...texts.keys()].some((value) => String(value) === was)) place.value = was;
     const box = document.getElementById("contest-solvers");
     box.replaceChildren(box.firstElementChild);
-    for (const number of [...new Set(contests.get(choice.value).map((point) => point.solver))].sort((a, b) => a - b)) {
+    for (const number of solversOf(contests.get(choice.value))) {
       const solver = data.solvers[number];
       const tick = element("input", {type: "checkbox", checked: !hidden.has(number)});
       tick.addEventListener("change", () => {
         if (tick.checked) hidden.delete(number); else hidden.add(number);
         onHide.forEach((act) => act());
       });
-      const swatch = drawn("svg", {class: "swatch", viewBox: "-8 -8 16 16", "aria-hidden": "true"},
-        drawn("path", {d: outline(solver.marker), stroke: solver.color, "stroke-width": 1.5, fill: solver.hollow ? "transparent" : solver.color}));
+      const swatch = drawn("svg", {class: "swatch", viewBox: "-8 -8 16 16", "aria-hidden": "true"}, symbol(solver));
       box.append(element("label", {}, tick, swatch, solver.label));
     }
   }
@@ -78,7 +81,7 @@
     }
     chart.append(drawn("text", {x: (left + right) / 2, y: bottom + 40, "text-anchor": "middle"},
       all[0].sweep === "strain" ? "strain limit" : "vertices"));
-    for (const number of [...new Set(all.map((point) => point.solver))].sort((a, b) => a - b)) {
+    for (const number of solversOf(all)) {
       const solver = data.solvers[number];
       const own = all.filter((point) => point.solver === number).sort((a, b) => axis(a) - axis(b));
       chart.append(drawn("polyline", {points: own.map((point) => `${x(axis(point))},${y(point.seconds)}`).join(" "), fill: "none",
@@ -87,8 +90,7 @@
         if (point.high !== null) {
           chart.append(drawn("line", {stroke: solver.color, x1: x(axis(point)), x2: x(axis(point)), y1: y(point.seconds), y2: y(point.high)}));
         }
-        const mark = drawn("path", {class: "mark", d: outline(solver.marker), stroke: solver.color, tabindex: 0,
-          transform: `translate(${x(axis(point))} ${y(point.seconds)})`, "stroke-width": 1.5, fill: solver.hollow ? "transparent" : solver.color, role: "button",
+        const mark = symbol(solver, {class: "mark", tabindex: 0, role: "button", transform: `translate(${x(axis(point))} ${y(point.seconds)})`,
           "aria-label": `${solver.label}, ${axisText(point)}: ${timeText(point.seconds)}; press to copy its command`});
         for (const event of ["focus", "mouseenter"]) mark.addEventListener(event, () => tell(detail, point));
         mark.addEventListener("click", () => copy(detail, point));

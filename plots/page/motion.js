@@ -74,9 +74,7 @@
     gl.vertexAttribPointer(attribute[name], 3, gl.FLOAT, false, 0, 0);
   }
   function drawMesh(x, normals, tints, indices, mode) {
-    send("place", x);
-    send("normal", normals);
-    send("tint", tints);
+    Object.entries({place: x, normal: normals, tint: tints}).forEach(([name, values]) => send(name, values));
     buffers.indices ??= gl.createBuffer();
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, buffers.indices);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.DYNAMIC_DRAW);
