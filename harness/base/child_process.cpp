@@ -261,7 +261,10 @@ int supervised(const std::function<int()>& work) {
   remove_left_folders();
   if (WIFEXITED(status)) return WEXITSTATUS(status);
   constexpr int interrupted_code = 130, crashed_code = 1;
-  if (interrupted() || WTERMSIG(status) == SIGTERM) return interrupted_code;
+  if (interrupted() || WTERMSIG(status) == SIGTERM) {
+    std::cerr << "bench: interrupted\n";  // the child had no time to say so
+    return interrupted_code;
+  }
   if (WTERMSIG(status) == SIGPIPE) return 128 + SIGPIPE;  // nobody reads what it prints
   std::cerr << "bench: the program was ended by " << signal_text(WTERMSIG(status)) << '\n';
   return crashed_code;

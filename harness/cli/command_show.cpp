@@ -19,6 +19,7 @@
 #include "harness/claims/judging.h"
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
+#include "harness/cli/output.h"
 #include "harness/cli/verbs.h"
 #include "harness/points/result_file.h"
 #include "harness/tables/results_page.h"
@@ -37,7 +38,6 @@ void print_head(std::ostream& out, const json& document, const std::string& file
       << build.at("git").get<std::string>().substr(0, 12)
       << (build.value("dirty", false) ? " with changes" : "") << ", "
       << build.at("compiler").get<std::string>() << '\n';
-  if (document.contains("warning")) out << document.at("warning").get<std::string>() << '\n';
   if (!document.value("complete", true))
     out << "not complete: a run was interrupted, or a shard is missing\n";
   if (!is_timed(document)) out << "made with --untimed: its times mean nothing\n";
@@ -70,17 +70,41 @@ void print_outcomes(std::ostream& out, const json& document) {
   }
 }
 
+}  // namespace
+
+void print_sweep_result(std::ostream& out, const json& document, const std::string& file,
+                        bool all) {
+  const json& context = document.at("context");
+  print_sweep(out, document, all, output_columns());
+  if (const json share = context.value("harness_overhead", json::object()); share.contains("of")) {
+    const double own = share.at("seconds_per_step"), step = share.at("shortest_step");
+    out << "\nthe harness's own share of the shortest timed step: " << number_text(1e9 * own, 2)
+        << " ns of " << number_text(1e9 * step, 3) << " ns, " << number_text(100 * own / step, 2)
+        << " % (" << share.at("of").get<std::string>() << ")\n";
+  }
+  if (const auto pair = noise_of(context))
+    out << "\n"
+        << pair->one << " ran twice under two names: in 95 % of " << pair->places
+        << " places its two times are within " << number_text(100 * std::expm1(pair->q95), 2)
+        << " % of each other; smaller differences between solvers are noise\n";
+  if (document.contains("warning"))
+    out << "\n" << document.at("warning").get<std::string>() << '\n';
+  if (const json kernel = context.value("sentinel", json::object()); kernel.value("noisy", false))
+    out << "\nNOISY: a fixed kernel's time varied by "
+        << number_text(100 * kernel.value("spread", 0.0), 2)
+        << " % during the run; counters and errors are valid, compare times with care\n";
+  if (!all)
+    out << "\nall contestants: bench show " << file << " --all; a page with figures: bench report "
+        << file << " --out report.html\n";
+}
+
+namespace {
+
 void print_whole(std::ostream& out, const json& document, const std::string& file, bool all) {
   print_head(out, document, file);
   if (is_answers(document)) return print_answers(out, document);
   if (document.contains("matrix")) return print_outcomes(out, document);
-  print_sweep(out, document, all, output_columns());
-  if (const auto pair = noise_of(document.at("context")))
-    out << "\ndifferences below " << number_text(100 * std::expm1(pair->q95), 2)
-        << " % are noise, by " << pair->one << " against itself\n";
-  if (!all)
-    out << "\nall contestants: bench show " << file << " --all; a page with figures: bench report "
-        << file << " --out report.html\n";
+  print_sweep_result(out, document, file, all);
 }
 
 bool is_sweep(const json& document) { return document.at("schema") == "inextensible-bench/1"; }

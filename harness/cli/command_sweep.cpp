@@ -6,8 +6,8 @@
 namespace harness {
 
 void SweepCommand::declare(const Command& command) {
-  of_suites_ = command.group("strain, resolution and step");
-  of_cases_ = command.group("stability");
+  of_suites_ = command.group("with --sweep strain, resolution and step");
+  of_cases_ = command.group("with --sweep stability");
   SweepOptions::declare(command, of_suites_);
   OutputOptions::declare(command, "<profile>-<axis>.json");
   command.option("--shard", shard,
@@ -35,7 +35,7 @@ int SweepCommand::run(const Words& typed) {
   const bool hard_cases = sweep == "stability";
   const Command& others = hard_cases ? of_suites_ : of_cases_;
   if (const std::string name = others.one_typed(); !name.empty())
-    throw UsageError(name + " goes with --sweep " + others.heading() + " only" +
+    throw UsageError(name + " goes " + others.heading() + " only" +
                      (hard_cases ? " (--case chooses hard cases)" : ""));
   return hard_cases ? run_hard_cases(*this, typed) : run_suite(*this, typed);
 }

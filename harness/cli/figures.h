@@ -13,7 +13,8 @@ namespace harness {
 int draw(const std::string& script, const std::vector<std::string>& arguments,
          const std::string& folder, const std::string& name = {});
 
-// A result as plots/ reads it: a sweep with its analysis. Throws UsageError where nothing was timed.
+// A result as plots/ reads it: a sweep with its analysis. Throws UsageError where nothing was
+// timed.
 nlohmann::json with_analysis(nlohmann::json document);
 
 // The figures of a result file, with the analysis that they are drawn from. folder: "" for that of

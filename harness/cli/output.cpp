@@ -110,43 +110,35 @@ std::string default_output(const std::string& stem, const std::string& ending, b
 
 namespace {
 
-// What was there before.
-struct Past {
-  bool finished = false;  // a whole result: nothing to do, and the journal is untouched
-  json context;           // of the run that this one goes on with; null: there is none
-};
-
-// Whether what a journal holds may be taken up or dropped.
-void check_unfinished(const OutputOptions& options, const Journal& journal,
-                      const Undertaking& run) {
-  const std::size_t count = run.count(journal);
-  const std::string entries = std::to_string(count) + " " + run.what;
-  if (options.force) return;
-  if (!journal.damage().empty())
-    throw UsageError("'" + journal.path() + "' is damaged, " + journal.damage() +
-                     "; --resume --force continues with the " + entries +
-                     " that can be read, --force starts again");
-  if (count > 0 && !options.resume && !options.rerun_failed)
-    throw UsageError("'" + journal.path() + "' has " + entries +
-                     " of a run that did not finish: --resume continues it, --force starts again");
-}
-
 void check_same(const OutputOptions& options, const std::string& path, const json& was,
                 const json& mine) {
-  if (was.is_null() || options.force) return;
-  const std::string what = difference(was, mine);
+  const std::string what = was.is_null() || options.force ? "" : difference(was, mine);
   if (!what.empty())
     throw UsageError("'" + path + "' is of another build or selection: " + what +
                      "; --resume --force continues nevertheless");
 }
+
+// What there was before: the context of the run that this one continues, or null.
+struct Past {
+  bool finished = false;  // a whole result: nothing to do, and the journal is untouched
+  json context = nullptr;
+};
 
 Past begin_journal(const OutputOptions& options, const std::string& out, Journal& journal,
                    const Undertaking& run) {
   const bool again = options.resume || options.rerun_failed;
   const json header = {
       {"schema", "inextensible-journal/2"}, {"identity", run.identity}, {"context", run.context}};
-  check_unfinished(options, journal, run);
-  if (again && run.count(journal) > 0) {
+  const std::size_t count = run.count(journal);
+  const std::string entries = std::to_string(count) + " " + run.what;
+  if (!options.force && !journal.damage().empty())
+    throw UsageError("'" + journal.path() + "' is damaged, " + journal.damage() +
+                     "; --resume --force continues with the " + entries +
+                     " that can be read, --force starts again");
+  if (!options.force && count > 0 && !again)
+    throw UsageError("'" + journal.path() + "' has " + entries +
+                     " of a run that did not finish: --resume continues it, --force starts again");
+  if (again && count > 0) {
     const json was = journal.header().is_object() ? journal.header() : json::object();
     check_same(options, journal.path(), was.value("identity", json()), run.identity);
     journal.go_on(header);
@@ -161,7 +153,7 @@ Past begin_journal(const OutputOptions& options, const std::string& out, Journal
                identity(context, context.value("suite", json()),
                         context.value("selection", json::object())),
                run.identity);
-    if (result.at("complete").get<bool>() && !options.rerun_failed) return {true, context};
+    if (result.at("complete").get<bool>() && !options.rerun_failed) return {true};
     journal.start(header);
     run.add(result, journal);
     return {false, context};
@@ -195,7 +187,13 @@ int carry_out(const OutputOptions& options, const Undertaking& undertaking) {
     std::cout << out << " is complete already\n";
     return success;
   }
-  const Finished done = undertaking.run(out, journal, past.context);
+  Finished done;
+  try {
+    done = undertaking.run(out, journal, past.context);
+  } catch (const UsageError&) {
+    if (undertaking.count(journal) == 0) journal.remove();  // refused: nothing has come of it
+    throw;
+  }
   const bool written = !done.document.is_null() && (done.complete || takes_a_part(out));
   if (written) write_atomically(out, result_text(done.document));
   std::cout << done.text;

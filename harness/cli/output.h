@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <ostream>
 #include <string>
 
 #include "harness/base/journal.h"
@@ -81,5 +82,9 @@ struct Undertaking {
 // one of another build or selection and for a damaged journal. An interrupted run leaves its part
 // of the result, but never in place of a whole one.
 int carry_out(const OutputOptions& options, const Undertaking& undertaking);
+
+// A sweep's result as a terminal shows it, at its end and by `bench show`. all: every contestant.
+void print_sweep_result(std::ostream& out, const nlohmann::json& document, const std::string& file,
+                        bool all);
 
 }  // namespace harness

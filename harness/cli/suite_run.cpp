@@ -1,12 +1,10 @@
 // Runs a suite's sweeps: bench --sweep strain|resolution|step.
-#include <cmath>
 #include <iostream>
 #include <sstream>
 
 #include "harness/base/errors.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
-#include "harness/base/standard_streams.h"
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/sweep_run.h"
@@ -89,22 +87,6 @@ void warn_if_busy(const nlohmann::json& context) {
               << processors << " processors): times will be noisy\n";
 }
 
-void print_noise(std::ostream& out, const nlohmann::json& document) {
-  const nlohmann::json& context = document.at("context");
-  if (const auto pair = noise_of(context))
-    out << "\n"
-        << pair->one << " ran twice under two names: in 95 % of " << pair->places
-        << " places its two times are within " << number_text(100 * std::expm1(pair->q95), 2)
-        << " % of each other; smaller differences between solvers are noise\n";
-  if (document.contains("warning"))
-    out << "\n" << document.at("warning").get<std::string>() << '\n';
-  const nlohmann::json& sentinel = context.at("sentinel");
-  if (sentinel.at("noisy").get<bool>())
-    out << "\nNOISY: a fixed kernel's time varied by "
-        << number_text(100 * sentinel.at("spread").get<double>(), 2)
-        << " % during the run; counters and errors are valid, compare times with care\n";
-}
-
 // The harness's own share of the shortest step that was timed.
 nlohmann::json harness_overhead(const std::vector<PointResult>& points) {
   nlohmann::json overhead = {{"seconds_per_step", harness_seconds_per_step()}};
@@ -119,14 +101,6 @@ nlohmann::json harness_overhead(const std::vector<PointResult>& points) {
   overhead["shortest_step"] = step_seconds(*shortest);
   overhead["of"] = shortest->spec.id();
   return overhead;
-}
-
-void print_overhead(std::ostream& out, const nlohmann::json& overhead) {
-  if (!overhead.contains("of")) return;
-  const double own = overhead.at("seconds_per_step"), step = overhead.at("shortest_step");
-  out << "\nthe harness's own share of the shortest timed step: " << number_text(1e9 * own, 2)
-      << " ns of " << number_text(1e9 * step, 3) << " ns, " << number_text(100 * own / step, 2)
-      << " % (" << overhead.at("of").get<std::string>() << ")\n";
 }
 
 SweepEvents shown(Progress& progress) {
@@ -164,15 +138,6 @@ SweepOutcome measured(const Suite& suite, const std::vector<Search>& searches,
   return outcome;
 }
 
-std::string text_of(const nlohmann::json& document, const std::string& out) {
-  std::ostringstream text;
-  print_sweep(text, document, false, output_columns());
-  print_overhead(text, document.at("context").at("harness_overhead"));
-  print_noise(text, document);
-  text << "\nall contestants: bench show " << out << " --all\n";
-  return text.str();
-}
-
 nlohmann::json context_of(const SweepCommand& options) {
   nlohmann::json context = machine_context();
   context["selection"] = selection(options);
@@ -206,8 +171,9 @@ int run_suite(const SweepCommand& options, const Words& typed) {
         measured(suite, searches, runners, journal, !options.untimed, context);
     nlohmann::json document = result_document(context, suite, typed, outcome.complete,
                                               outcome.points, references->summaries());
-    std::string text = text_of(document, out);
-    return {std::move(document), outcome.complete, std::move(text)};
+    std::ostringstream text;
+    print_sweep_result(text, document, out, false);
+    return {std::move(document), outcome.complete, text.str()};
   };
   OutputOptions output = options;
   output.no_plots |= options.untimed;

@@ -3,14 +3,7 @@
 # on all runs alike). One that is three times as slow in one solver is never the
 # same; how small a slowdown is found is asked with a fake clock (pairs_test.cpp), for a busy machine may leave it open (exit code 6).
 # A solver that fails and an extra iteration are found.
-rm -rf -- ./*  # of the last time
-set -u
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
+. "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/functions.sh"
 
 busy() {
   while true; do
@@ -48,5 +41,4 @@ echo '{"counters": {"rule": "exact"}}' >exact.json
 against "$BENCH_WITH_FAULTS" --solver fast_projection --pairs 4 --gate exact.json
 [[ $? == 3 ]] && grep -q 'iterations [0-9]* -> ' table.txt || fail "an extra iteration: $(cat table.txt log.txt)"
 
-((failures == 0)) && echo "all well"
-exit $((failures > 0))
+finish

@@ -1,8 +1,8 @@
+#!/usr/bin/env bash
 # bench choose, interrupted at several moments, without the time for any run, with budgets that cannot be kept, and with solvers
 # that the scene has no use for: it says what it knows, and its exit code says whether that is an answer.
-set -um  # -m: a background process does not ignore SIGINT
-fail() { echo "FAILED: $*"; exit 1; }
-rm -rf work && mkdir work && cd work || exit 1
+. "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/functions.sh"
+set -m  # a background process does not ignore SIGINT
 cloth=("$BENCH_BINARY" choose --scene cape --n 15 --seconds 30)
 
 # The moments: before anything, once the finer run begins, and after so many ladders' runs.
@@ -45,4 +45,4 @@ answers 6 'no solver that was tried keeps the budget' "${chain[@]}" --budget 0.0
 for name in fast_projection yarn_projection@midpoint; do
   grep -q "$name" out.txt || fail "$name was named and is nowhere: $(cat out.txt)"
 done
-echo ok
+finish

@@ -1,36 +1,9 @@
 #!/usr/bin/env bash
 # The finished program: bad input is one clear line and exit 2 with nothing written; Ctrl-C leaves valid JSON.
-rm -rf -- ./*  # of the last time
-set -u
+. "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/functions.sh"
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../..
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
-
-bench() { "$BENCH_BINARY" "$@"; }
 # makes NAME ARGUMENTS...: runs the program quietly into NAME.
 makes() { bench "${@:2}" --out "$1" >"$1.txt" 2>"$1.err" || fail "$* -> exit $?: $(tail -1 "$1.err")"; }
-# holds PYTHON: a condition on the documents that `read` gives.
-holds() {
-  /usr/bin/python3 -c "import json
-def read(name): return json.load(open(name))
-$1" || fail "$1"
-}
-
-# refused PART ARGUMENTS...: exit 2, one line on stderr that contains PART, nothing on stdout, no file made.
-refused() {
-  local part=$1 code lines
-  shift
-  rm -rf out.json
-  bench "$@" >stdout.txt 2>stderr.txt </dev/null
-  code=$?
-  lines=$(wc -l <stderr.txt)
-  [[ $code == 2 && $lines == 1 && ! -s stdout.txt && ! -e out.json ]] && grep -qF -- "$part" stderr.txt ||
-    fail "$* -> exit $code, $lines lines: $(cat stderr.txt)"
-}
 # refuse_all: a line "PART <- ARGUMENTS" each. SWEEP and SUITE stand for what precedes most of them.
 refuse_all() {
   local line words
@@ -300,5 +273,4 @@ for files in cut.json part.json "shard1.json shard2.json shard3.json"; do
   diff <(bench show whole.json | tail -n +2) <(bench show $files | tail -n +2) || fail "$files: not the whole"
 done
 
-((failures == 0)) && echo "all well"
-exit $((failures > 0))
+finish

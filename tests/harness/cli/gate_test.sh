@@ -1,32 +1,7 @@
 #!/usr/bin/env bash
 # bench compare, baseline and point: exit codes, bad input, and faults put into a second build of the program that counters
 # must find. What times must find is in ab_test.sh, how single points are judged in comparison_test.cpp.
-rm -rf -- ./*  # of the last time
-set -u
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
-
-# exits CODE PART ARGUMENTS...: that exit code, and PART in what is printed.
-exits() {
-  local wanted=$1 part=$2 code
-  shift 2
-  "$BENCH_BINARY" "$@" >stdout.txt 2>stderr.txt </dev/null
-  code=$?
-  [[ $code == "$wanted" ]] && cat stdout.txt stderr.txt | grep -qF -- "$part" ||
-    fail "$* -> exit $code: $(cat stdout.txt stderr.txt)"
-}
-
-# refused PART ARGUMENTS...: exit 2, one line on stderr that contains PART, nothing on stdout, no report made.
-refused() {
-  rm -f out.xml out.md out.json
-  exits 2 "$@"
-  [[ $(wc -l <stderr.txt) == 1 && ! -s stdout.txt && ! -e out.xml && ! -e out.md && ! -e out.json ]] ||
-    fail "${*:2}: $(cat stdout.txt stderr.txt)"
-}
+. "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/functions.sh"
 
 # edit FROM TO PYTHON: a file with the document `d` changed.
 edit() {
@@ -174,5 +149,4 @@ no scene 'chian'; did you mean 'chain'?|"scene": "chain"/"scene": "chian"
 [json|}$/
 TABLE
 
-((failures == 0)) && echo "all well"
-exit $((failures > 0))
+finish

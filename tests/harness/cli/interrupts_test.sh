@@ -1,12 +1,10 @@
 #!/usr/bin/env bash
 # Every verb that computes answers Ctrl-C, SIGTERM and SIGHUP within a second, even inside a step that never ends: exit code 130, a file
 # that was there stays as it was, and no process and no temporary file is left.
-rm -rf -- ./*  # of the last time
-set -u
+. "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/functions.sh"
+
 plugin=$BUILD_FOLDER/tests/libplugin_hangs.so
 export TMPDIR=$PWD/tmp
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 
 mkdir tmp
 "$BENCH_BINARY" --sweep strain --scene chain --n 5 --limit 0.1 --solver shake --reps 1 --no-plots --out small.json >/dev/null 2>&1
@@ -48,4 +46,4 @@ for verb in film point choose check sweep stability answers; do
     [[ -z $(find tmp . -maxdepth 1 -name 'bench-*' -o -maxdepth 1 -name 'old.*.??????') ]] || fail "$verb, SIG$signal: $(ls tmp .)"
   done
 done
-exit $((failures > 0))
+finish

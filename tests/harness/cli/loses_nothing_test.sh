@@ -1,15 +1,7 @@
 #!/usr/bin/env bash
 # A sweep against everything that ends sweeps: kill -9, Ctrl-C, crashing and hanging points, a full disk, a folder that is
 # gone, a second run on the same output, a journal of something else.
-set -u
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
-
-rm -rf work && mkdir work && cd work || exit 1
+. "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/functions.sh"
 
 # What is run is the same whatever the times are.
 cat >suite.json <<'JSON'
@@ -201,4 +193,4 @@ done
 "$BENCH_BINARY" compare whole.json part1.json part2.json part3.json >compared.txt
 [[ $? == [036] ]] && ! grep -qE 'MISSING|NEW ' compared.txt || fail "the shards are not the whole: $(cat compared.txt)"
 
-exit $((failures > 0))
+finish

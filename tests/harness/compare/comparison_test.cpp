@@ -67,42 +67,30 @@ Times random_times(std::mt19937_64& random, std::size_t n) {
   return times;
 }
 
-TEST(MannWhitney, IgnoresOrderAndUnits) {
+TEST(MannWhitney, IgnoresOrderAndUnitsAndFallsAsOneValueRises) {
   for (std::uint64_t seed = 1; seed <= inextensible::testing::trials(std::uint64_t{200}); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(seed);
-    Times a = random_times(random, 3 + random() % 40);
-    const Times b = random_times(random, 3 + random() % 40);
+    Times a = random_times(random, 3 + random() % 40), b = random_times(random, 3 + random() % 40);
     const double p = mann_whitney_greater(a, b);
-    EXPECT_GT(p, 0);
-    EXPECT_LE(p, 1 + 1e-12);
     EXPECT_GE(p, least_possible_p(a.size(), b.size()) * (1 - 1e-9));
-    std::shuffle(a.begin(), a.end(), random);
-    EXPECT_NEAR(mann_whitney_greater(a, b), p, 1e-12);
-    Times milli_a = a, milli_b = b;
-    for (double& t : milli_a) t *= 1024;
-    for (double& t : milli_b) t *= 1024;
-    EXPECT_NEAR(mann_whitney_greater(milli_a, milli_b), p, 1e-12);
+    EXPECT_LE(p, 1 + 1e-12);
     // Both tails hold the outcome itself, so together they exceed 1.
     EXPECT_GE(p + mann_whitney_greater(b, a), 1 - 0.1 / static_cast<double>(a.size()));
-  }
-}
-
-// Not where there are ties: making or breaking one changes what all outcomes are.
-TEST(MannWhitney, FallsAsOneValueRises) {
-  for (std::uint64_t seed = 1; seed <= inextensible::testing::trials(std::uint64_t{200}); ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    std::mt19937_64 random(seed);
+    std::shuffle(a.begin(), a.end(), random);
+    EXPECT_NEAR(mann_whitney_greater(a, b), p, 1e-12);
+    for (Times* times : {&a, &b})
+      for (double& t : *times) t *= 1024;
+    EXPECT_NEAR(mann_whitney_greater(a, b), p, 1e-12);
+    // Where there are no ties: making or breaking one changes what all outcomes are.
     std::uniform_real_distribution<double> time(1, 2);
-    Times a(3 + random() % 40), b(3 + random() % 40);
-    for (double& t : a) t = time(random);
-    for (double& t : b) t = time(random);
-    double p = mann_whitney_greater(a, b);
-    for (int rise = 0; rise < 5; ++rise) {
+    for (Times* times : {&a, &b})
+      for (double& t : *times) t = time(random);
+    for (double last = mann_whitney_greater(a, b), rise = 0; rise < 5; ++rise) {
       a[random() % a.size()] += 0.3 * time(random);
       const double next = mann_whitney_greater(a, b);
-      EXPECT_LE(next, p + 1e-12);
-      p = next;
+      EXPECT_LE(next, last + 1e-12);
+      last = next;
     }
   }
 }
@@ -214,26 +202,9 @@ TEST(Compare, JudgesAPoint) {
   }
   Gate steps;
   steps.counters = {"steps"};
-  EXPECT_EQ(compare(result_of({point_with(some_id)}), result_of({point_with(some_id, 101)}), steps)
-                .points[0]
-                .change,
-            Change::same);
-}
-
-TEST(Compare, FindsWhatIsMissingAndNew) {
-  const ComparedPoint common = point_with(some_id);
-  const auto both =
-      compare(result_of({common, point_with("chain/icd/n:80/strain:0.01/h:0.01")}),
-              result_of({common, point_with("chain/null/n:80/strain:0.01/h:0.01")}), Gate());
-  ASSERT_EQ(both.points.size(), 3u);
-  EXPECT_EQ(both.points[1].change, Change::missing);
-  EXPECT_EQ(both.points[2].change, Change::added);
-  EXPECT_TRUE(both.any(is_failure));
-  EXPECT_FALSE(both.any(is_regression));
-  ComparedPoint other = common;
-  other.spec = "other";
-  for (const ComparedPoint& next : {other, point_with("chain/icd/n:7")})
-    EXPECT_THROW(compare(result_of({common}), result_of({next}), Gate()), NotComparable);
+  const auto same_steps =
+      compare(result_of({point_with(some_id)}), result_of({point_with(some_id, 101)}), steps);
+  EXPECT_EQ(same_steps.count(Change::same), 1u);
 }
 
 TEST(Compare, LeavesCountersOfAnotherBuildAndTimesOfAnotherMachineAlone) {
@@ -360,18 +331,13 @@ TEST(Gate, RefusesWhatItDoesNotKnow) {
 
 // ---- Reports ------------------------------------------------------------------------------------
 
-Comparison awkward() {
-  Comparison comparison;
-  comparison.points = {
-      {Change::newly_failing, "strain", "chain/a/h:1", {"edge <3> & \"more\" | \x01 `x`\nend"}},
-      {Change::same, "strain", "chain/b/h:1", {}},
-      {Change::added, "strain", "chain/c/h:1", {"ok"}}};
-  comparison.notes = {"times not compared"};
-  return comparison;
-}
-
 TEST(Reports, JUnitEscapesAndCounts) {
-  const std::string xml = junit_xml(awkward(), "bench <compare>");
+  const Comparison comparison{
+      {{Change::newly_failing, "strain", "chain/a/h:1", {"edge <3> & \"more\" | \x01 `x`\nend"}},
+       {Change::same, "strain", "chain/b/h:1"},
+       {Change::added, "strain", "chain/c/h:1", {"ok"}}},
+      {"times not compared"}};
+  const std::string xml = junit_xml(comparison, "bench <compare>");
   EXPECT_NE(xml.find("tests=\"3\" failures=\"1\""), std::string::npos);
   EXPECT_NE(xml.find("name=\"bench &lt;compare&gt;\""), std::string::npos);
   EXPECT_NE(xml.find("edge &lt;3&gt; &amp; &quot;more&quot; | ? `x`&#10;end"), std::string::npos);
