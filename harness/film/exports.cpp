@@ -85,7 +85,7 @@ struct Part {
   std::function<inextensible::Positions(std::size_t frame)> at;
 
   std::string file(std::size_t frame, const char* extension) const {
-    char number[16] = "";
+    char number[24] = "";
     if (!stays) std::snprintf(number, sizeof number, "-%04zu", frame + 1);
     return name + number + extension;
   }
