@@ -7,10 +7,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <map>
 
-#include "harness/judge/ensemble_runs.h"
-#include "harness/judge/reference_file.h"
+#include "harness/judge/reference_routes.h"
 #include "harness/run/calibration.h"
 #include "harness/run/point_runner.h"
 
@@ -72,14 +70,8 @@ Reference small_reference(const SceneParameters& parameters) {
   r.times = sample_times(scene.duration);
   r.gap.assign(r.times.size(), 1);
   r.gap_max = r.gap;
-  std::map<std::string, RouteRun> runs;
-  EnsemblePlan plan;
-  plan.step = sample_interval / 20;
-  r.ensemble = compute_ensemble(
-      scene, r.times, plan, [](const std::string&) {},
-      [&runs](const std::string& name, const auto& compute) -> const RouteRun& {
-        return runs.emplace(name, compute()).first->second;
-      });
+  RouteRuns runs([](const std::string&) {});
+  r.ensemble = compute_ensemble(scene, r.times, {.step = sample_interval / 20}, runs);
   return r;
 }
 

@@ -142,7 +142,7 @@ double least_eigenvalue(const MatrixXd& matrix) {
 
 class SpdSolvers : public ::testing::TestWithParam<SpdSolverRow> {};
 INSTANTIATE_TEST_SUITE_P(All, SpdSolvers, ::testing::ValuesIn(spd_solvers()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& test) { return std::string(test.param.name); });
 
 TEST_P(SpdSolvers, SolveToTheToleranceAskedForWhateverTheMagnitude) {
   const SpdSolverRow& row = GetParam();

@@ -94,7 +94,7 @@ const Row rows[] = {{"quasi_definite", false, true, true, 1e-9,
 
 class KktSolvers : public ::testing::TestWithParam<Row> {};
 INSTANTIATE_TEST_SUITE_P(All, KktSolvers, ::testing::ValuesIn(rows),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& test) { return std::string(test.param.name); });
 
 // On every step J p = c holds, in an order of edges with little fill.
 TEST_P(KktSolvers, SolveTheDenseSaddlePointSystemAndNoticeTheWrongInertia) {
