@@ -12,7 +12,6 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
-#include "harness/cli/figures.h"
 #include "harness/cli/options.h"
 #include "harness/cli/output.h"
 #include "harness/cli/verbs.h"

@@ -1,9 +1,186 @@
-// bench --sweep strain|resolution|step|stability.
+// bench --sweep strain|resolution|step|stability, and the sweeps of a suite.
+#include <iostream>
+#include <sstream>
+
 #include "harness/base/errors.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/paths.h"
+#include "harness/base/text.h"
+#include "harness/base/timing_lock.h"
 #include "harness/cli/sweep_run.h"
 #include "harness/cli/verbs.h"
+#include "harness/judge/reference.h"
+#include "harness/points/context.h"
+#include "harness/points/result_file.h"
+#include "harness/run/execute.h"
+#include "harness/run/machine_noise.h"
+#include "harness/run/point_runner.h"
+#include "harness/run/sweep.h"
+#include "solvers/registry.h"
 
 namespace harness {
+namespace {
+
+int dry_run(const Suite& suite, const std::vector<Search>& searches) {
+  std::size_t most = 0;
+  for (const Search& search : searches) most += search.ladder.size();
+  const Estimate guess = estimate(suite, searches);
+  std::cout << searches.size() << " searches for a best step, at most " << most
+            << " points (usually half of them), about " << duration_text(guess.seconds)
+            << ", estimated from a few steps of " << guess.timed << " contestants and sizes\n";
+  return success;
+}
+
+void report_missing_references(const SweepCommand& options, const std::vector<Search>& searches,
+                               ReferenceFolder& references) {
+  const auto missing = without_reference(searches, references);
+  if (missing.empty()) return;
+  std::string names;
+  for (const auto& [file, scene] : missing)
+    names += (names.empty() ? "" : ", ") + file.substr(0, file.rfind(".json"));
+  if (options.finest_error > 0)
+    throw UsageError("--finest-error needs references, missing: " + names +
+                     " (bench reference, with the same scene and profile, makes them)");
+  std::cerr << "bench: no reference, so no trajectory error, for " << names
+            << " (bench reference makes them)\n";
+}
+
+// What chooses points beside the suite.
+nlohmann::json selection(const SweepCommand& options) {
+  nlohmann::json chosen = {{"solver", options.solver},
+                           {"filter", options.filter},
+                           {"exclude", options.exclude},
+                           {"shard", options.shard}};
+  if (options.untimed) chosen["untimed"] = true;  // no part of it may be taken up as timed
+  return chosen;
+}
+
+// Runs that look at the machine between them, and take disturbed samples again while the budget
+// lasts.
+SweepRunners watched(const SweepRunners& inner, NoiseProbe& noise_probe, bool timed) {
+  const auto budget = std::make_shared<RetakeBudget>();
+  SweepRunners runners = limited(inner, [timed, budget](RunLimits limits) {
+    limits.timed = timed;
+    limits.most_retaken = budget->most();
+    return limits;
+  });
+  const auto watch = [budget, &noise_probe](const auto& run) {
+    noise_probe.sample_if_due();
+    auto result = run();
+    budget->add(result.samples.size(), result.retaken);
+    return result;
+  };
+  runners.run = [watch, run = runners.run](const auto& spec, const auto& limits, auto guess) {
+    return watch([&] { return run(spec, limits, guess); });
+  };
+  runners.repeat = [watch, repeat = runners.repeat](const auto& point, const auto& limits) {
+    return watch([&] { return repeat(point, limits); });
+  };
+  return runners;
+}
+
+void warn_if_busy(const nlohmann::json& context) {
+  const auto& load = context.at("load_avg");
+  const double processors = context.at("num_cpus");
+  if (!load.empty() && load.at(0).get<double>() > 0.5 * processors)
+    std::cerr << "bench: the machine is busy (load " << number_text(load.at(0), 2) << " on "
+              << processors << " processors): times will be noisy\n";
+}
+
+// The harness's own share of the shortest step that was timed.
+nlohmann::json harness_overhead(const std::vector<PointResult>& points) {
+  nlohmann::json overhead = {{"seconds_per_step", harness_seconds_per_step()}};
+  const PointResult* shortest = nullptr;
+  const auto step_seconds = [](const PointResult& p) { return p.seconds() * p.spec.step; };
+  for (const PointResult& point : points) {
+    if (point.ok() && !point.samples.empty() &&
+        (!shortest || step_seconds(point) < step_seconds(*shortest)))
+      shortest = &point;
+  }
+  if (!shortest) return overhead;
+  overhead["shortest_step"] = step_seconds(*shortest);
+  overhead["of"] = shortest->spec.id();
+  return overhead;
+}
+
+SweepEvents shown(Progress& progress) {
+  SweepEvents events;
+  events.interrupted = interrupted;
+  events.point = [&progress, points = 0](const PointResult& p, std::size_t s,
+                                         std::size_t all) mutable {
+    progress.show(
+        (static_cast<double>(s) + 0.5) / static_cast<double>(all),
+        std::to_string(++points) + " points",
+        p.spec.id() + " " + (p.ok() ? duration_text(p.seconds()) + "/s" : to_string(p.status)));
+  };
+  events.repetition = [&progress, first = true](std::size_t done, std::size_t all) mutable {
+    if (std::exchange(first, false)) progress.begin_part();
+    progress.show(done, all, "re-timing the best runs");
+  };
+  return events;
+}
+
+// Runs the sweep, with progress on stderr and each run in the journal, and writes into the context
+// how quiet the machine was.
+SweepOutcome measured(const Suite& suite, const std::vector<Search>& searches,
+                      const SweepRunners& runners, Journal& journal, bool timed,
+                      nlohmann::json& context) {
+  Progress progress;
+  NoiseProbe noise_probe;
+  noise_probe.sample();
+  const ProcessorTicks ticks = processor_ticks();
+  SweepOutcome outcome = run_sweep(suite, searches, shown(progress),
+                                   journaled(watched(runners, noise_probe, timed), journal));
+  noise_probe.sample();
+  context["sentinel"] = noise_probe.to_json();
+  context["stolen"] = stolen_share(ticks, processor_ticks());
+  context["harness_overhead"] = harness_overhead(outcome.points);
+  return outcome;
+}
+
+nlohmann::json context_of(const SweepCommand& options) {
+  nlohmann::json context = machine_context();
+  context["selection"] = selection(options);
+  return context;
+}
+
+int run_suite(const SweepCommand& options, const Words& typed) {
+  const Suite suite = load_suite(options);
+  auto searches = plan(suite, filters_of(options));
+  if (!options.shard.empty()) searches = shard(std::move(searches), parse_shard(options.shard));
+  if (options.dry_run) return dry_run(suite, searches);
+  nlohmann::json context = context_of(options);
+  const auto run = [&](const std::string& out, Journal& journal,
+                       const nlohmann::json& before) -> Finished {
+    if (options.rerun_failed) forget_failures(journal);
+    SweepRunners runners;
+    const auto references = std::make_shared<ReferenceFolder>(source_path("results/references"));
+    runners.references = references;
+    report_missing_references(options, searches, *references);
+    std::optional<TimingLock> lock;
+    if (!options.untimed) lock.emplace(!options.no_wait);
+    if (lock && lock->waited()) context = context_of(options);
+    context["timed"] = !options.untimed;
+    if (!options.untimed) warn_if_busy(context);
+    if (before.is_object())
+      context["resumed"] = {{"from", before.at("date")}, {"points", points_in(journal)}};
+    if (!options.in_process) runners = isolated(runners, options.memory);
+    const SweepOutcome outcome =
+        measured(suite, searches, runners, journal, !options.untimed, context);
+    nlohmann::json document = result_document(context, suite, typed, outcome.complete,
+                                              outcome.points, references->summaries());
+    std::ostringstream text;
+    print_sweep_result(text, document, out, false);
+    return {std::move(document), outcome.complete, text.str()};
+  };
+  OutputOptions output = options;
+  output.no_plots |= options.untimed;
+  return carry_out(output, {suite.name + "-" + options.sweep,
+                            identity(context, to_json(suite), context["selection"]), context,
+                            "points", "points", run, add_runs_of, points_in});
+}
+
+}  // namespace
 
 void SweepCommand::declare(const Command& command) {
   of_suites_ = command.group("with --sweep strain, resolution and step");

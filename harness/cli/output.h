@@ -1,5 +1,5 @@
-// What a long run shows while it lasts and leaves when it ends: progress on standard error, and one
-// file of results, with a journal beside it until it is whole.
+// What a long run shows while it lasts and leaves when it ends: progress on standard error, one
+// file of results, with a journal beside it until it is whole, and pictures.
 #pragma once
 
 #include <chrono>
@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "harness/base/journal.h"
 #include "harness/base/small_runs.h"
@@ -86,5 +87,25 @@ int carry_out(const OutputOptions& options, const Undertaking& undertaking);
 // A sweep's result as a terminal shows it, at its end and by `bench show`. all: every contestant.
 void print_sweep_result(std::ostream& out, const nlohmann::json& document, const std::string& file,
                         bool all);
+
+// ---- Figures, films and reports, drawn by the scripts of plots/ ----
+
+// Runs a script of plots/ with these arguments and --out <a folder of its own>, or --out <that
+// folder>/<name> with a name. What it has written there takes its place in `folder`, file by file
+// and each whole, and is named on stdout. Its exit code; where that is not 0, nothing is touched.
+int draw(const std::string& script, const std::vector<std::string>& arguments,
+         const std::string& folder, const std::string& name = {});
+
+// A result as plots/ reads it: a sweep with its analysis. Throws UsageError where nothing was
+// timed.
+nlohmann::json with_analysis(nlohmann::json document);
+
+// The figures of a result file, with the analysis that they are drawn from. folder: "" for that of
+// the file. Throws UsageError for a file that is none.
+int draw_result(const std::string& file, std::string folder = {});
+// Those of several files that are pieces of one sweep, drawn as one (points/result_file.h). name: what
+// their pictures' names begin with.
+int draw_pieces(const std::vector<std::string>& files, const std::string& name,
+                std::string folder = {});
 
 }  // namespace harness

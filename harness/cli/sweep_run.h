@@ -1,4 +1,4 @@
-// What `bench --sweep AXIS` was asked for, and the two kinds of runs that are behind it.
+// What `bench --sweep AXIS` was asked for, and hard cases, which are run otherwise than suites.
 #pragma once
 
 #include "harness/cli/options.h"
@@ -21,9 +21,8 @@ struct SweepCommand : SweepOptions, OutputOptions {
   Command of_suites_, of_cases_;  // options that only one kind of sweep has
 };
 
-// typed: the words of the command line, for the record. Both return an ExitCode.
-int run_suite(const SweepCommand& options, const Words& typed);
-// The cases are in the program, not in a suite.
+// The cases are in the program, not in a suite. typed: the words of the command line, for the
+// record. An ExitCode.
 int run_hard_cases(const SweepCommand& options, const Words& typed);
 
 }  // namespace harness

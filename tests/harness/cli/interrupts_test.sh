@@ -7,7 +7,7 @@ plugin=$BUILD_FOLDER/tests/libplugin_hangs.so
 export TMPDIR=$PWD/tmp
 
 mkdir tmp
-"$BENCH_BINARY" --sweep strain --scene chain --n 5 --limit 0.1 --solver shake --reps 1 --no-plots --out small.json >/dev/null 2>&1
+bench --sweep strain --scene chain --n 5 --limit 0.1 --solver shake --reps 1 --no-plots --out small.json >/dev/null 2>&1
 /usr/bin/python3 -c '
 import json
 print(json.dumps({**json.load(open("small.json"))["points"][0], "solver": "misfit", "contestant": "misfit", "settings": {}}))' >point.txt

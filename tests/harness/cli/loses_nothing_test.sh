@@ -11,7 +11,7 @@ cat >suite.json <<'JSON'
   {"sweep": "strain", "scene": "drape", "limits": [0.1], "scene_parameters": {"n": 7, "subdivisions": 1},
    "solvers": ["jacobi", "gauss_seidel", "shake", "icd", "fast_projection"], "steps": {"coarsest": 0.01, "finest": 0.005, "all": true}}]}
 JSON
-bench=("$BENCH_BINARY" --sweep strain --config suite.json --no-plots)
+sweep=(--sweep strain --config suite.json --no-plots)
 
 # same A B: the points of two results but for times, and which of them was fastest.
 same() {
@@ -36,9 +36,6 @@ if a != b:
 PYTHON
 }
 
-# line_of FILE PART: FILE is one line that contains PART.
-line_of() { [[ $(wc -l <"$1") == 1 ]] && grep -qF -- "$2" "$1"; }
-
 # lines JOURNAL N: waits until the journal has so many lines; fails where it does not come to that.
 lines() {
   for _ in $(seq 3000); do
@@ -53,7 +50,7 @@ lines() {
 # many lines. A busy machine may let a run finish unseen: then again. What is done to a held run meets it where it stands.
 hold() {
   for _ in $(seq 20); do
-    "${bench[@]}" "${@:3}" --out "$1" >/dev/null 2>err.txt &
+    "$BENCH_BINARY" "${sweep[@]}" "${@:3}" --out "$1" >/dev/null 2>err.txt &
     if lines "$1.journal" "$2" && kill -STOP "$!" && [[ $(wc -l <"$1.journal") -lt $whole ]]; then return; fi
     kill -KILL "$!" 2>/dev/null
     wait "$!"
@@ -69,7 +66,7 @@ let_go() {
   wait "$!" 2>/dev/null
 }
 
-"${bench[@]}" --out whole.json >/dev/null 2>&1 || fail "undisturbed run: exit $?"
+bench "${sweep[@]}" --out whole.json >/dev/null 2>&1 || fail "undisturbed run: exit $?"
 [[ ! -e whole.json.journal ]] || fail "a journal is left of a run that was finished"
 # The journal has a header, the points, the repetitions of those that may be best.
 whole=$(python3 -c 'import json; p = json.load(open("whole.json"))["points"]
@@ -82,14 +79,13 @@ for after in 3 20 45; do
   [[ ! -e killed.json ]] || fail "a result before the end"
 done
 before=$(wc -l <killed.json.journal)
-"${bench[@]}" --out killed.json >/dev/null 2>err.txt
-[[ $? == 2 ]] && line_of err.txt "--resume continues it" || fail "an unfinished run is not asked about: $(cat err.txt)"
+refused "--resume continues it" "${sweep[@]}" --out killed.json
 [[ $(wc -l <killed.json.journal) == "$before" ]] || fail "an unfinished run was touched"
-"${bench[@]}" --resume --out killed.json >/dev/null 2>&1 || fail "resumed run: exit $?"
+bench "${sweep[@]}" --resume --out killed.json >/dev/null 2>&1 || fail "resumed run: exit $?"
 same whole.json killed.json || fail "killed and resumed is not undisturbed"
 [[ ! -e killed.json.journal ]] || fail "a journal is left of a resumed run"
 cp killed.json copy.json
-"${bench[@]}" --resume --out killed.json >stdout.txt 2>&1 || fail "--resume of a finished run: exit $?"
+bench "${sweep[@]}" --resume --out killed.json >stdout.txt 2>&1 || fail "--resume of a finished run: exit $?"
 grep -q "complete already" stdout.txt && cmp -s killed.json copy.json || fail "--resume touched a finished run"
 
 # ---- Ctrl-C ---- (ten lines of the journal: points, and repetitions of those that are close)
@@ -97,9 +93,8 @@ hold interrupted.json 10
 let_go INT
 code=$?
 [[ $code == 130 ]] || fail "Ctrl-C: exit $code"
-python3 -c 'import json; d = json.load(open("interrupted.json")); assert not d["complete"] and len(d["points"]) >= 4' ||
-  fail "no partial result after Ctrl-C"
-"${bench[@]}" --resume --out interrupted.json >/dev/null 2>&1 || fail "resumed after Ctrl-C: exit $?"
+holds 'd = read("interrupted.json"); assert not d["complete"] and len(d["points"]) >= 4'
+bench "${sweep[@]}" --resume --out interrupted.json >/dev/null 2>&1 || fail "resumed after Ctrl-C: exit $?"
 same whole.json interrupted.json || fail "interrupted and resumed is not undisturbed"
 
 # ---- Points that crash or hang: one child is killed, one is stopped ----
@@ -126,26 +121,20 @@ second=$(child_of "$first")
 sleep 0.2
 kill -STOP "$second"
 wait "$program" || fail "a crash and a hang ended the sweep: exit $?"
-python3 - <<'PYTHON' || fail "statuses of a crash and a hang"
-import json
-a, b, c = json.load(open("long.json.out"))["points"]
+holds '
+a, b, c = read("long.json.out")["points"]
 assert a["status"] == "crashed" and "SIGILL" in a["status_detail"], a["status_detail"]
 assert b["status"] == "timeout" and "SIGKILL" in b["status_detail"], b["status_detail"]
-assert c["status"] == "ok" or "longer than" in c["status_detail"], c["status_detail"]
-PYTHON
-"$BENCH_BINARY" --sweep strain --config long.json --no-plots --out long.json.out --rerun-failed >/dev/null 2>&1 ||
-  fail "--rerun-failed: exit $?"
-python3 - <<'PYTHON' || fail "--rerun-failed left a crash"
-import json
-d = json.load(open("long.json.out"))
+assert c["status"] == "ok" or "longer than" in c["status_detail"], c["status_detail"]'
+bench --sweep strain --config long.json --no-plots --out long.json.out --rerun-failed >/dev/null 2>&1 || fail "--rerun-failed: exit $?"
+holds '
+d = read("long.json.out")
 assert all(p["status"] == "ok" or "stopped at" in p["status_detail"] for p in d["points"]), [p["status_detail"] for p in d["points"]]
-assert "resumed" in d["context"]
-PYTHON
+assert "resumed" in d["context"]'
 
 # ---- Two runs on one output ----
 hold both.json 3
-"${bench[@]}" --resume --out both.json >/dev/null 2>second.txt
-[[ $? == 2 ]] && line_of second.txt "another bench (process $!) is writing" || fail "two runs at once: $(cat second.txt)"
+refused "another bench (process $!) is writing" "${sweep[@]}" --resume --out both.json
 let_go CONT || fail "the first of two runs: exit $?"
 same whole.json both.json || fail "the first of two runs was disturbed"
 
@@ -153,13 +142,12 @@ same whole.json both.json || fail "the first of two runs was disturbed"
 hold other.json 5
 let_go KILL
 cp other.json.journal kept
-"${bench[@]}" --reps 3 --resume --out other.json >/dev/null 2>err.txt
-[[ $? == 2 ]] && line_of err.txt "suite/reps is 3, was 2" || fail "another suite: $(cat err.txt)"
+refused "suite/reps is 3, was 2" "${sweep[@]}" --reps 3 --resume --out other.json
 { cat "$BENCH_BINARY"; echo; } >other_bench && chmod +x other_bench
-./other_bench "${bench[@]:1}" --resume --out other.json >/dev/null 2>err.txt
-[[ $? == 2 ]] && line_of err.txt "program is" || fail "another build: $(cat err.txt)"
+./other_bench "${sweep[@]}" --resume --out other.json >/dev/null 2>err.txt
+[[ $? == 2 ]] && grep -q "program is" err.txt || fail "another build: $(cat err.txt)"
 cmp -s other.json.journal kept || fail "a refused journal was touched"
-./other_bench "${bench[@]:1}" --resume --force --out other.json >/dev/null 2>&1 || fail "--resume --force: exit $?"
+./other_bench "${sweep[@]}" --resume --force --out other.json >/dev/null 2>&1 || fail "--resume --force: exit $?"
 same whole.json other.json || fail "resumed by another build"
 
 # ---- The folder goes ----
@@ -174,13 +162,13 @@ mkdir -p small
 if mount -t tmpfs -o size=256k tmpfs small 2>/dev/null; then
   trap 'umount small' EXIT
   echo '{"old": true}' >small/result.json
-  "${bench[@]}" --force --out small/result.json >/dev/null 2>err.txt
+  bench "${sweep[@]}" --force --out small/result.json >/dev/null 2>err.txt
   [[ $? == 1 ]] && grep -q "cannot write .*No space left on device" err.txt || fail "a full disk: $(tail -1 err.txt)"
   [[ $(cat small/result.json) == '{"old": true}' ]] || fail "a full disk cost the old result"
   [[ $(wc -l <small/result.json.journal) -gt 5 ]] || fail "a full disk cost the journal"
   mount -o remount,size=8m small
   rm small/result.json
-  "${bench[@]}" --resume --out small/result.json >/dev/null 2>&1 || fail "resumed after a full disk: exit $?"
+  bench "${sweep[@]}" --resume --out small/result.json >/dev/null 2>&1 || fail "resumed after a full disk: exit $?"
   same whole.json small/result.json || fail "resumed after a full disk is not undisturbed"
 else
   echo "no small file system could be mounted (not root?): a full disk was not tried"
@@ -188,9 +176,9 @@ fi
 
 # ---- Shards ----
 for i in 1 2 3; do
-  "${bench[@]}" --shard "$i/3" --out "part$i.json" >/dev/null 2>&1 || fail "shard $i: exit $?"
+  bench "${sweep[@]}" --shard "$i/3" --out "part$i.json" >/dev/null 2>&1 || fail "shard $i: exit $?"
 done
-"$BENCH_BINARY" compare whole.json part1.json part2.json part3.json >compared.txt
+bench compare whole.json part1.json part2.json part3.json >compared.txt
 [[ $? == [036] ]] && ! grep -qE 'MISSING|NEW ' compared.txt || fail "the shards are not the whole: $(cat compared.txt)"
 
 finish

@@ -15,11 +15,11 @@ for point in document["points"]:
 json.dump(document, open("planted.json", "w"))
 PYTHON
 
-"$BENCH_BINARY" show planted.json >terminal.txt || fail "show"
-"$BENCH_BINARY" show planted.json --json >analysis.json || fail "show --json"
-"$BENCH_BINARY" results planted.json >page.md || fail "results"
-"$BENCH_BINARY" report planted.json --no-motion --out report.html >/dev/null || fail "report"
-"$BENCH_BINARY" plot planted.json --out figures >/dev/null || fail "plot"
+bench show planted.json >terminal.txt || fail "show"
+bench show planted.json --json >analysis.json || fail "show --json"
+bench results planted.json >page.md || fail "results"
+bench report planted.json --no-motion --out report.html >/dev/null || fail "report"
+bench plot planted.json --out figures >/dev/null || fail "plot"
 
 /usr/bin/python3 - <<'PYTHON' || fail "the printers differ"
 import html, json, re
