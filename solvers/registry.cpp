@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-
 // All methods, in the order of tables; each has its row in its own file in solvers/methods.
 #define INEXTENSIBLE_METHODS(ROW) \
   ROW(implicit_springs)           \

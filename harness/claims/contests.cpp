@@ -314,9 +314,9 @@ Verdict shake_small_steps(const Points& points) {
         const Steps steps = steps_of(points, p, level), larger = steps_of(points, *other, level);
         const Ratio costlier = ratio_of_steps(*other, p);
         answers.push_back(all_of({smaller(steps, larger), above(costlier, 1)}));
-        details += "; " + vertices_of(p.vertices()) + " at " + percent(p.strain_limit()) + ": SHAKE " +
-                steps.words() + ", ICD " + larger.words() + ", whose step takes " + text(costlier) +
-                " times as long";
+        details += "; " + vertices_of(p.vertices()) + " at " + percent(p.strain_limit()) +
+                   ": SHAKE " + steps.words() + ", ICD " + larger.words() + ", whose step takes " +
+                   text(costlier) + " times as long";
         compared.try_emplace(place, p);
         compared_icd.try_emplace(place, *other);
       }

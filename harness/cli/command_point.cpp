@@ -93,8 +93,7 @@ struct PointVerb {
   PointResult timed(const PointSpec& spec, const RunLimits& limits) const {
     const OutputToError no_output;
     PointResult point = run_point(spec, limits);
-    for (int i = 1; i < samples && point.ok(); ++i)
-      append(repeat_point(point, limits), point);
+    for (int i = 1; i < samples && point.ok(); ++i) append(repeat_point(point, limits), point);
     return point;
   }
 

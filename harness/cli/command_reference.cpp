@@ -57,13 +57,13 @@ void print_ensemble(std::ostream& out, const Ensemble& ensemble) {
 RouteRuns runs_beside(const std::string& path, const std::string& scene,
                       const SceneParameters& parameters, double finest) {
   const std::string name = std::filesystem::path(path).filename().string();
-  return RouteRuns(
-      [name](const std::string& line) { std::cerr << name << ": " << line << '\n'; }, path,
-      {{"schema", "inextensible-reference-pieces/1"},
-       {"scene", scene},
-       {"scene_parameters", parameters},
-       {"finest", finest},
-       {"build", machine_context().at("fingerprint")}});
+  return RouteRuns([name](const std::string& line) { std::cerr << name << ": " << line << '\n'; },
+                   path,
+                   {{"schema", "inextensible-reference-pieces/1"},
+                    {"scene", scene},
+                    {"scene_parameters", parameters},
+                    {"finest", finest},
+                    {"build", machine_context().at("fingerprint")}});
 }
 
 Ensemble ensemble_for(const Scene& scene, const std::vector<double>& times, RouteRuns& runs) {

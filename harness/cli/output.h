@@ -103,8 +103,8 @@ nlohmann::json with_analysis(nlohmann::json document);
 // The figures of a result file, with the analysis that they are drawn from. folder: "" for that of
 // the file. Throws UsageError for a file that is none.
 int draw_result(const std::string& file, std::string folder = {});
-// Those of several files that are pieces of one sweep, drawn as one (points/result_file.h). name: what
-// their pictures' names begin with.
+// Those of several files that are pieces of one sweep, drawn as one (points/result_file.h). name:
+// what their pictures' names begin with.
 int draw_pieces(const std::vector<std::string>& files, const std::string& name,
                 std::string folder = {});
 
