@@ -171,7 +171,8 @@ struct Ab : CompareOptions {
       throw std::runtime_error("the sweep of '" + before.path +
                                "' did not end: " + ran.last_error_line());
     std::vector<PairedPoint> points;
-    for (json point : read_result(out).at("points")) {
+    const json result = read_result(out);
+    for (json point : result.at("points")) {
       if (!point.value("best", false)) continue;
       if (const json& options = point.at("options"); options.contains("stiffness"))
         point["settings"]["stiffness"] = options.at("stiffness");
