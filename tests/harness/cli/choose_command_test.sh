@@ -3,7 +3,7 @@
 # that the scene has no use for: it says what it knows, and its exit code says whether that is an answer.
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/functions.sh"
 set -m  # a background process does not ignore SIGINT
-cloth=("$BENCH_BINARY" choose --scene cape --n 15 --seconds 30)
+cloth=("$BENCH_BINARY" choose --scene cape --n 15 --seconds 120)
 
 # The moments: before anything, once the finer run begins, and after so many ladders' runs.
 # interrupted SIGNAL LINES: sends the signal when so many lines are on standard error.

@@ -111,7 +111,7 @@ grep -q '^symmetric_sweeps conforms: ' check.txt || fail "it must conform: $(cat
 ((SANITIZED)) || grep -q '^PASS  hard cases' check.txt || fail "no hard cases: $(cat check.txt)"
 "$bench" --plugin "$misfits/libplugin_broken.so" check --solver misfit --quick >check.txt 2>&1
 [[ $? == 4 ]] || fail "a broken solver must exit 4: $(cat check.txt)"
-grep -q '^FAIL  limit .*(allowed 1)$' check.txt && grep -q '^      -> edge ' check.txt &&
+grep -q '^FAIL  limit .*(allowed 1)$' check.txt && grep -q '^      -> .*edge [0-9]* is strained' check.txt &&
   grep -q '^misfit does not conform: ' check.txt || fail "a broken solver must not conform: $(cat check.txt)"
 refused "did you mean 'symmetric_sweeps'" --plugin "$plugin" check --solver symetric_sweeps
 refused "--solver is required" check
