@@ -1,7 +1,7 @@
 """The words around a figure: warnings, and a caption that says what was measured, where, and how."""
 
 from parts.result import Json, Result
-from parts.words import clean, percent, plain, scene_words
+from parts.words import clean, plain, scene_words
 
 
 def warnings_of(result: Result) -> list[str]:
