@@ -148,7 +148,7 @@ struct Ab : CompareOptions {
       passes.errors.clear();
       return passes;
     }
-    const Gate passes = read_gate(gate);
+    Gate passes = read_gate(gate);
     if (!passes.times) throw UsageError("gate '" + gate + "': bench ab is about times");
     return passes;
   }
