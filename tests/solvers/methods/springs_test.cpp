@@ -194,6 +194,24 @@ TEST(VertexBlockDescent, ConvergesToTheStepOfImplicitSprings) {
   });
 }
 
+// Each vertex moves alone: a pass gives momentum away, and convergence brings it back.
+TEST(VertexBlockDescent, ConservesMomentumAsFarAsItHasConverged) {
+  Random random(1);
+  const RandomMesh mesh = random_mesh(random, 5, 5, 0);
+  const State start = moving_state(random, mesh, 4);
+  const auto lost = [&](double iterations) {
+    const auto stepper =
+        make_stepper("vertex_block_descent", mesh.problem, {0.01, 1, {{"iterations", iterations}}});
+    State state = start;
+    EXPECT_TRUE(stepper->advance(state, h));
+    EXPECT_EQ(stepper->work().iterations, iterations);
+    return testing::linear_momentum(*mesh.problem, state.v - start.v).norm();
+  };
+  EXPECT_GT(lost(2), 1e-3);
+  EXPECT_LT(lost(20), 0.1 * lost(2));
+  EXPECT_LT(lost(2000), 1e-9);
+}
+
 // The first step starts from the free flight, later ones from as much of gravity as the last step
 // let through: a rope at rest from where it is, so that one pass leaves it there.
 TEST(VertexBlockDescent, StartsWhereTheLastStepSaysThatItWillEnd) {

@@ -91,7 +91,10 @@ TEST(Order, IsThatOfTheMethodInItsOwnStepper) {
                {"SHAKE with staggered velocities", make("shake"), true, 2, 0.1},
                {"SHAKE without", make("shake"), false, 1, 0.1},
                {"SHAKE in BDF2", shake_in_bdf2, false, 1, 0.15},
-               {"RATTLE", make("rattle"), false, 2, 0.1}};
+               {"RATTLE", make("rattle"), false, 2, 0.1},
+               {"Jacobi", make("jacobi"), false, 1, 0.15},
+               {"Gauss-Seidel", make("gauss_seidel"), false, 1, 0.15},
+               {"colored Gauss-Seidel", make("gauss_seidel_colored"), false, 1, 0.15}};
   for (const auto& [name, make_one, staggered, expected, tolerance] : cases) {
     const Slope slope = order(make_one, staggered);
     EXPECT_NEAR(slope.value, expected, tolerance) << name << " +- " << slope.half_width;
