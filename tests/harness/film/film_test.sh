@@ -1,14 +1,7 @@
 #!/usr/bin/env bash
 # bench film: the same run in three formats, read back by Python, which knows nothing of the program.
-rm -rf -- ./*  # of the last time
-set -u
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
+. "$here/../cli/functions.sh"
 
 # refused PART ARGUMENTS...: exit 2, one line on stderr that contains PART, nothing written.
 refused() {
@@ -56,5 +49,4 @@ grep -qx "results/local/film-drape-2.webp" stdout.txt || fail "the first film wa
 "$BENCH_BINARY" film "${film[@]}" --stills 0,0.1 >stdout.txt 2>stderr.txt || fail "stills: $(tail -1 stderr.txt)"
 grep -qx "results/local/film-drape.png" stdout.txt && [[ -s results/local/film-drape.png ]] || fail "no stills: $(cat stdout.txt)"
 
-((failures == 0)) && echo passed
-exit $((failures > 0))
+finish

@@ -1,21 +1,13 @@
 #!/usr/bin/env bash
 # From an installed bench: a solver and a program out of the tree are built with find_package; the solver is listed, swept,
 # recorded and checked; what is no fitting plug-in is one clear line and exit 2.
-rm -rf -- ./*  # of the last time
-set -u
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
+. "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../harness/cli/functions.sh"
 
 # quietly COMMAND...: shows what it printed only if it fails, and ends the test.
 quietly() {
   "$@" >quietly.txt 2>&1 || { cat quietly.txt; echo "FAILED: $*"; exit 1; }
 }
 
-rm -rf installed example results ./*.json ./*.txt
 quietly cmake --install "$BUILD_FOLDER" --prefix "$PWD/installed"
 # Not with bench's own -march: what crosses the border must not depend on it.
 CMAKE_GENERATOR=Ninja quietly cmake -S "$EXAMPLE" -B example -DCMAKE_PREFIX_PATH="$PWD/installed"
@@ -175,5 +167,4 @@ refused "no licence for today" --plugin "$misfits/libplugin_throws.so" list
 refused "there is a solver 'symmetric_sweeps' already" --plugin "$plugin" list --plugin "$plugin"
 refused "there is no such file" --plugin "$plugin" --plugin missing.so "--sweep" strain --out out.json
 
-((failures == 0)) && echo "all well"
-exit $((failures > 0))
+finish
