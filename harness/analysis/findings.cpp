@@ -164,7 +164,7 @@ std::vector<Finding> findings_of(const std::vector<Plane>& planes) {
 
 namespace {
 
-// Of one row of the ranking at one limit, from few vertices to many.
+// Growth of one row of the ranking at one limit. Entries go from few vertices to many.
 RowGrowth growth_of(const std::string& row, const std::vector<Entry>& entries) {
   std::vector<double> vertices, seconds;
   for (const Entry& entry : entries) {

@@ -85,8 +85,8 @@ class PbdSubsteps final : public VelocityFilter {
     double distance;  // m
   };
 
-  // Of each free vertex to its nearest pins, straight through the positions at rest, or, if these
-  // are null, along edges.
+  // Attaches each free vertex to its nearest pins: straight through the positions at rest, or, if
+  // these are null, along edges.
   void attach(const Problem& problem, const Positions* rest) {
     const auto neighbours = neighbours_of(problem);
     std::vector<std::vector<Attachment>> nearest(problem.vertices());

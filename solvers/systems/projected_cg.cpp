@@ -19,7 +19,8 @@
 
 namespace inextensible {
 
-// Of solves with J D^-1 J^T: the next Newton step corrects what a projection leaves of J p.
+// Tolerance of solves with J D^-1 J^T: the next Newton step corrects what a projection leaves of J
+// p.
 constexpr double projection_tolerance = 1e-4;
 
 ProjectedCg::ProjectedCg(const Problem& problem, const EdgeConstraints& edges,

@@ -113,7 +113,7 @@ TEST(Growth, IsToldWhereIntervalsAreApart) {
   EXPECT_EQ(told_with(1.25, 5), "") << "anything";
 }
 
-// Of 95 % intervals, some 95 % hold the truth: of 400, fewer than 360 with a chance below 1e-4.
+// Some 95 % of 95 % intervals hold the truth. Fewer than 360 of 400 do with a chance below 1e-4.
 TEST(Growth, IntervalsHoldTheTruthAsOftenAsTheySay) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> noise(0, 0.1);

@@ -64,7 +64,7 @@ TEST(Ratio, IntervalHasItsCoverageWhateverTheDistribution) {
 }
 
 TEST(Ratio, IntervalMatchesTheTablesOfTheTest) {
-  // Of samples that no pair ties, the interval leaves out the c - 1 least and largest quotients;
+  // Where no pair of samples ties, the interval leaves out the c - 1 least and largest quotients;
   // Hollander and Wolfe's table of the two-sided 5 % test has c = 18 for 9 and 9, 3 for 5 and 5.
   const auto with = [](int n) {
     Samples a, b;

@@ -139,7 +139,7 @@ TEST(TriangleCollider, OfAConvexMeshGoesToTheNearestPoint) {
       for (int v = 0; v < n; ++v) {
         const auto nearest = collider.nearest_by_all(before.col(v));
         inside += nearest.signed_distance < 0;
-        // Of two faces as near as each other either will do.
+        // Either of two faces at the same distance will do.
         EXPECT_NEAR((x.col(v) - before.col(v)).norm(), std::max(0.0, -nearest.signed_distance),
                     1e-12)
             << before.col(v).transpose();
