@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <random>
 
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
@@ -37,10 +38,11 @@ class Tuner {
         numbers_(numbers),
         start_(std::move(start)) {}
 
-  // Nothing where no step counts at any size: that says nothing about settings. `guess` is tried
-  // first and takes the values found.
+  // Nothing where no step counts with any settings tried. `guess` is tried first and takes the
+  // values found.
   std::optional<TunedPlace> run(Values& guess) {
     begin(guess);
+    if (best_.seconds >= 1e300) draw_start(guess);
     if (best_.seconds >= 1e300) return {};
     const auto seconds = [this](const Values& values, double hopeless) {
       return evaluate(values, hopeless);
@@ -114,6 +116,19 @@ class Tuner {
       if (size >= search_.base.resolution) continue;
       take_size(size);
       find_best(size == smaller_ones.back() ? 1e300 : far_too_long * options_.longest_run);
+    }
+  }
+
+  // Where no step counts with the settings that the search was to begin with, it begins with
+  // `guess` or the first drawn set with which one does.
+  void draw_start(const Values& guess) {
+    std::mt19937_64 random{1};
+    std::uniform_real_distribution<double> position(0, 1);
+    for (int trial = 0; trial < options_.rules.budget && best_.seconds >= 1e300; ++trial) {
+      for (std::size_t i = 0; i < start_.size(); ++i)
+        start_[i] = value_at(numbers_[i], position(random));
+      if (trial == 0 && !guess.empty()) start_ = guess;
+      find_best(1e300);
     }
   }
 
@@ -192,7 +207,7 @@ class Tuner {
   const SweepRunners& runners_;
   const SweepSpec& scene_;  // one size and limit
   const std::vector<TunedNumber>& numbers_;
-  const Values start_;  // what the search begins with, and must better
+  Values start_;        // what the search begins with, and must better
   Search search_;
   std::optional<double> stiffness_;  // to begin calibrations from
   Found best_;                       // so far; where the next search begins
