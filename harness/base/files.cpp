@@ -39,11 +39,26 @@ bool is_special(const std::string& path) {
   return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
+// Removes what processes that were killed left in the folder: entries whose names are the stem, the
+// number of a process that is gone, and more.
+void remove_left(const fs::path& folder, const std::string& stem) {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(stem)) continue;
+    const pid_t owner = std::atoi(name.c_str() + stem.size());
+    if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH) fs::remove_all(entry, ignored);
+  }
+}
+
 // A new file beside `path`, created exclusively under a unique name; no link is followed.
 class Beside {
  public:
-  explicit Beside(const std::string& path)
-      : name_(path + ".XXXXXX"), file_(mkostemp(name_.data(), O_CLOEXEC)) {}
+  explicit Beside(const std::string& path) : name_(path + mark) {
+    remove_left(folder_of(path), fs::path(path).filename().string() + mark);
+    name_ += std::to_string(getpid()) + ".XXXXXX";
+    file_ = OpenFile(mkostemp(name_.data(), O_CLOEXEC));
+  }
   ~Beside() {
     if (file_ && !kept_) unlink(name_.c_str());
   }
@@ -68,6 +83,8 @@ class Beside {
     umask(mask);
     return 0666 & ~mask;
   }
+
+  static constexpr const char* mark = ".new-";
 
   std::string name_;
   OpenFile file_;
@@ -167,16 +184,7 @@ void write_atomically(const std::string& path, const std::string& text) {
   }
 }
 
-void remove_left_folders() {
-  const std::string stem = temporary_stem();
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(fs::temp_directory_path(), ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(stem)) continue;
-    const pid_t owner = std::atoi(name.c_str() + stem.size());
-    if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH) fs::remove_all(entry, ignored);
-  }
-}
+void remove_left_folders() { remove_left(fs::temp_directory_path(), temporary_stem()); }
 
 TemporaryFolder::TemporaryFolder(const std::string& purpose) {
   remove_left_folders();

@@ -43,7 +43,7 @@ for verb in film point choose check sweep stability answers; do
     ((took < 1000)) || ((SANITIZED)) || fail "$verb, SIG$signal: took $took ms"
     [[ $(cat old.png) == old ]] || fail "$verb, SIG$signal: the old picture is gone"
     pgrep -f -- "$plugin" >/dev/null && fail "$verb, SIG$signal: a process is left" && pkill -9 -f -- "$plugin"
-    [[ -z $(find tmp . -maxdepth 1 -name 'bench-*' -o -maxdepth 1 -name 'old.*.??????') ]] || fail "$verb, SIG$signal: $(ls tmp .)"
+    [[ -z $(find tmp . -maxdepth 1 -name 'bench-*' -o -maxdepth 1 -name 'old.*.new-*') ]] || fail "$verb, SIG$signal: $(ls tmp .)"
   done
 done
 finish
