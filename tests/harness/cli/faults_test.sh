@@ -13,7 +13,7 @@ words_of() {
   case $1 in
     sweep) echo --sweep strain --scene chain --n 5 --limit 0.1 --solver shake --reps 1 --no-plots --untimed --force --out old.json ;;
     stability) echo --sweep stability --case 'Q1$' --solver shake,icd --no-plots --force --out old.json ;;
-    answers) echo answers --answer pendulum --solver shake --no-plots --force --out old.json ;;
+    answers) echo answers --answer catenary_place --solver shake --no-plots --force --out old.json ;;
     baseline) echo baseline given.json --out old.json ;;
     results) echo results given.json --out old.md ;;
     compare) echo compare given.json given.json --junit old.xml --markdown old.md ;;
