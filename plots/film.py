@@ -88,12 +88,6 @@ def write(picture: Image.Image, film: Film, lines: list[str], top: float, left: 
         ImageDraw.Draw(picture).text((start, top + number * film.line), line, fill=fill, font=film.font)
 
 
-def greyed(picture: Image.Image, text: str, film: Film) -> Image.Image:
-    """Without colour and pale, with a word on it: this run does not go on."""
-    pale = Image.blend(picture.convert("L").convert("RGB"), Image.new("RGB", picture.size, (235, 235, 235)), GREY)
-    return alarmed(pale, text, film)
-
-
 def alarmed(picture: Image.Image, text: str, film: Film) -> Image.Image:
     """Framed, with a word on it."""
     draw = ImageDraw.Draw(picture)
@@ -111,7 +105,8 @@ def panel(film: Film, take: int, frame: int) -> Image.Image:
     with Image.open(film.folder / f"{take}-{min(frame, of['frames'] - 1)}.ppm") as opened:
         picture = opened.convert("RGB")
     if frame >= of["frames"]:
-        picture = greyed(picture, of["detail"] or "ended", film)
+        pale = Image.blend(picture.convert("L").convert("RGB"), Image.new("RGB", picture.size, (235, 235, 235)), GREY)
+        picture = alarmed(pale, of["detail"] or "ended", film)  # this run does not go on
     elif of["energy_gained"]:
         picture = alarmed(picture, "this run gains energy: its motion is wrong", film)
     lines = caption(film, take, frame)
@@ -154,9 +149,8 @@ def sheet(film: Film, cells: list[list[tuple[int, int]]]) -> Image.Image:
 def stills(film: Film) -> Image.Image:
     """One time: takes side by side. Several: a row for each take."""
     takes = range(len(film.takes))
-    if len(film.frames) == 1:
-        return sheet(film, [[(take, film.frames[0]) for take in takes]])
-    return sheet(film, [[(take, frame) for frame in film.frames] for take in takes])
+    cells = [[(take, frame) for frame in film.frames] for take in takes]
+    return sheet(film, cells if len(film.frames) > 1 else [[cell for row in cells for cell in row]])
 
 
 def moving(film: Film) -> Iterator[Image.Image]:

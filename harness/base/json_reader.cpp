@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "harness/base/errors.h"
 #include "harness/base/json_text.h"
@@ -115,59 +116,28 @@ constexpr std::size_t deepest = 64;  // ours are less than ten deep
 
 // Looks at a text before it becomes a tree: trees are taken apart by recursion, and keep the last
 // of two equal keys.
-class Inspector : public nlohmann::json_sax<json> {
- public:
-  const std::string& defect() const { return defect_; }
-
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool start_object(std::size_t) override {
-    keys_.emplace_back();
-    return enter();
-  }
-  bool key(string_t& name) override {
-    return keys_.back().insert(name).second ||
-           refuse("the key '" + shortened(name, 40) + "' occurs twice in an object");
-  }
-  bool end_object() override {
-    keys_.pop_back();
-    --depth_;
-    return true;
-  }
-  bool start_array(std::size_t) override { return enter(); }
-  bool end_array() override {
-    --depth_;
-    return true;
-  }
-  bool parse_error(std::size_t, const std::string&, const json::exception& error) override {
-    return refuse(shortened(error.what()));
-  }
-
- private:
-  bool enter() {
-    return ++depth_ <= deepest ||
-           refuse("it is nested more than " + std::to_string(deepest) + " deep");
-  }
-  bool refuse(std::string why) {
-    defect_ = std::move(why);
-    return false;
-  }
-
-  std::vector<std::set<std::string>> keys_;  // of the objects that are open
-  std::size_t depth_ = 0;
-  std::string defect_;
-};
-
 json parse(const std::string& text, const std::string& where, bool comments) {
-  Inspector inspector;
-  if (!json::sax_parse(text, &inspector, json::input_format_t::json, true, comments))
-    throw UsageError(where + inspector.defect());
-  return json::parse(text, nullptr, true, comments);
+  std::vector<std::set<std::string>> keys;  // of the objects that are open, by depth
+  const auto inspect = [&](int depth, json::parse_event_t event, const json& value) {
+    using Event = json::parse_event_t;
+    const auto at = static_cast<std::size_t>(depth);
+    if ((event == Event::object_start || event == Event::array_start) && at >= deepest)
+      throw UsageError(where + "it is nested more than " + std::to_string(deepest) + " deep");
+    if (event == Event::object_start) {
+      keys.resize(at);
+      keys.emplace_back();
+    } else if (event == Event::key && !keys.at(at - 1).insert(value.get<std::string>()).second) {
+      throw UsageError(where + "the key '" + shortened(value.get<std::string>(), 40) +
+                       "' occurs twice in an object");
+    }
+    return false;  // nothing is kept
+  };
+  try {
+    std::ignore = json::parse(text, inspect, true, comments);
+    return json::parse(text, nullptr, true, comments);
+  } catch (const json::exception& error) {
+    throw UsageError(where + shortened(error.what()));
+  }
 }
 
 }  // namespace

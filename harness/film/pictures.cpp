@@ -4,7 +4,9 @@
 #include <atomic>
 #include <cmath>
 #include <future>
+#include <map>
 #include <mutex>
+#include <numeric>
 #include <set>
 #include <thread>
 
@@ -17,7 +19,7 @@ namespace harness {
 namespace {
 
 constexpr int legend_end = 4;       // strain over its limit
-constexpr double line_spacing = 7;  // pixels between lines of yarns, at least
+constexpr double line_spacing = 7;  // pixels between yarns, below which their lines are fainter
 
 // Cloth's own colour up to the limit, warm beyond it; linear. `over_limit`: strain over its limit.
 Eigen::Vector3d strain_colour(double over_limit) {
@@ -47,6 +49,29 @@ Eigen::Matrix3Xd colours_of(const FilmScene& stage, const inextensible::Position
   Eigen::Matrix3Xd colours(3, x.cols());
   for (Eigen::Index v = 0; v < x.cols(); ++v) colours.col(v) = strain_colour(most[v] / limit);
   return colours;
+}
+
+using Side = std::pair<int, int>;
+
+std::vector<std::uint8_t> yarns_of(const FilmScene& stage) {
+  std::set<Side> edges;
+  for (const auto& [a, b] : stage.edges) edges.insert(std::minmax(a, b));
+  std::vector<std::uint8_t> sides;
+  sides.reserve(stage.triangles.size());
+  for (const auto& t : stage.triangles) {
+    unsigned yarns = 0;
+    for (unsigned k = 0; k < 3; ++k)
+      if (edges.contains(std::minmax(t[k], t[(k + 1) % 3]))) yarns |= 1U << k;
+    sides.push_back(static_cast<std::uint8_t>(yarns));
+  }
+  return sides;
+}
+
+// Mean length of the cloth's edges, m; 0 without edges.
+double mean_edge(const FilmScene& stage) {
+  if (stage.rest_length.empty()) return 0;
+  return std::accumulate(stage.rest_length.begin(), stage.rest_length.end(), 0.0) /
+         static_cast<double>(stage.rest_length.size());
 }
 
 struct Picture {
@@ -84,6 +109,36 @@ void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& wor
 
 }  // namespace
 
+std::vector<std::array<int, 3>> oriented(std::vector<std::array<int, 3>> triangles) {
+  std::map<Side, std::vector<std::size_t>> beside;
+  const auto from = [&](std::size_t t, std::size_t k) { return triangles[t][k % 3]; };
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      beside[std::minmax(from(i, k), from(i, k + 1))].push_back(i);
+  std::vector<char> seen(triangles.size(), 0);
+  for (std::size_t first = 0; first < triangles.size(); ++first) {
+    std::vector<std::size_t> reached;
+    if (!seen[first]) reached.push_back(first);
+    seen[first] = 1;
+    for (std::size_t at = 0; at < reached.size(); ++at) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int a = from(reached[at], k), b = from(reached[at], k + 1);
+        for (const std::size_t next : beside[std::minmax(a, b)]) {
+          if (seen[next]) continue;
+          seen[next] = 1;
+          reached.push_back(next);
+          for (std::size_t i = 0; i < 3; ++i) {
+            if (from(next, i) != a || from(next, i + 1) != b) continue;
+            std::swap(triangles[next][1], triangles[next][2]);  // it passed in the same direction
+            break;
+          }
+        }
+      }
+    }
+  }
+  return triangles;
+}
+
 Shot shot_of(const Recording& recording, const View& view, std::size_t take, std::size_t frame,
              int width) {
   const FilmScene& stage = recording.stage;
@@ -102,9 +157,9 @@ Shot shot_of(const Recording& recording, const View& view, std::size_t take, std
     shot.yarn = std::max(1.2 * pixel, std::min(0.009 * view.size, 0.25 * edge));
     return shot;
   }
-  const int every = edge > 0 ? static_cast<int>(std::ceil(line_spacing * pixel / edge)) : 1;
-  shot.drawn_sides = drawn_sides(stage, std::max(1, every));
-  shot.yarn = std::clamp(0.05 * every * edge, 0.4 * pixel, 0.9 * pixel);
+  shot.yarns = yarns_of(stage);
+  shot.yarn = std::clamp(0.05 * edge, 0.4 * pixel, 0.9 * pixel);
+  shot.yarn_shade = 0.5 * std::min(1.0, edge / (line_spacing * pixel));
   return shot;
 }
 

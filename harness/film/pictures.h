@@ -13,20 +13,12 @@
 
 namespace harness {
 
-// ---- the cloth (weave.cpp) ----
+// ---- the cloth ----
 
 // Turns triangles so that two with a common side pass it in opposite directions, and normals do not
 // flip from one to the next; the first triangle of each connected part stays as it is. A surface
 // with one side only cannot be turned that way: there it is left wrong along a line.
 std::vector<std::array<int, 3>> oriented(std::vector<std::array<int, 3>> triangles);
-
-// Which sides of triangles are drawn as lines. One bit each: 1 from corner 0 to 1, 2 from 1 to 2, 4
-// from 2 to 0. `every`: one of so many yarns is drawn, so that those of a fine cloth stay lines;
-// above 1, only of a cloth of quads.
-std::vector<std::uint8_t> drawn_sides(const FilmScene& stage, int every);
-
-// The cloth's mean edge length, m; 0 without edges.
-double mean_edge(const FilmScene& stage);
 
 // ---- the camera (view.cpp) ----
 
@@ -61,12 +53,14 @@ struct Shot {
   inextensible::Positions cloth;              // m
   std::vector<std::array<int, 3>> triangles;  // of the cloth; none: edges are drawn, as a rope
   std::vector<std::array<int, 2>> edges;      // of a rope
-  std::vector<std::uint8_t> drawn_sides;      // of each triangle
-  Eigen::Matrix3Xd colours;                   // of each vertex, linear
-  inextensible::Positions body;               // m; empty: none
+  // Which sides of each triangle are yarns: 1 from corner 0 to 1, 2 from 1 to 2, 4 from 2 to 0.
+  std::vector<std::uint8_t> yarns;
+  Eigen::Matrix3Xd colours;      // of each vertex, linear
+  inextensible::Positions body;  // m; empty: none
   std::vector<std::array<int, 3>> body_triangles;
-  double yarn = 0;       // half the width of a line, or the radius of a rope, m
-  double thickness = 0;  // so far the cloth may lie inside the body, and is seen nevertheless, m
+  double yarn = 0;        // half the width of a line, or the radius of a rope, m
+  double yarn_shade = 0;  // how much darker a line is: 0 to 1
+  double thickness = 0;   // so far the cloth may lie inside the body, and is seen nevertheless, m
 };
 
 struct Pixels {

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 #include <type_traits>
 
@@ -97,32 +98,20 @@ Owned<RTCGeometry> triangle_geometry(RTCDevice device, const Positions& x,
   return made;
 }
 
-Ball ball(const Shot& shot, Eigen::Index vertex, double radius) {
-  const Vector3f p = shot.cloth.col(vertex).cast<float>();
-  return {p.x(), p.y(), p.z(), static_cast<float>(radius)};
-}
-
-// A cylinder with round ends for each edge of a rope.
-Owned<RTCGeometry> rope_geometry(RTCDevice device, const Shot& shot) {
-  Owned<RTCGeometry> made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE));
-  auto* points =
-      buffer<Ball>(made, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 2 * shot.edges.size());
-  auto* first = buffer<unsigned>(made, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, shot.edges.size());
-  for (std::size_t k = 0; k < shot.edges.size(); ++k) {
-    for (std::size_t end = 0; end < 2; ++end)
-      points[2 * k + end] = ball(shot, shot.edges[k][end], shot.yarn);
-    first[k] = static_cast<unsigned>(2 * k);
+// Balls about vertices, or the cylinders with round ends that start at each second one of them.
+Owned<RTCGeometry> round_geometry(RTCDevice device, const Shot& shot, RTCGeometryType type,
+                                  const std::vector<int>& vertices, double radius) {
+  Owned<RTCGeometry> made(rtcNewGeometry(device, type));
+  auto* balls = buffer<Ball>(made, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Vector3f p = shot.cloth.col(vertices[i]).cast<float>();
+    balls[i] = {p.x(), p.y(), p.z(), static_cast<float>(radius)};
   }
-  rtcCommitGeometry(made.get());
-  return made;
-}
-
-// A ball for each vertex of a rope.
-Owned<RTCGeometry> knot_geometry(RTCDevice device, const Shot& shot) {
-  Owned<RTCGeometry> made(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT));
-  auto* points = buffer<Ball>(made, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
-                              static_cast<std::size_t>(shot.cloth.cols()));
-  for (Eigen::Index i = 0; i < shot.cloth.cols(); ++i) points[i] = ball(shot, i, 1.8 * shot.yarn);
+  if (type == RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE) {
+    auto* first =
+        buffer<unsigned>(made, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, vertices.size() / 2);
+    for (unsigned k = 0; 2 * k < vertices.size(); ++k) first[k] = 2 * k;
+  }
   rtcCommitGeometry(made.get());
   return made;
 }
@@ -206,8 +195,13 @@ Tracer::Tracer(const Shot& shot, const View& view, int samples)
   const auto body = triangle_geometry(device_.get(), shot.body, shot.body_triangles);
   body_ = scene_of(device_.get(), {body.get()});
   if (shot.triangles.empty()) {
-    const auto rope = rope_geometry(device_.get(), shot),
-               knots = knot_geometry(device_.get(), shot);
+    std::vector<int> ends, vertices(static_cast<std::size_t>(shot.cloth.cols()));
+    for (const auto& edge : shot.edges) ends.insert(ends.end(), edge.begin(), edge.end());
+    std::iota(vertices.begin(), vertices.end(), 0);
+    const auto rope = round_geometry(device_.get(), shot, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE,
+                                     ends, shot.yarn),
+               knots = round_geometry(device_.get(), shot, RTC_GEOMETRY_TYPE_SPHERE_POINT, vertices,
+                                      1.8 * shot.yarn);
     cloth_ = scene_of(device_.get(), {rope.get(), knots.get()});
     all_ = scene_of(device_.get(), {rope.get(), knots.get(), body.get()});
   } else {
@@ -269,7 +263,7 @@ Surface Tracer::on_triangle(const Hit& hit, const Vector3d& direction, const Pos
 // How much of a yarn's line is at a point: 0 to 1.
 double Tracer::line(const Hit& hit) const {
   const auto& t = shot_.triangles[hit.primitive];
-  const unsigned drawn = shot_.drawn_sides[hit.primitive];
+  const unsigned drawn = shot_.yarns[hit.primitive];
   if (drawn == 0) return 0;
   const double twice_area = hit.face.norm();
   const std::array<double, 3> weight{1 - hit.u - hit.v, hit.u, hit.v};  // of corners 0, 1, 2
@@ -289,7 +283,7 @@ Surface Tracer::on_cloth(const Hit& hit, const Vector3d& direction) const {
   Surface surface = on_triangle(hit, direction, shot_.cloth, corners, normals_);
   const std::array<double, 3> weight{1 - hit.u - hit.v, hit.u, hit.v};
   for (std::size_t k = 0; k < 3; ++k) surface.colour += weight[k] * shot_.colours.col(corners[k]);
-  surface.colour *= 1 - 0.5 * line(hit);
+  surface.colour *= 1 - shot_.yarn_shade * line(hit);
   surface.shine = 0.03;
   return surface;
 }

@@ -14,7 +14,7 @@ from parts.curves import (Curve, Curves, Rows, add_strip, all_best, curves_in, d
                           failed_rows, letters_in)
 from parts.result import Figures, Json, Result
 from parts.sheet import (BETWEEN, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, STEPS_HEIGHT, TIME_LABEL, Sheet,
-                         label_ends, labels_height, make_sheet)
+                         add_legend, legend_height, make_sheet)
 from parts.style import Styles, receding_sentences, styles_for
 from parts.words import file_part, percent, scene_words, subject
 
@@ -63,7 +63,7 @@ def draw(figure: Json, result: Result) -> Figure:
     sheet = make_sheet(result, f"Figure {number} - {title}" if number else title,
                        [*receding_sentences(styles.values()), *_caption(figure, points, result, columns)],
                        columns[-1].left + MAIN_WIDTH + LEGEND_WIDTH, panels_height + strip + (HEADING if len(columns) > 1 else 0),
-                       labels_height(styles) - panels_height,
+                       legend_height(styles) - panels_height,
                        " ".join(result.finding(scene, sweep, figure["fixed"] if sweep == "strain" else None)[:1]))
     mains = [_draw_column(sheet, column, styles, figure) for column in columns]
     low, high = min(main.get_ylim()[0] for main in mains), max(main.get_ylim()[1] for main in mains)
@@ -78,7 +78,7 @@ def draw(figure: Json, result: Result) -> Figure:
             sheet.figure.text(box.x0, box.y1 + (strip + 0.17) / sheet.height, column.heading, fontsize=9, fontweight="bold",
                               va="bottom")
     mains[0].set_ylabel(TIME_LABEL)
-    label_ends(sheet, mains[-1], ends_of(columns[-1].curves), styles)
+    add_legend(mains[-1], styles, ends_of(columns[-1].curves))
     return sheet.figure
 
 
@@ -180,7 +180,7 @@ def draw_growth(figure: Json, result: Result) -> Figure:
     sheet = make_sheet(result, f"{scene_words(scene)}: growth of a step's time with vertices",
                        [*receding_sentences(styles.values()), *_caption(figure, _points(figure, result), result, [column])],
                        LEFT + MAIN_WIDTH + LEGEND_WIDTH, MAIN_HEIGHT + ROW_HEIGHT * len(column.rows),
-                       labels_height(styles) - MAIN_HEIGHT,
+                       legend_height(styles) - MAIN_HEIGHT,
                        " ".join(words for words in result.finding(scene, sweep) if words.startswith("From ")))
     main = sheet.axes(LEFT, sheet.bottom, MAIN_WIDTH, MAIN_HEIGHT)
     log_x(main, _xs(curves), MAIN_WIDTH)
@@ -191,5 +191,5 @@ def draw_growth(figure: Json, result: Result) -> Figure:
     main.set(xlabel="vertices (log axes; dotted: slopes 1 and 2)", ylabel="wall seconds of a step")
     grid(main)
     add_strip(sheet, main, column.rows, styles, column.strip)
-    label_ends(sheet, main, ends_of(curves), styles)
+    add_legend(main, styles, ends_of(curves))
     return sheet.figure

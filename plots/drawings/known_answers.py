@@ -44,7 +44,7 @@ def draw(result: Result) -> Figure:
             axes.set_ylabel("|deviation|")
         axes.set_xlabel("time step (s)")
         if number == columns - 1:
-            add_legend(axes, styles, anchor=(1.12, 1.0))
+            add_legend(axes, styles)
     return sheet.figure
 
 

@@ -9,7 +9,7 @@ from parts.caption import scene_sentence, settings_of_the_run
 from parts.curves import Rows, add_strip, draw_noise, letters_in
 from parts.result import Figures, Result
 from parts.runs import Run, StepSweep, cheapest, step_sweeps_in
-from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, TIME_LABEL, label_ends, labels_height,
+from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, TIME_LABEL, add_legend, legend_height,
                          make_sheet)
 from parts.style import SolverStyle, Styles, line_of, receding_sentences
 from parts.words import plain, scene_words
@@ -38,7 +38,7 @@ def draw(sweep: StepSweep, result: Result) -> Figure:
     timeout, profile, _ = settings_of_the_run(result)
     caption.append("; ".join(filter(None, [f"Least of {plain(result.suite.get('reps', 1))} samples or more a point", profile, timeout])) + ".")
     sheet = make_sheet(result, f"{scene_words(sweep.scene)}: time against error", caption, LEFT + WIDTH + LEGEND_WIDTH,
-                       HEIGHT + ROW_HEIGHT * len(rows), labels_height(styles) - HEIGHT,
+                       HEIGHT + ROW_HEIGHT * len(rows), legend_height(styles) - HEIGHT,
                        " ".join(result.finding(sweep.scene, "step", sweep.vertices)[:1]))
     axes = sheet.axes(LEFT, sheet.bottom, WIDTH, HEIGHT)
     log_log(axes, [run.error for run in runs], [run.seconds for run in runs])
@@ -50,7 +50,7 @@ def draw(sweep: StepSweep, result: Result) -> Figure:
     grid(axes)
     add_strip(sheet, axes, rows, styles, "error not reached")
     ends = {solver: cheapest(own)[-1] for solver, own in sweep.runs.items() if own}
-    label_ends(sheet, axes, {solver: (run.error, run.seconds) for solver, run in ends.items()}, styles)
+    add_legend(axes, styles, {solver: (run.error, run.seconds) for solver, run in ends.items()})
     return sheet.figure
 
 

@@ -7,12 +7,11 @@ import subprocess
 import tempfile
 from functools import cache
 from pathlib import Path
-from typing import Any, Iterator
+from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.text import Text
 
 import figures
 from parts.result import Result
@@ -195,10 +194,7 @@ def panels(figure: Figure) -> list[Axes]:
 
 
 def legend_labels(figure: Figure) -> list[str]:
-    """Labels of legends and beside the ends of curves."""
-    legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
-    beside = [text for text in figure.texts if str(text.get_gid()).startswith("label-")]
-    return [" ".join(text.get_text().split()) for text in [*(text for box in legends for text in box.get_texts()), *beside]]
+    return [" ".join(text.get_text().split()) for axes in figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()]
 
 
 def strips(figure: Figure) -> list[Axes]:
@@ -215,23 +211,7 @@ def curves(axes: Axes, color: str | None = None) -> list[Any]:
             and line.get_color() not in ("#7F7F7F", "#FFE08A") and color in (None, line.get_color())]
 
 
-def texts_outside(figure: Figure) -> list[str]:
-    """Words that run out of the figure."""
-    boxes = [(text.get_text(), text.get_window_extent(figure.canvas.get_renderer())) for text in _visible_texts(figure)]
-    frame = figure.bbox
-    return [text for text, box in boxes if text.strip() and (box.x0 < frame.x0 - 1 or box.x1 > frame.x1 + 1 or
-                                                             box.y0 < frame.y0 - 1 or box.y1 > frame.y1 + 1)]
-
-
-def _visible_texts(figure: Figure) -> Iterator[Text]:
-    for axes in figure.axes:
-        if axes.axison:
-            for axis in (axes.xaxis, axes.yaxis):
-                low, high = sorted(axis.get_view_interval())
-                yield from (tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high and tick.label1.get_visible())
-                yield axis.label
-        yield from axes.texts
-        if axes.get_legend():
-            yield from axes.get_legend().get_texts()
-        yield from (axes.title, axes._left_title, axes._right_title)
-    yield from figure.texts
+def fits(figure: Figure) -> bool:
+    """Whether nothing runs out of the figure."""
+    box = figure.get_tightbbox(figure.canvas.get_renderer())  # inches
+    return min(box.x0, box.y0) > -0.02 and box.x1 < figure.get_figwidth() + 0.02 and box.y1 < figure.get_figheight() + 0.02

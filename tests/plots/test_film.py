@@ -80,12 +80,9 @@ def test_a_film_has_all_frames(tmp_path: Path) -> None:
     assert run(pictured(tmp_path, [0, 1, 2]), out).returncode == 0
     with Image.open(out) as picture:
         assert (picture.n_frames, picture.size[0]) == (3, 2 * WIDTH)
-
-
-@pytest.mark.skipif(not shutil.which("ffmpeg"), reason="ffmpeg is not installed")
-def test_a_film_for_players(tmp_path: Path) -> None:
-    out = tmp_path / "film.mp4"
-    assert run(pictured(tmp_path, [0, 1, 2]), out).returncode == 0 and out.stat().st_size > 0
+    if shutil.which("ffmpeg"):
+        out = tmp_path / "film.mp4"
+        assert run(tmp_path, out).returncode == 0 and out.stat().st_size > 0
 
 
 def test_a_run_that_gave_up_is_grey_and_says_so(tmp_path: Path) -> None:
@@ -103,13 +100,12 @@ def test_a_run_that_gains_energy_is_framed_in_every_picture(tmp_path: Path) -> N
     for frame in range(3):
         marked = pixels(film.panel(made, 0, frame))
         assert np.array_equal(marked[HEIGHT // 4, WIDTH // 2], plain[HEIGHT // 4, WIDTH // 2]), "the picture stays"
-        for row, column in ((0, WIDTH // 2), (HEIGHT - 1, WIDTH // 2), (HEIGHT // 2, 0), (HEIGHT // 2, WIDTH - 1)):
-            red, green, blue = marked[row, column]
-            assert red > 2 * green and red > 2 * blue, "a red frame"
+        red, green, blue = marked[[0, HEIGHT - 1, HEIGHT // 2, HEIGHT // 2], [WIDTH // 2, WIDTH // 2, 0, WIDTH - 1]].T
+        assert np.all(red > 2 * np.maximum(green, blue)), "a red frame"
 
 
 @pytest.mark.parametrize("changes, frame, status, strain", [
-    ({}, 2, "ok", "below 0.001 %"), ({"largest_strain": [0.0, 0.011, 0.0]}, 2, "strained more than permitted", "1.1 %"),
+    ({"largest_strain": [0.0, 0.011, 0.0]}, 2, "strained more than permitted", "1.1 %"),
     ({"largest_strain": [0.0, 0.0099, 0.005]}, 0, "ok", "below 0.001 %"), ({"largest_strain": [0.0, 0.0099, 0.005]}, 2, "ok", "0.99 %"),
     ({"energy_gained": "energy 4"}, 2, "gains energy", "below 0.001 %"), ({"detail": "gave up at 1 s"}, 2, "gave up", "below 0.001 %")])
 def test_captions_tell_step_status_strain_so_far_time_and_sag(changes: dict, frame: int, status: str, strain: str, tmp_path: Path) -> None:

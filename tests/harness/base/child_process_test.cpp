@@ -10,6 +10,7 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <functional>
 #include <thread>
 
 namespace harness {
@@ -78,57 +79,54 @@ TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParent) {
   EXPECT_TRUE(was_killed(*left)) << "its parent waited for the process that it left behind";
 }
 
-// Stopped for longer than the time-out and its grace, and running for less by all that a busy
-// machine may add.
-TEST(ChildProcess, TimeInWhichTheParentWasStoppedIsNotTheChilds) {
-  std::array<int, 2> begun{}, finish{};
-  ASSERT_EQ(pipe(begun.data()), 0);
-  ASSERT_EQ(pipe(finish.data()), 0);
+// Whether a process whose child does `work` gets its answer in spite of what disturbs it meanwhile.
+bool is_answered(double timeout, const std::function<void()>& work,
+                 const std::function<void(pid_t)>& disturb) {
   const pid_t parent = fork();
-  char c = 'x';
   if (parent == 0) {
+    std::signal(SIGUSR1, [](int) {});
     const ChildOutcome outcome = run_in_child(
         [&](Heartbeat&) {
-          const bool told = write(begun[1], &c, 1) == 1 && read(finish[0], &c, 1) == 1;
-          return std::string(told ? "done" : "");
+          work();
+          return std::string("done");
         },
-        {.timeout = 3});  // and 0.8 s of grace
+        {.timeout = timeout});
     _exit(outcome.end == End::returned && outcome.text == "done" ? 0 : 1);
   }
-  ASSERT_EQ(read(begun[0], &c, 1), 1);
-  ASSERT_EQ(kill(parent, SIGSTOP), 0);
-  sleep_for(4500);
-  ASSERT_EQ(kill(parent, SIGCONT), 0);
-  sleep_for(200);  // in which it looks at its child
-  ASSERT_EQ(write(finish[1], &c, 1), 1);
+  disturb(parent);
   int status = 0;
-  ASSERT_EQ(waitpid(parent, &status, 0), parent);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << "it counted as timed out";
+  return waitpid(parent, &status, 0) == parent && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+// Stopped for longer than the time-out and its grace (0.8 s), and running for less by all that a
+// busy machine may add.
+TEST(ChildProcess, TimeInWhichTheParentWasStoppedIsNotTheChilds) {
+  std::array<int, 2> begun{}, finish{};
+  ASSERT_EQ(pipe(begun.data()) + pipe(finish.data()), 0);
+  char c = 'x';
+  const auto work = [&] {
+    if (write(begun[1], &c, 1) != 1 || read(finish[0], &c, 1) != 1) _exit(1);
+  };
+  EXPECT_TRUE(is_answered(3, work, [&](pid_t parent) {
+    ASSERT_EQ(read(begun[0], &c, 1), 1);
+    ASSERT_EQ(kill(parent, SIGSTOP), 0);
+    sleep_for(4500);
+    ASSERT_EQ(kill(parent, SIGCONT), 0);
+    sleep_for(200);  // in which it looks at its child
+    ASSERT_EQ(write(finish[1], &c, 1), 1);
+  })) << "it counted as timed out";
 }
 
 // A signal ends the parent's wait for an answer that is there, of a child that has ended.
 TEST(ChildProcess, AnAnswerIsNotLostToASignal) {
-  const pid_t parent = fork();
-  if (parent == 0) {
-    struct sigaction action {};
-    action.sa_handler = [](int) {};
-    sigaction(SIGUSR1, &action, nullptr);
-    const ChildOutcome outcome = run_in_child(
-        [](Heartbeat&) {
-          sleep_for(200);
-          return std::string("done");
-        },
-        {.timeout = 10});
-    _exit(outcome.end == End::returned && outcome.text == "done" ? 0 : 1);
-  }
-  sleep_for(100);
-  ASSERT_EQ(kill(parent, SIGSTOP), 0);
-  sleep_for(300);
-  ASSERT_EQ(kill(parent, SIGUSR1), 0);
-  ASSERT_EQ(kill(parent, SIGCONT), 0);
-  int status = 0;
-  ASSERT_EQ(waitpid(parent, &status, 0), parent);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_TRUE(is_answered(
+      10, [] { sleep_for(200); },
+      [](pid_t parent) {
+        sleep_for(100);
+        ASSERT_EQ(kill(parent, SIGSTOP), 0);
+        sleep_for(300);
+        ASSERT_EQ(kill(parent, SIGUSR1) + kill(parent, SIGCONT), 0);
+      }));
 }
 
 TEST(ChildProcess, OneThatHangsIsEndedWithWhatItStarted) {

@@ -9,7 +9,6 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <thread>
 
 #include "harness/base/errors.h"
@@ -21,47 +20,32 @@ namespace fs = std::filesystem;
 
 class Files : public testing::Test {
  protected:
-  Files() {
-    std::string name = (fs::temp_directory_path() / "files_test-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no folder");
-    folder_ = name;
-  }
-  ~Files() override { fs::remove_all(folder_); }
-
-  std::string at(const std::string& name) const { return (folder_ / name).string(); }
-  static std::string content(const std::string& path) {
-    std::ifstream file(path);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-  }
+  std::string at(const std::string& name) const { return folder_.file(name); }
+  static std::string content(const std::string& path) { return read_file(path, "test"); }
   std::size_t entries() const {
     return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+        std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()));
   }
 
-  fs::path folder_;
+ private:
+  TemporaryFolder folder_{"files-test"};
 };
-
-TEST_F(Files, AreWrittenWholeAndAloneInTheirFolder) {
-  write_atomically(at("a.json"), "one");
-  EXPECT_EQ(content(at("a.json")), "one");
-  write_atomically(at("a.json"), "two");
-  EXPECT_EQ(content(at("a.json")), "two");
-  EXPECT_EQ(entries(), 1u) << "something was left beside it";
-}
 
 TEST_F(Files, OfTheUsersOwnBesideTheOutputStay) {
   const std::string names[] = {at("a.json.partial"), at("a.json.XXXXXX"), at("a.json.tmp")};
   for (const std::string& name : names) std::ofstream(name) << "mine";
   check_writable(at("a.json"));
-  write_atomically(at("a.json"), "result");
+  for (const char* text : {"one", "two"}) {
+    write_atomically(at("a.json"), text);
+    EXPECT_EQ(content(at("a.json")), text);
+  }
   for (const std::string& name : names) EXPECT_EQ(content(name), "mine") << name;
+  EXPECT_EQ(entries(), 4u) << "something was left beside it";
 }
 
 // Also to a file that is yet to be made; both names of one output are one lock.
 TEST_F(Files, ALinkStaysALink) {
-  fs::create_directory(folder_ / "there");
+  fs::create_directory(at("there"));
   std::ofstream(at("there/result.json")) << "old";
   fs::create_symlink("there/result.json", at("link"));
   fs::create_symlink("link", at("second"));
@@ -81,7 +65,7 @@ TEST_F(Files, LinksInACircleAndFoldersAreRefused) {
   fs::create_symlink("b", at("a"));
   fs::create_symlink("a", at("b"));
   EXPECT_THROW(output_path(at("a")), UsageError);
-  EXPECT_THROW(output_path(folder_.string()), UsageError);
+  EXPECT_THROW(output_path(at("")), UsageError);
   EXPECT_THROW(output_path(""), UsageError);
 }
 

@@ -98,25 +98,20 @@ TEST(Ratio, SamplesOfOtherSpreadsHardlyLoseCoverage) {
 
 TEST(Ratio, WithoutSamplesAndWithoutAPairNothingIsKnown) {
   const Ratio three = ratio_of_times({1.0, 1.01, 1.02}, {50.0, 51.0, 52.0});
-  EXPECT_FALSE(three.known());
-  EXPECT_FALSE(three.below(1) || three.above(0.001));
+  EXPECT_FALSE(three.known() || three.below(1) || three.above(0.001));
   EXPECT_NEAR(three.value, 1.0 / 50, 1e-12);
   EXPECT_TRUE(ratio_of_times({1.0, 1.01, 1.02, 1.03}, {50.0, 51.0, 52.0, 53.0}).below(1));
-  EXPECT_FALSE(ratio_of_times({}, {1.0}).known());
   EXPECT_TRUE(std::isnan(ratio_of_times({}, {1.0}, 0.1).value));
-  const Ratio paired = ratio_of_times({1.0}, {2.0}, std::log(1.5));
-  EXPECT_NEAR(paired.low, 0.5 / 1.5, 1e-12);
-  EXPECT_NEAR(paired.high, 0.5 * 1.5, 1e-12);
 }
 
 TEST(Ratio, TheWiderOfSamplesAndPairCounts) {
   const Samples a{1.00, 1.01, 1.02, 1.03, 1.04, 1.05}, b{2.0, 2.01, 2.02, 2.03, 2.04, 2.05};
-  const Ratio samples = ratio_of_times(a, b), quiet = ratio_of_times(a, b, 1e-6),
-              noisy = ratio_of_times(a, b, 0.2);
-  EXPECT_DOUBLE_EQ(quiet.low, samples.low);
-  EXPECT_DOUBLE_EQ(quiet.high, samples.high);
-  EXPECT_NEAR(noisy.low, noisy.value * std::exp(-0.2), 1e-12);
-  EXPECT_NEAR(noisy.high, noisy.value * std::exp(0.2), 1e-12);
+  const Ratio samples = ratio_of_times(a, b), quiet = ratio_of_times(a, b, 1e-6);
+  EXPECT_EQ(std::pair(quiet.low, quiet.high), std::pair(samples.low, samples.high));
+  for (const Ratio& noisy : {ratio_of_times(a, b, 0.2), ratio_of_times({1.0}, {2.0}, 0.2)}) {
+    EXPECT_NEAR(noisy.low, noisy.value * std::exp(-0.2), 1e-12);
+    EXPECT_NEAR(noisy.high, noisy.value * std::exp(0.2), 1e-12);
+  }
 }
 
 // Each place of a sweep has a speed of its own for each of the two names, which no repetition

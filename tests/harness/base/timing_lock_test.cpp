@@ -19,11 +19,12 @@ class Lock : public testing::Test {
   void SetUp() override { setenv("TMPDIR", ::testing::TempDir().c_str(), 1); }
 };
 
-// In a child: 0 if it gets the lock at once, 1 if it is refused.
-int try_in_child() {
+// In a child, which may have been started under the lock: 0 if it gets the lock at once, 1 if it is
+// refused and the holder named.
+int try_in_child(bool started_under_it = false) {
   const pid_t child = fork();
-  if (child == 0) {
-    unsetenv("INEXTENSIBLE_TIMING_LOCK");
+  if (child == 0) {  // as after exec: the variable is inherited, the lock is not
+    if (!started_under_it) unsetenv("INEXTENSIBLE_TIMING_LOCK");
     try {
       const TimingLock lock(false);
       _exit(0);
@@ -38,30 +39,15 @@ int try_in_child() {
   return WEXITSTATUS(status);
 }
 
-TEST_F(Lock, IsHeldByOneProcessWhichIsNamed) {
+TEST_F(Lock, IsHeldByOneProcessAndNotInTheWayOfProgramsStartedUnderIt) {
   {
     const TimingLock lock;
     EXPECT_FALSE(lock.waited());
     EXPECT_EQ(try_in_child(), 1);
+    EXPECT_EQ(try_in_child(true), 0);
+    EXPECT_EQ(try_in_child(), 1) << "the child's end must not give up its parent's lock";
   }
   EXPECT_EQ(try_in_child(), 0);
-}
-
-TEST_F(Lock, IsNotInTheWayOfProgramsStartedUnderIt) {
-  const TimingLock lock;
-  const pid_t child = fork();
-  if (child == 0) {  // as after exec: the variable is inherited, the lock is not
-    try {
-      const TimingLock mine(false);
-      _exit(0);
-    } catch (const UsageError&) {
-      _exit(1);
-    }
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 0);
-  EXPECT_EQ(try_in_child(), 1) << "the child's end must not give up its parent's lock";
 }
 
 TEST_F(Lock, EndsWithItsProcessThoughAChildOfThatLives) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "harness/base/files.h"
 
@@ -94,7 +95,7 @@ TEST(Pictures, OfFlatClothHaveOneShade) {
   const Recording recording = flat_square(12);
   const View view = view_of_all(recording);
   Shot shot = shot_of(recording, view, 0, 0, width);
-  std::fill(shot.drawn_sides.begin(), shot.drawn_sides.end(), std::uint8_t{0});
+  shot.yarn_shade = 0;
   const Pixels pixels = trace(shot, view, width, 2);
   std::array<int, 3> least{255, 255, 255}, most{0, 0, 0};
   for (double x = 0.05; x < 0.96; x += 0.05) {
@@ -165,25 +166,11 @@ TEST(View, SeesTheBodyInAllItsPoses) {
   }
 }
 
-// In a square of 7 x 7 the middle of each drawn side lies on a line of an even number.
-TEST(Weave, DrawsEverySecondYarnWhole) {
-  const Recording recording = flat_square(7);
-  const Positions& x = recording.takes[0].frames[0];
-  const auto all = drawn_sides(recording.stage, 1), half = drawn_sides(recording.stage, 2);
-  int drawn = 0;
-  for (std::size_t i = 0; i < half.size(); ++i) {
-    EXPECT_EQ(half[i] & ~all[i], 0);
-    const auto& t = recording.stage.triangles[i];
-    for (unsigned k = 0; k < 3; ++k) {
-      if (!(half[i] >> k & 1U)) continue;
-      ++drawn;
-      const Vector3d middle = 6 * 0.5 * (x.col(t[k]) + x.col(t[(k + 1) % 3]));
-      const double line =
-          std::abs(middle.x() - std::round(middle.x())) < 1e-9 ? middle.x() : middle.z();
-      EXPECT_NEAR(std::remainder(line, 2), 0, 1e-9);
-    }
-  }
-  EXPECT_EQ(drawn, 2 * (2 * 2 * 6 + 2 * 6));  // two inner lines on both sides, two at the border
+TEST(Oriented, TrianglesPassACommonSideInOppositeDirections) {
+  std::set<std::pair<int, int>> sides;
+  for (const auto& t : flat_square(4).stage.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_TRUE(sides.insert({t[k], t[(k + 1) % 3]}).second) << t[k] << ' ' << t[(k + 1) % 3];
 }
 
 TEST(WritePictures, EndsATakeWithItsLastFrame) {

@@ -33,27 +33,21 @@ Scene row() {
 TEST(Strain, OfEdgesThatAreTooLongAndTooShort) {
   const Scene scene = row();
   Positions x = scene.start.x;
+  const auto expect = [&](double most, double stretch, std::size_t edge) {
+    const StrainRange found = strain_range(*scene.problem, x);
+    EXPECT_NEAR(found.most, most, 1e-15);
+    EXPECT_NEAR(found.stretch, stretch, 1e-15);
+    EXPECT_EQ(found.edge, edge);
+  };
   EXPECT_EQ(strain_range(*scene.problem, x).most, 0);
   x(0, 2) = 2.5;  // the second edge: 1.5 m of 2 m
-  EXPECT_NEAR(strain_range(*scene.problem, x).most, 0.25, 1e-15);
-  EXPECT_EQ(strain_range(*scene.problem, x).stretch, 0);
-  EXPECT_EQ(strain_range(*scene.problem, x).edge, 1u);
+  expect(0.25, 0, 1);
   x(0, 0) = -0.5;  // the first: 1.5 m of 1 m
-  EXPECT_NEAR(strain_range(*scene.problem, x).most, 0.5, 1e-15);
-  EXPECT_NEAR(strain_range(*scene.problem, x).stretch, 0.5, 1e-15);
-  EXPECT_EQ(strain_range(*scene.problem, x).edge, 0u);
+  expect(0.5, 0.5, 0);
   std::vector<double> strains;
   append_strains(*scene.problem, x, strains);
-  ASSERT_EQ(strains.size(), 2u);
-  EXPECT_NEAR(strains[0], 0.5, 1e-15);
-  EXPECT_NEAR(strains[1], 0.25, 1e-15);
-}
-
-TEST(Strain, IsInfiniteWhereAPositionIsNotFinite) {
-  const Scene scene = row();
-  for (const double value :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    Positions x = scene.start.x;
+  EXPECT_EQ(strains, (std::vector<double>{0.5, 0.25}));
+  for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     x(1, 2) = value;
     EXPECT_TRUE(std::isinf(strain_range(*scene.problem, x).most));
     EXPECT_EQ(strain_range(*scene.problem, x).edge, 1u);
@@ -83,16 +77,6 @@ TEST(Energy, OfARowThatIsLiftedAndThrown) {
   state.v.row(2).setConstant(3);
   EXPECT_NEAR(total_energy(*scene.problem, state) - before, 6 * 10 * 2 + 0.5 * 6 * 9, 1e-12);
   EXPECT_NEAR(energy_scale(scene), 6 * 10 * 4, 1e-12);
-}
-
-TEST(Raise, TakesTheFirstValueAndThenTheLarger) {
-  double figure = std::numeric_limits<double>::quiet_NaN();
-  raise(figure, -1);
-  EXPECT_EQ(figure, -1);
-  raise(figure, -2);
-  EXPECT_EQ(figure, -1);
-  raise(figure, 3);
-  EXPECT_EQ(figure, 3);
 }
 
 }  // namespace
