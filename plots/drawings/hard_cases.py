@@ -1,5 +1,6 @@
 """Draws a stability result: the matrix of hard cases and solvers, and the largest stable steps beneath it."""
 
+import itertools
 import math
 
 from matplotlib.axes import Axes
@@ -8,7 +9,7 @@ from matplotlib.patches import Rectangle
 
 from parts.colors import ALARM
 from parts.result import Figures, Json, Result
-from parts.sheet import make_sheet
+from parts.sheet import Sheet, make_sheet
 from parts.style import Styles, styles_for
 from parts.words import clean, inches, shorten
 
@@ -38,46 +39,44 @@ def draw(result: Result) -> Figure:
     rows = list(dict.fromkeys(cell["row"] for cell in cells))
     scenes = list(dict.fromkeys(entry["scene"] for entry in steps))
     names = [shorten(style.label.split(" (")[0], NAME_WIDTH, TEXT_SIZE) for style in styles.values()]
-    header = 0.3 + math.sin(SLOPE) * max(inches(name, TEXT_SIZE) for name in names)
-    panel = header + CELL_HEIGHT * len(rows) + (0.45 + CELL_HEIGHT * len(scenes) if scenes else 0)
     # Names of the last columns run out at the right edge.
     ends = [CELL_WIDTH * (number + 0.5) + inches(name, TEXT_SIZE) * math.cos(SLOPE) + 0.2 for number, name in enumerate(names)]
     width = LABEL_WIDTH + max(CELL_WIDTH * len(styles) + 0.3, *ends, inches(STEPS_TITLE, TEXT_SIZE, "bold") + 0.2)
-    sheet = make_sheet(result, "Hard cases: where each solver breaks", [_caption(cells)], width, panel - 0.35)
-    axes = sheet.axes(0.2, sheet.bottom - 0.35, width - 0.4, panel)
-    axes.set(xlim=(0, width - 0.4), ylim=(panel + 0.02, 0))  # room for the last frame
-    axes.axis("off")
-    left = LABEL_WIDTH - 0.2
-    for number, name in enumerate(names):
-        axes.text(left + CELL_WIDTH * (number + 0.5), header - 0.08, name, rotation=math.degrees(SLOPE), ha="left", va="bottom",
-                  fontsize=TEXT_SIZE, rotation_mode="anchor")
-    for row_number, row in enumerate(rows):
-        top = header + CELL_HEIGHT * row_number
-        _draw_row_name(axes, left, top, row)
-        for number, solver in enumerate(styles):
-            here = [cell for cell in cells if cell["row"] == row and cell["solver"] == solver]
-            if here:
-                _draw_outcomes(axes, left + CELL_WIDTH * number, top, here)
+    beneath = 0.45 + CELL_HEIGHT * len(scenes) if scenes else 0
+    header = math.sin(SLOPE) * max(inches(name, TEXT_SIZE) for name in names)
+    sheet = make_sheet(result, "Hard cases: where each solver breaks", [_caption(cells)], width,
+                       header + CELL_HEIGHT * len(rows) + beneath)
+    matrix = _grid(sheet, sheet.bottom - 0.35 + beneath, names, rows)
+    for place in itertools.product(range(len(names)), range(len(rows))):
+        solver, row = list(styles)[place[0]], rows[place[1]]
+        if here := [cell for cell in cells if (cell["row"], cell["solver"]) == (row, solver)]:
+            _draw_outcomes(matrix, *place, here)
     if scenes:
-        top = header + CELL_HEIGHT * len(rows) + 0.45
-        axes.text(left, top - 0.08, STEPS_TITLE, fontsize=TEXT_SIZE, fontweight="bold", ha="left", va="bottom")
-        _draw_steps(axes, left, top, styles, scenes, steps)
+        largest = _grid(sheet, sheet.bottom - 0.35, [""] * len(names), scenes)
+        largest.set_title(STEPS_TITLE, fontsize=TEXT_SIZE, fontweight="bold", loc="left")
+        _draw_steps(largest, styles, scenes, steps)
     return sheet.figure
 
 
-def _draw_row_name(axes: Axes, left: float, top: float, row: str) -> None:
-    axes.text(left - 0.08, top + CELL_HEIGHT / 2, shorten(clean(row), LABEL_WIDTH - 0.35, TEXT_SIZE), ha="right",
-              va="center", fontsize=TEXT_SIZE)
+def _grid(sheet: Sheet, bottom: float, names: list[str], rows: list[str]) -> Axes:
+    axes = sheet.axes(LABEL_WIDTH, bottom, CELL_WIDTH * len(names), CELL_HEIGHT * len(rows))
+    axes.set(xlim=(0, len(names)), ylim=(len(rows), 0))
+    axes.spines[:].set_visible(False)
+    axes.xaxis.tick_top()
+    axes.tick_params(length=0, labelsize=TEXT_SIZE)
+    axes.set_xticks([k + 0.5 for k in range(len(names))], names, rotation=math.degrees(SLOPE), ha="left", rotation_mode="anchor")
+    axes.set_yticks([k + 0.5 for k in range(len(rows))], [shorten(clean(row), LABEL_WIDTH - 0.35, TEXT_SIZE) for row in rows])
+    return axes
 
 
-def _draw_cell(axes: Axes, x: float, y: float, text: str, face: object, dark: bool = False, framed: bool = False) -> None:
-    axes.add_patch(Rectangle((x, y), CELL_WIDTH, CELL_HEIGHT, facecolor=face, edgecolor="black" if framed else "#999999",
-                             linewidth=2.0 if framed else 0.5))
-    axes.text(x + CELL_WIDTH / 2, y + CELL_HEIGHT / 2, text, ha="center", va="center", color="white" if dark else "black",
+def _draw_cell(axes: Axes, column: int, row: int, text: str, face: object, dark: bool = False, framed: bool = False) -> None:
+    axes.add_patch(Rectangle((column, row), 1, 1, facecolor=face, edgecolor="black" if framed else "#999999",
+                             linewidth=2.0 if framed else 0.5, clip_on=False, zorder=2 if framed else 1))
+    axes.text(column + 0.5, row + 0.5, text, ha="center", va="center", color="white" if dark else "black",
               fontsize=CELL_SIZE * min(1, (CELL_WIDTH - 0.06) / inches(text, CELL_SIZE)))
 
 
-def _draw_outcomes(axes: Axes, x: float, y: float, cells: list[Json]) -> None:
+def _draw_outcomes(axes: Axes, column: int, row: int, cells: list[Json]) -> None:
     """Coloured by the worst outcome of the row's cases; the text counts them where they differ."""
     counts = {name: count for name in OUTCOMES if (count := sum(cell["outcome"] == name for cell in cells))}
     text = " ".join(OUTCOMES[name][0] + (str(count) if count < len(cells) else "") for name, count in counts.items())
@@ -86,21 +85,18 @@ def _draw_outcomes(axes: Axes, x: float, y: float, cells: list[Json]) -> None:
         text += f"  E{gain:,.0f}" if 10 <= gain < 1e6 else f"  E{gain:.2g}"
     unexpected = not all(cell["as_expected"] for cell in cells)
     worst = list(counts)[-1]
-    _draw_cell(axes, x, y, text + (" !" if unexpected else ""), OUTCOMES[worst][2], worst in DARK, unexpected)
+    _draw_cell(axes, column, row, text + (" !" if unexpected else ""), OUTCOMES[worst][2], worst in DARK, unexpected)
 
 
-def _draw_steps(axes: Axes, left: float, top: float, solvers: Styles, scenes: list[str], steps: list[Json]) -> None:
+def _draw_steps(axes: Axes, solvers: Styles, scenes: list[str], steps: list[Json]) -> None:
     known = [math.log(entry["step"]) for entry in steps if entry["step"]]
     low, high = min(known, default=0), max(known, default=1)
-    for row, scene in enumerate(scenes):
-        y = top + CELL_HEIGHT * row
-        _draw_row_name(axes, left, y, scene)
-        for number, solver in enumerate(solvers):
-            for step in (entry["step"] for entry in steps if (entry["scene"], entry["solver"]) == (scene, solver)):
-                size = (math.log(step) - low) / (high - low) if step and high > low else 0.0
-                shade = 0.55 + 0.45 * size if step else 0.45  # the darker the smaller the step
-                text = "none" if not step else f"1/{1 / step:.0f}" if step < 1 else f"{step:g}"
-                _draw_cell(axes, left + CELL_WIDTH * number, y, text, (shade, shade, min(1.0, shade + 0.08)))
+    for entry in steps:
+        step = entry["step"]
+        size = (math.log(step) - low) / (high - low) if step and high > low else 0.0
+        shade = 0.55 + 0.45 * size if step else 0.45  # the darker the smaller the step
+        text = "none" if not step else f"1/{1 / step:.0f}" if step < 1 else f"{step:g}"
+        _draw_cell(axes, list(solvers).index(entry["solver"]), scenes.index(entry["scene"]), text, (shade, shade, min(1.0, shade + 0.08)))
 
 
 def _caption(cells: list[Json]) -> str:
