@@ -56,28 +56,45 @@ def draw(figure: Json, result: Result) -> Figure:
     scene, sweep, points = figure["scene"], figure["sweep"], _points(figure, result)
     styles = styles_for(figure["any"], result, result.leaders(scene, sweep))
     columns = _columns(figure, points, styles, percent(result.analysis["headline_error"]))
-    strip = ROW_HEIGHT * max(len(column.rows) for column in columns)
-    panels_height = _main_bottom(columns[0]) + MAIN_HEIGHT
     number = NUMBERS_OF_THE_PAPER.get((scene, sweep))
     title = f"{subject(scene)}: cost over {'strain limit' if sweep == 'strain' else 'resolution'}"
-    sheet = make_sheet(result, f"Figure {number} - {title}" if number else title,
-                       [*receding_sentences(styles.values()), *_caption(figure, points, result, columns)],
-                       columns[-1].left + MAIN_WIDTH + LEGEND_WIDTH, panels_height + strip + (HEADING if len(columns) > 1 else 0),
-                       legend_height(styles) - panels_height,
-                       " ".join(result.finding(scene, sweep, figure["fixed"] if sweep == "strain" else None)[:1]))
-    mains = [_draw_column(sheet, column, styles, figure) for column in columns]
+    found = result.finding(scene, sweep, figure["fixed"] if sweep == "strain" else None)[:1]
+    return _draw(figure, result, columns, styles, f"Figure {number} - {title}" if number else title, found)
+
+
+def draw_growth(figure: Json, result: Result) -> Figure:
+    """Time of a step over vertices, exponents in the labels, whatever steps and motion."""
+    scene, sweep = figure["scene"], figure["sweep"]
+    curves = {solver: Curve([replace(b, seconds=b.seconds * b.step, median=b.median * b.step, ladder_end="") for b in curve.best],
+                            curve.failures) for solver, curve in curves_in(figure["any"]).items()}
+    slopes = {row["row"]: row["exponent"] for growth in result.analysis["growth"]
+              if (growth["scene"], growth["strain_limit"]) == (scene, figure["fixed"]) for row in growth["rows"] if row["sizes"] > 2}
+    styles = {name: replace(style, label=f"{style.label}: {slopes[name]:.2f}") if name in slopes and style.leads else style
+              for name, style in styles_for(curves, result, result.leaders(scene, sweep)).items()}
+    column = Column(curves, {}, failed_rows(curves, styles), LEFT, "", "failed at every step")
+    found = [words for words in result.finding(scene, sweep) if words.startswith("From ")]
+    return _draw(figure, result, [column], styles, f"{scene_words(scene)}: growth of a step's time with vertices", found, growth=True)
+
+
+def _draw(figure: Json, result: Result, columns: list[Column], styles: Styles, title: str, found: list[str], growth: bool = False) -> Figure:
+    strip = ROW_HEIGHT * max(len(column.rows) for column in columns)
+    beneath = 0 if growth else _main_bottom(columns[0])
+    sheet = make_sheet(result, title, [*receding_sentences(styles.values()), *_caption(figure, _points(figure, result), result, columns)],
+                       columns[-1].left + MAIN_WIDTH + LEGEND_WIDTH, beneath + MAIN_HEIGHT + strip + (HEADING if len(columns) > 1 else 0),
+                       legend_height(styles) - beneath - MAIN_HEIGHT, " ".join(found))
+    mains = [_draw_column(sheet, column, styles, figure, beneath) for column in columns]
     low, high = min(main.get_ylim()[0] for main in mains), max(main.get_ylim()[1] for main in mains)
     for column, main in zip(columns, mains):
         main.set_ylim(low, high)  # the same scale, so that both columns compare
         draw_noise(main, result.noise_factor)
-        if sweep == "resolution":
+        if figure["sweep"] == "resolution":
             draw_slopes(main)
         add_strip(sheet, main, column.rows, styles, column.strip)
         box = main.get_position()
         if len(columns) > 1:
             sheet.figure.text(box.x0, box.y1 + (strip + 0.17) / sheet.height, column.heading, fontsize=9, fontweight="bold",
                               va="bottom")
-    mains[0].set_ylabel(TIME_LABEL)
+    mains[0].set_ylabel("wall seconds of a step" if growth else TIME_LABEL)
     add_legend(mains[-1], styles, ends_of(columns[-1].curves))
     return sheet.figure
 
@@ -107,23 +124,26 @@ def _main_bottom(column: Column) -> float:
     return (STEPS_HEIGHT + BETWEEN) * (2 if column.filter else 1)
 
 
-def _draw_column(sheet: Sheet, column: Column, styles: Styles, figure: Json) -> Axes:
-    """Returns the main panel."""
-    steps = sheet.axes(column.left, sheet.bottom, MAIN_WIDTH, STEPS_HEIGHT)
-    main = sheet.axes(column.left, sheet.bottom + _main_bottom(column), MAIN_WIDTH, MAIN_HEIGHT, sharex=steps)
+def _draw_column(sheet: Sheet, column: Column, styles: Styles, figure: Json, beneath: float) -> Axes:
+    """Returns the main panel, which is alone where nothing is beneath it."""
+    main = sheet.axes(column.left, sheet.bottom + beneath, MAIN_WIDTH, MAIN_HEIGHT)
     log_x(main, _xs(column.curves), MAIN_WIDTH)
     panels = [(main, column.curves)]
     if column.filter:
-        panels.append((sheet.axes(column.left, sheet.bottom + STEPS_HEIGHT + BETWEEN, MAIN_WIDTH, STEPS_HEIGHT, sharex=steps), column.filter))
+        panels.append((sheet.axes(column.left, sheet.bottom + STEPS_HEIGHT + BETWEEN, MAIN_WIDTH, STEPS_HEIGHT, sharex=main), column.filter))
         panels[-1][0].set_ylabel("filter alone (s)")
     for axes, curves in panels:
         log_y(axes, _times(curves))
         draw_curves(axes, curves, styles)
-        axes.tick_params(axis="x", which="both", labelbottom=False)
-    draw_steps(steps, column.curves, styles)
-    steps.set(xlabel=AXIS_LABELS[figure["sweep"]], ylabel="mean time step (s)" if figure["adaptive"] else "best time step (s)")
-    for axes in (*(axes for axes, _ in panels), steps):
+        axes.tick_params(axis="x", which="both", labelbottom=not beneath)
         grid(axes)
+    lowest = main
+    if beneath:
+        lowest = sheet.axes(column.left, sheet.bottom, MAIN_WIDTH, STEPS_HEIGHT, sharex=main)
+        draw_steps(lowest, column.curves, styles)
+        lowest.set_ylabel("mean time step (s)" if figure["adaptive"] else "best time step (s)")
+        grid(lowest)
+    lowest.set_xlabel(AXIS_LABELS[figure["sweep"]])
     return main
 
 
@@ -163,33 +183,3 @@ def _caption(figure: Json, points: list[Json], result: Result, columns: list[Col
     failures = ("A mark above the axes: no step tried gave a run that counts there, nor at a tighter limit; the letters say why, from the "
                 f"coarsest step to the finest: {result.key(letters)}.")
     return [scene_sentence(figure["scene"], size, points), " ".join([f"{method}.", *marks]), *([failures] if letters else [])]
-
-
-# ---- growth -----------------------------------------------------------------------------------------------------------
-
-def draw_growth(figure: Json, result: Result) -> Figure:
-    """Time of a step over vertices, exponents in the labels, whatever steps and motion."""
-    scene, sweep = figure["scene"], figure["sweep"]
-    curves = {solver: Curve([replace(b, seconds=b.seconds * b.step, median=b.median * b.step, ladder_end="") for b in curve.best],
-                            curve.failures) for solver, curve in curves_in(figure["any"]).items()}
-    slopes = {row["row"]: row["exponent"] for growth in result.analysis["growth"]
-              if (growth["scene"], growth["strain_limit"]) == (scene, figure["fixed"]) for row in growth["rows"] if row["sizes"] > 2}
-    styles = {name: replace(style, label=f"{style.label}: {slopes[name]:.2f}") if name in slopes and style.leads else style
-              for name, style in styles_for(curves, result, result.leaders(scene, sweep)).items()}
-    column = Column(curves, {}, failed_rows(curves, styles), LEFT, "", "failed at every step")
-    sheet = make_sheet(result, f"{scene_words(scene)}: growth of a step's time with vertices",
-                       [*receding_sentences(styles.values()), *_caption(figure, _points(figure, result), result, [column])],
-                       LEFT + MAIN_WIDTH + LEGEND_WIDTH, MAIN_HEIGHT + ROW_HEIGHT * len(column.rows),
-                       legend_height(styles) - MAIN_HEIGHT,
-                       " ".join(words for words in result.finding(scene, sweep) if words.startswith("From ")))
-    main = sheet.axes(LEFT, sheet.bottom, MAIN_WIDTH, MAIN_HEIGHT)
-    log_x(main, _xs(curves), MAIN_WIDTH)
-    log_y(main, _times(curves))
-    draw_slopes(main)
-    draw_curves(main, curves, styles)
-    draw_noise(main, result.noise_factor)
-    main.set(xlabel="vertices (log axes; dotted: slopes 1 and 2)", ylabel="wall seconds of a step")
-    grid(main)
-    add_strip(sheet, main, column.rows, styles, column.strip)
-    add_legend(main, styles, ends_of(curves))
-    return sheet.figure

@@ -141,7 +141,7 @@ def test_cost_and_growth_over_resolution(pictures: dict) -> None:
     figure, growth = pictures["resolution"]["figure5b"], pictures["resolution"]["figure5b-growth"]
     assert [len(curves(axes)) for axes in panels(figure)] == [3, 3]
     assert [marks(strip) for strip in strips(figure)] == [["N"], ["N"]]
-    axes = axes_with(growth, "vertices (log axes", "wall seconds of a step")
+    axes = axes_with(growth, "vertices (dotted", "wall seconds of a step")
     assert sorted(legend_labels(growth)) == sorted(["SHAKE: 1.50", "ICD (implicit constraint direction)", "fast projection: 1.00"])
     assert np.allclose(curves(axes, BLUE)[0].get_ydata(), [1e-4 * vertices * 0.01 for vertices in (100, 400, 1600)]), "times the step"
 
