@@ -22,6 +22,7 @@ sys.dont_write_bytecode = True
 from PIL import Image, ImageDraw, ImageFont
 
 from parts.colors import ALARM
+from parts.words import wrapped
 
 MARGIN = 8  # pixels
 FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
@@ -68,17 +69,6 @@ def caption(film: Film, take: int, frame: int) -> list[str]:
     return lines
 
 
-def wrapped(text: str, font: Any, width: float) -> list[str]:
-    lines = [""]
-    for word in text.split():
-        longer = f"{lines[-1]} {word}".strip()
-        if lines[-1] and font.getlength(longer) > width:
-            lines.append(word)
-        else:
-            lines[-1] = longer
-    return lines
-
-
 # ---- Sheets -----------------------------------------------------------------------------------------------------------
 
 def write(picture: Image.Image, film: Film, lines: list[str], top: float, left: float | None = MARGIN, fill: Any = INK) -> None:
@@ -92,7 +82,7 @@ def alarmed(picture: Image.Image, text: str, film: Film) -> Image.Image:
     """Framed, with a word on it."""
     draw = ImageDraw.Draw(picture)
     draw.rectangle((0, 0, film.width - 1, film.height - 1), outline=ALARM, width=2)
-    lines = wrapped(text, film.font, film.width - 4 * MARGIN)
+    lines = wrapped(text, lambda line: film.font.getlength(line) <= film.width - 4 * MARGIN)
     top = film.height - len(lines) * film.line - 3 * MARGIN
     draw.rectangle((MARGIN, top - MARGIN, film.width - MARGIN, top + len(lines) * film.line + MARGIN), fill=BACKGROUND, outline=ALARM)
     write(picture, film, lines, top, left=None, fill=ALARM)

@@ -24,6 +24,15 @@ std::string enclosed(const ordered_json& value, const std::string& separator,
   return (value.is_object() ? "{" : "[") + text + end + (value.is_object() ? "}" : "]");
 }
 
+// The entries of `depth` levels a line each.
+std::string lines(const ordered_json& value, int depth) {
+  if (!value.is_structured()) return written(value);
+  const char* separator = depth > 0 && !value.empty() ? "\n" : "";
+  return enclosed(
+      value, separator, separator,
+      [depth](const std::string&, const ordered_json& item) { return lines(item, depth - 1); });
+}
+
 std::string folded(const ordered_json& value, std::size_t room, std::size_t width,
                    std::size_t indent) {
   std::string line = line_of(value);
@@ -41,25 +50,12 @@ std::string folded(const ordered_json& value, std::size_t room, std::size_t widt
 
 std::string compact(const nlohmann::json& value) { return written(value); }
 
-std::string line_of(const ordered_json& value) {
-  if (!value.is_structured()) return written(value);
-  return enclosed(value, "", "",
-                  [](const std::string&, const ordered_json& item) { return line_of(item); });
-}
+std::string line_of(const ordered_json& value) { return lines(value, 0); }
 
 std::string folded_text(const ordered_json& value, std::size_t width) {
   return folded(value, width, width, 0) + "\n";
 }
 
-std::string document_text(const ordered_json& document) {
-  return enclosed(document, "\n", "\n",
-                  [](const std::string&, const ordered_json& part) {
-                    if (!part.is_structured() || part.empty()) return line_of(part);
-                    return enclosed(
-                        part, "\n", "\n",
-                        [](const std::string&, const ordered_json& item) { return line_of(item); });
-                  }) +
-         "\n";
-}
+std::string document_text(const ordered_json& document) { return lines(document, 2) + "\n"; }
 
 }  // namespace harness

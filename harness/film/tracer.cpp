@@ -145,7 +145,7 @@ double open(RTCScene scene, const Vector3d& from, const Vector3d& to, double beg
 struct Hit {
   double distance = std::numeric_limits<double>::infinity();
   unsigned geometry = 0, primitive = 0;
-  double u = 0, v = 0;
+  std::array<double, 3> weight{};     // of a triangle's corners, or of an edge's ends
   Vector3d face = Vector3d::UnitY();  // normal of what was hit, not of length 1
 };
 
@@ -230,8 +230,8 @@ Hit Tracer::first(RTCScene scene, const Vector3d& from, const Vector3d& to) {
   hit.distance = query.ray.tfar;
   hit.geometry = query.hit.geomID;
   hit.primitive = query.hit.primID;
-  hit.u = query.hit.u;
-  hit.v = query.hit.v;
+  const double u = query.hit.u, v = query.hit.v;
+  hit.weight = {1 - u - v, u, v};
   hit.face = {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z};
   return hit;
 }
@@ -241,19 +241,18 @@ Hit Tracer::first(RTCScene scene, const Vector3d& from, const Vector3d& to) {
 // triangles on each other would show them.
 Surface Tracer::on_triangle(const Hit& hit, const Vector3d& direction, const Positions& x,
                             const std::array<int, 3>& corners, const Matrix3Xd& normals) const {
-  const std::array<double, 3> weight{1 - hit.u - hit.v, hit.u, hit.v};
   const double facing = hit.face.dot(direction) > 0 ? -1 : 1;
   Surface surface;
   surface.point = surface.normal = surface.colour = Vector3d::Zero();
   for (std::size_t k = 0; k < 3; ++k) {
-    surface.point += weight[k] * x.col(corners[k]);
-    surface.normal += weight[k] * facing * normals.col(corners[k]);
+    surface.point += hit.weight[k] * x.col(corners[k]);
+    surface.normal += hit.weight[k] * facing * normals.col(corners[k]);
   }
   Vector3d raised = surface.point;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vector3d normal = facing * normals.col(corners[k]);
     const double below = std::min(0.0, (surface.point - x.col(corners[k])).dot(normal));
-    raised -= weight[k] * below * normal;
+    raised -= hit.weight[k] * below * normal;
   }
   surface.point = raised;
   surface.normal.normalize();
@@ -266,13 +265,12 @@ double Tracer::line(const Hit& hit) const {
   const unsigned drawn = shot_.yarns[hit.primitive];
   if (drawn == 0) return 0;
   const double twice_area = hit.face.norm();
-  const std::array<double, 3> weight{1 - hit.u - hit.v, hit.u, hit.v};  // of corners 0, 1, 2
   double most = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(drawn >> k & 1U)) continue;
     const std::size_t next = (k + 1) % 3, opposite = (k + 2) % 3;
     const double side = (shot_.cloth.col(t[next]) - shot_.cloth.col(t[k])).norm();
-    const double away = side > 0 ? weight[opposite] * twice_area / side : 0;
+    const double away = side > 0 ? hit.weight[opposite] * twice_area / side : 0;
     most = std::max(most, std::clamp(1.5 - away / shot_.yarn, 0.0, 1.0));
   }
   return most;
@@ -281,8 +279,8 @@ double Tracer::line(const Hit& hit) const {
 Surface Tracer::on_cloth(const Hit& hit, const Vector3d& direction) const {
   const auto& corners = shot_.triangles[hit.primitive];
   Surface surface = on_triangle(hit, direction, shot_.cloth, corners, normals_);
-  const std::array<double, 3> weight{1 - hit.u - hit.v, hit.u, hit.v};
-  for (std::size_t k = 0; k < 3; ++k) surface.colour += weight[k] * shot_.colours.col(corners[k]);
+  for (std::size_t k = 0; k < 3; ++k)
+    surface.colour += hit.weight[k] * shot_.colours.col(corners[k]);
   surface.colour *= 1 - shot_.yarn_shade * line(hit);
   surface.shine = 0.03;
   return surface;
@@ -294,7 +292,7 @@ Surface Tracer::on_rope(const Hit& hit, const Vector3d& direction) const {
   surface.normal = hit.face.normalized();
   if (hit.geometry == 0) {
     const auto [a, b] = shot_.edges[hit.primitive];
-    surface.colour = (1 - hit.u) * shot_.colours.col(a) + hit.u * shot_.colours.col(b);
+    surface.colour = hit.weight[0] * shot_.colours.col(a) + hit.weight[1] * shot_.colours.col(b);
   } else {
     surface.colour = shot_.colours.col(hit.primitive);
   }

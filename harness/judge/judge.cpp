@@ -114,13 +114,8 @@ void Judge::add_shape(Measures& measures) {
   measures.shape_unknown_because = why_no_shape();
   if (!measures.shape_unknown_because.empty()) return;
   const Reference& reference = *options_.reference;
-  const ShapeError found = shape_error(reference.ensemble, reference.times, shape_->finish());
-  measures.shape = found.error;
-  measures.shape_statistic = found.statistic;
-  measures.shape_time = found.time;
-  measures.kinetic_ratio = found.kinetic_ratio;
-  measures.kinetic_spread = found.kinetic_spread;
-  if (std::isnan(found.error)) measures.shape_unknown_because = "positions are not finite";
+  measure_shape(reference.ensemble, reference.times, shape_->finish(), measures);
+  if (std::isnan(measures.shape)) measures.shape_unknown_because = "positions are not finite";
 }
 
 double Judge::after(const Positions& filtered, const State& state, double h, bool counts) {

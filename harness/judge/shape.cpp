@@ -134,21 +134,21 @@ Ensemble ensemble_of(const std::vector<ShapeSeries>& runs) {
   return e;
 }
 
-ShapeError shape_error(const Ensemble& ensemble, const std::vector<double>& times,
-                       const ShapeSeries& run) {
-  ShapeError found;
+void measure_shape(const Ensemble& ensemble, const std::vector<double>& times,
+                   const ShapeSeries& run, Measures& measures) {
+  Measures found = measures;
   const std::size_t count = std::min(run.size(), ensemble.mean.size());
-  if (count > 0) found.error = 0;
+  if (count > 0) found.shape = 0;
   double own = 0, mean = 0;
   for (std::size_t i = 0; i < count; ++i) {
     for (const auto& [name, member] : shape_statistic_infos) {
       const double off = std::abs(run[i].*member - ensemble.mean[i].*member);
-      if (std::isnan(off)) return {};
+      if (std::isnan(off)) return;
       const double error = off - sure_deviations * ensemble.deviation[i].*member;
-      if (error <= found.error) continue;
-      found.error = error;
-      found.statistic = name;
-      found.time = times[i];
+      if (error <= found.shape) continue;
+      found.shape = error;
+      found.shape_statistic = name;
+      found.shape_time = times[i];
     }
     own += run[i].kinetic_energy;
     mean += ensemble.mean[i].kinetic_energy;
@@ -158,7 +158,7 @@ ShapeError shape_error(const Ensemble& ensemble, const std::vector<double>& time
     found.kinetic_spread =
         sure_deviations * ensemble.kinetic_deviation[count - 1] * static_cast<double>(count) / mean;
   }
-  return found;
+  measures = std::move(found);
 }
 
 bool kinetic_energy_lost(double ratio, double spread) {

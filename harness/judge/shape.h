@@ -90,16 +90,10 @@ struct Ensemble {
 // Mean and standard deviation (with n - 1) of runs that have come to the end, two at least.
 Ensemble ensemble_of(const std::vector<ShapeSeries>& runs);
 
-struct ShapeError {
-  double error = unknown;           // over size, weight times size or size squared
-  const char* statistic = "";       // which is that far off; "" where the error is 0
-  double time = unknown;            // s, when
-  double kinetic_ratio = unknown;   // kinetic energy over the ensemble's, means over times
-  double kinetic_spread = unknown;  // three standard deviations of that
-};
-// Shape error of a run over its first samples; times: the reference's. Unknown without a sample.
-ShapeError shape_error(const Ensemble& ensemble, const std::vector<double>& times,
-                       const ShapeSeries& run);
+// The shape error of a run over its first samples, and its kinetic energy over the ensemble's;
+// times: the reference's. Leaves them unknown without a sample and where a number is not finite.
+void measure_shape(const Ensemble& ensemble, const std::vector<double>& times,
+                   const ShapeSeries& run, Measures& measures);
 
 // Whether that ratio is a run's that hangs or shakes.
 bool kinetic_energy_lost(double ratio, double spread);

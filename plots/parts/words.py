@@ -1,7 +1,7 @@
 """Words that fit: texts from result files made harmless, measured, cut and wrapped to a width."""
 
 from functools import lru_cache
-from typing import Any
+from typing import Any, Callable
 
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
@@ -77,15 +77,20 @@ def shorten(text: str, width: float, size: float, weight: str = "normal") -> str
 
 
 def wrap(text: str, width: float, size: float, weight: str = "normal") -> list[str]:
-    """Lines at most `width` inches wide, broken between words, and within those that are wider alone."""
+    """Lines at most `width` inches wide."""
+    return wrapped(text, lambda line: inches(line, size, weight) <= width)
+
+
+def wrapped(text: str, fits: Callable[[str], bool]) -> list[str]:
+    """Lines that fit, broken between words, and within those that do not fit alone."""
     lines: list[str] = []
     for word in text.split():
-        if lines and inches(f"{lines[-1]} {word}", size, weight) <= width:
+        if lines and fits(f"{lines[-1]} {word}"):
             lines[-1] += f" {word}"
             continue
         lines.append("")
         for letter in word:
-            if lines[-1] and inches(lines[-1] + letter, size, weight) > width:
+            if lines[-1] and not fits(lines[-1] + letter):
                 lines.append("")
             lines[-1] += letter
     return lines

@@ -115,13 +115,6 @@ def test_captions_tell_step_status_strain_so_far_time_and_sag(changes: dict, fra
                                             "6.67 ms for a frame of 1/30 s", f"sag: lower edge {11.0 * frame:.1f} mm"]
 
 
-def test_words_are_wrapped_and_none_is_lost() -> None:
-    font = film.ImageFont.load_default()
-    text = "gave up at t = 0.06 s: iteration limit"
-    lines = film.wrapped(text, font, 80)
-    assert " ".join(lines) == text and len(lines) > 1 and all(font.getlength(line) <= 80 for line in lines)
-
-
 @pytest.mark.parametrize("make, name, env, message", [(pictured, "x.mp4", {"PATH": "/nowhere"}, "film.py: ffmpeg missing"),
                                                       (lambda folder, _: recorded(folder), "x.png", None, "film.py: ")])
 def test_what_is_missing_is_said_in_a_line(make, name: str, env: dict | None, message: str, tmp_path: Path) -> None:

@@ -38,6 +38,13 @@ TEST(Ensemble, HasTheMeansAndDeviationsOfItsRuns) {
   }
 }
 
+Measures measured(const Ensemble& ensemble, const std::vector<double>& times,
+                  const ShapeSeries& run) {
+  Measures measures;
+  measure_shape(ensemble, times, run, measures);
+  return measures;
+}
+
 TEST(ShapeError, IsTheLargestDeviationBeyondThreeStandardDeviations) {
   Ensemble e;
   e.mean = {{0, 1, 0, 0}, {0, 1, 0, 0}};
@@ -54,17 +61,17 @@ TEST(ShapeError, IsTheLargestDeviationBeyondThreeStandardDeviations) {
                {{{0, 0.6, 0, 0}, {0, 0.8, 0, 0}}, 0.2, "kinetic_energy", 0.7, 0.15},
                {{{0, 1, 0, 0}}, 0, "", 1, 0.3}};
   for (const auto& [run, error, statistic, ratio, spread] : cases) {
-    const ShapeError found = shape_error(e, two_times, run);
-    EXPECT_NEAR(found.error, error, 1e-15);
-    if (found.error > 1e-15) {
-      EXPECT_EQ(found.statistic, statistic);
+    const Measures found = measured(e, two_times, run);
+    EXPECT_NEAR(found.shape, error, 1e-15);
+    if (found.shape > 1e-15) {
+      EXPECT_EQ(found.shape_statistic, statistic);
     }
     EXPECT_NEAR(found.kinetic_ratio, ratio, 1e-15);
     EXPECT_NEAR(found.kinetic_spread, spread, 1e-15);
   }
-  EXPECT_EQ(shape_error(e, two_times, cases[1].run).time, 0.08);
-  EXPECT_TRUE(std::isnan(shape_error(e, two_times, {}).error));
-  EXPECT_TRUE(std::isnan(shape_error(e, two_times, {{unknown, 1, 0, 0}}).error));
+  EXPECT_EQ(measured(e, two_times, cases[1].run).shape_time, 0.08);
+  EXPECT_TRUE(std::isnan(measured(e, two_times, {}).shape));
+  EXPECT_TRUE(std::isnan(measured(e, two_times, {{unknown, 1, 0, 0}}).shape));
 }
 
 TEST(ShapeError, MotionIsLostFarFromTheEnsemblesAndBeyondItsOwnSpread) {
@@ -178,9 +185,9 @@ TEST_F(DrapeEnsemble, IsOfBothRoutesFromMovedStarts) {
 TEST_F(DrapeEnsemble, ErrorOfItsOwnRunsIsNextToNothing) {
   double sum = 0;
   for (const auto& [name, run] : drape().runs.known()) {
-    const ShapeError found = shape_error(drape().ensemble, drape().times, run.shape);
+    const Measures found = measured(drape().ensemble, drape().times, run.shape);
     EXPECT_FALSE(kinetic_energy_lost(found.kinetic_ratio, found.kinetic_spread)) << name;
-    sum += found.error;
+    sum += found.shape;
   }
   EXPECT_LT(sum / static_cast<double>(drape().runs.known().size()), 0.002);
 }
