@@ -5,27 +5,13 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "harness/points/measures.h"
 #include "harness/scenes/scene.h"
-#include "solvers/stepping/stepper.h"
 
 namespace harness {
-
-// Looks at one run, and reads one figure off it.
-class Reading {
- public:
-  virtual ~Reading() = default;
-  // After each accepted step of h seconds.
-  virtual void after(const inextensible::State& before, const inextensible::State& state,
-                     double h) = 0;
-  // Whether the value is known, so that the run may end.
-  virtual bool done() const { return false; }
-  // After the last step; NaN if the run does not tell.
-  virtual double value() const = 0;
-  // Observes the solver; null: nothing does.
-  virtual inextensible::IterateObserver* observer() { return nullptr; }
-};
 
 struct AnswerScene {
   std::shared_ptr<const SceneType> type;
@@ -33,6 +19,56 @@ struct AnswerScene {
   Scene scene;
 };
 AnswerScene answer_scene(std::string_view name, const SceneParameters& given);
+
+// What readings see of a run.
+struct Motion {
+  Motion(const inextensible::State& start, double h) : before(start), state(start), step(h) {
+    note_free_end();
+  }
+  // After each accepted step.
+  void take(const inextensible::State& after) {
+    before = std::exchange(state, after);
+    note_free_end();
+  }
+
+  inextensible::State before, state;      // of the last step
+  double step;                            // s
+  std::vector<double> times;              // s, from the start on
+  std::vector<Eigen::Vector3d> free_end;  // where the last vertex was at these
+  std::vector<double> pulls;  // N s^2, by edge, of the last multipliers; empty if none were shown
+
+ private:
+  void note_free_end() {
+    times.push_back(state.time);
+    free_end.emplace_back(state.x.rightCols<1>());
+  }
+};
+
+// ---- What is read off a run; NaN if the run does not tell ----
+
+using Reading = double(const AnswerScene& at, const Motion& motion);
+
+// RMS distance from the scene's exact motion at the end of the run, over the scene's size.
+Reading distance_at_the_end;
+// The angle by which a body that stays centered on the origin turns in the last step, over the
+// step's duration and the initial rate.
+Reading turning_rate_kept;
+// A swinging chain's frequency, rad/s, and the part of its amplitude that is left after a period,
+// both of the free end.
+Reading swing_frequency, swing_kept;
+// The largest deviation of a link's tension from the catenary's, over the largest tension there.
+Reading catenary_tensions;
+// The time in which the free end of a folded chain moves by this part of the length, and its speed
+// at that time over the initial one. Closer to the end so few links still move that the chain no
+// longer resembles a continuum.
+constexpr double folded_part = 0.9;
+Reading folded_time, folded_speed;
+// RMS deviation of the angle between warp and weft from that of a net on a sphere, in degrees, over
+// the cells whose four corners lie on the ball at the end.
+Reading net_angle_deviation;
+// Cusick's drape coefficient (BS 5058, ISO 9073-9), %: the part of the ring between table and rim
+// that the shadow of the draped disc covers.
+Reading drape_coefficient;
 
 struct KnownAnswer {
   const char* name;  // a-z and _
@@ -43,9 +79,10 @@ struct KnownAnswer {
   double strain_limit;        // of the runs: permissible |strain|
   std::vector<double> steps;  // s, each half of the one before
   std::function<double(const AnswerScene&)> exact;
-  std::function<std::unique_ptr<Reading>(const AnswerScene&)> reading;
+  Reading* reading;
   bool needs_multipliers = false;  // of methods that show their iterates alone (Stepper::observe)
-  bool continuum = false;  // exact in the limit of many vertices: runs tend to something nearby
+  bool continuum = false;   // exact in the limit of many vertices: runs tend to something nearby
+  bool until_read = false;  // a run ends as soon as it tells
 };
 
 std::span<const KnownAnswer> known_answers();

@@ -1,7 +1,7 @@
+#include <algorithm>
 #include <cmath>
 
 #include "harness/answers/answer.h"
-#include "harness/answers/readings.h"
 #include "harness/scenes/chain_scenes.h"
 #include "harness/scenes/fabrics.h"
 #include "harness/scenes/meshes.h"
@@ -86,13 +86,13 @@ void add_folded(std::vector<KnownAnswer>& all) {
                  "time in which the free end falls 0.9 of the length, s",
                  "v^2 = g L s (2 - s) / (1 - s) (Calkin and March 1989), 0.85 of free fall over "
                  "the whole length; a chain of links follows to O(link / L)",
-                 1e-4, from_step(0.0025), fall_time_of, folded_time, false, true});
+                 1e-4, from_step(0.0025), fall_time_of, folded_time, false, true, true});
   all.push_back({"whip_speed", "whip", crack,
                  "speed of the free end when it has gone 0.9 of the length, over the start's",
                  "v = v_0 / sqrt(1 - s): the energy stays, what moves becomes less; a chain of "
                  "links follows to O(link / L)",
                  1e-4, from_step(0.0025), always(1 / std::sqrt(1 - folded_part)), folded_speed,
-                 false, true});
+                 false, true, true});
 }
 
 // A net that cannot stretch along warp and weft, with Hookean shear and bending and without what
@@ -151,10 +151,8 @@ std::span<const KnownAnswer> known_answers() {
 }
 
 const KnownAnswer* find_answer(std::string_view name) {
-  for (const KnownAnswer& answer : known_answers()) {
-    if (answer.name == name) return &answer;
-  }
-  return nullptr;
+  const auto found = std::ranges::find(known_answers(), name, &KnownAnswer::name);
+  return found == known_answers().end() ? nullptr : &*found;
 }
 
 }  // namespace harness

@@ -16,6 +16,7 @@
 #include "harness/judge/mechanics.h"
 #include "harness/points/schema.h"
 #include "harness/run/calibration.h"
+#include "solvers/problem/edge_constraints.h"
 #include "solvers/registry.h"
 
 namespace harness {
@@ -30,26 +31,47 @@ struct Ending : Calibration::Trial {
 
 AnswerScene scene_of(const KnownAnswer& answer) { return answer_scene(answer.scene, answer.given); }
 
+// Keeps what the last multipliers pull: lambda_k times the gradient of edge k's constraint.
+class PullObserver final : public inextensible::IterateObserver {
+ public:
+  PullObserver(const inextensible::Problem& problem, std::vector<double>& pulls)
+      : gradient_(3, problem.constraints()), pulls_(pulls) {}
+
+  void iterate(const inextensible::EdgeConstraints& edges, int /*j*/,
+               const inextensible::Positions& x, const Eigen::VectorXd& multipliers) override {
+    edges.gradient(x, gradient_);
+    pulls_.assign(static_cast<std::size_t>(gradient_.cols()), 0);
+    for (int k = 0; k < edges.count(); ++k)
+      pulls_[static_cast<std::size_t>(edges.problem_edge(k))] =
+          multipliers(k) * gradient_.col(k).norm();
+  }
+
+ private:
+  Eigen::Matrix3Xd gradient_;
+  std::vector<double>& pulls_;
+};
+
 Ending run_once(const KnownAnswer& answer, const AnswerScene& at, const Backend& backend,
                 const inextensible::Settings& settings, double step, double timeout) {
   Ending ending;
   const auto begin = Clock::now();
   const Scene& scene = at.scene;
-  State state = start_of(scene, backend, step), before = state;
+  State state = start_of(scene, backend, step);
   const auto stepper = inextensible::make_stepper(backend.name, scene.problem,
                                                   {answer.strain_limit, 1, settings, &state});
-  const auto reading = answer.reading(at);
-  stepper->observe(reading->observer());
+  Motion motion(state, step);
+  PullObserver pulls(*scene.problem, motion.pulls);
+  if (answer.needs_multipliers) stepper->observe(&pulls);
   const auto look = [&](const State& after, const DriveState& /*driven*/) {
-    reading->after(before, after, step);
-    before = after;
+    motion.take(after);
     raise(ending.strain, strain_range(*scene.problem, stepper->filtered_positions()).most);
     if (backend.strain_control == inextensible::StrainControl::stiffness &&
         !(ending.strain <= Calibration::cut_short * answer.strain_limit)) {
       ending.status = PointStatus::strain_missed;
       ending.detail = "strain " + number_text(ending.strain, 3);
     }
-    return ending.status == PointStatus::ok && !reading->done();
+    return ending.status == PointStatus::ok &&
+           !(answer.until_read && std::isfinite(answer.reading(at, motion)));
   };
   const DriveState driven =
       drive(*stepper, state, {step, std::lround(scene.duration / step)}, look, {timeout, begin});
@@ -63,7 +85,7 @@ Ending run_once(const KnownAnswer& answer, const AnswerScene& at, const Backend&
     ending.detail = "longer than " + number_text(timeout) + " s";
   }
   if (ending.status == PointStatus::ok) {
-    ending.value = reading->value();
+    ending.value = answer.reading(at, motion);
     if (!std::isfinite(ending.value)) ending.detail = "the run does not tell";
   }
   return ending;
@@ -96,32 +118,25 @@ double order_of(const KnownAnswer& answer, std::vector<double> deviations) {
   return std::abs(fine) > 10 * answer.strain_limit ? std::log2(std::abs(coarse / fine)) : unknown;
 }
 
-nlohmann::json to_json(const Ending& ending) {
-  return {{"value", number(ending.value)}, {"detail", ending.detail}};
-}
-
-Ending ending_of(const nlohmann::json& object) {
-  Ending ending;
-  ending.value = number_of(object.at("value"));
-  ending.detail = object.at("detail");
-  return ending;
-}
-
-// Throws Interrupted.
-Ending run_apart(const KnownAnswer& answer, const Backend& backend, double step, double timeout,
-                 const std::function<bool()>& interrupted) {
+// The value, and why there is none. Throws Interrupted.
+nlohmann::json run_apart(const KnownAnswer& answer, const Backend& backend, double step,
+                         double timeout, const std::function<bool()>& interrupted) {
+  const auto json_of = [](double value, const std::string& detail) {
+    return nlohmann::json{{"value", number(value)}, {"detail", detail}};
+  };
   // Springs need several runs to find their stiffness.
   const double all_runs = timeout * (Calibration::run_limit + 2);
   return in_child(
       {all_runs, 0, interrupted},
       [&](Heartbeat& heartbeat) {
         heartbeat.restart();
-        return to_json(run_calibrated(answer, backend, step, timeout));
+        const Ending ending = run_calibrated(answer, backend, step, timeout);
+        return json_of(ending.value, ending.detail);
       },
-      ending_of,
-      [](const ChildOutcome& child) {
+      [](const nlohmann::json& run) { return run; },
+      [&](const ChildOutcome& child) {
         const bool stuck = child.end == ChildOutcome::End::timed_out;
-        return Ending{{.detail = stuck ? "a step did not end" : ending(child)}};
+        return json_of(unknown, stuck ? "a step did not end" : ending(child));
       });
 }
 
@@ -156,14 +171,14 @@ AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
     for (const double step : run.answer->steps) {
       if (events.interrupted()) throw Interrupted();
       const std::string name = std::string(run.answer->name) + "/" + run.solver;
-      const Ending ending = ending_of(events.once(name + "/" + step_text(step), [&] {
-        return to_json(run_apart(*run.answer, *inextensible::find_backend(run.solver), step,
-                                 timeout, events.interrupted));
-      }));
-      const double deviation = exact == 0 ? ending.value : ending.value / exact - 1;
-      deviations.push_back(deviation);
-      outcome.rows.push_back({run.answer->name, run.solver, step, ending.value, deviation,
-                              order_of(*run.answer, deviations), ending.detail});
+      const nlohmann::json found = events.once(name + "/" + step_text(step), [&] {
+        return run_apart(*run.answer, *inextensible::find_backend(run.solver), step, timeout,
+                         events.interrupted);
+      });
+      const double value = number_of(found.at("value"));
+      deviations.push_back(exact == 0 ? value : value / exact - 1);
+      outcome.rows.push_back({run.answer->name, run.solver, step, value, deviations.back(),
+                              order_of(*run.answer, deviations), found.at("detail")});
       events.done(name, outcome.rows.size(), all);
     }
   }

@@ -1,19 +1,493 @@
 #include "harness/stability/conformance.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+#include <variant>
 
 #include "harness/base/small_runs.h"
 #include "harness/base/text.h"
-#include "harness/stability/checks.h"
+#include "harness/judge/drive.h"
+#include "harness/judge/mechanics.h"
+#include "harness/judge/reference.h"
+#include "harness/scenes/pendulum.h"
+#include "harness/stability/cases.h"
+#include "harness/stability/stability.h"
+#include "solvers/problem/forces.h"
+#include "solvers/registry.h"
 
 namespace harness {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, grade, check, measured, advice)
 
+namespace {
+
+using inextensible::Positions;
+using inextensible::Problem;
+using inextensible::State;
+using inextensible::Stepper;
+using inextensible::StepResult;
+using inextensible::StrainControl;
+using Findings = std::vector<Finding>;
+using Grade = Finding::Grade;
+
+struct Examinee {
+  const inextensible::Backend& backend;
+  const ConformanceOptions& options;
+};
+
+// The solver does not take the scene, and says why.
+struct NotTaken : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Some steps of one scene, judged as those of a hard case are; not their energy.
+struct Case : Trial {
+  std::string name;
+};
+
+Case case_of(std::string name, Scene scene, double h, int steps, double limit = 0.01) {
+  Case c;
+  c.name = std::move(name);
+  c.scene = std::move(scene);
+  c.step = h;
+  c.steps = steps;
+  c.strain_limit = limit;
+  c.energy_tolerance = -1;
+  // Rounding, and the 1e-10 to which the KKT system's residual is refined.
+  c.momentum_tolerance = 1e-9;
+  return c;
+}
+
+// All parts in a row, numbers with three digits.
+template <class... Parts>
+std::string text(const Parts&... parts) {
+  std::ostringstream stream;
+  stream.precision(3);
+  (stream << ... << parts);
+  return stream.str();
+}
+
+// What a check says; `advice` is kept for a failure only.
+Finding judged(bool passed, const std::string& check, const std::string& measured,
+               const std::string& advice) {
+  return {passed ? Grade::pass : Grade::fail, check, measured, passed ? "" : advice};
+}
+
+Finding not_applicable(const std::string& check, const std::string& why) {
+  return {Grade::not_applicable, check, why, ""};
+}
+
+// A crumpled net of n x n vertices about 1 m apart, masses over a decade, weightless; the first
+// `pins` are pinned; speeds up to `speed` m/s in each coordinate.
+Case net(std::uint64_t seed, int n, int pins, double speed, double step, int steps, double limit) {
+  std::mt19937_64 random(seed);
+  const auto uniform = [&random](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+  };
+  inextensible::ProblemParts parts;
+  parts.gravity.setZero();
+  Scene scene;
+  scene.size = n;
+  scene.start.x.resize(3, n * n);
+  scene.start.v.setZero(3, n * n);
+  const auto join = [&](int a, int b) {
+    if (a < pins && b < pins) return;
+    parts.edges.push_back({a, b});
+    parts.rest_length.push_back((scene.start.x.col(b) - scene.start.x.col(a)).norm());
+  };
+  for (int v = 0; v < n * n; ++v) {
+    const int row = v / n, column = v % n;
+    scene.start.x.col(v) << column + uniform(-0.2, 0.2), uniform(-0.3, 0.3),
+        row + uniform(-0.2, 0.2);
+    parts.mass.push_back(uniform(0.1, 1));
+    if (v < pins) {
+      parts.pinned.push_back(v);
+    } else {
+      for (int axis = 0; axis < 3; ++axis) scene.start.v(axis, v) = uniform(-speed, speed);
+    }
+    if (column > 0) join(v - 1, v);
+    if (row > 0) join(v, v - n);  // both orientations occur
+  }
+  scene.problem = std::make_shared<const Problem>(std::move(parts));
+  return case_of(text("net of ", n, " x ", n, ", seed ", seed), std::move(scene), step, steps,
+                 limit);
+}
+
+// The drape without the parts that the solver does not take.
+Case drape(const inextensible::Backend& solver, double step, int steps) {
+  SceneParameters given{{"n", 9}};
+  if (!solver.takes_shear) given["shear"] = 0;
+  if (!solver.takes_collider) given["radius"] = 0;
+  return case_of("drape of 9 x 9", cases::scene_of("drape", given), step, steps);
+}
+
+bool keeps_a_limit(const inextensible::Backend& solver) {
+  return solver.strain_control == StrainControl::strain_limit;
+}
+
+std::unique_ptr<Stepper> stepper_for(const Examinee& solver, const Case& c,
+                                     const inextensible::Settings& settings = {}) {
+  try {
+    return inextensible::make_stepper(solver.backend.name, c.scene.problem,
+                                      {c.strain_limit, solver.options.seed, settings});
+  } catch (const std::invalid_argument& error) {
+    throw NotTaken(error.what());
+  }
+}
+
+bool same_bits(const Positions& a, const Positions& b) {
+  return a.cols() == b.cols() &&
+         std::equal(a.data(), a.data() + a.size(), b.data(), [](double p, double q) {
+           return std::bit_cast<std::uint64_t>(p) == std::bit_cast<std::uint64_t>(q);
+         });
+}
+
+bool same_bits(const State& a, const State& b) {
+  return same_bits(a.x, b.x) && same_bits(a.v, b.v) && a.time == b.time;
+}
+
+// ---- Pins, limit and counters of ordinary scenes at ordinary steps ----
+
+// What runs tell: how far they went, and where they first broke each promise.
+struct Runs {
+  std::int64_t steps = 0;
+  double worst = 0;  // strain over limit
+  double momentum_defect = 0;
+  std::string stopped;
+  std::map<Promise, std::string> broken;
+
+  void take(const Examinee& solver, const Case& c) {
+    stepper_for(solver, c);  // or it is not taken
+    const TrialResult result =
+        run_trial([&c] { return c; }, solver.backend.name, solver.options.seed);
+    steps += result.work.steps;
+    raise(worst, result.max_strain / c.strain_limit);
+    raise(momentum_defect, result.momentum_defect);
+    const std::string what = text(result.detail, " at ", c.name, ", step ", result.work.steps);
+    if (result.broken != Promise::none) broken.try_emplace(result.broken, what);
+    const bool survived =
+        result.outcome == Outcome::survived || result.outcome == Outcome::survived_smaller;
+    if (stopped.empty() && !survived &&
+        (result.broken == Promise::none || result.broken == Promise::finite))
+      stopped = what;
+  }
+  // Where it was broken, or nothing.
+  std::string where(Promise promise) const {
+    const auto found = broken.find(promise);
+    return found == broken.end() ? "" : found->second;
+  }
+};
+
+Findings ordinary_runs(const Examinee& solver) {
+  Runs all;
+  all.take(solver, case_of("chain of 20", cases::scene_of("chain", {{"n", 20}}), 1.0 / 400, 80));
+  all.take(solver, drape(solver.backend, 1.0 / 400, 60));
+  for (std::uint64_t seed = 1; seed <= 4; ++seed)
+    all.take(solver, net(seed, 5, 2, 2, 0.005, 10, 0.005));
+  const std::string pins = all.where(Promise::pins), counters = all.where(Promise::counters),
+                    limit = all.where(Promise::strain) + all.where(Promise::contact),
+                    worst = number_text(all.worst, 4);
+  return {
+      judged(all.stopped.empty(), "steps",
+             all.stopped.empty() ? text(all.steps, " steps of a chain, a drape and nets")
+                                 : "it does not get through " + all.stopped,
+             "easy scenes: at small steps the candidate nearly meets the limit; look at the "
+             "iteration limit and at what ends the iteration"),
+      judged(pins.empty(), "pins",
+             pins.empty() ? text("none moved in ", all.steps, " steps") : pins,
+             "a pinned vertex's inverse mass is 0; do not write to it, rounding moves it too"),
+      keeps_a_limit(solver.backend)
+          ? judged(limit.empty(), "limit",
+                   text("largest strain ", worst, " of the limit (allowed 1)"),
+                   limit + ": return ok only where every edge keeps | |d| / l - 1 | <= "
+                           "strain_limit (EdgeConstraints::permissible), before the collision "
+                           "filter; refuse otherwise")
+          : not_applicable("limit", text(solver.backend.strain_control == StrainControl::stiffness
+                                             ? "no limit of its own, sweeps search its stiffness"
+                                             : "promises no limit",
+                                         "; here ", worst, " of it")),
+      judged(counters.empty(), "counters",
+             counters.empty() ? "steps are counted and no counter falls" : counters,
+             "only add to the WorkCounters that apply() is given, and return the iterations "
+             "of this step alone")};
+}
+
+// ---- Linear and angular momentum of a free, weightless net ----
+
+// A hundredth of the strain that a step causes. An edge that is within its limit is not corrected:
+// with a limit near that strain, which edges are depends on the step, and the loss has no order in
+// it.
+constexpr double momentum_limit = 1e-5;
+// What edges may do within their limit has no order in the step: a hundredth of it is let pass.
+constexpr double spin_tolerance = 0.01 * momentum_limit;
+// Defect at a quarter of the step over this one: 1/4 for an error of first order in h, 1 for one
+// that steps do not lessen; between the two, on a logarithmic scale.
+constexpr double vanishing = 0.5;
+
+// Infinite if a step is refused.
+double loss_of_spin(const Examinee& solver, const Case& c, int refinement) {
+  const Problem& problem = *c.scene.problem;
+  const auto stepper = stepper_for(solver, c);
+  State state = c.scene.start;
+  const Eigen::Vector3d start = angular_momentum(problem, state);
+  double scale = 0;
+  for (Eigen::Index i = 0; i < state.v.cols(); ++i)
+    scale += problem.mass()[i] * state.v.col(i).norm();
+  const DriveState driven = drive(*stepper, state, {c.step / refinement, refinement * c.steps});
+  if (driven.end == DriveState::End::refused) return std::numeric_limits<double>::infinity();
+  return (angular_momentum(problem, state) - start).norm() / (scale * c.scene.size);
+}
+
+Findings momentum(const Examinee& solver) {
+  if (!solver.backend.conserves_momentum) {
+    const char* why =
+        "vertices are moved one by one, or forces turn: conserved only where it has converged";
+    return {not_applicable("linear momentum", why), not_applicable("angular momentum", why)};
+  }
+  Runs all;
+  double coarse = 0, fine = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Case c = net(seed, 5, 0, 0.5, 0.002, 20, momentum_limit);
+    all.take(solver, c);
+    coarse += loss_of_spin(solver, c, 1) / 4;
+    fine += loss_of_spin(solver, c, 4) / 4;
+  }
+  if (std::isinf(coarse + fine)) {
+    const char* refuses = "not measured: it refuses a step of 0.002 s of a free net";
+    const std::string easy = text("strain limit ", momentum_limit,
+                                  ", speeds of 0.5 m/s, edges of 1 m: a small correction");
+    return {judged(false, "linear momentum", refuses, easy),
+            judged(false, "angular momentum", refuses, easy)};
+  }
+  const double allowed = std::max(vanishing * coarse, spin_tolerance);
+  return {
+      judged(all.where(Promise::momentum).empty(), "linear momentum",
+             text("changes by ", all.momentum_defect, " of what flows in a step (allowed 1e-9)"),
+             "nothing outside acts: corrections of an edge's two ends, times their masses, "
+             "must cancel (share by inverse mass)"),
+      judged(fine <= allowed, "angular momentum",
+             text("changes by ", coarse, " of its scale at h, ", fine, " at h/4 (allowed ", allowed,
+                  ": it vanishes with the step)"),
+             "corrections must act along their edge, at its direction within the step; about "
+             "the origin or along fixed axes they do torque")};
+}
+
+// ---- Steps that no method can take ----
+
+Findings refusal(const Examinee& solver) {
+  const Case torn = case_of("a row between pins 20 % farther apart than it is long",
+                            cases::scene_of("taut_row", {{"stretch", 1.2}, {"n", 12}}), 0.01, 1);
+  Case overflow = net(1, 4, 1, 2, 0.01, 1, 0.005);
+  overflow.name = "speeds of 1e300 m/s";
+  overflow.scene.start.v *= 1e300;
+  int refused = 0, accepted = 0;
+  std::string wrong;
+  for (const Case* c : {&torn, &std::as_const(overflow)}) {
+    State state = c->scene.start;
+    state.time = 2;
+    const State before = state;
+    const StepResult result = stepper_for(solver, *c)->advance(state, c->step);
+    ++(result ? accepted : refused);
+    if (result && !(state.x.allFinite() && state.v.allFinite()))
+      wrong = c->name + ": a state that is not finite was accepted; test what you return";
+    else if (result && c == &torn && keeps_a_limit(solver.backend))
+      wrong = c->name + ": accepted, although no positions keep the limit";
+    else if (!result && !same_bits(state, before))
+      wrong = c->name +
+              ": the refused step changed the state; work on copies, x_start is not yours, and a "
+              "step controller repeats the step from it";
+    else if (!result && std::string(result.detail).empty())
+      wrong = c->name + ": refused without a reason in StepResult::detail";
+  }
+  return {judged(wrong.empty(), "refusal",
+                 text(refused, " impossible steps refused, ", accepted,
+                      " taken with finite positions; state bit for bit as it was: ",
+                      wrong.empty() ? "yes" : "no, or not refused"),
+                 wrong)};
+}
+
+// ---- A candidate that keeps the limit already ----
+
+Findings permissible_candidate(const Examinee& solver) {
+  const char* check = "permissible candidate";
+  // A setting of this name means the same in every row (setting_fields.h), plug-ins' too.
+  for (const auto& setting : solver.backend.settings) {
+    if (setting.name == std::string("min_iterations") && std::get<double>(setting.initial) > 0)
+      return {not_applicable(check, "corrected too, by its setting min_iterations")};
+  }
+  if (!keeps_a_limit(solver.backend)) return {not_applicable(check, "no limit of its own")};
+  double moved = 0, worst = 0, worst_candidate = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Case c = net(seed, 5, 1, 0.1, 0.01, 1, 0.05);
+    State state = c.scene.start;
+    WorkCounters nobodys;
+    Positions candidate;
+    inextensible::unconstrained_step(*c.scene.problem, state, c.step, candidate, nobodys);
+    if (!stepper_for(solver, c)->advance(state, c.step))
+      return {judged(false, check, "refused", "there is nothing to correct: return ok at once")};
+    moved = std::max(moved, (state.x - candidate).cwiseAbs().maxCoeff());
+    worst = std::max(worst, strain_range(*c.scene.problem, state.x).most);
+    worst_candidate = std::max(worst_candidate, strain_range(*c.scene.problem, candidate).most);
+  }
+  return {judged(moved == 0 || worst <= worst_candidate, check,
+                 moved == 0 ? "left alone"
+                            : text("moved by up to ", moved, " m; largest strain ", worst,
+                                   " (the candidate's, allowed: ", worst_candidate, ")"),
+                 "a correction of what keeps the limit made it worse: test the candidate first")};
+}
+
+// ---- The same bits beside another instance ----
+
+Findings determinism(const Examinee& solver) {
+  const Case other = net(9, 4, 1, 2, 0.005, 1, 0.005);
+  std::string difference;
+  int steps = 0;
+  for (const Case& c : {net(5, 5, 2, 2, 0.0025, 20, 0.005), drape(solver.backend, 1.0 / 800, 40)}) {
+    const auto alone = stepper_for(solver, c);
+    std::vector<State> path;
+    State state = c.scene.start;
+    for (int i = 0; i < c.steps; ++i) {
+      alone->advance(state, c.step);  // refusals must repeat as well
+      path.push_back(state);
+    }
+    const auto again = stepper_for(solver, c), neighbour = stepper_for(solver, other);
+    State theirs = other.scene.start;
+    state = c.scene.start;
+    for (std::size_t i = 0; i < path.size(); ++i, ++steps) {
+      again->advance(state, c.step);
+      neighbour->advance(theirs, other.step);
+      if (difference.empty() && !same_bits(state, path[i]))
+        difference = text("positions or velocities differ by ",
+                          std::max((state.x - path[i].x).cwiseAbs().maxCoeff(),
+                                   (state.v - path[i].v).cwiseAbs().maxCoeff()),
+                          " at ", c.name, ", step ", i + 1);
+    }
+    if (difference.empty() && !(again->work() == alone->work()))
+      difference = "counters differ at " + c.name;
+  }
+  return {judged(
+      difference.empty(), "determinism",
+      text(steps, " steps repeated beside another instance: ",
+           difference.empty() ? "the same bits and counters" : difference),
+      "one seed, one result: no static or global state, no clock, no std::rand, no memory that "
+      "was not initialized, no order of addresses; random numbers from BackendOptions::seed")};
+}
+
+// ---- Smaller steps, smaller error, towards the right motion ----
+
+Findings consistency(const Examinee& solver) {
+  const char* check = "consistency";
+  constexpr int links = 7;
+  // Tolerance of the fine run, h = 0.00025 s, over the scene's size: five times g t h / 2, by which
+  // symplectic Euler's free fall is off after 0.32 s.
+  constexpr double largest_error = 2e-3;
+  // Distances from a run of h/16: (1/2 - 1/16) / (1 - 1/16) = 0.47 for a method of first order, 1
+  // for what does not vanish with h; between the two, on a logarithmic scale.
+  constexpr double not_vanishing = 0.68;
+  const Case c =
+      case_of("chain of 8", cases::scene_of("chain", {{"n", links + 1}}), 0.32 / 80, 80, 1e-6);
+  // How far a step is iterated is a tolerance, not a part of the formula: it must not be what
+  // shows.
+  inextensible::Settings settings;
+  for (const auto& info : solver.backend.settings) {
+    if (info.name == std::string("direction_tolerance")) settings[info.name] = 0.01;
+  }
+  std::vector<Positions> ends;
+  for (const int refinement : {1, 2, 16}) {
+    const auto stepper = stepper_for(solver, c, settings);
+    State state = c.scene.start;
+    const DriveState driven = drive(*stepper, state, {c.step / refinement, refinement * c.steps});
+    if (driven.end == DriveState::End::refused)
+      return {
+          judged(false, check,
+                 text("not measured: refuses h = 1/", 250 * refinement,
+                      " s on a falling chain of 8 at strain limit 1e-6: ", driven.result.detail),
+                 "an easy scene; look at the iteration limit and at what ends the iteration")};
+    ends.push_back(state.x);
+  }
+  const double coarse = rms_distance(c.scene, ends[0], ends[2]),
+               half = rms_distance(c.scene, ends[1], ends[2]);
+  bool passed = half <= not_vanishing * coarse || coarse < 1e-9;
+  std::string measured = text("halving h takes the distance to its own fine run from ", coarse,
+                              " to ", half, " (allowed ", not_vanishing * coarse, ")");
+  if (solver.backend.strain_control != StrainControl::none) {
+    Pendulum exact({std::vector<double>(links, 1.0 / (links + 1)),
+                    std::vector<double>(links, 1.0 / links), 9.81},
+                   std::vector<double>(links, 0.0));
+    exact.advance(c.step * c.steps, 1e-12);
+    const double error = rms_distance(c.scene, ends[2], exact.positions());
+    passed = passed && error <= largest_error;
+    measured +=
+        text(", and that is ", error, " from the exact motion (allowed ", largest_error, ")");
+  }
+  return {judged(passed, check, measured,
+                 "what a step changes must vanish with h: look for a damping, a relaxation or an "
+                 "offset a step that does not know h")};
+}
+
+// ---- Every hard case of the profile "quick" ----
+
+Findings all_hard_cases(const Examinee& solver) {
+  const char* check = "hard cases";
+  if (!solver.options.hard_cases) return {not_applicable(check, "left out")};
+  if (!solver.backend.contestant) return {not_applicable(check, "for contestants only")};
+  const auto cases = hard_cases(hard_case_values("quick"));
+  StabilityFilters filters;
+  filters.solver = Pattern("solver", solver.backend.name);
+  filters.but_case = Pattern("case", "^(largest step|same frame)");
+  const StabilityOutcome outcome =
+      run_stability(plan_stability(cases, filters), solver.options.seed, {});
+  int survived = 0, refused = 0, slow = 0, known = 0, unexpected = 0;
+  std::string advice;
+  for (const StabilityCell& cell : outcome.cells) {
+    const Outcome o = cell.result.outcome;
+    survived += o == Outcome::survived || o == Outcome::survived_smaller;
+    refused += o == Outcome::refused;
+    slow += o == Outcome::timeout;
+    known += cell.known ? 1 : 0;
+    if (cell.expected || cell.known) continue;
+    ++unexpected;
+    advice += text(advice.empty() ? "" : "\n", cell.hard_case->name, " (", cell.hard_case->what,
+                   "): ", to_string(cell.result.fixed), ", ", cell.result.detail);
+  }
+  return {
+      judged(unexpected == 0, check,
+             text(outcome.cells.size(), " cases: ", survived, " survived, ", refused, " refused, ",
+                  slow, " too slow; ", unexpected, " ended as they should not (allowed 0)",
+                  known == 0 ? "" : text(", besides ", known, " known ones")),
+             advice)};
+}
+
+struct Check {
+  const char* name;
+  Findings (*run)(const Examinee&);  // throws NotTaken
+  double timeout = 120;              // s
+};
+
+constexpr Check checks[] = {
+    {"ordinary runs", ordinary_runs},
+    {"momentum", momentum},
+    {"refusal", refusal},
+    {"permissible candidate", permissible_candidate},
+    {"determinism", determinism},
+    {"consistency", consistency},
+    {"hard cases", all_hard_cases, 3600},
+};
+
+}  // namespace
+
 std::vector<Finding> examine(const std::string& solver, const ConformanceOptions& options) {
   const Examinee examinee{*inextensible::find_backend(solver), options};
   std::vector<Finding> findings;
-  for (const Check& check : checks()) {
+  for (const Check& check : checks) {
     // In a process of its own: the solver may crash, hang or end the program.
     const Findings found = in_child(
         {check.timeout, 0, options.interrupted},
@@ -32,7 +506,7 @@ std::vector<Finding> examine(const std::string& solver, const ConformanceOptions
                                       : ending(child);
           return Findings{{Finding::Grade::fail, check.name, how,
                            "run it alone under a debugger: the checks are in "
-                           "harness/stability/checks.cpp"}};
+                           "harness/stability/conformance.cpp"}};
         });
     for (const Finding& finding : found) {
       findings.push_back(finding);

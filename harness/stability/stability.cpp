@@ -10,49 +10,6 @@
 #include "solvers/registry.h"
 
 namespace harness {
-namespace {
-
-// The largest step at which the scene's second is survived: down the powers of two to the first one
-// that is, then bisection (on a logarithmic scale) against the one above.
-LargestStep largest_step(const StabilityScene& scene, const std::string& solver, std::uint64_t seed,
-                         const std::function<bool()>& interrupted) {
-  constexpr double largest = 0.25;  // s
-  constexpr int bisections = 3;  // between the first step that survives and the one above: to 9 %
-  const auto whole = [](double step) { return 1 / std::round(1 / step); };  // so is a second
-  LargestStep found{scene.name, solver, unknown, unknown, ""};
-  const auto survives = [&](double step) {
-    const TrialResult result = run_isolated_trial(
-        [&] {
-          Trial trial = cases::trial_of(
-              cases::scene_of(scene.type, {{"n", static_cast<double>(scene.n)}}), whole(step));
-          trial.timeout = trial.timeout_smaller = 2;
-          return trial;
-        },
-        solver, seed, interrupted);
-    if (result.fixed != Outcome::survived)
-      found.detail = to_string(result.fixed) + (": " + result.detail);
-    return result.fixed == Outcome::survived;
-  };
-  double high = unknown, low = largest;
-  const double smallest = scene.smallest * (1 - 1e-9);
-  while (low >= smallest && !survives(low)) {
-    high = low;
-    low /= 2;
-  }
-  if (low < smallest) {
-    found.failing_step = high;
-    return found;
-  }
-  for (int i = 0; i < bisections && std::isfinite(high); ++i) {
-    const double middle = std::sqrt(low * high);
-    (survives(middle) ? low : high) = middle;
-  }
-  found.step = whole(low);
-  if (std::isfinite(high)) found.failing_step = whole(high);
-  return found;
-}
-
-}  // namespace
 
 bool acceptable(const Expectation& expectation, const std::string& solver,
                 const TrialResult& result) {
@@ -102,7 +59,11 @@ StabilityPlan plan_stability(const std::vector<HardCase>& cases, const Stability
   });
   plan.freedom = selected("triangles");
   const auto has = [&](const char* name) { return std::ranges::count(plan.solvers, name) > 0; };
-  if (has("fast_projection") && has("icd")) plan.frames = same_frame_scenes();
+  if (has("fast_projection") && has("icd")) {
+    for (const double limit : {0.01, 0.001})
+      plan.frames.insert(plan.frames.end(),
+                         {{"drape", 21, limit}, {"drape", 31, limit}, {"patch", 21, limit}});
+  }
   std::erase_if(plan.frames,
                 [&](const auto& scene) { return !selected("same frame " + scene.name()); });
   if (plan.solvers.empty()) throw UsageError("no contestant matches --solver");
@@ -118,59 +79,45 @@ void StabilityPlan::keep(const Shard& part) {
   freedom = freedom && part.index == 1;
 }
 
-namespace {
-
-// Throws Interrupted, with what there is so far.
-void run_plan(const StabilityPlan& plan, std::uint64_t seed, const RunEvents& events,
-              StabilityOutcome& outcome) {
-  const auto stop_if_asked = [&events] {
-    if (events.interrupted()) throw Interrupted();
-  };
-  for (const HardCase* c : plan.cases) {
-    for (const std::string& solver : plan.solvers) {
-      stop_if_asked();
-      const std::string key = cell_key(c->name, solver);
-      StabilityCell cell{
-          c, solver,
-          trial_result_of(events.once(key,
-                                      [&] {
-                                        return to_json(run_isolated_trial(c->build, solver, seed,
-                                                                          events.interrupted));
-                                      })),
-          c->expectation(solver)};
-      cell.expected = acceptable(cell.expectation, solver, cell.result);
-      if (!cell.expected) cell.known = known_difference(c->name, solver, cell.result);
-      outcome.cells.push_back(std::move(cell));
-      events.done(key, outcome.cells.size(), plan.cells());
-    }
-  }
-  for (const StabilityScene& scene : plan.scenes) {
-    for (const std::string& solver : plan.solvers) {
-      stop_if_asked();
-      outcome.largest_steps.push_back(largest_step(scene, solver, seed, events.interrupted));
-      events.done("largest step, " + cell_key(scene.name, solver), 0, 0);
-    }
-  }
-  if (plan.freedom) {
-    for (const int n : {11, 21, 41}) {
-      for (const Freedom& f : degrees_of_freedom(n)) outcome.freedom.push_back(f);
-    }
-  }
-  ReferenceFolder references(source_path("results/references"));
-  for (const SameFrameScene& scene : plan.frames) {
-    stop_if_asked();
-    outcome.same_frames.push_back(same_frame(scene, seed, references));
-    events.done("the same frame, " + scene.name(), 0, 0);
-  }
-}
-
-}  // namespace
-
 StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
                                const RunEvents& events) {
   StabilityOutcome outcome;
+  const auto stop_if_asked = [&events] {
+    if (events.interrupted()) throw Interrupted();
+  };
   try {
-    run_plan(plan, seed, events, outcome);
+    for (const HardCase* c : plan.cases) {
+      for (const std::string& solver : plan.solvers) {
+        stop_if_asked();
+        const std::string key = cell_key(c->name, solver);
+        const nlohmann::json result = events.once(key, [&] {
+          return to_json(run_isolated_trial(c->build, solver, seed, events.interrupted));
+        });
+        StabilityCell cell{c, solver, trial_result_of(result), c->expectation(solver)};
+        cell.expected = acceptable(cell.expectation, solver, cell.result);
+        if (!cell.expected) cell.known = known_difference(c->name, solver, cell.result);
+        outcome.cells.push_back(std::move(cell));
+        events.done(key, outcome.cells.size(), plan.cells());
+      }
+    }
+    for (const StabilityScene& scene : plan.scenes) {
+      for (const std::string& solver : plan.solvers) {
+        stop_if_asked();
+        outcome.largest_steps.push_back(largest_step(scene, solver, seed, events.interrupted));
+        events.done("largest step, " + cell_key(scene.name, solver), 0, 0);
+      }
+    }
+    if (plan.freedom) {
+      for (const int n : {11, 21, 41}) {
+        for (const Freedom& f : degrees_of_freedom(n)) outcome.freedom.push_back(f);
+      }
+    }
+    ReferenceFolder references(source_path("results/references"));
+    for (const SameFrameScene& scene : plan.frames) {
+      stop_if_asked();
+      outcome.same_frames.push_back(same_frame(scene, seed, references));
+      events.done("the same frame, " + scene.name(), 0, 0);
+    }
   } catch (const Interrupted&) {
     outcome.complete = false;
   }

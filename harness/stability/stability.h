@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -37,17 +38,27 @@ struct ExpectationCounts {
   int cells = 0, strict = 0, two_admitted = 0, not_as_expected = 0, new_differences = 0;
 };
 
+// ---- Beside the matrix ----
+
+// A scene in which the largest stable step is searched, for one simulated second.
+struct StabilityScene {
+  const char *name, *type;
+  int n;
+  double smallest;  // s; the largest step is 1/4 s
+};
+
 struct LargestStep {
   std::string scene, solver;
   double step = unknown;          // s, the largest at which one second was survived
   double failing_step = unknown;  // s, the next larger one that was tried and failed
   std::string detail;             // why that one failed
 };
+LargestStep largest_step(const StabilityScene& scene, const std::string& solver, std::uint64_t seed,
+                         const std::function<bool()>& interrupted);
 
-// ---- Degrees of freedom that constraints leave to a cloth ----
-
-// 3 per free vertex less the rank of J (SuiteSparseQR), at randomly displaced positions, so that
-// the figure is that of a cloth in general position (claim C14).
+// Degrees of freedom that constraints leave to a cloth: 3 per free vertex less the rank of J
+// (SuiteSparseQR), at randomly displaced positions, so that the figure is that of a cloth in
+// general position (claim C14).
 struct Freedom {
   // "quads" or "triangles": all of their edges are constrained; "midpoints": edges between the
   // midpoints of triangles' edges.
@@ -58,24 +69,20 @@ struct Freedom {
 // The three meshes of n x n vertices.
 std::vector<Freedom> degrees_of_freedom(int n);
 
-// ---- The same frames ----
-//
 // Figure 6 of the paper by direct comparison (claim C8): one cloth at one step by fast projection,
 // by ICD, and by fast projection from a start that was moved by next to nothing, which tells how
 // far apart runs come that should be the same. A drape falls freely until it touches the sphere;
 // the patch hangs from two pins, so that constraints act on it from the first step on, and nothing
 // else does.
-
 struct SameFrameScene {
   std::string scene;    // "drape" or "patch"
   int side;             // vertices along the cloth
   double strain_limit;  // of both solvers
-  double step;          // s
-  double moved;  // of the start's vertices in each coordinate, over the scene's size, at most
 
+  static constexpr double step = 1.0 / 200;  // s
+  static constexpr double moved = 1e-10;     // coordinates of the start, over the scene's size
   std::string name() const;
 };
-std::vector<SameFrameScene> same_frame_scenes();
 
 // Numbers over the times of frames, by name.
 using FrameSeries = std::map<std::string, std::vector<double>>;
@@ -88,12 +95,10 @@ struct SameFrame {
                                    // the run of fast projection; unknown where there is no sphere
   std::vector<double> times;       // s
   FrameSeries icd;                 // from fast projection to ICD
-  FrameSeries moved;               // to fast projection from the moved start
-  // Standard deviations of the reference's ensemble at its sample times; else unknown.
-  FrameSeries deviation;
-  std::string stopped;  // empty: all three ran to the end
+  FrameSeries moved_start;         // to fast projection from the moved start
+  FrameSeries ensemble_deviation;  // of the reference's ensemble at its sample times; else unknown
+  std::string stopped;             // empty: all three ran to the end
 };
-
 SameFrame same_frame(const SameFrameScene& scene, std::uint64_t seed, ReferenceFolder& references);
 
 // ---- The sweep ----
@@ -102,13 +107,6 @@ struct StabilityFilters {
   std::optional<Pattern> solver;     // must match the solver's whole name
   std::optional<Pattern> hard_case;  // must be found in a row's or a case's name
   std::optional<Pattern> but_case;   // must not
-};
-
-// A scene in which the largest stable step is searched, for one simulated second.
-struct StabilityScene {
-  const char *name, *type;
-  int n;
-  double smallest;  // s; the largest step is 1/4 s
 };
 
 // What will be run.

@@ -18,6 +18,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExpectationCounts, cells, strict, two_admitte
                                    new_differences)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LargestStep, scene, solver, step, failing_step, detail)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Freedom, mesh, vertices, constraints, rank, degrees_of_freedom)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SameFrame, first_contact, times, icd, moved_start,
+                                   ensemble_deviation, stopped)
 
 namespace {
 
@@ -57,7 +59,7 @@ void print_same_frames(std::ostream& out, const std::vector<SameFrame>& frames) 
     for (std::size_t i = 0; i < f.times.size(); ++i) {
       if (i + 1 == f.times.size() || f.times[i] == f.first_contact)
         out << "; " << number_text(f.times[i], 3) << " s: " << number_text(f.icd.at("rms")[i], 2)
-            << ", " << number_text(f.moved.at("rms")[i], 2);
+            << ", " << number_text(f.moved_start.at("rms")[i], 2);
     }
     out << (f.stopped.empty() ? "" : "; stopped: " + f.stopped) << '\n';
   }
@@ -105,17 +107,12 @@ json known_json(const StabilityOutcome& outcome) {
 json same_frames_json(const std::vector<SameFrame>& frames) {
   json list = json::array();
   for (const SameFrame& f : frames) {
-    list.push_back({{"scene", f.scene.name()},
-                    {"side", f.scene.side},
-                    {"strain_limit", f.scene.strain_limit},
-                    {"step", f.scene.step},
-                    {"start_moved_by", f.scene.moved},
-                    {"first_contact", f.first_contact},
-                    {"times", f.times},
-                    {"icd", f.icd},
-                    {"moved_start", f.moved},
-                    {"ensemble_deviation", f.deviation},
-                    {"stopped", f.stopped}});
+    list.push_back(f);
+    list.back().update({{"scene", f.scene.name()},
+                        {"side", f.scene.side},
+                        {"strain_limit", f.scene.strain_limit},
+                        {"step", f.scene.step},
+                        {"start_moved_by", f.scene.moved}});
   }
   return list;
 }
@@ -123,25 +120,20 @@ json same_frames_json(const std::vector<SameFrame>& frames) {
 // The first word of a row or column and its cells below or beside it.
 using Line = std::vector<std::string>;
 
-int width_of(const Line& column) {
-  const auto longest =
-      std::max_element(column.begin(), column.end(),
-                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
-  return static_cast<int>(longest->size()) + 2;
-}
-
 // The first column, then as many of the others as fit; those that do not fit follow below.
 void print_columns(std::ostream& out, const std::vector<Line>& columns, std::size_t width) {
+  std::vector<std::size_t> widths;
+  for (const Line& column : columns)
+    widths.push_back(std::ranges::max_element(column, {}, &std::string::size)->size() + 2);
   for (std::size_t first = 1, last = 1; first < columns.size(); first = last) {
-    std::size_t total = width_of(columns[0]);
+    std::size_t total = widths[0];
     do {
-      total += width_of(columns[last++]);
-    } while (last < columns.size() && total + width_of(columns[last]) <= width);
+      total += widths[last++];
+    } while (last < columns.size() && total + widths[last] <= width);
     out << (first > 1 ? "\n" : "") << std::left;
     for (std::size_t row = 0; row < columns[0].size(); ++row) {
-      out << std::setw(width_of(columns[0])) << columns[0][row];
-      for (std::size_t i = first; i < last; ++i)
-        out << std::setw(width_of(columns[i])) << columns[i][row];
+      for (std::size_t i = 0; i < last; i = std::max(i + 1, first))
+        out << std::setw(static_cast<int>(widths[i])) << columns[i][row];
       out << '\n';
     }
   }

@@ -60,7 +60,7 @@ struct Trial {
   double timeout = 60, timeout_smaller = 10;
 };
 
-enum class Promise { none, finite, strain, contact, pins, momentum, energy };
+enum class Promise { none, finite, strain, contact, pins, momentum, energy, counters };
 
 struct TrialResult {
   Outcome fixed = Outcome::refused;  // at the trial's own step

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 
 #include "harness/base/text.h"
 #include "solvers/problem/forces.h"
@@ -38,16 +39,30 @@ bool TrialJudge::fail(Outcome outcome, const std::string& why, Promise broken) {
 int TrialJudge::before(State& state, const DriveState& driven) {
   if (trial_.disturb && driven.whole) trial_.disturb(state, static_cast<int>(driven.steps));
   start_ = state;
-  factorizations_ = stepper_.work().factorizations;
+  work_ = stepper_.work();
   return 1;
 }
 
 bool TrialJudge::after(const State& state, const DriveState& driven) {
-  if (stepper_.work().factorizations > factorizations_) {
+  if (stepper_.work().factorizations > work_.factorizations) {
     const double condition = stepper_.reciprocal_condition();
     if (!(condition >= result_.reciprocal_condition)) result_.reciprocal_condition = condition;
   }
-  return after(stepper_.filtered_positions(), state, driven.last);
+  return after(stepper_.filtered_positions(), state, driven.last) && judge_counters(driven);
+}
+
+// They only grow, but for a factorization's size, which is that of the last one.
+bool TrialJudge::judge_counters(const DriveState& driven) {
+  const inextensible::WorkCounters& now = stepper_.work();
+  bool falls = false;
+  for (const auto& counter : inextensible::work_counters) {
+    if (const auto* count =
+            std::get_if<std::int64_t inextensible::WorkCounters::*>(&counter.member))
+      falls = falls || now.**count < work_.**count;
+  }
+  if (falls) return broke(Promise::counters, "a counter fell");
+  return (now.steps == work_.steps + 1 && driven.result.iterations >= 0) ||
+         broke(Promise::counters, "steps or iterations are wrong");
 }
 
 bool TrialJudge::after(const Positions& filtered, const State& state, double h) {

@@ -31,6 +31,7 @@ class TrialJudge : public Observer {
   // Each returns whether nothing is wrong.
   bool fail(Outcome outcome, const std::string& why, Promise broken = Promise::none);
   bool broke(Promise promise, const std::string& why) { return fail(Outcome::wrong, why, promise); }
+  bool judge_counters(const DriveState& driven);
   bool judge_strain(const inextensible::Positions& filtered, const inextensible::State& state);
   bool judge_limit(const StrainRange& worst, const char* when);
   bool judge_contact(const inextensible::State& state);
@@ -52,7 +53,7 @@ class TrialJudge : public Observer {
   EnergyRecord energy_;
   double release_ = 0;  // of energy by slack in the last step
   inextensible::State start_;
-  std::int64_t factorizations_ = 0;  // before the step
+  inextensible::WorkCounters work_;  // before the step
   // With contact inside only: where the obstacle is, and what is in it.
   std::optional<inextensible::Obstacle> obstacle_;
   std::vector<inextensible::ContactPlane> inside_;

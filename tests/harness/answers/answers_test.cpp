@@ -21,25 +21,21 @@ constexpr double g = 9.81;
 
 // What an answer's reading makes of the scene's exact motion.
 double read_off_exact_motion(const KnownAnswer& answer, const AnswerScene& at, double step) {
-  const auto reading = answer.reading(at);
-  State before = at.scene.start, state = before;
+  State state = at.scene.start;
+  Motion motion(state, step);
   for (int i = 1; i <= std::lround(at.scene.duration / step); ++i) {
-    before = state;
     state.time = i * step;
     state.x = at.type->exact(at.parameters, state.time);
-    state.v = (state.x - before.x) / step;
-    reading->after(before, state, step);
+    motion.take(state);
   }
-  return reading->value();
+  return answer.reading(at, motion);
 }
 
 // What an answer reads off positions at the end of a run.
 double read_off(const char* answer, const AnswerScene& at, const Positions& x) {
-  const auto reading = find_answer(answer)->reading(at);
   State state = at.scene.start;
   state.x = x;
-  reading->after(state, state, 1);
-  return reading->value();
+  return find_answer(answer)->reading(at, Motion(state, 1));
 }
 
 TEST(HangingFrequency, IsThatOfTheLiterature) {

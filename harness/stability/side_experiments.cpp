@@ -1,3 +1,5 @@
+// What the stability sweep measures beside the matrix of hard cases.
+#include <Eigen/SPQRSupport>
 #include <cmath>
 #include <random>
 
@@ -9,10 +11,93 @@
 #include "solvers/registry.h"
 
 namespace harness {
+
+// Down the powers of two to the first step that is survived, then bisection (on a logarithmic
+// scale) against the one above.
+LargestStep largest_step(const StabilityScene& scene, const std::string& solver, std::uint64_t seed,
+                         const std::function<bool()>& interrupted) {
+  constexpr double largest = 0.25;  // s
+  constexpr int bisections = 3;  // between the first step that survives and the one above: to 9 %
+  const auto whole = [](double step) { return 1 / std::round(1 / step); };  // so is a second
+  LargestStep found{scene.name, solver, unknown, unknown, ""};
+  const auto survives = [&](double step) {
+    const TrialResult result = run_isolated_trial(
+        [&] {
+          Trial trial = cases::trial_of(
+              cases::scene_of(scene.type, {{"n", static_cast<double>(scene.n)}}), whole(step));
+          trial.timeout = trial.timeout_smaller = 2;
+          return trial;
+        },
+        solver, seed, interrupted);
+    if (result.fixed != Outcome::survived)
+      found.detail = to_string(result.fixed) + (": " + result.detail);
+    return result.fixed == Outcome::survived;
+  };
+  double high = unknown, low = largest;
+  const double smallest = scene.smallest * (1 - 1e-9);
+  while (low >= smallest && !survives(low)) {
+    high = low;
+    low /= 2;
+  }
+  if (low < smallest) {
+    found.failing_step = high;
+    return found;
+  }
+  for (int i = 0; i < bisections && std::isfinite(high); ++i) {
+    const double middle = std::sqrt(low * high);
+    (survives(middle) ? low : high) = middle;
+  }
+  found.step = whole(low);
+  if (std::isfinite(high)) found.failing_step = whole(high);
+  return found;
+}
+
+// ---- Degrees of freedom ----
+
+namespace {
+
+// Rank of the Jacobian of | d |^2 / l over all coordinates.
+int rank_of_jacobian(const cases::Mesh& mesh) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto rows = static_cast<int>(mesh.parts.edges.size()),
+             columns = static_cast<int>(3 * mesh.parts.mass.size());
+  for (int k = 0; k < rows; ++k) {
+    const auto e = static_cast<std::size_t>(k);
+    const auto [a, b] = mesh.parts.edges[e];
+    const Eigen::Vector3d u =
+        2 * (mesh.start.x.col(b) - mesh.start.x.col(a)) / mesh.parts.rest_length[e];
+    for (int axis = 0; axis < 3; ++axis) {
+      entries.emplace_back(k, 3 * a + axis, -u[axis]);
+      entries.emplace_back(k, 3 * b + axis, u[axis]);
+    }
+  }
+  Eigen::SparseMatrix<double> jacobian(rows, columns);
+  jacobian.setFromTriplets(entries.begin(), entries.end());
+  return static_cast<int>(Eigen::SPQR<Eigen::SparseMatrix<double>>(jacobian).rank());
+}
+
+}  // namespace
+
+std::vector<Freedom> degrees_of_freedom(int n) {
+  std::vector<Freedom> list;
+  for (auto [name, mesh] : {std::pair("quads", cases::cloth(n)),
+                            {"triangles", cases::cloth(n, true)},
+                            {"midpoints", cases::midpoint_cloth(n)}}) {
+    std::mt19937_64 random(1);
+    cases::add_noise(mesh.start.x, {}, 0.2 / (n - 1), random);
+    const int rank = rank_of_jacobian(mesh);
+    const auto edges = static_cast<int>(mesh.parts.edges.size()),
+               coordinates = static_cast<int>(3 * mesh.parts.mass.size());
+    list.push_back({name, n * n, edges, rank, coordinates - rank});
+  }
+  return list;
+}
+
+// ---- The same frames ----
+
 namespace {
 
 using inextensible::State;
-using inextensible::Stepper;
 
 // Every step until shortly after first contact, which is early, then at the sample times of
 // references.
@@ -55,15 +140,6 @@ std::string SameFrameScene::name() const {
          number_text(strain_limit);
 }
 
-std::vector<SameFrameScene> same_frame_scenes() {
-  std::vector<SameFrameScene> scenes;
-  for (const double limit : {0.01, 0.001}) {
-    for (const int side : {21, 31}) scenes.push_back({"drape", side, limit, 1.0 / 200, 1e-10});
-    scenes.push_back({"patch", 21, limit, 1.0 / 200, 1e-10});
-  }
-  return scenes;
-}
-
 SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed,
                      ReferenceFolder& references) {
   const auto type = find_scene(wanted.scene);
@@ -74,7 +150,7 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed,
   found.scene = wanted;
   struct Run {
     const char* solver;
-    std::unique_ptr<Stepper> stepper;
+    std::unique_ptr<inextensible::Stepper> stepper;
     State state;
   };
   std::vector<Run> runs;
@@ -84,7 +160,7 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed,
          scene.start});
   std::mt19937_64 random(seed);
   cases::add_noise(runs[2].state.x, scene.problem->pinned(), wanted.moved * scene.size, random);
-  const long steps = std::lround(scene.duration / wanted.step);
+  const long steps = std::lround(scene.duration / SameFrameScene::step);
   for (long i = 1; i <= steps; ++i) {
     for (Run& run : runs) {
       const auto result = run.stepper->advance(run.state, wanted.step);
@@ -99,8 +175,8 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed,
     if (time > densely_until && !at_sample_time(time)) continue;
     found.times.push_back(time);
     add_distance(scene, runs[0].state, runs[1].state, found.icd);
-    add_distance(scene, runs[0].state, runs[2].state, found.moved);
-    add_deviation(reference.get(), time, found.deviation);
+    add_distance(scene, runs[0].state, runs[2].state, found.moved_start);
+    add_deviation(reference.get(), time, found.ensemble_deviation);
   }
   return found;
 }
