@@ -1,9 +1,9 @@
+
 #include "harness/claims/claims.h"
 
 #include <algorithm>
 
 #include "harness/base/errors.h"
-#include "harness/claims/judging.h"
 #include "harness/points/result_file.h"
 
 namespace harness {
@@ -13,7 +13,7 @@ using nlohmann::json;
 
 struct Claim {
   const char *id, *where, *statement;
-  claims::Verdict (*judge)(const claims::Points&);
+  claims::Judge* judge;
   const char* rule;
 };
 
@@ -121,10 +121,8 @@ constexpr Claim table[] = {
 std::vector<ClaimVerdict> judge_points(const claims::Points& points) {
   std::vector<ClaimVerdict> all;
   for (const Claim& claim : table) {
-    claims::Verdict found = claim.judge(points);
-    if (found.verdict == claims::not_measured) found.points.clear();
-    all.push_back({claim.id, claim.where, claim.statement, found.verdict, found.measured,
-                   claim.rule, found.points});
+    all.push_back({claim.judge(points), claim.id, claim.where, claim.statement, claim.rule});
+    if (all.back().verdict == claims::not_measured) all.back().points.clear();
   }
   return all;
 }

@@ -1,19 +1,131 @@
-// The claims C1 to C16 of Goldenthal et al. 2007, each decided from result files by a stated rule.
+// The claims C1 to C16 of Goldenthal et al. 2007, each decided from result files by a stated rule,
+// and what they are judged with: verdicts from numbers with intervals, points of result files, and
+// curves of each contestant's best points.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "harness/analysis/measured_point.h"
+#include "harness/analysis/words.h"
+#include "harness/base/statistics.h"
+
+namespace harness::claims {
+
+using namespace analysis;  // claims speak of what was analysed
+
+constexpr const char* reproduced = "reproduced";
+constexpr const char* not_reproduced = "not reproduced";
+constexpr const char* changed = "changed";      // in part, or by another amount
+constexpr const char* undecided = "undecided";  // an interval has values on both sides
+constexpr const char* not_measured = "not yet measured";
+
+struct Verdict {
+  std::string verdict = not_measured;
+  std::string measured;             // one or two sentences with figures
+  std::vector<std::string> points;  // ids behind it
+};
+
+// What an interval says of a statement; open: it has values on both sides.
+enum class Answer { yes, no, open };
+
+inline Answer yes_if(bool so) { return so ? Answer::yes : Answer::no; }
+Answer above(const Ratio& ratio, double threshold);
+Answer above(const Slope& slope, double threshold);
+Answer below(const Slope& slope, double threshold);
+Answer all_of(const std::vector<Answer>& answers);  // no if one is no
+
+std::string verdict_of(Answer answer);
+// Verdict on a claim in two parts: one yes and one no is `changed`.
+std::string verdict_of(Answer one, Answer other);
+// Counts of places: not reproduced if not so at most, changed if so at most, undecided if at half.
+std::string verdict_of_counts(int yes, int no, int all);
+// Verdict on a claim judged in several ways; a way that was not measured does not count.
+std::string verdict_of_all(const std::vector<std::string>& verdicts);
+
+using analysis::text;
+std::string text(double value, int digits = 3);
+std::string text(const Slope& slope);  // "-0.5 ± 0.1", with its 95 % interval
+// `more` at the end of a list, after a separator unless it is the first.
+void append(std::string& list, const std::string& more, const char* separator = ", ");
+
+using Curve = std::map<double, Point>;  // by the value on the axis: a strain limit or vertices
+
+// The points of some result files, which must outlive this. Points that two files have count once,
+// those of runs with a step controller not at all.
+struct Points {
+  explicit Points(const std::vector<nlohmann::json>& results);
+
+  std::vector<Point> all;
+  bool repeated = false;  // two files have a point
+  ContestantRoles roles;
+  std::vector<const nlohmann::json*> matrix, freedom, same_frame;  // of stability sweeps
+
+  std::vector<Point> where(const std::function<bool(const Point&)>& wanted) const;
+  // Strain and step sweeps of several sizes may come together: unless one is named, the largest
+  // counts.
+  std::vector<Point> in(const std::string& scene, const std::string& sweep,
+                        std::optional<double> vertices = {}) const;
+
+  // Over the axis of a sweep ("strain" or "resolution"): what one contestant answers within a level
+  // of error (analysis/plane.h), with tuned or untuned settings. One tuned setting serves all
+  // places of a scene; where the method's own default is faster, that counts, so that tuning harms
+  // nobody.
+  Curve best(const std::string& scene, const std::string& sweep, const std::string& contestant,
+             double level = any_motion, std::optional<double> vertices = {}) const;
+  // Over error levels: the fastest point of step sweeps within each, at any step and limit, with
+  // tuned or untuned settings.
+  Curve best_at_errors(const std::string& scene, const std::string& contestant) const;
+};
+
+// Slope of seconds over the axis, both logarithmic.
+Slope slope_of(const Curve& curve);
+// Ratio of a's seconds to b's, where both have a point: its interval is the wider one of what the
+// scatter about the line and what the ratios' own intervals give.
+Slope slope_of_ratio(const Curve& a, const Curve& b);
+std::optional<Point> at(const Curve& curve, double x);
+std::vector<std::string> ids_of(const std::vector<Curve>& curves);
+
+// A claim looked at in several ways, each with its words. The first decides.
+using Ways = std::vector<std::pair<std::string, Verdict>>;
+Verdict in_ways(const Ways& ways);
+// The project's question, an error of at most 2 %, and beside it the paper's own, any motion.
+Ways at_levels(const std::function<Verdict(double level)>& judge);
+
+// ---- One function a claim; without a verdict where measurements are missing ----
+
+using Judge = Verdict(const Points& points);
+Judge chain_time_over_strain, chain_time_over_resolution, chain_speed, springs_stiffness;
+Judge drape_time_over_strain, drape_time_over_resolution, residual_order, same_frame;
+Judge failure_configurations, no_drift, matrix_sizes, patch_sag, strain_after_collision;
+Judge degrees_of_freedom_left, shake_small_steps, garment_slip;
+
+// The sag of a yarn under a load that is even along the line between its ends, which are `length`
+// (m) apart: a parabola whose arc is longer than that by `strain`.
+double parabola_sag(double length, double strain);
+
+// How far a garment's rim is below the waist where it began, over the way from there to the hips;
+// of the end that is higher and of the one that is lower.
+struct Slip {
+  double least, most;
+  bool held() const { return most < 1; }
+  bool past() const { return least > 1; }
+};
+Slip slip_of(const Point& point);
+
+}  // namespace harness::claims
 
 namespace harness {
 
-struct ClaimVerdict {
+struct ClaimVerdict : claims::Verdict {
   std::string id, where, statement;
-  std::string verdict;              // see verdicts.h
-  std::string measured;             // one or two sentences with figures
-  std::string rule;                 // how the verdict follows from them
-  std::vector<std::string> points;  // ids behind it
+  std::string rule;  // how the verdict follows from what was measured
 };
 
 // Throws UsageError for a result of --untimed, whose times say nothing.

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "harness/base/text.h"
-#include "harness/claims/judging.h"
+#include "harness/claims/claims.h"
 
 namespace harness::claims {
 namespace {

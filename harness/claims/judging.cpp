@@ -1,5 +1,3 @@
-#include "harness/claims/judging.h"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -8,6 +6,7 @@
 
 #include "harness/analysis/plane.h"
 #include "harness/base/text.h"
+#include "harness/claims/claims.h"
 
 namespace harness::claims {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "harness/base/errors.h"
-#include "harness/claims/judging.h"
+#include "harness/claims/claims.h"
 
 namespace harness::claims {
 

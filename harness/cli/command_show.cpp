@@ -16,7 +16,6 @@
 #include "harness/base/standard_streams.h"
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"
-#include "harness/claims/judging.h"
 #include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/output.h"

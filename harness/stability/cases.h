@@ -1,12 +1,9 @@
-// What hard cases are built from: small meshes, trials of them, and expectations.
+// What hard cases are built from: small meshes, and trials of them.
 #pragma once
 
 #include <random>
-#include <string>
-#include <utility>
 #include <vector>
 
-#include "harness/stability/hard_case.h"
 #include "harness/stability/trial.h"
 
 namespace harness::cases {
@@ -41,56 +38,8 @@ Scene scene_of(const char* name, const SceneParameters& given);
 Trial trial_of(Scene scene, double step, int steps = 0, double strain_limit = 0.01);
 Trial trial_of(Mesh mesh, double step, int steps, double strain_limit = 0.01);
 
-// The closest point of the manifold is at most twice as far from the start as the candidate is, so
-// that a velocity filter may return up to four times the candidate's kinetic energy: an
-// energy_tolerance.
-constexpr double closest_point_energy = 3;
-
 // Displaces every vertex that is not pinned by up to `size` m in each coordinate.
 void add_noise(inextensible::Positions& x, const std::vector<int>& pinned, double size,
                std::mt19937_64& random);
-
-// Solvers, by where they take the constraint direction.
-constexpr auto current_direction = inextensible::Direction::current;
-constexpr auto end_direction = inextensible::Direction::end;
-constexpr auto start_direction = inextensible::Direction::start;
-constexpr auto strain_limiting = inextensible::Direction::local;
-constexpr auto springs = inextensible::Direction::springs;
-inline const Solvers everyone;
-// Methods of multipliers: the direction of the end, but each edge's multiplier grows by itself, by
-// `multiplier_penalty` times its elongation over its ends' inertia in a pass. No matrix of J is
-// solved.
-inline const Solvers multipliers{"augmented_vbd", "admm"};
-constexpr double multiplier_penalty = 10;
-
-constexpr Outcome survives = Outcome::survived, refuses = Outcome::refused;
-
-// Cases are added to this, family by family.
-struct Cases {
-  const HardCaseValues& values;
-  std::vector<HardCase> list = {};
-
-  void add(std::string row, std::string name, std::string what, std::function<Trial()> build,
-           std::vector<Expectation> expectations) {
-    list.push_back({std::move(row), std::move(name), std::move(what), std::move(build),
-                    std::move(expectations)});
-  }
-};
-inline Expectation survive(Solvers who, std::string why) {
-  return {std::move(who), survives, std::move(why)};
-}
-inline Expectation refuse(Solvers who, std::string why) {
-  return {std::move(who), refuses, std::move(why)};
-}
-
-void add_failure_configurations(Cases& cases);
-void add_taut(Cases& cases);
-void add_degenerate(Cases& cases);
-void add_mass_ratios(Cases& cases);
-void add_whip(Cases& cases);
-void add_large(Cases& cases);
-void add_contact(Cases& cases);
-void add_far_starts(Cases& cases);
-void add_impossible_numbers(Cases& cases);
 
 }  // namespace harness::cases

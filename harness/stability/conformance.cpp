@@ -328,7 +328,7 @@ Findings permissible_candidate(const Examinee& solver) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Case c = net(seed, 5, 1, 0.1, 0.01, 1, 0.05);
     State state = c.scene.start;
-    WorkCounters nobodys;
+    inextensible::WorkCounters nobodys;
     Positions candidate;
     inextensible::unconstrained_step(*c.scene.problem, state, c.step, candidate, nobodys);
     if (!stepper_for(solver, c)->advance(state, c.step))

@@ -3,38 +3,15 @@
 #pragma once
 
 #include <functional>
-#include <initializer_list>
 #include <map>
 #include <optional>
-#include <set>
-#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "harness/stability/trial.h"
 #include "solvers/registry.h"
 
 namespace harness {
-
-// The solvers that an expectation is about: all, those that a predicate or the direction of their
-// constraint forces selects, or those named: contestants, methods in all steppers, or "@bdf2", all
-// methods in that stepper.
-class Solvers {
- public:
-  Solvers() = default;
-  Solvers(inextensible::Direction direction);
-  Solvers(std::function<bool(const inextensible::Backend&)> chosen) : chosen_(std::move(chosen)) {}
-  Solvers(std::initializer_list<std::string> names) : names_(names) {}
-
-  bool everyone() const { return !chosen_ && names_.empty(); }
-  bool contains(const std::string& solver) const;
-  const std::set<std::string>& names() const { return names_; }
-
- private:
-  std::function<bool(const inextensible::Backend&)> chosen_;
-  std::set<std::string> names_;
-};
 
 // The outcome that theory expects at the case's own, fixed step, and why. With smaller steps (after
 // a refusal) solvers may survive, refuse or take too long, but nothing else.
@@ -43,31 +20,29 @@ struct Expectation {
     Outcome outcome;
     std::string why;  // theory cannot decide: rounding, an iteration limit within the estimate, ...
   };
-  Solvers solvers;
+  std::vector<std::string> solvers;  // words of configs/hard_cases.json; none: all solvers
   Outcome outcome;
   std::string why;
   std::optional<Other> other = std::nullopt;
 
-  Expectation or_else(Outcome admitted, std::string reason) && {
-    other = {admitted, std::move(reason)};
-    return std::move(*this);
-  }
+  bool about(const inextensible::Backend& backend) const;
 };
 
 struct HardCase {
   std::string row;   // of the matrix, "Q1"; several cases may share one
-  std::string name;  // unique, "Q1/exact"
+  std::string name;  // unique, "Q1/0.01"
   std::string what;  // one line
   std::function<Trial()> build;
-  std::vector<Expectation> expectations;  // the last one is about everyone
+  double value = unknown;                      // of a series of cases
+  std::vector<Expectation> expectations = {};  // the last one is about everyone
 
   // The first expectation about the solver. A method that promises no limit need not notice that
   // no solution lies within it: where others refuse, it may survive.
   Expectation expectation(const std::string& solver) const;
 };
 
-// Values that families of cases run over, by name: distances (from the singular positions Q1 to
-// Q4), limits (strain, of taut scenes), ratios (of masses), links (of long chains), sides (vertices
+// Values that series of cases run over, by name: distances (from the singular positions Q1 to Q4),
+// limits (strain, of taut scenes), ratios (of masses), links (of long chains), sides (vertices
 // along large cloths), scales (of far starts).
 using HardCaseValues = std::map<std::string, std::vector<double>>;
 
@@ -75,20 +50,19 @@ using HardCaseValues = std::map<std::string, std::vector<double>>;
 HardCaseValues hard_case_values(const std::string& profile);
 // values: all of the above. Throws UsageError, naming it, for a value that makes no scene.
 std::vector<HardCase> hard_cases(const HardCaseValues& values);
+// Those of the file that hold for each case.
+void add_expectations(std::vector<HardCase>& cases);
 
 // Outcomes of a solver that are known and are not what theory expects.
 struct KnownDifference {
-  struct Cause {
-    const char *reason, *remedy;  // what would make the outcome the expected one
-  };
-  const char* solver;
-  Outcome fixed;    // at the case's own step
-  Outcome outcome;  // with smaller steps, where that was refused
-  Cause cause;
+  std::string solver;
+  Outcome fixed;                        // at the case's own step
+  Outcome outcome;                      // with smaller steps, where that was refused
+  std::string reason, remedy;           // what would make the outcome the expected one
   std::vector<std::string> hard_cases;  // their names
 };
 
-std::span<const KnownDifference> known_differences();
+const std::vector<KnownDifference>& known_differences();
 // Null if this is a new one.
 const KnownDifference* known_difference(const std::string& hard_case, const std::string& solver,
                                         const TrialResult& result);

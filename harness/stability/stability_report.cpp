@@ -78,7 +78,7 @@ void print_expectations(std::ostream& out, const StabilityOutcome& outcome) {
     if (cell.result.fixed != cell.result.outcome)
       out << " (" << to_string(cell.result.fixed) << ")";
     out << ", expected " << to_string(cell.expectation.outcome) << "; " << cell.result.detail;
-    if (cell.known) out << "\n    " << cell.known->cause.reason << "; " << cell.known->cause.remedy;
+    if (cell.known) out << "\n    " << cell.known->reason << "; " << cell.known->remedy;
     out << '\n';
   }
 }
@@ -96,8 +96,8 @@ json known_json(const StabilityOutcome& outcome) {
                       {"solver", known.solver},
                       {"at_fixed_step", to_string(known.fixed)},
                       {"outcome", to_string(known.outcome)},
-                      {"reason", known.cause.reason},
-                      {"mends", known.cause.remedy},
+                      {"reason", known.reason},
+                      {"mends", known.remedy},
                       {"seen", seen}});
     }
   }

@@ -13,7 +13,6 @@
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"
-#include "harness/claims/judging.h"
 #include "harness/tables/page.h"
 
 namespace harness {

@@ -2,7 +2,7 @@
 // honest step or a clean refusal.
 #pragma once
 
-#include "harness/stability/trial_judge.h"
+#include "harness/stability/trial.h"
 #include "solvers/registry.h"
 #include "solvers/systems/constraint_system.h"
 #include "support/random_graph.h"

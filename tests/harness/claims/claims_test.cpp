@@ -6,7 +6,6 @@
 #include <cmath>
 #include <sstream>
 
-#include "harness/claims/judging.h"
 #include "support/invented_points.h"
 
 namespace harness {

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "harness/claims/judging.h"
 #include "support/invented_points.h"
 
 namespace harness {
