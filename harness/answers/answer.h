@@ -3,12 +3,18 @@
 
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <ostream>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "harness/points/measures.h"
+#include "harness/base/pattern.h"
+#include "harness/base/small_runs.h"
+#include "harness/points/answer_row.h"
 #include "harness/scenes/scene.h"
 
 namespace harness {
@@ -71,21 +77,50 @@ Reading net_angle_deviation;
 Reading drape_coefficient;
 
 struct KnownAnswer {
-  const char* name;  // a-z and _
-  const char* scene;
+  std::string name;  // a-z and _
+  std::string scene;
   SceneParameters given;      // the others have the scene's own values
-  const char* quantity;       // what is read off, with its unit
-  const char* source;         // formula, author, year
+  std::string quantity;       // what is read off, with its unit
+  std::string source;         // formula, author, year
   double strain_limit;        // of the runs: permissible |strain|
   std::vector<double> steps;  // s, each half of the one before
   std::function<double(const AnswerScene&)> exact;
   Reading* reading;
-  bool needs_multipliers = false;  // of methods that show their iterates alone (Stepper::observe)
-  bool continuum = false;   // exact in the limit of many vertices: runs tend to something nearby
-  bool until_read = false;  // a run ends as soon as it tells
+  bool needs_multipliers;  // of methods that show their iterates alone (Stepper::observe)
+  bool continuum;          // exact in the limit of many vertices: runs tend to something nearby
+  bool until_read;         // a run ends as soon as it tells
 };
 
+// Those of configs/answers.json.
 std::span<const KnownAnswer> known_answers();
 const KnownAnswer* find_answer(std::string_view name);
+
+// ---- Runs of solvers ----
+
+struct AnswerSelection {
+  std::optional<Pattern> answer, solver;  // must match the whole name
+};
+
+// A solver's runs at all steps of an answer, each in a child process, the coarsest step first.
+struct AnswerRun {
+  const KnownAnswer* answer;
+  std::string solver;
+};
+// All contestants that can do the answer's scene. Throws UsageError if nothing matches.
+std::vector<AnswerRun> plan_answers(const AnswerSelection& selection);
+
+struct AnswerOutcome {
+  std::vector<AnswerRow> rows;
+  bool complete = true;  // false: interrupted
+};
+// timeout: s of wall time, of each run.
+AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
+                          const RunEvents& events);
+
+nlohmann::json answers_document(nlohmann::json context, const std::vector<AnswerRun>& plan,
+                                const AnswerOutcome& outcome,
+                                const std::vector<std::string>& command);
+// Prints such a document.
+void print_answers(std::ostream& out, const nlohmann::json& document);
 
 }  // namespace harness

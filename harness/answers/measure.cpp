@@ -1,5 +1,3 @@
-#include "harness/answers/measure.h"
-
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
@@ -7,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "harness/answers/answer.h"
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/fields.h"
@@ -170,7 +169,7 @@ AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
     std::vector<double> deviations;
     for (const double step : run.answer->steps) {
       if (events.interrupted()) throw Interrupted();
-      const std::string name = std::string(run.answer->name) + "/" + run.solver;
+      const std::string name = run.answer->name + "/" + run.solver;
       const nlohmann::json found = events.once(name + "/" + step_text(step), [&] {
         return run_apart(*run.answer, *inextensible::find_backend(run.solver), step, timeout,
                          events.interrupted);

@@ -1,7 +1,7 @@
 // bench answers: what solvers make of figures that theory knows.
 #include <sstream>
 
-#include "harness/answers/measure.h"
+#include "harness/answers/answer.h"
 #include "harness/cli/options.h"
 #include "harness/cli/output.h"
 #include "harness/cli/verbs.h"
@@ -23,8 +23,7 @@ struct Answers : OutputOptions {
   }
 
   int run(const Words& typed) {
-    const auto plan =
-        plan_answers({pattern_of("--answer", answer), solver_pattern(solver), timeout});
+    const auto plan = plan_answers({pattern_of("--answer", answer), solver_pattern(solver)});
     nlohmann::json context = machine_context();
     context["selection"] = {{"solver", solver}, {"answer", answer}, {"timeout", timeout}};
     const auto compute = [&](const std::string&, Journal& journal,

@@ -108,7 +108,7 @@ const std::vector<List> lists{
         }),
     list("answers", known_answers,
          [](const KnownAnswer& answer) {
-           return row_of(answer.name, std::string(answer.quantity) + "; " + answer.source,
+           return row_of(answer.name, answer.quantity + "; " + answer.source,
                          {{"scene", answer.scene}});
          }),
     list(

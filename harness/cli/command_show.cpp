@@ -10,7 +10,7 @@
 
 #include "harness/analysis/analysis_json.h"
 #include "harness/analysis/budget.h"
-#include "harness/answers/measure.h"
+#include "harness/answers/answer.h"
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/standard_streams.h"

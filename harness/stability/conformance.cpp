@@ -1,8 +1,8 @@
 #include "harness/stability/conformance.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <map>
@@ -145,9 +145,7 @@ std::unique_ptr<Stepper> stepper_for(const Examinee& solver, const Case& c,
 
 bool same_bits(const Positions& a, const Positions& b) {
   return a.cols() == b.cols() &&
-         std::equal(a.data(), a.data() + a.size(), b.data(), [](double p, double q) {
-           return std::bit_cast<std::uint64_t>(p) == std::bit_cast<std::uint64_t>(q);
-         });
+         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
 }
 
 bool same_bits(const State& a, const State& b) {
@@ -162,7 +160,7 @@ struct Runs {
   double worst = 0;  // strain over limit
   double momentum_defect = 0;
   std::string stopped;
-  std::map<Promise, std::string> broken;
+  std::map<Promise, std::string> broken;  // where each was, first
 
   void take(const Examinee& solver, const Case& c) {
     stepper_for(solver, c);  // or it is not taken
@@ -179,11 +177,6 @@ struct Runs {
         (result.broken == Promise::none || result.broken == Promise::finite))
       stopped = what;
   }
-  // Where it was broken, or nothing.
-  std::string where(Promise promise) const {
-    const auto found = broken.find(promise);
-    return found == broken.end() ? "" : found->second;
-  }
 };
 
 Findings ordinary_runs(const Examinee& solver) {
@@ -192,8 +185,8 @@ Findings ordinary_runs(const Examinee& solver) {
   all.take(solver, drape(solver.backend, 1.0 / 400, 60));
   for (std::uint64_t seed = 1; seed <= 4; ++seed)
     all.take(solver, net(seed, 5, 2, 2, 0.005, 10, 0.005));
-  const std::string pins = all.where(Promise::pins), counters = all.where(Promise::counters),
-                    limit = all.where(Promise::strain) + all.where(Promise::contact),
+  const std::string pins = all.broken[Promise::pins], counters = all.broken[Promise::counters],
+                    limit = all.broken[Promise::strain] + all.broken[Promise::contact],
                     worst = number_text(all.worst, 4);
   return {
       judged(all.stopped.empty(), "steps",
@@ -247,10 +240,11 @@ double loss_of_spin(const Examinee& solver, const Case& c, int refinement) {
 }
 
 Findings momentum(const Examinee& solver) {
+  const char *linear = "linear momentum", *angular = "angular momentum";
   if (!solver.backend.conserves_momentum) {
     const char* why =
         "vertices are moved one by one, or forces turn: conserved only where it has converged";
-    return {not_applicable("linear momentum", why), not_applicable("angular momentum", why)};
+    return {not_applicable(linear, why), not_applicable(angular, why)};
   }
   Runs all;
   double coarse = 0, fine = 0;
@@ -264,16 +258,15 @@ Findings momentum(const Examinee& solver) {
     const char* refuses = "not measured: it refuses a step of 0.002 s of a free net";
     const std::string easy = text("strain limit ", momentum_limit,
                                   ", speeds of 0.5 m/s, edges of 1 m: a small correction");
-    return {judged(false, "linear momentum", refuses, easy),
-            judged(false, "angular momentum", refuses, easy)};
+    return {judged(false, linear, refuses, easy), judged(false, angular, refuses, easy)};
   }
   const double allowed = std::max(vanishing * coarse, spin_tolerance);
   return {
-      judged(all.where(Promise::momentum).empty(), "linear momentum",
+      judged(!all.broken.contains(Promise::momentum), linear,
              text("changes by ", all.momentum_defect, " of what flows in a step (allowed 1e-9)"),
              "nothing outside acts: corrections of an edge's two ends, times their masses, "
              "must cancel (share by inverse mass)"),
-      judged(fine <= allowed, "angular momentum",
+      judged(fine <= allowed, angular,
              text("changes by ", coarse, " of its scale at h, ", fine, " at h/4 (allowed ", allowed,
                   ": it vanishes with the step)"),
              "corrections must act along their edge, at its direction within the step; about "
@@ -428,9 +421,10 @@ Findings consistency(const Examinee& solver) {
     measured +=
         text(", and that is ", error, " from the exact motion (allowed ", largest_error, ")");
   }
-  return {judged(passed, check, measured,
-                 "what a step changes must vanish with h: look for a damping, a relaxation or an "
-                 "offset a step that does not know h")};
+  return {judged(
+      passed, check, measured,
+      "what a step changes must vanish with h: look for damping, relaxation or an offset per "
+      "step that does not depend on h")};
 }
 
 // ---- Every hard case of the profile "quick" ----

@@ -1,6 +1,7 @@
 // How hard cases should end, and where methods are known to end otherwise: configs/hard_cases.json.
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <utility>
 
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
@@ -30,23 +31,23 @@ bool is_about(const std::string& word, const Backend& backend) {
          word == std::string("@") + backend.stepper;
 }
 
-const json& table() {
-  static const json document = [] {
-    const std::string path = source_path("configs/hard_cases.json");
-    return parse_commented(read_file(path, "file of hard cases"), path);
-  }();
+constexpr const char* cases_file = "configs/hard_cases.json";
+
+const json& cases_document() {
+  static const json document =
+      parse_commented(read_file(source_path(cases_file), "file of hard cases"), cases_file);
   return document;
 }
 
-Outcome outcome_in(const json& entry, const char* key) {
+Outcome outcome_of(const json& name) {
   Outcome outcome{};
-  FieldCodec<Outcome>::read(entry.at(key), outcome, false);
+  FieldCodec<Outcome>::read(name, outcome, false);
   return outcome;
 }
 
 // Of a case's name or else of its row; a text stands for the list of another one.
 const json& entries_about(const HardCase& hard_case) {
-  const json& all = table().at("expectations");
+  const json& all = cases_document().at("expectations");
   const json* found = &all.at(all.contains(hard_case.name) ? hard_case.name : hard_case.row);
   while (found->is_string()) found = &all.at(found->get<std::string>());
   return *found;
@@ -63,15 +64,18 @@ bool Expectation::about(const Backend& backend) const {
 void add_expectations(std::vector<HardCase>& cases) {
   for (HardCase& c : cases) {
     for (const json& entry : entries_about(c)) {
-      if (entry.contains("above") && !(c.value > entry.at("above").get<double>())) continue;
-      if (entry.contains("below") && !(c.value < entry.at("below").get<double>())) continue;
-      Expectation expected{{}, outcome_in(entry, "outcome"), entry.at("why")};
-      if (const auto of = entry.find("of"); of != entry.end())
+      JsonReader reader(entry, cases_file);
+      const double above = reader.number("above", -HUGE_VAL, {}),
+                   below = reader.number("below", HUGE_VAL, {});
+      Expectation expected{{}, outcome_of(entry.at("outcome")), entry.at("why")};
+      if (const json* of = reader.find("of"))
         expected.solvers = of->is_array() ? of->get<std::vector<std::string>>()
                                           : std::vector{of->get<std::string>()};
-      if (entry.contains("or"))
-        expected.other = Expectation::Other{outcome_in(entry, "or"), entry.at("because")};
-      c.expectations.push_back(std::move(expected));
+      if (const json* other = reader.find("or"))
+        expected.other = Expectation::Other{outcome_of(*other), entry.at("because")};
+      for (const char* key : {"outcome", "why", "because"}) reader.find(key);
+      reader.finish();
+      if (!(c.value <= above || c.value >= below)) c.expectations.push_back(std::move(expected));
     }
   }
 }
@@ -90,10 +94,11 @@ Expectation HardCase::expectation(const std::string& solver) const {
 const std::vector<KnownDifference>& known_differences() {
   static const std::vector<KnownDifference> differences = [] {
     std::vector<KnownDifference> list;
-    for (const json& entry : table().at("known_differences")) {
-      const json& cause = table().at("causes").at(entry.at("cause").get<std::string>());
-      list.push_back({entry.at("solver"), outcome_in(entry, "fixed"), outcome_in(entry, "outcome"),
-                      cause.at("reason"), cause.at("remedy"), entry.at("cases")});
+    for (const json& entry : cases_document().at("known_differences")) {
+      const json& cause = cases_document().at("causes").at(entry.at("cause").get<std::string>());
+      list.push_back({entry.at("solver"), outcome_of(entry.at("fixed")),
+                      outcome_of(entry.at("outcome")), cause.at("reason"), cause.at("remedy"),
+                      entry.at("cases")});
     }
     return list;
   }();

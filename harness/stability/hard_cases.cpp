@@ -282,7 +282,7 @@ struct Series {
   const char *values, *row, *name, *what;
   Trial (*build)(double value);
 };
-constexpr Series series[] = {
+constexpr Series case_series[] = {
     {"distances", "Q1 near", "Q1", "the candidate too long by this much only",
      [](double d) { return one_edge(0, 1 + d); }},
     {"distances", "Q2 near", "Q2", "J(x0) W J(x^n)^T of this size",
@@ -316,7 +316,7 @@ struct Impossible {
   bool state;  // any number but NaN and infinity would be possible
   void (*put)(Mesh&, double);
 };
-constexpr Impossible impossible[] = {
+constexpr Impossible impossible_numbers[] = {
     {"position", true, [](Mesh& m, double v) { m.start.x(1, 2) = v; }},
     {"velocity", true, [](Mesh& m, double v) { m.start.v(0, 3) = v; }},
     {"mass", false, [](Mesh& m, double v) { m.parts.mass[2] = v; }},
@@ -354,17 +354,17 @@ HardCaseValues hard_case_values(const std::string& profile) {
 
 std::vector<HardCase> hard_cases(const HardCaseValues& values) {
   std::vector<HardCase> all = fixed_cases();
-  for (const Series& one : series) {
+  for (const Series& one : case_series) {
     for (const double value : values.at(one.values)) {
       check_value(one.values, value);
-      all.push_back({one.row, one.name + ("/" + number_text(value)), one.what,
+      all.push_back({one.row, std::string(one.name) + "/" + number_text(value), one.what,
                      [build = one.build, value] { return build(value); }, value});
     }
   }
-  for (const auto& [what, state, put] : impossible) {
+  for (const auto& [what, state, put] : impossible_numbers) {
     for (const double value : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, 0.0, -1.0}) {
       if (state && std::isfinite(value)) continue;
-      const std::string name = what + (" " + number_text(value));
+      const std::string name = std::string(what) + " " + number_text(value);
       all.push_back({"not a number", "door/" + name, name + " of a vertex or edge", [=, put = put] {
                        Mesh mesh = chain(4);
                        put(mesh, value);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "harness/answers/measure.h"
+#include "harness/answers/answer.h"
 #include "harness/scenes/chain_scenes.h"
 #include "harness/scenes/meshes.h"
 #include "solvers/registry.h"
