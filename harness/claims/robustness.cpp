@@ -35,17 +35,13 @@ bool calibrated(const Point& p) {
 Verdict springs_stiffness(const Points& points) {
   Verdict found;
   using Places = std::map<std::pair<std::string, double>, std::vector<double>>;
-  const auto most = [](const auto& groups, auto size) {
-    return *std::ranges::max_element(groups, {}, [&](const auto& g) { return size(g.second); });
-  };
   std::map<double, Places> by_step;  // then by scene and vertices
   for (const Point& p : points.where(calibrated))
     by_step[p.step()][{p.scene(), p.vertices()}].push_back(tension_over_weight(p));
   if (by_step.empty()) return {};
-  const auto size_of = [](const auto& list) { return list.size(); };
-  const auto [step, places] = most(by_step, [](const Places& at) {
+  const auto [step, places] = *std::ranges::max_element(by_step, {}, [](const auto& at) {
     std::size_t all = 0;
-    for (const auto& [place, here] : at) all += here.size();
+    for (const auto& [place, here] : at.second) all += here.size();
     return all;
   });
   for (const Point& p : points.where(calibrated)) {
@@ -53,7 +49,8 @@ Verdict springs_stiffness(const Points& points) {
   }
   if (found.points.size() < 3) return {};
   // Where most was calibrated at one step: what it says is to be true elsewhere.
-  const auto [known, there] = most(places, size_of);
+  const auto [known, there] =
+      *std::ranges::max_element(places, {}, [](const auto& at) { return at.second.size(); });
   double log_sum = 0;
   for (const double tension : there) log_sum += std::log(tension);
   const double expected = std::exp(log_sum / static_cast<double>(there.size()));
