@@ -151,7 +151,7 @@ TEST(Isolation, AnInterruptEndsTheChildAtOnceAndNoOtherIsMade) {
   limits.interrupted = [&asked] { return ++asked > 3; };
   EXPECT_THROW(run_isolated([](Heartbeat&) { sleep_for_ever(); }, limits), Interrupted);
   const Work terminate = [](Heartbeat&) {
-    raise(SIGTERM);
+    ::raise(SIGTERM);
     sleep_for_ever();
   };
   asked = 0;
