@@ -24,7 +24,7 @@ namespace {
 using inextensible::Backend;
 using inextensible::State;
 
-struct Ending : Calibration::Trial {
+struct Ending : CalibrationTrial {
   double value = unknown;
 };
 
@@ -65,7 +65,7 @@ Ending run_once(const KnownAnswer& answer, const AnswerScene& at, const Backend&
     motion.take(after);
     raise(ending.strain, strain_range(*scene.problem, stepper->filtered_positions()).most);
     if (backend.strain_control == inextensible::StrainControl::stiffness &&
-        !(ending.strain <= Calibration::cut_short * answer.strain_limit)) {
+        !(ending.strain <= calibration_cut_short * answer.strain_limit)) {
       ending.status = PointStatus::strain_missed;
       ending.detail = "strain " + number_text(ending.strain, 3);
     }
@@ -96,13 +96,13 @@ Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double 
   if (backend.strain_control != inextensible::StrainControl::stiffness)
     return run_once(answer, at, backend, {}, step, timeout);
   std::map<double, Ending> endings;
-  Calibration calibration(answer.strain_limit, [&](double stiffness) {
-    return endings[stiffness] =
-               run_once(answer, at, backend, {{"stiffness", stiffness}}, step, timeout);
-  });
-  const auto found = calibration.find(first_stiffness(at.scene, answer.strain_limit));
-  if (found) return endings.at(*found);
-  return {{.detail = calibration.detail()}};
+  const Calibration found = calibrate_stiffness(
+      answer.strain_limit, first_stiffness(at.scene, answer.strain_limit), [&](double stiffness) {
+        return endings[stiffness] =
+                   run_once(answer, at, backend, {{"stiffness", stiffness}}, step, timeout);
+      });
+  if (found.stiffness) return endings.at(*found.stiffness);
+  return {{.detail = found.detail}};
 }
 
 // The order of accuracy that the last deviations show, from step to step of half the size: of a
@@ -124,7 +124,7 @@ nlohmann::json run_apart(const KnownAnswer& answer, const Backend& backend, doub
     return nlohmann::json{{"value", number(value)}, {"detail", detail}};
   };
   // Springs need several runs to find their stiffness.
-  const double all_runs = timeout * (Calibration::run_limit + 2);
+  const double all_runs = timeout * (calibration_run_limit + 2);
   return in_child(
       {all_runs, 0, interrupted},
       [&](Heartbeat& heartbeat) {

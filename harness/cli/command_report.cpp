@@ -83,8 +83,10 @@ struct Report {
   int run() {
     check_writable(out);
     std::vector<NamedResult> files;
-    for (const std::string& file : results) files.push_back({file, read_result_or_answers(file)});
-    for (const std::string& file : answers) files.push_back({file, read_answers(file)});
+    for (const std::string& file : results)
+      files.push_back({file, read_result(file, ResultKinds::all)});
+    for (const std::string& file : answers)
+      files.push_back({file, read_result(file, ResultKinds::answers)});
     const TemporaryFolder folder("report");
     write_atomically(folder.file("report.json"), page_json(files).dump());
     Words words{folder.file("report.json")};
@@ -130,10 +132,11 @@ struct Results {
             "run.\n\n";
     std::vector<NamedResult> sweeps, growing, known;
     for (const std::string& file : results) {
-      NamedResult result{file, read_result_or_answers(file)};
+      NamedResult result{file, read_result(file, ResultKinds::all)};
       (is_answers(result.document) ? known : sweeps).push_back(std::move(result));
     }
-    for (const std::string& file : answers) known.push_back({file, read_answers(file)});
+    for (const std::string& file : answers)
+      known.push_back({file, read_result(file, ResultKinds::answers)});
     for (const std::string& file : growth) growing.push_back({file, read_result(file)});
     print_results_page(text, sweeps, growing, known);
     return text.str();

@@ -123,7 +123,7 @@ struct Show {
     if (as_json && all) throw UsageError("--json has all contestants already: leave out --all");
     // Several files are one table; a file of known answers is printed by itself.
     const json document =
-        files.size() == 1 ? read_result_or_answers(files.front()) : read_results(files);
+        files.size() == 1 ? read_result(files.front(), ResultKinds::all) : read_results(files);
     if (!as_json) {
       std::ostringstream text;
       print_whole(text, document, files.front(), all);
@@ -154,7 +154,7 @@ struct Budget {
     for (double& budget : seconds) budget *= 1e-3;
     std::vector<json> sweeps;
     for (const std::string& file : files) {
-      if (json document = read_result_or_answers(file); is_sweep(document))
+      if (json document = read_result(file, ResultKinds::all); is_sweep(document))
         sweeps.push_back(std::move(document));
     }
     std::vector<analysis::BudgetTable> tables;
@@ -181,7 +181,7 @@ struct Claims {
     if (!markdown.empty()) check_writable(markdown);
     std::vector<json> results;
     for (const std::string& file : files) {
-      if (json document = read_result_or_answers(file); !is_answers(document))
+      if (json document = read_result(file, ResultKinds::all); !is_answers(document))
         results.push_back(std::move(document));  // no claim is about answers
     }
     if (results.empty()) throw UsageError("claims are about sweeps; results/*.json has some");

@@ -166,7 +166,7 @@ struct Tune {
                 std::vector<TunedEntry>& entries) const {
     if (own_places()) {
       TunedEntry* known = find(entries, on.scene, name);
-      if (!known || !up_to_date(*known))
+      if (!known || !rule_change(*known).empty())
         throw UsageError(name + " has no settings by today's rule yet: bench tune --scene " +
                          on.scene + " --solver " + name);
       const TunedEntry found = tune_solver(name, on, tuning(), runners, known);
@@ -175,7 +175,7 @@ struct Tune {
       return true;
     }
     const TunedEntry* known = find(entries, find_scene(on.scene)->kind(), name);
-    if (!again && known && up_to_date(*known)) return false;
+    if (!again && known && rule_change(*known).empty()) return false;
     TunedEntry entry = tune_solver(name, on, tuning(), runners);
     entry.context = context_of(timeout);
     print(entry);

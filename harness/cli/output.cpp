@@ -150,7 +150,7 @@ Past begin_journal(const OutputOptions& options, const std::string& out, Journal
     return {false, was.value("context", json())};
   }
   if (again && exists(out)) {
-    const json result = read_result_or_answers(out);
+    const json result = read_result(out, ResultKinds::all);
     if (!result.contains(run.rows))
       throw UsageError("'" + out + "' is the result of another kind of sweep: nothing to resume");
     const json& context = result.at("context");
@@ -273,7 +273,7 @@ int draw_pieces(const std::vector<std::string>& files, const std::string& name,
 int draw_result(const std::string& file, std::string folder) {
   const fs::path path(file);
   if (folder.empty()) folder = path.parent_path().string();
-  return draw_document(read_result_or_answers(file), path.stem().string(), folder);
+  return draw_document(read_result(file, ResultKinds::all), path.stem().string(), folder);
 }
 
 }  // namespace harness

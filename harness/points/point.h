@@ -9,11 +9,67 @@
 #include <vector>
 
 #include "harness/points/measures.h"
-#include "harness/points/status.h"
 #include "harness/scenes/scene.h"
 #include "solvers/registry.h"
 
 namespace harness {
+
+// How a run ended.
+enum class PointStatus {
+  ok,
+  strain_missed,
+  energy_gained,
+  motion_lost,
+  not_converged,
+  diverged,
+  timeout,
+  out_of_memory,
+  crashed,
+  unsupported,
+  skipped,
+};
+
+struct PointStatusInfo {
+  PointStatus status;
+  const char* name;
+  const char* letter;  // of a failure, in figures
+  const char* meaning;
+};
+
+// In the order of PointStatus. Files, schemas, figures and `bench list statuses` follow it.
+inline constexpr std::array point_statuses{
+    PointStatusInfo{PointStatus::ok, "ok", "", "ran to the end within its strain limit"},
+    PointStatusInfo{PointStatus::strain_missed, "strain_missed", "S",
+                    "an edge was strained more than permitted"},
+    PointStatusInfo{PointStatus::energy_gained, "energy_gained", "E",
+                    "energy rose by more than the scene's bound"},
+    PointStatusInfo{
+        PointStatus::motion_lost, "motion_lost", "M",
+        "moved less than half as far as the reference, or kinetic energy is not the ensemble's"},
+    PointStatusInfo{PointStatus::not_converged, "not_converged", "N",
+                    "the solver refused a step: out of iterations, or no progress"},
+    PointStatusInfo{PointStatus::diverged, "diverged", "D",
+                    "a position was not finite, or an edge was strained more than tenfold"},
+    PointStatusInfo{PointStatus::timeout, "timeout", "T",
+                    "took longer than a point may, or could no longer be the best"},
+    PointStatusInfo{PointStatus::out_of_memory, "out_of_memory", "O",
+                    "needed more memory than it was given"},
+    PointStatusInfo{PointStatus::crashed, "crashed", "C", "ended its process"},
+    PointStatusInfo{PointStatus::unsupported, "unsupported", "U",
+                    "the solver does not support this problem"},
+    PointStatusInfo{
+        PointStatus::skipped, "skipped", "K",
+        "not run: every step timed out at the neighbouring, easier point; or its calibration "
+        "timed out"}};
+static_assert([] {
+  for (std::size_t i = 0; i < point_statuses.size(); ++i)
+    if (static_cast<std::size_t>(point_statuses[i].status) != i) return false;
+  return point_statuses.back().status == PointStatus::skipped;
+}());
+
+constexpr const char* to_string(PointStatus status) {
+  return point_statuses[static_cast<std::size_t>(status)].name;
+}
 
 struct PointSpec {
   std::string sweep;  // "strain", "resolution" or "step"
@@ -56,22 +112,29 @@ struct Samples {
   std::vector<FrameTime> frame_times = {};  // of a run of the fastest sample
 };
 
-struct PointResult : Samples {
-  PointResult() = default;
+// How one run went, beside its times.
+struct RunOutcome {
+  PointStatus status = PointStatus::ok;
+  std::string detail;
+  double setup_seconds = 0;
+  double smallest_step = unknown;  // s, of the accepted ones of a step controller
+  Measures measures;
+};
+
+struct PointResult : Samples, RunOutcome {
+  PointResult() : PointResult(PointSpec()) {}
   explicit PointResult(PointSpec what, PointStatus how = PointStatus::skipped)
-      : spec(std::move(what)), status(how) {}
+      : spec(std::move(what)) {
+    status = how;
+  }
 
   PointSpec spec;
-  PointStatus status = PointStatus::skipped;
-  std::string detail;
-  double setup_seconds = 0, calibration_seconds = 0;
+  double calibration_seconds = 0;
   int calibration_runs = 0;
   double calibration_guess = unknown;  // N, where the search began; unknown: at an estimate
   std::optional<double> stiffness;     // EA, N, found by calibration
   inextensible::PhaseSeconds phases;   // of the run of the first filter sample
   inextensible::WorkCounters work;
-  Measures measures;
-  double smallest_step = unknown;  // s, of the accepted ones of a step controller
   int steps_planned = 0;
   std::string linear_solver;
   double peak_rss_bytes = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
@@ -94,47 +95,36 @@ bool is_timed(const json& document) {
   return document.value(json::json_pointer("/context/timed"), true);
 }
 
-json read_result(const std::string& path) {
-  return parse_result(read_file(path, "result file"), path);
-}
-
-json parse_result(const std::string& text, const std::string& path) {
-  json document = parse_document(text, path);
-  check_result(document, path);
-  return document;
-}
-
-json read_answers(const std::string& path) {
-  json document = parse_document(read_file(path, "result of bench answers"), path);
-  check_schema(document, "answers", path);
-  return document;
-}
-
 bool is_answers(const json& document) {
   return document.is_object() && document.value("schema", json()) == "inextensible-answers/1";
 }
 
-json read_result_or_answers(const std::string& path) {
-  json document = parse_document(read_file(path, "result file"), path);
-  if (is_answers(document)) {
-    check_schema(document, "answers", path);
-  } else {
-    check_result(document, path);
+void check_result(const json& document, const std::string& path, ResultKinds kinds) {
+  constexpr std::pair<const char*, const char*> schemas[] = {
+      {"inextensible-answers/1", "answers"},
+      {"inextensible-bench/1", "result"},
+      {"inextensible-stability/1", "stability"}};
+  std::span<const std::pair<const char*, const char*>> permitted(schemas);
+  if (kinds == ResultKinds::answers) permitted = permitted.first(1);
+  if (kinds == ResultKinds::sweeps) permitted = permitted.subspan(1);
+  const json name = document.is_object() ? document.value("schema", json()) : json();
+  std::string names;
+  for (const auto& [full_name, schema] : permitted) {
+    if (name == full_name) return check_schema(document, schema, path);
+    names += (names.empty() ? "\"" : ", \"") + std::string(full_name) + "\"";
   }
+  throw UsageError("'" + path + "' is not a result file: its schema is " + value_text(name) +
+                   ", must be " + (permitted.size() > 1 ? "one of " : "") + names);
+}
+
+json parse_result(const std::string& text, const std::string& path, ResultKinds kinds) {
+  json document = parse_document(text, path);
+  check_result(document, path, kinds);
   return document;
 }
 
-void check_result(const json& document, const std::string& path) {
-  const json schema = document.is_object() ? document.value("schema", json()) : json();
-  if (schema == "inextensible-bench/1") {
-    check_schema(document, "result", path);
-  } else if (schema == "inextensible-stability/1") {
-    check_schema(document, "stability", path);
-  } else {
-    throw UsageError("'" + path +
-                     "' is not a result file: its schema is neither \"inextensible-bench/1\" nor "
-                     "\"inextensible-stability/1\"");
-  }
+json read_result(const std::string& path, ResultKinds kinds) {
+  return parse_result(read_file(path, "result file"), path, kinds);
 }
 
 namespace {

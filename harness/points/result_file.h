@@ -24,17 +24,16 @@ std::string result_text(const nlohmann::json& document);
 // false: it was made while others may have been timed, so its times mean nothing.
 bool is_timed(const nlohmann::json& document);
 
-// A document of either kind of result: of a sweep or of a stability sweep. Throws UsageError,
-// naming the file, for anything else.
-nlohmann::json read_result(const std::string& path);
-nlohmann::json parse_result(const std::string& text, const std::string& path);
-// The same of what is parsed already.
-void check_result(const nlohmann::json& document, const std::string& path);
-// A result of `bench answers`: schema inextensible-answers/1.
-nlohmann::json read_answers(const std::string& path);
-// Either of them, so that results/*.json may be given.
-nlohmann::json read_result_or_answers(const std::string& path);
-bool is_answers(const nlohmann::json& document);
+// The kinds of documents that a reader takes.
+enum class ResultKinds { sweeps, answers, all };  // sweeps: stability sweeps, too
+// Throws UsageError, naming the file, for a document of another kind or one that is not as its
+// schema says.
+void check_result(const nlohmann::json& document, const std::string& path,
+                  ResultKinds kinds = ResultKinds::sweeps);
+nlohmann::json parse_result(const std::string& text, const std::string& path,
+                            ResultKinds kinds = ResultKinds::sweeps);
+nlohmann::json read_result(const std::string& path, ResultKinds kinds = ResultKinds::sweeps);
+bool is_answers(const nlohmann::json& document);  // of `bench answers`
 
 // A result, and what messages and tables call it.
 struct NamedResult {

@@ -147,18 +147,6 @@ SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarses
   return spec;
 }
 
-// Null where it was found by today's rule; else the first difference, as a step of a JSON patch.
-json first_difference(const TunedEntry& entry) {
-  const auto& scenes = tuning_scenes();
-  const auto scene = std::find_if(scenes.begin(), scenes.end(), [&entry](const SweepSpec& s) {
-    return find_scene(s.scene)->kind() == entry.kind;
-  });
-  if (scene == scenes.end()) return {{"path", "/scene"}};
-  const json difference =
-      json::diff(entry.rule, tuning_rule(*scene, *inextensible::find_backend(entry.solver)));
-  return difference.empty() ? json() : difference.front();
-}
-
 }  // namespace
 
 const std::vector<SweepSpec>& tuning_scenes() {
@@ -196,21 +184,21 @@ json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver) {
           {"settings", settings}};
 }
 
-bool up_to_date(const TunedEntry& entry) { return first_difference(entry).is_null(); }
+std::string rule_change(const TunedEntry& entry) {
+  const auto scene = std::ranges::find(
+      tuning_scenes(), entry.kind, [](const SweepSpec& s) { return find_scene(s.scene)->kind(); });
+  if (scene == tuning_scenes().end()) return "scene is not there, was " + entry.kind;
+  return difference(entry.rule, tuning_rule(*scene, *inextensible::find_backend(entry.solver)));
+}
 
 Tuned read_tuned_up_to_date(const std::string& file) {
   Tuned tuned = read_tuned(file);
   for (const TunedEntry& entry : tuned.entries) {
-    const json difference = first_difference(entry);
-    if (difference.is_null()) continue;
-    const std::string path = difference.at("path");
-    const json::json_pointer place(path);
-    const std::string was = entry.rule.contains(place) ? entry.rule.at(place).dump() : "missing";
-    const std::string is = difference.contains("value") ? difference.at("value").dump() : "missing";
-    throw UsageError("tuned settings '" + tuned.file + "': those of " + entry.solver + " for the " +
-                     entry.kind + " were found with " + path.substr(1) + " = " + was +
-                     ", which is " + is + " now; search again: bench tune --scene " + entry.kind +
-                     " --solver " + entry.solver);
+    if (const std::string change = rule_change(entry); !change.empty())
+      throw UsageError("tuned settings '" + tuned.file + "': those of " + entry.solver +
+                       " for the " + entry.kind + " were found by another rule: " + change +
+                       "; search again: bench tune --scene " + entry.kind + " --solver " +
+                       entry.solver);
   }
   return tuned;
 }

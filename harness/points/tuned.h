@@ -66,9 +66,9 @@ std::vector<int> smaller_sizes(const std::string& scene);
 // defaults and ranges.
 nlohmann::json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver);
 
-// Whether an entry was found by today's rule.
-bool up_to_date(const TunedEntry& entry);
-// read_tuned(), and UsageError for the first entry that was not, which says what has changed.
+// The first difference between the rule that an entry was found by and today's; "": there is none.
+std::string rule_change(const TunedEntry& entry);
+// read_tuned(), and UsageError for the first entry whose rule has changed, which says how.
 Tuned read_tuned_up_to_date(const std::string& file);
 
 }  // namespace harness

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 
 #include "harness/base/text.h"
@@ -30,7 +31,106 @@ bool strain_counts(PointStatus status) {
          status == PointStatus::energy_gained || status == PointStatus::motion_lost;
 }
 
+class StiffnessSearch {
+ public:
+  StiffnessSearch(double strain_limit, const std::function<CalibrationTrial(double)>& run)
+      : limit_(strain_limit), run_(run) {}
+
+  Calibration find(double guess) {
+    std::optional<double> soft, stiff;  // logarithms: too soft, stiff enough
+    double at = std::log10(guess);
+    for (int strides = 0; alive() && !best_close();) {
+      const int failures = failures_;
+      const double f = excess(at);
+      if (failures_ > failures && !soft && !stiff) {  // both sides in turn, softer springs first
+        const int pair = (failures_ + 1) / 2;
+        at = std::log10(guess) + (failures_ % 2 ? -1 : 1) * stride_from_failure * pair;
+        continue;
+      }
+      (f > 0 ? soft : stiff) = at;
+      if (soft && stiff) break;
+      ++strides;
+      double stride = strides * std::abs(f - aim) / std::log(10);
+      if (f >= std::log(calibration_cut_short))
+        stride = std::max(stride, strides * least_stride_from_cut_short);
+      at += f > 0 ? stride : -stride;
+    }
+    if (alive() && !best_close() && soft && stiff) brent(*soft, *stiff);
+    if (timed_out_) found_.stiffness.reset();
+    return found_;
+  }
+
+ private:
+  bool best_close() const { return found_.stiffness && best_excess_ >= std::log(close_enough); }
+  bool alive() const {
+    return found_.runs < calibration_run_limit && failures_ < calibration_failure_limit &&
+           !timed_out_;
+  }
+
+  // log(max strain / limit). Of a run that failed, its strain up to there tells the side, not how
+  // far.
+  double excess(double log_stiffness) {
+    const auto [known, fresh] = known_.try_emplace(log_stiffness, 0.0);
+    if (fresh) known->second = evaluate(std::pow(10, log_stiffness));
+    return known->second;
+  }
+
+  double evaluate(double stiffness) {
+    ++found_.runs;
+    const CalibrationTrial trial = run_(stiffness);
+    if (trial.status == PointStatus::timeout) {
+      timed_out_ = true;
+      found_.status = PointStatus::skipped;
+      found_.detail = "timed out while calibrating: run " + std::to_string(found_.runs) +
+                      ", stiffness " + number_text(stiffness) + " N, strain so far " +
+                      number_text(trial.strain) + ", " + number_text(trial.seconds) +
+                      " s of stepping; " + trial.detail;
+      return std::log(calibration_cut_short);
+    }
+    if (!strain_counts(trial.status)) {
+      found_.status = trial.status;
+      found_.detail = "calibration, " + trial.detail;
+      ++failures_;
+      return std::log(calibration_cut_short) * (trial.strain <= limit_ ? -1 : 1);
+    }
+    const double f = std::log(std::max(trial.strain, 1e-300) / limit_);
+    if (f <= 0 && (!found_.stiffness || stiffness < *found_.stiffness)) {
+      found_.stiffness = stiffness;
+      best_excess_ = f;
+    }
+    return f;
+  }
+
+  void brent(double soft, double stiff) {
+    gsl_set_error_handler_off();
+    const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
+        gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
+    gsl_function function{
+        [](double x, void* self) { return static_cast<StiffnessSearch*>(self)->excess(x) - aim; },
+        this};
+    if (gsl_root_fsolver_set(solver.get(), &function, soft, stiff) != GSL_SUCCESS) return;
+    while (alive() && !best_close()) {
+      if (gsl_root_fsolver_iterate(solver.get()) != GSL_SUCCESS) return;
+      if (gsl_root_fsolver_x_upper(solver.get()) - gsl_root_fsolver_x_lower(solver.get()) < 1e-3)
+        return;
+    }
+  }
+
+  double limit_;
+  const std::function<CalibrationTrial(double)>& run_;
+  Calibration found_;
+  double best_excess_ = 0;
+  int failures_ = 0;
+  bool timed_out_ = false;
+  std::map<double, double> known_;  // Brent's method asks for the bracket's ends again
+};
+
 }  // namespace
+
+Calibration calibrate_stiffness(double strain_limit, double guess,
+                                const std::function<CalibrationTrial(double)>& run) {
+  return StiffnessSearch(strain_limit, run).find(guess);
+}
 
 // As measured on a cloth of 15 x 15 and a chain of 80, with both methods that have springs.
 double nominal_seconds(const inextensible::WorkCounters& work, int edges) {
@@ -49,78 +149,6 @@ double first_stiffness(const Scene& scene, double strain_limit) {
   const double strands = std::max(1.0, std::round(length / scene.size));
   const double force_of_a_strand = energy_scale(scene) / scene.size / strands;
   return tension_over_force * force_of_a_strand / strain_limit;
-}
-
-std::optional<double> Calibration::find(double guess) {
-  std::optional<double> soft, stiff;  // logarithms: too soft, stiff enough
-  double at = std::log10(guess);
-  for (int strides = 0; alive() && !best_close();) {
-    const int failures = failures_;
-    const double f = excess(at);
-    if (failures_ > failures && !soft && !stiff) {  // both sides in turn, softer springs first
-      const int pair = (failures_ + 1) / 2;
-      at = std::log10(guess) + (failures_ % 2 ? -1 : 1) * stride_from_failure * pair;
-      continue;
-    }
-    (f > 0 ? soft : stiff) = at;
-    if (soft && stiff) break;
-    ++strides;
-    double stride = strides * std::abs(f - aim) / std::log(10);
-    if (f >= std::log(cut_short)) stride = std::max(stride, strides * least_stride_from_cut_short);
-    at += f > 0 ? stride : -stride;
-  }
-  if (alive() && !best_close() && soft && stiff) brent(*soft, *stiff);
-  return timed_out_ ? std::nullopt : best_;
-}
-
-bool Calibration::best_close() const { return best_ && best_excess_ >= std::log(close_enough); }
-
-// log(max strain / limit). Of a run that failed, its strain up to there tells the side, not how
-// far.
-double Calibration::excess(double log_stiffness) {
-  const auto [known, fresh] = known_.try_emplace(log_stiffness, 0.0);
-  if (fresh) known->second = evaluate(log_stiffness);
-  return known->second;
-}
-
-double Calibration::evaluate(double log_stiffness) {
-  const double stiffness = std::pow(10, log_stiffness);
-  ++runs_;
-  const Trial trial = run_(stiffness);
-  if (trial.status == PointStatus::timeout) {
-    timed_out_ = true;
-    status_ = PointStatus::skipped;
-    detail_ = "timed out while calibrating: run " + std::to_string(runs_) + ", stiffness " +
-              number_text(stiffness) + " N, strain so far " + number_text(trial.strain) + ", " +
-              number_text(trial.seconds) + " s of stepping; " + trial.detail;
-    return std::log(cut_short);
-  }
-  if (!strain_counts(trial.status)) {
-    status_ = trial.status;
-    detail_ = "calibration, " + trial.detail;
-    ++failures_;
-    return trial.strain <= limit_ ? -std::log(cut_short) : std::log(cut_short);
-  }
-  const double f = std::log(std::max(trial.strain, 1e-300) / limit_);
-  if (f <= 0 && (!best_ || stiffness < *best_)) {
-    best_ = stiffness;
-    best_excess_ = f;
-  }
-  return f;
-}
-
-void Calibration::brent(double soft, double stiff) {
-  gsl_set_error_handler_off();
-  const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
-      gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
-  gsl_function function{
-      [](double x, void* self) { return static_cast<Calibration*>(self)->excess(x) - aim; }, this};
-  if (gsl_root_fsolver_set(solver.get(), &function, soft, stiff) != GSL_SUCCESS) return;
-  while (alive() && !best_close()) {
-    if (gsl_root_fsolver_iterate(solver.get()) != GSL_SUCCESS) return;
-    if (gsl_root_fsolver_x_upper(solver.get()) - gsl_root_fsolver_x_lower(solver.get()) < 1e-3)
-      return;
-  }
 }
 
 }  // namespace harness

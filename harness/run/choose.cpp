@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "harness/base/text.h"
@@ -233,15 +232,7 @@ void screen(PointResult& point, const RunLimits& limits, std::optional<double> g
 PointResult screen_point(const PointSpec& spec, const RunLimits& limits,
                          std::optional<double> guess) {
   PointResult point(spec);
-  try {
-    screen(point, limits, guess);
-  } catch (const std::bad_alloc&) {
-    point.status = PointStatus::out_of_memory;
-    point.detail = "an allocation failed";
-  } catch (const std::invalid_argument& error) {  // refused at the door
-    point.status = PointStatus::unsupported;
-    point.detail = error.what();
-  }
+  with_failures_in(point, [&] { screen(point, limits, guess); });
   return point;
 }
 

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "harness/base/child_process.h"
-#include "harness/base/json_text.h"
+#include "harness/base/small_runs.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 
@@ -15,20 +14,11 @@ namespace {
 using nlohmann::json;
 using End = ChildOutcome::End;
 
-// What `run` returns in a child; none where the child did not come back with it.
-template <class Run, class Read>
-auto in_child(const RunLimits& limits, double memory, const Run& run, const Read& read,
-              ChildOutcome& outcome) {
-  outcome = run_in_child(
-      [&](Heartbeat& heartbeat) {
-        RunLimits inner = limits;
-        inner.interrupted = nullptr;  // the parent's business
-        inner.heartbeat = &heartbeat;
-        return compact(to_json(run(inner)));
-      },
-      {limits.timeout, memory, limits.interrupted});
-  if (outcome.end == End::interrupted) throw Interrupted();
-  return answer(outcome, read);
+// The limits of a run in a child: interruptions are the parent's business.
+RunLimits in_a_child(RunLimits limits, Heartbeat& heartbeat) {
+  limits.interrupted = nullptr;
+  limits.heartbeat = &heartbeat;
+  return limits;
 }
 
 // The point whose child did not come back.
@@ -110,23 +100,26 @@ SweepRunners limited(const SweepRunners& inner, const std::function<RunLimits(Ru
 }
 
 SweepRunners isolated(const SweepRunners& inner, double memory) {
-  SweepRunners runners;
-  runners.references = inner.references;
-  runners.run = [run = inner.run, memory](const PointSpec& spec, const RunLimits& limits,
-                                          std::optional<double> guess) {
-    find_reference(limits, spec);
-    ChildOutcome outcome;
-    const auto there = [&](const RunLimits& inside) { return run(spec, inside, guess); };
-    if (auto point = in_child(limits, memory, there, point_of, outcome)) return *std::move(point);
-    return lost_point(spec, outcome, limits.timeout);
-  };
-  runners.repeat = [repeat = inner.repeat, memory](const PointResult& point,
-                                                   const RunLimits& limits) {
-    ChildOutcome outcome;
-    const auto there = [&](const RunLimits& inside) { return repeat(point, inside); };
-    return in_child(limits, memory, there, samples_of, outcome).value_or(Samples{});
-  };
-  return runners;
+  return {[run = inner.run, memory](const PointSpec& spec, const RunLimits& limits,
+                                    std::optional<double> guess) {
+            find_reference(limits, spec);
+            return in_child(
+                {limits.timeout, memory, limits.interrupted},
+                [&](Heartbeat& heartbeat) {
+                  return to_json(run(spec, in_a_child(limits, heartbeat), guess));
+                },
+                point_of,
+                [&](const ChildOutcome& child) { return lost_point(spec, child, limits.timeout); });
+          },
+          [repeat = inner.repeat, memory](const PointResult& point, const RunLimits& limits) {
+            return in_child(
+                {limits.timeout, memory, limits.interrupted},
+                [&](Heartbeat& heartbeat) {
+                  return to_json(repeat(point, in_a_child(limits, heartbeat)));
+                },
+                samples_of, [](const ChildOutcome&) { return Samples{}; });
+          },
+          inner.references};
 }
 
 SweepRunners journaled(const SweepRunners& inner, Journal& journal) {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <new>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -27,17 +25,6 @@ double peak_rss_bytes() {
     if (line.starts_with("VmHWM:")) return 1024 * std::stod(line.substr(6));
   }
   return 0;
-}
-
-void fill(PointResult& point, Run& run) {
-  point.status = run.status;
-  point.detail = run.detail;
-  point.setup_seconds = run.setup_seconds;
-  point.measures = run.measures;
-  point.smallest_step = run.smallest_step;
-  point.phases = run.stepper->phases();
-  point.work = run.stepper->work();
-  point.linear_solver = run.stepper->linear_solver();
 }
 
 // Runs without the judge that make one sample; or up to the one that failed.
@@ -137,20 +124,21 @@ bool calibrate(PointResult& point, PointRunner& runner, inextensible::Settings& 
   const PointSpec& spec = point.spec;
   const auto begin = Clock::now();
   point.calibration_guess = guess.value_or(unknown);
-  Calibration calibration(spec.strain_limit, [&](double stiffness) -> Calibration::Trial {
-    settings["stiffness"] = stiffness;
-    runner.restart_clock(RunPart::calibration);  // every run has the whole time-out to itself
-    const Run run =
-        runner.run(settings, true, Calibration::cut_short * spec.strain_limit, true, true);
-    return {run.status, run.measures.max_strain, run.seconds, run.detail};
-  });
-  point.stiffness =
-      calibration.find(guess.value_or(first_stiffness(runner.scene(), spec.strain_limit)));
+  const Calibration found = calibrate_stiffness(
+      spec.strain_limit, guess.value_or(first_stiffness(runner.scene(), spec.strain_limit)),
+      [&](double stiffness) -> CalibrationTrial {
+        settings["stiffness"] = stiffness;
+        runner.restart_clock(RunPart::calibration);  // every run has the whole time-out to itself
+        const Run run =
+            runner.run(settings, true, calibration_cut_short * spec.strain_limit, true, true);
+        return {run.status, run.measures.max_strain, run.seconds, run.detail};
+      });
   point.calibration_seconds = since(begin);
-  point.calibration_runs = calibration.runs();
+  point.calibration_runs = found.runs;
+  point.stiffness = found.stiffness;
   if (!point.stiffness) {
-    point.status = calibration.status();
-    point.detail = calibration.detail();
+    point.status = found.status;
+    point.detail = found.detail;
     return false;
   }
   settings["stiffness"] = *point.stiffness;
@@ -168,7 +156,10 @@ void measure(PointResult& point, PointRunner& runner, const inextensible::Settin
   Batch judged;
   judged.add(runner.run(settings, true, diverged_strain));
   const double after = timed ? quiet_probe().look() : 0;
-  fill(point, judged.last);
+  static_cast<RunOutcome&>(point) = judged.last;
+  point.phases = judged.last.stepper->phases();
+  point.work = judged.last.stepper->work();
+  point.linear_solver = judged.last.stepper->linear_solver();
   if (!point.ok()) return;
   const bool short_steps = runner.seconds_per_step(judged.last) < shortest_judged_step;
   Sampler sampler(point, runner, settings, short_steps, limits);
@@ -191,22 +182,16 @@ void measure(PointResult& point, PointRunner& runner, const inextensible::Settin
 PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optional<double> guess) {
   PointResult point(spec);
   reset_peak_rss();
-  try {
+  with_failures_in(point, [&] {
     PointRunner runner(spec, limits);
     point.steps_planned = runner.steps();
     inextensible::Settings settings = spec.settings;
     const bool needs_stiffness =
         runner.backend().strain_control == inextensible::StrainControl::stiffness &&
         !settings.contains("stiffness");
-    if (needs_stiffness && !calibrate(point, runner, settings, guess)) return point;
-    measure(point, runner, settings, limits);
-  } catch (const std::bad_alloc&) {
-    point.status = PointStatus::out_of_memory;
-    point.detail = "an allocation failed";
-  } catch (const std::invalid_argument& error) {
-    point.status = PointStatus::unsupported;
-    point.detail = error.what();
-  }
+    if (!needs_stiffness || calibrate(point, runner, settings, guess))
+      measure(point, runner, settings, limits);
+  });
   point.peak_rss_bytes = peak_rss_bytes();
   return point;
 }

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <memory>
-#include <string>
+#include <new>
+#include <stdexcept>
 #include <vector>
 
 #include "harness/base/clock.h"
@@ -35,17 +36,12 @@ class FrameTimes {
   double time_ = 0;  // s, that has been simulated
 };
 
-struct Run {
-  PointStatus status = PointStatus::ok;
-  std::string detail;
+struct Run : RunOutcome {
   double seconds = 0;  // of stepping alone
   double first_step_seconds = 0;
   double cpu_seconds = 0;  // of the thread, the same
-  Measures measures;
   std::unique_ptr<inextensible::Stepper> stepper;
   bool observed = false;  // the judge was shown the iterates of its steps
-  double setup_seconds = 0;
-  double smallest_step = unknown;
   std::vector<FrameTime> frame_times;
 };
 
@@ -83,6 +79,20 @@ class PointRunner {
   inextensible::State first_state_;  // the scene's, or half a step back where velocities ask for it
   std::shared_ptr<const Reference> reference_;
 };
+
+// Does the work on a point; what goes wrong becomes the point's status.
+template <class Work>
+void with_failures_in(PointResult& point, const Work& work) {
+  try {
+    work();
+  } catch (const std::bad_alloc&) {
+    point.status = PointStatus::out_of_memory;
+    point.detail = "an allocation failed";
+  } catch (const std::invalid_argument& error) {  // the solver does not take the problem
+    point.status = PointStatus::unsupported;
+    point.detail = error.what();
+  }
+}
 
 // What a timed step costs beyond the step, in seconds: the runner's time for steps of the solver
 // `null` on two vertices, less the time of the same steps called one after the other.

@@ -121,6 +121,7 @@ struct Sweep {
            point);
   }
 
+  void find_best(std::size_t search, Neighbour& neighbour);
   void repeat_candidates();
 };
 
@@ -171,85 +172,59 @@ void Sweep::repeat_candidates() {
   }
 }
 
-// One search: each rung of its ladder is run when it is first asked for.
-class LadderRun {
- public:
-  LadderRun(Sweep& sweep, std::size_t number, Neighbour& neighbour)
-      : sweep_(sweep),
-        number_(number),
-        search_(sweep.searches[number]),
-        neighbour_(neighbour),
-        steps_(
-            search_.ladder.size(),
-            [this](std::size_t rung) -> const PointResult& { return point(rung); },
-            [this](std::size_t rung) -> const PointResult& { return again(rung); },
-            levels_of(sweep.suite), search_.stride) {}
-
-  void find_best() {
-    const auto best = search_.every_step ? steps_.find_among_all()
-                                         : steps_.find(neighbour_.rung_in(search_.ladder));
-    if (!best) {
-      neighbour_.hopeless = steps_.timed_out() && !was_far_behind_;
-      return;
-    }
-    neighbour_.best_step = search_.ladder[*best];
-    add_choice(any_motion);
-    for (const double level : levels_of(sweep_.suite)) add_choice(level);
-  }
-
- private:
-  const PointResult& point(std::size_t rung) {
-    if (const auto known = point_of_rung_.find(rung); known != point_of_rung_.end())
-      return sweep_.points[known->second];
-    PointSpec spec = search_.base;
-    spec.step = search_.ladder[rung];
+// Each rung of the search's ladder is run when it is first asked for.
+void Sweep::find_best(std::size_t number, Neighbour& neighbour) {
+  const Search& search = searches[number];
+  std::map<std::size_t, std::size_t> place_of_rung;
+  // Stopped for others' sake: at a neighbouring limit it may be nearer to them.
+  bool was_far_behind = false;
+  const auto run = [&](std::size_t rung, double longest_useful) -> const PointResult& {
+    if (const auto known = place_of_rung.find(rung); known != place_of_rung.end())
+      return points[known->second];
+    PointSpec spec = search.base;
+    spec.step = search.ladder[rung];
     const MeetingPlace place{spec.scene, spec.scene_parameters, spec.strain_limit,
-                             search_.every_step ? spec.step : 0};
-    const double behind = sweep_.far_behind(place);
-    const double useful = std::min(
-        search_.every_step ? std::numeric_limits<double>::infinity() : steps_.longest_useful(),
-        behind);
+                             search.every_step ? spec.step : 0};
+    const double behind = far_behind(place), useful = std::min(longest_useful, behind);
     const double hopeless =
         std::isinf(useful)
             ? 1e300
             : std::max(hopeless_least, useful * spec.scene_parameters.at("duration"));
-    PointResult point = sweep_.runners.run(
-        spec,
-        {sweep_.suite.timeout, hopeless, sweep_.events.interrupted, sweep_.runners.references},
-        neighbour_.guess_of_stiffness(spec));
+    PointResult point =
+        runners.run(spec, {suite.timeout, hopeless, events.interrupted, runners.references},
+                    neighbour.guess_of_stiffness(spec));
     if (point.stiffness)
-      neighbour_.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
-    was_far_behind_ = was_far_behind_ || (point.status == PointStatus::timeout &&
-                                          useful == behind && std::isfinite(behind));
-    sweep_.remember(place, point);
-    point_of_rung_[rung] = sweep_.points.size();
-    return sweep_.add(std::move(point), number_);
-  }
-
-  // With one sample more, unless its runs have taken long already.
-  const PointResult& again(std::size_t rung) {
-    PointResult& point = sweep_.points[point_of_rung_.at(rung)];
-    if (point.measured_seconds() < repeat_for) sweep_.repeat(point);
+      neighbour.stiffness_times_limit[spec.step] = *point.stiffness * spec.strain_limit;
+    was_far_behind = was_far_behind || (point.status == PointStatus::timeout && useful == behind &&
+                                        std::isfinite(behind));
+    remember(place, point);
+    place_of_rung[rung] = points.size();
+    return add(std::move(point), number);
+  };
+  // Unless its runs have taken long already.
+  const auto again = [&](std::size_t rung) -> const PointResult& {
+    PointResult& point = points[place_of_rung.at(rung)];
+    if (point.measured_seconds() < repeat_for) repeat(point);
     return point;
+  };
+  const BestSteps found =
+      find_best_steps({search.ladder.size(), run, again, levels_of(suite), search.stride,
+                       neighbour.rung_in(search.ladder), search.every_step});
+  if (!found.best) {
+    neighbour.hopeless = found.timed_out && !was_far_behind;
+    return;
   }
-
-  void add_choice(double level) {
-    Choice& choice = sweep_.choices.emplace_back();
-    for (const std::size_t rung : steps_.near_best(level, candidate_factor))
-      choice.candidates[rung] = point_of_rung_.at(rung);
-    choice.rungs = search_.ladder.size();
+  neighbour.best_step = search.ladder[*found.best];
+  std::vector<double> levels = levels_of(suite);
+  levels.insert(levels.begin(), any_motion);
+  for (const double level : levels) {
+    Choice& choice = choices.emplace_back();
+    choice.rungs = search.ladder.size();
     choice.level = level;
+    for (const std::size_t rung : found.near_best(level, candidate_factor))
+      choice.candidates[rung] = place_of_rung.at(rung);
   }
-
-  Sweep& sweep_;
-  std::size_t number_;
-  const Search& search_;
-  Neighbour& neighbour_;
-  StepSearch steps_;
-  std::map<std::size_t, std::size_t> point_of_rung_;
-  // Stopped for others' sake: at a neighbouring limit it may be nearer to them.
-  bool was_far_behind_ = false;
-};
+}
 
 }  // namespace
 
@@ -267,7 +242,7 @@ SweepOutcome run_sweep(const Suite& suite, const std::vector<Search>& searches,
         skipped.detail = "every step timed out at the neighbouring point of the axis already";
         sweep.add(std::move(skipped), s);
       } else {
-        LadderRun(sweep, s, neighbour).find_best();
+        sweep.find_best(s, neighbour);
       }
     }
     sweep.repeat_candidates();

@@ -139,7 +139,7 @@ class Tuner {
   void find_best(double most_seconds) {
     std::map<std::size_t, PointResult> known;
     double best = most_seconds / duration() / give_up_at;
-    const auto run = [&](std::size_t rung) -> const PointResult& {
+    const auto run = [&](std::size_t rung, double) -> const PointResult& {
       const auto [at, fresh] = known.try_emplace(rung);
       if (fresh) at->second = run_once(rung, settings_of(start_), give_up_at * best);
       if (counts(at->second)) best = std::min(best, at->second.seconds());
@@ -148,7 +148,7 @@ class Tuner {
     const auto again = [&](std::size_t rung) -> const PointResult& {
       return repeated(known.at(rung));
     };
-    StepSearch(search_.ladder.size(), run, again, {headline_error}).find(std::nullopt);
+    find_best_steps({search_.ladder.size(), run, again, {headline_error}});
     for (const auto& [rung, point] : known)
       if (counts(point)) learn({rung, point.seconds()});
   }
@@ -207,7 +207,7 @@ class Tuner {
   const SweepRunners& runners_;
   const SweepSpec& scene_;  // one size and limit
   const std::vector<TunedNumber>& numbers_;
-  Values start_;        // what the search begins with, and must better
+  Values start_;  // what the search begins with, and must better
   Search search_;
   std::optional<double> stiffness_;  // to begin calibrations from
   Found best_;                       // so far; where the next search begins

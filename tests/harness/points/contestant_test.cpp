@@ -70,20 +70,22 @@ TEST(Contestants, TakeEveryPartOfTheScene) {
                 backend.name == std::string("null") ||
                     (backend.contestant && !another && !part_not_taken(backend, *built.problem)))
           << scene << ", " << backend.name;
+      EXPECT_TRUE(!*backend.same_on_chains || inextensible::find_backend(backend.same_on_chains));
     }
   }
-  EXPECT_TRUE(stands("patch", "soft_step"));
-  EXPECT_FALSE(stands("drape", "soft_step"));
   EXPECT_TRUE(stands("drape", "soft_step", R"("solvers": ["soft_step"], )")) << "it is named";
-  EXPECT_FALSE(stands("fabric_drape", "vertex_block_descent"));
+  EXPECT_TRUE(stands("chain", "yarn_projection@bdf2", R"("solvers": ["yarn_projection@bdf2"], )"));
 }
 
 TEST(Contestants, HaveTheirOwnNamesAndSettings) {
-  const Suite suite = suite_with("", R"("solvers": ["jacobi", {"name": "jacobi_slow",
+  const Suite suite =
+      suite_with(R"("same": "jacobi_slow", )", R"("solvers": ["jacobi", {"name": "jacobi_slow",
       "solver": "jacobi", "settings": {"relaxation": 1.2}, "unranked": true}],
       "solver_options": {"jacobi": {"relaxation": 1.5, "target": 0.5}})");
   const auto searches = plan(suite, {});
-  ASSERT_EQ(searches.size(), 2u);
+  EXPECT_EQ(names(suite), (std::vector<std::string>{"jacobi", "jacobi_slow", "jacobi_slow_again"}));
+  ASSERT_EQ(searches.size(), 3u);
+  EXPECT_EQ(searches[1].base.settings, searches[2].base.settings);
   EXPECT_EQ(setting(searches[0], "relaxation"), 1.5);
   EXPECT_EQ(setting(searches[1], "relaxation"), 1.2) << "a contestant's own settings go first";
   EXPECT_EQ(setting(searches[1], "target"), 0.5) << "the solver's are for all of it";
@@ -91,21 +93,10 @@ TEST(Contestants, HaveTheirOwnNamesAndSettings) {
   EXPECT_NE(searches[0].family, searches[1].family);
   SweepFilters filters;
   filters.solver = Pattern("--solver", "jacobi_.*");
-  EXPECT_EQ(plan(suite, filters).size(), 1u);
+  EXPECT_EQ(plan(suite, filters).size(), 2u);
   const Suite again = parse_suite(to_json(suite).dump(), "again");
   EXPECT_EQ(to_json(again), to_json(suite));
   EXPECT_EQ(again.sweeps[0].contestants, suite.sweeps[0].contestants);
-}
-
-TEST(Contestants, ThatAreAnotherOneOnAChainAreLeftOutThereUnlessTheyAreNamed) {
-  EXPECT_TRUE(stands("whip", "fast_projection_adaptive@bdf2"));
-  EXPECT_FALSE(stands("whip", "yarn_projection@bdf2"));
-  EXPECT_TRUE(stands("chain", "yarn_projection@bdf2", R"("solvers": ["yarn_projection@bdf2"], )"));
-  for (const auto& backend : inextensible::backends()) {
-    if (*backend.same_on_chains) {
-      EXPECT_TRUE(inextensible::find_backend(backend.same_on_chains)) << backend.name;
-    }
-  }
 }
 
 // What a wrong suite is told: each message names the key or value.
@@ -276,15 +267,6 @@ TEST(Noise, IsTheSpreadOfThePairsRatiosWhateverItsSteps) {
   ASSERT_TRUE(of_steps);
   EXPECT_EQ(of_steps->places, 1);
   EXPECT_NEAR(of_steps->q95, std::log(1.1), 1e-12);
-}
-
-TEST(Same, StandsThereOnceMoreWithTheSameSettings) {
-  const Suite suite = suite_with(R"("same": "jacobi", )", R"("solvers": ["icd", {"name": "jacobi",
-      "settings": {"relaxation": 1.2}}])");
-  EXPECT_EQ(names(suite), (std::vector<std::string>{"icd", "jacobi", "jacobi_again"}));
-  const auto searches = plan(suite, {});
-  EXPECT_EQ(searches[1].base.settings, searches[2].base.settings);
-  EXPECT_EQ(names(parse_suite(to_json(suite).dump(), "again")), names(suite));
 }
 
 }  // namespace

@@ -14,31 +14,35 @@
 
 namespace harness::testing {
 
-// The message of the refusal, "" if the text was taken as a suite or a result.
-inline std::string read_as_suite(const std::string& text) {
+// The message of the refusal, "" if the text was taken.
+template <class Read>
+std::string refusal_of(const Read& read) {
   try {
-    const Suite suite = parse_suite(text, "fuzz");
-    (void)to_json(suite).dump();
-    std::size_t points = 0;  // planning is cheap, unless the suite asks for billions of points
-    for (const SweepSpec& s : suite.sweeps)
-      points += s.limits.size() * s.resolutions.size() * s.contestants.size();
-    if (points < 10000) (void)plan(suite, {});
+    read();
     return "";
   } catch (const UsageError& error) {
     return error.what();
   }
 }
 
+inline std::string read_as_suite(const std::string& text) {
+  return refusal_of([&text] {
+    const Suite suite = parse_suite(text, "fuzz");
+    (void)to_json(suite).dump();
+    std::size_t points = 0;  // planning is cheap, unless the suite asks for billions of points
+    for (const SweepSpec& s : suite.sweeps)
+      points += s.limits.size() * s.resolutions.size() * s.contestants.size();
+    if (points < 10000) (void)plan(suite, {});
+  });
+}
+
 inline std::string read_as_result(const std::string& text) {
-  try {
+  return refusal_of([&text] {
     const nlohmann::json result = parse_result(text, "fuzz");
     (void)judge_claims({result});
     std::ostringstream page;
     print_results_page(page, {{"fuzz", result}}, {});
-    return "";
-  } catch (const UsageError& error) {
-    return error.what();
-  }
+  });
 }
 
 }  // namespace harness::testing

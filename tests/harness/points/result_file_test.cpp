@@ -1,11 +1,9 @@
-// Every written file fits configs/result.schema.json, every suite fits configs/suite.schema.json.
+// Files that are written or committed fit their schemas, configs/*.schema.json.
 #include "harness/points/result_file.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 
@@ -56,29 +54,35 @@ Suite tiny_suite() {
   return suite;
 }
 
-TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchemaAndComesBackAsItWas) {
+json document_of(const Suite& suite, const std::vector<PointResult>& points) {
+  return result_document(machine_context(), suite, {"bench"}, true, points);
+}
+
+// With that many points that were not run.
+json small_document(std::size_t points) {
+  const Suite suite = tiny_suite();
+  return document_of(suite, std::vector(points, PointResult(plan(suite, {}).front().base)));
+}
+
+TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchema) {
   const Suite suite = tiny_suite();
   const SweepRunners runners = limited({}, [](RunLimits limits) {
     limits.timed = false;  // one run a sample: nobody reads the times
     return limits;
   });
   const SweepOutcome outcome = run_sweep(suite, plan(suite, {}), {}, runners);
-  for (const PointResult& point : outcome.points) {
-    const json written = json::parse(to_json(point).dump());
-    EXPECT_EQ(to_json(point_of(written)), written) << point.spec.id();
-  }
-  const json document = result_document(machine_context(), suite, {"bench"}, true, outcome.points);
+  const json document = document_of(suite, outcome.points);
   EXPECT_EQ(misfit(document, "result"), "");
   for (const auto& backend : inextensible::backends()) {
-    if (!backend.contestant) continue;
     for (const char* scene : {"chain", "drape"}) {
       const bool chain = std::string(scene) == "chain";
-      if (chain ? *backend.same_on_chains != 0 : !backend.takes_collider) continue;
-      EXPECT_TRUE(std::any_of(outcome.points.begin(), outcome.points.end(),
-                              [&](const PointResult& p) {
-                                return p.spec.scene == scene && p.spec.solver == backend.name &&
-                                       p.ok();
-                              }))
+      if (!backend.contestant || (chain ? *backend.same_on_chains != 0 : !backend.takes_collider))
+        continue;
+      EXPECT_TRUE(std::ranges::any_of(outcome.points,
+                                      [&](const PointResult& p) {
+                                        return p.spec.scene == scene &&
+                                               p.spec.solver == backend.name && p.ok();
+                                      }))
           << scene << " " << backend.name;
     }
   }
@@ -89,21 +93,30 @@ TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchemaAndComesBackAsItWas) {
   EXPECT_EQ(document["benchmarks"].size(), samples);
 }
 
-TEST(ResultFile, TheSchemaRefusesAWrongStatusAndAnUnknownCounter) {
-  const Suite suite = tiny_suite();
-  const PointResult point(plan(suite, {}).front().base);
-  const json good = result_document(machine_context(), suite, {"bench"}, true, {point});
-  ASSERT_EQ(misfit(good, "result"), "");
-  json bad = good;
-  bad["points"][0]["status"] = "fine";
-  EXPECT_NE(misfit(bad, "result"), "");
-  bad = good;
-  bad["points"][0]["work"]["luck"] = 1;
-  EXPECT_NE(misfit(bad, "result"), "");
+TEST(Schemas, RefuseWhatTheyDoNotKnow) {
+  const std::string path = ::testing::TempDir() + "of_baseline.json";
+  write_atomically(path, small_document(1).dump());
+  const json result = small_document(1),
+             baseline = json::parse(document_text(baseline_document(read_compared({path}))));
+  struct Row {
+    const char* schema;
+    json good;
+    const char* place;
+    json wrong;
+  };
+  for (const Row& row : {Row{"result", result, "/points/0/status", "fine"},
+                         Row{"result", result, "/points/0/work/luck", 1},
+                         Row{"baseline", baseline, "/points/0/seconds", 1},
+                         Row{"gate", read(source("configs/gate.json")), "/times/cout", true}}) {
+    EXPECT_EQ(misfit(row.good, row.schema), "");
+    json bad = row.good;
+    bad[json::json_pointer(row.place)] = row.wrong;
+    EXPECT_NE(misfit(bad, row.schema), "") << row.place;
+  }
 }
 
 TEST(ResultFile, OfAnUntimedRunIsNotReadForItsTimes) {
-  json document = result_document(machine_context(), tiny_suite(), {"bench"}, true, {});
+  json document = small_document(0);
   EXPECT_TRUE(is_timed(document)) << "older files do not say";
   for (const bool timed : {true, false}) {
     document["context"]["timed"] = timed;
@@ -118,22 +131,36 @@ TEST(ResultFile, OfAnUntimedRunIsNotReadForItsTimes) {
   EXPECT_THROW(static_cast<void>(judge_claims({document})), UsageError);
 }
 
-TEST(ResultFile, CommittedResultsFitTheSchema) {
-  for (const auto& entry : std::filesystem::directory_iterator(source("results"))) {
-    if (entry.path().extension() != ".json") continue;
-    const json document = read(entry.path());
-    const std::string kind = document.at("schema");
-    const std::string schema = kind == "inextensible-bench/1"       ? "result"
-                               : kind == "inextensible-stability/1" ? "stability"
-                                                                    : "answers";
-    EXPECT_EQ(misfit(document, schema), "") << entry.path();
+TEST(Schemas, AreThoseOfCommittedFiles) {
+  for (const char* folder : {"results", "results/baseline", "configs"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(source(folder))) {
+      const std::string name = entry.path().filename();
+      if (entry.path().extension() != ".json" || name.find(".schema.") != std::string::npos)
+        continue;
+      const json document = read(entry.path());
+      const std::string kind = document.value("schema", "");
+      const std::string schema = kind == "inextensible-bench/1"       ? "result"
+                                 : kind == "inextensible-stability/1" ? "stability"
+                                 : kind == "inextensible-answers/1"   ? "answers"
+                                 : folder != std::string("configs")   ? "baseline"
+                                 : name == "tuned.json"               ? "tuned"
+                                 : name == "gate.json"                ? "gate"
+                                                                      : "suite";
+      EXPECT_EQ(misfit(document, schema), "") << entry.path();
+      if (schema == "suite") {
+        EXPECT_NO_THROW(static_cast<void>(read_suite(entry.path()))) << name;
+      }
+    }
   }
+  EXPECT_NO_THROW(static_cast<void>(read_tuned_up_to_date("tuned.json")));
+  EXPECT_NO_THROW(static_cast<void>(read_gate(source("configs/gate.json"))));
+  const json all = {{"counters", {{"names", counter_names()}}}};
+  EXPECT_EQ(misfit(all, "gate"), "");
+  EXPECT_NO_THROW(static_cast<void>(parse_gate(all.dump(), "all")));
 }
 
 TEST(ResultFile, IsOnePointALine) {
-  const Suite suite = tiny_suite();
-  const PointResult point(plan(suite, {}).front().base);
-  const json document = result_document(machine_context(), suite, {"bench"}, true, {point, point});
+  const json document = small_document(2);
   const std::string text = result_text(document);
   EXPECT_EQ(json::parse(text), document);
   std::istringstream lines(text);
@@ -155,29 +182,6 @@ TEST(ResultFile, OfAStabilitySweepFitsItsSchema) {
   EXPECT_EQ(misfit(document, "stability"), "");
 }
 
-TEST(Configs, FitTheirSchemasAndAreAccepted) {
-  for (const char* name : {"quick", "default", "paper", "large"}) {
-    const std::string file = source(std::string("configs/") + name + ".json");
-    EXPECT_EQ(misfit(read(file), "suite"), "") << name;
-    EXPECT_NO_THROW(static_cast<void>(read_suite(file))) << name;
-  }
-  EXPECT_EQ(misfit(read(source("configs/tuned.json")), "tuned"), "");
-  EXPECT_NO_THROW(static_cast<void>(read_tuned_up_to_date("tuned.json")));
-  TunedEntry entry{
-      "chain", "icd", 3, {{{50, 0.01, {{"max_iterations", 3.0}}}, 2, 2, 0.01, 1, 0.02}}, {}, {}};
-  entry.rule = tuning_rule(tuning_scenes().front(), *inextensible::find_backend("icd"));
-  entry.context = {{"date", "d"}, {"cpu_model", "c"}, {"commit", "c"}};
-  EXPECT_EQ(misfit(tuned_document({entry}), "tuned"), "");
-  entry.context.erase("date");
-  EXPECT_NE(misfit(tuned_document({entry}), "tuned"), "");
-  EXPECT_EQ(misfit(read(source("configs/gate.json")), "gate"), "");
-  EXPECT_NO_THROW(static_cast<void>(read_gate(source("configs/gate.json"))));
-  EXPECT_NE(misfit({{"times", {{"cout", true}}}}, "gate"), "");
-  const json all = {{"counters", {{"names", counter_names()}}}};
-  EXPECT_EQ(misfit(all, "gate"), "");
-  EXPECT_NO_THROW(static_cast<void>(parse_gate(all.dump(), "all")));
-}
-
 TEST(ResultFile, SaysWhereItsSettingsAreFromWhoIsWhoAndHowNoisyItIs) {
   Suite suite = tiny_suite();
   suite.tuned_file = "tuned.json";
@@ -187,55 +191,19 @@ TEST(ResultFile, SaysWhereItsSettingsAreFromWhoIsWhoAndHowNoisyItIs) {
   for (SweepSpec& sweep : suite.sweeps) add_double(sweep.contestants, "icd");
   for (const Search& search : plan(suite, {})) {
     if (search.base.solver != "icd") continue;
-    points.emplace_back().spec = search.base;
-    points.back().spec.step = 0.01;
-    points.back().status = PointStatus::ok;
-    points.back().samples = {1};
-    points.back().best = true;
+    PointResult& point = points.emplace_back(search.base, PointStatus::ok);
+    point.samples = {1};
+    point.best = true;
   }
-  const json document = result_document(machine_context(), suite, {"bench"}, true, points);
+  const json document = document_of(suite, points);
   EXPECT_EQ(misfit(document, "result"), "");
   EXPECT_EQ(document["context"]["tuned"]["file"], "tuned.json");
   EXPECT_EQ(document["context"]["noise"]["q95"], 0);
-  const auto known = document["legend"]["solvers"];
-  const auto again = std::find_if(known.begin(), known.end(),
-                                  [](const json& s) { return s["name"] == "icd_again"; });
+  const json& known = document["legend"]["solvers"];
+  const auto again = std::ranges::find(known, "icd_again", [](const json& s) { return s["name"]; });
   ASSERT_NE(again, known.end());
   EXPECT_EQ((*again)["unranked"], true);
   EXPECT_EQ((*(again - 1))["name"], "icd");
-}
-
-TEST(Baselines, FitTheirSchema) {
-  const Suite suite = tiny_suite();
-  const PointResult point(plan(suite, {}).front().base);
-  const json result = result_document(machine_context(), suite, {"bench"}, true, {point});
-  const std::string path = ::testing::TempDir() + "of_baseline.json";
-  write_atomically(path, result.dump());
-  const json baseline = json::parse(document_text(baseline_document(read_compared({path}))));
-  EXPECT_EQ(misfit(baseline, "baseline"), "");
-  json bad = baseline;
-  bad["points"][0]["seconds"] = 1;
-  EXPECT_NE(misfit(bad, "baseline"), "");
-  for (const auto& entry : std::filesystem::directory_iterator(source("results/baseline")))
-    EXPECT_EQ(misfit(read(entry.path()), "baseline"), "") << entry.path();
-}
-
-TEST(WriteAtomically, KeepsTheOldFileWhenTheNewOneCannotBeWritten) {
-  const std::string path = ::testing::TempDir() + "kept.json";
-  write_atomically(path, "old");
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const rlimit small{10, before.rlim_max};
-  setrlimit(RLIMIT_FSIZE, &small);
-  EXPECT_THROW(write_atomically(path, "new, and longer than a file may be"), std::runtime_error);
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
-  std::ifstream file(path);
-  std::string text;
-  file >> text;
-  EXPECT_EQ(text, "old");
-  EXPECT_THROW(check_writable(::testing::TempDir()), UsageError);  // a folder
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "harness/run/execute.h"
 
 #include <gtest/gtest.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -129,20 +130,6 @@ TEST(Isolation, ARunBeyondItsMemoryIsOutOfMemory) {
   EXPECT_EQ(point.status, PointStatus::out_of_memory) << point.detail;
 }
 
-TEST(Isolation, ATrialThatCrashesIsAnOutcomeAndOthersComeBackWhole) {
-  const auto cases = hard_cases(hard_case_values("quick"));
-  const TrialResult here = run_trial(cases.front().build, "fast_projection", 1);
-  const TrialResult there = run_isolated_trial(cases.front().build, "fast_projection", 1);
-  EXPECT_EQ(there.outcome, here.outcome);
-  EXPECT_EQ(there.work, here.work);
-  EXPECT_EQ(there.max_strain, here.max_strain);
-  EXPECT_EQ(there.energy_gain, here.energy_gain);
-  const TrialResult crash =
-      run_isolated_trial([]() -> Trial { std::abort(); }, "fast_projection", 1);
-  EXPECT_EQ(crash.outcome, Outcome::crashed);
-  EXPECT_NE(crash.detail.find("SIGABRT"), std::string::npos);
-}
-
 // A child that sleeps; a series of children that are done before they are asked whether to go on;
 // and as a scheduler cancels a job: every process gets the signal, the child may be the first.
 TEST(Isolation, AnInterruptEndsTheChildAtOnceAndNoOtherIsMade) {
@@ -163,19 +150,32 @@ TEST(Isolation, AnInterruptEndsTheChildAtOnceAndNoOtherIsMade) {
   EXPECT_EQ(run_isolated(terminate, limits).status, PointStatus::crashed);
 }
 
+TEST(Isolation, ATrialThatCrashesIsAnOutcomeAndOthersComeBackWhole) {
+  const auto cases = hard_cases(hard_case_values("quick"));
+  const TrialResult here = run_trial(cases.front().build, "fast_projection", 1);
+  const TrialResult there = run_isolated_trial(cases.front().build, "fast_projection", 1);
+  EXPECT_EQ(there.outcome, here.outcome);
+  EXPECT_EQ(there.work, here.work);
+  EXPECT_EQ(there.max_strain, here.max_strain);
+  EXPECT_EQ(there.energy_gain, here.energy_gain);
+  const TrialResult crash =
+      run_isolated_trial([]() -> Trial { std::abort(); }, "fast_projection", 1);
+  EXPECT_EQ(crash.outcome, Outcome::crashed);
+  EXPECT_NE(crash.detail.find("SIGABRT"), std::string::npos);
+}
+
 TEST(Isolation, AChildDiesWithItsParent) {
+  ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);  // orphans become this process's children
   int pipe_ends[2];
   ASSERT_EQ(pipe(pipe_ends), 0);
   const pid_t parent = fork();
   if (parent == 0) {
-    run_in_child(
-        [&](Heartbeat&) {
-          const pid_t me = getpid();
-          if (write(pipe_ends[1], &me, sizeof me) != sizeof me) _exit(1);
-          sleep_for_ever();
-          return std::string();
-        },
-        {});
+    const Work tell_and_sleep = [&](Heartbeat&) {
+      const pid_t me = getpid();
+      if (write(pipe_ends[1], &me, sizeof me) != sizeof me) _exit(1);
+      sleep_for_ever();
+    };
+    run_isolated(tell_and_sleep, {});
     _exit(0);
   }
   pid_t child = 0;
@@ -183,13 +183,7 @@ TEST(Isolation, AChildDiesWithItsParent) {
   EXPECT_EQ(kill(child, 0), 0);
   kill(parent, SIGKILL);
   waitpid(parent, nullptr, 0);
-  // Gone, or a zombie that nobody has fetched (a container's first process may not).
-  const auto dead = [&] {
-    std::ifstream file("/proc/" + std::to_string(child) + "/stat");
-    std::string text((std::istreambuf_iterator<char>(file)), {});
-    return text.empty() || text[text.rfind(')') + 2] == 'Z';
-  };
-  while (!dead()) std::this_thread::sleep_for(std::chrono::milliseconds(10));  // CTest's time-out
+  EXPECT_EQ(waitpid(child, nullptr, 0), child);  // CTest's time-out
 }
 
 }  // namespace

@@ -1,15 +1,12 @@
 // Journals and shards: whatever a sweep is cut into, its parts are the whole.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <random>
 
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/points/context.h"
 #include "harness/points/point_json.h"
 #include "harness/points/result_file.h"
 #include "harness/run/fake_machine.h"
@@ -138,43 +135,6 @@ TEST_F(JournalTest, RemembersAllButFailuresAndAsMuchOfAResultFile) {
   }
   EXPECT_EQ(run(suite, runs), whole);
   EXPECT_EQ(runs, 0);
-}
-
-TEST_F(JournalTest, BelongsToOneProcess) {
-  Journal mine(out());
-  mine.start(header_of(suite_of("strain")));
-  const pid_t child = fork();
-  if (child == 0) {
-    try {
-      Journal theirs(out());
-      _exit(0);
-    } catch (const UsageError& error) {
-      _exit(std::string(error.what()).find("(process " + std::to_string(getppid()) + ")") !=
-                    std::string::npos
-                ? 42
-                : 1);
-    }
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 42);
-}
-
-TEST_F(JournalTest, ThatIsRemovedMeanwhileIsMissedAtOnce) {
-  Journal journal(out());
-  journal.start(header_of(suite_of("strain")));
-  fs::remove(this->journal());
-  EXPECT_THROW(journal.add("x", 1), FileError);
-}
-
-TEST(Difference, NamesTheFirstThingThatDiffers) {
-  const json was = {{"compiler", "GNU 12"}, {"suite", {{"timeout", 60}}}};
-  json is = was;
-  EXPECT_EQ(difference(was, is), "");
-  is["suite"]["timeout"] = 20;
-  EXPECT_EQ(difference(was, is), "suite/timeout is 20, was 60");
-  is["compiler"] = "GNU 13";
-  EXPECT_EQ(difference(was, is), "compiler is \"GNU 13\", was \"GNU 12\"");
 }
 
 // ---- Shards ----

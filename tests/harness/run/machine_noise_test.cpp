@@ -9,33 +9,27 @@
 namespace harness {
 namespace {
 
-struct Outcome {
-  int sample, retaken;
-  std::size_t looks;
-};
-
 // Samples are 1, 2, 3, ... and looks take what a list says, in ms; the first ten are quiet ones.
-Outcome take(const std::vector<double>& looks, int retaken = 0) {
-  int samples = 0, warm = 0;
-  std::size_t seen = 0;
-  QuietProbe probe([&] { return ++warm <= 10 ? 1e-3 : 1e-3 * looks.at(seen++); });
-  const auto quiet = take_quietly(
-      probe, [&] { return ++samples; }, [](int) { return true; }, retaken);
-  return {quiet.sample, quiet.retaken, seen};
-}
-
-TEST(QuietSamples, ADisturbedLookOnEitherSideTakesItAgain) {
-  EXPECT_EQ(take({1.06, 1.0, 1.0}).sample, 2) << "before";
-  EXPECT_EQ(take({1.0, 1.06, 1.0, 1.0}).sample, 3) << "after, which is before the next one, too";
-  EXPECT_EQ(take({1.0, 1.06, 1.0, 1.0}).retaken, 2);
-}
-
-TEST(QuietSamples, AtMostThreeTimesAndThenTheCalmestStands) {
-  const Outcome outcome = take({2.0, 1.5, 1.2, 1.3, 3.0});
-  EXPECT_EQ(outcome.sample, 3);  // between 1.2 and 1.3
-  EXPECT_EQ(outcome.retaken, QuietProbe::most_retaken);
-  EXPECT_EQ(outcome.looks, 5u);
-  EXPECT_EQ(take({2.0, 1.5, 1.2, 1.3}, 1).retaken, 3) << "one was dropped before";
+TEST(QuietSamples, ADisturbedLookOnEitherSideTakesItAgainUpToThreeTimes) {
+  struct Row {
+    const char* what;
+    std::vector<double> looks;
+    int dropped, sample, retaken;
+  };
+  for (const auto& [what, looks, dropped, sample, retaken] :
+       {Row{"before", {1.06, 1.0, 1.0}, 0, 2, 1},
+        Row{"after, which is before the next one, too", {1.0, 1.06, 1.0, 1.0}, 0, 3, 2},
+        Row{"the calmest stands, between 1.2 and 1.3", {2.0, 1.5, 1.2, 1.3, 3.0}, 0, 3, 3},
+        Row{"one was dropped before", {2.0, 1.5, 1.2, 1.3}, 1, 3, 3}}) {
+    int samples = 0, warm = 0;
+    std::size_t seen = 0;
+    QuietProbe probe([&, &list = looks] { return ++warm <= 10 ? 1e-3 : 1e-3 * list.at(seen++); });
+    const auto quiet = take_quietly(
+        probe, [&] { return ++samples; }, [](int) { return true; }, dropped);
+    EXPECT_EQ(quiet.sample, sample) << what;
+    EXPECT_EQ(quiet.retaken, retaken) << what;
+    EXPECT_EQ(seen, looks.size()) << what;
+  }
 }
 
 TEST(QuietSamples, NoMoreThanAQuarterOfAllAreTakenAgain) {

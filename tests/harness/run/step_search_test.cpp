@@ -95,18 +95,17 @@ TEST(NoisySearch, IsNotMisledByFirstSamples) {
     }
     std::size_t tried = 0;
     bool again = false;
-    StepSearch search(
-        points.size(),
-        [&](std::size_t rung) -> const PointResult& {
-          tried = std::max(tried, rung);
-          return points[rung];
-        },
-        [&](std::size_t rung) -> const PointResult& {
-          again = true;
-          points[rung].samples.push_back(ladder.later[rung]);
-          return points[rung];
-        });
-    EXPECT_EQ(search.find(ladder.start), ladder.best) << ladder.what;
+    const auto run = [&](std::size_t rung, double) -> const PointResult& {
+      tried = std::max(tried, rung);
+      return points[rung];
+    };
+    const auto sample = [&](std::size_t rung) -> const PointResult& {
+      again = true;
+      points[rung].samples.push_back(ladder.later[rung]);
+      return points[rung];
+    };
+    EXPECT_EQ(find_best_steps({points.size(), run, sample, {}, 1, ladder.start}).best, ladder.best)
+        << ladder.what;
     EXPECT_EQ(tried, ladder.finest_tried) << ladder.what;
     EXPECT_EQ(again, ladder.samples_again) << ladder.what;
   }
