@@ -37,6 +37,36 @@ void append(Contestants& all, const json& list, const std::string& where, bool o
   }
 }
 
+std::vector<SettingsAt> read_settings_at(const json& places, const std::string& where,
+                                         const inextensible::Backend& backend) {
+  if (!places.is_array()) throw UsageError(where + " must be a list");
+  std::vector<SettingsAt> all;
+  for (const json& place : places) {
+    JsonReader reader(place, where);
+    SettingsAt& at = all.emplace_back();
+    at.resolution =
+        static_cast<int>(reader.number("resolution", 0, {.least = 1, .most = 1e6, .whole = true}));
+    at.limit = reader.number("limit", 0, Bounds::strain());
+    if (const json* settings = reader.find("settings"))
+      at.settings = read_settings(*settings, where, backend);
+    reader.finish();
+  }
+  return all;
+}
+
+// Building takes a while where there is a body, and suites ask for one scene again and again.
+const inextensible::Problem& small_problem(const SceneType& type, const SceneParameters& given) {
+  constexpr double enough = 11;  // the same parts as at any size
+  static std::map<std::pair<std::string, SceneParameters>,
+                  std::shared_ptr<const inextensible::Problem>>
+      built;
+  SceneParameters small = complete_parameters(type, given);
+  small[type.resolution] = std::min(enough, small.at(type.resolution));
+  auto& problem = built[{type.name, small}];
+  if (!problem) problem = type.build(small).problem;
+  return *problem;
+}
+
 }  // namespace
 
 Contestants::iterator find_contestant(Contestants& all, const std::string& name) {
@@ -111,27 +141,6 @@ void check_plain_name(const std::string& name, const std::string& where) {
         "ids)");
 }
 
-namespace {
-
-std::vector<SettingsAt> read_settings_at(const json& places, const std::string& where,
-                                         const inextensible::Backend& backend) {
-  if (!places.is_array()) throw UsageError(where + " must be a list");
-  std::vector<SettingsAt> all;
-  for (const json& place : places) {
-    JsonReader reader(place, where);
-    SettingsAt& at = all.emplace_back();
-    at.resolution =
-        static_cast<int>(reader.number("resolution", 0, {.least = 1, .most = 1e6, .whole = true}));
-    at.limit = reader.number("limit", 0, Bounds::strain());
-    if (const json* settings = reader.find("settings"))
-      at.settings = read_settings(*settings, where, backend);
-    reader.finish();
-  }
-  return all;
-}
-
-}  // namespace
-
 inextensible::Settings Contestant::settings_for(int resolution, double limit) const {
   inextensible::Settings all = settings;
   const auto distance = [&](const SettingsAt& at) {
@@ -171,23 +180,6 @@ Contestant read_contestant(const json& entry, const std::string& where) {
   check_name(contestant, where);
   return contestant;
 }
-
-namespace {
-
-// Building takes a while where there is a body, and suites ask for one scene again and again.
-const inextensible::Problem& small_problem(const SceneType& type, const SceneParameters& given) {
-  constexpr double enough = 11;  // the same parts as at any size
-  static std::map<std::pair<std::string, SceneParameters>,
-                  std::shared_ptr<const inextensible::Problem>>
-      built;
-  SceneParameters small = complete_parameters(type, given);
-  small[type.resolution] = std::min(enough, small.at(type.resolution));
-  auto& problem = built[{type.name, small}];
-  if (!problem) problem = type.build(small).problem;
-  return *problem;
-}
-
-}  // namespace
 
 Contestants competitors(const SceneType& type, const SceneParameters& given) {
   const inextensible::Problem& problem = small_problem(type, given);

@@ -176,8 +176,6 @@ json machine_context() {
   return context;
 }
 
-using nlohmann::json;
-
 json identity(const json& build_context, const json& suite, const json& selection) {
   const json& build = build_context.at("build");
   return {{"processor", build_context.at("cpu_model")},

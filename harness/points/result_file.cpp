@@ -21,6 +21,7 @@ namespace harness {
 namespace {
 
 using nlohmann::json;
+using Pointer = json::json_pointer;
 
 // One entry a repetition, in Google Benchmark's own format; compare.py reads them.
 void add_benchmarks(json& list, const PointResult& point, int family) {
@@ -53,82 +54,6 @@ json retaken_samples(const std::vector<PointResult>& points) {
   return {{"samples", samples}, {"retaken", retaken}};
 }
 
-}  // namespace
-
-json result_document(json context, const Suite& suite, const std::vector<std::string>& command,
-                     bool complete, const std::vector<PointResult>& points, json references) {
-  context["command"] = command;
-  context["suite"] = to_json(suite);
-  context["seed"] = suite.seed;
-  if (!suite.tuned_file.empty())
-    context["tuned"] = {{"file", suite.tuned_file}, {"hash", suite.tuned_hash}};
-  const auto noise = pair_noise(points, suite.same);
-  if (noise) context["noise"] = to_json(*noise);
-  context["retaken_samples"] = retaken_samples(points);
-  json list = json::array(), benchmarks = json::array();
-  int family = 0;
-  for (const PointResult& point : points) {
-    list.push_back(to_json(point));
-    if (point.ok()) add_benchmarks(benchmarks, point, family++);
-  }
-  json document = {{"schema", "inextensible-bench/1"},
-                   {"complete", complete},
-                   {"context", context},
-                   {"legend", legend(contestants_of(suite))},
-                   {"points", list},
-                   {"references", std::move(references)},
-                   {"benchmarks", benchmarks}};
-  if (const std::string warning = noise ? noise_warning(*noise) : ""; !warning.empty())
-    document["warning"] = warning;
-  return document;
-}
-
-std::string result_text(const json& document) {
-  nlohmann::ordered_json ordered;
-  for (const char* first : {"warning", "schema", "complete", "context", "legend"})
-    if (document.contains(first)) ordered[first] = document.at(first);
-  for (const auto& [key, value] : document.items()) ordered[key] = value;
-  return document_text(ordered);
-}
-
-bool is_timed(const json& document) {
-  return document.value(json::json_pointer("/context/timed"), true);
-}
-
-bool is_answers(const json& document) {
-  return document.is_object() && document.value("schema", json()) == "inextensible-answers/1";
-}
-
-void check_result(const json& document, const std::string& path, ResultKinds kinds) {
-  constexpr std::pair<const char*, const char*> schemas[] = {
-      {"inextensible-answers/1", "answers"},
-      {"inextensible-bench/1", "result"},
-      {"inextensible-stability/1", "stability"}};
-  std::span<const std::pair<const char*, const char*>> permitted(schemas);
-  if (kinds == ResultKinds::answers) permitted = permitted.first(1);
-  if (kinds == ResultKinds::sweeps) permitted = permitted.subspan(1);
-  const json name = document.is_object() ? document.value("schema", json()) : json();
-  std::string names;
-  for (const auto& [full_name, schema] : permitted) {
-    if (name == full_name) return check_schema(document, schema, path);
-    names += (names.empty() ? "\"" : ", \"") + std::string(full_name) + "\"";
-  }
-  throw UsageError("'" + path + "' is not a result file: its schema is " + value_text(name) +
-                   ", must be " + (permitted.size() > 1 ? "one of " : "") + names);
-}
-
-json parse_result(const std::string& text, const std::string& path, ResultKinds kinds) {
-  json document = parse_document(text, path);
-  check_result(document, path, kinds);
-  return document;
-}
-
-json read_result(const std::string& path, ResultKinds kinds) {
-  return parse_result(read_file(path, "result file"), path, kinds);
-}
-
-namespace {
-
 // Where a point stands in a comparison: everything but its contestant and the step, which the best
 // ones choose.
 std::string place_of(const PointSpec& spec) {
@@ -142,54 +67,6 @@ std::string place_of(const PointSpec& spec) {
 bool counts(const PointResult& point) {
   return point.ok() && (point.best || point.spec.sweep == "step");
 }
-
-}  // namespace
-
-std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
-                                    const std::string& one) {
-  PairNoise noise{one, double_of(one)};
-  std::map<std::string, double> first;
-  for (const PointResult& point : points) {
-    if (counts(point) && point.spec.name() == noise.one)
-      first[place_of(point.spec)] = point.seconds();
-  }
-  std::vector<double> distances;
-  for (const PointResult& point : points) {
-    if (!counts(point) || point.spec.name() != noise.other) continue;
-    if (const auto twin = first.find(place_of(point.spec)); twin != first.end())
-      distances.push_back(std::abs(std::log(point.seconds() / twin->second)));
-  }
-  if (distances.empty()) return {};
-  noise.places = static_cast<int>(distances.size());
-  noise.median = quantile(distances, 0.5);
-  noise.q95 = quantile(distances, 0.95);
-  return noise;
-}
-
-std::string noise_warning(const PairNoise& noise) {
-  constexpr double most = 0.06;
-  if (noise.q95 <= most) return {};
-  return "noisy: equal programs differ by " + number_text(100 * std::expm1(noise.q95), 2) +
-         " % here, more than the 6 % that a result to be quoted may have";
-}
-
-json to_json(const PairNoise& noise) {
-  return {{"pair", {noise.one, noise.other}},
-          {"places", noise.places},
-          {"median", noise.median},
-          {"q95", noise.q95}};
-}
-
-std::optional<PairNoise> noise_of(const json& context) {
-  if (!context.contains("noise")) return {};
-  const json& noise = context.at("noise");
-  return PairNoise{noise.at("pair").at(0), noise.at("pair").at(1), noise.at("places"),
-                   noise.at("median"), noise.at("q95")};
-}
-
-namespace {
-
-using Pointer = json::json_pointer;
 
 // What a point's search for a best step has in common; of a hard case: case and solver.
 std::string owner_of(const json& row) {
@@ -248,6 +125,118 @@ bool all_shards(const std::vector<json>& documents) {
 }
 
 }  // namespace
+
+json result_document(json context, const Suite& suite, const std::vector<std::string>& command,
+                     bool complete, const std::vector<PointResult>& points, json references) {
+  context["command"] = command;
+  context["suite"] = to_json(suite);
+  context["seed"] = suite.seed;
+  if (!suite.tuned_file.empty())
+    context["tuned"] = {{"file", suite.tuned_file}, {"hash", suite.tuned_hash}};
+  const auto noise = pair_noise(points, suite.same);
+  if (noise) context["noise"] = to_json(*noise);
+  context["retaken_samples"] = retaken_samples(points);
+  json list = json::array(), benchmarks = json::array();
+  int family = 0;
+  for (const PointResult& point : points) {
+    list.push_back(to_json(point));
+    if (point.ok()) add_benchmarks(benchmarks, point, family++);
+  }
+  json document = {{"schema", "inextensible-bench/1"},
+                   {"complete", complete},
+                   {"context", context},
+                   {"legend", legend(contestants_of(suite))},
+                   {"points", list},
+                   {"references", std::move(references)},
+                   {"benchmarks", benchmarks}};
+  if (const std::string warning = noise ? noise_warning(*noise) : ""; !warning.empty())
+    document["warning"] = warning;
+  return document;
+}
+
+std::string result_text(const json& document) {
+  nlohmann::ordered_json ordered;
+  for (const char* first : {"warning", "schema", "complete", "context", "legend"})
+    if (document.contains(first)) ordered[first] = document.at(first);
+  for (const auto& [key, value] : document.items()) ordered[key] = value;
+  return document_text(ordered);
+}
+
+bool is_timed(const json& document) { return document.value(Pointer("/context/timed"), true); }
+
+bool is_answers(const json& document) {
+  return document.is_object() && document.value("schema", json()) == "inextensible-answers/1";
+}
+
+void check_result(const json& document, const std::string& path, ResultKinds kinds) {
+  constexpr std::pair<const char*, const char*> schemas[] = {
+      {"inextensible-answers/1", "answers"},
+      {"inextensible-bench/1", "result"},
+      {"inextensible-stability/1", "stability"}};
+  std::span<const std::pair<const char*, const char*>> permitted(schemas);
+  if (kinds == ResultKinds::answers) permitted = permitted.first(1);
+  if (kinds == ResultKinds::sweeps) permitted = permitted.subspan(1);
+  const json name = document.is_object() ? document.value("schema", json()) : json();
+  std::string names;
+  for (const auto& [full_name, schema] : permitted) {
+    if (name == full_name) return check_schema(document, schema, path);
+    names += (names.empty() ? "\"" : ", \"") + std::string(full_name) + "\"";
+  }
+  throw UsageError("'" + path + "' is not a result file: its schema is " + value_text(name) +
+                   ", must be " + (permitted.size() > 1 ? "one of " : "") + names);
+}
+
+json parse_result(const std::string& text, const std::string& path, ResultKinds kinds) {
+  json document = parse_document(text, path);
+  check_result(document, path, kinds);
+  return document;
+}
+
+json read_result(const std::string& path, ResultKinds kinds) {
+  return parse_result(read_file(path, "result file"), path, kinds);
+}
+
+std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
+                                    const std::string& one) {
+  PairNoise noise{one, double_of(one)};
+  std::map<std::string, double> first;
+  for (const PointResult& point : points) {
+    if (counts(point) && point.spec.name() == noise.one)
+      first[place_of(point.spec)] = point.seconds();
+  }
+  std::vector<double> distances;
+  for (const PointResult& point : points) {
+    if (!counts(point) || point.spec.name() != noise.other) continue;
+    if (const auto twin = first.find(place_of(point.spec)); twin != first.end())
+      distances.push_back(std::abs(std::log(point.seconds() / twin->second)));
+  }
+  if (distances.empty()) return {};
+  noise.places = static_cast<int>(distances.size());
+  noise.median = quantile(distances, 0.5);
+  noise.q95 = quantile(distances, 0.95);
+  return noise;
+}
+
+std::string noise_warning(const PairNoise& noise) {
+  constexpr double most = 0.06;
+  if (noise.q95 <= most) return {};
+  return "noisy: equal programs differ by " + number_text(100 * std::expm1(noise.q95), 2) +
+         " % here, more than the 6 % that a result to be quoted may have";
+}
+
+json to_json(const PairNoise& noise) {
+  return {{"pair", {noise.one, noise.other}},
+          {"places", noise.places},
+          {"median", noise.median},
+          {"q95", noise.q95}};
+}
+
+std::optional<PairNoise> noise_of(const json& context) {
+  if (!context.contains("noise")) return {};
+  const json& noise = context.at("noise");
+  return PairNoise{noise.at("pair").at(0), noise.at("pair").at(1), noise.at("places"),
+                   noise.at("median"), noise.at("q95")};
+}
 
 json joined(const std::vector<json>& documents) {
   json all = documents.front();

@@ -57,6 +57,19 @@ std::string hash_of(const std::vector<TunedEntry>& entries) {
   return fnv1a(json(settings).dump());
 }
 
+SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarsest,
+                       double duration) {
+  SweepSpec spec;
+  spec.sweep = "strain";
+  spec.scene = scene;
+  spec.limits = {0.02, 0.002, 0.0002};
+  spec.resolutions = std::move(sizes);
+  spec.coarsest = coarsest;
+  spec.finest = 1.0 / 6400;
+  spec.scene_parameters = {{"duration", duration}};
+  return spec;
+}
+
 }  // namespace
 
 std::vector<SettingsAt> TunedEntry::settings_at() const { return {places.begin(), places.end()}; }
@@ -131,23 +144,6 @@ void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
     ++i;
   }
 }
-
-namespace {
-
-SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarsest,
-                       double duration) {
-  SweepSpec spec;
-  spec.sweep = "strain";
-  spec.scene = scene;
-  spec.limits = {0.02, 0.002, 0.0002};
-  spec.resolutions = std::move(sizes);
-  spec.coarsest = coarsest;
-  spec.finest = 1.0 / 6400;
-  spec.scene_parameters = {{"duration", duration}};
-  return spec;
-}
-
-}  // namespace
 
 const std::vector<SweepSpec>& tuning_scenes() {
   // The drape is hardest from 0.3 s on, where it has sheared.

@@ -79,6 +79,46 @@ void repeat_finalists(std::vector<PointResult>& points, const Suite& suite, cons
   }
 }
 
+// The pick of least rank, of those that may be taken.
+template <class May, class Rank>
+std::optional<Pick> least(const std::vector<PointResult>& points, const Wish& wish, May may,
+                          Rank rank) {
+  std::optional<Pick> best;
+  for (const PointResult& point : points) {
+    const auto pick = pick_of(point, wish);
+    if (pick && may(*pick) && (!best || rank(*pick) < rank(*best))) best = pick;
+  }
+  return best;
+}
+
+void screen(PointResult& point, const RunLimits& limits, std::optional<double> guess) {
+  using inextensible::StrainControl;
+  const PointSpec& spec = point.spec;
+  const PointRunner runner(spec, limits);
+  const StrainControl control = runner.backend().strain_control;
+  inextensible::Settings settings = spec.settings;
+  const bool springs = control == StrainControl::stiffness && !settings.contains("stiffness");
+  if (springs)
+    settings["stiffness"] = guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
+  const Run run = runner.run(settings, true, std::numeric_limits<double>::infinity());
+  const auto steps = static_cast<double>(run.stepper->work().steps);
+  // The first step sets up what the others use.
+  if (steps > 0)
+    point.samples = {
+        (steps == 1 ? run.seconds : (run.seconds - run.first_step_seconds) / (steps - 1)) /
+        spec.step};
+  point.status = PointStatus::ok;
+  if (run.status == PointStatus::not_converged || run.status == PointStatus::diverged) {
+    point.status = run.status;
+    point.detail = run.detail;
+  } else if (const double strain = run.measures.max_strain;
+             !springs && control != StrainControl::none &&
+             !(strain <= spec.strain_limit * (1 + 1e-9))) {
+    point.status = PointStatus::strain_missed;
+    point.detail = "strain " + told_apart(strain, spec.strain_limit);
+  }
+}
+
 }  // namespace
 
 std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened) {
@@ -123,22 +163,6 @@ Kept kept(const FrameTime& frame, double budget) {
   if (!(budget > 0) || frame.slow <= budget) return Kept::nearly_all;
   return frame.median <= budget ? Kept::half : Kept::fewer;
 }
-
-namespace {
-
-// The pick of least rank, of those that may be taken.
-template <class May, class Rank>
-std::optional<Pick> least(const std::vector<PointResult>& points, const Wish& wish, May may,
-                          Rank rank) {
-  std::optional<Pick> best;
-  for (const PointResult& point : points) {
-    const auto pick = pick_of(point, wish);
-    if (pick && may(*pick) && (!best || rank(*pick) < rank(*best))) best = pick;
-  }
-  return best;
-}
-
-}  // namespace
 
 std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& wish,
                             const std::string& not_by) {
@@ -196,38 +220,6 @@ std::string why_not(const std::string& contestant, const Trials& trials, const W
   return "no run ended in time; its first steps took " + duration_text(seen->seconds()) +
          " a simulated second";
 }
-
-namespace {
-
-void screen(PointResult& point, const RunLimits& limits, std::optional<double> guess) {
-  using inextensible::StrainControl;
-  const PointSpec& spec = point.spec;
-  const PointRunner runner(spec, limits);
-  const StrainControl control = runner.backend().strain_control;
-  inextensible::Settings settings = spec.settings;
-  const bool springs = control == StrainControl::stiffness && !settings.contains("stiffness");
-  if (springs)
-    settings["stiffness"] = guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
-  const Run run = runner.run(settings, true, std::numeric_limits<double>::infinity());
-  const auto steps = static_cast<double>(run.stepper->work().steps);
-  // The first step sets up what the others use.
-  if (steps > 0)
-    point.samples = {
-        (steps == 1 ? run.seconds : (run.seconds - run.first_step_seconds) / (steps - 1)) /
-        spec.step};
-  point.status = PointStatus::ok;
-  if (run.status == PointStatus::not_converged || run.status == PointStatus::diverged) {
-    point.status = run.status;
-    point.detail = run.detail;
-  } else if (const double strain = run.measures.max_strain;
-             !springs && control != StrainControl::none &&
-             !(strain <= spec.strain_limit * (1 + 1e-9))) {
-    point.status = PointStatus::strain_missed;
-    point.detail = "strain " + told_apart(strain, spec.strain_limit);
-  }
-}
-
-}  // namespace
 
 PointResult screen_point(const PointSpec& spec, const RunLimits& limits,
                          std::optional<double> guess) {

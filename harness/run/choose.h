@@ -17,8 +17,6 @@ struct Wish {
   double budget = 0;              // s of computing time a frame; 0: none is given
 };
 
-// ---- Trying ----
-
 struct ChooseLimits {
   double seconds = 60;              // for everything
   std::function<double()> elapsed;  // s since the beginning
@@ -46,8 +44,6 @@ std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened);
 Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
                        const ChooseLimits& limits, const SweepEvents& events,
                        const ChooseRunners& runners);
-
-// ---- Picking ----
 
 struct Pick {
   const PointResult* point = nullptr;

@@ -123,31 +123,29 @@ SweepRunners isolated(const SweepRunners& inner, double memory) {
 }
 
 SweepRunners journaled(const SweepRunners& inner, Journal& journal) {
-  SweepRunners runners;
-  runners.references = inner.references;
-  runners.run = [run = inner.run, &journal](const PointSpec& spec, const RunLimits& limits,
-                                            std::optional<double> guess) {
-    const std::string key = key_of(spec);
-    if (const json* known = journal.find(key)) {
-      PointResult point = point_of(*known);
-      if (same_start(point, guess)) {
-        find_reference(limits, spec);
-        return point;
-      }
-      forget_point(key, journal);
-    }
-    PointResult point = run(spec, limits, guess);
-    journal.add(key, to_json(point));
-    return point;
-  };
   const auto repeated = std::make_shared<std::map<std::string, int>>();
-  runners.repeat = [repeat = inner.repeat, repeated, &journal](const PointResult& point,
-                                                               const RunLimits& limits) {
-    const std::string key = key_of(point.spec);
-    return samples_of(journal.once(key_of_repetition(key, ++(*repeated)[key]),
-                                   [&] { return to_json(repeat(point, limits)); }));
-  };
-  return runners;
+  return {[run = inner.run, &journal](const PointSpec& spec, const RunLimits& limits,
+                                      std::optional<double> guess) {
+            const std::string key = key_of(spec);
+            if (const json* known = journal.find(key)) {
+              PointResult point = point_of(*known);
+              if (same_start(point, guess)) {
+                find_reference(limits, spec);
+                return point;
+              }
+              forget_point(key, journal);
+            }
+            PointResult point = run(spec, limits, guess);
+            journal.add(key, to_json(point));
+            return point;
+          },
+          [repeat = inner.repeat, repeated, &journal](const PointResult& point,
+                                                      const RunLimits& limits) {
+            const std::string key = key_of(point.spec);
+            return samples_of(journal.once(key_of_repetition(key, ++(*repeated)[key]),
+                                           [&] { return to_json(repeat(point, limits)); }));
+          },
+          inner.references};
 }
 
 void add_runs_of(const json& result, Journal& journal) {

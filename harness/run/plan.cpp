@@ -1,4 +1,3 @@
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -51,6 +50,23 @@ void add_ladder(Search& search, const SweepSpec& sweep, const SweepFilters& filt
     return;
   search.ladder = kept(refinements);
   search.stride = std::size(refinements);
+}
+
+constexpr double runs_of_a_search = 6;  // as measured, with levels of error down to 1 %
+constexpr double runs_of_a_calibration = 6;
+// Steps whose samples tell which is best, of a search, at any motion and at levels of error.
+constexpr double repeated_of_a_search = 2;
+// Over the timed part of a short run: making the solver, and looks at the machine.
+constexpr double around_a_run = 1.3;
+
+// Time of simulating a second; the time-out where no step is taken, nothing where the solver does
+// not take the problem.
+double seconds_per_second(const Search& search, double step, double timeout) {
+  PointSpec spec = search.base;
+  spec.step = step;
+  const PointResult seen = screen_point(spec, {.hopeless = usual_look});
+  if (seen.status == PointStatus::unsupported) return 0;
+  return seen.samples.empty() ? timeout : seen.seconds();
 }
 
 }  // namespace
@@ -126,27 +142,6 @@ std::vector<Search> shard(std::vector<Search> searches, const Shard& part) {
   std::erase_if(searches, [&](const Search& s) { return place.at(group(s)) != part.index; });
   return searches;
 }
-
-namespace {
-
-constexpr double runs_of_a_search = 6;  // as measured, with levels of error down to 1 %
-constexpr double runs_of_a_calibration = 6;
-// Steps whose samples tell which is best, of a search, at any motion and at levels of error.
-constexpr double repeated_of_a_search = 2;
-// Over the timed part of a short run: making the solver, and looks at the machine.
-constexpr double around_a_run = 1.3;
-
-// Time of simulating a second; the time-out where no step is taken, nothing where the solver does
-// not take the problem.
-double seconds_per_second(const Search& search, double step, double timeout) {
-  PointSpec spec = search.base;
-  spec.step = step;
-  const PointResult seen = screen_point(spec, {.hopeless = usual_look});
-  if (seen.status == PointStatus::unsupported) return 0;
-  return seen.samples.empty() ? timeout : seen.seconds();
-}
-
-}  // namespace
 
 Estimate estimate(const Suite& suite, const std::vector<Search>& searches) {
   std::map<std::size_t, std::vector<const Search*>> families;
