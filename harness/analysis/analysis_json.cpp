@@ -1,12 +1,9 @@
-#include "harness/analysis/analysis_json.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <tuple>
 
-#include "harness/analysis/budget.h"
 #include "harness/analysis/findings.h"
 #include "harness/points/point_json.h"
 

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <iterator>
+#include <utility>
 
 #include "harness/analysis/words.h"
-#include "harness/base/in_order.h"
 #include "harness/base/text.h"
 
 namespace harness::analysis {
@@ -164,39 +162,37 @@ std::vector<Finding> findings_of(const std::vector<Plane>& planes) {
 
 namespace {
 
-// Growth of one row of the ranking at one limit. Entries go from few vertices to many.
-RowGrowth growth_of(const std::string& row, const std::vector<Entry>& entries) {
+// Growth of one row of the ranking at one limit.
+RowGrowth growth_of(const std::string& row, std::vector<Point> points) {
+  std::ranges::stable_sort(points, {}, &Point::vertices);
   std::vector<double> vertices, seconds;
-  for (const Entry& entry : entries) {
-    vertices.push_back(entry.point.spec().vertices);
-    seconds.push_back(entry.point.seconds() * entry.point.step());
+  for (const Point& point : points) {
+    vertices.push_back(point.vertices());
+    seconds.push_back(point.seconds() * point.step());
   }
-  return {row, log_log_slope(vertices, seconds), entries.front().point, entries.back().point};
+  return {row, log_log_slope(vertices, seconds), points.front(), points.back()};
 }
 
 }  // namespace
 
 std::vector<Growth> growth_in(const std::vector<Plane>& planes) {
-  std::vector<const Plane*> sizes;
+  using Place = std::pair<std::string, double>;
+  std::vector<std::pair<Place, const Entry*>> entries;
   for (const Plane& plane : planes) {
-    if (plane.sweep == "resolution") sizes.push_back(&plane);
-  }
-  std::vector<std::pair<std::string, double>> places;
-  for (const Plane* plane : sizes) {
-    for (const double limit : plane->limits) places.emplace_back(plane->scene, limit);
-  }
-  std::ranges::stable_sort(sizes, {}, &Plane::vertices);
-  std::vector<Growth> all;
-  for (const auto& [scene, limit] : in_order(places, std::identity())) {
-    std::vector<Entry> entries;
-    for (const Plane* plane : sizes) {
-      if (plane->scene != scene || !std::ranges::count(plane->limits, limit)) continue;
-      std::ranges::copy_if(plane->cell(limit, any_motion).entries, std::back_inserter(entries),
-                           &Entry::counts);
+    for (const Cell& cell : plane.cells) {
+      if (plane.sweep != "resolution" || cell.level != any_motion) continue;
+      for (const Entry& entry : cell.entries) {
+        if (entry.counts) entries.push_back({{plane.scene, cell.strain_limit}, &entry});
+      }
     }
-    Growth growth{scene, limit, {}};
-    for (const auto& [row, own] : grouped(entries, [](const Entry& e) { return e.row; })) {
-      if (own.size() > 1) growth.rows.push_back(growth_of(row, own));
+  }
+  std::vector<Growth> all;
+  for (const auto& [place, here] : grouped(entries, [](const auto& e) { return e.first; })) {
+    Growth growth{place.first, place.second, {}};
+    for (const auto& [row, own] : grouped(here, [](const auto& e) { return e.second->row; })) {
+      std::vector<Point> points;
+      for (const auto& each : own) points.push_back(each.second->point);
+      if (own.size() > 1) growth.rows.push_back(growth_of(row, std::move(points)));
     }
     std::ranges::stable_sort(growth.rows, {}, [](const RowGrowth& r) { return r.exponent.value; });
     if (!growth.rows.empty()) all.push_back(std::move(growth));

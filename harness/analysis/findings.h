@@ -50,4 +50,10 @@ std::string sentence_of(const Growth& growth);
 
 std::vector<Finding> findings_of(const std::vector<Plane>& planes);
 
+// ---- As JSON, schema inextensible-analysis/1: for `bench show --json` and for figures ----
+
+nlohmann::json analysis_of(const Runs& runs);
+// Its part "findings".
+nlohmann::json findings_json(const std::vector<Plane>& planes);
+
 }  // namespace harness::analysis

@@ -42,7 +42,6 @@ class Point {
   }
 
   double seconds() const { return result_->seconds(); }  // not-a-number where nothing was timed
-  double filter_seconds() const { return result_->filter_seconds(); }
   const std::vector<double>& samples() const { return result_->samples; }
   double noise() const { return noise_; }
   double steps() const { return duration() / step(); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 #include <tuple>
 
@@ -220,6 +221,78 @@ std::vector<Plane> planes_of(const Runs& runs, bool adaptive) {
   for (const auto& [place, here] : grouped(points, place_of))
     planes.push_back(plane_of(here, runs));
   return planes;
+}
+
+// ---- Budgets ----
+
+namespace {
+
+// Wall time that 99 % of the frames stay within, s; not-a-number: not measured.
+double frame_seconds(const Point& point) {
+  for (const FrameTime& frame : point.result().frame_times) {
+    if (frame.rate == frame_rate) return frame.slow;
+  }
+  return std::nan("");
+}
+
+Reach reach_of(const Point& point) {
+  const double error = point.error_at(headline_error).distance;
+  return {point.spec().strain_limit, error, frame_seconds(point), error <= headline_error, point};
+}
+
+// What sorts the runs that reach the most first; those of no run come last.
+std::tuple<int, double, double> worth(const std::optional<Reach>& r) {
+  if (!r) return {2, 0, 0};
+  const double error = std::isnan(r->error) ? std::numeric_limits<double>::infinity() : r->error;
+  return r->right ? std::tuple(0, r->strain_limit, error) : std::tuple(1, error, -r->strain_limit);
+}
+
+// By the largest budget first.
+std::vector<std::tuple<int, double, double>> rank_of(const Budgeted& row) {
+  std::vector<std::tuple<int, double, double>> rank;
+  for (const auto& reach : row.reached) rank.insert(rank.begin(), worth(reach));
+  return rank;
+}
+
+BudgetTable table_of(std::vector<Point> points, const ContestantRoles& roles,
+                     const std::vector<double>& budgets) {
+  const PointSpec& one = points.front().spec();
+  BudgetTable table{one.scene, one.resolution, one.vertices, budgets, {}};
+  const auto row_of = [&](const Point& p) { return roles.at_any_settings(p.contestant()); };
+  for (auto& [row, own] : grouped(points, row_of)) {
+    Budgeted line{row, roles.of(own.front().contestant()).family, {}, {}};
+    std::ranges::stable_sort(own, {}, frame_seconds);
+    for (const Point& point : own) {
+      const Reach reach = reach_of(point);
+      if (line.stairs.empty() || worth(reach) < worth(line.stairs.back()))
+        line.stairs.push_back(reach);
+    }
+    for (const double budget : budgets) {
+      const auto beyond = std::ranges::upper_bound(line.stairs, budget, {}, &Reach::frame_seconds);
+      line.reached.push_back(beyond == line.stairs.begin() ? std::nullopt
+                                                           : std::optional(*std::prev(beyond)));
+    }
+    table.rows.push_back(std::move(line));
+  }
+  std::ranges::stable_sort(table.rows, {}, rank_of);
+  return table;
+}
+
+}  // namespace
+
+std::vector<BudgetTable> budget_tables(const Runs& runs, const std::vector<double>& budgets) {
+  std::vector<Point> points = runs.points;
+  std::erase_if(points, [&](const Point& p) {
+    const Role role = runs.roles.of(p.contestant());
+    return p.spec().adaptive || !p.ok() || !role.competes || role.again || !(frame_seconds(p) > 0);
+  });
+  const auto place_of = [](const Point& p) {
+    return std::tuple(p.spec().scene, p.spec().scene_parameters, p.spec().vertices);
+  };
+  std::vector<BudgetTable> tables;
+  for (const auto& [place, here] : grouped(points, place_of))
+    tables.push_back(table_of(here, runs.roles, budgets));
+  return tables;
 }
 
 }  // namespace harness::analysis

@@ -80,4 +80,37 @@ struct Plane {
 // In the order of runs; of those with a step controller, or of those without.
 std::vector<Plane> planes_of(const Runs& runs, bool adaptive = false);
 
+// ---- The question the other way round: the strain and error that a method reaches in a budget
+// ----
+
+inline constexpr double frame_rate = 60;  // frames a second
+
+// The run that a method reaches the most with: the tightest strain limit whose motion is right to
+// the headline's error, and of these runs the one of least error; without such a run, the one of
+// least error at the loosest limit.
+struct Reach {
+  double strain_limit, error;  // error: not-a-number if it is not known
+  double frame_seconds;        // 99 % of frames take at most that
+  bool right;                  // to the headline's error
+  Point point;
+};
+
+struct Budgeted {
+  std::string row;  // an unranked contestant's is its solver's
+  std::string family;
+  std::vector<Reach> stairs;  // runs that reach more than every run with shorter frames
+  std::vector<std::optional<Reach>> reached;  // one for each budget; none: no run is that fast
+};
+
+// One scene and size. Rows: tightest strain at the largest budget first.
+struct BudgetTable {
+  std::string scene;
+  int resolution = 0, vertices = 0;
+  std::vector<double> budgets;  // s a frame
+  std::vector<Budgeted> rows;
+};
+
+// Runs with a step controller do not take part.
+std::vector<BudgetTable> budget_tables(const Runs& runs, const std::vector<double>& budgets);
+
 }  // namespace harness::analysis

@@ -24,10 +24,10 @@ void open_standard_streams() {
   }
 }
 
-std::size_t output_columns() {
+std::size_t output_columns(int file) {
   constexpr std::size_t usual = 120, least = 40;
   winsize size{};
-  const bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  const bool known = ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
   return known ? std::max<std::size_t>(size.ws_col, least) : usual;
 }
 

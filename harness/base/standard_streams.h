@@ -26,8 +26,8 @@ class OutputToError {
 // The same to the end of this process.
 void send_output_to_error();
 
-// Columns of the terminal that standard output is; 120 where it is none.
-std::size_t output_columns();
+// Columns of the terminal that standard output (or another stream) is; 120 where it is none.
+std::size_t output_columns(int file = 1);
 
 // Throws FileError if something that was printed did not get out. Last thing in main.
 void check_standard_output();

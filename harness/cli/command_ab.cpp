@@ -14,8 +14,6 @@
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
-#include "harness/cli/compare_options.h"
-#include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/compare/pairs.h"
@@ -82,28 +80,19 @@ struct Program {
   }
 };
 
-// A point that no process has printed.
-json failed_point(json point, const ProgramResult& ran) {
-  point.update({{"status", ran.timed_out                  ? "timeout"
-                           : ran.exit_code == usage_error ? "unsupported"
-                                                          : "crashed"},
-                {"status_detail", ran.exit_code == success
-                                      ? "printed no result: '" + shortened(ran.out, 60) + "'"
-                                      : ran.last_error_line()},
-                {"seconds_per_simulated_second", nullptr},
-                {"max_strain", nullptr},
-                {"work", json::object()},
-                {"error", json::object()}});
-  return point;
-}
-
-json run_one(const Program& program, const PairedPoint& point) {
+// A point that no process has printed is one that failed.
+ComparedPoint run_one(const Program& program, const PairedPoint& point) {
   const ProgramResult ran =
       program.run({"point", "--samples", std::to_string(point.samples)},
                   run_timeout * (point.samples + 1), point.spec.dump() + "\n");
-  json printed = json::parse(ran.out, nullptr, false);
-  const bool good = ran.exit_code == success && printed.is_object();
-  return good ? printed : failed_point(point.spec, ran);
+  const json printed = json::parse(ran.out, nullptr, false);
+  if (ran.exit_code == success && printed.is_object()) return compared_point(printed);
+  return {point.spec.at("sweep"), point.spec.at("id"),
+          ran.timed_out                  ? "timeout"
+          : ran.exit_code == usage_error ? "unsupported"
+                                         : "crashed",
+          ran.exit_code == success ? "printed no result: '" + shortened(ran.out, 60) + "'"
+                                   : ran.last_error_line()};
 }
 
 struct Ab : CompareOptions {
@@ -198,8 +187,8 @@ struct Ab : CompareOptions {
     std::vector<PairedPoint> points = best_points();
     // One process of each says whether their counters compare.
     Comparability can;
-    if (run_one(before, points.front()).value("counters_fingerprint", "") !=
-        run_one(after, points.front()).value("counters_fingerprint", "?"))
+    const std::string old_print = run_one(before, points.front()).fingerprint;
+    if (old_print.empty() || old_print != run_one(after, points.front()).fingerprint)
       can.no_counters = "compiler, flags or libraries differ";
     std::cerr << points.size() << " points, " << pairs << " pairs each ..." << std::endl;
     Comparison comparison =

@@ -36,8 +36,7 @@ struct Answers : OutputOptions {
       print_answers(text, document);
       return {std::move(document), true, text.str()};
     };
-    return carry_out(*this, {"answers", identity(context, {}, context["selection"]), context,
-                             "rows", "runs", compute});
+    return carry_out(*this, {"answers", context, {}, "rows", "runs", compute});
   }
 };
 

@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "harness/base/interrupt.h"
-#include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/stability/conformance.h"

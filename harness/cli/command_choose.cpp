@@ -14,7 +14,6 @@
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
-#include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/judge/reference_routes.h"
@@ -26,50 +25,19 @@
 namespace harness {
 namespace {
 
+using analysis::percent;
 using nlohmann::json;
 
 // ---- What it says of what it found ----
 
-struct Choice {
-  const SweepSpec& sweep;
-  Wish wish;
-  const Trials& trials;
-  double seconds;         // that it took
-  std::string reference;  // the method that errors are measured against; empty: none
-  Recommendation found = recommend(trials.points, wish);
-
-  // s of computing time a frame: the one that was given, or what the best run takes.
-  double budget() const {
-    return wish.budget > 0 ? wish.budget : found.best ? found.best->frame.slow : 0;
-  }
-  std::optional<Pick> within(double budget_of_frame) const {
-    return most_accurate(trials.points, wish, budget_of_frame);
-  }
-  // Contestants without a run to take, and why.
-  std::map<std::string, std::string> all_why_not() const {
-    std::map<std::string, std::string> all;
-    for (const PointResult& screened : trials.screened) {
-      const std::string& name = screened.spec.name();
-      if (std::string why = why_not(name, trials, wish); !why.empty())
-        all.emplace(name, std::move(why));
-    }
-    return all;
-  }
-};
-
 std::string ms(double seconds) { return number_text(1e3 * seconds, 3); }
 
-std::string error_text(double error) {
-  return std::isnan(error) ? "error unknown" : "error " + analysis::percent(error);
+std::string error_text(const Pick& pick) {
+  return std::isnan(pick.error) ? "error unknown" : "error " + percent(pick.error);
 }
 
-std::string pick_text(const Pick& pick, double rate) {
-  const PointSpec& spec = pick.point->spec;
-  return spec.name() + " at " + step_text(spec.step) + " s (" +
-         std::to_string(std::lround(1 / (rate * spec.step))) +
-         " a frame): " + ms(pick.frame.median) + " ms a frame, 99 % below " + ms(pick.frame.slow) +
-         ", worst " + ms(pick.frame.worst) + "; strain " +
-         analysis::percent(pick.point->measures.max_strain) + ", " + error_text(pick.error);
+std::string solver_and_step(const Pick& pick) {
+  return pick.point->spec.name() + " at " + step_text(pick.point->spec.step) + " s";
 }
 
 json pick_json(const std::optional<Pick>& pick) {
@@ -86,88 +54,108 @@ json pick_json(const std::optional<Pick>& pick) {
       {"error", number(pick->error)}};
 }
 
-void print_scene(std::ostream& out, const Choice& choice) {
-  const auto& [sweep, wish, trials, seconds, reference, found] = choice;
-  std::set<std::string> tried;
-  for (const PointResult& point : trials.points) tried.insert(point.spec.name());
-  out << analysis::scene_words(sweep.scene) << ", " << trials.screened.front().spec.vertices
-      << " vertices, " << analysis::percent(sweep.limits.front()) << " strain, "
-      << (std::isfinite(wish.error) ? "motion error at most " + analysis::percent(wish.error)
-                                    : std::string("any motion"))
-      << ": " << tried.size() << " of " << trials.screened.size() << " solvers tried in "
-      << duration_text(seconds) << '\n';
-}
+struct Choice {
+  const SweepSpec& sweep;
+  Wish wish;
+  const Trials& trials;
+  double seconds;         // that it took
+  std::string reference;  // the method that errors are measured against; empty: none
+  Recommendation found = recommend(trials.points, wish);
+  // s of computing time a frame: the one that was given, or what the best run takes.
+  double budget = wish.budget > 0 ? wish.budget : found.best ? found.best->frame.slow : 0;
+  std::optional<Pick> with_half = most_accurate(trials.points, wish, budget / 2);
+  std::optional<Pick> with_double = most_accurate(trials.points, wish, budget * 2);
 
-void print_nothing_found(std::ostream& out, const Trials& trials) {
-  const bool ended = std::any_of(trials.points.begin(), trials.points.end(),
-                                 [](const PointResult& p) { return p.ok(); });
-  if (trials.complete) {
-    out << "no solver meets limit and error: a larger --error or --limit may be met\n";
-  } else if (ended) {
-    out << "no run that ended in this time meets limit and error: give more --seconds, or a larger "
-           "--error\n";
-  } else {
-    out << "no run ended within its strain limit in this time: give more --seconds, or a smaller "
-           "--n\n";
+  // Contestants without a run to take, and why.
+  std::map<std::string, std::string> all_why_not() const {
+    std::map<std::string, std::string> all;
+    for (const PointResult& screened : trials.screened) {
+      const std::string& name = screened.spec.name();
+      if (std::string why = why_not(name, trials, wish); !why.empty())
+        all.emplace(name, std::move(why));
+    }
+    return all;
   }
-}
 
-void print_found(std::ostream& out, const Choice& choice) {
-  const auto& [sweep, wish, trials, seconds, reference, found] = choice;
-  const std::string budget = "the budget of " + ms(wish.budget) + " ms";
-  if (!found.to_be_taken())
-    out << "no solver that was tried keeps " << budget << "; the fastest within limit and error:\n";
-  out << (found.to_be_taken() ? "take  " : "best  ") << pick_text(*found.best, wish.rate) << '\n';
-  if (found.budget == Kept::half)
-    out << "1 % of its frames or more take longer than " << budget << '\n';
-  if (found.next) {
-    const Ratio ratio = ratio_of_times(found.next->point->samples, found.best->point->samples);
-    out << "next  " << pick_text(*found.next, wish.rate) << "; "
-        << (ratio.above(1)   ? analysis::text(ratio) + " times as long"
-            : ratio.below(1) ? "faster, with slower frames"
-                             : "too close to rank")
+  std::string text(const Pick& pick) const {
+    return solver_and_step(pick) + " (" +
+           std::to_string(std::lround(1 / (wish.rate * pick.point->spec.step))) +
+           " a frame): " + ms(pick.frame.median) + " ms a frame, 99 % below " +
+           ms(pick.frame.slow) + ", worst " + ms(pick.frame.worst) + "; strain " +
+           percent(pick.point->measures.max_strain) + ", " + error_text(pick);
+  }
+
+  // Why there is no run to take.
+  const char* nothing_found() const {
+    if (trials.complete)
+      return "no solver meets limit and error: a larger --error or --limit may be met\n";
+    return std::ranges::any_of(trials.points, &PointResult::ok)
+               ? "no run that ended in this time meets limit and error: give more --seconds, or a "
+                 "larger --error\n"
+               : "no run ended within its strain limit in this time: give more --seconds, or a "
+                 "smaller --n\n";
+  }
+
+  void print_found(std::ostream& out) const {
+    const std::string given = "the budget of " + ms(wish.budget) + " ms";
+    if (!found.to_be_taken())
+      out << "no solver that was tried keeps " << given
+          << "; the fastest within limit and error:\n";
+    out << (found.to_be_taken() ? "take  " : "best  ") << text(*found.best) << '\n';
+    if (found.budget == Kept::half)
+      out << "1 % of its frames or more take longer than " << given << '\n';
+    if (found.next) {
+      const Ratio ratio = ratio_of_times(found.next->point->samples, found.best->point->samples);
+      out << "next  " << text(*found.next) << "; "
+          << (ratio.above(1)   ? analysis::text(ratio) + " times as long"
+              : ratio.below(1) ? "faster, with slower frames"
+                               : "too close to rank")
+          << '\n';
+    }
+    const auto with = [](double frame, const std::optional<Pick>& pick) {
+      return ms(frame) + " ms a frame: " +
+             (pick ? solver_and_step(*pick) + ", " + error_text(*pick)
+                   : std::string("none that was tried"));
+    };
+    out << "with  " << with(budget / 2, with_half) << "; with " << with(budget * 2, with_double)
         << '\n';
   }
-  const auto with = [&choice](double frame) {
-    const auto pick = choice.within(frame);
-    return ms(frame) + " ms a frame: " +
-           (pick ? pick->point->spec.name() + " at " + step_text(pick->point->spec.step) + " s, " +
-                       error_text(pick->error)
-                 : std::string("none that was tried"));
-  };
-  out << "with  " << with(choice.budget() / 2) << "; with " << with(choice.budget() * 2) << '\n';
-}
 
-void print(std::ostream& out, const Choice& choice) {
-  print_scene(out, choice);
-  if (choice.found.best) {
-    print_found(out, choice);
-  } else {
-    print_nothing_found(out, choice.trials);
+  void print(std::ostream& out) const {
+    std::set<std::string> tried;
+    for (const PointResult& point : trials.points) tried.insert(point.spec.name());
+    out << analysis::scene_words(sweep.scene) << ", " << trials.screened.front().spec.vertices
+        << " vertices, " << percent(sweep.limits.front()) << " strain, "
+        << (std::isfinite(wish.error) ? "motion error at most " + percent(wish.error)
+                                      : std::string("any motion"))
+        << ": " << tried.size() << " of " << trials.screened.size() << " solvers tried in "
+        << duration_text(seconds) << '\n';
+    if (found.best) {
+      print_found(out);
+    } else {
+      out << nothing_found();
+    }
+    for (const auto& [name, why] : all_why_not()) out << "not   " << name << ": " << why << '\n';
   }
-  for (const auto& [name, why] : choice.all_why_not())
-    out << "not   " << name << ": " << why << '\n';
-}
 
-json choice_json(const Choice& choice) {
-  const auto& [sweep, wish, trials, seconds, reference, found] = choice;
-  const double budget = choice.budget();
-  return {{"scene", sweep.scene},
-          {"scene_parameters", sweep.scene_parameters},
-          {"strain_limit", sweep.limits.front()},
-          {"error", number(wish.error)},
-          {"frame", 1 / wish.rate},
-          {"budget", budget},
-          {"budget_kept", found.all_is_well()},
-          {"take", pick_json(found.to_be_taken() ? found.best : std::nullopt)},
-          {"fastest", pick_json(found.best)},
-          {"runner_up", pick_json(found.next)},
-          {"half_budget", pick_json(choice.within(budget / 2))},
-          {"double_budget", pick_json(choice.within(budget * 2))},
-          {"without_result", choice.all_why_not()},
-          {"reference", reference.empty() ? json() : json(reference)},
-          {"measured_seconds", seconds}};
-}
+  json to_json() const {
+    return {{"scene", sweep.scene},
+            {"scene_parameters", sweep.scene_parameters},
+            {"strain_limit", sweep.limits.front()},
+            {"error", number(wish.error)},
+            {"frame", 1 / wish.rate},
+            {"budget", budget},
+            {"budget_kept", found.all_is_well()},
+            {"take", pick_json(found.to_be_taken() ? found.best : std::nullopt)},
+            {"fastest", pick_json(found.best)},
+            {"runner_up", pick_json(found.next)},
+            {"half_budget", pick_json(with_half)},
+            {"double_budget", pick_json(with_double)},
+            {"without_result", all_why_not()},
+            {"reference", reference.empty() ? json() : json(reference)},
+            {"measured_seconds", seconds}};
+  }
+};
 
 // ---- Measuring ----
 
@@ -314,9 +302,9 @@ struct Choose : SceneOptions {
     const Choice choice{tried.sweeps.front(), wish, trials, since(begin),
                         reference ? reference->method : ""};
     if (as_json) {
-      std::cout << choice_json(choice).dump(1) << '\n';
+      std::cout << choice.to_json().dump(1) << '\n';
     } else {
-      print(std::cout, choice);
+      choice.print(std::cout);
     }
     return choice.found.all_is_well() ? success : cannot_decide;
   }

@@ -5,8 +5,6 @@
 #include "harness/base/files.h"
 #include "harness/base/json_text.h"
 #include "harness/base/paths.h"
-#include "harness/cli/compare_options.h"
-#include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 

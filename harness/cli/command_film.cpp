@@ -7,6 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "harness/analysis/words.h"
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
@@ -26,6 +27,8 @@ constexpr int default_width = 480;
 // Rays a pixel, each way: a still can take its time, a film has hundreds of pictures.
 constexpr int still_samples = 6, film_samples = 3;
 
+using analysis::percent;
+
 using Writer = std::vector<std::string> (*)(const Recording&, const FilmRun&, const std::string&,
                                             const std::string&);
 // Formats by their endings, and who writes files for other programs; null: pictures.
@@ -33,12 +36,8 @@ const std::map<std::string, Writer> formats{{".webp", nullptr},  {".mp4", nullpt
                                             {".png", nullptr},   {".obj", write_obj},
                                             {".pvd", write_vtk}, {".pc2", write_pc2}};
 
-std::string percent(double share, int digits) { return number_text(100 * share, digits) + " %"; }
-
-std::string step_words(double step) { return "1/" + number_text(1 / step, 6) + " s"; }
-
 std::string name_of(const FilmRun& run, const std::string& solver) {
-  return solver + ", " + percent(run.strain_limit, 6) + ", steps of " + step_words(run.step);
+  return solver + ", " + percent(run.strain_limit) + ", steps of " + step_text(run.step) + " s";
 }
 
 // How long a frame took: what an engine asks for.
@@ -51,12 +50,10 @@ void print_times(const Recording& recording) {
         return number_text(1e3 * quantile(run.seconds, part), 3);
       };
       std::cout << "median " << at(0.5) << ", 99 of 100 below " << at(0.99) << ", worst " << at(1)
-                << "; largest strain "
-                << percent(*std::max_element(run.largest_strain.begin(), run.largest_strain.end()),
-                           3);
+                << "; largest strain " << percent(*std::ranges::max_element(run.largest_strain));
     }
     if (run.smallest_step < run.step)
-      std::cout << "; steps down to " << step_words(run.smallest_step);
+      std::cout << "; steps down to " << step_text(run.smallest_step) << " s";
     if (!run.energy_gained.empty()) std::cout << "; gains energy: " << run.energy_gained;
     std::cout << (run.detail.empty() ? "" : "; " + run.detail) << '\n';
   }
@@ -159,9 +156,7 @@ struct Film : SceneOptions {
                      progress.show(done, all, "pictures");
                    });
     progress.clear();
-    const std::filesystem::path place(out);
-    return draw("film.py", {folder.path()}, place.parent_path().string(),
-                place.filename().string());
+    return draw("film.py", {folder.path()}, out);
   }
 
   int run() {

@@ -8,7 +8,6 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
-#include "harness/cli/exit_codes.h"
 
 namespace harness {
 namespace {
@@ -17,9 +16,8 @@ namespace {
 CLI::Validator within(const Bounds& bounds) {
   return CLI::Validator(
       [bounds](const std::string& text) {
-        char* end = nullptr;
-        const double number = std::strtod(text.c_str(), &end);
-        if (!text.empty() && *end == '\0' && bounds.hold(number)) return std::string();
+        const auto number = number_in(text);
+        if (number && bounds.hold(*number)) return std::string();
         return "is '" + shortened(text, 40) + "', must be " + bounds.text();
       },
       "");
@@ -38,27 +36,28 @@ std::string renamed(std::string text) {
 
 }  // namespace
 
+std::optional<double> number_in(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  return text.empty() || *end != '\0' ? std::nullopt : std::optional(number);
+}
+
 CLI::Option* Command::placed(CLI::Option* option) const {
   return group_.empty() ? option : option->group(group_);
 }
 
-template <class Value>
-void Command::option(const std::string& name, Value& value, const std::string& help,
-                     const std::string& type, const Bounds& bounds) const {
-  CLI::Option* option =
-      placed(app_->add_option(name == "--out" ? "-o,--out" : name, value, help))->type_name(type);
-  if constexpr (std::is_arithmetic_v<Value>) option->check(within(bounds));
+void Command::add(const std::string& name, Place place, const std::string& help,
+                  const std::string& type, const Bounds& bounds) const {
+  std::visit(
+      [&](auto* value) {
+        CLI::Option* option =
+            placed(app_->add_option(name == "--out" ? "-o,--out" : name, *value, help));
+        option->type_name(type);
+        if constexpr (std::is_arithmetic_v<std::remove_pointer_t<decltype(value)>>)
+          option->check(within(bounds));
+      },
+      place);
 }
-template void Command::option(const std::string&, std::string&, const std::string&,
-                              const std::string&, const Bounds&) const;
-template void Command::option(const std::string&, Words&, const std::string&, const std::string&,
-                              const Bounds&) const;
-template void Command::option(const std::string&, double&, const std::string&, const std::string&,
-                              const Bounds&) const;
-template void Command::option(const std::string&, int&, const std::string&, const std::string&,
-                              const Bounds&) const;
-template void Command::option(const std::string&, std::int64_t&, const std::string&,
-                              const std::string&, const Bounds&) const;
 
 void Command::repeatable(const std::string& name, Words& values, const std::string& help,
                          const std::string& type) const {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "harness/base/json_reader.h"
@@ -20,6 +21,21 @@ class Option;
 namespace harness {
 
 using Words = std::vector<std::string>;
+
+std::optional<double> number_in(const std::string& text);  // none: it is not a number alone
+
+// docs/using.md explains them.
+enum ExitCode {
+  success = 0,
+  internal_error = 1,
+  usage_error = 2,
+  regression = 3,
+  unexpected_outcome = 4,
+  not_comparable = 5,
+  cannot_decide = 6,
+  interrupted_exit = 130
+};
+
 using Action = std::function<int(const Words& typed)>;  // returns an ExitCode
 
 // Where a verb adds its options. What an option is written to must outlive the verb's run.
@@ -32,7 +48,9 @@ class Command {
   // calls the value, which is a string, Words, a double, an int or an int64_t.
   template <class Value>
   void option(const std::string& name, Value& value, const std::string& help,
-              const std::string& type, const Bounds& bounds = {}) const;
+              const std::string& type, const Bounds& bounds = {}) const {
+    add(name, &value, help, type, bounds);
+  }
   // One value each time; Words as an option take all words that follow.
   void repeatable(const std::string& name, Words& values, const std::string& help,
                   const std::string& type) const;
@@ -49,6 +67,9 @@ class Command {
   std::string one_typed() const;
 
  private:
+  using Place = std::variant<std::string*, Words*, double*, int*, std::int64_t*>;
+  void add(const std::string& name, Place place, const std::string& help, const std::string& type,
+           const Bounds& bounds) const;
   CLI::Option* placed(CLI::Option* option) const;
 
   CLI::App* app_;

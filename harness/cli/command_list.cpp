@@ -10,7 +10,6 @@
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"
-#include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/points/point_json.h"
@@ -127,7 +126,7 @@ const std::vector<List> lists{
         [](const auto& status) {
           return row_of(status.name, status.meaning, {{"letter", status.letter}});
         })};
-constexpr std::size_t usual = 3;  // of them, if no list is named
+constexpr int usual = 3;  // of them, if no list is named
 
 Words list_names() {
   Words names = names_of(lists);
@@ -190,36 +189,30 @@ struct ListVerb : SelectionOptions {
     }
   }
 
+  // What is no list of rows.
+  void print_other() const {
+    if (as_json) throw UsageError("--json does not go with list " + what);
+    if (what == "points") return print_points();
+    const std::vector<std::string> schemas = generated_schemas();
+    const std::string schema = what.substr(0, what.find(".schema"));
+    if (schema == what || std::ranges::count(schemas, schema) == 0)
+      throw unknown_name("list", what, list_names());
+    std::cout << schema_text(schema);
+  }
+
   int run() {
-    const auto list = std::find_if(lists.begin(), lists.end(),
-                                   [this](const List& each) { return each.name == what; });
-    if (list != lists.end()) {
-      const json rows = list->rows();
-      if (as_json) {
-        std::cout << document_text(rows);
-      } else {
-        print_rows(rows);
-      }
-    } else if (what.empty()) {
-      json all = json::object();
-      for (const List& each : std::span(lists).first(usual)) {
-        all[each.name] = each.rows();
-        if (as_json) continue;
-        std::cout << (all.size() == 1 ? "" : "\n") << each.name << '\n';
-        print_rows(all[each.name]);
-      }
-      if (as_json) std::cout << document_text(all);
-    } else if (as_json) {
-      throw UsageError("--json does not go with list " + what);
-    } else if (what == "points") {
-      print_points();
-    } else {
-      const std::vector<std::string> schemas = generated_schemas();
-      const std::string schema = what.substr(0, what.find(".schema"));
-      if (schema == what || std::count(schemas.begin(), schemas.end(), schema) == 0)
-        throw unknown_name("list", what, list_names());
-      std::cout << schema_text(schema);
+    std::vector<List> chosen(lists.begin(), what.empty() ? lists.begin() + usual : lists.end());
+    if (!what.empty())
+      std::erase_if(chosen, [this](const List& each) { return each.name != what; });
+    if (chosen.empty()) print_other();
+    json all = json::object();
+    for (const List& each : chosen) {
+      all[each.name] = each.rows();
+      if (as_json) continue;
+      if (what.empty()) std::cout << (all.size() == 1 ? "" : "\n") << each.name << '\n';
+      print_rows(all[each.name]);
     }
+    if (as_json) std::cout << document_text(what.empty() ? all : all[what]);
     return success;
   }
 };

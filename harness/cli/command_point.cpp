@@ -7,7 +7,6 @@
 #include "harness/base/json_text.h"
 #include "harness/base/paths.h"
 #include "harness/base/standard_streams.h"
-#include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/points/context.h"

@@ -8,7 +8,6 @@
 #include "harness/base/json_reader.h"
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
-#include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/judge/reference_routes.h"
@@ -70,32 +69,25 @@ Ensemble ensemble_for(const Scene& scene, const std::vector<double>& times, Rout
   return is_cloth(scene) ? compute_ensemble(scene, times, {}, runs) : Ensemble();
 }
 
-// By both routes, and of cloth an ensemble. One that was stopped goes on after the runs that were
-// done.
+// By both routes, and of cloth an ensemble; of one that is stored the ensemble alone, and its path
+// stays as it is. What was stopped goes on after the runs that were done.
 void make_reference(const std::string& path, const std::string& scene,
-                    const SceneParameters& parameters, double finest) {
+                    const SceneParameters& parameters, double finest, const Reference* stored) {
   check_writable(path);
   RouteRuns runs = runs_beside(path, scene, parameters, finest);
-  Reference reference = compute_reference(scene, parameters, finest, runs);
+  Reference reference = stored ? *stored : compute_reference(scene, parameters, finest, runs);
   reference.ensemble = ensemble_for(find_scene(scene)->build(parameters), reference.times, runs);
-  write_atomically(path, to_json(reference).dump() + "\n");
+  const nlohmann::json document =
+      stored ? with_ensemble(parse_document(read_file(path, "reference"), path), reference.ensemble)
+             : to_json(reference);
+  write_atomically(path, document.dump() + "\n");
   runs.remove();
-  print_reference(std::cout, reference);
+  if (stored) {
+    std::cout << reference.scene << ":\n";
+  } else {
+    print_reference(std::cout, reference);
+  }
   print_ensemble(std::cout, reference.ensemble);
-  std::cout << path << std::endl;
-}
-
-// Makes the ensemble of a reference that is there. Its path stays as it is.
-void add_ensemble(const std::string& path, const Reference& reference) {
-  check_writable(path);
-  RouteRuns runs = runs_beside(path, reference.scene, reference.parameters, 0);
-  const Scene scene = find_scene(reference.scene)->build(reference.parameters);
-  const Ensemble ensemble = ensemble_for(scene, reference.times, runs);
-  const nlohmann::json document = parse_document(read_file(path, "reference"), path);
-  write_atomically(path, with_ensemble(document, ensemble).dump() + "\n");
-  runs.remove();
-  std::cout << reference.scene << ":\n";
-  print_ensemble(std::cout, ensemble);
   std::cout << path << std::endl;
 }
 
@@ -158,9 +150,9 @@ struct ReferenceVerb : SelectionOptions {
       const std::string path = folder + "/" + reference_name(name, parameters);
       const auto stored = references.find(name, parameters);
       if (!only_ensemble && (!stored || again)) {
-        make_reference(path, name, parameters, finest);
+        make_reference(path, name, parameters, finest, nullptr);
       } else if (stored && wants_ensemble(*stored, again)) {
-        add_ensemble(path, *stored);
+        make_reference(path, name, parameters, 0, stored.get());
       } else if (!stored) {
         std::cerr << path << " is not there: bench reference makes it\n";
       } else {

@@ -1,33 +1,51 @@
-// What result files say: bench show, budget and claims.
+// What result files say, printed and drawn: bench show, budget, claims, results, report and plot.
 #include <algorithm>
-#include <cmath>
-#include <iomanip>
+#include <filesystem>
 #include <iostream>
-#include <map>
-#include <set>
 #include <sstream>
 #include <string_view>
 
-#include "harness/analysis/analysis_json.h"
-#include "harness/analysis/budget.h"
+#include "harness/analysis/findings.h"
 #include "harness/answers/answer.h"
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
+#include "harness/base/interrupt.h"
 #include "harness/base/standard_streams.h"
-#include "harness/base/text.h"
 #include "harness/claims/claims.h"
-#include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/output.h"
 #include "harness/cli/verbs.h"
-#include "harness/points/result_file.h"
-#include "harness/tables/results_page.h"
-#include "harness/tables/terminal.h"
+#include "harness/film/recording.h"
+#include "harness/points/tuned.h"
+#include "harness/tables/tables.h"
 
 namespace harness {
 namespace {
 
 using nlohmann::json;
+
+bool is_sweep(const json& document) { return document.at("schema") == "inextensible-bench/1"; }
+
+std::vector<NamedResult> read_all(const Words& files, ResultKinds kinds) {
+  std::vector<NamedResult> results;
+  for (const std::string& file : files) results.push_back({file, read_result(file, kinds)});
+  return results;
+}
+
+std::vector<json> documents_of(const std::vector<NamedResult>& files, bool (*wanted)(const json&)) {
+  std::vector<json> documents;
+  for (const NamedResult& file : files) {
+    if (wanted(file.document)) documents.push_back(file.document);
+  }
+  return documents;
+}
+
+bool is_of_runs(const json& document) { return !is_answers(document); }
+
+// Several files are one table; a file of known answers is read by itself.
+json read_as_one(const Words& files) {
+  return files.size() == 1 ? read_result(files.front(), ResultKinds::all) : read_results(files);
+}
 
 void print_head(std::ostream& out, const json& document, const std::string& file) {
   const json& context = document.at("context");
@@ -42,72 +60,6 @@ void print_head(std::ostream& out, const json& document, const std::string& file
   if (!is_timed(document)) out << "made with --untimed: its times mean nothing\n";
 }
 
-// How each solver's hard cases ended, and which did not end as expected.
-void print_outcomes(std::ostream& out, const json& document) {
-  std::map<std::string, std::map<std::string, int>> counts;
-  std::set<std::string> outcomes;
-  for (const json& cell : document.at("matrix")) {
-    const std::string outcome = cell.at("outcome");
-    ++counts[cell.at("solver").get<std::string>()][outcome];
-    outcomes.insert(outcome);
-  }
-  constexpr int name_width = 32, width = 18;
-  out << document.at("matrix").size() << " hard cases and solvers; how they ended:\n"
-      << std::left << std::setw(name_width) << "";
-  for (const std::string& outcome : outcomes) out << std::setw(width) << outcome;
-  out << '\n';
-  for (auto& [solver, ended] : counts) {
-    out << std::setw(name_width) << solver;
-    for (const std::string& outcome : outcomes) out << std::setw(width) << ended[outcome];
-    out << '\n';
-  }
-  for (const json& cell : document.at("matrix")) {
-    if (cell.at("as_expected").get<bool>()) continue;
-    out << "not as expected" << (cell.at("known_difference").get<bool>() ? ", but known: " : ": ")
-        << cell.at("case").get<std::string>() << ", " << cell.at("solver").get<std::string>()
-        << ": " << cell.at("outcome").get<std::string>() << '\n';
-  }
-}
-
-}  // namespace
-
-void print_sweep_result(std::ostream& out, const json& document, const std::string& file,
-                        bool all) {
-  const json& context = document.at("context");
-  print_sweep(out, document, all, output_columns());
-  if (const json share = context.value("harness_overhead", json::object()); share.contains("of")) {
-    const double own = share.at("seconds_per_step"), step = share.at("shortest_step");
-    out << "\nthe harness's own share of the shortest timed step: " << number_text(1e9 * own, 2)
-        << " ns of " << number_text(1e9 * step, 3) << " ns, " << number_text(100 * own / step, 2)
-        << " % (" << share.at("of").get<std::string>() << ")\n";
-  }
-  if (const auto pair = noise_of(context))
-    out << "\n"
-        << pair->one << " ran twice under two names: in 95 % of " << pair->places
-        << " places its two times are within " << number_text(100 * std::expm1(pair->q95), 2)
-        << " % of each other; smaller differences between solvers are noise\n";
-  if (document.contains("warning"))
-    out << "\n" << document.at("warning").get<std::string>() << '\n';
-  if (const json kernel = context.value("sentinel", json::object()); kernel.value("noisy", false))
-    out << "\nNOISY: a fixed kernel's time varied by "
-        << number_text(100 * kernel.value("spread", 0.0), 2)
-        << " % during the run; counters and errors are valid, compare times with care\n";
-  if (!all)
-    out << "\nall contestants: bench show " << file << " --all; a page with figures: bench report "
-        << file << " --out report.html\n";
-}
-
-namespace {
-
-void print_whole(std::ostream& out, const json& document, const std::string& file, bool all) {
-  print_head(out, document, file);
-  if (is_answers(document)) return print_answers(out, document);
-  if (document.contains("matrix")) return print_outcomes(out, document);
-  print_sweep_result(out, document, file, all);
-}
-
-bool is_sweep(const json& document) { return document.at("schema") == "inextensible-bench/1"; }
-
 struct Show {
   Words files;
   bool as_json = false, all = false;
@@ -121,20 +73,26 @@ struct Show {
 
   int run() {
     if (as_json && all) throw UsageError("--json has all contestants already: leave out --all");
-    // Several files are one table; a file of known answers is printed by itself.
-    const json document =
-        files.size() == 1 ? read_result(files.front(), ResultKinds::all) : read_results(files);
-    if (!as_json) {
-      std::ostringstream text;
-      print_whole(text, document, files.front(), all);
-      std::cout << fitted(text.str(), output_columns());
-    } else if (is_sweep(document)) {
+    const json document = read_as_one(files);
+    const std::string& name = files.front();
+    if (as_json) {
+      if (!is_sweep(document))
+        throw UsageError("'" + name +
+                         "' has no strain limits and errors to be analyzed; --json is for sweeps "
+                         "over strain, resolution and step");
       std::cout << analysis::analysis_of(document).dump(1) << '\n';
-    } else {
-      throw UsageError("'" + files.front() +
-                       "' has no strain limits and errors to be analyzed; --json is for sweeps "
-                       "over strain, resolution and step");
+      return success;
     }
+    std::ostringstream text;
+    print_head(text, document, name);
+    if (is_answers(document)) {
+      print_answers(text, document);
+    } else if (is_sweep(document)) {
+      print_sweep(text, document, name, all, output_columns());
+    } else {
+      print_outcomes(text, document);
+    }
+    std::cout << fitted(text.str(), output_columns());
     return success;
   }
 };
@@ -152,14 +110,9 @@ struct Budget {
   int run() {
     std::vector<double> seconds = numbers_of("--ms", ms, Bounds::positive());
     for (double& budget : seconds) budget *= 1e-3;
-    std::vector<json> sweeps;
-    for (const std::string& file : files) {
-      if (json document = read_result(file, ResultKinds::all); is_sweep(document))
-        sweeps.push_back(std::move(document));
-    }
+    const auto sweeps = documents_of(read_all(files, ResultKinds::all), is_sweep);
     std::vector<analysis::BudgetTable> tables;
-    const json table = sweeps.empty() ? json() : joined(sweeps);  // the tables refer to it
-    if (!sweeps.empty()) tables = analysis::budget_tables(table, seconds);
+    if (!sweeps.empty()) tables = analysis::budget_tables(joined(sweeps), seconds);
     if (tables.empty())
       throw UsageError("'" + files.front() +
                        "' has no times of frames; sweeps of at least one second have them");
@@ -179,11 +132,7 @@ struct Claims {
 
   int run() {
     if (!markdown.empty()) check_writable(markdown);
-    std::vector<json> results;
-    for (const std::string& file : files) {
-      if (json document = read_result(file, ResultKinds::all); !is_answers(document))
-        results.push_back(std::move(document));  // no claim is about answers
-    }
+    const auto results = documents_of(read_all(files, ResultKinds::all), is_of_runs);
     if (results.empty()) throw UsageError("claims are about sweeps; results/*.json has some");
     const std::vector<ClaimVerdict> verdicts = judge_claims(results);
     if (std::all_of(verdicts.begin(), verdicts.end(), [](const ClaimVerdict& claim) {
@@ -201,6 +150,149 @@ struct Claims {
   }
 };
 
+// What results and report have in common: result files, those of known answers by themselves too.
+struct PageOptions {
+  Words results, answers;
+  std::string out;
+
+  void declare(const Command& command, const std::string& about_results, const std::string& about) {
+    add_results(command, results, about_results);
+    command.option("--answers", answers, "results of bench answers", "ANSWERS.json ...");
+    command.option("--out", out, about, "FILE");
+  }
+
+  std::vector<NamedResult> files() const {
+    std::vector<NamedResult> all = read_all(results, ResultKinds::all);
+    for (NamedResult& known : read_all(answers, ResultKinds::answers))
+      all.push_back(std::move(known));
+    return all;
+  }
+};
+
+struct Results : PageOptions {
+  Words growth;
+
+  void declare(const Command& command) {
+    PageOptions::declare(
+        command, "result files; of points that several have, the first one's count for claims",
+        "the page; default: standard output");
+    command.option("--growth", growth, "result files for the tables of growth alone",
+                   "RESULT.json ...");
+  }
+
+  // The page begins with the command that makes it again.
+  std::string page() const {
+    std::ostringstream text;
+    text << "# Results\n\nThis page is generated; do not edit it. The command, which gives every "
+            "file that the numbers come from:\n\n```sh\n./bench results";
+    for (const auto& [option, names] :
+         {std::pair("", &results), {" --growth", &growth}, {" --answers", &answers}}) {
+      if (!names->empty()) text << option;
+      for (const std::string& file : *names) text << ' ' << file;
+    }
+    if (!out.empty()) text << " --out " << out;
+    text << "\n```\n\nTimes are the least of several samples. [measuring.md](measuring.md) says "
+            "what they mean, and how far they can be trusted. Ratios have their 95 % interval, "
+            "`3.5 (3.3-3.8)`; `3.5 (?)`: it is not known, for too few runs and no A/A pair. "
+            "`bench show RESULT.json --all` has every contestant of a file, `bench report` every "
+            "run.\n\n";
+    std::vector<NamedResult> sweeps, known;
+    for (NamedResult& file : files())
+      (is_answers(file.document) ? known : sweeps).push_back(std::move(file));
+    print_results_page(text, sweeps, read_all(growth, ResultKinds::sweeps), known);
+    return text.str();
+  }
+
+  int run() {
+    if (!out.empty()) check_writable(out);
+    write_atomically(out.empty() ? "-" : out, page());
+    return success;
+  }
+};
+
+// What the report says and draws: every file with its analysis, the verdicts on the claims, and the
+// findings of all sweeps, those of pieces of one sweep taken together.
+json report_json(const std::vector<NamedResult>& files) {
+  json results = json::array(), claims = results, findings = results;
+  for (const auto& [name, document] : files)
+    results.push_back({{"name", name}, {"document", with_analysis(document)}});
+  for (const ClaimVerdict& claim : judge_claims(documents_of(files, is_of_runs)))
+    claims.push_back({{"id", claim.id},
+                      {"statement", claim.statement},
+                      {"verdict", claim.verdict},
+                      {"measured", claim.measured},
+                      {"rule", claim.rule}});
+  if (const auto sweeps = documents_of(files, is_sweep); !sweeps.empty())
+    findings = analysis::findings_json(analysis::planes_of(joined(sweeps)));
+  return {{"results", std::move(results)},
+          {"findings", std::move(findings)},
+          {"claims", std::move(claims)}};
+}
+
+// A scene in motion by three methods at 1 %, small enough for a page; the folder that it is in.
+std::string record_into(const std::string& folder, const std::string& scene, double n) {
+  const auto type = find_scene(scene);
+  FilmSpec spec;
+  spec.scene = scene;
+  spec.parameters = complete_parameters(*type, {{"n", n}});
+  for (const char* solver : {"gauss_seidel_colored", "fast_projection", "fast_projection@bdf2"})
+    spec.solvers.push_back({solver, solver});
+  tune(spec.solvers, read_tuned_up_to_date("tuned.json"), type->kind(), {}, false);
+  spec.strain_limits = {0.01};
+  std::filesystem::create_directory(folder);
+  write_recording(folder, record(spec, interrupted, [](auto&&...) {}));
+  return folder;
+}
+
+struct Report : PageOptions {
+  bool no_motion = false;
+
+  void declare(const Command& command) {
+    PageOptions::declare(command, "result files", "the page, report.html");
+    command.require({"--out"});
+    command.flag("--no-motion", no_motion,
+                 "leave out the scenes in motion, which take seconds to simulate");
+  }
+
+  int run() {
+    check_writable(out);
+    const TemporaryFolder folder("report");
+    write_atomically(folder.file("report.json"), report_json(files()).dump());
+    Words words{folder.file("report.json")};
+    if (!no_motion)
+      words.insert(words.end(), {"--motion", record_into(folder.file("drape"), "drape", 31),
+                                 record_into(folder.file("patch"), "patch", 25)});
+    return draw("report.py", words, out);
+  }
+};
+
+struct Plot {
+  Words files;
+  std::string out, name;
+
+  void declare(const Command& command) {
+    add_results(command, files,
+                "result file; several: pieces of one sweep, drawn as one, with --name");
+    command.option("--out", out, "folder for the figures; default: beside the result", "DIR");
+    command.option("--name", name, "of several files: what the pictures' names begin with", "NAME");
+  }
+
+  int run() {
+    const bool several = files.size() > 1;
+    if (several == name.empty())
+      throw UsageError(several
+                           ? "several result files are drawn as one: give it a --name"
+                           : "--name is for several result files; pictures of one have its name");
+    const std::filesystem::path first(files.front());
+    json document = read_as_one(files);
+    if (several && !is_sweep(document))
+      throw UsageError("'" + files.front() +
+                       "' is no sweep: pieces of sweeps alone are drawn as one");
+    return draw_figures(std::move(document), several ? name : first.stem().string(),
+                        out.empty() ? first.parent_path().string() : out);
+  }
+};
+
 }  // namespace
 
 Verb show_verb() {
@@ -214,6 +306,22 @@ Verb budget_verb() {
 
 Verb claims_verb() {
   return {"claims", "decide the paper's claims from result files", verb<Claims>};
+}
+
+Verb results_verb() {
+  return {"results", "write tables of result files in Markdown (docs/results.md)", verb<Results>};
+}
+
+Verb report_verb() {
+  return {"report",
+          "write one page, to open offline: findings, charts, tables, figures, claims, scenes in "
+          "motion",
+          verb<Report>};
+}
+
+Verb plot_verb() {
+  return {"plot", "draw the figures of a result file again; of several pieces of one sweep as one",
+          verb<Plot>};
 }
 
 }  // namespace harness

@@ -5,9 +5,12 @@
 #include "harness/base/errors.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
+#include "harness/base/shard.h"
+#include "harness/base/standard_streams.h"
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
-#include "harness/cli/sweep_run.h"
+#include "harness/cli/options.h"
+#include "harness/cli/output.h"
 #include "harness/cli/verbs.h"
 #include "harness/judge/reference.h"
 #include "harness/points/context.h"
@@ -16,10 +19,27 @@
 #include "harness/run/machine_noise.h"
 #include "harness/run/point_runner.h"
 #include "harness/run/sweep.h"
-#include "solvers/registry.h"
+#include "harness/stability/stability.h"
+#include "harness/tables/tables.h"
 
 namespace harness {
 namespace {
+
+struct SweepCommand : SweepOptions, OutputOptions {
+  std::string shard;
+  double memory = 0;  // bytes; 0: no limit
+  bool in_process = false, dry_run = false, no_wait = false;
+  std::string hard_case;  // of --sweep stability, as the next one
+  Words values;
+
+  void declare(const Command& command);
+  int run(const Words& typed);
+
+ private:
+  Command of_suites_, of_cases_;  // options that only one kind of sweep has
+};
+
+// ---- Sweeps of a suite ----
 
 int dry_run(const Suite& suite, const std::vector<Search>& searches) {
   std::size_t most = 0;
@@ -170,17 +190,74 @@ int run_suite(const SweepCommand& options, const Words& typed) {
     nlohmann::json document = result_document(context, suite, typed, outcome.complete,
                                               outcome.points, references->summaries());
     std::ostringstream text;
-    print_sweep_result(text, document, out, false);
+    print_sweep(text, document, out, false, output_columns());
     return {std::move(document), outcome.complete, text.str()};
   };
   OutputOptions output = options;
   output.no_plots |= options.untimed;
-  return carry_out(output, {suite.name + "-" + options.sweep,
-                            identity(context, to_json(suite), context["selection"]), context,
-                            "points", "points", run, add_runs_of, points_in});
+  return carry_out(output, {suite.name + "-" + options.sweep, context, to_json(suite), "points",
+                            "points", run, add_runs_of, points_in});
 }
 
-}  // namespace
+// ---- Hard cases: they are in the program, not in a suite ----
+
+// "ratios=1e3,1e5" into `values`.
+void set_values(HardCaseValues& values, const std::string& given) {
+  const auto [name, list] = name_and_value(given);
+  std::vector<std::string> names;
+  for (const auto& entry : values) names.push_back(entry.first);
+  check_known("value of hard cases", name, names);
+  values[name] = numbers_of("--values " + name, list, {});
+}
+
+// cases must outlive it.
+StabilityPlan plan_of(const SweepCommand& options, const std::vector<HardCase>& cases) {
+  StabilityFilters filters;
+  filters.solver = solver_pattern(options.solver);
+  filters.hard_case = pattern_of("--case", options.hard_case);
+  StabilityPlan plan = plan_stability(cases, filters);
+  if (!options.shard.empty()) plan.keep(parse_shard(options.shard));
+  return plan;
+}
+
+int print_plan(const StabilityPlan& plan) {
+  std::cout << plan.cells() << " cells: " << plan.cases.size() << " hard cases by "
+            << plan.solvers.size() << " solvers; " << plan.scenes.size()
+            << " scenes for each solver's largest step, " << plan.frames.size()
+            << " for frames side by side\n";
+  return success;
+}
+
+void add_cells_of(const nlohmann::json& result, Journal& journal) {
+  for (const nlohmann::json& row : result.at("matrix"))
+    journal.add(cell_key(row.at("case"), row.at("solver")), to_json(trial_result_of(row)));
+}
+
+int run_hard_cases(const SweepCommand& options, const Words& typed) {
+  check_known("profile", options.profile, profiles());
+  HardCaseValues values = hard_case_values(options.profile);
+  for (const std::string& given : options.values) set_values(values, given);
+  const std::vector<HardCase> cases = hard_cases(values);
+  const StabilityPlan plan = plan_of(options, cases);
+  if (options.dry_run) return print_plan(plan);
+  nlohmann::json context = machine_context();
+  context["selection"] = {{"solver", options.solver},
+                          {"case", options.hard_case},
+                          {"values", values},
+                          {"seed", options.seed},
+                          {"shard", options.shard}};
+  const auto run = [&](const std::string&, Journal& journal, const nlohmann::json&) -> Finished {
+    Progress progress;
+    const std::uint64_t seed = options.seed < 0 ? 1 : static_cast<std::uint64_t>(options.seed);
+    const StabilityOutcome outcome = run_stability(plan, seed, journaled_events(journal, progress));
+    std::ostringstream text;
+    print_stability(text, outcome, output_columns());
+    return {stability_document(context, outcome, seed, typed), outcome.complete, text.str(),
+            outcome.nothing_new() ? success : unexpected_outcome};
+  };
+  return carry_out(
+      options, {options.profile + "-stability", context, {}, "matrix", "cells", run, add_cells_of});
+}
 
 void SweepCommand::declare(const Command& command) {
   of_suites_ = command.group("with --sweep strain, resolution and step");
@@ -216,6 +293,8 @@ int SweepCommand::run(const Words& typed) {
                      (hard_cases ? " (--case chooses hard cases)" : ""));
   return hard_cases ? run_hard_cases(*this, typed) : run_suite(*this, typed);
 }
+
+}  // namespace
 
 Verb sweep_verb() {
   return {"sweep", "time over strain limit, resolution or step, or hard cases: bench --sweep AXIS",

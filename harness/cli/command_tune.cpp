@@ -4,6 +4,7 @@
 #include <iomanip>
 #include <iostream>
 #include <limits>
+#include <map>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
@@ -12,7 +13,6 @@
 #include "harness/base/paths.h"
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
-#include "harness/cli/exit_codes.h"
 #include "harness/cli/options.h"
 #include "harness/cli/verbs.h"
 #include "harness/points/context.h"
@@ -40,12 +40,28 @@ std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec
   return solvers;
 }
 
-TunedEntry* find(std::vector<TunedEntry>& entries, const std::string& kind,
-                 const std::string& solver) {
-  const auto place = std::find_if(entries.begin(), entries.end(), [&](const TunedEntry& e) {
-    return e.kind == kind && e.solver == solver;
-  });
-  return place == entries.end() ? nullptr : &*place;
+// In the order of scenes and solvers, whatever was tuned first.
+using Rank = std::pair<std::ptrdiff_t, std::ptrdiff_t>;
+using Entries = std::map<Rank, TunedEntry>;
+
+Rank rank_of(const std::string& kind, const std::string& solver) {
+  const std::vector<std::string> kinds = scene_kinds();
+  return {std::ranges::find(kinds, kind) - kinds.begin(),
+          inextensible::find_backend(solver) - inextensible::backends().data()};
+}
+
+Entries read_entries(const std::string& file) {
+  Entries entries;
+  if (!std::filesystem::exists(file)) return entries;
+  for (TunedEntry& entry : parse_tuned(read_file(file, "file of tuned settings"), file).entries)
+    entries[rank_of(entry.kind, entry.solver)] = std::move(entry);
+  return entries;
+}
+
+void write_entries(const std::string& file, const Entries& entries) {
+  std::vector<TunedEntry> list;
+  for (const auto& [rank, entry] : entries) list.push_back(entry);
+  write_atomically(file, document_text(tuned_document(list)));
 }
 
 // Adds what was found at places of the user's own, or takes it instead of what was found there
@@ -57,21 +73,6 @@ void add_places(TunedEntry& entry, const std::vector<TunedPlace>& found) {
     });
     entry.places.push_back(place);
   }
-}
-
-// In the order of scenes and solvers, whatever was tuned first.
-void put_in(std::vector<TunedEntry>& entries, TunedEntry entry) {
-  std::erase_if(entries, [&entry](const TunedEntry& e) {
-    return e.kind == entry.kind && e.solver == entry.solver;
-  });
-  entries.push_back(std::move(entry));
-  const auto rank = [](const TunedEntry& e) {
-    const std::vector<std::string> kinds = scene_kinds();
-    return std::pair(std::find(kinds.begin(), kinds.end(), e.kind) - kinds.begin(),
-                     inextensible::find_backend(e.solver) - inextensible::backends().data());
-  };
-  std::stable_sort(entries.begin(), entries.end(),
-                   [&rank](const auto& a, const auto& b) { return rank(a) < rank(b); });
 }
 
 json context_of(double timeout) {
@@ -133,7 +134,6 @@ struct Tune {
     std::vector<SweepSpec> chosen = tuning_scenes();
     if (!scene.empty()) {
       std::vector<std::string> names;
-      names.reserve(chosen.size());
       for (const SweepSpec& each : chosen) names.push_back(each.scene);
       check_known("scene to tune on", scene, names);
       std::erase_if(chosen, [this](const SweepSpec& s) { return s.scene != scene; });
@@ -163,23 +163,24 @@ struct Tune {
 
   // Into `entries`; false: what is there is up to date.
   bool tune_one(const SweepSpec& on, const std::string& name, const SweepRunners& runners,
-                std::vector<TunedEntry>& entries) const {
+                Entries& entries) const {
+    const Rank rank = rank_of(find_scene(on.scene)->kind(), name);
+    const auto known = entries.find(rank);
+    const bool there = known != entries.end() && rule_change(known->second).empty();
     if (own_places()) {
-      TunedEntry* known = find(entries, on.scene, name);
-      if (!known || !rule_change(*known).empty())
+      if (!there)
         throw UsageError(name + " has no settings by today's rule yet: bench tune --scene " +
                          on.scene + " --solver " + name);
-      const TunedEntry found = tune_solver(name, on, tuning(), runners, known);
+      const TunedEntry found = tune_solver(name, on, tuning(), runners, &known->second);
       print(found);
-      add_places(*known, found.places);
+      add_places(known->second, found.places);
       return true;
     }
-    const TunedEntry* known = find(entries, find_scene(on.scene)->kind(), name);
-    if (!again && known && rule_change(*known).empty()) return false;
+    if (there && !again) return false;
     TunedEntry entry = tune_solver(name, on, tuning(), runners);
     entry.context = context_of(timeout);
     print(entry);
-    put_in(entries, std::move(entry));
+    entries[rank] = std::move(entry);
     return true;
   }
 
@@ -190,9 +191,7 @@ struct Tune {
                     [this](const SweepSpec& s) { return chosen_solvers(solver, s).empty(); }))
       throw UsageError("--solver " + solver + ": no setting of it is to be tuned");
     const std::string file = out.empty() ? source_path("configs/tuned.json") : out;
-    std::vector<TunedEntry> entries;
-    if (std::filesystem::exists(file))
-      entries = parse_tuned(read_file(file, "file of tuned settings"), file).entries;
+    Entries entries = read_entries(file);
     check_writable(file);
     const TimingLock lock(!no_wait);
     SweepRunners runners;
@@ -201,8 +200,7 @@ struct Tune {
     std::cout << "kind          solver                             size  limit   gain   settings\n";
     for (const SweepSpec& on : chosen) {
       for (const std::string& name : chosen_solvers(solver, on)) {
-        if (tune_one(on, name, runners, entries))
-          write_atomically(file, document_text(tuned_document(entries)));
+        if (tune_one(on, name, runners, entries)) write_entries(file, entries);
       }
     }
     std::cout << "\nwritten:\n" << file << std::endl;

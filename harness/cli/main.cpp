@@ -7,7 +7,6 @@
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/standard_streams.h"
-#include "harness/cli/exit_codes.h"
 #include "harness/cli/verbs.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"

@@ -29,11 +29,11 @@ std::string SceneOptions::name() const { return with_mesh_parts(scene, pins, bod
 SceneParameters SceneOptions::given_parameters() const {
   SceneParameters parameters;
   for (const std::string& word : set) {
-    const auto [parameter, number] = name_and_value(word);
-    char* end = nullptr;
-    parameters[parameter] = std::strtod(number.c_str(), &end);
-    if (number.empty() || *end != '\0')
+    const auto [parameter, text] = name_and_value(word);
+    const auto number = number_in(text);
+    if (!number)
       throw UsageError("--set " + word + ": must be NAME=NUMBER, a parameter of the scene");
+    parameters[parameter] = *number;
   }
   return parameters;
 }
@@ -174,12 +174,11 @@ std::vector<double> numbers_of(const std::string& option, const std::string& tex
   std::vector<double> numbers;
   std::istringstream list(text + ',');  // so that nothing behind the last comma is an item as well
   for (std::string item; std::getline(list, item, ',');) {
-    char* end = nullptr;
-    const double number = std::strtod(item.c_str(), &end);
-    if (item.empty() || *end != '\0' || !bounds.hold(number))
+    const auto number = number_in(item);
+    if (!number || !bounds.hold(*number))
       throw UsageError(option + " is '" + shortened(text) + "': '" + shortened(item, 20) +
                        "' must be " + bounds.text());
-    numbers.push_back(number);
+    numbers.push_back(*number);
   }
   return numbers;
 }

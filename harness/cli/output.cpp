@@ -1,6 +1,5 @@
 #include "harness/cli/output.h"
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,13 +10,14 @@
 #include <set>
 #include <utility>
 
-#include "harness/analysis/analysis_json.h"
+#include "harness/analysis/findings.h"
 #include "harness/base/child_program.h"
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/paths.h"
+#include "harness/base/standard_streams.h"
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"
 #include "harness/points/context.h"
@@ -32,13 +32,6 @@ namespace fs = std::filesystem;
 bool exists(const std::string& path) {
   std::error_code error;
   return fs::exists(path, error);
-}
-
-// Width of the terminal, less one: a line that fills it scrolls.
-std::size_t terminal_columns() {
-  winsize size{};
-  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return std::max<std::size_t>(known ? size.ws_col : 80, 20) - 1;
 }
 
 }  // namespace
@@ -65,7 +58,7 @@ void Progress::show(double fraction, const std::string& head, const std::string&
   constexpr std::size_t cells = 12;
   const auto filled = std::min(static_cast<std::size_t>(fraction * cells), cells);
   line = "[" + std::string(filled, '#') + std::string(cells - filled, '.') + "] " + line;
-  line.resize(std::min(line.size(), terminal_columns()));
+  line.resize(std::min(line.size(), output_columns(STDERR_FILENO) - 1));  // a full one scrolls
   clear();
   width_ = line.size();
   std::cerr << line << std::flush;
@@ -131,9 +124,13 @@ struct Past {
 
 Past begin_journal(const OutputOptions& options, const std::string& out, Journal& journal,
                    const Undertaking& run) {
+  const auto identity_of = [](const json& context, const json& suite) {
+    return identity(context, suite, context.value("selection", json::object()));
+  };
+  const json mine = identity_of(run.context, run.suite);
   const bool again = options.resume || options.rerun_failed;
   const json header = {
-      {"schema", "inextensible-journal/2"}, {"identity", run.identity}, {"context", run.context}};
+      {"schema", "inextensible-journal/2"}, {"identity", mine}, {"context", run.context}};
   const std::size_t count = run.count(journal);
   const std::string entries = std::to_string(count) + " " + run.what;
   if (!options.force && !journal.damage().empty())
@@ -145,7 +142,7 @@ Past begin_journal(const OutputOptions& options, const std::string& out, Journal
                      " of a run that did not finish: --resume continues it, --force starts again");
   if (again && count > 0) {
     const json was = journal.header().is_object() ? journal.header() : json::object();
-    check_same(options, journal.path(), was.value("identity", json()), run.identity);
+    check_same(options, journal.path(), was.value("identity", json()), mine);
     journal.go_on(header);
     return {false, was.value("context", json())};
   }
@@ -154,10 +151,7 @@ Past begin_journal(const OutputOptions& options, const std::string& out, Journal
     if (!result.contains(run.rows))
       throw UsageError("'" + out + "' is the result of another kind of sweep: nothing to resume");
     const json& context = result.at("context");
-    check_same(options, out,
-               identity(context, context.value("suite", json()),
-                        context.value("selection", json::object())),
-               run.identity);
+    check_same(options, out, identity_of(context, context.value("suite", json())), mine);
     if (result.at("complete").get<bool>() && !options.rerun_failed) return {true};
     journal.start(header);
     run.add(result, journal);
@@ -209,17 +203,19 @@ int carry_out(const OutputOptions& options, const Undertaking& undertaking) {
     return interrupted_exit;
   }
   journal.remove();
-  if (!options.no_plots && draw_result(out) != 0)
+  const fs::path file(out);
+  if (!options.no_plots && draw_figures(read_result(out, ResultKinds::all), file.stem().string(),
+                                        file.parent_path().string()) != 0)
     std::cerr << "bench: the figures could not be drawn\n";
   return done.code;
 }
 
-int draw(const std::string& script, const std::vector<std::string>& arguments,
-         const std::string& folder, const std::string& name) {
+int draw(const std::string& script, const Words& arguments, const std::string& out) {
   const TemporaryFolder scratch("draw");
-  std::vector<std::string> words{"/usr/bin/python3", source_path("plots/" + script)};
+  const fs::path place(out);
+  Words words{"/usr/bin/python3", source_path("plots/" + script)};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  words.insert(words.end(), {"--out", name.empty() ? scratch.path() : scratch.file(name)});
+  words.insert(words.end(), {"--out", scratch.file(place.filename().string())});
   const ProgramResult ran =
       run_program(words, "", std::numeric_limits<double>::infinity(), interrupted);
   if (interrupted()) throw Interrupted();
@@ -228,15 +224,13 @@ int draw(const std::string& script, const std::vector<std::string>& arguments,
     std::cerr << "bench: figures need /usr/bin/python3 with matplotlib (Debian: "
                  "python3-matplotlib)\n";
   if (ran.exit_code != 0) return ran.exit_code;
-  std::set<fs::path> drawn;
-  for (const auto& entry : fs::directory_iterator(scratch.path())) drawn.insert(entry.path());
-  const fs::path to = folder.empty() ? fs::path(".") : fs::path(folder);
   std::error_code error;
-  fs::create_directories(to, error);
-  for (const fs::path& file : drawn) {
-    const std::string place = (to / file.filename()).lexically_normal().string();
-    write_atomically(place, read_file(file.string(), "drawing"));
-    std::cout << place << std::endl;
+  fs::create_directories(place.parent_path(), error);
+  const fs::directory_iterator drawn(scratch.path());
+  for (const fs::path& file : std::set<fs::path>(begin(drawn), end(drawn))) {
+    const std::string to = (place.parent_path() / file.filename()).lexically_normal().string();
+    write_atomically(to, read_file(file.string(), "drawing"));
+    std::cout << to << std::endl;
   }
   return success;
 }
@@ -249,31 +243,10 @@ json with_analysis(json document) {
   return document;
 }
 
-namespace {
-
-// Pictures whose names begin with `name`.
-int draw_document(json document, const std::string& name, const std::string& folder) {
+int draw_figures(json document, const std::string& name, const std::string& folder) {
   const TemporaryFolder scratch("figures");
   write_atomically(scratch.file(name + ".json"), with_analysis(std::move(document)).dump());
-  return draw("figures.py", {scratch.file(name + ".json")}, folder);
-}
-
-}  // namespace
-
-int draw_pieces(const std::vector<std::string>& files, const std::string& name,
-                std::string folder) {
-  if (folder.empty()) folder = fs::path(files.front()).parent_path().string();
-  json table = read_results(files);
-  if (!table.contains("points"))
-    throw UsageError("'" + files.front() +
-                     "' is no sweep: pieces of sweeps alone are drawn as one");
-  return draw_document(std::move(table), name, folder);
-}
-
-int draw_result(const std::string& file, std::string folder) {
-  const fs::path path(file);
-  if (folder.empty()) folder = path.parent_path().string();
-  return draw_document(read_result(file, ResultKinds::all), path.stem().string(), folder);
+  return draw("figures.py", {scratch.file(name + ".json")}, (fs::path(folder) / "").string());
 }
 
 }  // namespace harness

@@ -12,7 +12,6 @@
 #include "harness/base/journal.h"
 #include "harness/base/small_runs.h"
 #include "harness/cli/command_line.h"
-#include "harness/cli/exit_codes.h"
 
 namespace harness {
 
@@ -61,10 +60,10 @@ struct Finished {
 
 // What is run: what must agree with the run that it goes on with, and how its results are kept.
 struct Undertaking {
-  std::string stem;  // of the default output
-  nlohmann::json identity, context;
-  const char* rows;  // the list of results in its file: "points", "matrix" or "rows"
-  const char* what;  // these are, for messages
+  std::string stem;               // of the default output
+  nlohmann::json context, suite;  // with context.selection: what must agree (identity())
+  const char* rows;               // the list of results in its file: "points", "matrix" or "rows"
+  const char* what;               // these are, for messages
   // Runs what the journal does not know. before: context of the run that it continues, or null.
   std::function<Finished(const std::string& out, Journal& journal, const nlohmann::json& before)>
       run;
@@ -84,28 +83,19 @@ struct Undertaking {
 // of the result, but never in place of a whole one.
 int carry_out(const OutputOptions& options, const Undertaking& undertaking);
 
-// A sweep's result as a terminal shows it, at its end and by `bench show`. all: every contestant.
-void print_sweep_result(std::ostream& out, const nlohmann::json& document, const std::string& file,
-                        bool all);
-
 // ---- Figures, films and reports, drawn by the scripts of plots/ ----
 
-// Runs a script of plots/ with these arguments and --out <a folder of its own>, or --out <that
-// folder>/<name> with a name. What it has written there takes its place in `folder`, file by file
-// and each whole, and is named on stdout. Its exit code; where that is not 0, nothing is touched.
-int draw(const std::string& script, const std::vector<std::string>& arguments,
-         const std::string& folder, const std::string& name = {});
+// Runs a script of plots/ with these arguments and --out <a folder of its own>/<the name of out>,
+// of which there is none where `out` is a folder. What it has written takes its place in the folder
+// of `out`, file by file and each whole, and is named on stdout. Its exit code; where that is not
+// 0, nothing is touched.
+int draw(const std::string& script, const Words& arguments, const std::string& out);
 
 // A result as plots/ reads it: a sweep with its analysis. Throws UsageError where nothing was
 // timed.
 nlohmann::json with_analysis(nlohmann::json document);
 
-// The figures of a result file, with the analysis that they are drawn from. folder: "" for that of
-// the file. Throws UsageError for a file that is none.
-int draw_result(const std::string& file, std::string folder = {});
-// Those of several files that are pieces of one sweep, drawn as one (points/result_file.h). name:
-// what their pictures' names begin with.
-int draw_pieces(const std::vector<std::string>& files, const std::string& name,
-                std::string folder = {});
+// The figures of a result, whose names begin with `name`. folder: "" for the one that we are in.
+int draw_figures(nlohmann::json document, const std::string& name, const std::string& folder);
 
 }  // namespace harness

@@ -30,10 +30,10 @@ std::size_t least_samples(double significance) {
 void note_counters(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
                    PointChange& result) {
   bool rose = false, fell = false;
-  const std::set<std::string> wanted(gate.counters.begin(), gate.counters.end());
   for (const auto& [name, before] : base.counters.items()) {
     const double value = before, other = next.counters.value(name, value);
-    if (other == value || !(wanted.empty() || wanted.contains(name))) continue;
+    const bool counts = gate.counters.empty() || std::ranges::count(gate.counters, name) > 0;
+    if (other == value || !counts) continue;
     (other > value ? rose : fell) = true;
     std::string reason = name + " " + number_text(value, 15) + " -> " + number_text(other, 15);
     if (value > 0) reason += " (" + per_cent(other / value) + ")";
@@ -237,63 +237,66 @@ PointChange compare_point(const ComparedPoint& base, const ComparedPoint& next, 
 }
 
 std::size_t Comparison::count(Change change) const {
-  return std::count_if(points.begin(), points.end(),
-                       [change](const PointChange& point) { return point.change == change; });
+  return std::ranges::count(points, change, &PointChange::change);
 }
 
 bool Comparison::any(bool (*is)(Change)) const {
-  return std::any_of(points.begin(), points.end(),
-                     [is](const PointChange& point) { return is(point.change); });
+  return std::ranges::any_of(points, is, &PointChange::change);
 }
 
-bool Comparison::undecided() const {
-  return std::any_of(points.begin(), points.end(),
-                     [](const PointChange& point) { return point.undecided; });
+namespace {
+
+// Two points of one key (two sweeps of one scene in a suite) pair up in their order; null: a point
+// is in one result only.
+std::vector<std::pair<const ComparedPoint*, const ComparedPoint*>> paired(
+    const ComparedResult& base, const ComparedResult& next) {
+  std::vector<std::pair<const ComparedPoint*, const ComparedPoint*>> pairs;
+  std::map<std::string, std::deque<std::size_t>> alone;
+  for (const ComparedPoint& point : base.points) {
+    alone[point.key()].push_back(pairs.size());
+    pairs.emplace_back(&point, nullptr);
+  }
+  for (const ComparedPoint& point : next.points) {
+    auto& same_key = alone[point.key()];
+    if (same_key.empty()) {
+      pairs.emplace_back(nullptr, &point);
+    } else {
+      pairs[same_key.front()].second = &point;
+      same_key.pop_front();
+    }
+  }
+  return pairs;
 }
+
+}  // namespace
 
 Comparison compare(const ComparedResult& base, const ComparedResult& next, const Gate& gate) {
   const Comparability can = comparability(base, next, gate);
   Comparison comparison{{}, notes_of(base, next, can)};
   const Tried tried_before(base), tried(next);
   std::size_t untried = 0, matched = 0;
-  const auto in_one_only = [&](Change change, const ComparedPoint& point, const Tried& in_other,
-                               const std::string& reason) {
-    if (in_other.covers(point)) {
-      ++untried;
-    } else {
-      comparison.points.push_back({change, point.sweep, point.id, {reason}});
-    }
-  };
-  // Two points of one key (two sweeps of one scene in a suite) pair up in their order.
-  std::map<std::string, std::deque<const ComparedPoint*>> left;
-  for (const ComparedPoint& point : next.points) left[point.key()].push_back(&point);
-  for (const ComparedPoint& point : base.points) {
-    auto& same_key = left[point.key()];
-    if (same_key.empty()) {
-      in_one_only(Change::missing, point, tried, "was " + point.status);
-      continue;
-    }
-    const ComparedPoint& other = *same_key.front();
-    same_key.pop_front();
-    ++matched;
-    if (point.spec != other.spec)
+  for (const auto& [before, after] : paired(base, next)) {
+    const ComparedPoint& point = before ? *before : *after;
+    const bool both = before && after;
+    matched += both;
+    if (both && before->spec != after->spec)
       throw NotComparable(point.id +
                           " is not the same run in both: scene parameters, settings or seed "
                           "differ");
-    if (tried_before.gave_up(point) || tried.gave_up(other)) {
+    if (both ? tried_before.gave_up(*before) || tried.gave_up(*after)
+             : (before ? tried : tried_before).covers(point)) {
       ++untried;
+    } else if (both) {
+      comparison.points.push_back(compare_point(*before, *after, gate, can));
     } else {
-      comparison.points.push_back(compare_point(point, other, gate, can));
+      comparison.points.push_back({before ? Change::missing : Change::added,
+                                   point.sweep,
+                                   point.id,
+                                   {(before ? "was " : "") + point.status}});
     }
   }
   if (matched == 0)
     throw NotComparable("'" + base.path + "' and '" + next.path + "' have no point in common");
-  for (const ComparedPoint& point : next.points) {
-    auto& same_key = left[point.key()];
-    if (same_key.empty() || same_key.front() != &point) continue;
-    same_key.pop_front();
-    in_one_only(Change::added, point, tried_before, point.status);
-  }
   if (untried > 0)
     comparison.notes.push_back(std::to_string(untried) +
                                " steps were tried, or run to the end, in one of them only: their "

@@ -2,6 +2,7 @@
 // rustc-perf and asv put together: a rank test and two ratios, all of which must agree.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -49,6 +50,7 @@ struct ComparedPoint {
   nlohmann::json counters = {};               // by name
   std::map<std::string, double> errors = {};  // those of Gate::errors that are known
   std::vector<double> samples = {};           // wall seconds per simulated second
+  std::string fingerprint = {};               // of what computed the counters; "": not known
 
   bool ok() const { return status == "ok"; }
   std::string key() const { return sweep + " " + id; }
@@ -138,7 +140,7 @@ struct Comparison {
 
   std::size_t count(Change change) const;
   bool any(bool (*is)(Change)) const;
-  bool undecided() const;  // of a best point
+  bool undecided() const { return std::ranges::any_of(points, &PointChange::undecided); }
 };
 
 // Build, machine or scenes differ so much that no comparison would mean anything.

@@ -41,14 +41,13 @@ Gate parse_gate(const std::string& text, const std::string& path) {
   gate.minimum_ratio = times.number("minimum_ratio", gate.minimum_ratio, Bounds::at_least(1));
   times.finish();
   JsonReader counters = part("counters");
-  const std::map<std::string, CounterRule> rules{
-      {"exact", CounterRule::exact}, {"rise", CounterRule::rise}, {"inform", CounterRule::inform}};
-  gate.counter_rule =
-      rules.at(counters.one_of("rule", "exact", {"exact", "rise", "inform"}, "rule"));
+  const std::vector<std::string> rules{"exact", "rise", "inform"};  // as CounterRule has them
+  gate.counter_rule = static_cast<CounterRule>(
+      std::ranges::find(rules, counters.one_of("rule", "exact", rules, "rule")) - rules.begin());
   const std::vector<std::string> known = counter_names();
   gate.counters = counters.texts("names");
   for (const std::string& name : gate.counters) {
-    if (std::find(known.begin(), known.end(), name) == known.end())
+    if (std::ranges::count(known, name) == 0)
       throw UsageError(counters.where("names") + ": " +
                        unknown_name("counter", name, known).what());
   }
@@ -67,6 +66,7 @@ Gate parse_gate(const std::string& text, const std::string& path) {
 ComparedPoint compared_point(const json& p) {
   ComparedPoint point{p.at("sweep"), p.at("id"), p.at("status"), p.value("status_detail", "")};
   point.best = p.value("best", false);
+  point.fingerprint = p.value("counters_fingerprint", "");
   point.counters = p.at("work");
   if (p.at("max_strain").is_number()) point.errors["max_strain"] = p.at("max_strain");
   for (const char* name : errors_of_runs) {

@@ -18,7 +18,7 @@ bool failed(const PairedPoint& point) {
 void run_side(Side side, PairedPoint& point, const RunOne& run) {
   ComparedPoint& said = point.said(side);
   if (!said.status.empty() && failed(point)) return;
-  ComparedPoint now = compared_point(run(side, point));
+  ComparedPoint now = run(side, point);
   // The first process speaks for the point, unless a later one fails. A process's time is the least
   // of its runs: interruptions only ever add, and what differs from process to process (where its
   // memory lies) is in every one of its runs.

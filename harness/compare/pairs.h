@@ -22,8 +22,8 @@ struct PairedPoint {
   ComparedPoint& said(Side side) { return side == Side::old_one ? before : after; }
 };
 
-// Runs one process on one point; what `bench point` printed.
-using RunOne = std::function<nlohmann::json(Side, const PairedPoint&)>;
+// Runs one process on one point; what `bench point` printed, all runs among its samples.
+using RunOne = std::function<ComparedPoint(Side, const PairedPoint&)>;
 
 // Runs in one process, so that a process measures for at least `least` seconds. seconds: one run.
 int samples_for(double seconds, double least);

@@ -1,9 +1,9 @@
 // The printers of a comparison: terminal, JUnit XML, Markdown.
 #include <algorithm>
-#include <iomanip>
 #include <sstream>
 #include <unordered_map>
 
+#include "harness/base/table.h"
 #include "harness/compare/comparison.h"
 
 namespace harness {
@@ -90,14 +90,11 @@ std::string class_name(const PointChange& point) {
 }  // namespace
 
 void print_comparison(std::ostream& out, const Comparison& comparison) {
-  const std::vector<PointChange> rows = rows_of(comparison);
-  std::size_t width = 0;
-  for (const PointChange& row : rows) width = std::max(width, row.sweep.size() + row.id.size() + 3);
-  for (const PointChange& row : rows) {
-    out << std::left << std::setw(14) << to_string(row.change) << std::setw(static_cast<int>(width))
-        << row.sweep + " " + row.id << row.text() << '\n';
-  }
-  if (!rows.empty()) out << '\n';
+  Table table;
+  for (const PointChange& row : rows_of(comparison))
+    table.rows.push_back({to_string(row.change), row.sweep + " " + row.id, row.text()});
+  print_aligned(out, table);
+  if (!table.rows.empty()) out << '\n';
   for (const std::string& note : all_notes(comparison)) out << "note: " << note << '\n';
   out << counts(comparison) << std::endl;
 }
@@ -126,16 +123,17 @@ std::string junit_xml(const Comparison& comparison, const std::string& name) {
 }
 
 std::string markdown_table(const Comparison& comparison, const std::string& title) {
-  std::string text = "### " + cell(title) + "\n\n" + counts(comparison) + "\n";
-  const std::vector<PointChange> rows = rows_of(comparison);
-  if (!rows.empty()) text += "\n| change | sweep | point | what |\n|---|---|---|---|\n";
-  for (const PointChange& row : rows) {
+  std::ostringstream text;
+  text << "### " << cell(title) << "\n\n" << counts(comparison) << '\n';
+  Table table{{"change", "sweep", "point", "what"}, {}, 0};
+  for (const PointChange& row : rows_of(comparison)) {
     const std::string bold = fails(row.change) ? "**" : "";
-    text += "| " + bold + cell(to_string(row.change)) + bold + " | " + cell(row.sweep) + " | " +
-            cell(row.id) + " | " + cell(row.text()) + " |\n";
+    table.rows.push_back({bold + cell(to_string(row.change)) + bold, cell(row.sweep), cell(row.id),
+                          cell(row.text())});
   }
-  for (const std::string& note : all_notes(comparison)) text += "\nNote: " + cell(note) + "\n";
-  return text;
+  if (!table.rows.empty()) print_markdown(text << '\n', table);
+  for (const std::string& note : all_notes(comparison)) text << "\nNote: " << cell(note) << '\n';
+  return text.str();
 }
 
 }  // namespace harness

@@ -6,12 +6,15 @@
 
 #include "harness/analysis/findings.h"
 #include "harness/analysis/words.h"
-#include "harness/base/in_order.h"
 #include "harness/base/text.h"
 #include "harness/points/result_file.h"
-#include "harness/tables/page.h"
+#include "harness/tables/tables.h"
 
-namespace harness::tables {
+namespace harness {
+namespace tables {
+
+using namespace analysis;  // tables print what was analysed
+
 namespace {
 
 // "`yarn_projection` 8.1 ms, 1/100 s, 1.7 (1.5-1.8) `icd`": bold if it is ahead beyond the noise.
@@ -34,19 +37,11 @@ std::string cell_text(const Cell& cell) {
   return text;
 }
 
-bool has_shapes(const std::vector<const Plane*>& planes) {
-  return std::any_of(planes.begin(), planes.end(), [](const Plane* plane) {
-    return std::any_of(plane->cells.begin(), plane->cells.end(), [](const Cell& cell) {
-      return cell.first() && std::isfinite(cell.first()->point.measures().shape);
-    });
-  });
-}
-
 // Up to when errors count, where that is not the whole run.
-std::string span_of_errors(const std::vector<const Plane*>& planes) {
+std::string span_of_errors(const std::vector<Plane>& planes) {
   double first = std::numeric_limits<double>::infinity(), last = 0, duration = 0;
-  for (const Plane* plane : planes) {
-    for (const Cell& cell : plane->cells) {
+  for (const Plane& plane : planes) {
+    for (const Cell& cell : plane.cells) {
       if (cell.level != headline_error || !cell.first() || cell.known_until == 0) continue;
       first = std::min(first, cell.known_until);
       last = std::max(last, cell.known_until);
@@ -60,9 +55,10 @@ std::string span_of_errors(const std::vector<const Plane*>& planes) {
          " s: later two references differ too much, and at the end of that time it can be larger. ";
 }
 
-bool has_rivals(const Plane& plane) {
-  return std::any_of(plane.cells.begin(), plane.cells.end(),
-                     [](const Cell& cell) { return cell.counting(1); });
+template <class Is>
+bool any_cell(const std::vector<Plane>& planes, Is is) {
+  return std::ranges::any_of(
+      planes, [&](const Plane& plane) { return std::ranges::any_of(plane.cells, is); });
 }
 
 // Planes of one table: those of a resolution sweep are its rows.
@@ -74,16 +70,16 @@ std::string title_of(const Plane& plane) {
                    " vertices, over " + plane.sweep;
 }
 
-Table table_of(const std::vector<const Plane*>& planes) {
-  const bool sizes = planes.front()->sweep == "resolution";
-  Table table{{sizes ? "vertices" : "strain"}, {}};
-  for (const double level : planes.front()->levels)
+Table table_of(const std::vector<Plane>& planes) {
+  const bool sizes = planes.front().sweep == "resolution";
+  Table table{{sizes ? "vertices" : "strain"}, {}, 0};
+  for (const double level : planes.front().levels)
     table.head.push_back(level == any_motion ? "any motion" : "error <= " + percent(level));
-  for (const Plane* plane : planes) {
-    for (const double limit : plane->limits) {
-      table.rows.push_back({sizes ? std::to_string(plane->vertices) : percent(limit)});
-      for (const double level : plane->levels)
-        table.rows.back().push_back(cell_text(plane->cell(limit, level)));
+  for (const Plane& plane : planes) {
+    for (const Cell& cell : plane.cells) {  // by limit, then by level
+      if (cell.level == plane.levels.front())
+        table.rows.push_back({sizes ? std::to_string(plane.vertices) : percent(cell.strain_limit)});
+      table.rows.back().push_back(cell_text(cell));
     }
   }
   return table;
@@ -128,54 +124,45 @@ void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
     if (!is_stability(result.document)) sweeps.push_back(result.document);
   }
   if (sweeps.empty()) return;
-  const nlohmann::json table = joined(sweeps);
-  std::vector<Plane> all = planes_of(table);
-  std::erase_if(all, [](const Plane& plane) { return !has_rivals(plane); });
-  const std::vector<Finding> findings = findings_of(all);
-  for (const std::string& title : in_order(all, title_of)) {
-    std::vector<const Plane*> planes;
-    for (const Plane& plane : all) {
-      if (title_of(plane) == title) planes.push_back(&plane);
-    }
+  std::vector<Plane> all = planes_of(joined(sweeps));
+  std::erase_if(all, [](const Plane& plane) {
+    return !any_cell({plane}, [](const Cell& cell) { return cell.counting(1); });
+  });
+  for (const auto& [title, planes] : grouped(all, title_of)) {
     out << "### " << title << "\n\n";
-    for (const Finding& finding : findings) {
-      const bool here = std::any_of(planes.begin(), planes.end(), [&](const Plane* plane) {
-        return plane->scene == finding.scene && plane->sweep == finding.sweep &&
-               plane->vertices == finding.vertices;
-      });
-      for (const std::string& sentence : finding.sentences) {
-        if (here) out << sentence << ' ';
-      }
+    for (const Finding& finding : findings_of(planes)) {
+      for (const std::string& sentence : finding.sentences) out << sentence << ' ';
     }
     out << span_of_errors(planes);
-    for (const Plane* plane : planes) {
-      if (plane->sweep == "strain") print_attribution(out, *plane);
+    for (const Plane& plane : planes) {
+      if (plane.sweep == "strain") print_attribution(out, plane);
     }
-    if (has_shapes(planes)) out << "Shape errors are deviations beyond the ensemble's spread.";
+    if (any_cell(planes, [](const Cell& cell) {
+          return cell.first() && std::isfinite(cell.first()->point.measures().shape);
+        }))
+      out << "Shape errors are deviations beyond the ensemble's spread.";
     out << "\n\n";
     print_markdown(out, table_of(planes));
     out << '\n';
   }
 }
 
-}  // namespace harness::tables
-
-namespace harness {
+}  // namespace tables
 
 void print_budgets(std::ostream& out, const std::vector<analysis::BudgetTable>& places) {
   using namespace tables;
   for (const BudgetTable& place : places) {
-    Table table{{"method"}, {}};
+    Table table{{"method"}};
     for (const double budget : place.budgets)
       table.head.push_back(number_text(1e3 * budget) + " ms a frame");
     std::string none;
     for (const Budgeted& row : place.rows) {
-      std::vector<std::string> cells{quoted(row.row)};
+      std::vector<std::string> cells{row.row};
       for (const auto& reach : row.reached) cells.push_back(reach_text(reach));
       if (std::any_of(row.reached.begin(), row.reached.end(), [](const auto& r) { return r; })) {
         table.rows.push_back(std::move(cells));
       } else {
-        none += (none.empty() ? "" : ", ") + cells.front();
+        none += (none.empty() ? "" : ", ") + quoted(row.row);
       }
     }
     out << "### " << scene_words(place.scene) << ", " << place.vertices << " vertices\n\n";

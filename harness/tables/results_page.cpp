@@ -1,8 +1,7 @@
-#include "harness/tables/results_page.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "harness/analysis/findings.h"
@@ -13,19 +12,18 @@
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"
-#include "harness/tables/page.h"
+#include "harness/tables/tables.h"
 
 namespace harness {
 namespace tables {
 
+using namespace analysis;  // tables print what was analysed
 using nlohmann::json;
 
 std::string plain(double value, int digits) {
   const bool large = value >= 1 && std::isfinite(value);
   return number_text(value, std::max(digits, large ? static_cast<int>(std::log10(value)) + 1 : 1));
 }
-
-bool is_stability(const json& document) { return document.contains("matrix"); }
 
 namespace {
 
@@ -45,7 +43,7 @@ void print_growth(std::ostream& out, const std::vector<NamedResult>& results) {
     for (Growth& growth : growth_in(planes_of(result.document))) all.push_back(std::move(growth));
   }
   if (all.empty()) return;
-  Table table{{"solver"}, {}};
+  Table table{{"solver"}};
   std::vector<std::string> names;
   for (const Growth& growth : all) {
     table.head.push_back(scene_words(growth.scene) + " at " + percent(growth.strain_limit) +
@@ -53,7 +51,7 @@ void print_growth(std::ostream& out, const std::vector<NamedResult>& results) {
     for (const RowGrowth& row : growth.rows) names.push_back(row.row);
   }
   for (const std::string& name : in_order(names, itself)) {
-    table.rows.push_back({quoted(name)});
+    table.rows.push_back({name});
     for (const Growth& growth : all) {
       const auto row = std::find_if(growth.rows.begin(), growth.rows.end(),
                                     [&](const RowGrowth& each) { return each.row == name; });
@@ -79,13 +77,11 @@ struct Fastest {
 Fastest fastest_in(const json& document, const std::string& scene) {
   Fastest found;
   if (is_stability(document)) return found;
-  const ContestantRoles roles(document);
-  for (const json& p : document.at("points")) {
-    const Point point(p);
-    if (point.sweep() == "strain" && !point.spec().adaptive && point.scene() == scene &&
-        point.ok() && point.result().best && roles.of(point.contestant()).ranked())
-      found.points.push_back(point);
-  }
+  const Runs runs(document);
+  std::ranges::copy_if(runs.points, std::back_inserter(found.points), [&](const Point& p) {
+    return p.sweep() == "strain" && !p.spec().adaptive && p.scene() == scene && p.ok() &&
+           p.result().best && runs.roles.of(p.contestant()).ranked();
+  });
   found.limits = in_order(found.points, [](const Point& p) { return p.strain_limit(); });
   std::sort(found.limits.rbegin(), found.limits.rend());
   return found;
@@ -93,11 +89,11 @@ Fastest fastest_in(const json& document, const std::string& scene) {
 
 template <class Cell>
 Table table_of(const Fastest& fastest, const std::string& unit, Cell cell) {
-  Table table{{"solver"}, {}};
+  Table table{{"solver"}};
   for (const double limit : fastest.limits) table.head.push_back(percent(limit) + ", " + unit);
   const auto name = [](const Point& p) { return p.contestant(); };
   for (const std::string& contestant : in_order(fastest.points, name)) {
-    table.rows.push_back({quoted(contestant)});
+    table.rows.push_back({contestant});
     for (const double limit : fastest.limits) {
       const auto found =
           std::find_if(fastest.points.begin(), fastest.points.end(), [&](const Point& p) {
@@ -178,12 +174,11 @@ void print_answers(std::ostream& out, const NamedResult& result) {
     const auto words = [&](const json& row) {
       return plain(row.at("value"), exact == 0 ? 2 : 4) + ", " + quoted(row.at("solver"));
     };
-    table.rows.push_back({quoted(answer.at("name")),
-                          quoted(answer.at("scene")) + ", " + percent(answer.at("strain_limit")),
-                          number_text(exact, 6), std::to_string(given.size()),
-                          given.empty() ? "-" : words(given.front()),
-                          given.empty() ? "-" : words(given.back()),
-                          orders.empty() ? "-" : number_text(quantile(orders, 0.5), 2)});
+    table.rows.push_back(
+        {answer.at("name"), quoted(answer.at("scene")) + ", " + percent(answer.at("strain_limit")),
+         number_text(exact, 6), std::to_string(given.size()),
+         given.empty() ? "-" : words(given.front()), given.empty() ? "-" : words(given.back()),
+         orders.empty() ? "-" : number_text(quantile(orders, 0.5), 2)});
   }
   print_table(out,
               "## Known answers (`" + result.name +
@@ -195,40 +190,8 @@ void print_answers(std::ostream& out, const NamedResult& result) {
               table);
 }
 
-// What did not end as theory expects, with the reason where one is known.
-Table differences_in(const json& document) {
-  Table table{{"case", "solver", "expected", "ended", "why"}, {}};
-  for (const json& cell : document.at("matrix")) {
-    if (cell.at("as_expected")) continue;
-    std::string reason = "not known: " + cell.at("detail").get<std::string>();
-    for (const json& known : document.at("known_differences")) {
-      if (cell.at("known_difference") && known.at("case") == cell.at("case") &&
-          known.at("solver") == cell.at("solver"))
-        reason = known.at("reason").get<std::string>() +
-                 "; would fix it: " + known.at("mends").get<std::string>();
-    }
-    const std::string fixed = cell.at("at_fixed_step"), outcome = cell.at("outcome");
-    table.rows.push_back(
-        {quoted(cell.at("case")), quoted(cell.at("solver")), cell.at("expected_at_fixed_step"),
-         fixed == outcome ? fixed : fixed + ", with smaller steps " + outcome, reason});
-  }
-  return table;
-}
-
 void print_hard_cases(std::ostream& out, const NamedResult& result) {
   if (!is_stability(result.document)) return;
-  constexpr std::array outcomes{"survived", "survived_smaller", "refused", "diverged",
-                                "wrong",    "timeout",          "crashed"};
-  const json& matrix = result.document.at("matrix");
-  std::map<std::string, std::map<std::string, int>> count;
-  for (const json& cell : matrix) ++count[cell.at("solver")][cell.at("outcome")];
-  Table table{{"solver"}, {}};
-  for (const char* outcome : outcomes) table.head.push_back(std::string(outcome) + ", cases");
-  for (const std::string& solver : in_order(matrix, solver_of)) {
-    table.rows.push_back({quoted(solver)});
-    for (const char* outcome : outcomes)
-      table.rows.back().push_back(std::to_string(count[solver][outcome]));
-  }
   const json& counts = result.document.at("counts");
   print_table(out,
               "## Hard cases (`" + result.name +
@@ -238,7 +201,7 @@ void print_hard_cases(std::ostream& out, const NamedResult& result) {
                   " have one expected outcome, " + counts.at("two_admitted").dump() +
                   " admit two where theory cannot decide. Not as expected: " +
                   counts.at("not_as_expected").dump(),
-              table);
+              outcomes_in(result.document));
   const Table differences = differences_in(result.document);
   if (differences.rows.empty()) return;
   print_markdown(out, differences);
@@ -247,10 +210,10 @@ void print_hard_cases(std::ostream& out, const NamedResult& result) {
 
 // What the result files say of themselves: date, machine, commit and noise.
 void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
-  Table table{{"file", "date", "processor", "commit", "A/A pair", "places", "half", "95 %"}, {}};
+  Table table{{"file", "date", "processor", "commit", "A/A pair", "places", "half", "95 %"}};
   for (const NamedResult& result : results) {
     const json& context = result.document.at("context");
-    std::vector<std::string> row{quoted(result.name), context.at("date"), context.at("cpu_model"),
+    std::vector<std::string> row{result.name, context.at("date"), context.at("cpu_model"),
                                  context.at("build").at("git")};
     if (const auto noise = context.find("noise"); noise != context.end() && noise->is_object()) {
       row.push_back(quoted(noise->at("pair").at(0)));
@@ -268,6 +231,44 @@ void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
 }
 
 }  // namespace
+
+bool is_stability(const json& document) { return document.contains("matrix"); }
+
+Table outcomes_in(const json& document) {
+  constexpr std::array outcomes{"survived", "survived_smaller", "refused", "diverged",
+                                "wrong",    "timeout",          "crashed"};
+  const json& matrix = document.at("matrix");
+  std::map<std::string, std::map<std::string, int>> count;
+  for (const json& cell : matrix) ++count[cell.at("solver")][cell.at("outcome")];
+  Table table{{"solver"}};
+  for (const char* outcome : outcomes) table.head.push_back(std::string(outcome) + ", cases");
+  for (const std::string& solver : in_order(matrix, solver_of)) {
+    table.rows.push_back({solver});
+    for (const char* outcome : outcomes)
+      table.rows.back().push_back(std::to_string(count[solver][outcome]));
+  }
+  return table;
+}
+
+Table differences_in(const json& document) {
+  Table table{{"case", "solver", "expected", "ended", "why"}, {}, 2};
+  for (const json& cell : document.at("matrix")) {
+    if (cell.at("as_expected")) continue;
+    std::string reason = "not known: " + cell.at("detail").get<std::string>();
+    for (const json& known : document.at("known_differences")) {
+      if (cell.at("known_difference") && known.at("case") == cell.at("case") &&
+          known.at("solver") == cell.at("solver"))
+        reason = known.at("reason").get<std::string>() +
+                 "; would fix it: " + known.at("mends").get<std::string>();
+    }
+    const std::string fixed = cell.at("at_fixed_step"), outcome = cell.at("outcome");
+    table.rows.push_back({cell.at("case"), cell.at("solver"), cell.at("expected_at_fixed_step"),
+                          fixed == outcome ? fixed : fixed + ", with smaller steps " + outcome,
+                          reason});
+  }
+  return table;
+}
+
 }  // namespace tables
 
 void print_results_page(std::ostream& out, const std::vector<NamedResult>& results,

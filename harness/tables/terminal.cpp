@@ -1,5 +1,3 @@
-#include "harness/tables/terminal.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,7 +6,7 @@
 #include "harness/analysis/findings.h"
 #include "harness/analysis/words.h"
 #include "harness/base/text.h"
-#include "harness/tables/table.h"
+#include "harness/tables/tables.h"
 
 namespace harness {
 
@@ -16,27 +14,9 @@ using analysis::Cell;
 using analysis::Entry;
 using analysis::percent;
 using analysis::Plane;
+using nlohmann::json;
 
 namespace {
-
-// Seconds where something that is shown takes 20 of them, else milliseconds.
-struct Unit {
-  bool seconds = false;
-
-  std::string name() const { return seconds ? "s" : "ms"; }
-  std::string text(double time) const { return number_text((seconds ? 1 : 1e3) * time, 3); }
-};
-
-Unit unit_of(const std::vector<Plane>& planes, bool all) {
-  Unit unit;
-  for (const Plane& plane : planes) {
-    for (const Cell& cell : plane.cells) {
-      for (const Entry& entry : cell.entries)
-        unit.seconds |= (all || &entry == cell.first()) && entry.point.seconds() >= 20;
-    }
-  }
-  return unit;
-}
 
 std::string level_text(double level) { return level == any_motion ? "any" : percent(level); }
 
@@ -51,7 +31,7 @@ std::string levels_text(const Cell& loosest, const Cell& tightest) {
 std::string lead_text(const Cell& cell) {
   const Entry* paper = cell.paper_best();
   if (!paper) return "none of the six";
-  if (paper == cell.first()) return "it is of the six";
+  if (paper == cell.first()) return "itself one of the six";
   return analysis::text(*cell.lead_over(paper)) + " by " + paper->row;
 }
 
@@ -65,20 +45,22 @@ std::string percent_or_unknown(double fraction) {
   return std::isnan(fraction) ? "?" : number_text(100 * fraction, 2) + " %";
 }
 
-// Name, time, step and error.
-std::vector<std::string> entry_cells(const Entry& entry, const std::string& name,
-                                     const Unit& unit) {
-  return {name, unit.text(entry.point.seconds()), step_text(entry.point.step()),
-          percent_or_unknown(entry.error)};
+// Name, time, step and error, of any motion the error of its shape too.
+std::vector<std::string> entry_cells(const Entry& entry, const std::string& name, double level) {
+  const double shape = entry.point.measures().shape;
+  return {name, analysis::time_words(entry.point.seconds()), step_text(entry.point.step()),
+          percent_or_unknown(entry.error) + (level == any_motion && std::isfinite(shape)
+                                                 ? ", shape by " + percent_or_unknown(shape)
+                                                 : "")};
 }
 
 std::vector<std::string> answer_row(const std::string& place, const Cell& loosest,
-                                    const Cell& tightest, const Unit& unit) {
+                                    const Cell& tightest) {
   std::vector<std::string> row{place, levels_text(loosest, tightest)};
   if (const Entry* first = tightest.first()) {
     const std::string name = first->row + (first->role.unranked ? " u" : "") +
                              (tightest.counting(1) && !tightest.clear() ? " ~" : "");
-    const auto cells = entry_cells(*first, name, unit);
+    const auto cells = entry_cells(*first, name, loosest.level);
     row.insert(row.end(), cells.begin(), cells.end());
     row.push_back(lead_text(tightest));
   } else {
@@ -88,44 +70,29 @@ std::vector<std::string> answer_row(const std::string& place, const Cell& looses
 }
 
 // A row for each answer; levels of error that have the same one are one row.
-void add_answers(Table& table, const Plane& plane, bool sizes, const Unit& unit) {
+void add_answers(Table& table, const Plane& plane, bool sizes) {
   const std::size_t levels = plane.levels.size();
   for (std::size_t row = 0; row < plane.cells.size(); row += levels) {
     std::string place =
         sizes ? std::to_string(plane.vertices) : percent(plane.cells[row].strain_limit);
     for (std::size_t i = row, from = row; i < row + levels; ++i) {
       if (i + 1 < row + levels && same_answer(plane.cells[i], plane.cells[i + 1])) continue;
-      table.rows.push_back(answer_row(place, plane.cells[from], plane.cells[i], unit));
+      table.rows.push_back(answer_row(place, plane.cells[from], plane.cells[i]));
       place.clear();
       from = i + 1;
     }
   }
 }
 
-// Shape errors of the fastest runs in the column "any", where they are known.
-void print_shapes(std::ostream& out, const Plane& plane) {
-  std::string words;
-  for (const Cell& cell : plane.cells) {
-    const Entry* first = cell.level == any_motion ? cell.first() : nullptr;
-    const double shape = first ? first->point.measures().shape : unknown;
-    if (!std::isnan(shape))
-      words += (words.empty() ? "" : ", ") + percent(cell.strain_limit) + ": " +
-               number_text(100 * shape, 2) + " %";
-  }
-  if (!words.empty())
-    out << "shape errors of the fastest, whatever their motion: " << words << '\n';
-}
-
 // The planes of a resolution sweep are rows of one table.
-void print_planes(std::ostream& out, const std::vector<Plane>& planes, const Unit& unit) {
+void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
   for (auto plane = planes.begin(); plane != planes.end();) {
     const Plane& first = *plane;
     const bool sizes = first.sweep == "resolution";
-    Table table{{sizes ? "vertices" : "strain", "error within", "fastest", unit.name(), "step, s",
-                 "error", "times as long: best of the paper"},
-                {}};
+    Table table{{sizes ? "vertices" : "strain", "error within", "fastest", "time", "step, s",
+                 "error", "times as long: best of the paper"}};
     do {
-      add_answers(table, *plane, sizes, unit);
+      add_answers(table, *plane, sizes);
     } while (++plane != planes.end() && sizes && plane->sweep == first.sweep &&
              plane->scene == first.scene);
     out << '\n' << analysis::scene_words(first.scene);
@@ -134,19 +101,18 @@ void print_planes(std::ostream& out, const std::vector<Plane>& planes, const Uni
     if (sizes && first.limits.size() == 1) out << " at " << percent(first.limits[0]) << " strain";
     out << ": the fastest within a strain limit and an error\n";
     print_aligned(out, table);
-    if (!sizes) print_shapes(out, first);
   }
 }
 
 // Everybody in the cells of any motion and of the headline's error.
-void print_everybody(std::ostream& out, const Plane& plane, const Unit& unit) {
+void print_everybody(std::ostream& out, const Plane& plane) {
   for (const Cell& cell : plane.cells) {
     if (cell.entries.empty() || (cell.level != any_motion && cell.level != headline_error))
       continue;
-    Table table{{"", unit.name(), "step, s", "error", "strain", "times the fastest"}, {}};
+    Table table{{"", "time", "step, s", "error", "strain", "times the fastest"}};
     for (const Entry& entry : cell.entries) {
       const bool first = &entry == cell.first();
-      auto row = entry_cells(entry, entry.role.name, unit);
+      auto row = entry_cells(entry, entry.role.name, cell.level);
       row.push_back(percent_or_unknown(entry.point.delivered_strain()));
       row.push_back((first || !cell.first() ? "1" : analysis::text(*cell.lead_over(&entry))) +
                     (entry.counts           ? ""
@@ -165,7 +131,7 @@ void print_everybody(std::ostream& out, const Plane& plane, const Unit& unit) {
 }
 
 void print_growth(std::ostream& out, const analysis::Growth& growth) {
-  Table table{{"", "power (95 %)", "vertices", "ms a step", "GiB at the largest"}, {}};
+  Table table{{"", "power (95 %)", "vertices", "ms a step", "GiB at the largest"}};
   for (const analysis::RowGrowth& row : growth.rows) {
     const analysis::Point& largest = row.largest;
     table.rows.push_back(
@@ -181,10 +147,10 @@ void print_growth(std::ostream& out, const analysis::Growth& growth) {
 }
 
 // How runs that failed did so.
-void print_failures(std::ostream& out, const nlohmann::json& document, bool all) {
+void print_failures(std::ostream& out, const json& document, bool all) {
   std::map<std::string, int> statuses, of_contestants;
   int failed = 0;
-  for (const nlohmann::json& p : document.at("points")) {
+  for (const json& p : document.at("points")) {
     const analysis::Point point(p);
     if (point.ok()) continue;
     ++failed;
@@ -204,15 +170,15 @@ void print_failures(std::ostream& out, const nlohmann::json& document, bool all)
 
 // Which solvers came from plug-ins, of which version, and what copying states into an engine and
 // out of it took of their time.
-void print_plugins(std::ostream& out, const nlohmann::json& document) {
-  const auto plugins = document.at("context").value("plugins", nlohmann::json::array());
+void print_plugins(std::ostream& out, const json& document) {
+  const auto plugins = document.at("context").value("plugins", json::array());
   if (!plugins.empty()) out << '\n';
   for (const auto& plugin : plugins) {
     for (const auto& solver : plugin.at("solvers")) {
       double copy = 0, all = 0;  // s
       for (const auto& point : document.at("points")) {
         if (point.at("solver") != solver || point.at("status") != "ok") continue;
-        const auto phases = point.value("phases", nlohmann::json::object());
+        const auto phases = point.value("phases", json::object());
         copy += phases.value("copy", 0.0);
         for (const char* phase : {"unconstrained", "filter", "collision", "copy"})
           all += phases.value(phase, 0.0);
@@ -225,20 +191,44 @@ void print_plugins(std::ostream& out, const nlohmann::json& document) {
   }
 }
 
+// How far times can be trusted: the harness's own share, the A/A pair, the machine.
+void print_noise(std::ostream& out, const json& document) {
+  const json& context = document.at("context");
+  if (const json share = context.value("harness_overhead", json::object()); share.contains("of")) {
+    const double own = share.at("seconds_per_step"), step = share.at("shortest_step");
+    out << "\nthe harness's own share of the shortest timed step: " << number_text(1e9 * own, 2)
+        << " ns of " << number_text(1e9 * step, 3) << " ns, " << number_text(100 * own / step, 2)
+        << " % (" << share.at("of").get<std::string>() << ")\n";
+  }
+  if (const auto pair = noise_of(context))
+    out << "\n"
+        << pair->one << " ran twice under two names: in 95 % of " << pair->places
+        << " places its two times are within " << number_text(100 * std::expm1(pair->q95), 2)
+        << " % of each other; smaller differences between solvers are noise\n";
+  if (document.contains("warning"))
+    out << "\n" << document.at("warning").get<std::string>() << '\n';
+  if (const json kernel = context.value("sentinel", json::object()); kernel.value("noisy", false))
+    out << "\nNOISY: a fixed kernel's time varied by "
+        << number_text(100 * kernel.value("spread", 0.0), 2)
+        << " % during the run; counters and errors are valid, compare times with care\n";
+}
+
 }  // namespace
 
-void print_sweep(std::ostream& out, const nlohmann::json& document, bool all, std::size_t columns) {
+void print_sweep(std::ostream& out, const json& document, const std::string& file, bool all,
+                 std::size_t columns) {
   std::ostringstream text;
   const auto planes = analysis::planes_of(document);
-  const Unit unit = unit_of(planes, all);
-  print_planes(text, planes, unit);
-  text << (planes.empty()
-               ? "\nall of these runs chose their steps by a controller, which is not ranked: "
-                 "bench plot draws them\n"
-               : "(~: too close to the next, or too few samples, to tell; u: with untuned "
-                 "settings; errors are over the scene's size)\n");
+  print_planes(text, planes);
+  text
+      << (planes.empty()
+              ? "\nall of these runs chose their steps by a controller, which is not ranked: "
+                "bench plot draws them\n"
+              : "(~: too close to the next, or too few samples, to tell; u: with untuned "
+                "settings; errors are over the scene's size, those of shapes beyond the ensemble's "
+                "spread)\n");
   for (const Plane& plane : planes) {
-    if (all) print_everybody(text, plane, unit);
+    if (all) print_everybody(text, plane);
   }
   for (const analysis::Growth& growth : analysis::growth_in(planes)) print_growth(text, growth);
   for (const analysis::Finding& finding : analysis::findings_of(planes)) {
@@ -247,7 +237,20 @@ void print_sweep(std::ostream& out, const nlohmann::json& document, bool all, st
   }
   print_failures(text, document, all);
   print_plugins(text, document);
+  print_noise(text, document);
+  if (!all)
+    text << "\nall contestants: bench show " << file << " --all; a page with figures: bench report "
+         << file << " --out report.html\n";
   out << fitted(text.str(), columns);
+}
+
+void print_outcomes(std::ostream& out, const json& document) {
+  const Table differences = tables::differences_in(document);
+  out << document.at("matrix").size() << " hard cases and solvers; how they ended:\n";
+  print_aligned(out, tables::outcomes_in(document));
+  if (differences.rows.empty()) return;
+  out << "\nnot as expected:\n";
+  print_aligned(out, differences);
 }
 
 }  // namespace harness

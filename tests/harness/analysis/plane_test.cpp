@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "harness/analysis/analysis_json.h"
+#include "harness/analysis/findings.h"
 #include "harness/analysis/words.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"

@@ -27,22 +27,13 @@ for lines in 0 1 2 4 5 6 8 12; do
   interrupted TERM $lines
 done
 
-# answers CODE WORDS OPTION...
-answers() {
-  local code=$1 words=$2
-  shift 2
-  "$BENCH_BINARY" choose --no-wait "$@" >out.txt 2>err.txt
-  local got=$?
-  [[ $got == "$code" ]] || fail "choose $*: exit $got, not $code: $(cat out.txt; tail -3 err.txt)"
-  grep -qE "$words" out.txt || fail "choose $*: says nothing of '$words': $(cat out.txt)"
-}
-answers 6 'no run ended within its strain limit in this time' --scene drape --n 71 --seconds 0.5
-! grep -q '^take' out.txt || fail "a solver to take, without any run"
-chain=(--scene chain --n 10 --error 0.5 --seconds 10 --solver 'fast_projection|yarn_projection@midpoint')
-answers 0 '^take' "${chain[@]}" --budget 10s
-answers 6 'no solver that was tried keeps the budget' "${chain[@]}" --budget 0.000001us
-! grep -q '^take' out.txt || fail "a solver to take, above the budget: $(cat out.txt)"
+exits 6 'no run ended within its strain limit in this time' choose --no-wait --scene drape --n 71 --seconds 0.5
+! grep -q '^take' stdout.txt || fail "a solver to take, without any run"
+chain=(choose --no-wait --scene chain --n 10 --error 0.5 --seconds 10 --solver 'fast_projection|yarn_projection@midpoint')
+exits 0 'take  ' "${chain[@]}" --budget 10s
+exits 6 'no solver that was tried keeps the budget' "${chain[@]}" --budget 0.000001us
+! grep -q '^take' stdout.txt || fail "a solver to take, above the budget: $(cat stdout.txt)"
 for name in fast_projection yarn_projection@midpoint; do
-  grep -q "$name" out.txt || fail "$name was named and is nowhere: $(cat out.txt)"
+  grep -q "$name" stdout.txt || fail "$name was named and is nowhere: $(cat stdout.txt)"
 done
 finish

@@ -16,82 +16,55 @@ refuse_all() {
 }
 
 # ---- Bad input ----
-echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1, -1]}]}' >limits.json
 echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1], "scene_parameters": {"n": 7}}]}' >small.json
 echo 'not JSON' >words.json
 : >empty.json
-echo '{"schema": "another"}' >other.json
 mkdir -p folder && ln -sf nowhere.json dangling.json
 mkfifo pipe
 refused "nothing to do"
 refuse_all <<'TABLE'
 did you mean 'strain' <- --sweep strian --out out.json
-did you mean 'quick' <- --sweep strain --profile quik --out out.json
 did you mean 'fast_projection' <- SWEEP --solver fast_projectoin
-no solver 'fast' <- SWEEP --solver 'fast|shake|icd'
 did you mean 'drape' <- SWEEP --scene drap
-did you mean 'adaptive' <- SWEEP --steps adaptiv
 --steps adaptive does not go with <- --sweep step --profile quick --steps adaptive --out out.json
 no point is left <- SWEEP --filter nothing
-not a regular expression <- SWEEP --filter '('
 not a regular expression <- SWEEP --filter "$(head -c 100000 /dev/zero | tr '\0' '(')"
 no case matches <- --sweep stability --case nothing --out out.json
---case goes with --sweep stability <- SWEEP --case Q1
 --filter goes with --sweep strain, resolution and step only (--case chooses <- --sweep stability --filter x --out out.json
---scene goes with --sweep strain, resolution and step <- --sweep stability --scene drape --out out.json
---rerun-failed goes with --sweep strain, resolution and step <- --sweep stability --rerun-failed --out out.json
 did you mean 'ratios' <- --sweep stability --values ratio=2 --out out.json
-'x' must be a number <- --sweep stability --values ratios=1,x --out out.json
 'distances' has 2 <- --sweep stability --values distances=2 --out out.json
 --reps <- SWEEP --reps 0
 whose second number is below <- SWEEP --reps 9..5
 must be i/N <- SWEEP --shard 2
 i must be from 1 to N <- SWEEP --shard 3/2
 --memory <- SWEEP --memory much
---memory <- SWEEP --memory -1
 is 'nan', must be a number above 0 <- SWEEP --timeout nan
-is 'inf', must be a number above 0 <- SWEEP --rel-ci inf
-is '-1', must be a number above 0 <- SWEEP --finest-error -1
 is '1e999', must be a number above 0 <- SWEEP --timeout 1e999
-'1' must be a number above 0 and below 1 <- SWEEP --limit 1
 '' must be a number above 0 and below 1 <- SWEEP --limit 0.01,
-must be a whole number <- SWEEP --n 2.5
 has one size <- SWEEP --n 10,20
 give --n <- --sweep resolution --profile quick --scene patch --out out.json
 leaves no step <- SWEEP --finest 0.05
 does not go with adaptive steps <- SWEEP --steps adaptive --finest 0.01
-'1.5', must be a whole number of at least 0 and at most 9007199254740992 <- SWEEP --seed 1.5
 '99999999999999999999', must be a whole number <- check --solver icd --seed 99999999999999999999
 cannot read the suite <- SUITE missing.json
-'limits' is -1 <- SUITE limits.json
-is not JSON <- SUITE words.json
 --finest-error needs references, missing: chain-n7 <- SUITE small.json --profile quick --scene chain --finest-error 0.02
 there is no folder 'words.json' <- --sweep strain --profile quick --out words.json/result.json
 no regular file <- --sweep strain --profile quick --out pipe
-no regular file <- --sweep strain --profile quick --out -
 there is no folder 'nowhere' <- film --out nowhere/x.png
 no option '--limt'; did you mean '--limit'? <- SWEEP --limt 0.01
-no option '--stils=1' of bench film; did you mean '--stills'? <- film --stils=1 --out x.png
 no command 'shwo'; did you mean 'show'? <- shwo one.json
 unexpected argument 'two.json' of bench film (see bench film --help) <- film two.json
 no command 'foo' (see bench --help) <- help foo
 --solver is required (see bench check --help) <- check
-'-1' must be a number of at least 0 <- film --stills=-1 --out x.png
 99 s is not within the film <- film --stills 99 --out x.png
-did you mean 'shake' <- film --solver icd,shakee --out x.png
 did you mean 'solvers' <- list solver
 cannot read the result file 'missing.json': No such file or directory <- claims missing.json
 cannot read the result file 'folder': it is a folder <- show folder
 'dangling.json': it is a link to 'nowhere.json', which does not exist <- show dangling.json
 cannot read the result file 'empty.json': it is empty <- show empty.json
-is not a result file <- claims other.json
-did you mean 'drape' <- reference --scene drap
---finest <- reference --finest 0
 must be 24, 30 or 60 <- choose --fps 50
 must be such as 2ms <- choose --budget 2
-did you mean 'drape' <- choose --scene drap
 did you mean 'chain' <- tune --scene chian --out out.json
-did you mean 'icd' <- tune --solver idc --out out.json
 TABLE
 [[ ! -e nowhere ]] || fail "a refused --out made its folder"
 chain='{"sweep": "strain", "scene": "chain", "limits": [0.1]'
@@ -101,12 +74,9 @@ while read -r part suite; do
 done <<TABLE
 suite {"name": "../x", "sweeps": [$chain}]}
 suite {"reps": 1e300, "sweeps": [$chain}]}
-suite {"timeout": 0, "sweeps": [$chain}]}
 suite {"name": "a", "name": "b", "sweeps": [$chain}]}
 duration {"sweeps": [$chain, "scene_parameters": {"duration": 1e9}, "steps": {"coarsest": 0.01}}]}
 solver_options {"sweeps": [$chain, "solver_options": {"fast_projection": {"linear_solver": 3}}}]}
-solver_options {"sweeps": [$chain, "solver_options": {"fast_projection": {"max_iterations": 0.5}}}]}
-solver_options {"sweeps": [$chain, "solver_options": {"fast_projection": {"no_such": 1}}}]}
 TABLE
 for document in '{"schema": "inextensible-bench/1"}' "$(head -c 100000 /dev/zero | tr '\0' '[')" '{"schema": 1, "schema": 2}' '[]'; do
   echo "$document" >bad.json
@@ -142,6 +112,14 @@ assert any(p["work"]["rejected_steps"] > 0 and p["smallest_step"] < p["step"] fo
 makes patch.json "${sweep[@]}" --scene patch --n 5 --limit 0.1,0.05  # which the suite has not
 holds 'assert {(p["scene"], p["vertices"], p["strain_limit"]) for p in read("patch.json")["points"]} == {("patch", 25, 0.1), ("patch", 25, 0.05)}'
 bench "${sweep[@]}" --scene chain --dry-run | grep -q 'searches for a best step' || fail "--dry-run"
+
+# Google Benchmark's compare.py sets two solvers of one file against each other: rows match, and with nine runs its U test runs.
+compare=/usr/share/benchmark/compare.py
+if [[ -e $compare ]]; then
+  makes nine.json --sweep strain --profile quick --scene chain --solver 'icd|fast_projection' --filter 'strain:0.01/h:0.01$' --reps 9 --no-plots
+  /usr/bin/python3 $compare filters nine.json chain/icd chain/fast_projection >table.txt
+  grep -q 'vs. chain/fast_projection' table.txt && grep -q pvalue table.txt || fail "compare.py: $(cat table.txt)"
+fi
 
 # ---- Ctrl-C: valid JSON, not complete, exit 130. A whole result stays until the new one is whole. ----
 tiny=("${sweep[@]}" --scene chain --filter 'strain:0.1/')
@@ -221,12 +199,12 @@ bench list >/dev/full 2>err.txt
 bench list >&- 2>err.txt
 [[ $? == 1 ]] || fail "a closed standard output goes unnoticed"
 echo '{"times": {"count": false}}' >untimed_gate.json  # this machine may be busy
-compare=(compare closed.json closed.json --gate untimed_gate.json)
+comparison=(compare closed.json closed.json --gate untimed_gate.json)
 for place in - /dev/stdout; do
-  bench "${compare[@]}" --markdown $place --junit junit.xml >both.txt 2>/dev/null && grep -q '^### bench compare' both.txt && [[ ! -e - ]] ||
+  bench "${comparison[@]}" --markdown $place --junit junit.xml >both.txt 2>/dev/null && grep -q '^### bench compare' both.txt && [[ ! -e - ]] ||
     fail "--markdown $place"
 done
-bench "${compare[@]}" --markdown /dev/null >/dev/null && [[ -c /dev/null ]] || fail "--markdown /dev/null"
+bench "${comparison[@]}" --markdown /dev/null >/dev/null && [[ -c /dev/null ]] || fail "--markdown /dev/null"
 mkdir there && ln -s there/result.json link.json
 makes link.json "${tiny[@]}"
 [[ -L link.json && -f there/result.json ]] || fail "--out lost its link"
@@ -238,15 +216,9 @@ bench show worded.json | grep -q 'fast_projection' || fail "bench show"
 [[ $(bench help show) == "$(bench show --help)" && $(bench help sweep) == "$(bench --help)" ]] || fail "bench help"
 bench -V | grep -qE '^bench [0-9.]+.*(Release|Debug) by ' || fail "-V: $(bench -V)"
 bench list --json >list.json
-holds 'd = read("list.json")
-assert {"fast_projection", "icd"} <= {s["name"] for s in d["solvers"]} and {"chain", "drape"} <= {s["name"] for s in d["scenes"]}'
+holds 'assert {"chain", "drape"} <= {s["name"] for s in read("list.json")["scenes"]}'
 bench list answers | grep -q '^  net_place (spinning_net): ' || fail "a verb's name after a verb is a word of it"
-bench --help >help.txt
-bench list verbs | sed -n 's/^  \([a-z]*\): .*/\1/p' >verbs.txt
-[[ $(wc -l <verbs.txt) -gt 15 && $(head -n 1 verbs.txt) == sweep ]] || fail "bench list verbs: $(cat verbs.txt)"
-while read -r verb; do
-  grep -q "^  $verb  " help.txt || fail "no help of $verb"
-done < <(tail -n +2 verbs.txt)
+[[ $(bench list verbs | wc -l) -gt 15 ]] || fail "bench list verbs"
 
 # ---- Hard cases go on where they were ----
 cases=(--sweep stability --case 'Q[1-4]' --solver 'icd|^fast_projection$|shake' --no-plots)

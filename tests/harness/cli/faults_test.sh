@@ -8,21 +8,6 @@
 bench --sweep strain --scene chain --n 5 --limit 0.1 --solver shake,jacobi --reps 1 --no-plots --out given.json >/dev/null 2>&1 ||
   fail "no result to begin with"
 
-# words_of VERB: a short run of it. Its output is old.*
-words_of() {
-  case $1 in
-    sweep) echo --sweep strain --scene chain --n 5 --limit 0.1 --solver shake --reps 1 --no-plots --untimed --force --out old.json ;;
-    stability) echo --sweep stability --case 'Q1$' --solver shake,icd --no-plots --force --out old.json ;;
-    answers) echo answers --answer catenary_place --solver shake --no-plots --force --out old.json ;;
-    baseline) echo baseline given.json --out old.json ;;
-    results) echo results given.json --out old.md ;;
-    compare) echo compare given.json given.json --junit old.xml --markdown old.md ;;
-    film) echo film --scene chain --set n=5 --set duration=0.1 --width 16 --out old.png ;;
-    export) echo film --scene chain --set n=5 --set duration=0.1 --out old.pc2 ;;
-    report) echo report given.json --out old.html ;;
-  esac
-}
-
 # whole FILE: it is complete, as its format has it.
 whole() {
   case $1 in
@@ -42,8 +27,9 @@ strike() {
   [[ -e struck ]]
 }
 
-for verb in sweep stability answers baseline results compare export film report; do
-  read -ra words <<<"$(words_of $verb)"
+# A short run of each verb, whose output is old.*
+while read -ra words <&3; do
+  verb=${words[*]::2}
   outputs=()
   for word in "${words[@]}"; do [[ $word == old.* ]] && outputs+=("$word"); done
   bench "${words[@]}" >out.txt 2>err.txt || { fail "$verb: $(tail -1 err.txt)"; continue; }
@@ -64,5 +50,15 @@ for verb in sweep stability answers baseline results compare export film report;
   bench "${words[@]}" >out.txt 2>err.txt || fail "$verb once more: exit $?, $(tail -1 err.txt)"
   [[ -z $(compgen -G 'old.*.new-*') ]] || fail "$verb: left $(echo old.*.new-*)"
   rm -f old.*
-done
+done 3<<'TABLE'
+--sweep strain --scene chain --n 5 --limit 0.1 --solver shake --reps 1 --no-plots --untimed --force --out old.json
+--sweep stability --case Q1$ --solver shake,icd --no-plots --force --out old.json
+answers --answer catenary_place --solver shake --no-plots --force --out old.json
+baseline given.json --out old.json
+results given.json --out old.md
+compare given.json given.json --junit old.xml --markdown old.md
+film --scene chain --set n=5 --set duration=0.1 --width 16 --out old.png
+film --scene chain --set n=5 --set duration=0.1 --out old.pc2
+report given.json --out old.html
+TABLE
 finish

@@ -12,24 +12,12 @@ bench --sweep strain --scene chain --n 5 --limit 0.1 --solver shake --reps 1 --n
 import json
 print(json.dumps({**json.load(open("small.json"))["points"][0], "solver": "misfit", "contestant": "misfit", "settings": {}}))' >point.txt
 
-# words_of VERB: what makes it compute with the solver that hangs; its output is old.*
-words_of() {
-  case $1 in
-    film) echo film --scene chain --set n=5 --solver misfit --out old.png ;;
-    point) echo point ;;
-    choose) echo choose --scene chain --n 5 --solver misfit --no-wait ;;
-    check) echo check --solver misfit ;;
-    sweep) echo --sweep strain --scene chain --n 5 --limit 0.1 --solver misfit --no-plots --no-wait --force --out old.json ;;
-    stability) echo --sweep stability --solver misfit --no-plots --force --out old.json ;;
-    answers) echo answers --solver misfit --no-plots --force --out old.json ;;
-  esac
-}
-
-for verb in film point choose check sweep stability answers; do
+# Each verb with the words that make it compute with the solver that hangs; its output is old.*
+while read -ra words <&3; do
+  verb=${words[*]::2}
   for signal in INT TERM HUP; do
     echo old >old.json
     echo old >old.png
-    read -ra words <<<"$(words_of $verb)"
     "$BENCH_BINARY" --plugin "$plugin" "${words[@]}" <point.txt >out.txt 2>err.txt &
     pid=$!
     sleep 1
@@ -45,5 +33,13 @@ for verb in film point choose check sweep stability answers; do
     pgrep -f -- "$plugin" >/dev/null && fail "$verb, SIG$signal: a process is left" && pkill -9 -f -- "$plugin"
     [[ -z $(find tmp . -maxdepth 1 -name 'bench-*' -o -maxdepth 1 -name 'old.*.new-*') ]] || fail "$verb, SIG$signal: $(ls tmp .)"
   done
-done
+done 3<<'TABLE'
+film --scene chain --set n=5 --solver misfit --out old.png
+point
+choose --scene chain --n 5 --solver misfit --no-wait
+check --solver misfit
+--sweep strain --scene chain --n 5 --limit 0.1 --solver misfit --no-plots --no-wait --force --out old.json
+--sweep stability --solver misfit --no-plots --force --out old.json
+answers --solver misfit --no-plots --force --out old.json
+TABLE
 finish

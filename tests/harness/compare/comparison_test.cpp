@@ -1,5 +1,5 @@
 // The statistics of a comparison against scipy's numbers and against themselves; its changes, its
-// gate, its baseline and its reports.
+// gate and its reports.
 #include "harness/compare/comparison.h"
 
 #include <gtest/gtest.h>
@@ -9,18 +9,12 @@
 #include <random>
 
 #include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/json_text.h"
 #include "harness/base/statistics.h"
-#include "harness/points/context.h"
-#include "harness/points/point_json.h"
-#include "harness/points/result_file.h"
 #include "support/effort.h"
 
 namespace harness {
 namespace {
 
-using nlohmann::json;
 using Times = std::vector<double>;
 
 // ---- Mann-Whitney -------------------------------------------------------------------------------
@@ -250,48 +244,6 @@ TEST(Compare, PairsPointsOfOneNameInTheirOrder) {
 
 // ---- Files --------------------------------------------------------------------------------------
 
-json one_result() {
-  PointResult point;
-  point.spec.sweep = "strain";
-  point.spec.scene = "chain";
-  point.spec.solver = "shake";
-  point.spec.scene_parameters = {{"n", 80}, {"duration", 1}};
-  point.spec.resolution = point.spec.vertices = 80;
-  point.spec.constraints = 79;
-  point.status = PointStatus::ok;
-  point.samples = {0.25};
-  point.work.iterations = 1234567;
-  point.measures.max_strain = 0.00987654321;
-  point.measures.trajectory = 0.0123456789;
-  PointResult failed = point;
-  failed.spec.step = 0.02;
-  failed.status = PointStatus::diverged;
-  failed.measures.max_strain = std::numeric_limits<double>::infinity();
-  return json::parse(
-      result_document(machine_context(), Suite(), {"bench"}, true, {point, failed}).dump());
-}
-
-TEST(Baseline, HoldsWhatIsComparedAndNoTimes) {
-  const std::string result = ::testing::TempDir() + "result.json",
-                    baseline = ::testing::TempDir() + "baseline.json";
-  write_atomically(result, one_result().dump());
-  const std::string text = document_text(baseline_document(read_compared({result})));
-  EXPECT_EQ(text.find("seconds"), std::string::npos);
-  const json point = json::parse(text).at("points").at(0);
-  EXPECT_EQ(point["work"]["iterations"], 1234567);
-  EXPECT_EQ(point["max_strain"], 0.00987654);
-  EXPECT_EQ(point["error"]["trajectory"], 0.0123457);
-  write_atomically(baseline, text);
-  for (const int more : {0, 1}) {
-    json document = one_result();
-    document["points"][0]["work"]["iterations"] = 1234567 + more;
-    write_atomically(result, document.dump());
-    const Comparison found = compare(read_compared({baseline}), read_compared({result}), Gate());
-    EXPECT_EQ(found.count(Change::same), 2u - more);
-    EXPECT_EQ(found.count(Change::slower), more);
-  }
-}
-
 TEST(Gate, RefusesWhatItDoesNotKnow) {
   const auto message = [](const std::string& text) -> std::string {
     try {
@@ -304,18 +256,12 @@ TEST(Gate, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(message("{}"), "");
   for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{
            {"{", "'g.json' is not JSON"},
-           {"[]", "must be an object"},
            {R"({"time": {}})", "did you mean 'times'?"},
-           {R"({"times": {"cout": true}})", "did you mean 'count'?"},
            {R"({"times": {"count": 1}})", "'count' is 1, must be true or false"},
-           {R"({"times": {"significance": 0}})", "'significance' is 0, must be a number above"},
            {R"({"times": {"significance": 0.6}})", "at most 0.5"},
-           {R"({"times": {"median_ratio": "x"}})", "'median_ratio' is \"x\""},
            {R"({"times": {"minimum_ratio": 0.9}})", "'minimum_ratio' is 0.9"},
            {R"({"counters": {"rule": "exakt"}})", "did you mean 'exact'?"},
            {R"({"counters": {"names": ["iteration"]}})", "did you mean 'iterations'?"},
-           {R"({"counters": {"names": []}})", "'names' is [], must be a list"},
-           {R"({"errors": {"max_strain": 0.5}})", "'max_strain' is 0.5"},
            {R"({"errors": {"maxstrain": 2}})", "did you mean 'max_strain'?"}}) {
     const std::string said = message(text);
     EXPECT_NE(said.find(part), std::string::npos) << text << " -> " << said;

@@ -11,20 +11,15 @@ namespace {
 
 using nlohmann::json;
 
-json printed(double seconds, const std::string& status = "ok", double iterations = 10) {
-  json point = {{"sweep", "strain"},
-                {"id", "chain"},
-                {"status", status},
-                {"spec", "same"},
-                {"work", {{"iterations", iterations}}},
-                {"max_strain", 0.01},
-                {"error", json::object()}};
-  if (status == "ok") point["seconds_per_simulated_second"]["samples"] = {seconds, 2 * seconds};
+ComparedPoint printed(double seconds, const std::string& status = "ok", double iterations = 10) {
+  ComparedPoint point{"strain", "chain", status};
+  point.counters = {{"iterations", iterations}};
+  if (status == "ok") point.samples = {seconds, 2 * seconds};
   return point;
 }
 
 using Names = std::vector<std::string>;
-using Answer = std::function<json(Side side, const std::string& name)>;
+using Answer = std::function<ComparedPoint(Side side, const std::string& name)>;
 
 RunOne running(const Answer& answer) {
   return [answer](Side side, const PairedPoint& point) { return answer(side, point.spec); };

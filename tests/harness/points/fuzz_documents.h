@@ -10,7 +10,7 @@
 #include "harness/points/result_file.h"
 #include "harness/points/suite.h"
 #include "harness/run/sweep.h"
-#include "harness/tables/results_page.h"
+#include "harness/tables/tables.h"
 
 namespace harness::testing {
 

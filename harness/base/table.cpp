@@ -1,13 +1,14 @@
-#include "harness/tables/table.h"
+#include "harness/base/table.h"
 
 #include <algorithm>
 
 namespace harness {
 namespace {
 
-void print_row(std::ostream& out, const std::vector<std::string>& cells) {
+void print_row(std::ostream& out, const std::vector<std::string>& cells, std::size_t names = 0) {
   out << '|';
-  for (const std::string& cell : cells) out << ' ' << cell << " |";
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    out << ' ' << (i < names ? '`' + cells[i] + '`' : cells[i]) << " |";
   out << '\n';
 }
 
@@ -18,14 +19,15 @@ void print_markdown(std::ostream& out, const Table& table) {
   out << '|';
   for (std::size_t i = 0; i < table.head.size(); ++i) out << "---|";
   out << '\n';
-  for (const auto& row : table.rows) print_row(out, row);
+  for (const auto& row : table.rows) print_row(out, row, table.names);
 }
 
 void print_aligned(std::ostream& out, const Table& table) {
   std::vector<std::vector<std::string>> rows = table.rows;
-  rows.insert(rows.begin(), table.head);
-  std::vector<std::size_t> widths(table.head.size(), 0);
+  if (!table.head.empty()) rows.insert(rows.begin(), table.head);
+  std::vector<std::size_t> widths;
   for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
     for (std::size_t i = 0; i + 1 < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
   }
   for (auto& row : rows) {
