@@ -195,8 +195,8 @@ void print_hard_cases(std::ostream& out, const NamedResult& result) {
   const json& counts = result.document.at("counts");
   print_table(out,
               "## Hard cases (`" + result.name +
-                  "`)\n\nHow each solver ends in small scenes that are known to break solvers; "
-                  "what the outcomes mean is in [measuring.md](measuring.md#hard-cases). Of " +
+                  "`)\n\nHow many small scenes that are known to break solvers end in which way "
+                  "by each solver; [measuring.md](measuring.md#hard-cases) explains them. Of " +
                   counts.at("cells").dump() + " cells, " + counts.at("strict").dump() +
                   " have one expected outcome, " + counts.at("two_admitted").dump() +
                   " admit two where theory cannot decide. Not as expected: " +
@@ -241,7 +241,7 @@ Table outcomes_in(const json& document) {
   std::map<std::string, std::map<std::string, int>> count;
   for (const json& cell : matrix) ++count[cell.at("solver")][cell.at("outcome")];
   Table table{{"solver"}};
-  for (const char* outcome : outcomes) table.head.push_back(std::string(outcome) + ", cases");
+  table.head.insert(table.head.end(), outcomes.begin(), outcomes.end());
   for (const std::string& solver : in_order(matrix, solver_of)) {
     table.rows.push_back({solver});
     for (const char* outcome : outcomes)

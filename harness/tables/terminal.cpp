@@ -32,7 +32,7 @@ std::string lead_text(const Cell& cell) {
   const Entry* paper = cell.paper_best();
   if (!paper) return "none of the six";
   if (paper == cell.first()) return "itself one of the six";
-  return analysis::text(*cell.lead_over(paper)) + " by " + paper->row;
+  return analysis::text(*cell.lead_over(paper)) + " " + paper->row;
 }
 
 bool same_answer(const Cell& a, const Cell& b) {
@@ -50,7 +50,7 @@ std::vector<std::string> entry_cells(const Entry& entry, const std::string& name
   const double shape = entry.point.measures().shape;
   return {name, analysis::time_words(entry.point.seconds()), step_text(entry.point.step()),
           percent_or_unknown(entry.error) + (level == any_motion && std::isfinite(shape)
-                                                 ? ", shape by " + percent_or_unknown(shape)
+                                                 ? ", shape " + percent_or_unknown(shape)
                                                  : "")};
 }
 
@@ -89,8 +89,8 @@ void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
   for (auto plane = planes.begin(); plane != planes.end();) {
     const Plane& first = *plane;
     const bool sizes = first.sweep == "resolution";
-    Table table{{sizes ? "vertices" : "strain", "error within", "fastest", "time", "step, s",
-                 "error", "times as long: best of the paper"}};
+    Table table{{sizes ? "vertices" : "strain", "within", "fastest", "time", "step, s", "error",
+                 "times as long: best of the paper"}};
     do {
       add_answers(table, *plane, sizes);
     } while (++plane != planes.end() && sizes && plane->sweep == first.sweep &&
