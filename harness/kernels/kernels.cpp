@@ -30,7 +30,6 @@
 #include "solvers/registry.h"
 #include "solvers/systems/constraint_system.h"
 #include "solvers/systems/kkt_system.h"
-#include "solvers/systems/projected_cg.h"
 
 namespace harness::kernels {
 namespace {
@@ -263,9 +262,9 @@ void kkt(benchmark::State& state, const std::string& solver, bool solve, int n) 
   if (solver == "projected_cg") {
     const Settings settings = complete_settings(*find_backend("icd"), {});
     const double tolerance = std::get<double>(settings.at("cg_tolerance"));
-    system = std::make_unique<ProjectedCg>(m.problem(), edges, ProjectedCg::Settings{tolerance});
+    system = make_projected_cg(m.problem(), edges, {tolerance});
   } else {
-    system = std::make_unique<KktSystem>(m.problem(), edges);
+    system = make_kkt_system(m.problem(), edges);
   }
   if (!l.solver->factor()) return state.SkipWithError("not positive definite");
   Eigen::VectorXd mu = l.c, q(edges.count());

@@ -104,9 +104,83 @@ class BlockTridiagonalSolver final : public SpdSolver {
     }
   }
   double* values() override { return values_.data(); }
-  bool factor() override;
-  void solve(double* rhs) override;
-  double reciprocal_condition() const override;
+
+  bool factor() override {
+    static constexpr std::size_t column[3] = {0, 4, 9};  // of row_values
+    const double* values = values_.data();
+    const auto pivot = [&](std::size_t row, const SymmetricBlock& lost) {
+      return rows_[row].pivot(diagonal(values, row), lost, least_pivot_);
+    };
+    const auto eliminate_downwards = [&](std::size_t row) {
+      const double* v = row_values(values, row + 1);
+      return rows_[row].eliminate([v](std::size_t r, std::size_t c) { return v[column[c] + r]; });
+    };
+    const auto eliminate_upwards = [&](std::size_t row) {  // the stored block transposed
+      const double* v = row_values(values, row);
+      return rows_[row].eliminate([v](std::size_t r, std::size_t c) { return v[column[r] + c]; });
+    };
+    std::size_t i = 0, j = rows_.size() - 1;
+    SymmetricBlock from_above{}, from_below{};  // lost by rows i and j
+    for (; i + 1 < j; ++i, --j) {
+      if (!pivot(i, from_above) || !pivot(j, from_below)) return false;
+      from_above = eliminate_downwards(i);
+      from_below = eliminate_upwards(j);
+    }
+    if (i < j) {  // an even number of rows: one more from above
+      if (!pivot(i, from_above)) return false;
+      from_above = eliminate_downwards(i);
+    }
+    return pivot(j, from_above + from_below);
+  }
+
+  void solve(double* rhs) override {
+    std::size_t i = 0, j = rows_.size() - 1;
+    Vector above = load(rhs + 3 * i), below = load(rhs + 3 * j);
+    const auto eliminate_above = [&] {
+      above = rows_[i].lower_solve(above);
+      store(above, rhs + 3 * i);
+    };
+    const auto eliminate_below = [&] {
+      below = rows_[j].lower_solve(below);
+      store(below, rhs + 3 * j);
+    };
+    for (; i + 2 < j; ++i, --j) {
+      eliminate_above();
+      eliminate_below();
+      above = rows_[i].reduce(load(rhs + 3 * (i + 1)), above);
+      below = rows_[j].reduce(load(rhs + 3 * (j - 1)), below);
+    }
+    if (i < j) eliminate_above();
+    if (i + 2 == j) {  // one row is left between them
+      eliminate_below();
+      below = rows_[j].reduce(load(rhs + 3 * (j - 1)), below);
+      --j;
+    }
+    if (i < j) below = rows_[i].reduce(below, above);
+    const Row& last = rows_[j];
+    above = below = last.upper_solve(last.scaled(last.lower_solve(below)));
+    store(below, rhs + 3 * j);
+    const auto substitute = [&](std::size_t row, Vector& x) {
+      x = rows_[row].substitute(load(rhs + 3 * row), x);
+      store(x, rhs + 3 * row);
+    };
+    i = j;
+    if (2 * j == rows_.size()) substitute(--i, above);  // an even number of rows: one more above
+    while (i > 0) {
+      substitute(--i, above);
+      substitute(++j, below);
+    }
+  }
+
+  double reciprocal_condition() const override {
+    double low = rows_[0].i0, high = low;
+    for (const Row& row : rows_) {
+      low = std::min({low, row.i0, row.i1, row.i2});
+      high = std::max({high, row.i0, row.i1, row.i2});
+    }
+    return low / high;
+  }
+
   double factor_nonzeros() const override { return static_cast<double>(values_.size()); }
   // The sum of squared column counts: 6, 5 and 4 in each row but the last.
   double factor_flops() const override {
@@ -117,82 +191,6 @@ class BlockTridiagonalSolver final : public SpdSolver {
   std::vector<double> values_;
   std::vector<Row> rows_;
 };
-
-bool BlockTridiagonalSolver::factor() {
-  static constexpr std::size_t column[3] = {0, 4, 9};  // of row_values
-  const double* values = values_.data();
-  const auto pivot = [&](std::size_t row, const SymmetricBlock& lost) {
-    return rows_[row].pivot(diagonal(values, row), lost, least_pivot_);
-  };
-  const auto eliminate_downwards = [&](std::size_t row) {
-    const double* v = row_values(values, row + 1);
-    return rows_[row].eliminate([v](std::size_t r, std::size_t c) { return v[column[c] + r]; });
-  };
-  const auto eliminate_upwards = [&](std::size_t row) {  // the stored block transposed
-    const double* v = row_values(values, row);
-    return rows_[row].eliminate([v](std::size_t r, std::size_t c) { return v[column[r] + c]; });
-  };
-  std::size_t i = 0, j = rows_.size() - 1;
-  SymmetricBlock from_above{}, from_below{};  // lost by rows i and j
-  for (; i + 1 < j; ++i, --j) {
-    if (!pivot(i, from_above) || !pivot(j, from_below)) return false;
-    from_above = eliminate_downwards(i);
-    from_below = eliminate_upwards(j);
-  }
-  if (i < j) {  // an even number of rows: one more from above
-    if (!pivot(i, from_above)) return false;
-    from_above = eliminate_downwards(i);
-  }
-  return pivot(j, from_above + from_below);
-}
-
-void BlockTridiagonalSolver::solve(double* rhs) {
-  std::size_t i = 0, j = rows_.size() - 1;
-  Vector above = load(rhs + 3 * i), below = load(rhs + 3 * j);
-  const auto eliminate_above = [&] {
-    above = rows_[i].lower_solve(above);
-    store(above, rhs + 3 * i);
-  };
-  const auto eliminate_below = [&] {
-    below = rows_[j].lower_solve(below);
-    store(below, rhs + 3 * j);
-  };
-  for (; i + 2 < j; ++i, --j) {
-    eliminate_above();
-    eliminate_below();
-    above = rows_[i].reduce(load(rhs + 3 * (i + 1)), above);
-    below = rows_[j].reduce(load(rhs + 3 * (j - 1)), below);
-  }
-  if (i < j) eliminate_above();
-  if (i + 2 == j) {  // one row is left between them
-    eliminate_below();
-    below = rows_[j].reduce(load(rhs + 3 * (j - 1)), below);
-    --j;
-  }
-  if (i < j) below = rows_[i].reduce(below, above);
-  const Row& last = rows_[j];
-  above = below = last.upper_solve(last.scaled(last.lower_solve(below)));
-  store(below, rhs + 3 * j);
-  const auto substitute = [&](std::size_t row, Vector& x) {
-    x = rows_[row].substitute(load(rhs + 3 * row), x);
-    store(x, rhs + 3 * row);
-  };
-  i = j;
-  if (2 * j == rows_.size()) substitute(--i, above);  // an even number of rows: one more above
-  while (i > 0) {
-    substitute(--i, above);
-    substitute(++j, below);
-  }
-}
-
-double BlockTridiagonalSolver::reciprocal_condition() const {
-  double low = rows_[0].i0, high = low;
-  for (const Row& row : rows_) {
-    low = std::min({low, row.i0, row.i1, row.i2});
-    high = std::max({high, row.i0, row.i1, row.i2});
-  }
-  return low / high;
-}
 
 }  // namespace
 

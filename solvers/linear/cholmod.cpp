@@ -32,7 +32,24 @@ class CholmodSolver final : public SpdSolver, CholmodAnalysis {
   CholmodSolver& operator=(const CholmodSolver&) = delete;
 
   double* values() override { return values_.data(); }
-  bool factor() override;
+
+  bool factor() override {
+    // LAPACK's Cholesky, inside the supernodal code, lets NaN pass: no pivot compares as negative.
+    if (!std::isfinite(std::accumulate(values_.begin(), values_.end(), 0.0))) return false;
+    const bool done = cholmod_factorize(&matrix_, l, &common);
+    if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (!done || common.status != CHOLMOD_OK || l->minor != l->n) return false;
+    if (l->is_super || l->is_ll) return true;
+    // L D L^T goes on through negative pivots: look at them.
+    const auto* start = static_cast<const int*>(l->p);
+    const auto* value = static_cast<const double*>(l->x);
+    for (int i = 0; i < pattern_.n; ++i) {
+      const std::size_t diagonal = pattern_.diagonal(i);
+      if (!(value[start[i]] > least_pivot_ * values_[diagonal])) return false;
+    }
+    return true;
+  }
+
   void solve(double* rhs) override {
     rhs_.x = rhs;
     cholmod_solve2(CHOLMOD_A, l, &rhs_, nullptr, &solution_, nullptr, &y_, &e_, &common);
@@ -49,23 +66,6 @@ class CholmodSolver final : public SpdSolver, CholmodAnalysis {
   cholmod_dense rhs_{};
   cholmod_dense *solution_ = nullptr, *y_ = nullptr, *e_ = nullptr;  // reused by cholmod_solve2
 };
-
-bool CholmodSolver::factor() {
-  // LAPACK's Cholesky, inside the supernodal code, lets NaN pass: no pivot compares as negative.
-  if (!std::isfinite(std::accumulate(values_.begin(), values_.end(), 0.0))) return false;
-  const bool done = cholmod_factorize(&matrix_, l, &common);
-  if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
-  if (!done || common.status != CHOLMOD_OK || l->minor != l->n) return false;
-  if (l->is_super || l->is_ll) return true;
-  // L D L^T goes on through negative pivots: look at them.
-  const auto* start = static_cast<const int*>(l->p);
-  const auto* value = static_cast<const double*>(l->x);
-  for (int i = 0; i < pattern_.n; ++i) {
-    const std::size_t diagonal = pattern_.diagonal(i);
-    if (!(value[start[i]] > least_pivot_ * values_[diagonal])) return false;
-  }
-  return true;
-}
 
 }  // namespace
 

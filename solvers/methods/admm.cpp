@@ -21,245 +21,199 @@
 
 #include "solvers/methods/rows.h"
 #include "solvers/systems/constraint_system.h"
+#include "solvers/systems/vertex_matrix.h"
 
 namespace inextensible {
 namespace {
 
+constexpr double contact_weight = 1;  // of a vertex's own term, times its mass
+
+Pairs ends_of(const Problem& problem) {
+  Pairs pairs;
+  for (const auto [a, b] : problem.edges()) pairs.emplace_back(a, b);
+  return pairs;
+}
+
 class Admm final : public VelocityFilter {
  public:
-  Admm(const Problem& problem, const BackendOptions& options);
-  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
-  const char* linear_solver() const override { return linear_solver_.c_str(); }
-  double reciprocal_condition() const override { return solver_->reciprocal_condition(); }
+  Admm(const Problem& problem, const BackendOptions& options)
+      : problem_(problem),
+        edges_(problem, options.strain_limit),
+        max_iterations_(options.count("max_iterations")),
+        relaxation_(options.number("relaxation")),
+        most_(options.number("direction_tolerance") * options.strain_limit /
+              options.number("penalty")),
+        most_push_(options.number("direction_tolerance") * options.strain_limit *
+                   problem.shortest_rest_length()),
+        shortest_(std::max(1 - options.number("target") * options.strain_limit, 0.0)),
+        longest_(1 + options.number("target") * options.strain_limit),
+        matrix_(problem, ends_of(problem), options.word("linear_solver"), 1),
+        target_(3, problem.vertices()) {
+    for (const auto [a, b] : problem.edges()) {
+      weight_.push_back(options.number("penalty") /
+                        (problem.inverse_mass()[a] + problem.inverse_mass()[b]));
+    }
+    rhs_.resize(static_cast<Eigen::Index>(matrix_.vertex.size()), 3);
+    if (problem.contact_inside()) anchor_.resize(3, problem.vertices());
+    z_.resize(3, problem.constraints());
+    u_.resize(3, problem.constraints());
+    last_u_.setZero(3, problem.constraints());
+  }
+
+  StepResult apply(const Positions& /*x_start*/, double h, Iterate x, WorkCounters& work) override {
+    if (edges_.permissible(x)) return {Status::ok, 0};
+    if (!factor(work)) return refuse(Status::singular, 0, edges_, x, "the matrix is singular");
+    x.without_pushes(target_);
+    start(h, x);
+    for (int j = 1; j <= max_iterations_; ++j) {
+      solve(x, work);
+      const bool edges_rest = project_edges(x), vertices_rest = project_vertices(x);
+      if (edges_rest && vertices_rest && ends(x)) {
+        last_u_ = u_ / (h * h);
+        return {Status::ok, j};
+      }
+      if (j % 64 == 0 && !x.positions().allFinite())
+        return refuse(Status::not_converged, j, edges_, x, "overflow");
+    }
+    return refuse(Status::not_converged, max_iterations_, edges_, x, "iteration limit");
+  }
+
+  const char* linear_solver() const override { return matrix_.linear_solver.c_str(); }
+  double reciprocal_condition() const override { return matrix_.solver->reciprocal_condition(); }
 
  private:
-  SymmetricPattern graph_of(
-      const std::vector<int>& order, bool one_chain,
-      SymmetricPattern::Triangle triangle = SymmetricPattern::Triangle::upper);
-  void choose_solver(std::string_view wanted);
-  bool factor(WorkCounters& work);
-  void start(double h, Iterate x);
-  void project_edge(int k, const Eigen::Vector3d& sum);
-  bool project_edges(const Positions& x);
-  bool project_vertices(Iterate x);
-  void solve(Positions& x, WorkCounters& work);
-  bool ends(Iterate x) const;
+  // M + D^T r D, once.
+  bool factor(WorkCounters& work) {
+    if (factored_) return true;
+    double* value = matrix_.solver->values();
+    std::fill(value, value + matrix_.pattern.entries(), 0.0);
+    const auto add = [&](int f, int g, double number) {
+      if (f >= 0 && g >= 0) value[matrix_.pattern.place(f, g)] += number;
+    };
+    const double scale = problem_.contact_inside() ? 1 + contact_weight : 1;
+    for (std::size_t f = 0; f < matrix_.vertex.size(); ++f) {
+      const int i = static_cast<int>(f);
+      add(i, i, scale * problem_.mass()[matrix_.vertex[f]]);
+    }
+    for (int k = 0; k < problem_.constraints(); ++k) {
+      const int a = matrix_.place[problem_.edges()[k].a], b = matrix_.place[problem_.edges()[k].b];
+      add(a, a, weight_[k]);
+      add(b, b, weight_[k]);
+      add(a, b, -weight_[k]);
+    }
+    ++work.assemblies;
+    ++work.factorizations;
+    factored_ = matrix_.solver->factor();
+    work.factor_nonzeros = matrix_.solver->factor_nonzeros();
+    work.factor_flops = matrix_.solver->factor_flops();
+    return factored_;
+  }
+
+  // u from the last accepted step's forces, and x where these would take the candidate.
+  void start(double h, Iterate iterate) {
+    Positions& x = iterate;
+    u_ = h * h * last_u_;
+    for (int k = 0; k < edges_.count(); ++k) {
+      const Eigen::Vector3d force = weight_[k] * u_.col(k);
+      if (edges_.wa[k] > 0) x.col(edges_.a[k]) += edges_.wa[k] * force;
+      if (edges_.wb[k] > 0) x.col(edges_.b[k]) -= edges_.wb[k] * force;
+    }
+    z_.setZero();
+    for (int k = 0; k < edges_.count(); ++k)
+      project_edge(k, x.col(edges_.b[k]) - x.col(edges_.a[k]) + u_.col(k));
+    project_vertices(iterate);
+  }
+
+  // z_k towards x_b - x_a + u_k. Without a direction it keeps the one that it had.
+  void project_edge(int k, const Eigen::Vector3d& sum) {
+    const double l = edges_.rest_length[k], norm = sum.norm();
+    if (norm > 0) z_.col(k) = std::clamp(norm, shortest_ * l, longest_ * l) / norm * sum;
+  }
+
+  // z and u; whether all edges of x keep the limit, and z has come to rest.
+  bool project_edges(const Positions& x) {
+    int violations = 0;
+    for (int k = 0; k < edges_.count(); ++k) {
+      const Eigen::Vector3d d = x.col(edges_.b[k]) - x.col(edges_.a[k]), before = z_.col(k),
+                            sum = d + (relaxation_ - 1) * (d - before) + u_.col(k);
+      const double l = edges_.rest_length[k], square = d.squaredNorm() / (l * l);
+      project_edge(k, sum);
+      u_.col(k) = sum - z_.col(k);
+      const bool fits = square >= edges_.permissible_low && square <= edges_.permissible_high;
+      const bool rests = (z_.col(k) - before).squaredNorm() <= most_ * most_ * l * l;
+      violations += fits && rests ? 0 : 1;
+    }
+    return violations == 0;
+  }
+
+  // anchor_ and contacts' pushes: u_v = -push / contact_weight along the normal. Whether pushes
+  // have come to rest.
+  bool project_vertices(Iterate x) {
+    Contacts* contacts = x.contacts();
+    if (!contacts) return true;
+    const Contacts::Timing measured = contacts->timing();
+    bool rest = true;
+    anchor_ = x.positions();
+    for (int c = 0; c < contacts->count(); ++c) {
+      const Eigen::Vector3d normal = contacts->normal(c);
+      const double before = contacts->push(c);
+      auto at = anchor_.col(contacts->vertex(c));
+      at -= before / contact_weight * normal;
+      const double gap = std::min(0.0, contacts->gap(c, at)), push = -contact_weight * gap;
+      contacts->set_push(c, push);
+      at -= 2 * gap * normal;
+      rest &= std::abs(push - before) <= most_push_;
+    }
+    return rest;
+  }
+
+  void solve(Positions& x, WorkCounters& work) {
+    for (std::size_t f = 0; f < matrix_.vertex.size(); ++f) {
+      const int v = matrix_.vertex[f];
+      auto row = rhs_.row(static_cast<Eigen::Index>(f));
+      row = problem_.mass()[v] * target_.col(v).transpose();
+      if (problem_.contact_inside())
+        row += contact_weight * problem_.mass()[v] * anchor_.col(v).transpose();
+    }
+    for (int k = 0; k < edges_.count(); ++k) {
+      const int a = matrix_.place[edges_.a[k]], b = matrix_.place[edges_.b[k]];
+      Eigen::RowVector3d pull = weight_[k] * (z_.col(k) - u_.col(k)).transpose();
+      if (a < 0) pull += weight_[k] * x.col(edges_.a[k]).transpose();
+      if (b < 0) pull -= weight_[k] * x.col(edges_.b[k]).transpose();
+      if (a >= 0) rhs_.row(a) -= pull;
+      if (b >= 0) rhs_.row(b) += pull;
+    }
+    for (int axis = 0; axis < 3; ++axis) matrix_.solver->solve(rhs_.col(axis).data());
+    work.back_solves += 3;
+    for (std::size_t f = 0; f < matrix_.vertex.size(); ++f)
+      x.col(matrix_.vertex[f]) = rhs_.row(static_cast<Eigen::Index>(f)).transpose();
+  }
+
+  // Moves vertices out of the obstacle; returns whether edges are still within the limit.
+  bool ends(Iterate x) const {
+    const Contacts* contacts = x.contacts();
+    for (int c = 0; c < x.contact_count(); ++c) {
+      auto at = x.positions().col(contacts->vertex(c));
+      at -= std::min(0.0, contacts->gap(c, at)) * contacts->normal(c);
+    }
+    return edges_.permissible(x);
+  }
 
   const Problem& problem_;
   EdgeConstraints edges_;
   int max_iterations_;
   double relaxation_;
-  double most_;                   // that z moves in the last iteration, in rest lengths
-  double most_push_;              // m, by which a contact's push changes in it
-  double shortest_, longest_;     // that an edge is brought to, in rest lengths
-  std::vector<double> weight_;    // of edges, kg
-  std::vector<int> free_vertex_;  // in elimination order
-  std::vector<int> place_;        // of a vertex among them, -1: pinned
-  SymmetricPattern pattern_;
-  std::string linear_solver_;
-  std::unique_ptr<SpdSolver> solver_;
+  double most_;                 // that z moves in the last iteration, in rest lengths
+  double most_push_;            // m, by which a contact's push changes in it
+  double shortest_, longest_;   // that an edge is brought to, in rest lengths
+  std::vector<double> weight_;  // of edges, kg
+  VertexMatrix matrix_;
   bool factored_ = false;
   Eigen::MatrixX3d rhs_;             // by free vertex
   Positions target_;                 // the candidate without what planes pushed it
   Positions anchor_;                 // z - u of vertices, with contact inside only
   Eigen::Matrix3Xd z_, u_, last_u_;  // of edges; last_u_: u / h^2 of the last accepted step
 };
-
-constexpr double contact_weight = 1;  // of a vertex's own term, times its mass
-
-Admm::Admm(const Problem& problem, const BackendOptions& options)
-    : problem_(problem),
-      edges_(problem, options.strain_limit),
-      max_iterations_(options.count("max_iterations")),
-      relaxation_(options.number("relaxation")),
-      most_(options.number("direction_tolerance") * options.strain_limit /
-            options.number("penalty")),
-      most_push_(options.number("direction_tolerance") * options.strain_limit *
-                 problem.shortest_rest_length()),
-      shortest_(std::max(1 - options.number("target") * options.strain_limit, 0.0)),
-      longest_(1 + options.number("target") * options.strain_limit),
-      place_(problem.vertices(), -1),
-      target_(3, problem.vertices()) {
-  for (const auto [a, b] : problem.edges()) {
-    weight_.push_back(options.number("penalty") /
-                      (problem.inverse_mass()[a] + problem.inverse_mass()[b]));
-  }
-  choose_solver(options.word("linear_solver"));
-  rhs_.resize(static_cast<Eigen::Index>(free_vertex_.size()), 3);
-  if (problem.contact_inside()) anchor_.resize(3, problem.vertices());
-  z_.resize(3, problem.constraints());
-  u_.resize(3, problem.constraints());
-  last_u_.setZero(3, problem.constraints());
-}
-
-// Which vertices of `order` share an edge, as a matrix in that order.
-SymmetricPattern Admm::graph_of(const std::vector<int>& order, bool one_chain,
-                                SymmetricPattern::Triangle triangle) {
-  free_vertex_ = order;
-  Pairs pairs;
-  for (int f = 0; f < static_cast<int>(order.size()); ++f) {
-    place_[order[f]] = f;
-    // Where one chain ends and the next begins the matrix holds zeros.
-    if (one_chain && f > 0) pairs.emplace_back(f - 1, f);
-  }
-  for (const auto [a, b] : problem_.edges()) {
-    if (place_[a] >= 0 && place_[b] >= 0) pairs.emplace_back(place_[a], place_[b]);
-  }
-  return pattern_of(static_cast<int>(order.size()), pairs, triangle);
-}
-
-void Admm::choose_solver(std::string_view wanted) {
-  std::vector<int> order;
-  for (int v = 0; v < problem_.vertices(); ++v) {
-    if (problem_.inverse_mass()[v] > 0) order.push_back(v);
-  }
-  pattern_ = graph_of(order, true);
-  linear_solver_ = wanted != "auto"    ? std::string(wanted)
-                   : pattern_.chain(1) ? "tridiagonal"
-                                       : "multifrontal";
-  const SpdSolverRow& row = spd_solver(linear_solver_);
-  if (row.fills) {
-    const std::vector<int> elimination = fill_reducing_order(graph_of(order, false));
-    for (std::size_t f = 0; f < order.size(); ++f) order[f] = free_vertex_[elimination[f]];
-    pattern_ = graph_of(order, false, row.triangle);
-  }
-  solver_ = make_spd_solver(linear_solver_, pattern_);
-}
-
-// M + D^T r D, once.
-bool Admm::factor(WorkCounters& work) {
-  if (factored_) return true;
-  double* value = solver_->values();
-  std::fill(value, value + pattern_.entries(), 0.0);
-  const auto add = [&](int f, int g, double number) {
-    if (f >= 0 && g >= 0) value[pattern_.place(f, g)] += number;
-  };
-  const double scale = problem_.contact_inside() ? 1 + contact_weight : 1;
-  for (std::size_t f = 0; f < free_vertex_.size(); ++f) {
-    const int i = static_cast<int>(f);
-    add(i, i, scale * problem_.mass()[free_vertex_[f]]);
-  }
-  for (int k = 0; k < problem_.constraints(); ++k) {
-    const int a = place_[problem_.edges()[k].a], b = place_[problem_.edges()[k].b];
-    add(a, a, weight_[k]);
-    add(b, b, weight_[k]);
-    add(a, b, -weight_[k]);
-  }
-  ++work.assemblies;
-  ++work.factorizations;
-  factored_ = solver_->factor();
-  work.factor_nonzeros = solver_->factor_nonzeros();
-  work.factor_flops = solver_->factor_flops();
-  return factored_;
-}
-
-// z_k towards x_b - x_a + u_k. Without a direction it keeps the one that it had.
-void Admm::project_edge(int k, const Eigen::Vector3d& sum) {
-  const double l = edges_.rest_length[k], norm = sum.norm();
-  if (norm > 0) z_.col(k) = std::clamp(norm, shortest_ * l, longest_ * l) / norm * sum;
-}
-
-// z and u; whether all edges of x keep the limit, and z has come to rest.
-bool Admm::project_edges(const Positions& x) {
-  int violations = 0;
-  for (int k = 0; k < edges_.count(); ++k) {
-    const Eigen::Vector3d d = x.col(edges_.b[k]) - x.col(edges_.a[k]), before = z_.col(k),
-                          sum = d + (relaxation_ - 1) * (d - before) + u_.col(k);
-    const double l = edges_.rest_length[k], square = d.squaredNorm() / (l * l);
-    project_edge(k, sum);
-    u_.col(k) = sum - z_.col(k);
-    const bool fits = square >= edges_.permissible_low && square <= edges_.permissible_high;
-    const bool rests = (z_.col(k) - before).squaredNorm() <= most_ * most_ * l * l;
-    violations += fits && rests ? 0 : 1;
-  }
-  return violations == 0;
-}
-
-// u from the last accepted step's forces, and x where these would take the candidate.
-void Admm::start(double h, Iterate iterate) {
-  Positions& x = iterate;
-  u_ = h * h * last_u_;
-  for (int k = 0; k < edges_.count(); ++k) {
-    const Eigen::Vector3d force = weight_[k] * u_.col(k);
-    if (edges_.wa[k] > 0) x.col(edges_.a[k]) += edges_.wa[k] * force;
-    if (edges_.wb[k] > 0) x.col(edges_.b[k]) -= edges_.wb[k] * force;
-  }
-  z_.setZero();
-  for (int k = 0; k < edges_.count(); ++k)
-    project_edge(k, x.col(edges_.b[k]) - x.col(edges_.a[k]) + u_.col(k));
-  project_vertices(iterate);
-}
-
-// anchor_ and contacts' pushes: u_v = -push / contact_weight along the normal. Whether pushes have
-// come to rest.
-bool Admm::project_vertices(Iterate x) {
-  Contacts* contacts = x.contacts();
-  if (!contacts) return true;
-  const Contacts::Timing measured = contacts->timing();
-  bool rest = true;
-  anchor_ = x.positions();
-  for (int c = 0; c < contacts->count(); ++c) {
-    const Eigen::Vector3d normal = contacts->normal(c);
-    const double before = contacts->push(c);
-    auto at = anchor_.col(contacts->vertex(c));
-    at -= before / contact_weight * normal;
-    const double gap = std::min(0.0, contacts->gap(c, at)), push = -contact_weight * gap;
-    contacts->set_push(c, push);
-    at -= 2 * gap * normal;
-    rest &= std::abs(push - before) <= most_push_;
-  }
-  return rest;
-}
-
-void Admm::solve(Positions& x, WorkCounters& work) {
-  for (std::size_t f = 0; f < free_vertex_.size(); ++f) {
-    const int v = free_vertex_[f];
-    auto row = rhs_.row(static_cast<Eigen::Index>(f));
-    row = problem_.mass()[v] * target_.col(v).transpose();
-    if (problem_.contact_inside())
-      row += contact_weight * problem_.mass()[v] * anchor_.col(v).transpose();
-  }
-  for (int k = 0; k < edges_.count(); ++k) {
-    const int a = place_[edges_.a[k]], b = place_[edges_.b[k]];
-    Eigen::RowVector3d pull = weight_[k] * (z_.col(k) - u_.col(k)).transpose();
-    if (a < 0) pull += weight_[k] * x.col(edges_.a[k]).transpose();
-    if (b < 0) pull -= weight_[k] * x.col(edges_.b[k]).transpose();
-    if (a >= 0) rhs_.row(a) -= pull;
-    if (b >= 0) rhs_.row(b) += pull;
-  }
-  for (int axis = 0; axis < 3; ++axis) solver_->solve(rhs_.col(axis).data());
-  work.back_solves += 3;
-  for (std::size_t f = 0; f < free_vertex_.size(); ++f)
-    x.col(free_vertex_[f]) = rhs_.row(static_cast<Eigen::Index>(f)).transpose();
-}
-
-// Moves vertices out of the obstacle; returns whether edges are still within the limit.
-bool Admm::ends(Iterate x) const {
-  const Contacts* contacts = x.contacts();
-  for (int c = 0; c < x.contact_count(); ++c) {
-    auto at = x.positions().col(contacts->vertex(c));
-    at -= std::min(0.0, contacts->gap(c, at)) * contacts->normal(c);
-  }
-  return edges_.permissible(x);
-}
-
-StepResult Admm::apply(const Positions& /*x_start*/, double h, Iterate x, WorkCounters& work) {
-  if (edges_.permissible(x)) return {Status::ok, 0};
-  if (!factor(work)) return refuse(Status::singular, 0, edges_, x, "the matrix is singular");
-  x.without_pushes(target_);
-  start(h, x);
-  for (int j = 1; j <= max_iterations_; ++j) {
-    solve(x, work);
-    const bool edges_rest = project_edges(x), vertices_rest = project_vertices(x);
-    if (edges_rest && vertices_rest && ends(x)) {
-      last_u_ = u_ / (h * h);
-      return {Status::ok, j};
-    }
-    if (j % 64 == 0 && !x.positions().allFinite())
-      return refuse(Status::not_converged, j, edges_, x, "overflow");
-  }
-  return refuse(Status::not_converged, max_iterations_, edges_, x, "iteration limit");
-}
 
 }  // namespace
 

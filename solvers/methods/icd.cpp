@@ -19,7 +19,6 @@
 #include "solvers/systems/active_contacts.h"
 #include "solvers/systems/constraint_system.h"
 #include "solvers/systems/kkt_system.h"
-#include "solvers/systems/projected_cg.h"
 
 namespace inextensible {
 namespace {
@@ -43,10 +42,9 @@ std::string choose(std::string_view wanted, const Problem& problem) {
 
 std::unique_ptr<KktSolver> make_kkt_solver(std::string_view name, const Problem& problem,
                                            const EdgeConstraints& edges, double cg_tolerance) {
-  if (name == projected_cg)
-    return std::make_unique<ProjectedCg>(problem, edges, ProjectedCg::Settings{cg_tolerance});
+  if (name == projected_cg) return make_projected_cg(problem, edges, {cg_tolerance});
   if (name == block_tridiagonal) return make_chain_kkt(problem, edges);
-  return std::make_unique<KktSystem>(problem, edges);
+  return make_kkt_system(problem, edges);
 }
 
 class Icd final : public VelocityFilter {

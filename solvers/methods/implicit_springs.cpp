@@ -43,7 +43,7 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared,
     reaction_.resize(p.vertices());
     released_.resize(p.vertices());
   }
-  const auto unknowns = static_cast<Eigen::Index>(3 * hessian_.free_vertex.size());
+  const auto unknowns = static_cast<Eigen::Index>(3 * hessian_.matrix.vertex.size());
   gradient_.resize(unknowns);
   step_.resize(unknowns);
   pull_.resize(hessian_.springs.size());
@@ -52,10 +52,10 @@ ImplicitSprings::ImplicitSprings(std::shared_ptr<const Problem> shared,
 
 double ImplicitSprings::energy(const Positions& x, double h) const {
   double inertia = 0, potential = 0;
-  for (const int v : hessian_.free_vertex)
+  for (const int v : hessian_.matrix.vertex)
     inertia += problem().mass()[v] * (x.col(v) - inertial_.col(v)).squaredNorm();
   if (problem().has_drag()) {  // backward Euler's drag is the gradient of h / 2 |x - x^n|_D^2
-    for (const int v : hessian_.free_vertex)
+    for (const int v : hessian_.matrix.vertex)
       inertia += h * problem().drag(v) * (x.col(v) - before_.col(v)).squaredNorm();
   }
   potential += 2 * bending_energy(problem().bending(), x);
@@ -72,12 +72,12 @@ double ImplicitSprings::energy(const Positions& x, double h) const {
 
 // gradient_ and, if wanted, the solver's matrix: M + h^2 sum of projected spring Hessians, at x.
 void ImplicitSprings::assemble(const Positions& x, double h, bool matrix) {
-  double* value = hessian_.solver->values();
-  if (matrix) std::fill(value, value + hessian_.entries, 0.0);
+  double* value = hessian_.matrix.solver->values();
+  if (matrix) std::fill(value, value + hessian_.matrix.pattern.entries(), 0.0);
   const double* p = x.data();
   double* g = gradient_.data();
-  for (std::size_t f = 0; f < hessian_.free_vertex.size(); ++f) {
-    const int v = hessian_.free_vertex[f];
+  for (std::size_t f = 0; f < hessian_.matrix.vertex.size(); ++f) {
+    const int v = hessian_.matrix.vertex[f];
     const double mass = hessian_.free_mass[f];
     const double drag = problem().has_drag() ? h * problem().drag(v) : 0;
     for (int i = 0; i < 3; ++i) {
@@ -117,7 +117,7 @@ void ImplicitSprings::assemble(const Positions& x, double h, bool matrix) {
 // along d d^T + transverse I: both diagonal blocks, and the coupling with the opposite sign.
 inline void ImplicitSprings::add_block(const Spring& s, const std::array<double, 3>& d,
                                        double along, double transverse) {
-  double* value = hessian_.solver->values();
+  double* value = hessian_.matrix.solver->values();
   const auto [dx, dy, dz] = d;
   const double xx = along * dx * dx + transverse, xy = along * dx * dy, xz = along * dx * dz,
                yy = along * dy * dy + transverse, yz = along * dy * dz,
@@ -143,11 +143,11 @@ inline void ImplicitSprings::add_block(const Spring& s, const std::array<double,
 // to nothing of it.
 void ImplicitSprings::hold_in_planes(bool matrix) {
   const Contacts::Timing measured = contacts_->timing();
-  double* value = hessian_.solver->values();
+  double* value = hessian_.matrix.solver->values();
   for (int c = 0; c < contacts_->count(); ++c) {
     if (!contacts_->holds(c)) continue;
     const Eigen::Vector3d n = contacts_->normal(c);
-    const int f = hessian_.free_place[contacts_->vertex(c)];
+    const int f = hessian_.matrix.place[contacts_->vertex(c)];
     auto g = gradient_.segment<3>(3 * f);
     reaction_[c] = n.dot(g);
     g -= reaction_[c] * n;
@@ -162,7 +162,7 @@ void ImplicitSprings::hold_in_planes(bool matrix) {
 
 // Bending's share of both: quadratic, so that the matrix is its Hessian.
 void ImplicitSprings::assemble_bending(const Positions& x, double h, bool matrix) {
-  double* value = hessian_.solver->values();
+  double* value = hessian_.matrix.solver->values();
   for (std::size_t k = 0; k < hessian_.hinges.size(); ++k) {
     const BendingStencil& s = problem().bending()[k];
     const Hinge& hinge = hessian_.hinges[k];

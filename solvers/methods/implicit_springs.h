@@ -18,8 +18,10 @@ namespace inextensible {
 class ImplicitSprings final : public Stepper {
  public:
   ImplicitSprings(std::shared_ptr<const Problem> problem, const BackendOptions& options);
-  const char* linear_solver() const override { return hessian_.linear_solver.c_str(); }
-  double reciprocal_condition() const override { return hessian_.solver->reciprocal_condition(); }
+  const char* linear_solver() const override { return hessian_.matrix.linear_solver.c_str(); }
+  double reciprocal_condition() const override {
+    return hessian_.matrix.solver->reciprocal_condition();
+  }
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override;

@@ -64,8 +64,8 @@ ImplicitSprings::Search ImplicitSprings::search(const Positions& x, double h, do
   double scale = 1;
   for (int halvings = 0;; ++halvings) {
     trial_ = x;
-    for (std::size_t f = 0; f < hessian_.free_vertex.size(); ++f) {
-      trial_.col(hessian_.free_vertex[f]) +=
+    for (std::size_t f = 0; f < hessian_.matrix.vertex.size(); ++f) {
+      trial_.col(hessian_.matrix.vertex[f]) +=
           scale * step_.segment<3>(static_cast<Eigen::Index>(3 * f));
     }
     const double next = energy(trial_, h);
@@ -146,7 +146,7 @@ bool ImplicitSprings::release_pulled() {
 StepResult ImplicitSprings::newton(double h, double current, Positions& x) {
   // Every step would seem to lower it.
   if (!std::isfinite(current)) return {Status::not_finite, 0, -1, 0, "the energy overflows"};
-  if (hessian_.free_vertex.empty()) return {};  // all are pinned: x is where they are
+  if (hessian_.matrix.vertex.empty()) return {};  // all are pinned: x is where they are
 
   bool reuse = false;
   double last_longest = 0;
@@ -158,15 +158,15 @@ StepResult ImplicitSprings::newton(double h, double current, Positions& x) {
     } else {
       ++work_.assemblies;
       ++work_.factorizations;
-      if (!hessian_.solver->factor()) {
+      if (!hessian_.matrix.solver->factor()) {
         return {std::isfinite(current) ? Status::singular : Status::not_finite, j, -1, 0,
                 "the Newton matrix is singular"};
       }
-      work_.factor_nonzeros = hessian_.solver->factor_nonzeros();
-      work_.factor_flops = hessian_.solver->factor_flops();
+      work_.factor_nonzeros = hessian_.matrix.solver->factor_nonzeros();
+      work_.factor_flops = hessian_.matrix.solver->factor_flops();
     }
     step_ = -gradient_;
-    hessian_.solver->solve(
+    hessian_.matrix.solver->solve(
         step_.data());  // Newton; Baraff and Witkin (1998) take its first step only
     ++work_.back_solves;
     const double longest = std::sqrt(Eigen::Map<const Positions>(step_.data(), 3, step_.size() / 3)

@@ -24,16 +24,99 @@
 namespace inextensible {
 namespace {
 
+constexpr double shortest_step = 1e-3;  // of Newton's
+constexpr const char* no_solution =
+    "the linear solver did not converge, or its multipliers grew too large";
+
 class Shake final : public VelocityFilter {
  public:
-  Shake(const Problem& problem, const BackendOptions& options);
-  StepResult apply(const Positions& x_start, double h, Iterate x, WorkCounters& work) override;
+  Shake(const Problem& problem, const BackendOptions& options)
+      : system_(problem, options.strain_limit, options.word("linear_solver")),
+        problem_(problem),
+        slack_(options.strain_limit * problem.longest_rest_length() *
+               std::sqrt(problem.total_mass())),
+        max_iterations_(options.count("max_iterations")),
+        min_iterations_(options.count("min_iterations")),
+        target_(options.number("target")),
+        forcing_(options.number("forcing")),
+        u_start_(3, problem.constraints()),
+        u_(3, problem.constraints()),
+        c_(problem.constraints()),
+        mu_(problem.constraints()),
+        best_{Positions(3, problem.vertices()), {}} {}
+
+  StepResult apply(const Positions& x_start, double /*h*/, Iterate x, WorkCounters& work) override {
+    const EdgeConstraints& edges = system_.edges();
+    Matrix matrix = Matrix::start;
+    double least_error = 0;  // |C| at best_
+    double full_step = 0;    // |mu_| before halving
+    double reach = 0;        // largest |x^{n+1} - x^n| that is not taken for spurious
+    for (int j = 0;; ++j) {
+      const bool permissible = linearize(x);
+      const double error = c_.norm();
+      const bool exact = error == 0 && (target_ > 0 || j > 0);  // nothing is left to project
+      if (permissible && (j >= min_iterations_ || exact)) {
+        if (j > 0 && distance(x_start, x) > reach)
+          return refuse(Status::not_converged, j, edges, x, "a spurious solution, far from x^n");
+        return {Status::ok, j};
+      }
+      if (j == max_iterations_)
+        return refuse(Status::not_converged, j, edges, x, "iteration limit");
+
+      if (j == 0) {
+        reach = edges.permissible(x_start) ? 2 * distance(x_start, x) + slack_
+                                           : std::numeric_limits<double>::infinity();
+        if (!factor_start(x_start, x.contacts(), work)) {
+          return refuse(Status::singular, j, edges, x,
+                        "J W J^T at the start of the step is not positive definite");
+        }
+      } else if (error < 0.5 * least_error) {
+        if (matrix == Matrix::here) matrix = Matrix::kept;
+      } else if (matrix == Matrix::here && !(error < least_error)) {  // no decrease: half the step
+        if (mu_.norm() < shortest_step * full_step) {
+          return refuse(Status::not_converged, j, edges, x,
+                        "no step along J(x^n) lowers the constraint error");
+        }
+        ++work.line_search_steps;
+        mu_ *= 0.5;
+        x.restore(best_);
+        correct(x);
+        continue;
+      } else {
+        if (!(error < least_error)) {
+          x.restore(best_);
+          linearize(x);
+        }
+        if (!factor_here(x.contacts(), work))
+          return refuse(Status::singular, j, edges, x, "J(x_j) W J(x^n)^T is singular");
+        matrix = Matrix::here;
+      }
+      least_error = c_.norm();
+      x.save(best_);
+      if (!solve(matrix, work)) return refuse(Status::singular, j, edges, x, no_solution);  // (7)
+      full_step = mu_.norm();
+      correct(x);  // (5)
+    }
+  }
 
   // RATTLE's velocity stage (Andersen 1983): v -= W J^T nu with J = J(x), so that J v = 0, and
   // nothing moves through a plane that holds it. Without contacts the factor is kept: a step that
   // starts at this x does not build it again. contacts: null, or those of this step.
   StepResult project_velocity(const Positions& x, const Contacts* contacts, Positions& v,
-                              WorkCounters& work);
+                              WorkCounters& work) {
+    const EdgeConstraints& edges = system_.edges();
+    if (!factor_start(x, contacts, work)) {
+      return refuse(Status::singular, 0, edges, x,
+                    "J W J^T at the end of the step is not positive definite");
+    }
+    x_factored_ = x;
+    factored_ = !contacts;         // which will be others in the next step
+    edges.rate(u_start_, v, mu_);  // J v
+    if (!system_.solve(mu_, work)) return refuse(Status::singular, 0, edges, x, no_solution);
+    edges.apply(u_start_, mu_, v);
+    if (contacts) contacts->keep_on_planes(x, v);
+    return {};
+  }
 
   const char* linear_solver() const override { return system_.solver_name().c_str(); }
   double reciprocal_condition() const override { return system_.reciprocal_condition(); }
@@ -43,13 +126,54 @@ class Shake final : public VelocityFilter {
   // this iterate or of an earlier one.
   enum class Matrix { start, here, kept };
   // J(x_start) W J(x_start)^T, unless it is there already. False if it is not positive definite.
-  bool factor_start(const Positions& x_start, const Contacts* contacts, WorkCounters& work);
-  bool factor_here(const Contacts* contacts, WorkCounters& work);
-  bool solve(Matrix matrix, WorkCounters& work);
-  bool linearize(const Positions& x);
-  void correct(Iterate x);
+  bool factor_start(const Positions& x_start, const Contacts* contacts, WorkCounters& work) {
+    if (factored_ && x_factored_ == x_start) return true;
+    factored_ = false;
+    system_.edges().gradient(x_start, u_start_);
+    return system_.factor(u_start_, contacts, work);
+  }
+
+  bool factor_here(const Contacts* contacts, WorkCounters& work) {
+    if (!current_) {
+      current_ = std::make_unique<SchurComplement>(system_.edges(), problem_.vertices(),
+                                                   SymmetricPattern::Triangle::both);
+      current_solver_ = make_unsymmetric_solver(current_->pattern());
+    }
+    current_->assemble(u_, u_start_, current_solver_->values());
+    if (contacts) current_->subtract_contacts(*contacts, u_, u_start_, current_solver_->values());
+    ++work.assemblies;
+    ++work.factorizations;
+    return current_solver_->factor();
+  }
+
+  bool solve(Matrix matrix, WorkCounters& work) {
+    mu_ = c_;
+    if (matrix == Matrix::start)
+      return system_.solve(mu_, work, forcing_);  // (7) with J(x^n) on both sides
+    current_solver_->solve(mu_.data());           // (7) with J(x_j) W J(x^n)^T
+    ++work.back_solves;
+    return true;
+  }
+
+  // The gradient to u_; what of C lies beyond the target to c_. Returns whether x is permissible.
+  bool linearize(const Positions& x) {
+    const bool permissible = system_.edges().linearize(x, u_, c_);
+    if (target_ > 0) system_.edges().excess(target_, c_);
+    return permissible;
+  }
+
+  void correct(Iterate x) {
+    system_.edges().apply(u_start_, mu_, x);  // (5) with J(x^n)
+    x.settle();
+  }
+
   // |x - x_start| in the norm of M.
-  double distance(const Positions& x_start, const Positions& x) const;
+  double distance(const Positions& x_start, const Positions& x) const {
+    double sum = 0;
+    for (Eigen::Index v = 0; v < x.cols(); ++v)
+      sum += problem_.mass()[v] * (x.col(v) - x_start.col(v)).squaredNorm();
+    return std::sqrt(sum);
+  }
 
   ConstraintSystem system_;
   const Problem& problem_;
@@ -66,142 +190,6 @@ class Shake final : public VelocityFilter {
   std::unique_ptr<UnsymmetricSolver> current_solver_;
 };
 
-constexpr double shortest_step = 1e-3;  // of Newton's
-constexpr const char* no_solution =
-    "the linear solver did not converge, or its multipliers grew too large";
-
-Shake::Shake(const Problem& problem, const BackendOptions& options)
-    : system_(problem, options.strain_limit, options.word("linear_solver")),
-      problem_(problem),
-      slack_(options.strain_limit * problem.longest_rest_length() *
-             std::sqrt(problem.total_mass())),
-      max_iterations_(options.count("max_iterations")),
-      min_iterations_(options.count("min_iterations")),
-      target_(options.number("target")),
-      forcing_(options.number("forcing")),
-      u_start_(3, problem.constraints()),
-      u_(3, problem.constraints()),
-      c_(problem.constraints()),
-      mu_(problem.constraints()),
-      best_{Positions(3, problem.vertices()), {}} {}
-
-StepResult Shake::apply(const Positions& x_start, double /*h*/, Iterate x, WorkCounters& work) {
-  const EdgeConstraints& edges = system_.edges();
-  Matrix matrix = Matrix::start;
-  double least_error = 0;  // |C| at best_
-  double full_step = 0;    // |mu_| before halving
-  double reach = 0;        // largest |x^{n+1} - x^n| that is not taken for spurious
-  for (int j = 0;; ++j) {
-    const bool permissible = linearize(x);
-    const double error = c_.norm();
-    const bool exact = error == 0 && (target_ > 0 || j > 0);  // nothing is left to project
-    if (permissible && (j >= min_iterations_ || exact)) {
-      if (j > 0 && distance(x_start, x) > reach)
-        return refuse(Status::not_converged, j, edges, x, "a spurious solution, far from x^n");
-      return {Status::ok, j};
-    }
-    if (j == max_iterations_) return refuse(Status::not_converged, j, edges, x, "iteration limit");
-
-    if (j == 0) {
-      reach = edges.permissible(x_start) ? 2 * distance(x_start, x) + slack_
-                                         : std::numeric_limits<double>::infinity();
-      if (!factor_start(x_start, x.contacts(), work)) {
-        return refuse(Status::singular, j, edges, x,
-                      "J W J^T at the start of the step is not positive definite");
-      }
-    } else if (error < 0.5 * least_error) {
-      if (matrix == Matrix::here) matrix = Matrix::kept;
-    } else if (matrix == Matrix::here && !(error < least_error)) {  // no decrease: half the step
-      if (mu_.norm() < shortest_step * full_step) {
-        return refuse(Status::not_converged, j, edges, x,
-                      "no step along J(x^n) lowers the constraint error");
-      }
-      ++work.line_search_steps;
-      mu_ *= 0.5;
-      x.restore(best_);
-      correct(x);
-      continue;
-    } else {
-      if (!(error < least_error)) {
-        x.restore(best_);
-        linearize(x);
-      }
-      if (!factor_here(x.contacts(), work))
-        return refuse(Status::singular, j, edges, x, "J(x_j) W J(x^n)^T is singular");
-      matrix = Matrix::here;
-    }
-    least_error = c_.norm();
-    x.save(best_);
-    if (!solve(matrix, work)) return refuse(Status::singular, j, edges, x, no_solution);  // (7)
-    full_step = mu_.norm();
-    correct(x);  // (5)
-  }
-}
-
-// The gradient to u_; what of C lies beyond the target to c_. Returns whether x is permissible.
-bool Shake::linearize(const Positions& x) {
-  const bool permissible = system_.edges().linearize(x, u_, c_);
-  if (target_ > 0) system_.edges().excess(target_, c_);
-  return permissible;
-}
-
-bool Shake::solve(Matrix matrix, WorkCounters& work) {
-  mu_ = c_;
-  if (matrix == Matrix::start)
-    return system_.solve(mu_, work, forcing_);  // (7) with J(x^n) on both sides
-  current_solver_->solve(mu_.data());           // (7) with J(x_j) W J(x^n)^T
-  ++work.back_solves;
-  return true;
-}
-
-void Shake::correct(Iterate x) {
-  system_.edges().apply(u_start_, mu_, x);  // (5) with J(x^n)
-  x.settle();
-}
-
-bool Shake::factor_start(const Positions& x_start, const Contacts* contacts, WorkCounters& work) {
-  if (factored_ && x_factored_ == x_start) return true;
-  factored_ = false;
-  system_.edges().gradient(x_start, u_start_);
-  return system_.factor(u_start_, contacts, work);
-}
-
-StepResult Shake::project_velocity(const Positions& x, const Contacts* contacts, Positions& v,
-                                   WorkCounters& work) {
-  const EdgeConstraints& edges = system_.edges();
-  if (!factor_start(x, contacts, work)) {
-    return refuse(Status::singular, 0, edges, x,
-                  "J W J^T at the end of the step is not positive definite");
-  }
-  x_factored_ = x;
-  factored_ = !contacts;         // which will be others in the next step
-  edges.rate(u_start_, v, mu_);  // J v
-  if (!system_.solve(mu_, work)) return refuse(Status::singular, 0, edges, x, no_solution);
-  edges.apply(u_start_, mu_, v);
-  if (contacts) contacts->keep_on_planes(x, v);
-  return {};
-}
-
-double Shake::distance(const Positions& x_start, const Positions& x) const {
-  double sum = 0;
-  for (Eigen::Index v = 0; v < x.cols(); ++v)
-    sum += problem_.mass()[v] * (x.col(v) - x_start.col(v)).squaredNorm();
-  return std::sqrt(sum);
-}
-
-bool Shake::factor_here(const Contacts* contacts, WorkCounters& work) {
-  if (!current_) {
-    current_ = std::make_unique<SchurComplement>(system_.edges(), problem_.vertices(),
-                                                 SymmetricPattern::Triangle::both);
-    current_solver_ = make_unsymmetric_solver(current_->pattern());
-  }
-  current_->assemble(u_, u_start_, current_solver_->values());
-  if (contacts) current_->subtract_contacts(*contacts, u_, u_start_, current_solver_->values());
-  ++work.assemblies;
-  ++work.factorizations;
-  return current_solver_->factor();
-}
-
 // RATTLE (Andersen 1983): SHAKE's kin with velocities at the ends of steps. Second order,
 // symmetric, hence without damping:
 //   x^{n+1} = x^n + h v^n + h^2/2 (a(x^n) - W J(x^n)^T lambda)   with C(x^{n+1}) = 0  (SHAKE),
@@ -216,48 +204,44 @@ class Rattle final : public Stepper {
   double reciprocal_condition() const override { return shake_.reciprocal_condition(); }
 
  private:
-  StepResult solve(const State& state, double h, Positions& x) override;
-  StepResult end_velocities(const State& start, double h, const Positions& filtered,
-                            const Positions& x, Positions& v) override;
+  StepResult solve(const State& state, double h, Positions& x) override {
+    Stopwatch stopwatch(phases_wanted_);
+    x = state.x + h * state.v;  // position stage (Andersen 1983)
+    add_acceleration(*problem_, state.x, 0.5 * h * h, x, work_);
+    if (problem_->has_drag()) add_drag(*problem_, state.v, 0.5 * h * h, x);
+    for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
+    phases_.unconstrained += stopwatch();
+    const StepResult result = apply_until_clear(shake_, contacts_inside(), state.x, h, x, work_);
+    phases_.filter += stopwatch();
+    return result;
+  }
+
+  StepResult end_velocities(const State& start, double h, const Positions& /*filtered*/,
+                            const Positions& x, Positions& v) override {
+    Stopwatch stopwatch(phases_wanted_);
+    v = (x - start.x) * (1 / h);  // velocity stage
+    if (problem_->has_drag()) {   // of the velocity halfway
+      v_half_ = v;
+      add_drag(*problem_, v_half_, 0.5 * h, v);
+    }
+    add_acceleration(*problem_, x, 0.5 * h, v, work_);
+    for (const int vertex : problem_->pinned())  // 0 unless pins follow a body
+      v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
+    if (const Contacts* contacts = contacts_inside()) {  // which bear what presses on them
+      for (int c = 0; c < contacts->count(); ++c) {
+        const int vertex = contacts->vertex(c);
+        if (contacts->holds(c)) v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
+      }
+    }
+    phases_.unconstrained += stopwatch();
+    const StepResult result = shake_.project_velocity(x, contacts_inside(), v, work_);
+    phases_.filter += stopwatch();
+    return result;
+  }
 
   Shake shake_;
   Positions v_half_;  // with drag only
 };
-
-StepResult Rattle::solve(const State& state, double h, Positions& x) {
-  Stopwatch stopwatch(phases_wanted_);
-  x = state.x + h * state.v;  // position stage (Andersen 1983)
-  add_acceleration(*problem_, state.x, 0.5 * h * h, x, work_);
-  if (problem_->has_drag()) add_drag(*problem_, state.v, 0.5 * h * h, x);
-  for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
-  phases_.unconstrained += stopwatch();
-  const StepResult result = apply_until_clear(shake_, contacts_inside(), state.x, h, x, work_);
-  phases_.filter += stopwatch();
-  return result;
-}
-
-StepResult Rattle::end_velocities(const State& start, double h, const Positions& /*filtered*/,
-                                  const Positions& x, Positions& v) {
-  Stopwatch stopwatch(phases_wanted_);
-  v = (x - start.x) * (1 / h);  // velocity stage
-  if (problem_->has_drag()) {   // of the velocity halfway
-    v_half_ = v;
-    add_drag(*problem_, v_half_, 0.5 * h, v);
-  }
-  add_acceleration(*problem_, x, 0.5 * h, v, work_);
-  for (const int vertex : problem_->pinned())  // 0 unless pins follow a body
-    v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
-  if (const Contacts* contacts = contacts_inside()) {  // which bear what presses on them
-    for (int c = 0; c < contacts->count(); ++c) {
-      const int vertex = contacts->vertex(c);
-      if (contacts->holds(c)) v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
-    }
-  }
-  phases_.unconstrained += stopwatch();
-  const StepResult result = shake_.project_velocity(x, contacts_inside(), v, work_);
-  phases_.filter += stopwatch();
-  return result;
-}
 
 std::vector<SettingInfo> shake_settings(double min_iterations) {
   return {

@@ -54,14 +54,33 @@ using chain::Vector;
 
 class ChainKkt final : public KktSolver {
  public:
-  ChainKkt(const Problem& problem, const EdgeConstraints& edges);
-
-  // A matrix that elimination in this order cannot take is left to UMFPACK.
-  bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, const Contacts* contacts,
-              bool convex, WorkCounters& work) override;
-  bool solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
-             WorkCounters& work) override;
-  double reciprocal_condition() const override;
+  ChainKkt(const Problem& problem, const EdgeConstraints& edges)
+      : KktSolver(problem, edges),
+        curvature_(problem.constraints()),
+        r_(3, problem.vertices()),
+        correction_p_(3, problem.vertices()),
+        c_(problem.constraints()),
+        correction_q_(problem.constraints()) {
+    if (!forms_chains(problem)) {
+      throw std::invalid_argument(
+          "the linear solver 'block_tridiagonal' needs vertices that form chains in order, each "
+          "pinned once at most between its ends");
+    }
+    // By place in `edges`, which may have an order of its own.
+    std::vector<int> place(edges.count());
+    for (int k = 0; k < edges.count(); ++k) place[edges.problem_edge(k)] = k;
+    std::vector<int> after = edges_after(problem);
+    const std::vector<Run> runs = runs_of(problem, after);
+    for (int& edge : after) edge = edge < 0 ? -1 : place[edge];
+    for (const auto& [begin, end, down, unused] : runs) {  // towards the pin
+      for (int i = 0; i < end - begin; ++i) {
+        const int vertex = down ? end - 1 - i : begin + i, edge = after[down ? vertex - 1 : vertex];
+        links_.push_back({vertex, edge, edge >= 0 && edges_.a[edge] == vertex, i + 1 < end - begin,
+                          problem.mass()[vertex] / mean_mass_});
+      }
+    }
+    blocks_.resize(links_.size());
+  }
 
  private:
   // A free vertex, in elimination order: towards the pin where there is one.
@@ -73,192 +92,139 @@ class ChainKkt final : public KktSolver {
     double mass;     // over the mean mass
   };
 
-  bool eliminate(const Eigen::Matrix3Xd& u);
-  void substitute(Positions& p, Eigen::VectorXd& q) const;
-  double subtract_product(const Positions& p, const Eigen::VectorXd& q);
-  bool leave_to_umfpack(WorkCounters& work);
+  bool eliminate() {
+    negative_pivots_ = 0;
+    smallest_pivot_ = std::numeric_limits<double>::infinity();
+    largest_pivot_ = 0;
+    Symmetric here;  // A_i but for its mass and the edge to the next vertex
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      const Link& link = links_[i];
+      chain::ChainBlock& block = blocks_[i];
+      add_diagonal(here, link.mass);
+      bool regular = true;
+      if (link.edge < 0) {
+        regular = block.pivot_last(here);
+      } else {
+        block.curvature = curvature_[link.edge];
+        block.g = (link.turned ? -1.0 : 1.0) * load(u_->data() + 3 * link.edge);
+        add_diagonal(here, block.curvature);
+        regular = block.pivot(here);
+      }
+      if (!regular) return false;
+      negative_pivots_ += block.negative;
+      smallest_pivot_ = std::min(smallest_pivot_, block.smallest);
+      largest_pivot_ = std::max(largest_pivot_, block.largest);
+      here = {};
+      if (!link.next_free) continue;
+      add_diagonal(here, block.curvature);
+      block.take_from(here);
+    }
+    return true;
+  }
 
-  const Problem& problem_;
-  const EdgeConstraints& edges_;
+  bool factor_itself(WorkCounters& work) override {
+    for (;; convex_ = true) {
+      convexified_ = convex_;
+      for (Eigen::Index k = 0; k < mu_->size(); ++k) curvature_[k] = curvature(k);
+      ++work.assemblies;
+      ++work.factorizations;
+      if (!eliminate()) return false;
+      work.factor_nonzeros = numbers_per_block * static_cast<double>(links_.size());
+      work.factor_flops = operations_per_block * static_cast<double>(links_.size());
+      if (convex_ || negative_pivots_ == edges_.count()) return true;
+    }
+  }
+
+  // A matrix that elimination in this order cannot take is left to UMFPACK.
+  std::unique_ptr<KktSolver> make_other() const override {
+    return make_kkt_system(problem_, edges_, FactoredBy::umfpack);
+  }
+  double own_reciprocal_condition() const override { return smallest_pivot_ / largest_pivot_; }
+
+  void substitute(Positions& p, Eigen::VectorXd& q) const {
+    const auto right = [&](const Link& link) { return link.edge < 0 ? 0.0 : q[link.edge]; };
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      const Link& link = links_[i];
+      if (!link.next_free) continue;
+      const chain::ChainBlock& block = blocks_[i];
+      const auto [y, z] = block.solve(load(p.data() + 3 * link.vertex), right(link));
+      const Vector taken = block.curvature * y + z * block.g;
+      double* next = p.data() + 3 * links_[i + 1].vertex;
+      next[0] += taken.x, next[1] += taken.y, next[2] += taken.z;
+    }
+    Vector next;
+    for (std::size_t i = links_.size(); i-- > 0;) {
+      const Link& link = links_[i];
+      const chain::ChainBlock& block = blocks_[i];
+      if (!link.next_free) next = {};
+      double* at = p.data() + 3 * link.vertex;
+      const auto [y, z] =
+          block.solve(load(at) + block.curvature * next, right(link) + dot(block.g, next));
+      at[0] = y.x, at[1] = y.y, at[2] = y.z;
+      if (link.edge >= 0) q[link.edge] = z;
+      next = y;
+    }
+  }
+
+  // r_ and c_ less K (p, q); returns the norm of what is left.
+  double subtract_product(const Positions& p, const Eigen::VectorXd& q) {
+    double sum = 0;
+    Vector from_before;  // what the edge before has taken from r_ at its far end
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      const Link& link = links_[i];
+      const chain::ChainBlock& block = blocks_[i];
+      double* r = r_.data() + 3 * link.vertex;
+      const Vector here = load(p.data() + 3 * link.vertex);
+      const Vector next = link.next_free ? load(p.data() + 3 * links_[i + 1].vertex) : Vector{};
+      Vector force = block.curvature * (here - next);
+      if (link.edge >= 0) {
+        force = force + q[link.edge] * block.g;
+        double& c = c_[link.edge];
+        c -= dot(block.g, here - next);
+        sum += c * c;
+      }
+      const Vector left = load(r) - link.mass * here - force + from_before;
+      r[0] = left.x, r[1] = left.y, r[2] = left.z;
+      sum += dot(left, left);
+      from_before = link.next_free ? force : Vector{};
+    }
+    return std::sqrt(sum);
+  }
+
+  bool solve_itself(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
+                    WorkCounters& work) override {
+    r_ = r;
+    for (const int vertex : problem_.pinned()) r_.col(vertex).setZero();
+    c_ = c;
+    const double scale = std::sqrt(r_.squaredNorm() + c_.squaredNorm());
+    p.setZero();
+    q.setZero();
+    double error = scale;
+    for (int i = 0; i < chain_refinement_limit && error > refinement_goal * scale; ++i) {
+      correction_p_ = r_;
+      correction_q_ = c_;
+      substitute(correction_p_, correction_q_);
+      ++work.back_solves;
+      p += correction_p_;
+      q += correction_q_;
+      const double last = error;
+      r_ = r;
+      for (const int vertex : problem_.pinned()) r_.col(vertex).setZero();
+      c_ = c;
+      error = subtract_product(p, q);
+      if (!(error < 0.5 * last)) break;
+    }
+    return error <= acceptable_residual * scale;  // false on NaN
+  }
+
   std::vector<Link> links_;
   std::vector<chain::ChainBlock> blocks_;  // the factor, one a link
   int negative_pivots_ = 0;
   double smallest_pivot_ = 1, largest_pivot_ = 1;
-  const Eigen::Matrix3Xd* u_ = nullptr;  // of the last factor(), as is mu_
-  const Eigen::VectorXd* mu_ = nullptr;
   Eigen::VectorXd curvature_;  // of each edge in H
   Positions r_, correction_p_;
   Eigen::VectorXd c_, correction_q_;
-  bool left_to_umfpack_ = false;
-  std::unique_ptr<KktSystem> umfpack_;  // made when first needed
 };
-
-ChainKkt::ChainKkt(const Problem& problem, const EdgeConstraints& edges)
-    : KktSolver(problem),
-      problem_(problem),
-      edges_(edges),
-      curvature_(problem.constraints()),
-      r_(3, problem.vertices()),
-      correction_p_(3, problem.vertices()),
-      c_(problem.constraints()),
-      correction_q_(problem.constraints()) {
-  if (!forms_chains(problem)) {
-    throw std::invalid_argument(
-        "the linear solver 'block_tridiagonal' needs vertices that form chains in order, each "
-        "pinned once at most between its ends");
-  }
-  // By place in `edges`, which may have an order of its own.
-  std::vector<int> place(edges.count());
-  for (int k = 0; k < edges.count(); ++k) place[edges.problem_edge(k)] = k;
-  std::vector<int> after = edges_after(problem);
-  const std::vector<Run> runs = runs_of(problem, after);
-  for (int& edge : after) edge = edge < 0 ? -1 : place[edge];
-  for (const auto& [begin, end, down, unused] : runs) {  // towards the pin
-    for (int i = 0; i < end - begin; ++i) {
-      const int vertex = down ? end - 1 - i : begin + i, edge = after[down ? vertex - 1 : vertex];
-      links_.push_back({vertex, edge, edge >= 0 && edges_.a[edge] == vertex, i + 1 < end - begin,
-                        problem.mass()[vertex] / mean_mass_});
-    }
-  }
-  blocks_.resize(links_.size());
-}
-
-bool ChainKkt::eliminate(const Eigen::Matrix3Xd& u) {
-  negative_pivots_ = 0;
-  smallest_pivot_ = std::numeric_limits<double>::infinity();
-  largest_pivot_ = 0;
-  Symmetric here;  // A_i but for its mass and the edge to the next vertex
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    const Link& link = links_[i];
-    chain::ChainBlock& block = blocks_[i];
-    add_diagonal(here, link.mass);
-    bool regular = true;
-    if (link.edge < 0) {
-      regular = block.pivot_last(here);
-    } else {
-      block.curvature = curvature_[link.edge];
-      block.g = (link.turned ? -1.0 : 1.0) * load(u.data() + 3 * link.edge);
-      add_diagonal(here, block.curvature);
-      regular = block.pivot(here);
-    }
-    if (!regular) return false;
-    negative_pivots_ += block.negative;
-    smallest_pivot_ = std::min(smallest_pivot_, block.smallest);
-    largest_pivot_ = std::max(largest_pivot_, block.largest);
-    here = {};
-    if (!link.next_free) continue;
-    add_diagonal(here, block.curvature);
-    block.take_from(here);
-  }
-  return true;
-}
-
-bool ChainKkt::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
-                      const Contacts* /*contacts*/, bool convex, WorkCounters& work) {
-  u_ = &u;
-  mu_ = &mu;
-  left_to_umfpack_ = false;
-  for (;; convex = true) {
-    convexified_ = convex;
-    for (Eigen::Index k = 0; k < mu.size(); ++k) {
-      curvature_[k] = convex && mu[k] < 0 ? 0 : 2 * mu[k] * edges_.inverse_rest_length[k];
-    }
-    ++work.assemblies;
-    ++work.factorizations;
-    if (!eliminate(u)) return leave_to_umfpack(work);
-    work.factor_nonzeros = numbers_per_block * static_cast<double>(links_.size());
-    work.factor_flops = operations_per_block * static_cast<double>(links_.size());
-    if (convex || negative_pivots_ == edges_.count()) return true;
-  }
-}
-
-bool ChainKkt::leave_to_umfpack(WorkCounters& work) {
-  if (!umfpack_) umfpack_ = std::make_unique<KktSystem>(problem_, edges_, KktSystem::By::umfpack);
-  left_to_umfpack_ = true;
-  return umfpack_->factor(*u_, *mu_, nullptr, convexified_, work);
-}
-
-void ChainKkt::substitute(Positions& p, Eigen::VectorXd& q) const {
-  const auto right = [&](const Link& link) { return link.edge < 0 ? 0.0 : q[link.edge]; };
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    const Link& link = links_[i];
-    if (!link.next_free) continue;
-    const chain::ChainBlock& block = blocks_[i];
-    const auto [y, z] = block.solve(load(p.data() + 3 * link.vertex), right(link));
-    const Vector taken = block.curvature * y + z * block.g;
-    double* next = p.data() + 3 * links_[i + 1].vertex;
-    next[0] += taken.x, next[1] += taken.y, next[2] += taken.z;
-  }
-  Vector next;
-  for (std::size_t i = links_.size(); i-- > 0;) {
-    const Link& link = links_[i];
-    const chain::ChainBlock& block = blocks_[i];
-    if (!link.next_free) next = {};
-    double* at = p.data() + 3 * link.vertex;
-    const auto [y, z] =
-        block.solve(load(at) + block.curvature * next, right(link) + dot(block.g, next));
-    at[0] = y.x, at[1] = y.y, at[2] = y.z;
-    if (link.edge >= 0) q[link.edge] = z;
-    next = y;
-  }
-}
-
-// r_ and c_ less K (p, q); returns the norm of what is left.
-double ChainKkt::subtract_product(const Positions& p, const Eigen::VectorXd& q) {
-  double sum = 0;
-  Vector from_before;  // what the edge before has taken from r_ at its far end
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    const Link& link = links_[i];
-    const chain::ChainBlock& block = blocks_[i];
-    double* r = r_.data() + 3 * link.vertex;
-    const Vector here = load(p.data() + 3 * link.vertex);
-    const Vector next = link.next_free ? load(p.data() + 3 * links_[i + 1].vertex) : Vector{};
-    Vector force = block.curvature * (here - next);
-    if (link.edge >= 0) {
-      force = force + q[link.edge] * block.g;
-      double& c = c_[link.edge];
-      c -= dot(block.g, here - next);
-      sum += c * c;
-    }
-    const Vector left = load(r) - link.mass * here - force + from_before;
-    r[0] = left.x, r[1] = left.y, r[2] = left.z;
-    sum += dot(left, left);
-    from_before = link.next_free ? force : Vector{};
-  }
-  return std::sqrt(sum);
-}
-
-bool ChainKkt::solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
-                     WorkCounters& work) {
-  if (left_to_umfpack_) return umfpack_->solve(r, c, p, q, work);
-  r_ = r;
-  for (const int vertex : problem_.pinned()) r_.col(vertex).setZero();
-  c_ = c;
-  const double scale = std::sqrt(r_.squaredNorm() + c_.squaredNorm());
-  p.setZero();
-  q.setZero();
-  double error = scale;
-  for (int i = 0; i < chain_refinement_limit && error > refinement_goal * scale; ++i) {
-    correction_p_ = r_;
-    correction_q_ = c_;
-    substitute(correction_p_, correction_q_);
-    ++work.back_solves;
-    p += correction_p_;
-    q += correction_q_;
-    const double last = error;
-    r_ = r;
-    for (const int vertex : problem_.pinned()) r_.col(vertex).setZero();
-    c_ = c;
-    error = subtract_product(p, q);
-    if (!(error < 0.5 * last)) break;
-  }
-  if (error <= acceptable_residual * scale) return true;  // false on NaN
-  return leave_to_umfpack(work) && umfpack_->solve(r, c, p, q, work);
-}
-
-double ChainKkt::reciprocal_condition() const {
-  return left_to_umfpack_ ? umfpack_->reciprocal_condition() : smallest_pivot_ / largest_pivot_;
-}
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 #include "solvers/systems/implicit_forces.h"
 
-#include "solvers/linear/spd_solvers.h"
 #include "solvers/problem/forces.h"
+#include "solvers/systems/vertex_matrix.h"
 
 namespace inextensible {
 namespace {
@@ -30,42 +30,30 @@ void for_each_stiffness(const Problem& problem, Add add) {
   }
 }
 
+Pairs stiff_pairs(const Problem& problem) {
+  Pairs pairs;
+  for_each_stiffness(problem, [&](int a, int b, double) { pairs.emplace_back(a, b); });
+  return pairs;
+}
+
 }  // namespace
 
 ImplicitForces::ImplicitForces(const Problem& problem) : problem_(problem) {
-  for (int v = 0; v < problem.vertices(); ++v) {
-    if (problem.inverse_mass()[v] > 0) free_vertex_.push_back(v);
-  }
-  const int n = static_cast<int>(free_vertex_.size());
-  std::vector<int> place(problem.vertices(), -1);
-  const auto for_each_entry = [&](auto add) {  // of the free vertices
-    for_each_stiffness(problem, [&](int a, int b, double k) {
-      if (place[a] >= 0 && place[b] >= 0) add(place[a], place[b], k);
-    });
-  };
-  const auto pattern_in = [&](const std::vector<int>& order, SymmetricPattern::Triangle triangle) {
-    for (int f = 0; f < n; ++f) place[order[f]] = f;
-    Pairs pairs;
-    for_each_entry([&](int f, int g, double) { pairs.emplace_back(f, g); });
-    return pattern_of(n, pairs, triangle);
-  };
-  std::vector<int> ordered = free_vertex_;
-  const std::vector<int> order =
-      fill_reducing_order(pattern_in(free_vertex_, SymmetricPattern::Triangle::upper));
-  for (int f = 0; f < n; ++f) ordered[f] = free_vertex_[order[f]];
-  free_vertex_ = std::move(ordered);
-
-  SymmetricPattern pattern = pattern_in(free_vertex_, SymmetricPattern::Triangle::lower);
-  entries_.resize(pattern.entries());
-  for_each_entry([&](int f, int g, double k) { entries_[pattern.place(f, g)].stiffness += k; });
-  for (int f = 0; f < n; ++f) {
-    Entry& entry = entries_[pattern.diagonal(f)];
+  VertexMatrix matrix(problem, stiff_pairs(problem), "multifrontal", 1);
+  entries_.resize(matrix.pattern.entries());
+  for_each_stiffness(problem, [&](int a, int b, double k) {
+    const int f = matrix.place[a], g = matrix.place[b];
+    if (f >= 0 && g >= 0) entries_[matrix.pattern.place(f, g)].stiffness += k;
+  });
+  free_vertex_ = std::move(matrix.vertex);
+  solver_ = std::move(matrix.solver);
+  for (std::size_t f = 0; f < free_vertex_.size(); ++f) {
+    Entry& entry = entries_[matrix.pattern.diagonal(static_cast<int>(f))];
     entry.mass = problem.mass()[free_vertex_[f]];
     entry.drag = problem.drag(free_vertex_[f]);
   }
-  solver_ = make_spd_solver("multifrontal", std::move(pattern));
   force_.resize(3, problem.vertices());
-  row_.resize(n);
+  row_.resize(static_cast<Eigen::Index>(free_vertex_.size()));
 }
 
 bool ImplicitForces::factor(double scale) {

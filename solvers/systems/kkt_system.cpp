@@ -3,201 +3,264 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solvers/linear/lu.h"
+#include "solvers/linear/quasi_definite.h"
+
 namespace inextensible {
 namespace {
 
 constexpr double regularization = 1e-10;  // relative to J W J^T, of order one after scaling
 constexpr int refinement_limit = 8;
 
+class KktSystem final : public KktSolver {
+ public:
+  KktSystem(const Problem& problem, const EdgeConstraints& edges, FactoredBy by)
+      : KktSolver(problem, edges), umfpack_only_(by == FactoredBy::umfpack) {
+    const std::size_t n = problem.vertices();
+    vertex_unknown_.assign(n, -1);
+    for (std::size_t v = 0; v < n; ++v) {
+      if (problem.inverse_mass()[v] == 0) continue;
+      vertex_unknown_[v] = 3 * static_cast<int>(scaled_mass_.size());
+      scaled_mass_.push_back(problem.mass()[v] / mean_mass_);
+    }
+    multiplier_offset_ = 3 * static_cast<int>(scaled_mass_.size());
+    size_ = multiplier_offset_ + edges.count();
+
+    std::vector<Edge> ends(edges.count());
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      ends[k] = {vertex_unknown_[edges.a[k]], vertex_unknown_[edges.b[k]]};
+    }
+    build_pattern(ends);
+    for (Eigen::VectorXd* v : {&rhs_, &solution_, &residual_}) v->resize(size_);
+    if (!umfpack_only_) ldlt_ = std::make_unique<QuasiDefiniteSolver>(pattern_);
+  }
+
+ private:
+  struct EdgePlaces {  // of entries, by axis
+    int coupling[3], at_a[3], at_b[3];
+  };
+
+  void build_pattern(const std::vector<Edge>& ends) {
+    Pairs pairs;  // of unknowns
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      const int multiplier = multiplier_offset_ + static_cast<int>(k);
+      for (int axis = 0; axis < 3; ++axis) {
+        const int a = ends[k].a + axis, b = ends[k].b + axis;
+        if (ends[k].a >= 0) pairs.emplace_back(a, multiplier);
+        if (ends[k].b >= 0) pairs.emplace_back(b, multiplier);
+        if (ends[k].a >= 0 && ends[k].b >= 0) pairs.emplace_back(a, b);
+      }
+    }
+    const auto upper = SymmetricPattern::Triangle::upper;
+    const std::vector<int> order = fill_reducing_order(pattern_of(size_, pairs, upper));
+    place_.resize(size_);
+    for (int i = 0; i < size_; ++i) place_[order[i]] = i;
+    for (auto& [i, j] : pairs) i = place_[i], j = place_[j];
+    pattern_ = pattern_of(size_, pairs, upper);
+    matrix_.resize(pattern_.entries());
+
+    const auto entry = [&](int i, int j) { return pattern_.place(place_[i], place_[j]); };
+    for (int i = 0; i < size_; ++i) diagonal_.push_back(entry(i, i));
+    edge_places_.resize(ends.size());
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      const int multiplier = multiplier_offset_ + static_cast<int>(k);
+      EdgePlaces& places = edge_places_[k];
+      for (int axis = 0; axis < 3; ++axis) {
+        const int a = ends[k].a + axis, b = ends[k].b + axis;
+        places.at_a[axis] = ends[k].a >= 0 ? entry(a, multiplier) : -1;
+        places.at_b[axis] = ends[k].b >= 0 ? entry(b, multiplier) : -1;
+        places.coupling[axis] = ends[k].a >= 0 && ends[k].b >= 0 ? entry(a, b) : -1;
+      }
+    }
+  }
+
+  void assemble() {
+    std::fill(matrix_.begin(), matrix_.end(), 0.0);
+    const auto at = [this](int i) -> double& { return matrix_[i]; };
+    for (int i = 0; i < multiplier_offset_; ++i) at(diagonal_[i]) = scaled_mass_[i / 3];
+    for (std::size_t k = 0; k < edge_places_.size(); ++k) {
+      const EdgePlaces& places = edge_places_[k];
+      const double curved = curvature(static_cast<Eigen::Index>(k));
+      const int a = vertex_unknown_[edges_.a[k]];
+      const int b = vertex_unknown_[edges_.b[k]];
+      for (int axis = 0; axis < 3; ++axis) {
+        const double gradient = (*u_)(axis, static_cast<Eigen::Index>(k));
+        if (a >= 0) {
+          at(diagonal_[a + axis]) += curved;
+          at(places.at_a[axis]) -= gradient;
+        }
+        if (b >= 0) {
+          at(diagonal_[b + axis]) += curved;
+          at(places.at_b[axis]) += gradient;
+        }
+        if (a >= 0 && b >= 0) at(places.coupling[axis]) -= curved;
+      }
+    }
+  }
+
+  bool factor_itself(WorkCounters& work) override {
+    for (;; convex_ = true) {
+      convexified_ = convex_;
+      assemble();
+      ++work.assemblies;
+      using_umfpack_ = umfpack_only_;
+      if (umfpack_only_) return factor_umfpack(work);
+      std::copy(matrix_.begin(), matrix_.end(), ldlt_->values());
+      for (int i = multiplier_offset_; i < size_; ++i)
+        ldlt_->values()[diagonal_[i]] = -regularization;
+      ++work.factorizations;
+      if (!ldlt_->factor()) return factor_umfpack(work);
+      work.factor_nonzeros = ldlt_->factor_nonzeros();
+      work.factor_flops = ldlt_->factor_flops();
+      if (convex_ || ldlt_->negative_pivots() == edges_.count()) return true;
+    }
+  }
+
+  bool factor_umfpack(WorkCounters& work) {
+    if (!lu_) {  // with both triangles; made when first needed
+      Pairs pairs;
+      for (int j = 0; j < size_; ++j) {
+        for (int e = pattern_.column_start[j]; e < pattern_.column_start[j + 1]; ++e)
+          pairs.emplace_back(pattern_.row_index[e], j);
+      }
+      SymmetricPattern both = pattern_of(size_, pairs, SymmetricPattern::Triangle::both);
+      for (int j = 0; j < size_; ++j) {
+        for (int e = both.column_start[j]; e < both.column_start[j + 1]; ++e)
+          full_from_upper_.push_back(pattern_.place(both.row_index[e], j));
+      }
+      lu_ = make_unsymmetric_solver(std::move(both));
+    }
+    using_umfpack_ = true;
+    for (std::size_t i = 0; i < full_from_upper_.size(); ++i) {
+      lu_->values()[i] = matrix_[full_from_upper_[i]];
+    }
+    ++work.factorizations;
+    if (!lu_->factor()) return false;
+    work.factor_nonzeros = lu_->factor_nonzeros();
+    work.factor_flops = lu_->factor_flops();
+    return true;
+  }
+
+  void residual() {  // residual_ = rhs_ - K solution_
+    residual_ = rhs_;
+    for (int j = 0; j < size_; ++j) {
+      double sum = 0;
+      const double xj = solution_[j];
+      for (int i = pattern_.column_start[j]; i < pattern_.column_start[j + 1]; ++i) {
+        const int row = pattern_.row_index[i];
+        const double value = matrix_[i];
+        sum += value * solution_[row];
+        if (row != j) residual_[row] -= value * xj;
+      }
+      residual_[j] -= sum;
+    }
+  }
+
+  bool solve_itself(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
+                    WorkCounters& work) override {
+    for (std::size_t v = 0; v < vertex_unknown_.size(); ++v) {
+      const int first = vertex_unknown_[v];
+      if (first < 0) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        rhs_[place_[first + axis]] = r(axis, static_cast<Eigen::Index>(v));
+      }
+    }
+    for (Eigen::Index k = 0; k < c.size(); ++k) rhs_[place_[multiplier_offset_ + k]] = c[k];
+
+    const double scale = rhs_.norm();
+    for (;;) {
+      solution_.setZero();
+      residual_ = rhs_;
+      double error = scale;
+      for (int i = 0; i < refinement_limit && error > refinement_goal * scale; ++i) {
+        if (using_umfpack_) {
+          lu_->solve(residual_.data());
+        } else {
+          ldlt_->solve(residual_.data());
+        }
+        ++work.back_solves;
+        solution_ += residual_;
+        residual();
+        const double next = residual_.norm();
+        if (!(next < 0.5 * error) && i > 0) {
+          error = next;
+          break;
+        }
+        error = next;
+      }
+      if (error <= acceptable_residual * scale) break;  // false on NaN
+      if (using_umfpack_ || !factor_umfpack(work)) return false;
+    }
+
+    for (std::size_t v = 0; v < vertex_unknown_.size(); ++v) {
+      const int first = vertex_unknown_[v];
+      for (int axis = 0; axis < 3; ++axis) {
+        p(axis, static_cast<Eigen::Index>(v)) = first < 0 ? 0 : solution_[place_[first + axis]];
+      }
+    }
+    for (Eigen::Index k = 0; k < c.size(); ++k) q[k] = solution_[place_[multiplier_offset_ + k]];
+    return true;
+  }
+
+  double own_reciprocal_condition() const override {
+    return using_umfpack_ ? lu_->reciprocal_condition() : ldlt_->reciprocal_condition();
+  }
+
+  bool umfpack_only_;
+  bool using_umfpack_ = false;
+  std::vector<int> vertex_unknown_;  // first of a vertex's three unknowns, -1 if pinned
+  std::vector<double> scaled_mass_;  // per free vertex place, m / mean_mass
+  int size_ = 0, multiplier_offset_ = 0;
+  std::vector<int> place_;  // unknown -> row in elimination order
+  SymmetricPattern pattern_;
+  std::vector<double> matrix_;  // upper triangle of K, without the regularization
+  std::vector<int> diagonal_;   // the place of each unknown's diagonal entry
+  std::vector<EdgePlaces> edge_places_;
+  std::unique_ptr<QuasiDefiniteSolver> ldlt_;
+  std::unique_ptr<UnsymmetricSolver> lu_;
+  std::vector<int> full_from_upper_;
+  Eigen::VectorXd rhs_, solution_, residual_;
+};
+
 }  // namespace
 
-KktSolver::KktSolver(const Problem& problem)
-    : mean_mass_(problem.total_mass() / static_cast<double>(problem.vertices())) {}
-
-KktSystem::KktSystem(const Problem& problem, const EdgeConstraints& edges, By by)
-    : KktSolver(problem), edges_(edges), umfpack_only_(by == By::umfpack) {
-  const std::size_t n = problem.vertices();
-  vertex_unknown_.assign(n, -1);
-  for (std::size_t v = 0; v < n; ++v) {
-    if (problem.inverse_mass()[v] == 0) continue;
-    vertex_unknown_[v] = 3 * static_cast<int>(scaled_mass_.size());
-    scaled_mass_.push_back(problem.mass()[v] / mean_mass_);
-  }
-  multiplier_offset_ = 3 * static_cast<int>(scaled_mass_.size());
-  size_ = multiplier_offset_ + edges.count();
-
-  std::vector<Edge> ends(edges.count());
-  for (std::size_t k = 0; k < ends.size(); ++k) {
-    ends[k] = {vertex_unknown_[edges.a[k]], vertex_unknown_[edges.b[k]]};
-  }
-  build_pattern(ends);
-  for (Eigen::VectorXd* v : {&rhs_, &solution_, &residual_}) v->resize(size_);
-  if (!umfpack_only_) ldlt_ = std::make_unique<QuasiDefiniteSolver>(pattern_);
+std::unique_ptr<KktSolver> make_kkt_system(const Problem& problem, const EdgeConstraints& edges,
+                                           FactoredBy by) {
+  return std::make_unique<KktSystem>(problem, edges, by);
 }
 
-void KktSystem::build_pattern(const std::vector<Edge>& ends) {
-  Pairs pairs;  // of unknowns
-  for (std::size_t k = 0; k < ends.size(); ++k) {
-    const int multiplier = multiplier_offset_ + static_cast<int>(k);
-    for (int axis = 0; axis < 3; ++axis) {
-      const int a = ends[k].a + axis, b = ends[k].b + axis;
-      if (ends[k].a >= 0) pairs.emplace_back(a, multiplier);
-      if (ends[k].b >= 0) pairs.emplace_back(b, multiplier);
-      if (ends[k].a >= 0 && ends[k].b >= 0) pairs.emplace_back(a, b);
-    }
-  }
-  const auto upper = SymmetricPattern::Triangle::upper;
-  const std::vector<int> order = fill_reducing_order(pattern_of(size_, pairs, upper));
-  place_.resize(size_);
-  for (int i = 0; i < size_; ++i) place_[order[i]] = i;
-  for (auto& [i, j] : pairs) i = place_[i], j = place_[j];
-  pattern_ = pattern_of(size_, pairs, upper);
-  matrix_.resize(pattern_.entries());
+KktSolver::KktSolver(const Problem& problem, const EdgeConstraints& edges)
+    : problem_(problem),
+      edges_(edges),
+      mean_mass_(problem.total_mass() / static_cast<double>(problem.vertices())) {}
 
-  const auto entry = [&](int i, int j) { return pattern_.place(place_[i], place_[j]); };
-  for (int i = 0; i < size_; ++i) diagonal_.push_back(entry(i, i));
-  edge_places_.resize(ends.size());
-  for (std::size_t k = 0; k < ends.size(); ++k) {
-    const int multiplier = multiplier_offset_ + static_cast<int>(k);
-    EdgePlaces& places = edge_places_[k];
-    for (int axis = 0; axis < 3; ++axis) {
-      const int a = ends[k].a + axis, b = ends[k].b + axis;
-      places.at_a[axis] = ends[k].a >= 0 ? entry(a, multiplier) : -1;
-      places.at_b[axis] = ends[k].b >= 0 ? entry(b, multiplier) : -1;
-      places.coupling[axis] = ends[k].a >= 0 && ends[k].b >= 0 ? entry(a, b) : -1;
-    }
-  }
+bool KktSolver::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
+                       const Contacts* contacts, bool convex, WorkCounters& work) {
+  u_ = &u;
+  mu_ = &mu;
+  contacts_ = contacts;
+  convex_ = convex;
+  left_to_other_ = false;
+  return factor_itself(work) || leave_to_other(work);
 }
 
-void KktSystem::assemble(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex) {
-  std::fill(matrix_.begin(), matrix_.end(), 0.0);
-  const auto at = [this](int i) -> double& { return matrix_[i]; };
-  for (int i = 0; i < multiplier_offset_; ++i) at(diagonal_[i]) = scaled_mass_[i / 3];
-  for (std::size_t k = 0; k < edge_places_.size(); ++k) {
-    const EdgePlaces& places = edge_places_[k];
-    const double multiplier = mu[static_cast<Eigen::Index>(k)];
-    const double curvature =
-        convex && multiplier < 0 ? 0 : 2 * multiplier * edges_.inverse_rest_length[k];
-    const int a = vertex_unknown_[edges_.a[k]];
-    const int b = vertex_unknown_[edges_.b[k]];
-    for (int axis = 0; axis < 3; ++axis) {
-      const double gradient = u(axis, static_cast<Eigen::Index>(k));
-      if (a >= 0) {
-        at(diagonal_[a + axis]) += curvature;
-        at(places.at_a[axis]) -= gradient;
-      }
-      if (b >= 0) {
-        at(diagonal_[b + axis]) += curvature;
-        at(places.at_b[axis]) += gradient;
-      }
-      if (a >= 0 && b >= 0) at(places.coupling[axis]) -= curvature;
-    }
-  }
-}
-
-bool KktSystem::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
-                       const Contacts* /*contacts*/, bool convex, WorkCounters& work) {
-  for (;; convex = true) {
-    assemble(u, mu, convex);
-    convexified_ = convex;
-    ++work.assemblies;
-    using_umfpack_ = umfpack_only_;
-    if (umfpack_only_) return factor_umfpack(work);
-    std::copy(matrix_.begin(), matrix_.end(), ldlt_->values());
-    for (int i = multiplier_offset_; i < size_; ++i)
-      ldlt_->values()[diagonal_[i]] = -regularization;
-    ++work.factorizations;
-    if (!ldlt_->factor()) return factor_umfpack(work);
-    work.factor_nonzeros = ldlt_->factor_nonzeros();
-    work.factor_flops = ldlt_->factor_flops();
-    if (convex || ldlt_->negative_pivots() == edges_.count()) return true;
-  }
-}
-
-bool KktSystem::factor_umfpack(WorkCounters& work) {
-  if (!lu_) {  // with both triangles; made when first needed
-    Pairs pairs;
-    for (int j = 0; j < size_; ++j) {
-      for (int e = pattern_.column_start[j]; e < pattern_.column_start[j + 1]; ++e)
-        pairs.emplace_back(pattern_.row_index[e], j);
-    }
-    SymmetricPattern both = pattern_of(size_, pairs, SymmetricPattern::Triangle::both);
-    for (int j = 0; j < size_; ++j) {
-      for (int e = both.column_start[j]; e < both.column_start[j + 1]; ++e)
-        full_from_upper_.push_back(pattern_.place(both.row_index[e], j));
-    }
-    lu_ = make_unsymmetric_solver(std::move(both));
-  }
-  using_umfpack_ = true;
-  for (std::size_t i = 0; i < full_from_upper_.size(); ++i) {
-    lu_->values()[i] = matrix_[full_from_upper_[i]];
-  }
-  ++work.factorizations;
-  if (!lu_->factor()) return false;
-  work.factor_nonzeros = lu_->factor_nonzeros();
-  work.factor_flops = lu_->factor_flops();
-  return true;
-}
-
-void KktSystem::residual() {
-  residual_ = rhs_;
-  for (int j = 0; j < size_; ++j) {
-    double sum = 0;
-    const double xj = solution_[j];
-    for (int i = pattern_.column_start[j]; i < pattern_.column_start[j + 1]; ++i) {
-      const int row = pattern_.row_index[i];
-      const double value = matrix_[i];
-      sum += value * solution_[row];
-      if (row != j) residual_[row] -= value * xj;
-    }
-    residual_[j] -= sum;
-  }
-}
-
-bool KktSystem::solve(const Positions& r, const Eigen::VectorXd& c, Positions& p,
+bool KktSolver::solve(const Positions& r, const Eigen::VectorXd& c, Positions& p,
                       Eigen::VectorXd& q, WorkCounters& work) {
-  for (std::size_t v = 0; v < vertex_unknown_.size(); ++v) {
-    const int first = vertex_unknown_[v];
-    if (first < 0) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      rhs_[place_[first + axis]] = r(axis, static_cast<Eigen::Index>(v));
-    }
-  }
-  for (Eigen::Index k = 0; k < c.size(); ++k) rhs_[place_[multiplier_offset_ + k]] = c[k];
+  if (!left_to_other_ && solve_itself(r, c, p, q, work)) return true;
+  return (left_to_other_ || leave_to_other(work)) && other_->solve(r, c, p, q, work);
+}
 
-  const double scale = rhs_.norm();
-  for (;;) {
-    solution_.setZero();
-    residual_ = rhs_;
-    double error = scale;
-    for (int i = 0; i < refinement_limit && error > refinement_goal * scale; ++i) {
-      if (using_umfpack_) {
-        lu_->solve(residual_.data());
-      } else {
-        ldlt_->solve(residual_.data());
-      }
-      ++work.back_solves;
-      solution_ += residual_;
-      residual();
-      const double next = residual_.norm();
-      if (!(next < 0.5 * error) && i > 0) {
-        error = next;
-        break;
-      }
-      error = next;
-    }
-    if (error <= acceptable_residual * scale) break;  // false on NaN
-    if (using_umfpack_ || !factor_umfpack(work)) return false;
-  }
+bool KktSolver::leave_to_other(WorkCounters& work) {
+  if (!other_) other_ = make_other();
+  if (!other_) return false;
+  left_to_other_ = true;
+  const bool factored = other_->factor(*u_, *mu_, nullptr, convex_, work);
+  convexified_ = other_->convexified();
+  return factored;
+}
 
-  for (std::size_t v = 0; v < vertex_unknown_.size(); ++v) {
-    const int first = vertex_unknown_[v];
-    for (int axis = 0; axis < 3; ++axis) {
-      p(axis, static_cast<Eigen::Index>(v)) = first < 0 ? 0 : solution_[place_[first + axis]];
-    }
-  }
-  for (Eigen::Index k = 0; k < c.size(); ++k) q[k] = solution_[place_[multiplier_offset_ + k]];
-  return true;
+double KktSolver::reciprocal_condition() const {
+  return left_to_other_ ? other_->reciprocal_condition() : own_reciprocal_condition();
 }
 
 }  // namespace inextensible

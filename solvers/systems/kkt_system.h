@@ -6,21 +6,17 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 
-#include "solvers/linear/lu.h"
-#include "solvers/linear/quasi_definite.h"
 #include "solvers/problem/contacts.h"
 #include "solvers/problem/edge_constraints.h"
 
 namespace inextensible {
 
-// Where iterative refinement of a solve ends, and what is good enough if that is not reached:
-// residuals relative to the right-hand side. Newton converges as well with the latter.
-inline constexpr double refinement_goal = 1e-10, acceptable_residual = 1e-6;
-
+// A solver, and another one that takes over where it fails, if it has one.
 class KktSolver {
  public:
-  explicit KktSolver(const Problem& problem);
+  KktSolver(const Problem& problem, const EdgeConstraints& edges);
   virtual ~KktSolver() = default;
   KktSolver(const KktSolver&) = delete;
   KktSolver& operator=(const KktSolver&) = delete;
@@ -30,8 +26,8 @@ class KktSolver {
   // are left out of H, so that M + H is positive definite. A solver that finds M + H indefinite on
   // the null space of J does so by itself. contacts: their vertices move within their planes only;
   // null or empty: none, as must be where the solver does not take them.
-  virtual bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
-                      const Contacts* contacts, bool convex, WorkCounters& work) = 0;
+  bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, const Contacts* contacts,
+              bool convex, WorkCounters& work);
   virtual bool takes_contacts() const { return false; }
 
   // Whether they were left out, of the last solve.
@@ -39,17 +35,43 @@ class KktSolver {
 
   // [p; q] = K^-1 [r; c]; r and p are 3 x n (pinned columns: ignored, zero), c and q have m
   // entries; false: too inaccurate.
-  virtual bool solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
-                     WorkCounters& work) = 0;
+  bool solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
+             WorkCounters& work);
 
   // Estimate for the last factorization, from its pivots.
-  virtual double reciprocal_condition() const = 0;
+  double reciprocal_condition() const;
 
   double mean_mass() const { return mean_mass_; }
 
  protected:
+  // Where iterative refinement of a solve ends, and what is good enough if that is not reached:
+  // residuals relative to the right-hand side. Newton converges as well with the latter.
+  static constexpr double refinement_goal = 1e-10, acceptable_residual = 1e-6;
+
+  double curvature(Eigen::Index k) const {  // of edge k in H
+    const double mu = (*mu_)[k];
+    return convexified_ && mu < 0 ? 0 : 2 * mu * edges_.inverse_rest_length[k];
+  }
+
+  const Problem& problem_;
+  const EdgeConstraints& edges_;
   double mean_mass_;
-  bool convexified_ = false;
+  // Of the last factor(); convex_ is what the other solver is asked for.
+  const Eigen::Matrix3Xd* u_ = nullptr;
+  const Eigen::VectorXd* mu_ = nullptr;
+  const Contacts* contacts_ = nullptr;
+  bool convex_ = false, convexified_ = false;
+
+ private:
+  virtual bool factor_itself(WorkCounters& work) = 0;
+  virtual bool solve_itself(const Positions& r, const Eigen::VectorXd& c, Positions& p,
+                            Eigen::VectorXd& q, WorkCounters& work) = 0;
+  virtual double own_reciprocal_condition() const = 0;
+  virtual std::unique_ptr<KktSolver> make_other() const { return nullptr; }
+  bool leave_to_other(WorkCounters& work);
+
+  std::unique_ptr<KktSolver> other_;  // made when first needed; knows no contacts
+  bool left_to_other_ = false;
 };
 
 // The matrix in fixed pattern, factored:
@@ -57,45 +79,19 @@ class KktSolver {
 // lower block, corrected by iterative refinement on K itself. Where refinement does not reach its
 // goal (H indefinite enough to ruin the pivots, or masses that are too unequal) UMFPACK takes over
 // for that matrix.
-class KktSystem final : public KktSolver {
- public:
-  enum class By { ldlt_first, umfpack };
-  KktSystem(const Problem& problem, const EdgeConstraints& edges, By by = By::ldlt_first);
+enum class FactoredBy { ldlt_first, umfpack };
+std::unique_ptr<KktSolver> make_kkt_system(const Problem& problem, const EdgeConstraints& edges,
+                                           FactoredBy by = FactoredBy::ldlt_first);
 
-  bool factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, const Contacts* contacts,
-              bool convex, WorkCounters& work) override;
-  bool solve(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
-             WorkCounters& work) override;
-  double reciprocal_condition() const override {
-    return using_umfpack_ ? lu_->reciprocal_condition() : ldlt_->reciprocal_condition();
-  }
-
- private:
-  struct EdgePlaces {  // of entries, by axis
-    int coupling[3], at_a[3], at_b[3];
-  };
-
-  void build_pattern(const std::vector<Edge>& unknown_ends);
-  void assemble(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu, bool convex);
-  void residual();  // residual_ = rhs_ - K solution_
-  bool factor_umfpack(WorkCounters& work);
-
-  const EdgeConstraints& edges_;
-  bool umfpack_only_;
-  bool using_umfpack_ = false;
-  std::vector<int> vertex_unknown_;  // first of a vertex's three unknowns, -1 if pinned
-  std::vector<double> scaled_mass_;  // per free vertex place, m / mean_mass
-  int size_ = 0, multiplier_offset_ = 0;
-  std::vector<int> place_;  // unknown -> row in elimination order
-  SymmetricPattern pattern_;
-  std::vector<double> matrix_;  // upper triangle of K, without the regularization
-  std::vector<int> diagonal_;   // the place of each unknown's diagonal entry
-  std::vector<EdgePlaces> edge_places_;
-  std::unique_ptr<QuasiDefiniteSolver> ldlt_;
-  std::unique_ptr<UnsymmetricSolver> lu_;
-  std::vector<int> full_from_upper_;
-  Eigen::VectorXd rhs_, solution_, residual_;
+// Projected conjugate gradients (Gould, Hribar and Nocedal 2001). edges: best in
+// elimination_order.
+struct ProjectedCgSettings {
+  double tolerance = 0.1;  // of the step, in the norm of the preconditioner
+  int max_iterations = 100;
+  std::string_view linear_solver = "multifrontal_mixed";  // for J D^-1 J^T
 };
+std::unique_ptr<KktSolver> make_projected_cg(const Problem& problem, const EdgeConstraints& edges,
+                                             const ProjectedCgSettings& settings);
 
 // Whether each edge joins a vertex to the next one, none twice, and no pins hold vertices between
 // them: their chain would have a multiplier more than vertices.

@@ -10,174 +10,185 @@
 // 1983); if there is none yet, the convex H is. Where J D^-1 J^T is singular or conjugate gradients
 // get nowhere, the factored saddle-point matrix takes over. Loops: one assembly and one
 // factorization a Newton iteration; one solve and four passes over edges an iteration here.
-#include "solvers/systems/projected_cg.h"
-
 #include <cmath>
 
 #include "solvers/linear/spd_solvers.h"
 #include "solvers/systems/constraint_system.h"
+#include "solvers/systems/kkt_system.h"
+#include "solvers/systems/schur_complement.h"
 
 namespace inextensible {
+namespace {
 
 // Tolerance of solves with J D^-1 J^T: the next Newton step corrects what a projection leaves of J
 // p.
 constexpr double projection_tolerance = 1e-4;
 
-ProjectedCg::ProjectedCg(const Problem& problem, const EdgeConstraints& edges,
-                         const Settings& settings)
-    : KktSolver(problem),
-      problem_(problem),
-      edges_(edges),
-      settings_(settings),
-      schur_(edges, problem.vertices(), spd_solver(settings.linear_solver).triangle),
-      solver_(make_spd_solver(settings.linear_solver, schur_.pattern())),
-      mass_(Eigen::Map<const Eigen::VectorXd>(problem.mass().data(), problem.vertices()) /
-            mean_mass_),
-      curvature_(edges.count()),
-      inverse_metric_(problem.vertices()),
-      dq_(edges.count()) {
-  solver_->set_least_pivot(ConstraintSystem::least_pivot);
-  for (Positions* p : {&residual_, &direction_, &image_, &correction_})
-    p->resize(3, problem.vertices());
-}
-
-void ProjectedCg::set_curvature(bool convex) {
-  convexified_ = convex;
-  for (int k = 0; k < edges_.count(); ++k) {
-    const double mu = (*mu_)[k];
-    curvature_[k] = convex && mu < 0 ? 0 : 2 * mu * edges_.inverse_rest_length[k];
+class ProjectedCg final : public KktSolver {
+ public:
+  ProjectedCg(const Problem& problem, const EdgeConstraints& edges,
+              const ProjectedCgSettings& settings)
+      : KktSolver(problem, edges),
+        settings_(settings),
+        schur_(edges, problem.vertices(), spd_solver(settings.linear_solver).triangle),
+        solver_(make_spd_solver(settings.linear_solver, schur_.pattern())),
+        mass_(Eigen::Map<const Eigen::VectorXd>(problem.mass().data(), problem.vertices()) /
+              mean_mass_),
+        curvature_(edges.count()),
+        inverse_metric_(problem.vertices()),
+        dq_(edges.count()) {
+    solver_->set_least_pivot(ConstraintSystem::least_pivot);
+    for (Positions* p : {&residual_, &direction_, &image_, &correction_})
+      p->resize(3, problem.vertices());
   }
-}
 
-bool ProjectedCg::factor(const Eigen::Matrix3Xd& u, const Eigen::VectorXd& mu,
-                         const Contacts* contacts, bool convex, WorkCounters& work) {
-  contacts_ = contacts;
-  u_ = &u;
-  mu_ = &mu;
-  convex_ = convex;
-  direct_in_use_ = false;
-  set_curvature(convex);
-  // D: M and what tension adds to the diagonal.
-  inverse_metric_ = mass_;
-  for (std::size_t k = 0; k < edges_.a.size(); ++k) {
-    const double tension = std::max(curvature_[static_cast<Eigen::Index>(k)], 0.0);
-    inverse_metric_[edges_.a[k]] += tension;
-    inverse_metric_[edges_.b[k]] += tension;
+  bool takes_contacts() const override { return true; }
+
+ private:
+  enum class Outcome { converged, negative_curvature, failed };
+
+  bool touches() const { return contacts_ && contacts_->count() > 0; }
+
+  void set_curvature(bool convex) {
+    convexified_ = convex;
+    for (int k = 0; k < edges_.count(); ++k) curvature_[k] = curvature(k);
   }
-  inverse_metric_ = inverse_metric_.cwiseInverse();
-  for (const int vertex : problem_.pinned()) inverse_metric_[vertex] = 0;
-  schur_.weigh(inverse_metric_.data());
-  schur_.assemble(u, solver_->values());
-  if (touches()) schur_.subtract_contacts(*contacts_, u, u, solver_->values());
-  ++work.assemblies;
-  ++work.factorizations;
-  if (!solver_->factor()) return factor_directly(work);
-  work.factor_nonzeros = solver_->factor_nonzeros();
-  work.factor_flops = solver_->factor_flops();
-  return true;
-}
 
-// The saddle-point matrix knows no contacts: its steps may leave their planes.
-bool ProjectedCg::factor_directly(WorkCounters& work) {
-  if (!direct_) direct_ = std::make_unique<KktSystem>(problem_, edges_);
-  direct_in_use_ = true;
-  const bool factored = direct_->factor(*u_, *mu_, nullptr, convex_, work);
-  convexified_ = direct_->convexified();
-  return factored;
-}
+  bool factor_itself(WorkCounters& work) override {
+    set_curvature(convex_);
+    // D: M and what tension adds to the diagonal.
+    inverse_metric_ = mass_;
+    for (std::size_t k = 0; k < edges_.a.size(); ++k) {
+      const double tension = std::max(curvature_[static_cast<Eigen::Index>(k)], 0.0);
+      inverse_metric_[edges_.a[k]] += tension;
+      inverse_metric_[edges_.b[k]] += tension;
+    }
+    inverse_metric_ = inverse_metric_.cwiseInverse();
+    for (const int vertex : problem_.pinned()) inverse_metric_[vertex] = 0;
+    schur_.weigh(inverse_metric_.data());
+    schur_.assemble(*u_, solver_->values());
+    if (touches()) schur_.subtract_contacts(*contacts_, *u_, *u_, solver_->values());
+    ++work.assemblies;
+    ++work.factorizations;
+    if (!solver_->factor()) return false;
+    work.factor_nonzeros = solver_->factor_nonzeros();
+    work.factor_flops = solver_->factor_flops();
+    return true;
+  }
 
-// r -= J^T q.
-void ProjectedCg::subtract_gradients(const Eigen::VectorXd& q, Positions& r) const {
-  const double* u = u_->data();
-  for (std::size_t k = 0; k < edges_.a.size(); ++k, u += 3) {
-    const double qk = q[static_cast<Eigen::Index>(k)];
-    double *ra = r.data() + 3 * edges_.a[k], *rb = r.data() + 3 * edges_.b[k];
-    for (int i = 0; i < 3; ++i) {
-      ra[i] += qk * u[i];
-      rb[i] -= qk * u[i];
+  // Knows no contacts: its steps may leave their planes.
+  std::unique_ptr<KktSolver> make_other() const override {
+    return make_kkt_system(problem_, edges_);
+  }
+  double own_reciprocal_condition() const override { return solver_->reciprocal_condition(); }
+
+  // r -= J^T q.
+  void subtract_gradients(const Eigen::VectorXd& q, Positions& r) const {
+    const double* u = u_->data();
+    for (std::size_t k = 0; k < edges_.a.size(); ++k, u += 3) {
+      const double qk = q[static_cast<Eigen::Index>(k)];
+      double *ra = r.data() + 3 * edges_.a[k], *rb = r.data() + 3 * edges_.b[k];
+      for (int i = 0; i < 3; ++i) {
+        ra[i] += qk * u[i];
+        rb[i] -= qk * u[i];
+      }
     }
   }
-}
 
-// y = (M + H) p.
-void ProjectedCg::apply_hessian(const Positions& p, Positions& y) const {
-  y = p * mass_.asDiagonal();
-  for (std::size_t k = 0; k < edges_.a.size(); ++k) {
-    const Eigen::Vector3d pull =
-        curvature_[static_cast<Eigen::Index>(k)] * (p.col(edges_.b[k]) - p.col(edges_.a[k]));
-    y.col(edges_.a[k]) -= pull;
-    y.col(edges_.b[k]) += pull;
-  }
-}
-
-// [ D J^T; J 0 ] [ p; q ] = [ r; c ], c = 0 if there is none: q = (J D^-1 J^T)^-1 (J D^-1 r - c),
-// r -= J^T q, p = D^-1 r.
-bool ProjectedCg::precondition(Positions& r, const Eigen::VectorXd* c, Positions& p,
-                               Eigen::VectorXd& q, WorkCounters& work) {
-  p = r * inverse_metric_.asDiagonal();
-  if (contacts_) contacts_->keep_in_planes(p);
-  edges_.rate(*u_, p, q);
-  if (c) q -= *c;
-  ++work.back_solves;
-  if (!solver_->solve_within(projection_tolerance, q.data())) return false;
-  subtract_gradients(q, r);
-  p = r * inverse_metric_.asDiagonal();
-  if (contacts_) contacts_->keep_in_planes(p);
-  return true;
-}
-
-bool ProjectedCg::solve(const Positions& r, const Eigen::VectorXd& c, Positions& p,
-                        Eigen::VectorXd& q, WorkCounters& work) {
-  if (direct_in_use_) return direct_->solve(r, c, p, q, work);
-  Outcome outcome = iterate(r, c, p, q, work);
-  if (outcome == Outcome::negative_curvature) {
-    set_curvature(true);
-    outcome = iterate(r, c, p, q, work);
-  }
-  if (outcome == Outcome::converged) return true;
-  return factor_directly(work) && direct_->solve(r, c, p, q, work);
-}
-
-// Translations change no edge, so that p's share of them is known exactly: what is left of the
-// residual over the total mass. Linear momentum is kept to rounding this way.
-ProjectedCg::Outcome ProjectedCg::finish(Positions& p) const {
-  if (problem_.pinned().empty() && !touches())
-    p.colwise() += residual_.rowwise().sum() / mass_.sum();
-  return Outcome::converged;
-}
-
-ProjectedCg::Outcome ProjectedCg::iterate(const Positions& r, const Eigen::VectorXd& c,
-                                          Positions& p, Eigen::VectorXd& q, WorkCounters& work) {
-  residual_ = r;
-  if (!precondition(residual_, &c, p, q, work)) return Outcome::failed;
-  apply_hessian(p, image_);
-  residual_ -= image_;
-  // |p|^2 in the norm of D.
-  double size = 0;
-  for (int v = 0; v < problem_.vertices(); ++v)
-    if (inverse_metric_[v] > 0) size += p.col(v).squaredNorm() / inverse_metric_[v];
-  const double goal = settings_.tolerance * settings_.tolerance * size;
-  double error = 0;  // of the last iteration
-  for (int i = 0;; ++i) {
-    if (!precondition(residual_, nullptr, correction_, dq_, work)) return Outcome::failed;
-    q += dq_;
-    const double next_error = correction_.cwiseProduct(residual_).sum();
-    if (next_error <= goal) return finish(p);
-    if (!std::isfinite(next_error) || i == settings_.max_iterations) return Outcome::failed;
-    if (i == 0) {
-      direction_ = correction_;
-    } else {
-      direction_ = correction_ + (next_error / error) * direction_;
+  // y = (M + H) p.
+  void apply_hessian(const Positions& p, Positions& y) const {
+    y = p * mass_.asDiagonal();
+    for (std::size_t k = 0; k < edges_.a.size(); ++k) {
+      const Eigen::Vector3d pull =
+          curvature_[static_cast<Eigen::Index>(k)] * (p.col(edges_.b[k]) - p.col(edges_.a[k]));
+      y.col(edges_.a[k]) -= pull;
+      y.col(edges_.b[k]) += pull;
     }
-    error = next_error;
-    apply_hessian(direction_, image_);
-    for (const int vertex : problem_.pinned()) image_.col(vertex).setZero();
-    const double curvature = direction_.cwiseProduct(image_).sum();
-    if (!(curvature > 0)) return i > 0 ? finish(p) : Outcome::negative_curvature;
-    const double step = error / curvature;
-    p += step * direction_;
-    residual_ -= step * image_;
   }
+
+  // [ D J^T; J 0 ] [ p; q ] = [ r; c ], c = 0 if there is none: q = (J D^-1 J^T)^-1 (J D^-1 r - c),
+  // r -= J^T q, p = D^-1 r.
+  bool precondition(Positions& r, const Eigen::VectorXd* c, Positions& p, Eigen::VectorXd& q,
+                    WorkCounters& work) {
+    p = r * inverse_metric_.asDiagonal();
+    if (contacts_) contacts_->keep_in_planes(p);
+    edges_.rate(*u_, p, q);
+    if (c) q -= *c;
+    ++work.back_solves;
+    if (!solver_->solve_within(projection_tolerance, q.data())) return false;
+    subtract_gradients(q, r);
+    p = r * inverse_metric_.asDiagonal();
+    if (contacts_) contacts_->keep_in_planes(p);
+    return true;
+  }
+
+  bool solve_itself(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
+                    WorkCounters& work) override {
+    Outcome outcome = iterate(r, c, p, q, work);
+    if (outcome == Outcome::negative_curvature) {
+      set_curvature(true);
+      outcome = iterate(r, c, p, q, work);
+    }
+    return outcome == Outcome::converged;
+  }
+
+  // Translations change no edge, so that p's share of them is known exactly: what is left of the
+  // residual over the total mass. Linear momentum is kept to rounding this way.
+  Outcome finish(Positions& p) const {
+    if (problem_.pinned().empty() && !touches())
+      p.colwise() += residual_.rowwise().sum() / mass_.sum();
+    return Outcome::converged;
+  }
+
+  Outcome iterate(const Positions& r, const Eigen::VectorXd& c, Positions& p, Eigen::VectorXd& q,
+                  WorkCounters& work) {
+    residual_ = r;
+    if (!precondition(residual_, &c, p, q, work)) return Outcome::failed;
+    apply_hessian(p, image_);
+    residual_ -= image_;
+    // |p|^2 in the norm of D.
+    double size = 0;
+    for (int v = 0; v < problem_.vertices(); ++v)
+      if (inverse_metric_[v] > 0) size += p.col(v).squaredNorm() / inverse_metric_[v];
+    const double goal = settings_.tolerance * settings_.tolerance * size;
+    double error = 0;  // of the last iteration
+    for (int i = 0;; ++i) {
+      if (!precondition(residual_, nullptr, correction_, dq_, work)) return Outcome::failed;
+      q += dq_;
+      const double next_error = correction_.cwiseProduct(residual_).sum();
+      if (next_error <= goal) return finish(p);
+      if (!std::isfinite(next_error) || i == settings_.max_iterations) return Outcome::failed;
+      if (i == 0) {
+        direction_ = correction_;
+      } else {
+        direction_ = correction_ + (next_error / error) * direction_;
+      }
+      error = next_error;
+      apply_hessian(direction_, image_);
+      for (const int vertex : problem_.pinned()) image_.col(vertex).setZero();
+      const double curvature = direction_.cwiseProduct(image_).sum();
+      if (!(curvature > 0)) return i > 0 ? finish(p) : Outcome::negative_curvature;
+      const double step = error / curvature;
+      p += step * direction_;
+      residual_ -= step * image_;
+    }
+  }
+
+  ProjectedCgSettings settings_;
+  SchurComplement schur_;  // J D^-1 J^T
+  std::unique_ptr<SpdSolver> solver_;
+  Eigen::VectorXd mass_;            // scaled by the mean mass
+  Eigen::VectorXd curvature_;       // of H, an edge each
+  Eigen::VectorXd inverse_metric_;  // D^-1, a vertex each
+  Positions residual_, direction_, image_, correction_;
+  Eigen::VectorXd dq_;
+};
+
+}  // namespace
+
+std::unique_ptr<KktSolver> make_projected_cg(const Problem& problem, const EdgeConstraints& edges,
+                                             const ProjectedCgSettings& settings) {
+  return std::make_unique<ProjectedCg>(problem, edges, settings);
 }
 
 }  // namespace inextensible

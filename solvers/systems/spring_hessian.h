@@ -1,16 +1,12 @@
-// The matrix that springs and bending couple vertices in: blocks of 3 x 3 on the free vertices,
-// numbered so that it factors with little fill, and where each spring and each bending stencil adds
-// to it.
+// The matrix that springs and bending couple vertices in, blocks of 3 x 3, and where each spring
+// and each bending stencil adds to it.
 #pragma once
 
 #include <array>
-#include <memory>
-#include <string>
 #include <string_view>
 #include <vector>
 
-#include "solvers/linear/spd_solver.h"
-#include "solvers/problem/problem.h"
+#include "solvers/systems/vertex_matrix.h"
 
 namespace inextensible {
 
@@ -32,20 +28,11 @@ struct SpringHessian {
     int xx, xy, yy, xz, yz, zz;
   };
 
-  std::vector<Spring> springs;    // edges, then shear
-  std::vector<Hinge> hinges;      // one a bending stencil
-  std::vector<int> free_vertex;   // in elimination order
-  std::vector<int> free_place;    // of each vertex among these, -1 if pinned
-  std::vector<double> free_mass;  // kg
+  std::vector<Spring> springs;  // edges, then shear
+  std::vector<Hinge> hinges;    // one a bending stencil
+  VertexMatrix matrix;
+  std::vector<double> free_mass;  // kg, in its order
   std::vector<Places> diagonal;   // one a free vertex
-  std::string linear_solver;
-  std::size_t entries = 0;  // of the matrix
-  std::unique_ptr<SpdSolver> solver;
-
- private:
-  Pairs coupled_pairs(const Problem& problem) const;
-  void order_vertices(const Pairs& pairs);
-  void locate_blocks(const Problem& problem, const SymmetricPattern& pattern);
 };
 
 }  // namespace inextensible

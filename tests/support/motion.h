@@ -14,16 +14,6 @@ namespace inextensible::testing {
 
 inline constexpr double h = 0.01;  // s, a time step
 
-// test(random, seed) for as many seeds; a failure names its seed.
-template <class Test>
-void for_seeds(std::uint64_t count, const Test& test) {
-  for (std::uint64_t seed = 0; seed < count; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
-    test(random, seed);
-  }
-}
-
 // Two vertices, an edge of length 1 between them, no gravity.
 inline std::shared_ptr<const Problem> one_edge(double mass_a, double mass_b,
                                                std::vector<int> pinned = {}) {

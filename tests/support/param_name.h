@@ -1,7 +1,10 @@
-// Names of GoogleTest's parameters, which take letters, digits and _ only.
+// Contestants as GoogleTest's parameters, whose names take letters, digits and _ only.
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "solvers/registry.h"
 
 namespace inextensible::names {
 
@@ -12,5 +15,14 @@ inline std::string plain(std::string name) {
 }
 
 inline constexpr auto contestant_name = [](const auto& info) { return plain(info.param); };
+
+template <class Fits>
+std::vector<const char*> rows_that(const Fits& fit) {
+  std::vector<const char*> names;
+  for (const Backend& row : backends()) {
+    if (fit(row)) names.push_back(row.name);
+  }
+  return names;
+}
 
 }  // namespace inextensible::names

@@ -1,6 +1,7 @@
 // Random graphs in space, for what must hold beyond grids.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -36,6 +37,33 @@ inline RandomMesh random_graph(Random& random, int n, int extra, int pinned, dou
   for (int added = 0; added < extra;) added += join(vertex(n), vertex(n));
   graph.problem = std::make_shared<const Problem>(std::move(parts));
   return graph;
+}
+
+// Some hairs in one problem, their edges in random directions: pinned at one end, somewhere
+// between, or nowhere. At rest in random shape, masses log-uniform in [lightest, 1]. `twice`: some
+// edges are there a second time.
+inline RandomMesh random_chains(Random& random, int chains, double lightest = 1e-3,
+                                bool twice = false) {
+  testing::RandomMesh mesh;
+  ProblemParts parts;
+  for (int chain = 0; chain < chains; ++chain) {
+    const int first = static_cast<int>(parts.mass.size());
+    const int length = 1 + static_cast<int>(random() % 12);
+    const int pin = first + static_cast<int>(random() % 13);
+    for (int v = first; v < first + length; ++v) {
+      parts.mass.push_back(std::pow(lightest, uniform(random, 0, 1)));
+      if (v == pin) parts.pinned.push_back(v);
+      if (v > first) parts.edges.push_back(random() % 2 ? Edge{v - 1, v} : Edge{v, v - 1});
+      if (twice && v > first && random() % 4 == 0) parts.edges.push_back({v - 1, v});
+    }
+  }
+  std::shuffle(parts.edges.begin(), parts.edges.end(), random);
+  mesh.x = Positions::NullaryExpr(3, static_cast<Eigen::Index>(parts.mass.size()),
+                                  [&] { return uniform(random, -1, 1); });
+  for (const Edge e : parts.edges)
+    parts.rest_length.push_back((mesh.x.col(e.b) - mesh.x.col(e.a)).norm());
+  mesh.problem = std::make_shared<const Problem>(std::move(parts));
+  return mesh;
 }
 
 }  // namespace inextensible::testing

@@ -1,5 +1,7 @@
-// Random problems for property tests; every test prints the seed it failed with (SCOPED_TRACE).
+// Random problems for property tests; every test prints the seed it failed with (for_seeds).
 #pragma once
+
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
@@ -14,10 +16,31 @@ inline double uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
+// test(random, seed) for as many seeds; a failure names its seed.
+template <class Test>
+void for_seeds(std::uint64_t count, const Test& test) {
+  for (std::uint64_t seed = 0; seed < count; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    test(random, seed);
+  }
+}
+
 struct RandomMesh {
   std::shared_ptr<const Problem> problem;
   Positions x;  // at rest: every edge has its rest length
 };
+
+// What a problem is made of but for forces of its own, for one that differs in some of it.
+inline ProblemParts parts_of(const Problem& problem) {
+  ProblemParts parts;
+  parts.mass = problem.mass();
+  parts.pinned = problem.pinned();
+  parts.edges = problem.edges();
+  parts.rest_length = problem.rest_length();
+  parts.gravity = problem.gravity();
+  return parts;
+}
 
 // A crumpled quad grid of rows x columns vertices with unequal edge lengths and masses (a decade
 // apart). pinned: how many vertices; gravity is zero, so that momentum can be checked.

@@ -149,10 +149,8 @@ INSTANTIATE_TEST_SUITE_P(All, SpdSolvers, ::testing::ValuesIn(spd_solvers()),
 
 TEST_P(SpdSolvers, SolveToTheToleranceAskedForWhateverTheMagnitude) {
   const SpdSolverRow& row = GetParam();
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
+  testing::for_seeds(60, [&](testing::Random& random, std::uint64_t seed) {
     System system = random_system(row, seed);
-    Random random(seed);
     for (int round = 0; round < 2; ++round) {  // the same pattern, other values
       system.dense.diagonal().array() += 0.1 * round;
       ASSERT_TRUE(system.factor_shifted(0));
@@ -171,7 +169,7 @@ TEST_P(SpdSolvers, SolveToTheToleranceAskedForWhateverTheMagnitude) {
                   rounding + (exact ? 0 : 1.01 * tolerance * b.norm()));
       }
     }
-  }
+  });
 }
 
 // A positive diagonal does not make a matrix positive definite. What is left of a refused matrix
@@ -263,9 +261,7 @@ TEST(FillReducingOrder, IsAPermutation) {
 // ---- The multifrontal factorization in single precision ----
 
 TEST(MultifrontalCholesky, InSinglePrecisionAgreesToFiveDigitsWhateverTheMagnitude) {
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+  testing::for_seeds(60, [&](testing::Random& random, std::uint64_t seed) {
     const MatrixXd matrix = dominant(random, 1 + static_cast<int>(seed));
     const SymmetricPattern pattern = pattern_of(matrix, Triangle::lower);
     MultifrontalCholesky<float> solver(pattern);
@@ -275,7 +271,7 @@ TEST(MultifrontalCholesky, InSinglePrecisionAgreesToFiveDigitsWhateverTheMagnitu
     const VectorXd expected = matrix.ldlt().solve(x);
     solver.solve(x.data());
     EXPECT_LT((x - expected).norm(), 1e-5 * expected.norm());
-  }
+  });
 }
 
 // A pivot of 1e-6 of its diagonal entry is noise in single precision.
@@ -291,10 +287,9 @@ TEST(MultifrontalCholesky, InSinglePrecisionRefusesPivotsWithoutDigits) {
 // Graphs with edges so nearly parallel that single precision has few digits, or none.
 TEST(MixedCholesky, KeepsWhatItIsAskedForInWhicheverPrecisionItTakes) {
   int solved[2] = {0, 0};
-  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+  testing::for_seeds(50, [&](testing::Random& random, std::uint64_t seed) {
     for (const double bend : {1.0, 1e-1, 1e-2, 1e-3}) {
       SCOPED_TRACE("seed " + std::to_string(seed) + ", bend " + std::to_string(bend));
-      Random random(seed);
       const auto graph = testing::random_graph(random, 60, 40, 5, 1e-2);
       Positions x = graph.x;
       x.bottomRows(2) *= bend;  // towards a line
@@ -314,7 +309,7 @@ TEST(MixedCholesky, KeepsWhatItIsAskedForInWhicheverPrecisionItTakes) {
         ++solved[solver.in_double_precision()];
       }
     }
-  }
+  });
   EXPECT_GT(solved[false], 0);
   EXPECT_GT(solved[true], 0);
 }
@@ -349,22 +344,18 @@ TEST(LineCg, SolvesASystemOfLinesAloneWithoutIterating) {
 
 // Unequal masses and angles break yarns now and then, never into single edges.
 TEST(LineCg, FindsTheYarnsOfACrumpledCloth) {
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+  testing::for_seeds(20, [&](testing::Random& random, std::uint64_t) {
     const auto mesh = testing::random_mesh(random, 7, 9, 0);
     const Lines cloth(schur_complement(*mesh.problem, mesh.x));
     EXPECT_GE(cloth.solver.lines(), 7 + 9 - 4);
     EXPECT_LE(cloth.solver.lines(), 3 * (7 + 9));
-  }
+  });
 }
 
 // What lines invert is the matrix itself where they have an entry; among eliminated rows, all of
 // it.
 TEST(LineCg, LinesAreASymmetricPositiveDefinitePreconditionerAndThoseEliminatedAreIndependent) {
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+  testing::for_seeds(20, [&](testing::Random& random, std::uint64_t) {
     const int n = 40;
     const MatrixXd matrix = random_spd(random, n);
     Lines lines(matrix);
@@ -381,7 +372,7 @@ TEST(LineCg, LinesAreASymmetricPositiveDefinitePreconditionerAndThoseEliminatedA
         }
       }
     }
-  }
+  });
 }
 
 // Weak couplings, none of which makes a line; positive definite without, indefinite with them.
@@ -451,8 +442,7 @@ TEST(Hybrid, FactorsWhereConjugateGradientsAreSlowAndComesBackFromThere) {
 // that the projection goes.
 TEST(FastProjection, KeepsTheLimitAlikeWithConjugateGradientsAndWithAFactorization) {
   constexpr double limit = 1e-3;
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    Random random(seed);
+  testing::for_seeds(20, [&](testing::Random& random, std::uint64_t seed) {
     const auto mesh = testing::random_mesh(random, 8, 8, static_cast<int>(seed % 3));
     const Positions candidate = testing::perturbed(random, mesh, 0.05);
     int exact_iterations = 0;
@@ -474,7 +464,7 @@ TEST(FastProjection, KeepsTheLimitAlikeWithConjugateGradientsAndWithAFactorizati
       EXPECT_LE(result.iterations, exact_iterations + 2);
       EXPECT_LE((x - expected).norm(), 0.05 * (candidate - expected).norm());
     }
-  }
+  });
 }
 
 }  // namespace

@@ -38,15 +38,9 @@ class EveryMethod : public ::testing::TestWithParam<const char*> {
   }
 };
 
-std::vector<const char*> all_methods() {
-  std::vector<const char*> names;
-  for (const Backend& backend : backends()) {
-    if (backend.name != std::string_view("null")) names.push_back(backend.name);
-  }
-  return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, EveryMethod, ::testing::ValuesIn(all_methods()),
+INSTANTIATE_TEST_SUITE_P(All, EveryMethod, ::testing::ValuesIn(names::rows_that([](auto& row) {
+                           return row.name != std::string_view("null");
+                         })),
                          names::contestant_name);
 
 // Two runs, bit for bit and counter for counter the same.
@@ -156,13 +150,8 @@ TEST_P(EveryMethod, DependsOnNeitherCoordinatesNorUnits) {
   constexpr double factor = 1024;  // no rounding of its own in any precision
   for_seeds(seeds, [&](Random& random, std::uint64_t) {
     const auto mesh = random_mesh(random, 4, 4, 2);
-    const Problem& p = *mesh.problem;
-    ProblemParts parts;
-    parts.gravity.setZero();
-    for (const double mass : p.mass()) parts.mass.push_back(factor * mass);
-    parts.pinned = p.pinned();
-    parts.edges = p.edges();
-    parts.rest_length = p.rest_length();
+    ProblemParts parts = testing::parts_of(*mesh.problem);
+    for (double& mass : parts.mass) mass *= factor;
     Settings grams;
     if (elastic) grams["stiffness"] = 1e4 * factor;
     State state = moving_state(random, mesh, 3), heavy = state;

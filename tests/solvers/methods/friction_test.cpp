@@ -158,42 +158,6 @@ TEST_P(Friction, OfARopeRoundAPostGrowsAsTheCapstanEquationSays) {
               0.35 * acceleration * 40 * short_step);
 }
 
-// Methods that solve the same equations fall onto a ground that slopes, with friction, side by
-// side.
-TEST(OnTheGround, MethodsOfTheSameEquationsAgree) {
-  const struct {
-    const char *known, *examined;
-    BackendOptions known_options, options;
-    double tolerance;
-  } pairs[] = {{"icd", "admm", {1e-9}, {1e-9}, 1e-5},
-               {"icd", "augmented_vbd", {1e-9}, {1e-9}, 1e-5},
-               {"implicit_springs",
-                "vertex_block_descent",
-                {1e-6},
-                {0.01, 1, {{"iterations", 2000.0}}},
-                1e-6}};
-  for (const auto& [known, examined, known_options, options, tolerance] : pairs) {
-    SCOPED_TRACE(examined);
-    for (std::uint64_t seed = 0; seed < 4; ++seed) {
-      testing::Random random(seed);
-      const auto ground = std::make_shared<const testing::Ground>(Vector3d(0.1, 1, 0), 0.0, 0.2);
-      const auto mesh = testing::random_mesh(random, 4, 4, 0, ground);
-      const auto one = make_stepper(known, mesh.problem, known_options),
-                 other = make_stepper(examined, mesh.problem, options);
-      State state = testing::moving_state(random, mesh, 0.3);
-      state.x.row(1).array() += 0.5;
-      state.v.row(1).array() -= 3;
-      State copy = state;
-      for (int step = 0; step < 30; ++step) {
-        ASSERT_TRUE(one->advance(state, testing::h));
-        ASSERT_TRUE(other->advance(copy, testing::h));
-        ASSERT_LE((copy.x - state.x).cwiseAbs().maxCoeff(), tolerance) << "step " << step;
-      }
-      EXPECT_GT(other->work().contacts, 0);
-    }
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(Methods, Friction,
                          ::testing::Values("implicit_springs", "augmented_vbd", "admm",
                                            "gauss_seidel_colored", "shake", "icd",

@@ -1,11 +1,12 @@
-// Bodies that move: what they do to a vertex, in closed form, and Galileo's relativity with every
-// backend.
+// Bodies that move, and pins with them: what they do to a vertex, in closed form, and Galileo's
+// relativity with every backend.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
+#include "solvers/problem/edge_constraints.h"
 #include "solvers/problem/triangle_collider.h"
 #include "solvers/registry.h"
 #include "support/contact.h"
@@ -96,11 +97,30 @@ TEST(MovingBody, NeedsABody) {
   EXPECT_THROW(Problem{parts}, std::invalid_argument);
 }
 
+TEST(MovingPins, AreWhereTheBodyTakesThem) {
+  const BodyMotion motion = [](double time) {
+    return Pose{turning(2)(time).turn, time * Vector3d(0.7, -0.2, 0.4)};
+  };
+  Random random(1);
+  const auto chain = testing::random_mesh(random, 1, 8, 1);
+  ProblemParts parts = testing::parts_of(*chain.problem);
+  parts.collider = std::make_shared<const testing::Ground>(Vector3d(0, 1, 0), -100, 0);
+  parts.body_motion = motion;
+  parts.pins_follow_body = true;
+  const auto problem = std::make_shared<const Problem>(parts);
+  State state{chain.x, Positions::Zero(3, 8), 0};
+  const auto stepper = make_stepper("fast_projection", problem, {1e-6, 1, {}, &state});
+  for (int step = 0; step < 100; ++step) ASSERT_TRUE(stepper->advance(state, tick));
+  const int pin = problem->pinned()[0];
+  EXPECT_LT((state.x.col(pin) - motion(state.time)(chain.x.col(pin))).norm(), 1e-10);
+  EXPECT_TRUE(EdgeConstraints(*problem, 1e-6).permissible(state.x));
+}
+
 class MovingBodies : public ::testing::TestWithParam<const char*> {};
 
-// Cloth that falls onto a ball sees no difference between a ball at rest and both in the same
-// steady motion, but for what iterations stop at: a method that did not carry contacts along would
-// be wrong by 0.1.
+// Cloth that falls onto a ball, free or pinned beside it, sees no difference between a ball at rest
+// and both in the same steady motion, but for what iterations stop at: a method that did not carry
+// contacts along would be wrong by 0.1, one that left pins behind by 0.6.
 TEST_P(MovingBodies, SeesNoSteadyMotionThatItShares) {
   const Vector3d velocity(0.7, -0.4, 1.1);
   const Eigen::Matrix3d turned =
@@ -110,17 +130,16 @@ TEST_P(MovingBodies, SeesNoSteadyMotionThatItShares) {
     const auto run = [&](bool moves) {
       Random random(seed);
       const Vector3d middle(2, -1.15 + uniform(random, -0.1, 0.1), 1.5);
-      const auto mesh = testing::random_mesh(random, 4, 5, 0);
-      ProblemParts parts;
-      parts.mass = mesh.problem->mass();
-      parts.edges = mesh.problem->edges();
-      parts.rest_length = mesh.problem->rest_length();
+      const auto mesh = testing::random_mesh(random, 4, 5, seed == 0);
+      ProblemParts parts = testing::parts_of(*mesh.problem);
+      parts.gravity = {0, -free_fall, 0};
       // In coordinates of its own that are turned, which its pose turns back.
       TriangleMesh ball = icosphere(middle, 0.9, 2);
       if (moves)
         for (Vector3d& v : ball.vertices) v = turned.transpose() * v;
       parts.collider = std::make_shared<const TriangleCollider>(ball, 0.3);
       if (moves) parts.body_motion = [=](double time) { return Pose{turned, time * velocity}; };
+      parts.pins_follow_body = moves;
       State state{mesh.x, Positions::Zero(3, mesh.x.cols()), 0};
       if (moves) state.v.colwise() += velocity;
       Settings settings;
@@ -137,15 +156,10 @@ TEST_P(MovingBodies, SeesNoSteadyMotionThatItShares) {
   }
 }
 
-std::vector<const char*> methods() {
-  std::vector<const char*> names;
-  for (const Backend& backend : backends()) {
-    if (backend.contestant && backend.takes_collider) names.push_back(backend.name);
-  }
-  return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, MovingBodies, ::testing::ValuesIn(methods()), names::contestant_name);
+INSTANTIATE_TEST_SUITE_P(All, MovingBodies, ::testing::ValuesIn(names::rows_that([](auto& row) {
+                           return row.contestant && row.takes_collider;
+                         })),
+                         names::contestant_name);
 
 }  // namespace
 }  // namespace inextensible

@@ -17,53 +17,6 @@ using testing::Random;
 using testing::random_mesh;
 using testing::RandomMesh;
 
-class MultiplierMethod : public ::testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(All, MultiplierMethod, ::testing::Values("admm", "augmented_vbd"));
-
-// Theorem 1 of Goldenthal et al. 2007, by dense Newton, whatever the penalty.
-TEST_P(MultiplierMethod, IteratedToTheEndIsTheClosestPoint) {
-  for_seeds(8, [](Random& random, std::uint64_t seed) {
-    for (const double penalty : {3.0, 10.0, 30.0}) {
-      SCOPED_TRACE("penalty " + std::to_string(penalty));
-      const RandomMesh mesh = random_mesh(random, 4, 4, static_cast<int>(seed % 2));
-      const auto oracle = make_stepper("dense_newton", mesh.problem, {});
-      const auto examined =
-          make_stepper(GetParam(), mesh.problem, {1e-10, 1, {{"penalty", penalty}}});
-      State state = testing::moving_state(random, mesh, 1);
-      for (int step = 0; step < 5; ++step) {
-        State copy = state;
-        ASSERT_TRUE(oracle->advance(state, h));
-        ASSERT_TRUE(examined->advance(copy, h));
-        EXPECT_LE((copy.x - state.x).cwiseAbs().maxCoeff(), 1e-7) << "step " << step;
-      }
-    }
-  });
-}
-
-// ADMM's inner forces come in equal and opposite pairs, which are parallel to their edges only in
-// the end. Augmented VBD moves each vertex alone: even linear momentum is kept only as far as the
-// iteration has converged.
-TEST_P(MultiplierMethod, ConservesMomentumAsFarAsItHasConverged) {
-  for_seeds(4, [](Random& random, std::uint64_t) {
-    const RandomMesh mesh = random_mesh(random, 4, 5, 0);
-    const Problem& p = *mesh.problem;
-    const State start = testing::moving_state(random, mesh, 4);
-    const bool admm = GetParam() == std::string_view("admm");
-    const auto lost = [&](double tolerance) {
-      const auto stepper =
-          make_stepper(GetParam(), mesh.problem, {0.005, 1, {{"direction_tolerance", tolerance}}});
-      State state = start;
-      EXPECT_TRUE(stepper->advance(state, h));
-      const double linear = testing::linear_momentum(p, state.v - start.v).norm();
-      if (!admm) return linear;
-      EXPECT_LT(linear, 1e-10);
-      return testing::angular_momentum(p, state.x, state.v - start.v).norm();
-    };
-    EXPECT_LT(lost(1e-4), 0.01 * lost(3));
-    EXPECT_LT(lost(1e-8), 1e-7);
-  });
-}
-
 TEST(Admm, FactorsOnceWhateverTheSteps) {
   for (const char* solver : {"auto", "multifrontal", "cholmod_supernodal"}) {
     SCOPED_TRACE(solver);

@@ -53,15 +53,9 @@ TEST_P(NoAllocation, InsideAStepAfterWarmUp) {
   }
 }
 
-std::vector<const char*> contestants() {
-  std::vector<const char*> names;
-  for (const Backend& backend : backends()) {
-    if (backend.contestant) names.push_back(backend.name);
-  }
-  return names;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, NoAllocation, ::testing::ValuesIn(contestants()),
+INSTANTIATE_TEST_SUITE_P(All, NoAllocation, ::testing::ValuesIn(names::rows_that([](auto& row) {
+                           return row.contestant;
+                         })),
                          names::contestant_name);
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "solvers/registry.h"
 #include "support/hanging_rope.h"
 #include "support/motion.h"
+#include "support/random_graph.h"
 
 namespace inextensible {
 namespace {
@@ -78,33 +79,11 @@ TEST(ImplicitSprings, TakeFewerIterationsFromAPredictedStartAndTension) {
   EXPECT_LT(work(newton("flight", "current", 10)).factorizations, before.factorizations);
 }
 
-// Hairs of unequal length in one problem, each pinned somewhere, some springs twice.
-RandomMesh random_hairs(Random& random, int hairs) {
-  RandomMesh mesh;
-  ProblemParts parts;
-  for (int hair = 0; hair < hairs; ++hair) {
-    const int first = static_cast<int>(parts.mass.size());
-    const int length = 2 + static_cast<int>(random() % 9);
-    parts.pinned.push_back(first + static_cast<int>(random() % 3) * (length - 1) / 2);
-    for (int v = first; v < first + length; ++v) {
-      parts.mass.push_back(testing::uniform(random, 0.1, 1));
-      if (v == first) continue;
-      parts.edges.push_back(random() % 2 ? Edge{v - 1, v} : Edge{v, v - 1});
-      if (random() % 4 == 0) parts.edges.push_back({v - 1, v});
-    }
-  }
-  mesh.x = Positions::NullaryExpr(3, static_cast<Eigen::Index>(parts.mass.size()),
-                                  [&](Eigen::Index) { return testing::uniform(random, -1, 1); });
-  for (const Edge e : parts.edges)
-    parts.rest_length.push_back((mesh.x.col(e.b) - mesh.x.col(e.a)).norm());
-  mesh.problem = std::make_shared<const Problem>(std::move(parts));
-  return mesh;
-}
-
 // The solver for chains against one that takes any matrix, in another elimination order.
 TEST(ImplicitSprings, TakeTheSameStepsByEitherFactorizationOfChains) {
   for_seeds(24, [](Random& random, std::uint64_t seed) {
-    const RandomMesh mesh = random_hairs(random, 1 + static_cast<int>(seed % 4));
+    const RandomMesh mesh =
+        testing::random_chains(random, 1 + static_cast<int>(seed % 4), 0.1, true);
     const State start = moving_state(random, mesh, 1);
     const auto run = [&](const char* wanted, const char* used) {
       const auto stepper = make_stepper(
@@ -166,50 +145,6 @@ TEST(VertexPasses, MoveOneVertexAfterTheOtherInColors) {
     passes.store(x);
     EXPECT_LT((x - wanted).cwiseAbs().maxCoeff(), 1e-12);
   });
-}
-
-// Under gravity, with shear springs and drag.
-TEST(VertexBlockDescent, ConvergesToTheStepOfImplicitSprings) {
-  for_seeds(8, [](Random& random, std::uint64_t seed) {
-    const RandomMesh mesh = random_mesh(random, 4, 4, static_cast<int>(seed % 3));
-    ProblemParts parts;
-    parts.mass = mesh.problem->mass();
-    parts.pinned = mesh.problem->pinned();
-    parts.edges = mesh.problem->edges();
-    parts.rest_length = mesh.problem->rest_length();
-    if (seed % 2 == 0)
-      parts.shear = Springs{{{0, 5}, {1, 4}, {5, 10}}, {1.2, 1.3, 1.4}, {30, 20, 50}};
-    if (seed % 4 < 2) parts.drag.assign(parts.mass.size(), 0.7);
-    const auto problem = std::make_shared<const Problem>(std::move(parts));
-    const auto exact = make_stepper("implicit_springs", problem, {1e-6}),
-               descent = make_stepper("vertex_block_descent", problem,
-                                      {0.01, 1, {{"iterations", 2000.0}}});
-    State state = moving_state(random, mesh, 0.5);
-    for (int step = 0; step < 10; ++step) {
-      State copy = state;
-      ASSERT_TRUE(exact->advance(state, h));
-      ASSERT_TRUE(descent->advance(copy, h));
-      EXPECT_LE((copy.x - state.x).cwiseAbs().maxCoeff(), 1e-8) << "step " << step;
-    }
-  });
-}
-
-// Each vertex moves alone: a pass gives momentum away, and convergence brings it back.
-TEST(VertexBlockDescent, ConservesMomentumAsFarAsItHasConverged) {
-  Random random(1);
-  const RandomMesh mesh = random_mesh(random, 5, 5, 0);
-  const State start = moving_state(random, mesh, 4);
-  const auto lost = [&](double iterations) {
-    const auto stepper =
-        make_stepper("vertex_block_descent", mesh.problem, {0.01, 1, {{"iterations", iterations}}});
-    State state = start;
-    EXPECT_TRUE(stepper->advance(state, h));
-    EXPECT_EQ(stepper->work().iterations, iterations);
-    return testing::linear_momentum(*mesh.problem, state.v - start.v).norm();
-  };
-  EXPECT_GT(lost(2), 1e-3);
-  EXPECT_LT(lost(20), 0.1 * lost(2));
-  EXPECT_LT(lost(2000), 1e-9);
 }
 
 // The first step starts from the free flight, later ones from as much of gravity as the last step

@@ -45,9 +45,7 @@ struct Fallen {
 };
 
 TEST(Contacts, SettlePushesWhatIsInsideOntoItsPlane) {
-  for (std::uint64_t seed = 0; seed < 30; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+  testing::for_seeds(30, [&](testing::Random& random, std::uint64_t seed) {
     const int n = 1 + static_cast<int>(seed);  // whole lanes and parts of one
     Fallen fallen(random, n, 0.5);
     Contacts& contacts = fallen.contacts;
@@ -75,14 +73,12 @@ TEST(Contacts, SettlePushesWhatIsInsideOntoItsPlane) {
     contacts.settle(x);
     EXPECT_LT((x - once).cwiseAbs().maxCoeff(), 1e-14);
     EXPECT_EQ(contacts.find(x, fallen.work), 0);
-  }
+  });
 }
 
 // Without edges the expected way is the candidate's.
 TEST(Contacts, FrictionTakesFromTheWayWhatCoulombGrants) {
-  for (std::uint64_t seed = 0; seed < 30; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+  testing::for_seeds(30, [&](testing::Random& random, std::uint64_t) {
     const double mu = uniform(random, 0.1, 1);
     Fallen fallen(random, 20, mu);
     Contacts contacts(fallen.problem);
@@ -101,7 +97,7 @@ TEST(Contacts, FrictionTakesFromTheWayWhatCoulombGrants) {
       EXPECT_NEAR(n.dot(x.col(v) - fallen.candidate.col(v)), 0,
                   1e-14);  // a plane's push comes later
     }
-  }
+  });
 }
 
 // What edges have done twice in the same direction is expected of them, and held by friction before
@@ -129,9 +125,7 @@ TEST(Contacts, FrictionHoldsWhatEdgesPullSteadily) {
 
 // However the way there was divided, with pulls outwards between.
 TEST(Contacts, WhatPushesAndPullsLaterCountsAsIfItHadAtOnce) {
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+  testing::for_seeds(20, [&](testing::Random& random, std::uint64_t) {
     Fallen fallen(random, 20, 0);
     Contacts& contacts = fallen.contacts;
     Positions x = fallen.candidate, free = fallen.candidate;
@@ -150,7 +144,7 @@ TEST(Contacts, WhatPushesAndPullsLaterCountsAsIfItHadAtOnce) {
         EXPECT_EQ(contacts.holds(c), gap < 0);
       }
     }
-  }
+  });
 }
 
 TEST(Contacts, RestoreTakesUpWhatWasSavedAndBeginForgets) {

@@ -136,8 +136,7 @@ struct Recorder final : IterateObserver {
 };
 
 TEST(Observer, SeesIteratesAndTheirMultipliersAndChangesNothing) {
-  for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    testing::Random random(seed);
+  testing::for_seeds(4, [&](testing::Random& random, std::uint64_t) {
     const testing::RandomMesh mesh = testing::random_mesh(random, 5, 6, 1);
     State state{mesh.x, (testing::perturbed(random, mesh, 1) - mesh.x) * 10};
     State alone = state;
@@ -152,7 +151,7 @@ TEST(Observer, SeesIteratesAndTheirMultipliersAndChangesNothing) {
     EXPECT_LT(recorder.largest, 1e-10);
     ASSERT_TRUE(make_stepper("fast_projection", mesh.problem, options)->advance(alone, 0.01));
     EXPECT_EQ(state.x, alone.x);
-  }
+  });
 }
 
 TEST(Observer, IsCalledByThoseThatSayIt) {

@@ -6,8 +6,6 @@
 
 #include <Eigen/Dense>
 
-#include "harness/base/statistics.h"
-#include "harness/scenes/pendulum.h"
 #include "solvers/registry.h"
 #include "support/random_graph.h"
 
@@ -18,12 +16,7 @@ using testing::Random;
 using testing::RandomMesh;
 
 RandomMesh falling(const RandomMesh& mesh, const Eigen::Vector3d& gravity) {
-  const Problem& p = *mesh.problem;
-  ProblemParts parts;
-  parts.mass = p.mass();
-  parts.pinned = p.pinned();
-  parts.edges = p.edges();
-  parts.rest_length = p.rest_length();
+  ProblemParts parts = testing::parts_of(*mesh.problem);
   parts.gravity = gravity;
   return {std::make_shared<const Problem>(std::move(parts)), mesh.x};
 }
@@ -35,9 +28,7 @@ State random_state(Random& random, const RandomMesh& mesh) {
 
 // a = W f - W J^T lambda from the definitions.
 TEST(ConstrainedAcceleration, IsThatOfDenseAlgebra) {
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+  testing::for_seeds(20, [&](testing::Random& random, std::uint64_t seed) {
     const RandomMesh mesh = falling(seed % 2 ? testing::random_mesh(random, 5, 6, 3)
                                              : testing::random_graph(random, 30, 20, 2, 1e-3),
                                     {1, -9.81, 2});
@@ -57,14 +48,12 @@ TEST(ConstrainedAcceleration, IsThatOfDenseAlgebra) {
     const Positions a = constrained_acceleration(p, state);
     EXPECT_LT((a.reshaped() - expected).norm(), 1e-8 * expected.norm());
     for (const int v : p.pinned()) EXPECT_EQ(a.col(v), Eigen::Vector3d::Zero());
-  }
+  });
 }
 
 // Inner forces change neither sum m a nor sum m x cross a.
 TEST(ConstrainedAcceleration, OfAFreeNetHasTheMomentaOfItsWeight) {
-  for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+  testing::for_seeds(10, [&](testing::Random& random, std::uint64_t) {
     const RandomMesh mesh = falling(testing::random_mesh(random, 6, 6, 0), {1, -9.81, 2});
     const Positions a = constrained_acceleration(*mesh.problem, random_state(random, mesh));
     Eigen::Vector3d force = Eigen::Vector3d::Zero(), torque = force;
@@ -79,7 +68,7 @@ TEST(ConstrainedAcceleration, OfAFreeNetHasTheMomentaOfItsWeight) {
     EXPECT_GT(scale, 0.1);  // there are inner forces
     EXPECT_LT(force.norm(), 1e-12 * scale);
     EXPECT_LT(torque.norm(), 1e-11 * scale);
-  }
+  });
 }
 
 // A straight row of unequal masses between two pins: J W J^T is singular.
@@ -113,10 +102,6 @@ TEST(ConstrainedAcceleration, KnowsNoForceOfAnEdgeWithoutLength) {
   EXPECT_NEAR((a.col(2) - parts.gravity).norm(), 0, 1e-12);
 }
 
-State start_of(const Backend& row, const Problem& problem, const State& state, double h) {
-  return row.velocities == Velocities::half_step ? start_half_step_back(problem, state, h) : state;
-}
-
 // Every row says rightly what its velocities are: a free net that moves then falls exactly.
 TEST(StartHalfStepBack, LetsEveryMethodFallExactly) {
   Random random(3);
@@ -128,37 +113,12 @@ TEST(StartHalfStepBack, LetsEveryMethodFallExactly) {
     const State begin = state;
     const double h = 0.01;
     const auto stepper = make_stepper(row.name, mesh.problem, {1e-3, 1, {}});
-    state = start_of(row, *mesh.problem, state, h);
+    if (row.velocities == Velocities::half_step)
+      state = start_half_step_back(*mesh.problem, state, h);
     for (int i = 0; i < 50; ++i) ASSERT_TRUE(stepper->advance(state, h));
     Positions exact = begin.x + 0.5 * begin.v;
     exact.row(1).array() -= 0.5 * 9.81 * 0.25;
     EXPECT_LT((state.x - exact).cwiseAbs().maxCoeff(), 1e-12);
-  }
-}
-
-// A pendulum of three links, released where all of its links pull, against the equations in angles.
-TEST(StartHalfStepBack, GivesShakeItsSecondOrder) {
-  const std::vector<double> mass{1, 0.5, 2}, length{0.4, 0.3, 0.5}, angle{0.9, -0.4, 0.3};
-  harness::Pendulum pendulum({mass, length, 9.81}, angle);
-  ProblemParts parts;
-  parts.mass = {1, 1, 0.5, 2};
-  parts.pinned = {0};
-  parts.edges = {{0, 1}, {1, 2}, {2, 3}};
-  parts.rest_length = length;
-  const auto problem = std::make_shared<const Problem>(parts);
-  const State begin{pendulum.positions(), Positions::Zero(3, 4), 0};
-  const double duration = 0.3;
-  pendulum.advance(duration, 1e-13);
-  for (const bool back : {true, false}) {
-    std::vector<double> steps, errors;
-    for (double h = duration / 50; steps.size() < 5; h /= 2) {
-      const auto stepper = make_stepper("shake", problem, {1e-12, 1, {}});
-      State state = back ? start_half_step_back(*problem, begin, h) : begin;
-      for (int i = 0; i < std::lround(duration / h); ++i) ASSERT_TRUE(stepper->advance(state, h));
-      steps.push_back(h);
-      errors.push_back((state.x - pendulum.positions()).norm());
-    }
-    EXPECT_NEAR(harness::log_log_slope(steps, errors).value, back ? 2 : 1, 0.1);
   }
 }
 

@@ -23,9 +23,7 @@ using Triangle = SymmetricPattern::Triangle;
 constexpr std::uint64_t seeds = 20;
 
 TEST(EdgeConstraints, GradientMatchesCentralDifferencesOfC) {
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+  testing::for_seeds(seeds, [&](testing::Random& random, std::uint64_t) {
     const auto mesh = random_mesh(random, 3, 4, 1);
     const Positions x = testing::perturbed(random, mesh, 0.3);
     const EdgeConstraints edges(*mesh.problem, 0.01);
@@ -48,7 +46,7 @@ TEST(EdgeConstraints, GradientMatchesCentralDifferencesOfC) {
         EXPECT_NEAR((plus[k] - minus[k]) / (2 * step), expected, 1e-8);
       }
     }
-  }
+  });
 }
 
 TEST(EdgeConstraints, NaNIsNeverPermissible) {
@@ -68,9 +66,7 @@ TEST(EdgeConstraints, NaNIsNeverPermissible) {
 }
 
 TEST(EdgeConstraints, WorstNamesTheProblemsEdgeInAnyOrder) {
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
+  testing::for_seeds(seeds, [&](testing::Random& random, std::uint64_t) {
     const auto mesh = random_mesh(random, 4, 4, 2);
     const Problem& p = *mesh.problem;
     const Positions x = testing::perturbed(random, mesh, 0.2);
@@ -95,22 +91,17 @@ TEST(EdgeConstraints, WorstNamesTheProblemsEdgeInAnyOrder) {
       EXPECT_EQ(edges.permissible(x), factor > 1);
       EXPECT_EQ(edges.linearize(x, u, c), factor > 1);
     }
-  }
+  });
 }
 
 // With two edges between the same vertices, in opposite directions: their entries meet in one
 // place. Some vertices are held by planes, and move within these: W (I - n n^T).
 TEST(SchurComplement, EqualsTheDenseProductInEachTriangleWithAndWithoutContacts) {
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    Random random(seed);
+  testing::for_seeds(seeds, [&](testing::Random& random, std::uint64_t) {
     const auto ground =
         std::make_shared<const testing::Ground>(Eigen::Vector3d(0.3, 1, 0.2), 1, 0.4);
     const auto mesh = random_mesh(random, 4, 5, 3, ground);
-    ProblemParts parts;
-    parts.mass = mesh.problem->mass();
-    parts.pinned = mesh.problem->pinned();
-    parts.edges = mesh.problem->edges();
-    parts.rest_length = mesh.problem->rest_length();
+    ProblemParts parts = testing::parts_of(*mesh.problem);
     parts.edges.push_back({parts.edges[2].b, parts.edges[2].a});
     parts.rest_length.push_back(0.7);
     parts.collider = ground;
@@ -136,7 +127,7 @@ TEST(SchurComplement, EqualsTheDenseProductInEachTriangleWithAndWithoutContacts)
     for (const auto triangle : {Triangle::lower, Triangle::upper, Triangle::both}) {
       for (const bool weighed : {false, true}) {
         for (const bool touching : {false, true}) {
-          SCOPED_TRACE("seed " + std::to_string(seed) + (touching ? ", contacts" : ""));
+          SCOPED_TRACE(touching ? "contacts" : "no contacts");
           SchurComplement schur(edges, problem.vertices(), triangle);
           if (weighed) schur.weigh(other_w.data());
           const std::vector<double>& w = weighed ? other_w : problem.inverse_mass();
@@ -168,15 +159,14 @@ TEST(SchurComplement, EqualsTheDenseProductInEachTriangleWithAndWithoutContacts)
         }
       }
     }
-  }
+  });
 }
 
 // SHAKE's matrix, directions at two positions; a tree that is a path has a tridiagonal one.
 TEST(UnsymmetricSolver, IsBackwardStableOnShakesMatricesAndSeesAnEmptyColumn) {
   for (const bool chain : {true, false}) {
-    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    testing::for_seeds(seeds, [&](testing::Random& random, std::uint64_t seed) {
       SCOPED_TRACE((chain ? "chain, seed " : "graph, seed ") + std::to_string(seed));
-      Random random(seed);
       const auto graph =
           chain ? random_mesh(random, 1, 40, 1) : testing::random_graph(random, 40, 25, 3, 1e-2);
       const Problem& problem = *graph.problem;
@@ -199,7 +189,7 @@ TEST(UnsymmetricSolver, IsBackwardStableOnShakesMatricesAndSeesAnEmptyColumn) {
       for (int i = schur.pattern().column_start[3]; i < schur.pattern().column_start[4]; ++i)
         solver->values()[i] = 0;
       EXPECT_FALSE(solver->factor());
-    }
+    });
   }
 }
 

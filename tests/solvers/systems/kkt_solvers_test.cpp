@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "solvers/systems/projected_cg.h"
+#include "solvers/systems/kkt_system.h"
 #include "support/random_graph.h"
 
 namespace inextensible {
@@ -44,30 +44,6 @@ MatrixXd dense_kkt(const Problem& problem, const Positions& x, const VectorXd& m
   return kkt;
 }
 
-// Some hairs in one problem, their edges in random directions: pinned at one end, somewhere
-// between, or nowhere. At rest in random shape, masses log-uniform over three decades.
-testing::RandomMesh random_chains(Random& random, int chains) {
-  testing::RandomMesh mesh;
-  ProblemParts parts;
-  for (int chain = 0; chain < chains; ++chain) {
-    const int first = static_cast<int>(parts.mass.size());
-    const int length = 1 + static_cast<int>(random() % 12);
-    const int pin = first + static_cast<int>(random() % 13);
-    for (int v = first; v < first + length; ++v) {
-      parts.mass.push_back(std::pow(10, uniform(random, -3, 0)));
-      if (v == pin) parts.pinned.push_back(v);
-      if (v > first) parts.edges.push_back(random() % 2 ? Edge{v - 1, v} : Edge{v, v - 1});
-    }
-  }
-  std::shuffle(parts.edges.begin(), parts.edges.end(), random);
-  mesh.x = Positions::NullaryExpr(3, static_cast<Eigen::Index>(parts.mass.size()),
-                                  [&] { return uniform(random, -1, 1); });
-  for (const Edge e : parts.edges)
-    parts.rest_length.push_back((mesh.x.col(e.b) - mesh.x.col(e.a)).norm());
-  mesh.problem = std::make_shared<const Problem>(std::move(parts));
-  return mesh;
-}
-
 using Made = std::unique_ptr<KktSolver>;
 struct Row {
   const char* name;
@@ -79,17 +55,16 @@ struct Row {
 };
 const Row rows[] = {{"quasi_definite", false, true, true, 1e-9,
                      [](const Problem& problem, const EdgeConstraints& edges) -> Made {
-                       return std::make_unique<KktSystem>(problem, edges);
+                       return make_kkt_system(problem, edges);
                      }},
                     {"umfpack", false, true, false, 1e-9,
                      [](const Problem& problem, const EdgeConstraints& edges) -> Made {
-                       return std::make_unique<KktSystem>(problem, edges, KktSystem::By::umfpack);
+                       return make_kkt_system(problem, edges, FactoredBy::umfpack);
                      }},
                     {"block_tridiagonal", true, true, true, 1e-9, make_chain_kkt},
                     {"projected_cg", false, false, false, 1e-8,
                      [](const Problem& problem, const EdgeConstraints& edges) -> Made {
-                       return std::make_unique<ProjectedCg>(
-                           problem, edges, ProjectedCg::Settings{1e-12, 500, "multifrontal"});
+                       return make_projected_cg(problem, edges, {1e-12, 500, "multifrontal"});
                      }}};
 
 class KktSolvers : public ::testing::TestWithParam<Row> {};
@@ -105,7 +80,7 @@ TEST_P(KktSolvers, SolveTheDenseSaddlePointSystemAndNoticeTheWrongInertia) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {
       SCOPED_TRACE("multipliers " + std::to_string(size) + ", seed " + std::to_string(seed));
       Random random(seed);
-      const auto mesh = row.chains ? random_chains(random, 1 + static_cast<int>(seed % 5))
+      const auto mesh = row.chains ? testing::random_chains(random, 1 + static_cast<int>(seed % 5))
                         : seed % 2 ? testing::random_mesh(random, 4, 5, 2)
                                    : testing::random_graph(random, 20, 12, 2, 0.1);
       const Problem& problem = *mesh.problem;
