@@ -37,7 +37,7 @@ TEST(Agreement, MethodsOfTheSameEquationsTakeTheSameSteps) {
       {"implicit_springs", "vertex_block_descent", soft, descent, Under::contact, 0.3, 1e-6}};
   for (const auto& [known, examined, known_options, options, under, speed, tolerance] : pairs) {
     SCOPED_TRACE(std::string(examined) + " and " + known);
-    for_seeds(6, [&](Random& random, std::uint64_t seed) {
+    for_seeds(under == Under::contact ? 4 : 6, [&](Random& random, std::uint64_t seed) {
       const bool contact = under == Under::contact;
       const auto mesh =
           testing::random_mesh(random, 4, 4, contact ? 0 : static_cast<int>(seed % 3));
@@ -77,10 +77,11 @@ TEST(Agreement, MomentumIsKeptAsFarAsAMethodHasConverged) {
   const struct {
     const char *solver, *setting;
     double loose, close, converged;
-  } cases[] = {{"admm", "direction_tolerance", 3, 1e-4, 1e-8},
-               {"augmented_vbd", "direction_tolerance", 3, 1e-4, 1e-8},
-               {"vertex_block_descent", "iterations", 2, 40, 2000}};
-  for (const auto& [solver, setting, loose, close, converged] : cases) {
+    bool linear_anyway;  // linear momentum
+  } cases[] = {{"admm", "direction_tolerance", 3, 1e-4, 1e-8, true},
+               {"augmented_vbd", "direction_tolerance", 3, 1e-4, 1e-8, false},
+               {"vertex_block_descent", "iterations", 2, 40, 2000, false}};
+  for (const auto& [solver, setting, loose, close, converged, linear_anyway] : cases) {
     SCOPED_TRACE(solver);
     for_seeds(4, [&](Random& random, std::uint64_t) {
       const auto mesh = testing::random_mesh(random, 4, 5, 0);
@@ -91,7 +92,7 @@ TEST(Agreement, MomentumIsKeptAsFarAsAMethodHasConverged) {
         EXPECT_TRUE(
             make_stepper(solver, mesh.problem, {0.005, 1, {{setting, value}}})->advance(state, h));
         const double linear = testing::linear_momentum(p, state.v - start.v).norm();
-        if (!find_backend(solver)->conserves_momentum) return linear;
+        if (!linear_anyway) return linear;
         EXPECT_LT(linear, 1e-10);
         return testing::angular_momentum(p, state.x, state.v - start.v).norm();
       };
