@@ -35,26 +35,26 @@ TEST(Agreement, MethodsOfTheSameEquationsTakeTheSameSteps) {
       {"icd", "augmented_vbd", tight, tight, Under::contact, 0.3, 1e-5},
       {"implicit_springs", "vertex_block_descent", soft, descent, Under::forces, 0.5, 1e-8},
       {"implicit_springs", "vertex_block_descent", soft, descent, Under::contact, 0.3, 1e-6}};
-  for (const auto& [known, examined, known_options, options, under, speed, tolerance] : pairs) {
-    SCOPED_TRACE(std::string(examined) + " and " + known);
-    for_seeds(under == Under::contact ? 4 : 6, [&](Random& random, std::uint64_t seed) {
-      const bool contact = under == Under::contact;
+  for (const auto& pair : pairs) {
+    SCOPED_TRACE(std::string(pair.examined) + " and " + pair.known);
+    for_seeds(pair.under == Under::contact ? 4 : 6, [&](Random& random, std::uint64_t seed) {
+      const bool contact = pair.under == Under::contact;
       const auto mesh =
           testing::random_mesh(random, 4, 4, contact ? 0 : static_cast<int>(seed % 3));
       ProblemParts parts = testing::parts_of(*mesh.problem);
       if (contact)
         parts.collider =
             std::make_shared<const testing::Ground>(Eigen::Vector3d(0.1, 1, 0), 0.0, 0.2);
-      if (under == Under::forces) {
+      if (pair.under == Under::forces) {
         parts.gravity = {0, -9.81, 0};
         if (seed % 2 == 0)
           parts.shear = Springs{{{0, 5}, {1, 4}, {5, 10}}, {1.2, 1.3, 1.4}, {30, 20, 50}};
         if (seed % 4 < 2) parts.drag.assign(parts.mass.size(), 0.7);
       }
       const auto problem = std::make_shared<const Problem>(std::move(parts));
-      const auto one = make_stepper(known, problem, known_options),
-                 other = make_stepper(examined, problem, options);
-      State state = testing::moving_state(random, mesh, speed);
+      const auto one = make_stepper(pair.known, problem, pair.known_options),
+                 other = make_stepper(pair.examined, problem, pair.options);
+      State state = testing::moving_state(random, mesh, pair.speed);
       if (contact) {
         state.x.row(1).array() += 0.5;
         state.v.row(1).array() -= 3;
@@ -63,7 +63,7 @@ TEST(Agreement, MethodsOfTheSameEquationsTakeTheSameSteps) {
         State copy = state;
         ASSERT_TRUE(one->advance(state, h));
         ASSERT_TRUE(other->advance(copy, h));
-        ASSERT_LE((copy.x - state.x).cwiseAbs().maxCoeff(), tolerance) << "step " << step;
+        ASSERT_LE((copy.x - state.x).cwiseAbs().maxCoeff(), pair.tolerance) << "step " << step;
       }
       EXPECT_EQ(other->work().contacts > 0, contact);
     });
@@ -81,23 +81,23 @@ TEST(Agreement, MomentumIsKeptAsFarAsAMethodHasConverged) {
   } cases[] = {{"admm", "direction_tolerance", 3, 1e-4, 1e-8, true},
                {"augmented_vbd", "direction_tolerance", 3, 1e-4, 1e-8, false},
                {"vertex_block_descent", "iterations", 2, 40, 2000, false}};
-  for (const auto& [solver, setting, loose, close, converged, linear_anyway] : cases) {
-    SCOPED_TRACE(solver);
+  for (const auto& each : cases) {
+    SCOPED_TRACE(each.solver);
     for_seeds(4, [&](Random& random, std::uint64_t) {
       const auto mesh = testing::random_mesh(random, 4, 5, 0);
       const Problem& p = *mesh.problem;
       const State start = testing::moving_state(random, mesh, 4);
       const auto lost = [&](double value) {
         State state = start;
-        EXPECT_TRUE(
-            make_stepper(solver, mesh.problem, {0.005, 1, {{setting, value}}})->advance(state, h));
+        EXPECT_TRUE(make_stepper(each.solver, mesh.problem, {0.005, 1, {{each.setting, value}}})
+                        ->advance(state, h));
         const double linear = testing::linear_momentum(p, state.v - start.v).norm();
-        if (!linear_anyway) return linear;
+        if (!each.linear_anyway) return linear;
         EXPECT_LT(linear, 1e-10);
         return testing::angular_momentum(p, state.x, state.v - start.v).norm();
       };
-      EXPECT_LT(lost(close), 0.01 * lost(loose));
-      EXPECT_LT(lost(converged), 1e-7);
+      EXPECT_LT(lost(each.close), 0.01 * lost(each.loose));
+      EXPECT_LT(lost(each.converged), 1e-7);
     });
   }
 }

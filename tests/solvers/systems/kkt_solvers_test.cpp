@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "solvers/systems/kkt_system.h"
+#include "solvers/systems/schur_complement.h"
 #include "support/random_graph.h"
 
 namespace inextensible {
