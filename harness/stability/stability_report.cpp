@@ -123,6 +123,7 @@ using Line = std::vector<std::string>;
 // The first column, then as many of the others as fit; those that do not fit follow below.
 void print_columns(std::ostream& out, const std::vector<Line>& columns, std::size_t width) {
   std::vector<std::size_t> widths;
+  widths.reserve(columns.size());
   for (const Line& column : columns)
     widths.push_back(std::ranges::max_element(column, {}, &std::string::size)->size() + 2);
   for (std::size_t first = 1, last = 1; first < columns.size(); first = last) {
