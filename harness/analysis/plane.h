@@ -80,8 +80,7 @@ struct Plane {
 // In the order of runs; of those with a step controller, or of those without.
 std::vector<Plane> planes_of(const Runs& runs, bool adaptive = false);
 
-// ---- The question the other way round: the strain and error that a method reaches in a budget
-// ----
+// ---- Budgets: the tightest strain limit, and its error, within a frame budget ----
 
 inline constexpr double frame_rate = 60;  // frames a second
 

@@ -54,16 +54,19 @@ void remove_left(const fs::path& folder, const std::string& stem) {
 // A new file beside `path`, created exclusively under a unique name; no link is followed.
 class Beside {
  public:
-  explicit Beside(const std::string& path) : name_(path + mark) {
-    remove_left(folder_of(path), fs::path(path).filename().string() + mark);
-    name_ += std::to_string(getpid()) + ".XXXXXX";
-    file_ = OpenFile(mkostemp(name_.data(), O_CLOEXEC));
-  }
+  explicit Beside(const std::string& path)
+      : name_(path + mark + std::to_string(getpid()) + ".XXXXXX"),
+        file_(mkostemp(name_.data(), O_CLOEXEC)) {}
   ~Beside() {
     if (file_ && !kept_) unlink(name_.c_str());
   }
   Beside(const Beside&) = delete;
   Beside& operator=(const Beside&) = delete;
+
+  // Those of `path` that processes which were killed left.
+  static void remove_left_of(const fs::path& path) {
+    remove_left(folder_of(path), path.filename().string() + mark);
+  }
 
   bool made() const { return static_cast<bool>(file_); }  // false: errno says why
   bool write(const std::string& text) const { return write_whole(file_.get(), text); }
@@ -166,6 +169,7 @@ void check_writable(const std::string& path) {
   std::error_code error;
   if (!fs::is_directory(folder, error))
     throw UsageError("cannot write '" + path + "': there is no folder '" + folder.string() + "'");
+  Beside::remove_left_of(place);
   const bool writable = is_special(place) ? access(place.c_str(), W_OK) == 0 : Beside(place).made();
   if (!writable) throw UsageError("cannot write '" + path + "': " + std::strerror(errno));
 }

@@ -45,7 +45,7 @@ Outcome outcome_of(const json& name) {
   return outcome;
 }
 
-// Of a case's name or else of its row; a text stands for the list of another one.
+// The list under a case's name, or else under its row; a text names the case whose list applies.
 const json& entries_about(const HardCase& hard_case) {
   const json& all = cases_document().at("expectations");
   const json* found = &all.at(all.contains(hard_case.name) ? hard_case.name : hard_case.row);

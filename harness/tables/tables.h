@@ -45,7 +45,7 @@ std::string plain(double value, int digits);
 bool is_stability(const nlohmann::json& document);
 // The strain-error grid of each scene: the fastest method within each limit and level of error.
 void print_planes(std::ostream& out, const std::vector<NamedResult>& results);
-// Of hard cases: how many of each solver's ended in which way; and what did not end as theory
+// Hard cases: how many of each solver's ended in which way; and what did not end as theory
 // expects, with the reason where one is known.
 Table outcomes_in(const nlohmann::json& document);
 Table differences_in(const nlohmann::json& document);

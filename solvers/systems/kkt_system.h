@@ -56,7 +56,7 @@ class KktSolver {
   const Problem& problem_;
   const EdgeConstraints& edges_;
   double mean_mass_;
-  // Of the last factor(); convex_ is what the other solver is asked for.
+  // From the last factor(); convex_ is what the other solver is asked for.
   const Eigen::Matrix3Xd* u_ = nullptr;
   const Eigen::VectorXd* mu_ = nullptr;
   const Contacts* contacts_ = nullptr;
