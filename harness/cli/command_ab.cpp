@@ -4,18 +4,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <iostream>
 #include <sstream>
 
 #include "harness/base/child_program.h"
-#include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/interrupt.h"
-#include "harness/base/paths.h"
-#include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
-#include "harness/cli/options.h"
-#include "harness/cli/verbs.h"
+#include "harness/cli/command.h"
 #include "harness/compare/pairs.h"
 #include "harness/points/result_file.h"
 #include "harness/run/measure_point.h"
@@ -205,8 +198,6 @@ struct Ab : CompareOptions {
 
 }  // namespace
 
-Verb ab_verb() {
-  return {"ab", "compare the speed of two builds in interleaved pairs of runs", verb<Ab>};
-}
+Action ab_verb(const Command& command) { return verb<Ab>(command); }
 
 }  // namespace harness

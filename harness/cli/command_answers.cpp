@@ -2,9 +2,7 @@
 #include <sstream>
 
 #include "harness/answers/answer.h"
-#include "harness/cli/options.h"
-#include "harness/cli/output.h"
-#include "harness/cli/verbs.h"
+#include "harness/cli/command.h"
 #include "harness/points/context.h"
 
 namespace harness {
@@ -42,9 +40,6 @@ struct Answers : OutputOptions {
 
 }  // namespace
 
-Verb answers_verb() {
-  return {"answers", "compare each solver with exact answers (orbits, oscillations, falls)",
-          verb<Answers>, true};
-}
+Action answers_verb(const Command& command) { return verb<Answers>(command); }
 
 }  // namespace harness

@@ -1,12 +1,9 @@
 // bench check: whether a solver keeps what every solver must.
 #include <algorithm>
 #include <iomanip>
-#include <iostream>
 #include <sstream>
 
-#include "harness/base/interrupt.h"
-#include "harness/cli/options.h"
-#include "harness/cli/verbs.h"
+#include "harness/cli/command.h"
 #include "harness/stability/conformance.h"
 #include "solvers/registry.h"
 
@@ -62,9 +59,6 @@ struct Check {
 
 }  // namespace
 
-Verb check_verb() {
-  return {"check", "test what every solver must fulfil, and say where to look if one does not",
-          verb<Check>};
-}
+Action check_verb(const Command& command) { return verb<Check>(command); }
 
 }  // namespace harness

@@ -1,21 +1,14 @@
 // bench choose: which solver to take for a scene, at which step, and what a frame costs.
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <map>
 #include <set>
 
 #include "harness/analysis/words.h"
 #include "harness/base/child_process.h"
 #include "harness/base/clock.h"
-#include "harness/base/errors.h"
-#include "harness/base/interrupt.h"
-#include "harness/base/json_text.h"
-#include "harness/base/paths.h"
-#include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
-#include "harness/cli/options.h"
-#include "harness/cli/verbs.h"
+#include "harness/cli/command.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/points/point_json.h"
 #include "harness/points/tuned.h"
@@ -312,9 +305,6 @@ struct Choose : SceneOptions {
 
 }  // namespace
 
-Verb choose_verb() {
-  return {"choose", "recommend a solver and a step for a scene, after a minute of measuring",
-          verb<Choose>};
-}
+Action choose_verb(const Command& command) { return verb<Choose>(command); }
 
 }  // namespace harness

@@ -1,12 +1,6 @@
 // bench compare, baseline: two results point by point, and a result for the next comparisons.
-#include <iostream>
 
-#include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/json_text.h"
-#include "harness/base/paths.h"
-#include "harness/cli/options.h"
-#include "harness/cli/verbs.h"
+#include "harness/cli/command.h"
 
 namespace harness {
 
@@ -90,15 +84,7 @@ struct Baseline {
 
 }  // namespace
 
-Verb compare_verb() {
-  return {"compare",
-          "compare two results point by point: what is slower, less accurate or fails now",
-          verb<Compare>};
-}
-
-Verb baseline_verb() {
-  return {"baseline", "reduce results to a file without times, to compare with later",
-          verb<Baseline>};
-}
+Action compare_verb(const Command& command) { return verb<Compare>(command); }
+Action baseline_verb(const Command& command) { return verb<Baseline>(command); }
 
 }  // namespace harness

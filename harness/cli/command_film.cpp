@@ -2,20 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <map>
 #include <numeric>
 #include <stdexcept>
 
 #include "harness/analysis/words.h"
-#include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/interrupt.h"
 #include "harness/base/statistics.h"
-#include "harness/base/text.h"
-#include "harness/cli/options.h"
-#include "harness/cli/output.h"
-#include "harness/cli/verbs.h"
+#include "harness/cli/command.h"
 #include "harness/film/pictures.h"
 #include "harness/points/suite.h"
 #include "harness/points/tuned.h"
@@ -187,9 +180,6 @@ struct Film : SceneOptions {
 
 }  // namespace
 
-Verb film_verb() {
-  return {"film", "render a scene as stills or a film, or export it for ParaView and Blender",
-          verb<Film>};
-}
+Action film_verb(const Command& command) { return verb<Film>(command); }
 
 }  // namespace harness

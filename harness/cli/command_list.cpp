@@ -1,17 +1,11 @@
 // bench list: what there is.
 #include <algorithm>
 #include <functional>
-#include <iostream>
 #include <span>
 
 #include "harness/answers/answer.h"
-#include "harness/base/errors.h"
-#include "harness/base/json_text.h"
-#include "harness/base/paths.h"
-#include "harness/base/text.h"
 #include "harness/claims/claims.h"
-#include "harness/cli/options.h"
-#include "harness/cli/verbs.h"
+#include "harness/cli/command.h"
 #include "harness/points/point_json.h"
 #include "harness/points/schema.h"
 #include "harness/stability/hard_case.h"
@@ -219,6 +213,6 @@ struct ListVerb : SelectionOptions {
 
 }  // namespace
 
-Verb list_verb() { return {"list", "print what there is: " + list_names_text(), verb<ListVerb>}; }
+Action list_verb(const Command& command) { return verb<ListVerb>(command); }
 
 }  // namespace harness

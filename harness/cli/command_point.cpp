@@ -1,14 +1,9 @@
 // bench point: runs single points in this process; what bench ab and other programs build upon.
 #include <cmath>
-#include <iostream>
 
-#include "harness/base/errors.h"
 #include "harness/base/json_reader.h"
-#include "harness/base/json_text.h"
-#include "harness/base/paths.h"
 #include "harness/base/standard_streams.h"
-#include "harness/cli/options.h"
-#include "harness/cli/verbs.h"
+#include "harness/cli/command.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
 #include "harness/points/suite.h"
@@ -112,9 +107,6 @@ struct PointVerb {
 
 }  // namespace
 
-Verb point_verb() {
-  return {"point", "run single points, given as JSON on standard input, one a line",
-          verb<PointVerb>};
-}
+Action point_verb(const Command& command) { return verb<PointVerb>(command); }
 
 }  // namespace harness

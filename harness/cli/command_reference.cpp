@@ -1,15 +1,9 @@
 // bench reference: the trajectories and ensembles that errors are measured against.
 #include <filesystem>
 #include <iomanip>
-#include <iostream>
 
-#include "harness/base/errors.h"
-#include "harness/base/files.h"
 #include "harness/base/json_reader.h"
-#include "harness/base/paths.h"
-#include "harness/base/text.h"
-#include "harness/cli/options.h"
-#include "harness/cli/verbs.h"
+#include "harness/cli/command.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/points/context.h"
 
@@ -167,9 +161,6 @@ struct ReferenceVerb : SelectionOptions {
 
 }  // namespace
 
-Verb reference_verb() {
-  return {"reference", "compute the trajectories and ensembles that errors are measured against",
-          verb<ReferenceVerb>};
-}
+Action reference_verb(const Command& command) { return verb<ReferenceVerb>(command); }
 
 }  // namespace harness

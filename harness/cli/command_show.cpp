@@ -1,20 +1,14 @@
 // What result files say, printed and drawn: bench show, budget, claims, results, report and plot.
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 #include <sstream>
 #include <string_view>
 
 #include "harness/analysis/findings.h"
 #include "harness/answers/answer.h"
-#include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/interrupt.h"
 #include "harness/base/standard_streams.h"
 #include "harness/claims/claims.h"
-#include "harness/cli/options.h"
-#include "harness/cli/output.h"
-#include "harness/cli/verbs.h"
+#include "harness/cli/command.h"
 #include "harness/film/recording.h"
 #include "harness/points/tuned.h"
 #include "harness/tables/tables.h"
@@ -295,33 +289,11 @@ struct Plot {
 
 }  // namespace
 
-Verb show_verb() {
-  return {"show", "print a result file: which method is fastest within each strain limit and error",
-          verb<Show>};
-}
-
-Verb budget_verb() {
-  return {"budget", "strain and error of each method within a frame budget", verb<Budget>};
-}
-
-Verb claims_verb() {
-  return {"claims", "decide the paper's claims from result files", verb<Claims>};
-}
-
-Verb results_verb() {
-  return {"results", "write tables of result files in Markdown (docs/results.md)", verb<Results>};
-}
-
-Verb report_verb() {
-  return {"report",
-          "write one page, to open offline: findings, charts, tables, figures, claims, scenes in "
-          "motion",
-          verb<Report>};
-}
-
-Verb plot_verb() {
-  return {"plot", "draw the figures of a result file again; of several pieces of one sweep as one",
-          verb<Plot>};
-}
+Action show_verb(const Command& command) { return verb<Show>(command); }
+Action budget_verb(const Command& command) { return verb<Budget>(command); }
+Action claims_verb(const Command& command) { return verb<Claims>(command); }
+Action results_verb(const Command& command) { return verb<Results>(command); }
+Action report_verb(const Command& command) { return verb<Report>(command); }
+Action plot_verb(const Command& command) { return verb<Plot>(command); }
 
 }  // namespace harness

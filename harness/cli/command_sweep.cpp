@@ -1,17 +1,10 @@
 // bench --sweep strain|resolution|step|stability, and the sweeps of a suite.
-#include <iostream>
 #include <sstream>
 
-#include "harness/base/errors.h"
-#include "harness/base/interrupt.h"
-#include "harness/base/paths.h"
 #include "harness/base/shard.h"
 #include "harness/base/standard_streams.h"
-#include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
-#include "harness/cli/options.h"
-#include "harness/cli/output.h"
-#include "harness/cli/verbs.h"
+#include "harness/cli/command.h"
 #include "harness/judge/reference.h"
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
@@ -79,24 +72,15 @@ nlohmann::json selection(const SweepCommand& options) {
 // lasts.
 SweepRunners watched(const SweepRunners& inner, NoiseProbe& noise_probe, bool timed) {
   const auto budget = std::make_shared<RetakeBudget>();
-  SweepRunners runners = limited(inner, [timed, budget](RunLimits limits) {
-    limits.timed = timed;
-    limits.most_retaken = budget->most();
-    return limits;
-  });
-  const auto watch = [budget, &noise_probe](const auto& run) {
-    noise_probe.sample_if_due();
-    auto result = run();
-    budget->add(result.samples.size(), result.retaken);
-    return result;
-  };
-  runners.run = [watch, run = runners.run](const auto& spec, const auto& limits, auto guess) {
-    return watch([&] { return run(spec, limits, guess); });
-  };
-  runners.repeat = [watch, repeat = runners.repeat](const auto& point, const auto& limits) {
-    return watch([&] { return repeat(point, limits); });
-  };
-  return runners;
+  return wrapped(inner,
+                 [timed, budget, &noise_probe](const auto&, RunLimits limits, const auto& call) {
+                   limits.timed = timed;
+                   limits.most_retaken = budget->most();
+                   noise_probe.sample_if_due();
+                   auto result = call(limits);
+                   budget->add(result.samples.size(), result.retaken);
+                   return result;
+                 });
 }
 
 void warn_if_busy(const nlohmann::json& context) {
@@ -296,9 +280,6 @@ int SweepCommand::run(const Words& typed) {
 
 }  // namespace
 
-Verb sweep_verb() {
-  return {"sweep", "time over strain limit, resolution or step, or hard cases: bench --sweep AXIS",
-          verb<SweepCommand>, true};
-}
+Action sweep_verb(const Command& command) { return verb<SweepCommand>(command); }
 
 }  // namespace harness

@@ -2,19 +2,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <iomanip>
-#include <iostream>
 #include <limits>
 #include <map>
 
-#include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/interrupt.h"
-#include "harness/base/json_text.h"
-#include "harness/base/paths.h"
-#include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
-#include "harness/cli/options.h"
-#include "harness/cli/verbs.h"
+#include "harness/cli/command.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
 #include "harness/run/execute.h"
@@ -211,10 +203,6 @@ struct Tune {
 
 }  // namespace
 
-Verb tune_verb() {
-  return {"tune",
-          "search the settings of each solver, by one rule, on scenes that no result reports",
-          verb<Tune>, true};
-}
+Action tune_verb(const Command& command) { return verb<Tune>(command); }
 
 }  // namespace harness

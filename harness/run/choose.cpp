@@ -148,10 +148,11 @@ Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, 
   until.interrupted = stop_at(limits, search_share);
   // On a busy machine, taking disturbed samples again would take most of the time. Finalists have
   // more samples.
-  SweepOutcome outcome = run_sweep(suite, ordered, until, limited(runners, [](RunLimits each) {
-                                     each.most_retaken = 0;
-                                     return each;
-                                   }));
+  SweepOutcome outcome = run_sweep(
+      suite, ordered, until, wrapped(runners, [](const auto&, RunLimits own, const auto& call) {
+        own.most_retaken = 0;
+        return call(own);
+      }));
   trials.points = std::move(outcome.points);
   trials.complete = outcome.complete;
   repeat_finalists(trials.points, suite, wish, limits, runners);

@@ -14,15 +14,8 @@ namespace {
 using nlohmann::json;
 using End = ChildOutcome::End;
 
-// The limits of a run in a child: interruptions are the parent's business.
-RunLimits in_a_child(RunLimits limits, Heartbeat& heartbeat) {
-  limits.interrupted = nullptr;
-  limits.heartbeat = &heartbeat;
-  return limits;
-}
-
 // The point whose child did not come back.
-PointResult lost_point(const PointSpec& spec, const ChildOutcome& outcome, double timeout) {
+PointResult lost(const PointSpec& spec, const ChildOutcome& outcome, double timeout) {
   const std::string place = outcome.step < 0 ? std::string("before the first step")
                                              : "in step " + std::to_string(outcome.step) +
                                                    " (t = " + number_text(outcome.time) + " s)";
@@ -42,6 +35,9 @@ PointResult lost_point(const PointSpec& spec, const ChildOutcome& outcome, doubl
   point.peak_rss_bytes = outcome.peak_rss_bytes;
   return point;
 }
+
+// What did not come back is no sample.
+Samples lost(const PointResult&, const ChildOutcome&, double) { return {}; }
 
 constexpr const char* repetition_mark = " #";
 
@@ -86,40 +82,31 @@ bool same_start(const PointResult& point, std::optional<double> guess) {
 void find_reference(const RunLimits& limits, const PointSpec& spec) {
   if (limits.references) limits.references->find(spec.scene, spec.scene_parameters);
 }
+void find_reference(const RunLimits& limits, const PointResult& point) {
+  find_reference(limits, point.spec);
+}
 
 }  // namespace
 
-SweepRunners limited(const SweepRunners& inner, const std::function<RunLimits(RunLimits)>& change) {
-  return {[change, run = inner.run](const auto& spec, const auto& limits, auto guess) {
-            return run(spec, change(limits), guess);
-          },
-          [change, repeat = inner.repeat](const auto& point, const auto& limits) {
-            return repeat(point, change(limits));
-          },
-          inner.references};
-}
-
 SweepRunners isolated(const SweepRunners& inner, double memory) {
-  return {[run = inner.run, memory](const PointSpec& spec, const RunLimits& limits,
-                                    std::optional<double> guess) {
-            find_reference(limits, spec);
-            return in_child(
-                {limits.timeout, memory, limits.interrupted},
-                [&](Heartbeat& heartbeat) {
-                  return to_json(run(spec, in_a_child(limits, heartbeat), guess));
-                },
-                point_of,
-                [&](const ChildOutcome& child) { return lost_point(spec, child, limits.timeout); });
-          },
-          [repeat = inner.repeat, memory](const PointResult& point, const RunLimits& limits) {
-            return in_child(
-                {limits.timeout, memory, limits.interrupted},
-                [&](Heartbeat& heartbeat) {
-                  return to_json(repeat(point, in_a_child(limits, heartbeat)));
-                },
-                samples_of, [](const ChildOutcome&) { return Samples{}; });
-          },
-          inner.references};
+  return wrapped(inner, [memory](const auto& what, const RunLimits& limits, const auto& call) {
+    find_reference(limits, what);
+    return in_child(
+        {limits.timeout, memory, limits.interrupted},
+        [&](Heartbeat& heartbeat) {
+          RunLimits own = limits;
+          own.interrupted = nullptr;  // that is the parent's business
+          own.heartbeat = &heartbeat;
+          return to_json(call(own));
+        },
+        [](const json& result) {
+          if constexpr (std::is_same_v<decltype(call(limits)), Samples>)
+            return samples_of(result);
+          else
+            return point_of(result);
+        },
+        [&](const ChildOutcome& child) { return lost(what, child, limits.timeout); });
+  });
 }
 
 SweepRunners journaled(const SweepRunners& inner, Journal& journal) {

@@ -19,8 +19,19 @@ struct SweepRunners {
   std::shared_ptr<ReferenceFolder> references = nullptr;  // null: no errors against references
 };
 
-// The same runs under changed limits.
-SweepRunners limited(const SweepRunners& inner, const std::function<RunLimits(RunLimits)>& change);
+// Both functions with the same done around each call. around(what, limits, call): what is run, a
+// spec or a point once more; call(limits) does it, under limits of around's choice.
+template <class Around>
+SweepRunners wrapped(const SweepRunners& inner, const Around& around) {
+  return {[around, run = inner.run](const PointSpec& spec, const RunLimits& limits, auto guess) {
+            return around(spec, limits,
+                          [&](const RunLimits& own) { return run(spec, own, guess); });
+          },
+          [around, repeat = inner.repeat](const PointResult& point, const RunLimits& limits) {
+            return around(point, limits, [&](const RunLimits& own) { return repeat(point, own); });
+          },
+          inner.references};
+}
 
 // Each run in a child process: a crash, a hang or want of memory is one point's status, with signal
 // and step, and the sweep goes on. memory: bytes of address space a point may have, 0: no limit.
