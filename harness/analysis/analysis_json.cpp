@@ -48,14 +48,10 @@ json cell_json(const Cell& cell) {
       {"known_until", cell.known_until},   {"empty_because", cell.empty_because},
       {"first", name_of(cell.first())},    {"clear", cell.clear()},
       {"entries", std::move(entries)}};
-  for (const auto& [name, lead, other] :
-       {std::tuple("next_family", "lead_over_next_family", cell.next_family()),
-        {"paper_best", "lead_over_paper_best", cell.paper_best()},
-        {"first_as_published", "lead_by_stepper", cell.first_as_published()},
-        {"rival_in_stepper", "lead_by_method", cell.rival_in_stepper()},
-        {"paper_in_any_stepper", "lead_over_paper_in_any_stepper", cell.paper_in_any_stepper()}}) {
-    object[name] = name_of(other);
-    object[lead] = ratio_json(cell.lead_over(other));
+  for (std::size_t i = 0; i < rival_infos.size(); ++i) {
+    const Entry* rival = cell.rival(static_cast<Rival>(i));
+    object[rival_infos[i].name] = name_of(rival);
+    object[rival_infos[i].lead] = ratio_json(cell.lead_over(rival));
   }
   return object;
 }

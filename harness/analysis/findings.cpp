@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "harness/analysis/words.h"
 #include "harness/base/text.h"
 
 namespace harness::analysis {
@@ -44,7 +43,7 @@ std::string rival_words(const Cell& cell, const std::vector<const Entry*>& equal
   const auto slower = [&](const Entry* entry) {
     return entry && std::find(equals.begin(), equals.end(), entry) == equals.end();
   };
-  const Entry* rival = cell.paper_best();
+  const Entry* rival = cell.rival(Rival::paper_best);
   const bool of_paper = slower(rival);
   for (std::size_t place = 1; !slower(rival); ++place) {
     rival = cell.counting(place);
@@ -104,6 +103,17 @@ Finding finding_of(const Plane& plane) {
   return finding;
 }
 
+// Growth of one row of the ranking at one limit.
+RowGrowth growth_of(const std::string& row, std::vector<Point> points) {
+  std::ranges::stable_sort(points, {}, &Point::vertices);
+  std::vector<double> vertices, seconds;
+  for (const Point& point : points) {
+    vertices.push_back(point.vertices());
+    seconds.push_back(point.seconds() * point.step());
+  }
+  return {row, log_log_slope(vertices, seconds), points.front(), points.back()};
+}
+
 }  // namespace
 
 std::string sentence_of(const Cell& cell) {
@@ -159,21 +169,6 @@ std::vector<Finding> findings_of(const std::vector<Plane>& planes) {
   }
   return findings;
 }
-
-namespace {
-
-// Growth of one row of the ranking at one limit.
-RowGrowth growth_of(const std::string& row, std::vector<Point> points) {
-  std::ranges::stable_sort(points, {}, &Point::vertices);
-  std::vector<double> vertices, seconds;
-  for (const Point& point : points) {
-    vertices.push_back(point.vertices());
-    seconds.push_back(point.seconds() * point.step());
-  }
-  return {row, log_log_slope(vertices, seconds), points.front(), points.back()};
-}
-
-}  // namespace
 
 std::vector<Growth> growth_in(const std::vector<Plane>& planes) {
   using Place = std::pair<std::string, double>;

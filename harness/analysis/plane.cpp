@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "harness/analysis/words.h"
 #include "harness/base/in_order.h"
 #include "harness/base/text.h"
 #include "harness/points/suite.h"
@@ -110,6 +109,57 @@ Plane plane_of(const std::vector<Point>& points, const Runs& runs) {
   return plane;
 }
 
+// Wall time that 99 % of the frames stay within, s; not-a-number: not measured.
+double frame_seconds(const Point& point) {
+  for (const FrameTime& frame : point.result().frame_times) {
+    if (frame.rate == frame_rate) return frame.slow;
+  }
+  return std::nan("");
+}
+
+Reach reach_of(const Point& point) {
+  const double error = point.error_at(headline_error).distance;
+  return {point.spec().strain_limit, error, frame_seconds(point), error <= headline_error, point};
+}
+
+// What sorts the runs that reach the most first; those of no run come last.
+std::tuple<int, double, double> worth(const std::optional<Reach>& r) {
+  if (!r) return {2, 0, 0};
+  const double error = std::isnan(r->error) ? std::numeric_limits<double>::infinity() : r->error;
+  return r->right ? std::tuple(0, r->strain_limit, error) : std::tuple(1, error, -r->strain_limit);
+}
+
+// By the largest budget first.
+std::vector<std::tuple<int, double, double>> rank_of(const Budgeted& row) {
+  std::vector<std::tuple<int, double, double>> rank;
+  for (const auto& reach : row.reached) rank.insert(rank.begin(), worth(reach));
+  return rank;
+}
+
+BudgetTable table_of(std::vector<Point> points, const ContestantRoles& roles,
+                     const std::vector<double>& budgets) {
+  const PointSpec& one = points.front().spec();
+  BudgetTable table{one.scene, one.resolution, one.vertices, budgets, {}};
+  const auto row_of = [&](const Point& p) { return roles.at_any_settings(p.contestant()); };
+  for (auto& [row, own] : grouped(points, row_of)) {
+    Budgeted line{row, roles.of(own.front().contestant()).family, {}, {}};
+    std::ranges::stable_sort(own, {}, frame_seconds);
+    for (const Point& point : own) {
+      const Reach reach = reach_of(point);
+      if (line.stairs.empty() || worth(reach) < worth(line.stairs.back()))
+        line.stairs.push_back(reach);
+    }
+    for (const double budget : budgets) {
+      const auto beyond = std::ranges::upper_bound(line.stairs, budget, {}, &Reach::frame_seconds);
+      line.reached.push_back(beyond == line.stairs.begin() ? std::nullopt
+                                                           : std::optional(*std::prev(beyond)));
+    }
+    table.rows.push_back(std::move(line));
+  }
+  std::ranges::stable_sort(table.rows, {}, rank_of);
+  return table;
+}
+
 }  // namespace
 
 std::optional<Point> fastest_of(const std::vector<Point>& points, double level) {
@@ -139,38 +189,28 @@ std::string stepper_of(const std::string& row) {
   return at == row.npos ? "" : row.substr(at + 1);
 }
 
-template <class Has>
-const Entry* Cell::fastest(Has has) const {
-  const auto place = std::find_if(entries.begin(), entries.end(),
-                                  [&](const Entry& e) { return e.counts && has(e); });
+const std::array<RivalInfo, 5> rival_infos{
+    RivalInfo{"next_family", "lead_over_next_family",
+              [](const Entry& first, const Entry& other) {
+                return other.role.family != first.role.family;
+              }},
+    {"paper_best", "lead_over_paper_best",
+     [](const Entry&, const Entry& other) { return is_of_paper(other.row); }},
+    {"first_as_published", "lead_by_stepper",
+     [](const Entry& first, const Entry& other) { return other.row == method_of(first.row); }},
+    {"rival_in_stepper", "lead_by_method",
+     [](const Entry& first, const Entry& other) {
+       return stepper_of(other.row) == stepper_of(first.row) &&
+              method_of(other.row) != method_of(first.row);
+     }},
+    {"paper_in_any_stepper", "lead_over_paper_in_any_stepper",
+     [](const Entry&, const Entry& other) { return is_of_paper(method_of(other.row)); }}};
+
+const Entry* Cell::rival(Rival which) const {
+  const RivalInfo& info = rival_infos[static_cast<std::size_t>(which)];
+  const auto place = std::ranges::find_if(
+      entries, [&](const Entry& e) { return e.counts && info.is(*first(), e); });
   return place == entries.end() ? nullptr : &*place;
-}
-
-const Entry* Cell::next_family() const {
-  const Entry* best = first();
-  return best ? fastest([best](const Entry& e) { return e.role.family != best->role.family; })
-              : nullptr;
-}
-
-const Entry* Cell::paper_best() const {
-  return fastest([](const Entry& e) { return is_of_paper(e.row); });
-}
-
-const Entry* Cell::paper_in_any_stepper() const {
-  return fastest([](const Entry& e) { return is_of_paper(method_of(e.row)); });
-}
-
-const Entry* Cell::first_as_published() const {
-  const Entry* best = first();
-  return best ? fastest([best](const Entry& e) { return e.row == method_of(best->row); }) : nullptr;
-}
-
-const Entry* Cell::rival_in_stepper() const {
-  const Entry* best = first();
-  if (!best) return nullptr;
-  return fastest([best](const Entry& e) {
-    return stepper_of(e.row) == stepper_of(best->row) && method_of(e.row) != method_of(best->row);
-  });
 }
 
 std::vector<const Entry*> Cell::equals() const {
@@ -224,61 +264,6 @@ std::vector<Plane> planes_of(const Runs& runs, bool adaptive) {
 }
 
 // ---- Budgets ----
-
-namespace {
-
-// Wall time that 99 % of the frames stay within, s; not-a-number: not measured.
-double frame_seconds(const Point& point) {
-  for (const FrameTime& frame : point.result().frame_times) {
-    if (frame.rate == frame_rate) return frame.slow;
-  }
-  return std::nan("");
-}
-
-Reach reach_of(const Point& point) {
-  const double error = point.error_at(headline_error).distance;
-  return {point.spec().strain_limit, error, frame_seconds(point), error <= headline_error, point};
-}
-
-// What sorts the runs that reach the most first; those of no run come last.
-std::tuple<int, double, double> worth(const std::optional<Reach>& r) {
-  if (!r) return {2, 0, 0};
-  const double error = std::isnan(r->error) ? std::numeric_limits<double>::infinity() : r->error;
-  return r->right ? std::tuple(0, r->strain_limit, error) : std::tuple(1, error, -r->strain_limit);
-}
-
-// By the largest budget first.
-std::vector<std::tuple<int, double, double>> rank_of(const Budgeted& row) {
-  std::vector<std::tuple<int, double, double>> rank;
-  for (const auto& reach : row.reached) rank.insert(rank.begin(), worth(reach));
-  return rank;
-}
-
-BudgetTable table_of(std::vector<Point> points, const ContestantRoles& roles,
-                     const std::vector<double>& budgets) {
-  const PointSpec& one = points.front().spec();
-  BudgetTable table{one.scene, one.resolution, one.vertices, budgets, {}};
-  const auto row_of = [&](const Point& p) { return roles.at_any_settings(p.contestant()); };
-  for (auto& [row, own] : grouped(points, row_of)) {
-    Budgeted line{row, roles.of(own.front().contestant()).family, {}, {}};
-    std::ranges::stable_sort(own, {}, frame_seconds);
-    for (const Point& point : own) {
-      const Reach reach = reach_of(point);
-      if (line.stairs.empty() || worth(reach) < worth(line.stairs.back()))
-        line.stairs.push_back(reach);
-    }
-    for (const double budget : budgets) {
-      const auto beyond = std::ranges::upper_bound(line.stairs, budget, {}, &Reach::frame_seconds);
-      line.reached.push_back(beyond == line.stairs.begin() ? std::nullopt
-                                                           : std::optional(*std::prev(beyond)));
-    }
-    table.rows.push_back(std::move(line));
-  }
-  std::ranges::stable_sort(table.rows, {}, rank_of);
-  return table;
-}
-
-}  // namespace
 
 std::vector<BudgetTable> budget_tables(const Runs& runs, const std::vector<double>& budgets) {
   std::vector<Point> points = runs.points;

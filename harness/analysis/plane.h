@@ -3,6 +3,7 @@
 // Computed here once; tables, figures and pages print it.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,20 @@ struct Entry {
   double error = unknown;  // at the cell's level; of any motion at the headline's
 };
 
+// Whom the first of a cell is compared with: the fastest of those that count and that are so.
+enum class Rival {
+  next_family,         // of another family
+  paper_best,          // one of the paper's six as published
+  first_as_published,  // the first's own method in its published stepper
+  rival_in_stepper,    // another method in the first's stepper
+  paper_in_any_stepper
+};
+struct RivalInfo {
+  const char *name, *lead;  // in JSON: the rival, and its time over the first's
+  bool (*is)(const Entry& first, const Entry& other);
+};
+extern const std::array<RivalInfo, 5> rival_infos;  // in the order of Rival
+
 // One strain limit and error level.
 struct Cell {
   double strain_limit = 0, level = any_motion;
@@ -37,13 +52,7 @@ struct Cell {
   // Below, null: there is none.
   const Entry* first() const { return counting(0); }
   const Entry* counting(std::size_t place) const;  // 0: the fastest of those that count
-  const Entry* next_family() const;                // the fastest of another family than the first
-  const Entry* paper_best() const;                 // the fastest of the paper's six as published
-  // The first's lead, split: its method in the published stepper, and the fastest other method in
-  // its stepper. And the fastest of the paper's six in any stepper.
-  const Entry* first_as_published() const;
-  const Entry* rival_in_stepper() const;
-  const Entry* paper_in_any_stepper() const;
+  const Entry* rival(Rival which) const;
   // Those that count and are too close to the first to tell apart; the first is the first of them.
   // Where samples are too few for an interval, it is not known, and they are not among them.
   std::vector<const Entry*> equals() const;
@@ -51,11 +60,6 @@ struct Cell {
   bool clear() const;
   // Times over the first's.
   std::optional<Ratio> lead_over(const Entry* other) const;
-
- private:
-  // The fastest of those that count and have these; first() must not be null.
-  template <class Has>
-  const Entry* fastest(Has has) const;
 };
 
 // "gauss_seidel@bdf2" is the method gauss_seidel in the stepper bdf2; "" is the published one.

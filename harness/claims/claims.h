@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "harness/analysis/measured_point.h"
-#include "harness/analysis/words.h"
 #include "harness/base/statistics.h"
 
 namespace harness::claims {
@@ -73,10 +72,10 @@ struct Points {
   std::vector<Point> in(const std::string& scene, const std::string& sweep,
                         std::optional<double> vertices = {}) const;
 
-  // Over the axis of a sweep ("strain" or "resolution"): what one contestant answers within a level
-  // of error (analysis/plane.h), with tuned or untuned settings. One tuned setting serves all
-  // places of a scene; where the method's own default is faster, that counts, so that tuning harms
-  // nobody.
+  // Over the axis of a sweep ("strain" or "resolution"): what one contestant, or "" the fastest of
+  // all, answers within a level of error (analysis/plane.h), with tuned or untuned settings. One
+  // tuned setting serves all places of a scene; where the method's own default is faster, that
+  // counts, so that tuning harms nobody.
   Curve best(const std::string& scene, const std::string& sweep, const std::string& contestant,
              double level = any_motion, std::optional<double> vertices = {}) const;
   // Over error levels: the fastest point of step sweeps within each, at any step and limit, with

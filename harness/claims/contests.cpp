@@ -51,44 +51,6 @@ std::string effort(const Point& p) {
          text(1e6 * p.seconds() * p.duration() / iterations, 3) + " us";
 }
 
-}  // namespace
-
-Verdict chain_time_over_strain(const Points& points) {
-  Ways ways = growth_at_levels(points, "strain", below, percent);
-  ways.emplace_back("over the error at any limit",
-                    growth(points.best_at_errors("chain", implicit_springs.name),
-                           points.best_at_errors("chain", fast_projection.name), below, percent));
-  return in_ways(ways);
-}
-
-Verdict chain_time_over_resolution(const Points& points) {
-  return in_ways(growth_at_levels(points, "resolution", above, vertices_of));
-}
-
-Verdict chain_speed(const Points& points) {
-  return in_ways(at_levels([&](double level) -> Verdict {
-    const auto at_one_percent = [&](const PaperMethod& method) {
-      return at(points.best("chain", "strain", method.name, level), 0.01);
-    };
-    const auto springs = at_one_percent(implicit_springs), fast = at_one_percent(fast_projection);
-    if (!springs || !fast || springs->vertices() != 80) return {};  // the paper's chain
-    const Ratio slower = ratio(*springs, *fast);
-    const auto inside = [&](double low, double high) {
-      return slower.above(low) && slower.below(high);
-    };
-    return {inside(12.5, 50)                      ? reproduced
-            : inside(1, 12.5) || slower.above(50) ? changed
-            : slower.below(1)                     ? not_reproduced
-                                                  : undecided,
-            "ratio " + text(slower) + ": implicit springs " + effort(*springs) +
-                ", fast projection " + effort(*fast) +
-                " (the search for a stiffness is not charged)",
-            {springs->id(), fast->id()}};
-  }));
-}
-
-namespace {
-
 // "3 of 6 (1 the other way, 2 undecided)": in how many places an answer was given.
 std::string tally(const std::vector<Answer>& answers) {
   const auto count = [&](Answer one) { return std::to_string(std::ranges::count(answers, one)); };
@@ -113,34 +75,17 @@ std::string ahead_from(const Curve& fast, const std::vector<Curve>& others) {
   return from;
 }
 
-// The fastest of all contestants that are ranked, at each place of fast projection's curve:
-// "; fastest of all, ours and rivals too: yarn_projection at 10 %, 1 %; icd at 0.1 %".
+// The fastest of all contestants, at each place of fast projection's curve: "; fastest of all, ours
+// and rivals too: yarn_projection at 10 %, 1 %; icd at 0.1 %".
 std::string first_of_all(const Points& points, const std::string& sweep, const Curve& fast,
                          double level, std::string (*words)(double),
                          std::optional<double> vertices = {}) {
-  std::map<std::string, Curve> curves;
-  std::vector<std::string> names;  // in the files' order
-  for (const Point& p : points.in("drape", sweep, vertices)) {
-    const Role one = points.roles.of(p.contestant());
-    if (!one.ranked() || curves.contains(one.name)) continue;
-    curves.emplace(one.name, points.best("drape", sweep, one.name, level, vertices));
-    names.push_back(one.name);
-  }
+  const Curve leaders = points.best("drape", sweep, "", level, vertices);
   std::string all, last;
   for (const auto& entry : fast) {
-    std::string first;
-    double least = std::numeric_limits<double>::infinity();
-    for (const std::string& name : names) {
-      const auto here = at(curves.at(name), entry.first);
-      if (!here || here->seconds() >= least) continue;
-      least = here->seconds();
-      first = name;
-    }
-    if (all.empty() || first != last) {
-      append(all, first + " at " + words(entry.first), "; ");
-    } else {
-      all += ", " + words(entry.first);
-    }
+    const std::string first = points.roles.at_any_settings(leaders.at(entry.first).contestant());
+    all += first == last ? ", " + words(entry.first)
+                         : (all.empty() ? "" : "; ") + first + " at " + words(entry.first);
     last = first;
   }
   return "; fastest of all, ours and rivals too: " + all;
@@ -182,7 +127,72 @@ Verdict drape_over_strain(const Points& points, double level, double vertices) {
           ids_of(evidence)};
 }
 
+// The steps that cannot be told from the best one by their time.
+struct Steps {
+  double best, smallest, largest;  // s
+
+  std::string words() const {
+    return step_text(best) + " s" +
+           (smallest < largest ? " (" + step_text(smallest) + " to " + step_text(largest) + ")"
+                               : "");
+  }
+};
+
+Steps steps_of(const Points& points, const Point& best, double level) {
+  const double step = best.step();
+  Steps steps{step, step, step};
+  for (const Point& p : points.all) {
+    if (!p.ok() || !p.timed() || p.contestant() != best.contestant() || p.scene() != best.scene() ||
+        p.sweep() != best.sweep() || p.vertices() != best.vertices() ||
+        p.strain_limit() != best.strain_limit() || !p.within_error(level) ||
+        (p.id() != best.id() && above(ratio(p, best), 1) == Answer::yes))
+      continue;
+    steps.smallest = std::min(steps.smallest, p.step());
+    steps.largest = std::max(steps.largest, p.step());
+  }
+  return steps;
+}
+
+Answer smaller(const Steps& a, const Steps& b) {
+  if (a.largest < b.smallest) return Answer::yes;
+  return a.smallest >= b.largest ? Answer::no : Answer::open;
+}
+
 }  // namespace
+
+Verdict chain_time_over_strain(const Points& points) {
+  Ways ways = growth_at_levels(points, "strain", below, percent);
+  ways.emplace_back("over the error at any limit",
+                    growth(points.best_at_errors("chain", implicit_springs.name),
+                           points.best_at_errors("chain", fast_projection.name), below, percent));
+  return in_ways(ways);
+}
+
+Verdict chain_time_over_resolution(const Points& points) {
+  return in_ways(growth_at_levels(points, "resolution", above, vertices_of));
+}
+
+Verdict chain_speed(const Points& points) {
+  return in_ways(at_levels([&](double level) -> Verdict {
+    const auto at_one_percent = [&](const PaperMethod& method) {
+      return at(points.best("chain", "strain", method.name, level), 0.01);
+    };
+    const auto springs = at_one_percent(implicit_springs), fast = at_one_percent(fast_projection);
+    if (!springs || !fast || springs->vertices() != 80) return {};  // the paper's chain
+    const Ratio slower = ratio(*springs, *fast);
+    const auto inside = [&](double low, double high) {
+      return slower.above(low) && slower.below(high);
+    };
+    return {inside(12.5, 50)                      ? reproduced
+            : inside(1, 12.5) || slower.above(50) ? changed
+            : slower.below(1)                     ? not_reproduced
+                                                  : undecided,
+            "ratio " + text(slower) + ": implicit springs " + effort(*springs) +
+                ", fast projection " + effort(*fast) +
+                " (the search for a stiffness is not charged)",
+            {springs->id(), fast->id()}};
+  }));
+}
 
 Verdict drape_time_over_strain(const Points& points) {
   std::map<double, int, std::greater<>> sizes;
@@ -262,41 +272,6 @@ Verdict matrix_sizes(const Points& points) {
   found.verdict = verdict_of(yes_if(all));
   return found;
 }
-
-namespace {
-
-// The steps that cannot be told from the best one by their time.
-struct Steps {
-  double best, smallest, largest;  // s
-
-  std::string words() const {
-    return step_text(best) + " s" +
-           (smallest < largest ? " (" + step_text(smallest) + " to " + step_text(largest) + ")"
-                               : "");
-  }
-};
-
-Steps steps_of(const Points& points, const Point& best, double level) {
-  const double step = best.step();
-  Steps steps{step, step, step};
-  for (const Point& p : points.all) {
-    if (!p.ok() || !p.timed() || p.contestant() != best.contestant() || p.scene() != best.scene() ||
-        p.sweep() != best.sweep() || p.vertices() != best.vertices() ||
-        p.strain_limit() != best.strain_limit() || !p.within_error(level) ||
-        (p.id() != best.id() && above(ratio(p, best), 1) == Answer::yes))
-      continue;
-    steps.smallest = std::min(steps.smallest, p.step());
-    steps.largest = std::max(steps.largest, p.step());
-  }
-  return steps;
-}
-
-Answer smaller(const Steps& a, const Steps& b) {
-  if (a.largest < b.smallest) return Answer::yes;
-  return a.smallest >= b.largest ? Answer::no : Answer::open;
-}
-
-}  // namespace
 
 Verdict shake_small_steps(const Points& points) {
   return in_ways(at_levels([&](double level) -> Verdict {

@@ -128,7 +128,9 @@ Curve Points::best(const std::string& scene, const std::string& sweep,
   const std::vector<Point> points = in(scene, sweep, vertices);
   std::map<std::pair<double, std::string>, std::vector<Point>> places;
   for (const Point& p : points) {
-    if (roles.at_any_settings(p.contestant()) == contestant)
+    const Role role = roles.of(p.contestant());
+    if (contestant.empty() ? role.competes && !role.again
+                           : roles.at_any_settings(p.contestant()) == contestant)
       places[{sweep == "strain" ? p.strain_limit() : p.vertices(), p.contestant()}].push_back(p);
   }
   Curve curve;

@@ -47,41 +47,6 @@ std::map<double, std::map<double, Point>> iterated_runs(const Points& points, co
   return by_limit;
 }
 
-}  // namespace
-
-Verdict residual_order(const Points& points) {
-  Verdict found;
-  std::vector<Answer> order, later;
-  for (const char* scene : {"chain", "drape"}) {
-    const auto by_limit = iterated_runs(points, scene);
-    const auto tightest =
-        std::ranges::find_if(by_limit, [](const auto& entry) { return entry.second.size() >= 4; });
-    if (tightest == by_limit.end()) continue;
-    std::vector<double> h, first, change;
-    double largest = 0;
-    for (const auto& [step, p] : tightest->second) {
-      const Residuals here = iterated(p);
-      h.push_back(step);
-      first.push_back(here.first);
-      change.push_back(here.change / here.first);
-      largest = std::max(largest, here.last / here.first);
-      found.points.push_back(p.id());
-    }
-    const Slope of_first = log_log_slope(h, first), of_change = log_log_slope(h, change);
-    order.push_back(above(of_first, 1.5));
-    later.push_back(above(of_change, 0));
-    append(found.measured,
-           std::string(scene) + " at " + percent(tightest->first) + ": slope of the first " +
-               text(of_first) + ", of the change over the first " + text(of_change) +
-               ", last over first at most " + text(largest, 2),
-           "; ");
-  }
-  if (!order.empty()) found.verdict = verdict_of(all_of(order), all_of(later));
-  return found;
-}
-
-namespace {
-
 constexpr double alike = 0.01;  // of the cloth's size: a viewer sees no difference
 
 // One scene of the stability sweep's frame-by-frame comparison.
@@ -129,7 +94,61 @@ std::optional<Frames> frames_of(const json& entry) {
   return known ? std::optional(frames) : std::nullopt;
 }
 
+// What is said of a method whose best points have all the limits asked for.
+using OfMethod = std::pair<bool, std::string>(const std::vector<Point>&, const char* words);
+
+Verdict by_method(const Points& points, const char* scene, const std::vector<double>& limits,
+                  OfMethod* judge, const char* before, const char* separator) {
+  Verdict found;
+  std::vector<std::string> verdicts;
+  for (const PaperMethod& method : all_paper_methods) {
+    const Curve best = points.best(scene, "strain", method.name);
+    for (const std::string& id : ids_of({best})) found.points.push_back(id);
+    std::vector<Point> here;
+    for (const double limit : limits) {
+      if (const auto point = at(best, limit)) here.push_back(*point);
+    }
+    if (here.size() < limits.size()) continue;
+    const auto [so, words] = judge(here, method.words);
+    verdicts.push_back(verdict_of(yes_if(so)));
+    found.measured += (found.measured.empty() ? before : separator) + words;
+  }
+  found.verdict = verdict_of_all(verdicts);
+  return found;
+}
+
 }  // namespace
+
+Verdict residual_order(const Points& points) {
+  Verdict found;
+  std::vector<Answer> order, later;
+  for (const char* scene : {"chain", "drape"}) {
+    const auto by_limit = iterated_runs(points, scene);
+    const auto tightest =
+        std::ranges::find_if(by_limit, [](const auto& entry) { return entry.second.size() >= 4; });
+    if (tightest == by_limit.end()) continue;
+    std::vector<double> h, first, change;
+    double largest = 0;
+    for (const auto& [step, p] : tightest->second) {
+      const Residuals here = iterated(p);
+      h.push_back(step);
+      first.push_back(here.first);
+      change.push_back(here.change / here.first);
+      largest = std::max(largest, here.last / here.first);
+      found.points.push_back(p.id());
+    }
+    const Slope of_first = log_log_slope(h, first), of_change = log_log_slope(h, change);
+    order.push_back(above(of_first, 1.5));
+    later.push_back(above(of_change, 0));
+    append(found.measured,
+           std::string(scene) + " at " + percent(tightest->first) + ": slope of the first " +
+               text(of_first) + ", of the change over the first " + text(of_change) +
+               ", last over first at most " + text(largest, 2),
+           "; ");
+  }
+  if (!order.empty()) found.verdict = verdict_of(all_of(order), all_of(later));
+  return found;
+}
 
 Verdict same_frame(const Points& points) {
   Verdict found;
@@ -199,33 +218,6 @@ Slip slip_of(const Point& point) {
   const double rim = sag.at("rim"), across = sag.at("rim_across");
   return {std::min(rim, across) / drop, std::max(rim, across) / drop};
 }
-
-namespace {
-
-// What is said of a method whose best points have all the limits asked for.
-using OfMethod = std::pair<bool, std::string>(const std::vector<Point>&, const char* words);
-
-Verdict by_method(const Points& points, const char* scene, const std::vector<double>& limits,
-                  OfMethod* judge, const char* before, const char* separator) {
-  Verdict found;
-  std::vector<std::string> verdicts;
-  for (const PaperMethod& method : all_paper_methods) {
-    const Curve best = points.best(scene, "strain", method.name);
-    for (const std::string& id : ids_of({best})) found.points.push_back(id);
-    std::vector<Point> here;
-    for (const double limit : limits) {
-      if (const auto point = at(best, limit)) here.push_back(*point);
-    }
-    if (here.size() < limits.size()) continue;
-    const auto [so, words] = judge(here, method.words);
-    verdicts.push_back(verdict_of(yes_if(so)));
-    found.measured += (found.measured.empty() ? before : separator) + words;
-  }
-  found.verdict = verdict_of_all(verdicts);
-  return found;
-}
-
-}  // namespace
 
 Verdict patch_sag(const Points& points) {
   return by_method(

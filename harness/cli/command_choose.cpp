@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "harness/analysis/words.h"
+#include "harness/analysis/measured_point.h"
 #include "harness/base/child_process.h"
 #include "harness/base/clock.h"
 #include "harness/base/timing_lock.h"

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "harness/analysis/words.h"
+#include "harness/analysis/measured_point.h"
 #include "harness/base/statistics.h"
 #include "harness/cli/command.h"
 #include "harness/film/pictures.h"

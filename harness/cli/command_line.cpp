@@ -34,6 +34,64 @@ std::string renamed(std::string text) {
   return text;
 }
 
+// As a result records them: it is no place for a machine's folders.
+Words recorded_words(int argc, char** argv) {
+  Words words{"bench"};
+  for (int i = 1; i < argc; ++i) {
+    const std::filesystem::path argument(argv[i]);
+    words.push_back(argument.is_absolute() ? argument.filename().string() : argument.string());
+  }
+  return words;
+}
+
+// The words in the order of typing, without the program's name.
+Words usual_words(int argc, char** argv) {
+  Words words(argv + std::min(argc, 1), argv + argc);
+  if (words.empty()) return words;
+  if (words.front() == "help") {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
+  if (words.front() == "sweep") {
+    words.front() = "--sweep";
+    if (words.size() == 1 || words[1].starts_with('-')) words.erase(words.begin());
+  }
+  return words;
+}
+
+// Help for the verb that was typed, or for the program.
+const CLI::App* command_of(const CLI::App& program) {
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  return command;
+}
+
+// What is wrong with the first of the typed words that CLI11 had no place for.
+std::string not_understood(const CLI::App& program, const Words& typed) {
+  const CLI::App* command = command_of(program);
+  const Words left = program.remaining(true);
+  const auto first = std::find_if(typed.begin(), typed.end(), [&left](const std::string& word) {
+    return std::find(left.begin(), left.end(), word) != left.end();
+  });
+  const std::string word = first == typed.end() ? left.front() : *first;
+  const std::string of = command == &program ? "" : " of bench " + command->get_name();
+  Words known;
+  std::string message;
+  if (word.starts_with('-')) {
+    for (const CLI::Option* option : command->get_options())
+      for (const std::string& long_name : option->get_lnames()) known.push_back("--" + long_name);
+    message = "no option '" + shortened(word, 40) + "'" + of;
+  } else if (command == &program) {
+    for (const CLI::App* sub : program.get_subcommands([](const CLI::App*) { return true; }))
+      known.push_back(sub->get_name());
+    message = "no command '" + shortened(word, 40) + "'";
+  } else {
+    return "unexpected argument '" + shortened(word, 40) + "'" + of;
+  }
+  const std::string meant = closest(word.substr(0, word.find('=')), known);
+  return message + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
+}
+
 }  // namespace
 
 std::optional<double> number_in(const std::string& text) {
@@ -123,68 +181,6 @@ CommandLine::CommandLine(const std::string& description, const std::vector<Verb>
 }
 
 CommandLine::~CommandLine() = default;
-
-namespace {
-
-// As a result records them: it is no place for a machine's folders.
-Words recorded_words(int argc, char** argv) {
-  Words words{"bench"};
-  for (int i = 1; i < argc; ++i) {
-    const std::filesystem::path argument(argv[i]);
-    words.push_back(argument.is_absolute() ? argument.filename().string() : argument.string());
-  }
-  return words;
-}
-
-// The words in the order of typing, without the program's name.
-Words usual_words(int argc, char** argv) {
-  Words words(argv + std::min(argc, 1), argv + argc);
-  if (words.empty()) return words;
-  if (words.front() == "help") {
-    words.erase(words.begin());
-    words.emplace_back("--help");
-  }
-  if (words.front() == "sweep") {
-    words.front() = "--sweep";
-    if (words.size() == 1 || words[1].starts_with('-')) words.erase(words.begin());
-  }
-  return words;
-}
-
-// Help for the verb that was typed, or for the program.
-const CLI::App* command_of(const CLI::App& program) {
-  const CLI::App* command = &program;
-  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
-  return command;
-}
-
-// What is wrong with the first of the typed words that CLI11 had no place for.
-std::string not_understood(const CLI::App& program, const Words& typed) {
-  const CLI::App* command = command_of(program);
-  const Words left = program.remaining(true);
-  const auto first = std::find_if(typed.begin(), typed.end(), [&left](const std::string& word) {
-    return std::find(left.begin(), left.end(), word) != left.end();
-  });
-  const std::string word = first == typed.end() ? left.front() : *first;
-  const std::string of = command == &program ? "" : " of bench " + command->get_name();
-  Words known;
-  std::string message;
-  if (word.starts_with('-')) {
-    for (const CLI::Option* option : command->get_options())
-      for (const std::string& long_name : option->get_lnames()) known.push_back("--" + long_name);
-    message = "no option '" + shortened(word, 40) + "'" + of;
-  } else if (command == &program) {
-    for (const CLI::App* sub : program.get_subcommands([](const CLI::App*) { return true; }))
-      known.push_back(sub->get_name());
-    message = "no command '" + shortened(word, 40) + "'";
-  } else {
-    return "unexpected argument '" + shortened(word, 40) + "'" + of;
-  }
-  const std::string meant = closest(word.substr(0, word.find('=')), known);
-  return message + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
-}
-
-}  // namespace
 
 std::optional<int> CommandLine::read(int argc, char** argv) {
   const Words words = usual_words(argc, argv);

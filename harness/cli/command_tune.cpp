@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <iomanip>
 #include <limits>
-#include <map>
 
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
@@ -32,28 +31,20 @@ std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec
   return solvers;
 }
 
-// In the order of scenes and solvers, whatever was tuned first.
-using Rank = std::pair<std::ptrdiff_t, std::ptrdiff_t>;
-using Entries = std::map<Rank, TunedEntry>;
-
-Rank rank_of(const std::string& kind, const std::string& solver) {
-  const std::vector<std::string> kinds = scene_kinds();
-  return {std::ranges::find(kinds, kind) - kinds.begin(),
-          inextensible::find_backend(solver) - inextensible::backends().data()};
-}
+using Entries = std::vector<TunedEntry>;
 
 Entries read_entries(const std::string& file) {
-  Entries entries;
-  if (!std::filesystem::exists(file)) return entries;
-  for (TunedEntry& entry : parse_tuned(read_file(file, "file of tuned settings"), file).entries)
-    entries[rank_of(entry.kind, entry.solver)] = std::move(entry);
-  return entries;
+  if (!std::filesystem::exists(file)) return {};
+  return parse_tuned(read_file(file, "file of tuned settings"), file).entries;
 }
 
-void write_entries(const std::string& file, const Entries& entries) {
-  std::vector<TunedEntry> list;
-  for (const auto& [rank, entry] : entries) list.push_back(entry);
-  write_atomically(file, document_text(tuned_document(list)));
+// In the order of scenes and solvers, whatever was tuned first.
+void write_entries(const std::string& file, Entries& entries) {
+  std::ranges::stable_sort(entries, {}, [kinds = scene_kinds()](const TunedEntry& entry) {
+    return std::pair(std::ranges::find(kinds, entry.kind) - kinds.begin(),
+                     inextensible::find_backend(entry.solver));
+  });
+  write_atomically(file, document_text(tuned_document(entries)));
 }
 
 // Adds what was found at places of the user's own, or takes it instead of what was found there
@@ -157,23 +148,25 @@ struct Tune {
   // Into `entries`; false: what is there is up to date.
   bool tune_one(const SweepSpec& on, const std::string& name, const SweepRunners& runners,
                 Entries& entries) const {
-    const Rank rank = rank_of(find_scene(on.scene)->kind(), name);
-    const auto known = entries.find(rank);
-    const bool there = known != entries.end() && rule_change(known->second).empty();
+    const auto known = std::ranges::find_if(entries, [&](const TunedEntry& entry) {
+      return entry.kind == find_scene(on.scene)->kind() && entry.solver == name;
+    });
+    const bool there = known != entries.end() && rule_change(*known).empty();
     if (own_places()) {
       if (!there)
         throw UsageError(name + " has no settings by today's rule yet: bench tune --scene " +
                          on.scene + " --solver " + name);
-      const TunedEntry found = tune_solver(name, on, tuning(), runners, &known->second);
+      const TunedEntry found = tune_solver(name, on, tuning(), runners, &*known);
       print(found);
-      add_places(known->second, found.places);
+      add_places(*known, found.places);
       return true;
     }
     if (there && !again) return false;
     TunedEntry entry = tune_solver(name, on, tuning(), runners);
     entry.context = context_of(timeout);
     print(entry);
-    entries[rank] = std::move(entry);
+    if (known != entries.end()) entries.erase(known);
+    entries.push_back(std::move(entry));
     return true;
   }
 

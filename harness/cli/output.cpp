@@ -34,6 +34,71 @@ bool exists(const std::string& path) {
   return fs::exists(path, error);
 }
 
+void check_same(const OutputOptions& options, const std::string& path, const json& was,
+                const json& mine) {
+  const std::string what = was.is_null() || options.force ? "" : difference(was, mine);
+  if (!what.empty())
+    throw UsageError("'" + path + "' is of another build or selection: " + what +
+                     "; --resume --force continues nevertheless");
+}
+
+// What there was before: the context of the run that this one continues, or null.
+struct Past {
+  bool finished = false;  // a whole result: nothing to do, and the journal is untouched
+  json context = nullptr;
+};
+
+Past begin_journal(const OutputOptions& options, const std::string& out, Journal& journal,
+                   const Undertaking& run) {
+  const auto identity_of = [](const json& context, const json& suite) {
+    return identity(context, suite, context.value("selection", json::object()));
+  };
+  const json mine = identity_of(run.context, run.suite);
+  const bool again = options.resume || options.rerun_failed;
+  const json header = {
+      {"schema", "inextensible-journal/2"}, {"identity", mine}, {"context", run.context}};
+  const std::size_t count = run.count(journal);
+  const std::string entries = std::to_string(count) + " " + run.what;
+  if (!options.force && !journal.damage().empty())
+    throw UsageError("'" + journal.path() + "' is damaged, " + journal.damage() +
+                     "; --resume --force continues with the " + entries +
+                     " that can be read, --force starts again");
+  if (!options.force && count > 0 && !again)
+    throw UsageError("'" + journal.path() + "' has " + entries +
+                     " of a run that did not finish: --resume continues it, --force starts again");
+  if (again && count > 0) {
+    const json was = journal.header().is_object() ? journal.header() : json::object();
+    check_same(options, journal.path(), was.value("identity", json()), mine);
+    journal.go_on(header);
+    return {false, was.value("context", json())};
+  }
+  if (again && exists(out)) {
+    const json result = read_result(out, ResultKinds::all);
+    if (!result.contains(run.rows))
+      throw UsageError("'" + out + "' is the result of another kind of sweep: nothing to resume");
+    const json& context = result.at("context");
+    check_same(options, out, identity_of(context, context.value("suite", json())), mine);
+    if (result.at("complete").get<bool>() && !options.rerun_failed) return {true};
+    journal.start(header);
+    run.add(result, journal);
+    return {false, context};
+  }
+  if (!options.force && exists(out))
+    throw UsageError("'" + out +
+                     "' exists: --force replaces it, --resume completes it, and another "
+                     "--out keeps both");
+  journal.start(header);
+  return {};
+}
+
+// A part of a result takes no place but that of another part.
+bool takes_a_part(const std::string& out) {
+  if (!exists(out)) return true;
+  std::ifstream file(out);
+  const json there = json::parse(file, nullptr, false);
+  return there.is_object() && there.value("complete", json()) == false;
+}
+
 }  // namespace
 
 Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
@@ -105,75 +170,6 @@ std::string default_output(const std::string& stem, const std::string& ending, b
   while (exists(numbered(free))) ++free;
   return numbered(last && free > 1 && !exists(numbered(free) + ".journal") ? free - 1 : free);
 }
-
-namespace {
-
-void check_same(const OutputOptions& options, const std::string& path, const json& was,
-                const json& mine) {
-  const std::string what = was.is_null() || options.force ? "" : difference(was, mine);
-  if (!what.empty())
-    throw UsageError("'" + path + "' is of another build or selection: " + what +
-                     "; --resume --force continues nevertheless");
-}
-
-// What there was before: the context of the run that this one continues, or null.
-struct Past {
-  bool finished = false;  // a whole result: nothing to do, and the journal is untouched
-  json context = nullptr;
-};
-
-Past begin_journal(const OutputOptions& options, const std::string& out, Journal& journal,
-                   const Undertaking& run) {
-  const auto identity_of = [](const json& context, const json& suite) {
-    return identity(context, suite, context.value("selection", json::object()));
-  };
-  const json mine = identity_of(run.context, run.suite);
-  const bool again = options.resume || options.rerun_failed;
-  const json header = {
-      {"schema", "inextensible-journal/2"}, {"identity", mine}, {"context", run.context}};
-  const std::size_t count = run.count(journal);
-  const std::string entries = std::to_string(count) + " " + run.what;
-  if (!options.force && !journal.damage().empty())
-    throw UsageError("'" + journal.path() + "' is damaged, " + journal.damage() +
-                     "; --resume --force continues with the " + entries +
-                     " that can be read, --force starts again");
-  if (!options.force && count > 0 && !again)
-    throw UsageError("'" + journal.path() + "' has " + entries +
-                     " of a run that did not finish: --resume continues it, --force starts again");
-  if (again && count > 0) {
-    const json was = journal.header().is_object() ? journal.header() : json::object();
-    check_same(options, journal.path(), was.value("identity", json()), mine);
-    journal.go_on(header);
-    return {false, was.value("context", json())};
-  }
-  if (again && exists(out)) {
-    const json result = read_result(out, ResultKinds::all);
-    if (!result.contains(run.rows))
-      throw UsageError("'" + out + "' is the result of another kind of sweep: nothing to resume");
-    const json& context = result.at("context");
-    check_same(options, out, identity_of(context, context.value("suite", json())), mine);
-    if (result.at("complete").get<bool>() && !options.rerun_failed) return {true};
-    journal.start(header);
-    run.add(result, journal);
-    return {false, context};
-  }
-  if (!options.force && exists(out))
-    throw UsageError("'" + out +
-                     "' exists: --force replaces it, --resume completes it, and another "
-                     "--out keeps both");
-  journal.start(header);
-  return {};
-}
-
-// A part of a result takes no place but that of another part.
-bool takes_a_part(const std::string& out) {
-  if (!exists(out)) return true;
-  std::ifstream file(out);
-  const json there = json::parse(file, nullptr, false);
-  return there.is_object() && there.value("complete", json()) == false;
-}
-
-}  // namespace
 
 int carry_out(const OutputOptions& options, const Undertaking& undertaking) {
   const bool last = options.resume || options.rerun_failed || options.force;

@@ -52,18 +52,6 @@ void cut_ladders(Suite& suite, double finest) {
   }
 }
 
-}  // namespace
-
-std::string suite_path(const SelectionOptions& options) {
-  if (!options.scene.empty() && !find_scene(options.scene))
-    throw unknown_name("scene", options.scene, names_of(scene_types()));
-  if (!options.config.empty()) return options.config;
-  check_known("profile", options.profile, profiles());
-  return source_path("configs/" + options.profile + ".json");
-}
-
-namespace {
-
 bool is(const json& sweep, const char* key, const std::string& value) {
   return sweep.is_object() && sweep.value(key, json()) == value;
 }
@@ -125,6 +113,14 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
 }
 
 }  // namespace
+
+std::string suite_path(const SelectionOptions& options) {
+  if (!options.scene.empty() && !find_scene(options.scene))
+    throw unknown_name("scene", options.scene, names_of(scene_types()));
+  if (!options.config.empty()) return options.config;
+  check_known("profile", options.profile, profiles());
+  return source_path("configs/" + options.profile + ".json");
+}
 
 Suite load_suite(const SweepOptions& given) {
   SweepOptions options = given;

@@ -109,6 +109,62 @@ class Tried {
   std::set<std::string> searches_, best_;
 };
 
+constexpr double same_speed = 0.05;     // of two machines: |log(ratio)| of the fixed kernel's times
+constexpr double unknown_spread = 0.5;  // of a noisy file that does not say
+
+// Two sweeps, one after the other, tell builds apart only by more than the machine's own speed
+// varied: within each of them, and from one to the other. The kernel that sweeps run in between
+// tells; without it the ratio is not a number.
+double drift_between(const json& base, const json& next) {
+  double drift = 0, log_seconds[2] = {std::nan(""), std::nan("")};
+  for (const int i : {0, 1}) {
+    const json kernel = (i == 0 ? base : next).value("sentinel", json::object());
+    if (kernel.value("noisy", false))
+      drift = std::max(drift, std::log1p(kernel.value("spread", unknown_spread)));
+    if (kernel.contains("seconds"))
+      log_seconds[i] = std::log(quantile(kernel.at("seconds").get<std::vector<double>>(), 0.5));
+  }
+  const double ratio = std::abs(log_seconds[1] - log_seconds[0]);
+  return ratio > same_speed ? std::max(drift, ratio) : drift;
+}
+
+std::vector<std::string> notes_of(const ComparedResult& base, const ComparedResult& next,
+                                  const Comparability& can) {
+  if (!can.counters() && !can.times())
+    throw NotComparable("neither counters (" + can.no_counters + ") nor times (" + can.no_times +
+                        ") of '" + base.path + "' and '" + next.path + "' compare");
+  std::vector<std::string> notes;
+  if (!can.counters()) notes.push_back("counters not compared: " + can.no_counters);
+  if (!can.times()) notes.push_back("times not compared: " + can.no_times);
+  if (can.times() && can.drift > 0)
+    notes.push_back("the machine's own speed varied by " + per_cent(std::exp(can.drift)) +
+                    ": times that differ by less are undecided");
+  if (!next.complete) notes.push_back("'" + next.path + "' is of an interrupted run");
+  return notes;
+}
+
+// Two points of one key (two sweeps of one scene in a suite) pair up in their order; null: a point
+// is in one result only.
+std::vector<std::pair<const ComparedPoint*, const ComparedPoint*>> paired(
+    const ComparedResult& base, const ComparedResult& next) {
+  std::vector<std::pair<const ComparedPoint*, const ComparedPoint*>> pairs;
+  std::map<std::string, std::deque<std::size_t>> alone;
+  for (const ComparedPoint& point : base.points) {
+    alone[point.key()].push_back(pairs.size());
+    pairs.emplace_back(&point, nullptr);
+  }
+  for (const ComparedPoint& point : next.points) {
+    auto& same_key = alone[point.key()];
+    if (same_key.empty()) {
+      pairs.emplace_back(nullptr, &point);
+    } else {
+      pairs[same_key.front()].second = &point;
+      same_key.pop_front();
+    }
+  }
+  return pairs;
+}
+
 }  // namespace
 
 std::string PointChange::text() const {
@@ -148,29 +204,6 @@ TimeChange compare_times(const std::vector<double>& base, const std::vector<doub
   return {};
 }
 
-namespace {
-
-constexpr double same_speed = 0.05;     // of two machines: |log(ratio)| of the fixed kernel's times
-constexpr double unknown_spread = 0.5;  // of a noisy file that does not say
-
-// Two sweeps, one after the other, tell builds apart only by more than the machine's own speed
-// varied: within each of them, and from one to the other. The kernel that sweeps run in between
-// tells; without it the ratio is not a number.
-double drift_between(const json& base, const json& next) {
-  double drift = 0, log_seconds[2] = {std::nan(""), std::nan("")};
-  for (const int i : {0, 1}) {
-    const json kernel = (i == 0 ? base : next).value("sentinel", json::object());
-    if (kernel.value("noisy", false))
-      drift = std::max(drift, std::log1p(kernel.value("spread", unknown_spread)));
-    if (kernel.contains("seconds"))
-      log_seconds[i] = std::log(quantile(kernel.at("seconds").get<std::vector<double>>(), 0.5));
-  }
-  const double ratio = std::abs(log_seconds[1] - log_seconds[0]);
-  return ratio > same_speed ? std::max(drift, ratio) : drift;
-}
-
-}  // namespace
-
 Comparability comparability(const ComparedResult& base, const ComparedResult& next,
                             const Gate& gate) {
   const auto agree = [&](const char* key) {
@@ -198,25 +231,6 @@ Comparability comparability(const ComparedResult& base, const ComparedResult& ne
   return can;
 }
 
-namespace {
-
-std::vector<std::string> notes_of(const ComparedResult& base, const ComparedResult& next,
-                                  const Comparability& can) {
-  if (!can.counters() && !can.times())
-    throw NotComparable("neither counters (" + can.no_counters + ") nor times (" + can.no_times +
-                        ") of '" + base.path + "' and '" + next.path + "' compare");
-  std::vector<std::string> notes;
-  if (!can.counters()) notes.push_back("counters not compared: " + can.no_counters);
-  if (!can.times()) notes.push_back("times not compared: " + can.no_times);
-  if (can.times() && can.drift > 0)
-    notes.push_back("the machine's own speed varied by " + per_cent(std::exp(can.drift)) +
-                    ": times that differ by less are undecided");
-  if (!next.complete) notes.push_back("'" + next.path + "' is of an interrupted run");
-  return notes;
-}
-
-}  // namespace
-
 PointChange compare_point(const ComparedPoint& base, const ComparedPoint& next, const Gate& gate,
                           const Comparability& can) {
   PointChange result{Change::same, base.sweep, base.id};
@@ -243,32 +257,6 @@ std::size_t Comparison::count(Change change) const {
 bool Comparison::any(bool (*is)(Change)) const {
   return std::ranges::any_of(points, is, &PointChange::change);
 }
-
-namespace {
-
-// Two points of one key (two sweeps of one scene in a suite) pair up in their order; null: a point
-// is in one result only.
-std::vector<std::pair<const ComparedPoint*, const ComparedPoint*>> paired(
-    const ComparedResult& base, const ComparedResult& next) {
-  std::vector<std::pair<const ComparedPoint*, const ComparedPoint*>> pairs;
-  std::map<std::string, std::deque<std::size_t>> alone;
-  for (const ComparedPoint& point : base.points) {
-    alone[point.key()].push_back(pairs.size());
-    pairs.emplace_back(&point, nullptr);
-  }
-  for (const ComparedPoint& point : next.points) {
-    auto& same_key = alone[point.key()];
-    if (same_key.empty()) {
-      pairs.emplace_back(nullptr, &point);
-    } else {
-      pairs[same_key.front()].second = &point;
-      same_key.pop_front();
-    }
-  }
-  return pairs;
-}
-
-}  // namespace
 
 Comparison compare(const ComparedResult& base, const ComparedResult& next, const Gate& gate) {
   const Comparability can = comparability(base, next, gate);

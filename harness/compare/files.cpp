@@ -21,6 +21,65 @@ using nlohmann::ordered_json;
 constexpr const char* baseline_schema = "inextensible-baseline/1";
 constexpr std::array errors_of_runs{"trajectory", "energy_drift"};  // and max_strain
 
+json read_any(const std::string& path) {
+  json document = parse_document(read_file(path, "result file"), path);
+  const json schema = document.is_object() ? document.value("schema", json()) : json();
+  if (schema == "inextensible-stability/1")
+    throw UsageError("'" + path +
+                     "' is the result of a stability sweep, which cannot be compared: it has its "
+                     "expected outcomes in the program");
+  if (schema == baseline_schema) {
+    check_schema(document, "baseline", path);
+  } else {
+    check_result(document, path);
+  }
+  return document;
+}
+
+// Whether the steps of this point's search were chosen by their times.
+bool searched(const json& suite, const ComparedPoint& point) {
+  if (point.sweep == "step") return false;
+  const std::string scene = point.id.substr(0, point.id.find('/'));
+  for (const json& sweep : suite.at("sweeps")) {
+    if (sweep.at("sweep") != point.sweep || sweep.at("scene") != scene) continue;
+    const json steps = sweep.value("steps", json::object());
+    if (steps.value("all", false) || steps.value("adaptive", false)) return false;
+  }
+  return true;
+}
+
+std::string shell_line(const json& words) {
+  std::string line;
+  for (const std::string text : words) {
+    const bool plain = text.find_first_of(" |()$*?^'\"[]\\") == std::string::npos;
+    line += (line.empty() ? "" : " ") + (plain ? text : "'" + text + "'");
+  }
+  return line;
+}
+
+void append(ComparedResult& to, const json& document, const std::string& path) {
+  const json& context = document.at("context");
+  for (const json& entry : document.at("points")) {
+    to.points.push_back(compared_point(entry));
+    to.points.back().searched = searched(context.at("suite"), to.points.back());
+  }
+  to.complete = to.complete && document.value("complete", true);
+  to.baseline = to.baseline || document.at("schema") == baseline_schema;
+  if (!to.baseline) to.commands.push_back(shell_line(context.at("command")));
+  if (to.context.is_null()) {
+    to.path = path;
+    to.context = context;
+    return;
+  }
+  for (const char* key : {"fingerprint", "counters_fingerprint"}) {
+    if (to.context.value(key, "") != context.value(key, ""))
+      throw UsageError("'" + to.path + "' and '" + path +
+                       "' are not of one build on one machine, so they are not one result");
+  }
+  for (const json& sweep : context.at("suite").at("sweeps"))
+    to.context["suite"]["sweeps"].push_back(sweep);
+}
+
 }  // namespace
 
 Gate read_gate(const std::string& path) { return parse_gate(read_file(path, "gate"), path); }
@@ -82,69 +141,6 @@ ComparedPoint compared_point(const json& p) {
   if (seconds.is_object()) seconds.at("samples").get_to(point.samples);
   return point;
 }
-
-namespace {
-
-json read_any(const std::string& path) {
-  json document = parse_document(read_file(path, "result file"), path);
-  const json schema = document.is_object() ? document.value("schema", json()) : json();
-  if (schema == "inextensible-stability/1")
-    throw UsageError("'" + path +
-                     "' is the result of a stability sweep, which cannot be compared: it has its "
-                     "expected outcomes in the program");
-  if (schema == baseline_schema) {
-    check_schema(document, "baseline", path);
-  } else {
-    check_result(document, path);
-  }
-  return document;
-}
-
-// Whether the steps of this point's search were chosen by their times.
-bool searched(const json& suite, const ComparedPoint& point) {
-  if (point.sweep == "step") return false;
-  const std::string scene = point.id.substr(0, point.id.find('/'));
-  for (const json& sweep : suite.at("sweeps")) {
-    if (sweep.at("sweep") != point.sweep || sweep.at("scene") != scene) continue;
-    const json steps = sweep.value("steps", json::object());
-    if (steps.value("all", false) || steps.value("adaptive", false)) return false;
-  }
-  return true;
-}
-
-std::string shell_line(const json& words) {
-  std::string line;
-  for (const std::string text : words) {
-    const bool plain = text.find_first_of(" |()$*?^'\"[]\\") == std::string::npos;
-    line += (line.empty() ? "" : " ") + (plain ? text : "'" + text + "'");
-  }
-  return line;
-}
-
-void append(ComparedResult& to, const json& document, const std::string& path) {
-  const json& context = document.at("context");
-  for (const json& entry : document.at("points")) {
-    to.points.push_back(compared_point(entry));
-    to.points.back().searched = searched(context.at("suite"), to.points.back());
-  }
-  to.complete = to.complete && document.value("complete", true);
-  to.baseline = to.baseline || document.at("schema") == baseline_schema;
-  if (!to.baseline) to.commands.push_back(shell_line(context.at("command")));
-  if (to.context.is_null()) {
-    to.path = path;
-    to.context = context;
-    return;
-  }
-  for (const char* key : {"fingerprint", "counters_fingerprint"}) {
-    if (to.context.value(key, "") != context.value(key, ""))
-      throw UsageError("'" + to.path + "' and '" + path +
-                       "' are not of one build on one machine, so they are not one result");
-  }
-  for (const json& sweep : context.at("suite").at("sweeps"))
-    to.context["suite"]["sweeps"].push_back(sweep);
-}
-
-}  // namespace
 
 ComparedResult read_compared(const std::vector<std::string>& paths) {
   ComparedResult result;

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "harness/analysis/findings.h"
-#include "harness/analysis/words.h"
 #include "harness/base/text.h"
 #include "harness/points/result_file.h"
 #include "harness/tables/tables.h"
@@ -32,7 +31,7 @@ std::string cell_text(const Cell& cell) {
   const double shape = first->point.measures().shape;
   if (cell.level == any_motion && std::isfinite(shape))
     text += ", shape by " + number_text(100 * shape, 2) + " %";
-  if (const Entry* paper = cell.paper_best(); paper && paper != first)
+  if (const Entry* paper = cell.rival(Rival::paper_best); paper && paper != first)
     text += "; " + analysis::text(*cell.lead_over(paper)) + " " + quoted(paper->row);
   return text;
 }
@@ -85,25 +84,27 @@ Table table_of(const std::vector<Plane>& planes) {
   return table;
 }
 
-// "3.1 (3.0-3.2) `jacobi`"; first: the entry is the leader itself.
-std::string lead_text(const Cell& cell, const Entry* other) {
-  if (!other) return "none in these results";
-  if (other == cell.first()) return "itself";
-  return analysis::text(*cell.lead_over(other)) + " " + quoted(other->row);
-}
-
 // How much of the lead at the headline's error is the time stepper's, and how much the method's: at
 // 1 % strain. The figure has all limits.
 void print_attribution(std::ostream& out, const Plane& plane) {
   constexpr double limit = 0.01;
   for (const Cell& cell : plane.cells) {
-    if (cell.level != headline_error || cell.strain_limit != limit || !cell.first()) continue;
-    out << "Where the lead of " << quoted(cell.first()->row) << " at " << percent(limit)
-        << " comes from, in times its time: the same method as published "
-        << lead_text(cell, cell.first_as_published()) << "; the next method in the same stepper "
-        << lead_text(cell, cell.rival_in_stepper()) << "; the paper's best as published "
-        << lead_text(cell, cell.paper_best()) << ", in any stepper "
-        << lead_text(cell, cell.paper_in_any_stepper()) << ". ";
+    const Entry* first = cell.first();
+    if (cell.level != headline_error || cell.strain_limit != limit || !first) continue;
+    out << "Where the lead of " << quoted(first->row) << " at " << percent(limit)
+        << " comes from, in times its time: ";
+    for (const auto& [words, which] :
+         {std::pair("the same method as published ", Rival::first_as_published),
+          {"; the next method in the same stepper ", Rival::rival_in_stepper},
+          {"; the paper's best as published ", Rival::paper_best},
+          {", in any stepper ", Rival::paper_in_any_stepper}}) {
+      const Entry* other = cell.rival(which);
+      out << words
+          << (!other           ? "none in these results"
+              : other == first ? "itself"
+                               : analysis::text(*cell.lead_over(other)) + " " + quoted(other->row));
+    }
+    out << ". ";
   }
 }
 

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "harness/analysis/findings.h"
-#include "harness/analysis/words.h"
 #include "harness/base/errors.h"
 #include "harness/base/fields.h"
 #include "harness/base/in_order.h"

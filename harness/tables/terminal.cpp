@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "harness/analysis/findings.h"
-#include "harness/analysis/words.h"
 #include "harness/base/text.h"
 #include "harness/tables/tables.h"
 
@@ -14,6 +13,7 @@ using analysis::Cell;
 using analysis::Entry;
 using analysis::percent;
 using analysis::Plane;
+using analysis::Rival;
 using nlohmann::json;
 
 namespace {
@@ -29,7 +29,7 @@ std::string levels_text(const Cell& loosest, const Cell& tightest) {
 
 // How the best of the paper's six compares.
 std::string lead_text(const Cell& cell) {
-  const Entry* paper = cell.paper_best();
+  const Entry* paper = cell.rival(Rival::paper_best);
   if (!paper) return "none of the six";
   if (paper == cell.first()) return "itself one of the six";
   return analysis::text(*cell.lead_over(paper)) + " " + paper->row;

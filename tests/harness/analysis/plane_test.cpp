@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "harness/analysis/findings.h"
-#include "harness/analysis/words.h"
 #include "harness/base/files.h"
 #include "harness/base/json_reader.h"
 #include "harness/points/result_file.h"
@@ -51,15 +50,15 @@ TEST(Plane, HasTheFastestRunOfEachCell) {
   const Cell& headline = plane.cell(0.1, 0.02);
   EXPECT_EQ(headline.first()->row, "icd");
   EXPECT_EQ(headline.counting(1)->row, "yarn_projection") << "the slower icd does not count";
-  EXPECT_EQ(headline.next_family()->row, "yarn_projection");
-  EXPECT_EQ(headline.paper_best(), headline.first());
-  EXPECT_FALSE(headline.lead_over(headline.paper_best()));
+  EXPECT_EQ(headline.rival(Rival::next_family)->row, "yarn_projection");
+  EXPECT_EQ(headline.rival(Rival::paper_best), headline.first());
+  EXPECT_FALSE(headline.lead_over(headline.rival(Rival::paper_best)));
   EXPECT_TRUE(headline.clear());
   EXPECT_DOUBLE_EQ(headline.known_until, 0.5);
   EXPECT_DOUBLE_EQ(headline.first()->error, 0.018);
   const Cell& finest = plane.cell(0.1, 0.01);
-  EXPECT_EQ(finest.paper_best()->row, "shake");
-  EXPECT_NEAR(finest.lead_over(finest.paper_best())->value, 1.5, 1e-12);
+  EXPECT_EQ(finest.rival(Rival::paper_best)->row, "shake");
+  EXPECT_NEAR(finest.lead_over(finest.rival(Rival::paper_best))->value, 1.5, 1e-12);
   EXPECT_EQ(winner(plane.cell(0.01, 0.02)),
             "none: no run that was tried has a motion error of at most 2 %");
 }
@@ -85,15 +84,15 @@ TEST(Plane, SplitsTheLeadBetweenStepperAndMethod) {
   const auto planes = planes_of(result);
   const Cell& cell = planes.at(0).cell(0.1, 0.02);
   EXPECT_EQ(cell.first()->row, "yarn_projection@bdf2");
-  EXPECT_EQ(cell.first_as_published()->row, "yarn_projection");
-  EXPECT_NEAR(cell.lead_over(cell.first_as_published())->value, 3, 1e-12);
-  EXPECT_EQ(cell.rival_in_stepper()->row, "icd@bdf2");
-  EXPECT_NEAR(cell.lead_over(cell.rival_in_stepper())->value, 1.5, 1e-12);
-  EXPECT_EQ(cell.paper_best()->row, "icd") << "as published";
-  EXPECT_EQ(cell.paper_in_any_stepper()->row, "icd@bdf2");
+  EXPECT_EQ(cell.rival(Rival::first_as_published)->row, "yarn_projection");
+  EXPECT_NEAR(cell.lead_over(cell.rival(Rival::first_as_published))->value, 3, 1e-12);
+  EXPECT_EQ(cell.rival(Rival::rival_in_stepper)->row, "icd@bdf2");
+  EXPECT_NEAR(cell.lead_over(cell.rival(Rival::rival_in_stepper))->value, 1.5, 1e-12);
+  EXPECT_EQ(cell.rival(Rival::paper_best)->row, "icd") << "as published";
+  EXPECT_EQ(cell.rival(Rival::paper_in_any_stepper)->row, "icd@bdf2");
   const Cell& any = planes.at(0).cell(0.1, any_motion);
-  EXPECT_EQ(any.first_as_published(), any.first());
-  EXPECT_EQ(any.rival_in_stepper()->row, "gauss_seidel_colored");
+  EXPECT_EQ(any.rival(Rival::first_as_published), any.first());
+  EXPECT_EQ(any.rival(Rival::rival_in_stepper)->row, "gauss_seidel_colored");
   EXPECT_EQ(method_of("yarn_projection@bdf2"), "yarn_projection");
   EXPECT_EQ(stepper_of("yarn_projection@bdf2"), "bdf2");
   EXPECT_EQ(stepper_of("yarn_projection"), "");

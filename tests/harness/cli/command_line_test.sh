@@ -176,6 +176,14 @@ with open("curtain.obj", "w") as file:
 bench choose --scene mesh:curtain.obj --pins 'y > 0.99 and x < 0.02' --solver 'yarn_projection|fast_projection' --seconds 20 \
   >chosen.txt 2>err.txt || fail "choose for a mesh: exit $?, $(tail -1 err.txt)"
 grep -q '^curtain.obj, 49 vertices' chosen.txt && grep -q '^take  .* error [0-9.e-]* %' chosen.txt || fail "choose for a mesh: $(cat chosen.txt)"
+# Without the time for any run, and with a budget that cannot be kept, nothing is to be taken; a solver that is named is tried.
+exits 6 'no run ended within its strain limit in this time' choose --no-wait --scene drape --n 71 --seconds 0.5
+! grep -q '^take' stdout.txt || fail "a solver to take, without any run"
+chain=(choose --no-wait --scene chain --n 10 --error 0.5 --seconds 10 --solver 'fast_projection|yarn_projection@midpoint')
+exits 0 'take  ' "${chain[@]}" --budget 10s
+exits 6 'no solver that was tried keeps the budget' "${chain[@]}" --budget 0.000001us
+! grep -q '^take' stdout.txt && grep -q fast_projection stdout.txt && grep -q yarn_projection@midpoint stdout.txt ||
+  fail "a budget that cannot be kept: $(cat stdout.txt)"
 # Settings are searched and put among those of other solvers.
 cp "$root/configs/tuned.json" before.json
 cp before.json tuned.json

@@ -29,6 +29,7 @@ while read -ra words <&3; do
     took=$((($(date +%s%N) - begin) / 1000000))
     ((code == 130)) || fail "$verb, SIG$signal: exit $code, $(tail -1 err.txt)"
     ((took < 1000)) || ((SANITIZED)) || fail "$verb, SIG$signal: took $took ms"
+    [[ $verb != choose* || ! -s out.txt ]] || fail "$verb, SIG$signal: an answer, $(cat out.txt)"
     [[ $(cat old.png) == old ]] || fail "$verb, SIG$signal: the old picture is gone"
     pgrep -f -- "$plugin" >/dev/null && fail "$verb, SIG$signal: a process is left" && pkill -9 -f -- "$plugin"
     [[ -z $(find tmp . -maxdepth 1 -name 'bench-*' -o -maxdepth 1 -name 'old.*.new-*') ]] || fail "$verb, SIG$signal: $(ls tmp .)"

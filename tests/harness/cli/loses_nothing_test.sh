@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A sweep against everything that ends sweeps: kill -9, Ctrl-C, crashing and hanging points, a full disk, a folder that is
+# A sweep against everything that ends sweeps: kill -9, Ctrl-C, a crashing point, a full disk, a folder that is
 # gone, a second run on the same output, a journal of something else.
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/functions.sh"
 
@@ -21,18 +21,15 @@ import json, sys
 def points(path):
     document = json.load(open(path))
     assert document["complete"], path
-    for point in document["points"]:
-        for key in ("seconds_per_simulated_second", "filter_seconds_per_simulated_second", "setup_seconds", "calibration_seconds", "phases",
-                    "peak_rss_bytes", "frame_times", "cpu_seconds_per_simulated_second", "runs_per_sample", "retaken",
-                    "best", "best_at_errors", "at_ladder_end"):
-            del point[key]
-    return document["points"]
+    times = {"seconds_per_simulated_second", "filter_seconds_per_simulated_second", "setup_seconds", "calibration_seconds", "phases",
+             "peak_rss_bytes", "frame_times", "cpu_seconds_per_simulated_second", "runs_per_sample", "retaken",
+             "best", "best_at_errors", "at_ladder_end"}
+    return [{key: value for key, value in point.items() if key not in times} for point in document["points"]]
 
-a, b = (points(path) for path in sys.argv[1:])
-if a != b:
-    sys.exit(f"{len(a)} and {len(b)} points; first difference: "
-             + next((f"{p['id']}: " + ", ".join(f"{k} {p[k]} and {q[k]}" for k in p if p[k] != q[k])
-                     for p, q in zip(a, b) if p != q), "in number"))
+a, b = map(points, sys.argv[1:])
+for p, q in zip(a, b):
+    assert p == q, (p["id"], [(key, p[key], q[key]) for key in p if p[key] != q[key]])
+assert len(a) == len(b), (len(a), len(b))
 PYTHON
 }
 
@@ -92,35 +89,23 @@ cp killed.json copy.json
 bench "${sweep[@]}" --resume --out killed.json >stdout.txt 2>&1 || fail "--resume of a finished run: exit $?"
 grep -q "complete already" stdout.txt && cmp -s killed.json copy.json || fail "--resume touched a finished run"
 
-# ---- Points that crash or hang: one child is killed, one is stopped ----
+# ---- A point that crashes: its child is killed ----
 cat >long.json <<'JSON'
 {"name": "long", "reps": 1, "timeout": 8, "sweeps": [
   {"sweep": "strain", "scene": "drape", "limits": [0.001], "scene_parameters": {"n": 51},
-   "solvers": ["jacobi", "gauss_seidel", "fast_projection"], "steps": {"coarsest": 0.00025, "finest": 0.00025}}]}
+   "solvers": ["jacobi", "fast_projection"], "steps": {"coarsest": 0.00025, "finest": 0.00025}}]}
 JSON
 "$BENCH_BINARY" --sweep strain --config long.json --no-plots --out long.json.out >/dev/null 2>&1 &
 program=$!
-child_of() {
-  local child
-  for _ in $(seq 1000); do
-    child=$(pgrep -P "$program" | head -1)
-    [[ -n $child && $child != "${1-}" ]] && { echo "$child"; return; }
-    sleep 0.01
-  done
-}
 lines long.json.out.journal 1 || fail "no journal"  # after git, which is a child of its own
-first=$(child_of)
+for _ in $(seq 1000); do child=$(pgrep -P "$program" | head -1) && break; sleep 0.01; done
 sleep 0.3
-kill -ILL "$first"
-second=$(child_of "$first")
-sleep 0.2
-kill -STOP "$second"
-wait "$program" || fail "a crash and a hang ended the sweep: exit $?"
+kill -ILL "$child"
+wait "$program" || fail "a crash ended the sweep: exit $?"
 holds '
-a, b, c = read("long.json.out")["points"]
+a, b = read("long.json.out")["points"]
 assert a["status"] == "crashed" and "SIGILL" in a["status_detail"], a["status_detail"]
-assert b["status"] == "timeout" and "SIGKILL" in b["status_detail"], b["status_detail"]
-assert c["status"] == "ok" or "longer than" in c["status_detail"], c["status_detail"]'
+assert b["status"] == "ok" or "longer than" in b["status_detail"], b["status_detail"]'
 bench --sweep strain --config long.json --no-plots --out long.json.out --rerun-failed >/dev/null 2>&1 || fail "--rerun-failed: exit $?"
 holds '
 d = read("long.json.out")
@@ -163,12 +148,5 @@ if ((!SANITIZED)); then
   bench "${sweep[@]}" --resume --out full.json >/dev/null 2>&1 || fail "resumed after a full disk: exit $?"
   same whole.json full.json || fail "resumed after a full disk is not undisturbed"
 fi
-
-# ---- Shards ----
-for i in 1 2 3; do
-  bench "${sweep[@]}" --shard "$i/3" --out "part$i.json" >/dev/null 2>&1 || fail "shard $i: exit $?"
-done
-bench compare whole.json part1.json part2.json part3.json >compared.txt
-[[ $? == [036] ]] && ! grep -qE 'MISSING|NEW ' compared.txt || fail "the shards are not the whole: $(cat compared.txt)"
 
 finish

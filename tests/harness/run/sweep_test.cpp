@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "harness/base/errors.h"
 #include "harness/run/fake_machine.h"
 
 namespace harness {
@@ -279,12 +278,6 @@ TEST(ErrorLevels, AnErrorThatIsNotKnownIsNoErrorWithinALevel) {
   FakeMachine machine{.seconds = parabola(200), .error = error_of_step(std::nan(""))};
   for (const auto& point : sweep(suite_of_chain({0.1}), machine).points)
     EXPECT_TRUE(point.best_at_errors.empty());
-}
-
-TEST(Plan, RefusesFiltersThatLeaveNothing) {
-  SweepFilters filters;
-  filters.include = Pattern("--filter", "no such point");
-  EXPECT_THROW(static_cast<void>(plan(suite_of_chain({0.1}), filters)), UsageError);
 }
 
 }  // namespace
