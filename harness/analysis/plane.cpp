@@ -19,6 +19,10 @@ bool may_answer(const Point& p) {
   return p.ok() && p.timed() && p.spec().step <= longest_step * (1 + 1e-9);
 }
 
+// "gauss_seidel@bdf2" is the method gauss_seidel in the stepper bdf2; "" is the published one.
+std::string method_of(const std::string& row) { return row.substr(0, row.find('@')); }
+std::string stepper_of(const std::string& row) { return row.substr(method_of(row).size()); }
+
 bool is_of_paper(const std::string& method) {
   return std::any_of(all_paper_methods.begin(), all_paper_methods.end(),
                      [&](const PaperMethod& known) { return method == known.name; });
@@ -180,13 +184,6 @@ const Entry* Cell::counting(std::size_t place) const {
     if (entry.counts && place-- == 0) return &entry;
   }
   return nullptr;
-}
-
-std::string method_of(const std::string& row) { return row.substr(0, row.find('@')); }
-
-std::string stepper_of(const std::string& row) {
-  const std::size_t at = row.find('@');
-  return at == row.npos ? "" : row.substr(at + 1);
 }
 
 const std::array<RivalInfo, 5> rival_infos{

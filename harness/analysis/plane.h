@@ -62,10 +62,6 @@ struct Cell {
   std::optional<Ratio> lead_over(const Entry* other) const;
 };
 
-// "gauss_seidel@bdf2" is the method gauss_seidel in the stepper bdf2; "" is the published one.
-std::string method_of(const std::string& row);
-std::string stepper_of(const std::string& row);
-
 // One scene and size in one kind of sweep.
 struct Plane {
   std::string scene, sweep;

@@ -60,15 +60,6 @@ bool any_cell(const std::vector<Plane>& planes, Is is) {
       planes, [&](const Plane& plane) { return std::ranges::any_of(plane.cells, is); });
 }
 
-// Planes of one table: those of a resolution sweep are its rows.
-std::string title_of(const Plane& plane) {
-  return plane.sweep == "resolution"
-             ? scene_words(plane.scene) + " over resolution, " + percent(plane.limits.front()) +
-                   " strain"
-             : scene_words(plane.scene) + ", " + std::to_string(plane.vertices) +
-                   " vertices, over " + plane.sweep;
-}
-
 Table table_of(const std::vector<Plane>& planes) {
   const bool sizes = planes.front().sweep == "resolution";
   Table table{{sizes ? "vertices" : "strain"}, {}, 0};
@@ -118,6 +109,14 @@ std::string reach_text(const std::optional<Reach>& reach) {
 }
 
 }  // namespace
+
+std::string title_of(const Plane& plane) {
+  return plane.sweep == "resolution"
+             ? scene_words(plane.scene) + " over resolution, " + percent(plane.limits.front()) +
+                   " strain"
+             : scene_words(plane.scene) + ", " + std::to_string(plane.vertices) +
+                   " vertices, over " + plane.sweep;
+}
 
 void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
   std::vector<nlohmann::json> sweeps;

@@ -67,82 +67,72 @@ void print_growth(std::ostream& out, const std::vector<NamedResult>& results) {
               table);
 }
 
-// The fastest runs of a scene's contestants in strain sweeps, of those that are ranked.
-struct Fastest {
-  std::vector<Point> points;
-  std::vector<double> limits;  // loose to tight
+// What else a scene has to tell, of the fastest run of each contestant that is ranked.
+struct SceneTable {
+  const char *scene, *title, *unit;
+  std::string (*introduction)(const Point& one, const std::vector<double>& limits);
+  std::string (*cell)(const Point& point);
 };
 
-Fastest fastest_in(const json& document, const std::string& scene) {
-  Fastest found;
-  if (is_stability(document)) return found;
-  const Runs runs(document);
-  std::ranges::copy_if(runs.points, std::back_inserter(found.points), [&](const Point& p) {
-    return p.sweep() == "strain" && !p.spec().adaptive && p.scene() == scene && p.ok() &&
-           p.result().best && runs.roles.of(p.contestant()).ranked();
-  });
-  found.limits = in_order(found.points, [](const Point& p) { return p.strain_limit(); });
-  std::sort(found.limits.rbegin(), found.limits.rend());
-  return found;
-}
-
-template <class Cell>
-Table table_of(const Fastest& fastest, const std::string& unit, Cell cell) {
-  Table table{{"solver"}};
-  for (const double limit : fastest.limits) table.head.push_back(percent(limit) + ", " + unit);
-  const auto name = [](const Point& p) { return p.contestant(); };
-  for (const std::string& contestant : in_order(fastest.points, name)) {
-    table.rows.push_back({contestant});
-    for (const double limit : fastest.limits) {
-      const auto found =
-          std::find_if(fastest.points.begin(), fastest.points.end(), [&](const Point& p) {
-            return p.contestant() == contestant && p.strain_limit() == limit;
-          });
-      table.rows.back().push_back(found == fastest.points.end() ? "-" : cell(*found));
-    }
-  }
-  return table;
-}
-
-void print_sag(std::ostream& out, const NamedResult& result) {
-  const Fastest fastest = fastest_in(result.document, "hung_patch");
-  if (fastest.points.empty()) return;
-  const double side = fastest.points.front().scene_parameter("side");
+std::string about_sag(const Point& one, const std::vector<double>& limits) {
   std::string parabolas;
-  for (const double limit : fastest.limits)
+  for (const double limit : limits)
     parabolas += (parabolas.empty() ? "" : ", ") +
-                 plain(1e3 * claims::parabola_sag(side, limit), 3) + " mm at " + percent(limit);
-  print_table(out,
-              "## Sag of the hung patch (`" + result.name +
-                  "`)\n\nHow far the middle of the top row, and that of the lower edge, hang below "
-                  "where they would if nothing stretched, mean over the last third of the run, "
-                  "each solver at its best step; in brackets how fast it still moves. A top row "
-                  "that uses up its strain and bears an even load is a parabola, which sags by " +
-                  parabolas,
-              table_of(fastest, "mm (m/s)", [](const Point& p) {
-                const auto& sag = p.measures().sag;
-                return plain(1e3 * sag.at("top_row"), 3) + ", " +
-                       plain(1e3 * sag.at("lower_edge"), 3) + " (" +
-                       plain(p.measures().rest_speed, 2) + ")";
-              }));
+                 plain(1e3 * claims::parabola_sag(one.scene_parameter("side"), limit), 3) +
+                 " mm at " + percent(limit);
+  return "How far the middle of the top row, and that of the lower edge, hang below where they "
+         "would if nothing stretched, mean over the last third of the run, each solver at its best "
+         "step; in brackets how fast it still moves. A top row that uses up its strain and bears "
+         "an even load is a parabola, which sags by " +
+         parabolas;
+}
+
+std::string sag_of(const Point& p) {
+  const auto& sag = p.measures().sag;
+  return plain(1e3 * sag.at("top_row"), 3) + ", " + plain(1e3 * sag.at("lower_edge"), 3) + " (" +
+         plain(p.measures().rest_speed, 2) + ")";
 }
 
 // Where the rim of a garment ends up.
-void print_slip(std::ostream& out, const NamedResult& result) {
-  constexpr double frame = 1.0 / 30;  // s
-  const Fastest fastest = fastest_in(result.document, "garment");
-  if (fastest.points.empty()) return;
+std::string about_slip(const Point&, const std::vector<double>&) {
+  return "How far the garment's rim is below the waist, where it began, mean over the last third "
+         "of the run, of the way to the hips: above 100 % it has slipped past them. In brackets "
+         "the time of computation for a frame of 1/30 s. Each solver at its best step";
+}
+
+std::string slip_text(const Point& p) {
+  const claims::Slip slip = claims::slip_of(p);
+  return plain(50 * (slip.least + slip.most), 3) + " (" + plain(p.seconds() / 30, 2) + ")";
+}
+
+constexpr SceneTable scene_tables[]{
+    {"hung_patch", "Sag of the hung patch", "mm (m/s)", about_sag, sag_of},
+    {"garment", "Slip of the garment", "% (s)", about_slip, slip_text}};
+
+void print_scene(std::ostream& out, const NamedResult& result, const SceneTable& about) {
+  if (is_stability(result.document)) return;
+  const Runs runs(result.document);
+  std::vector<Point> fastest;
+  std::ranges::copy_if(runs.points, std::back_inserter(fastest), [&](const Point& p) {
+    return p.sweep() == "strain" && !p.spec().adaptive && p.scene() == about.scene && p.ok() &&
+           p.result().best && runs.roles.of(p.contestant()).ranked();
+  });
+  if (fastest.empty()) return;
+  std::vector<double> limits = in_order(fastest, [](const Point& p) { return p.strain_limit(); });
+  std::sort(limits.rbegin(), limits.rend());
+  Table table{{"solver"}};
+  for (const double limit : limits) table.head.push_back(percent(limit) + ", " + about.unit);
+  for (const auto& [name, own] : grouped(fastest, [](const Point& p) { return p.contestant(); })) {
+    table.rows.push_back({name});
+    for (const double limit : limits) {
+      const auto at = std::ranges::find(own, limit, &Point::strain_limit);
+      table.rows.back().push_back(at == own.end() ? "-" : about.cell(*at));
+    }
+  }
   print_table(out,
-              "## Slip of the garment (`" + result.name +
-                  "`)\n\nHow far the garment's rim is below the waist, where it began, mean over "
-                  "the last third of the run, of the way to the hips: above 100 % it has slipped "
-                  "past them. In brackets the time of computation for a frame of 1/30 s. Each "
-                  "solver at its best step",
-              table_of(fastest, "% (s)", [](const Point& p) {
-                const claims::Slip slip = claims::slip_of(p);
-                return plain(50 * (slip.least + slip.most), 3) + " (" +
-                       plain(frame * p.seconds(), 2) + ")";
-              }));
+              std::string("## ") + about.title + " (`" + result.name + "`)\n\n" +
+                  about.introduction(fastest.front(), limits),
+              table);
 }
 
 // What solvers make of figures that theory knows: a row an answer, of each solver the finest step
@@ -288,8 +278,9 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
          "`u`: with untuned settings. Errors are over the scene's size.\n\n";
   tables::print_planes(out, results);
   tables::print_growth(out, all);
-  for (const NamedResult& result : results) tables::print_sag(out, result);
-  for (const NamedResult& result : results) tables::print_slip(out, result);
+  for (const tables::SceneTable& about : tables::scene_tables) {
+    for (const NamedResult& result : results) tables::print_scene(out, result, about);
+  }
   for (const NamedResult& result : answers) tables::print_answers(out, result);
   for (const NamedResult& result : results) tables::print_hard_cases(out, result);
   all.insert(all.end(), answers.begin(), answers.end());

@@ -42,6 +42,9 @@ inline std::string quoted(const std::string& name) { return '`' + name + '`'; }
 // As number_text(), but never with a power of ten where the number has more digits.
 std::string plain(double value, int digits);
 
+// "chain, 80 vertices, over strain". Planes of one title are one table: those of a resolution sweep
+// are its rows.
+std::string title_of(const analysis::Plane& plane);
 bool is_stability(const nlohmann::json& document);
 // The strain-error grid of each scene: the fastest method within each limit and level of error.
 void print_planes(std::ostream& out, const std::vector<NamedResult>& results);

@@ -84,22 +84,13 @@ void add_answers(Table& table, const Plane& plane, bool sizes) {
   }
 }
 
-// The planes of a resolution sweep are rows of one table.
 void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
-  for (auto plane = planes.begin(); plane != planes.end();) {
-    const Plane& first = *plane;
-    const bool sizes = first.sweep == "resolution";
+  for (const auto& [title, group] : analysis::grouped(planes, tables::title_of)) {
+    const bool sizes = group.front().sweep == "resolution";
     Table table{{sizes ? "vertices" : "strain", "within", "fastest", "time", "step, s", "error",
                  "times as long: best of the paper"}};
-    do {
-      add_answers(table, *plane, sizes);
-    } while (++plane != planes.end() && sizes && plane->sweep == first.sweep &&
-             plane->scene == first.scene);
-    out << '\n' << analysis::scene_words(first.scene);
-    if (!sizes) out << " of " << first.vertices << " vertices";
-    out << ", " << first.sweep << " sweep";
-    if (sizes && first.limits.size() == 1) out << " at " << percent(first.limits[0]) << " strain";
-    out << ": the fastest within a strain limit and an error\n";
+    for (const Plane& plane : group) add_answers(table, plane, sizes);
+    out << '\n' << title << ": the fastest within a strain limit and an error\n";
     print_aligned(out, table);
   }
 }

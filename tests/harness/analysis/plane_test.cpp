@@ -93,9 +93,6 @@ TEST(Plane, SplitsTheLeadBetweenStepperAndMethod) {
   const Cell& any = planes.at(0).cell(0.1, any_motion);
   EXPECT_EQ(any.rival(Rival::first_as_published), any.first());
   EXPECT_EQ(any.rival(Rival::rival_in_stepper)->row, "gauss_seidel_colored");
-  EXPECT_EQ(method_of("yarn_projection@bdf2"), "yarn_projection");
-  EXPECT_EQ(stepper_of("yarn_projection@bdf2"), "bdf2");
-  EXPECT_EQ(stepper_of("yarn_projection"), "");
 }
 
 TEST(Plane, TakesARunAtATighterLimitWhereThatIsFaster) {

@@ -25,7 +25,6 @@ refused "nothing to do"
 refuse_all <<'TABLE'
 did you mean 'strain' <- --sweep strian --out out.json
 did you mean 'fast_projection' <- SWEEP --solver fast_projectoin
-did you mean 'drape' <- SWEEP --scene drap
 --steps adaptive does not go with <- --sweep step --profile quick --steps adaptive --out out.json
 no point is left <- SWEEP --filter nothing
 not a regular expression <- SWEEP --filter "$(head -c 100000 /dev/zero | tr '\0' '(')"
@@ -34,13 +33,12 @@ no case matches <- --sweep stability --case nothing --out out.json
 did you mean 'ratios' <- --sweep stability --values ratio=2 --out out.json
 'distances' has 2 <- --sweep stability --values distances=2 --out out.json
 --reps <- SWEEP --reps 0
-whose second number is below <- SWEEP --reps 9..5
 must be i/N <- SWEEP --shard 2
+whose second number is below <- SWEEP --reps 9..5
 i must be from 1 to N <- SWEEP --shard 3/2
+'' must be a number above 0 and below 1 <- SWEEP --limit 0.01,
 --memory <- SWEEP --memory much
 is 'nan', must be a number above 0 <- SWEEP --timeout nan
-is '1e999', must be a number above 0 <- SWEEP --timeout 1e999
-'' must be a number above 0 and below 1 <- SWEEP --limit 0.01,
 has one size <- SWEEP --n 10,20
 give --n <- --sweep resolution --profile quick --scene patch --out out.json
 leaves no step <- SWEEP --finest 0.05
@@ -64,7 +62,6 @@ cannot read the result file 'folder': it is a folder <- show folder
 cannot read the result file 'empty.json': it is empty <- show empty.json
 must be 24, 30 or 60 <- choose --fps 50
 must be such as 2ms <- choose --budget 2
-did you mean 'chain' <- tune --scene chian --out out.json
 TABLE
 [[ ! -e nowhere ]] || fail "a refused --out made its folder"
 chain='{"sweep": "strain", "scene": "chain", "limits": [0.1]'
@@ -89,7 +86,7 @@ done
 sweep=(--sweep strain --profile quick --no-plots --reps 1 --solver '^fast_projection$')
 # A step sweep: an error and a sample in every point, a plane of its own; claims are judged from the file.
 makes steps.json --sweep step --profile quick --scene chain --solver 'rattle|^fast_projection$' --filter 'strain:0.0001/' --reps 1 --no-plots
-grep -q 'vertices, step sweep: the fastest within a strain limit and an error' steps.json.txt || fail "no plane of the step sweep"
+grep -q 'vertices, over step: the fastest within a strain limit and an error' steps.json.txt || fail "no plane of the step sweep"
 holds '
 document = read("steps.json")
 ok = [p for p in document["points"] if p["status"] == "ok"]

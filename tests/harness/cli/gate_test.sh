@@ -26,23 +26,14 @@ gate=(--gate counters.json)
 # Two runs of one program; of a program that does more, and fails, where a fault was put.
 exits 0 '36 points: 36 SAME' compare base.json again.json "${gate[@]}"
 exits 4 'NEWLY_FAILING' compare base.json faulty.json "${gate[@]}" --junit faults.xml --markdown faults.md
-/usr/bin/python3 - <<'PYTHON' || fail "the changes by faults"
-import json
-import xml.etree.ElementTree as tree
-first, second = ({p["id"]: (p["max_strain"], p["rms_strain"]) for p in json.load(open(name))["points"]} for name in ("base.json", "again.json"))
-assert first == second and any(all(pair) for pair in first.values()), first
-suite = tree.parse("faults.xml").getroot().find("testsuite")
-changes = {}
-for case in suite.findall("testcase"):
-    failure = case.find("failure")
-    changes.setdefault(case.get("name").split("/")[1], set()).add("SAME" if failure is None else failure.get("type"))
-    if case.get("name").startswith("chain/fast_projection/") and failure is not None:
-        assert "iterations" in failure.get("message"), failure.get("message")
-assert changes["shake"] == {"SAME"} and changes["gauss_seidel"] == {"SAME"}, changes
-assert changes["jacobi"] <= {"NEWLY_FAILING", "SAME"} and "NEWLY_FAILING" in changes["jacobi"], changes
-assert "SLOWER" in changes["fast_projection"] and "NEWLY_FAILING" not in changes["fast_projection"], changes
-assert int(suite.get("tests")) == 36 and int(suite.get("failures")) > 2
-PYTHON
+grep -qE '^NEWLY_FAILING +strain chain/jacobi/' stdout.txt && grep -qE '^SLOWER +strain chain/fast_projection/.*iterations' stdout.txt &&
+  ! grep -qE 'chain/(shake|gauss_seidel)/|NEWLY_FAILING.*fast_projection' stdout.txt || fail "the changes by faults: $(cat stdout.txt)"
+holds '
+import xml.etree.ElementTree
+suite = xml.etree.ElementTree.parse("faults.xml").getroot().find("testsuite")
+assert int(suite.get("tests")) == 36 and len(suite.findall(".//failure")) == int(suite.get("failures")) > 2
+first, second = ({p["id"]: (p["max_strain"], p["rms_strain"]) for p in read(name)["points"]} for name in ("base.json", "again.json"))
+assert first == second and any(all(pair) for pair in first.values()), first'
 grep -q '^| \*\*NEWLY\\_FAILING\*\* | strain | chain/jacobi' faults.md || fail "faults.md: $(cat faults.md)"
 # The other way round the failures are fixed. Less work is a change that the baseline has to learn of.
 exits 3 'FIXED' compare faulty.json base.json "${gate[@]}"
@@ -97,7 +88,6 @@ exits 5 'no point in common' compare baseline.json other.json
 # Bad input.
 echo '{"schema": "another"}' >wrong.json
 echo '{"schema": "inextensible-stability/1"}' >hard.json
-echo '{"counters": {"rul": "exact"}}' >rul.json
 edit base.json part.json 'd["complete"] = False'
 while IFS='|' read -r words arguments; do
   refused "$words" $arguments
@@ -105,7 +95,6 @@ done <<TABLE
 cannot read the gate 'missing.json'|compare base.json again.json --gate missing.json --markdown out.md
 'wrong.json' is not a result file|compare base.json wrong.json --junit out.xml
 a stability sweep, which cannot be compared|compare hard.json base.json
-gate 'rul.json': 'counters': no key 'rul'; did you mean 'rule'?|compare base.json again.json --gate rul.json --junit out.xml
 of an interrupted run|baseline part.json --out out.json
 is not a result file|baseline baseline.json --out out.json
 no point on standard input|point
@@ -121,15 +110,12 @@ import json
 points = [p for p in json.load(open('base.json'))['points'] if p['strain_limit'] == 0.01 and p['step'] == 0.005]
 print('\n'.join(json.dumps(p) for p in points))" >points.txt
 "$BENCH_BINARY" point --samples 3 <points.txt >printed.txt || fail point
-/usr/bin/python3 - <<'PYTHON' || fail "points that were printed"
-import json
+holds '
 given, printed = ([json.loads(line) for line in open(name)] for name in ("points.txt", "printed.txt"))
-assert len(given) == len(printed) == 4
+assert len(given) == len(printed) == 4 and any(b["status"] == "ok" for b in printed)
 for a, b in zip(given, printed):
     assert all(a[key] == b[key] for key in ("id", "status", "work", "max_strain", "settings")), (a, b)
-    assert a["status"] != "ok" or len(b["seconds_per_simulated_second"]["samples"]) == 3
-assert any(b["status"] == "ok" for b in printed)
-PYTHON
+    assert a["status"] != "ok" or len(b["seconds_per_simulated_second"]["samples"]) == 3'
 while IFS='|' read -r words replacement; do
   { head -n 1 points.txt && sed -n "1{s/$replacement/;p}" points.txt; } | "$BENCH_BINARY" point >stdout.txt 2>stderr.txt
   [[ ${PIPESTATUS[1]} == 2 && ! -s stdout.txt && $(wc -l <stderr.txt) == 1 ]] && grep -qF "line 2: $words" stderr.txt ||

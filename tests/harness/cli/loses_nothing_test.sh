@@ -98,7 +98,7 @@ JSON
 "$BENCH_BINARY" --sweep strain --config long.json --no-plots --out long.json.out >/dev/null 2>&1 &
 program=$!
 lines long.json.out.journal 1 || fail "no journal"  # after git, which is a child of its own
-for _ in $(seq 1000); do child=$(pgrep -P "$program" | head -1) && break; sleep 0.01; done
+for _ in $(seq 1000); do child=$(pgrep -P "$program" | head -1); [[ -n $child ]] && break; sleep 0.01; done
 sleep 0.3
 kill -ILL "$child"
 wait "$program" || fail "a crash ended the sweep: exit $?"

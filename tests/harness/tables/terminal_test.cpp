@@ -25,7 +25,7 @@ TEST(Terminal, IsNoWiderThanItMayBeAndLosesNoWord) {
                 run("icd", 0.1, 0.04, 3e-3, 0.03), run("fast_projection", 0.1, 0.02, 2e-3, 0.01)});
   std::ostringstream whole;
   print_sweep(whole, result, "", true, 1000);
-  for (const char* words : {"chain of 80 vertices", "2.00 (1.99-2.01) fast_projection"})
+  for (const char* words : {"chain, 80 vertices, over strain", "2.00 (1.99-2.01) fast_projection"})
     EXPECT_NE(whole.str().find(words), std::string::npos) << whole.str();
   for (const std::size_t columns : {60, 80, 100}) {
     std::ostringstream out;
