@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "harness/base/in_order.h"
+#include "harness/base/table.h"
 #include "harness/base/text.h"
 #include "harness/points/suite.h"
 

@@ -50,31 +50,13 @@ struct Motion {
   }
 };
 
-// ---- What is read off a run; NaN if the run does not tell ----
-
+// What is read off a run; NaN if the run does not tell.
 using Reading = double(const AnswerScene& at, const Motion& motion);
+Reading* reading_named(const std::string& name);  // throws std::out_of_range
 
-// RMS distance from the scene's exact motion at the end of the run, over the scene's size.
-Reading distance_at_the_end;
-// The angle by which a body that stays centered on the origin turns in the last step, over the
-// step's duration and the initial rate.
-Reading turning_rate_kept;
-// A swinging chain's frequency, rad/s, and the part of its amplitude that is left after a period,
-// both of the free end.
-Reading swing_frequency, swing_kept;
-// The largest deviation of a link's tension from the catenary's, over the largest tension there.
-Reading catenary_tensions;
-// The time in which the free end of a folded chain moves by this part of the length, and its speed
-// at that time over the initial one. Closer to the end so few links still move that the chain no
-// longer resembles a continuum.
+// Part of the length that the free end of a folded chain has moved by when it is read. Closer to
+// the end so few links still move that the chain no longer resembles a continuum.
 constexpr double folded_part = 0.9;
-Reading folded_time, folded_speed;
-// RMS deviation of the angle between warp and weft from that of a net on a sphere, in degrees, over
-// the cells whose four corners lie on the ball at the end.
-Reading net_angle_deviation;
-// Cusick's drape coefficient (BS 5058, ISO 9073-9), %: the part of the ring between table and rim
-// that the shadow of the draped disc covers.
-Reading drape_coefficient;
 
 struct KnownAnswer {
   std::string name;  // a-z and _
@@ -91,6 +73,7 @@ struct KnownAnswer {
   bool until_read;         // a run ends as soon as it tells
 };
 
+AnswerScene answer_scene(const KnownAnswer& answer);
 // Those of configs/answers.json.
 std::span<const KnownAnswer> known_answers();
 const KnownAnswer* find_answer(std::string_view name);

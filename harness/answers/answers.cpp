@@ -1,30 +1,34 @@
-// The known answers of configs/answers.json.
+// The known answers of configs/answers.json, and what solvers make of them.
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <map>
+#include <numeric>
+#include <utility>
 
 #include "harness/answers/answer.h"
+#include "harness/base/clock.h"
+#include "harness/base/errors.h"
+#include "harness/base/fields.h"
 #include "harness/base/files.h"
-#include "harness/base/json_reader.h"
-#include "harness/base/paths.h"
+#include "harness/base/json.h"
+#include "harness/base/small_runs.h"
+#include "harness/base/table.h"
+#include "harness/base/text.h"
+#include "harness/judge/drive.h"
+#include "harness/judge/mechanics.h"
+#include "harness/points/schema.h"
+#include "harness/run/calibration.h"
 #include "harness/scenes/chain_scenes.h"
 #include "harness/scenes/fabrics.h"
 #include "harness/scenes/meshes.h"
+#include "solvers/problem/edge_constraints.h"
+#include "solvers/registry.h"
 
 namespace harness {
 namespace {
 
 using nlohmann::json;
-
-const std::map<std::string, Reading*> readings{{"distance_at_the_end", distance_at_the_end},
-                                               {"turning_rate_kept", turning_rate_kept},
-                                               {"swing_frequency", swing_frequency},
-                                               {"swing_kept", swing_kept},
-                                               {"catenary_tensions", catenary_tensions},
-                                               {"folded_time", folded_time},
-                                               {"folded_speed", folded_speed},
-                                               {"net_angle_deviation", net_angle_deviation},
-                                               {"drape_coefficient", drape_coefficient}};
 
 const std::map<std::string, double (*)(const SceneParameters&)> formulas{
     {"hanging_frequency",
@@ -47,7 +51,7 @@ KnownAnswer known_answer_of(const json& entry) {
                      entry.at("strain_limit"),
                      {},
                      {},
-                     readings.at(entry.at("reading")),
+                     reading_named(entry.at("reading")),
                      entry.value("needs_multipliers", false),
                      entry.value("continuum", false),
                      entry.value("until_read", false)};
@@ -74,6 +78,10 @@ AnswerScene answer_scene(std::string_view name, const SceneParameters& given) {
   return {type, parameters, type->build(parameters)};
 }
 
+AnswerScene answer_scene(const KnownAnswer& answer) {
+  return answer_scene(answer.scene, answer.given);
+}
+
 std::span<const KnownAnswer> known_answers() {
   static const std::vector<KnownAnswer> table = [] {
     const std::string path = source_path("configs/answers.json");
@@ -88,6 +96,224 @@ std::span<const KnownAnswer> known_answers() {
 const KnownAnswer* find_answer(std::string_view name) {
   const auto found = std::ranges::find(known_answers(), name, &KnownAnswer::name);
   return found == known_answers().end() ? nullptr : &*found;
+}
+
+// ---- Runs of solvers ----
+
+namespace {
+
+using inextensible::Backend;
+using inextensible::State;
+
+struct Ending : CalibrationTrial {
+  double value = unknown;
+};
+
+// Keeps what the last multipliers pull: lambda_k times the gradient of edge k's constraint.
+class PullObserver final : public inextensible::IterateObserver {
+ public:
+  PullObserver(const inextensible::Problem& problem, std::vector<double>& pulls)
+      : gradient_(3, problem.constraints()), pulls_(pulls) {}
+
+  void iterate(const inextensible::EdgeConstraints& edges, int /*j*/,
+               const inextensible::Positions& x, const Eigen::VectorXd& multipliers) override {
+    edges.gradient(x, gradient_);
+    pulls_.assign(static_cast<std::size_t>(gradient_.cols()), 0);
+    for (int k = 0; k < edges.count(); ++k)
+      pulls_[static_cast<std::size_t>(edges.problem_edge(k))] =
+          multipliers(k) * gradient_.col(k).norm();
+  }
+
+ private:
+  Eigen::Matrix3Xd gradient_;
+  std::vector<double>& pulls_;
+};
+
+Ending run_once(const KnownAnswer& answer, const AnswerScene& at, const Backend& backend,
+                const inextensible::Settings& settings, double step, double timeout) {
+  Ending ending;
+  const auto begin = Clock::now();
+  const Scene& scene = at.scene;
+  State state = start_of(scene, backend, step);
+  const auto stepper = inextensible::make_stepper(backend.name, scene.problem,
+                                                  {answer.strain_limit, 1, settings, &state});
+  Motion motion(state, step);
+  PullObserver pulls(*scene.problem, motion.pulls);
+  if (answer.needs_multipliers) stepper->observe(&pulls);
+  const auto look = [&](const State& after, const DriveState& /*driven*/) {
+    motion.take(after);
+    raise(ending.strain, strain_range(*scene.problem, stepper->filtered_positions()).most);
+    if (backend.strain_control == inextensible::StrainControl::stiffness &&
+        !(ending.strain <= calibration_cut_short * answer.strain_limit)) {
+      ending.status = PointStatus::strain_missed;
+      ending.detail = "strain " + number_text(ending.strain, 3);
+    }
+    return ending.status == PointStatus::ok &&
+           !(answer.until_read && std::isfinite(answer.reading(at, motion)));
+  };
+  const DriveState driven =
+      drive(*stepper, state, {step, std::lround(scene.duration / step)}, look, {timeout, begin});
+  stepper->observe(nullptr);
+  ending.seconds = since(begin);
+  if (driven.end == DriveState::End::refused) {
+    ending.status = PointStatus::not_converged;
+    ending.detail = "refused at t = " + number_text(state.time, 3) + " s: " + driven.result.detail;
+  } else if (driven.end == DriveState::End::timed_out) {
+    ending.status = PointStatus::timeout;
+    ending.detail = "longer than " + number_text(timeout) + " s";
+  }
+  if (ending.status == PointStatus::ok) {
+    ending.value = answer.reading(at, motion);
+    if (!std::isfinite(ending.value)) ending.detail = "the run does not tell";
+  }
+  return ending;
+}
+
+Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double step,
+                      double timeout) {
+  const AnswerScene at = answer_scene(answer);
+  if (backend.strain_control != inextensible::StrainControl::stiffness)
+    return run_once(answer, at, backend, {}, step, timeout);
+  std::map<double, Ending> endings;
+  const Calibration found = calibrate_stiffness(
+      answer.strain_limit, first_stiffness(at.scene, answer.strain_limit), [&](double stiffness) {
+        return endings[stiffness] =
+                   run_once(answer, at, backend, {{"stiffness", stiffness}}, step, timeout);
+      });
+  if (found.stiffness) return endings.at(*found.stiffness);
+  return {{.detail = found.detail}};
+}
+
+// The order of accuracy that the last deviations show, from step to step of half the size: of a
+// continuum against what small steps lead to, from three steps, instead of the exact value. What
+// the strain limit permits is no error of the method: below a few times of it no order shows.
+double order_of(const KnownAnswer& answer, std::vector<double> deviations) {
+  if (answer.continuum)
+    std::adjacent_difference(deviations.begin(), deviations.end(), deviations.begin());
+  const std::size_t n = deviations.size();
+  if (n < (answer.continuum ? 3 : 2)) return unknown;
+  const double coarse = deviations[n - 2], fine = deviations[n - 1];
+  return std::abs(fine) > 10 * answer.strain_limit ? std::log2(std::abs(coarse / fine)) : unknown;
+}
+
+// The value, and why there is none. Throws Interrupted.
+json run_apart(const KnownAnswer& answer, const Backend& backend, double step, double timeout,
+               const std::function<bool()>& interrupted) {
+  // Springs need several runs to find their stiffness.
+  const double all_runs = timeout * (calibration_run_limit + 2);
+  return in_child(
+      {all_runs, 0, interrupted},
+      [&](Heartbeat& heartbeat) -> json {
+        heartbeat.restart();
+        const Ending ending = run_calibrated(answer, backend, step, timeout);
+        return {{"value", number(ending.value)}, {"detail", ending.detail}};
+      },
+      [](const json& run) { return run; },
+      [](const ChildOutcome& child) -> json {
+        const bool stuck = child.end == ChildOutcome::End::timed_out;
+        return {{"value", nullptr}, {"detail", stuck ? "a step did not end" : ending(child)}};
+      });
+}
+
+}  // namespace
+
+std::vector<AnswerRun> plan_answers(const AnswerSelection& selection) {
+  std::vector<AnswerRun> plan;
+  for (const KnownAnswer& answer : known_answers()) {
+    if (selection.answer && !selection.answer->matches(answer.name)) continue;
+    const AnswerScene at = answer_scene(answer);
+    for (const Backend& backend : inextensible::backends()) {
+      if (!backend.contestant || (selection.solver && !matches(*selection.solver, backend.name)))
+        continue;
+      if (answer.needs_multipliers && !backend.shows_iterates) continue;
+      if (inextensible::part_not_taken(backend, *at.scene.problem)) continue;
+      plan.push_back({&answer, backend.name});
+    }
+  }
+  if (plan.empty())
+    throw UsageError("no known answer and contestant match (bench list answers, solvers)");
+  return plan;
+}
+
+AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
+                          const RunEvents& events) try {
+  AnswerOutcome outcome;
+  std::size_t all = 0;
+  for (const AnswerRun& run : plan) all += run.answer->steps.size();
+  for (const AnswerRun& run : plan) {
+    const double exact = run.answer->exact(answer_scene(*run.answer));
+    std::vector<double> deviations;
+    for (const double step : run.answer->steps) {
+      if (events.interrupted()) throw Interrupted();
+      const std::string name = run.answer->name + "/" + run.solver;
+      const json found = events.once(name + "/" + step_text(step), [&] {
+        return run_apart(*run.answer, *inextensible::find_backend(run.solver), step, timeout,
+                         events.interrupted);
+      });
+      const double value = number_of(found.at("value"));
+      deviations.push_back(exact == 0 ? value : value / exact - 1);
+      outcome.rows.push_back({run.answer->name, run.solver, step, value, deviations.back(),
+                              order_of(*run.answer, deviations), found.at("detail")});
+      events.done(name, outcome.rows.size(), all);
+    }
+  }
+  return outcome;
+} catch (const Interrupted&) {
+  return {{}, false};
+}
+
+json answers_document(json context, const std::vector<AnswerRun>& plan,
+                      const AnswerOutcome& outcome, const std::vector<std::string>& command) {
+  context["command"] = command;
+  json answers = json::array(), rows = json::array();
+  const KnownAnswer* last = nullptr;
+  for (const AnswerRun& run : plan) {
+    if (run.answer == std::exchange(last, run.answer)) continue;
+    const KnownAnswer& answer = *run.answer;
+    const AnswerScene at = answer_scene(answer);
+    answers.push_back({{"name", answer.name},
+                       {"scene", answer.scene},
+                       {"scene_parameters", at.parameters},
+                       {"quantity", answer.quantity},
+                       {"source", answer.source},
+                       {"strain_limit", answer.strain_limit},
+                       {"exact", answer.exact(at)},
+                       {"continuum", answer.continuum}});
+  }
+  for (const AnswerRow& row : outcome.rows) {
+    json object;
+    write_fields(object, answer_row_fields, row);
+    rows.push_back(std::move(object));
+  }
+  return {{"schema", "inextensible-answers/1"}, {"complete", outcome.complete},
+          {"context", std::move(context)},      {"legend", legend()},
+          {"answers", std::move(answers)},      {"rows", std::move(rows)}};
+}
+
+void print_answers(std::ostream& out, const json& document) {
+  const auto text = [](const json& value, int digits) {
+    return value.is_number() ? number_text(value.get<double>(), digits) : std::string();
+  };
+  for (const json& answer : document.at("answers")) {
+    const auto word = [&answer](const char* key) { return answer.at(key).get<std::string>(); };
+    out << '\n'
+        << word("name") << " (" << word("scene") << "): " << word("quantity") << "\n  exact "
+        << text(answer.at("exact"), 6) << ", " << word("source") << '\n';
+    Table table{{}};
+    for (const json& row : document.at("rows")) {
+      if (row.at("answer") != answer.at("name")) continue;
+      auto& cells = table.rows.emplace_back();
+      cells = {"  " + row.at("solver").get<std::string>(), "h = " + text(row.at("step"), 6)};
+      if (row.at("value").is_number()) {
+        const std::string order = text(row.at("order"), 2);
+        cells.insert(cells.end(),
+                     {text(row.at("value"), 6), order.empty() ? "" : "order " + order});
+      } else if (row.at("detail").is_string()) {
+        cells.push_back(row.at("detail"));
+      }
+    }
+    print_aligned(out, table);
+  }
 }
 
 }  // namespace harness

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "harness/answers/answer.h"
@@ -10,13 +11,17 @@
 #include "harness/scenes/meshes.h"
 
 namespace harness {
+namespace {
 
 using inextensible::Positions;
 
+// RMS distance from the scene's exact motion at the end of the run, over the scene's size.
 double distance_at_the_end(const AnswerScene& at, const Motion& motion) {
   return rms_distance(at.scene, motion.state.x, at.type->exact(at.parameters, motion.state.time));
 }
 
+// The angle by which a body that stays centered on the origin turns in the last step, over the
+// step's duration and the initial rate.
 double turning_rate_kept(const AnswerScene& at, const Motion& motion) {
   double cosine = 0, sine = 0;
   for (Eigen::Index i = 0; i < motion.state.x.cols(); ++i) {
@@ -29,8 +34,6 @@ double turning_rate_kept(const AnswerScene& at, const Motion& motion) {
 }
 
 // ---- The swing of a chain's free end ----
-
-namespace {
 
 struct Swing {
   std::vector<double> crossings, peaks;  // of the vertical, s; of whole half-oscillations, m
@@ -56,20 +59,21 @@ Swing swing_of(const Motion& motion) {
   return found;
 }
 
-}  // namespace
-
+// A swinging chain's frequency, rad/s.
 double swing_frequency(const AnswerScene& /*at*/, const Motion& motion) {
   const std::vector<double> seen = swing_of(motion).crossings;
   if (seen.size() < 3) return unknown;
   return std::numbers::pi * static_cast<double>(seen.size() - 1) / (seen.back() - seen.front());
 }
 
+// The part of its amplitude that is left after a period.
 double swing_kept(const AnswerScene& /*at*/, const Motion& motion) {
   const std::vector<double> seen = swing_of(motion).peaks;
   if (seen.size() < 3) return unknown;
   return std::pow(seen.back() / seen.front(), 2 / static_cast<double>(seen.size() - 1));
 }
 
+// The largest deviation of a link's tension from the catenary's, over the largest tension there.
 double catenary_tensions(const AnswerScene& at, const Motion& motion) {
   const Positions& x = at.scene.start.x;
   const inextensible::Problem& problem = *at.scene.problem;
@@ -92,10 +96,7 @@ double catenary_tensions(const AnswerScene& at, const Motion& motion) {
   return worst / largest;
 }
 
-// ---- When the free end of a folded chain has come so far, by where it was at the ends of steps
-// ----
-
-namespace {
+// ---- When the free end of a folded chain has come so far, by where it was at steps' ends ----
 
 struct Passing {
   double time = unknown, speed = unknown;
@@ -116,11 +117,11 @@ Passing passing_of(const AnswerScene& at, const Motion& motion) {
   return {};
 }
 
-}  // namespace
-
+// The time in which the free end of a folded chain moves by folded_part of the length.
 double folded_time(const AnswerScene& at, const Motion& motion) {
   return passing_of(at, motion).time;
 }
+// Its speed at that time over the initial one.
 double folded_speed(const AnswerScene& at, const Motion& motion) {
   return passing_of(at, motion).speed / at.parameters.at("speed");
 }
@@ -134,8 +135,6 @@ double folded_speed(const AnswerScene& at, const Motion& motion) {
 // / R^2 alone:
 //   z w'' + w' + sin(w) = 0,  w(0) = pi / 2,  w'(0) = -1.
 // Forces, friction and steps have no part in it; strain has.
-
-namespace {
 
 constexpr double locked = 1.86;  // z, just before w is 0 and the net locks
 
@@ -158,8 +157,8 @@ double net_angle(double z) {
   return w(0);
 }
 
-}  // namespace
-
+// RMS deviation of the angle between warp and weft from that of a net on a sphere, in degrees, over
+// the cells whose four corners lie on the ball at the end.
 double net_angle_deviation(const AnswerScene& at, const Motion& motion) {
   constexpr double near = 1.002;  // of the radius
   const Positions& x = motion.state.x;
@@ -187,8 +186,6 @@ double net_angle_deviation(const AnswerScene& at, const Motion& motion) {
 }
 
 // ---- The drape coefficient ----
-
-namespace {
 
 // m^2, of all triangles seen from above, what lies over one another once: counted on a grid of
 // cells of `cell` m.
@@ -219,8 +216,8 @@ double shadow(const Positions& x, const std::vector<std::array<int, 3>>& triangl
   return cell * cell * static_cast<double>(std::count(covered.begin(), covered.end(), 1));
 }
 
-}  // namespace
-
+// Cusick's drape coefficient (BS 5058, ISO 9073-9), %: the part of the ring between table and rim
+// that the shadow of the draped disc covers.
 double drape_coefficient(const AnswerScene& at, const Motion& motion) {
   const double cell = at.parameters.at("radius") / 400,
                table = std::numbers::pi * std::pow(at.parameters.at("table"), 2);
@@ -229,5 +226,19 @@ double drape_coefficient(const AnswerScene& at, const Motion& motion) {
   return 100 * (shadow(motion.state.x, at.scene.triangles, cell) - table) /
          (shadow(flat, at.scene.triangles, cell) - table);
 }
+
+const std::map<std::string, Reading*> readings{{"distance_at_the_end", distance_at_the_end},
+                                               {"turning_rate_kept", turning_rate_kept},
+                                               {"swing_frequency", swing_frequency},
+                                               {"swing_kept", swing_kept},
+                                               {"catenary_tensions", catenary_tensions},
+                                               {"folded_time", folded_time},
+                                               {"folded_speed", folded_speed},
+                                               {"net_angle_deviation", net_angle_deviation},
+                                               {"drape_coefficient", drape_coefficient}};
+
+}  // namespace
+
+Reading* reading_named(const std::string& name) { return readings.at(name); }
 
 }  // namespace harness

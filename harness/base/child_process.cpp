@@ -10,19 +10,17 @@
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <new>
 #include <stdexcept>
 
+#include "harness/base/clock.h"
 #include "harness/base/files.h"
-#include "harness/base/interrupt.h"
 #include "harness/base/standard_streams.h"
 
 namespace harness {
@@ -35,9 +33,7 @@ constexpr double kill_after = 2;   // s after SIGTERM
 constexpr double stopped_for = 1;
 constexpr char returned_mark = 'r', threw_mark = 'x';
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now() { return since({}); }
 
 [[noreturn]] void fail(const char* what) {
   throw std::runtime_error(std::string("cannot run a point in a child process: ") + what + ": " +
@@ -212,62 +208,6 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
     outcome.text.erase(0, 1);
   }
   return outcome;
-}
-
-ChildWatch::ChildWatch() {
-  sigemptyset(&child_ended_);
-  sigaddset(&child_ended_, SIGCHLD);
-  sigprocmask(SIG_BLOCK, &child_ended_, &before_);
-}
-
-void ChildWatch::restore() const { sigprocmask(SIG_SETMASK, &before_, nullptr); }
-
-bool ChildWatch::ended(pid_t child, int& status) const {
-  if (waitpid(child, &status, WNOHANG) != 0) return true;
-  constexpr timespec look_again{0, 200'000'000};
-  sigtimedwait(&child_ended_, nullptr, &look_again);
-  return false;
-}
-
-int supervised(const std::function<int()>& work) {
-  constexpr double patience = 0.7;  // s, for a child that was asked to end
-  std::cout.flush();
-  std::fflush(stdout);
-  const ChildWatch watch;
-  const pid_t parent = getpid();
-  const pid_t child = fork();
-  if (child < 0) fail("fork");
-  if (child == 0) {
-    watch.restore();
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(1);  // it died before that
-    const int code = work();
-    std::cout.flush();
-    std::fflush(stdout);
-    _exit(code);  // no destructors: objects are the parent's
-  }
-  catch_interrupts();
-  double asked = 0;
-  int status = 0;
-  while (!watch.ended(child, status)) {
-    if (!interrupted()) continue;
-    if (asked == 0) {
-      asked = now();
-      kill(child, SIGTERM);
-    } else if (now() > asked + patience) {
-      kill(child, SIGKILL);
-    }
-  }
-  remove_left_folders();
-  if (WIFEXITED(status)) return WEXITSTATUS(status);
-  constexpr int interrupted_code = 130, crashed_code = 1;
-  if (interrupted() || WTERMSIG(status) == SIGTERM) {
-    std::cerr << "bench: interrupted\n";  // the child had no time to say so
-    return interrupted_code;
-  }
-  if (WTERMSIG(status) == SIGPIPE) return 128 + SIGPIPE;  // nobody reads what it prints
-  std::cerr << "bench: the program was ended by " << signal_text(WTERMSIG(status)) << '\n';
-  return crashed_code;
 }
 
 std::string ending(const ChildOutcome& outcome) {

@@ -2,16 +2,14 @@
 // takes stay there.
 #pragma once
 
-#include <sys/types.h>
-
 #include <atomic>
-#include <csignal>
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace harness {
 
@@ -56,22 +54,19 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
 // stderr. Temporary folders of a child that was killed are removed.
 int supervised(const std::function<int()>& work);
 
-// Watches a child that is forked while this lives: SIGCHLD is blocked, so that nothing polls beside
-// a measurement, and a wait returns as soon as the child ends or another signal comes.
-class ChildWatch {
- public:
-  ChildWatch();
-  ~ChildWatch() { restore(); }
-  ChildWatch(const ChildWatch&) = delete;
-  ChildWatch& operator=(const ChildWatch&) = delete;
+struct ProgramResult {
+  int exit_code = 0;  // 128 + the signal's number if one ended it
+  bool timed_out = false;
+  std::string out, err;  // what it wrote
 
-  void restore() const;  // the signals as they were: in the child, before it does anything else
-  // Whether it has ended, and its status as of waitpid; if not, after at most a fifth of a second.
-  bool ended(pid_t child, int& status) const;
-
- private:
-  sigset_t child_ended_, before_;
+  std::string last_error_line() const;  // of err, or how it ended
 };
+
+// Runs another program to its end. words: the program's path, then its arguments. It ends with this
+// process at the latest. After `timeout` s of wall time, or as soon as `interrupted` says so, it is
+// killed. Throws std::runtime_error if no process can be made.
+ProgramResult run_program(const std::vector<std::string>& words, const std::string& input,
+                          double timeout, const std::function<bool()>& interrupted);
 
 // What became of a child that ended by itself, or was ended by others, without a result.
 std::string ending(const ChildOutcome& outcome);

@@ -11,6 +11,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "build_info.h"  // made by CMake
 #include "harness/base/errors.h"
 
 namespace harness {
@@ -113,6 +114,18 @@ flock whole_file() {
   return region;
 }
 
+// The share folder beside an installed program, "" for one in a build folder.
+const std::string& share_folder() {
+  static const std::string folder = [] {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    const fs::path share =
+        (program.parent_path() / INEXTENSIBLE_DATA_FROM_PROGRAM).lexically_normal();
+    return !error && fs::is_directory(share / "configs", error) ? share.string() : std::string();
+  }();
+  return folder;
+}
+
 }  // namespace
 
 FileError::FileError(const std::string& path, const std::string& verb, const std::string& reason)
@@ -211,6 +224,18 @@ bool try_lock(int file) {
 pid_t lock_holder(int file) {
   flock region = whole_file();
   return fcntl(file, F_GETLK, &region) == 0 && region.l_type != F_UNLCK ? region.l_pid : 0;
+}
+
+std::string source_path(const std::string& relative) {
+  return (share_folder().empty() ? INEXTENSIBLE_SOURCE_DIR : share_folder()) + "/" + relative;
+}
+
+std::string local_result(const std::string& name) {
+  const std::string folder = "results/local";
+  const std::string place = share_folder().empty() ? source_path(folder) : folder;
+  std::error_code error;  // the write that follows reports what is wrong
+  fs::create_directories(place, error);
+  return place + "/" + name;
 }
 
 }  // namespace harness

@@ -86,4 +86,13 @@ bool try_lock(int file);
 // The process that holds the lock; 0 if none does or it is not visible from here.
 pid_t lock_holder(int file);
 
+// ---- Where the program finds what comes with it, and where results go ----
+
+// A file that comes with the program, named as in the source tree: of the share folder beside an
+// installed bench, else of the source tree.
+std::string source_path(const std::string& relative);
+// Where results go by default: results/local of the source tree, for an installed bench of the
+// current folder.
+std::string local_result(const std::string& name);
+
 }  // namespace harness

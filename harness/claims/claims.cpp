@@ -4,8 +4,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/base/json_reader.h"
-#include "harness/base/paths.h"
+#include "harness/base/json.h"
 #include "harness/points/result_file.h"
 
 namespace harness {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "harness/base/child_program.h"
+#include "harness/base/child_process.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/compare/pairs.h"

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "harness/base/json_reader.h"
+#include "harness/base/json.h"
 
 namespace CLI {
 class App;

@@ -1,7 +1,7 @@
 // bench point: runs single points in this process; what bench ab and other programs build upon.
 #include <cmath>
 
-#include "harness/base/json_reader.h"
+#include "harness/base/json.h"
 #include "harness/base/standard_streams.h"
 #include "harness/cli/command.h"
 #include "harness/points/context.h"

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <iomanip>
 
-#include "harness/base/json_reader.h"
+#include "harness/base/json.h"
 #include "harness/cli/command.h"
 #include "harness/judge/reference_routes.h"
 #include "harness/points/context.h"

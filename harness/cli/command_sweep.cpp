@@ -1,7 +1,7 @@
 // bench --sweep strain|resolution|step|stability, and the sweeps of a suite.
 #include <sstream>
 
-#include "harness/base/shard.h"
+#include "harness/base/small_runs.h"
 #include "harness/base/standard_streams.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"

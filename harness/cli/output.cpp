@@ -11,12 +11,11 @@
 #include <utility>
 
 #include "harness/analysis/findings.h"
-#include "harness/base/child_program.h"
+#include "harness/base/child_process.h"
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
-#include "harness/base/paths.h"
 #include "harness/base/standard_streams.h"
 #include "harness/base/text.h"
 #include "harness/claims/claims.h"

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "harness/base/errors.h"
-#include "harness/base/json_reader.h"
+#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"

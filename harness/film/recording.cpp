@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "harness/base/files.h"
-#include "harness/base/json_text.h"
+#include "harness/base/json.h"
 #include "harness/judge/mechanics.h"
 
 namespace harness {

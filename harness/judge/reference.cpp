@@ -7,7 +7,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/fields.h"
 #include "harness/base/files.h"
-#include "harness/base/json_reader.h"
+#include "harness/base/json.h"
 #include "harness/base/text.h"
 
 namespace harness {

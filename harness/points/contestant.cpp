@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "harness/base/errors.h"
-#include "harness/base/json_reader.h"
+#include "harness/base/json.h"
 #include "harness/base/pattern.h"
 #include "harness/points/point_json.h"
 

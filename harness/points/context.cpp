@@ -21,7 +21,7 @@
 
 #include "build_info.h"  // made by CMake
 #include "harness/base/files.h"
-#include "harness/base/json_reader.h"
+#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/points/plugins.h"
 

@@ -8,9 +8,8 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/base/json_reader.h"
-#include "harness/base/json_text.h"
-#include "harness/base/shard.h"
+#include "harness/base/json.h"
+#include "harness/base/small_runs.h"
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
 #include "harness/points/contestant.h"

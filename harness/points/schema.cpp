@@ -10,8 +10,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/base/json_text.h"
-#include "harness/base/paths.h"
+#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/points/answer_row.h"
 #include "harness/points/point_json.h"

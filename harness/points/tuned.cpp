@@ -6,8 +6,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/base/json_reader.h"
-#include "harness/base/paths.h"
+#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "harness/base/pattern.h"
-#include "harness/base/shard.h"
+#include "harness/base/small_runs.h"
 #include "harness/points/suite.h"
 #include "harness/run/execute.h"
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "harness/base/files.h"
-#include "harness/base/json_reader.h"
-#include "harness/base/paths.h"
+#include "harness/base/json.h"
+#include "harness/points/schema.h"
 #include "harness/stability/hard_case.h"
 
 namespace harness {
@@ -31,29 +31,25 @@ bool is_about(const std::string& word, const Backend& backend) {
          word == std::string("@") + backend.stepper;
 }
 
-constexpr const char* cases_file = "configs/hard_cases.json";
-
-const json& cases_document() {
-  static const json document =
-      parse_commented(read_file(source_path(cases_file), "file of hard cases"), cases_file);
-  return document;
-}
-
-Outcome outcome_of(const json& name) {
-  Outcome outcome{};
-  FieldCodec<Outcome>::read(name, outcome, false);
-  return outcome;
-}
-
 // The list under a case's name, or else under its row; a text names the case whose list applies.
 const json& entries_about(const HardCase& hard_case) {
-  const json& all = cases_document().at("expectations");
+  const json& all = hard_cases_document().at("expectations");
   const json* found = &all.at(all.contains(hard_case.name) ? hard_case.name : hard_case.row);
   while (found->is_string()) found = &all.at(found->get<std::string>());
   return *found;
 }
 
 }  // namespace
+
+const json& hard_cases_document() {
+  static const json document = [] {
+    const std::string file = "configs/hard_cases.json";
+    json read = parse_commented(read_file(source_path(file), "file of hard cases"), file);
+    check_schema(read, "hard_cases", file);
+    return read;
+  }();
+  return document;
+}
 
 bool Expectation::about(const Backend& backend) const {
   return solvers.empty() || std::ranges::any_of(solvers, [&](const std::string& word) {
@@ -64,18 +60,15 @@ bool Expectation::about(const Backend& backend) const {
 void add_expectations(std::vector<HardCase>& cases) {
   for (HardCase& c : cases) {
     for (const json& entry : entries_about(c)) {
-      JsonReader reader(entry, cases_file);
-      const double above = reader.number("above", -HUGE_VAL, {}),
-                   below = reader.number("below", HUGE_VAL, {});
-      Expectation expected{{}, outcome_of(entry.at("outcome")), entry.at("why")};
-      if (const json* of = reader.find("of"))
-        expected.solvers = of->is_array() ? of->get<std::vector<std::string>>()
-                                          : std::vector{of->get<std::string>()};
-      if (const json* other = reader.find("or"))
-        expected.other = Expectation::Other{outcome_of(*other), entry.at("because")};
-      for (const char* key : {"outcome", "why", "because"}) reader.find(key);
-      reader.finish();
-      if (!(c.value <= above || c.value >= below)) c.expectations.push_back(std::move(expected));
+      if (c.value <= entry.value("above", -HUGE_VAL) || c.value >= entry.value("below", HUGE_VAL))
+        continue;
+      Expectation& expected = c.expectations.emplace_back();
+      const json of = entry.value("of", json::array());
+      expected.solvers =
+          of.is_string() ? std::vector{of.get<std::string>()} : of.get<std::vector<std::string>>();
+      expected.outcome = outcome_of(entry.at("outcome"));
+      expected.why = entry.at("why");
+      if (entry.contains("or")) expected.other = {outcome_of(entry.at("or")), entry.at("because")};
     }
   }
 }
@@ -94,8 +87,9 @@ Expectation HardCase::expectation(const std::string& solver) const {
 const std::vector<KnownDifference>& known_differences() {
   static const std::vector<KnownDifference> differences = [] {
     std::vector<KnownDifference> list;
-    for (const json& entry : cases_document().at("known_differences")) {
-      const json& cause = cases_document().at("causes").at(entry.at("cause").get<std::string>());
+    for (const json& entry : hard_cases_document().at("known_differences")) {
+      const json& cause =
+          hard_cases_document().at("causes").at(entry.at("cause").get<std::string>());
       list.push_back({entry.at("solver"), outcome_of(entry.at("fixed")),
                       outcome_of(entry.at("outcome")), cause.at("reason"), cause.at("remedy"),
                       entry.at("cases")});

@@ -21,7 +21,7 @@ struct Expectation {
     std::string why;  // theory cannot decide: rounding, an iteration limit within the estimate, ...
   };
   std::vector<std::string> solvers;  // words of configs/hard_cases.json; none: all solvers
-  Outcome outcome;
+  Outcome outcome = Outcome::survived;
   std::string why;
   std::optional<Other> other = std::nullopt;
 
@@ -52,6 +52,8 @@ HardCaseValues hard_case_values(const std::string& profile);
 std::vector<HardCase> hard_cases(const HardCaseValues& values);
 // Those of the file that hold for each case.
 void add_expectations(std::vector<HardCase>& cases);
+// configs/hard_cases.json. Throws UsageError where it is not as its schema says.
+const nlohmann::json& hard_cases_document();
 
 // Outcomes of a solver that are known and are not what theory expects.
 struct KnownDifference {

@@ -1,9 +1,11 @@
-// The hard cases: their scenes. How they are expected to end is in configs/hard_cases.json.
+// The hard cases: their scenes. What they are and how they are expected to end is in
+// configs/hard_cases.json.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <random>
+#include <string_view>
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
@@ -77,7 +79,7 @@ Trial taut(Trial trial) {
   return trial;
 }
 
-Trial duplicate_edge() {
+Trial duplicate_edge(double /*value*/) {
   Mesh mesh = chain(1);
   join(mesh, 0, 1, 1.1);
   return trial_of(std::move(mesh), 0.01, 3);
@@ -85,14 +87,14 @@ Trial duplicate_edge() {
 
 // ---- Collapsed and degenerate starts ----
 
-Trial coincident() {
+Trial coincident(double /*value*/) {
   Mesh mesh = chain(3, along, false);
   mesh.start.x.col(2) = mesh.start.x.col(1);
   mesh.start.x.col(3) = mesh.start.x.col(1) + Eigen::Vector3d(1.0 / 3, 0, 0);
   return trial_of(std::move(mesh), 0.01, 3);
 }
 
-Trial folded() {
+Trial folded(double /*value*/) {
   Mesh mesh = chain(20);
   for (int i = 0; i <= 20; ++i) mesh.start.x.col(i) << 0.05 * (i % 2), 0, 0;
   return trial_of(std::move(mesh), 1.0 / 400, 200);
@@ -124,7 +126,7 @@ Trial heavy_patch(double ratio) {
 // ---- Large rotations and velocities in one step ----
 
 // Hangs down by half of its length and goes up again.
-Trial crack() {
+Trial crack(double /*value*/) {
   Mesh mesh = chain(40);
   const double gap = 1e-3;
   for (int i = 0; i <= 40; ++i)
@@ -136,14 +138,14 @@ Trial crack() {
   return trial_of(std::move(mesh), 1.0 / 800, 400);
 }
 
-Trial spin() {
+Trial spin(double /*value*/) {
   Mesh mesh = chain(20, along, false);
   mesh.parts.gravity.setZero();
   for (int i = 0; i <= 20; ++i) mesh.start.v(1, i) = 100 * (i / 20.0 - 0.5);
   return trial_of(std::move(mesh), 1e-3, 200);
 }
 
-Trial hit() {
+Trial hit(double /*value*/) {
   Mesh mesh = cloth(15);
   mesh.parts.pinned.clear();
   mesh.start.v(1, 7 * 15 + 7) = 100;
@@ -152,7 +154,7 @@ Trial hit() {
   return trial;
 }
 
-Trial jump() {
+Trial jump(double /*value*/) {
   Trial trial = trial_of(chain(20, down), 1.0 / 100, 20);
   trial.disturb = [](State& state, int step) {
     if (step == 5) state.x(0, 0) += 0.5;
@@ -203,7 +205,7 @@ Trial scaled(double scale) {
   return trial;
 }
 
-Trial noise() {
+Trial noise(double /*value*/) {
   Mesh mesh = hung_cloth(11);
   std::mt19937_64 random(7);
   add_noise(mesh.start.x, mesh.parts.pinned, 0.03, random);
@@ -221,93 +223,55 @@ Trial with_noise_every_step(Trial trial) {
 
 // ---- All of them ----
 
-std::vector<HardCase> fixed_cases() {
-  const auto taut_cloth = [](Mesh mesh) { return taut(trial_of(std::move(mesh), 1.0 / 400, 100)); };
-  return {
-      {"Q1", "Q1", "an edge turns by 90 degrees and doubles its length",
-       [] { return one_edge(0, 2); }},
-      {"Q2", "Q2", "an edge turns by 90 degrees: J(x0) W J(x^n)^T = 0",
-       [] { return one_edge(0, 0.5); }},
-      {"Q3", "Q3", "two edges made parallel by the step: J(x0) is rank deficient",
-       [] { return two_edges(0.6, 0.8, 0); }},
-      {"Q4", "Q4", "a straight chain between two pins: J(x^n) is rank deficient",
-       [] { return two_edges(1, 0, 0.01); }},
-      {"infeasible", "infeasible/row", "pins 20 % farther apart than the row is long",
-       [] { return trial_of(row_of_links(1.2), 1.0 / 100, 3); }},
-      {"infeasible", "infeasible/duplicate", "one edge twice, lengths 1 and 1.1", duplicate_edge},
-      {"triangles", "triangles", "9 x 9 cloth, all edges of its triangles constrained",
-       [=] { return taut_cloth(cloth(9, true)); }},
-      {"triangles", "triangles/midpoints",
-       "the same triangles, constrained between the midpoints of their edges",
-       [=] { return taut_cloth(midpoint_cloth(9)); }},
-      {"degenerate", "coincident", "both ends of an edge in one place, falling together",
-       coincident},
-      {"degenerate", "folded", "20 links folded flat onto the first", folded},
-      {"degenerate", "plumb", "all edges parallel: a chain at rest, hanging straight down",
-       [] { return trial_of(chain(20, down), 1.0 / 100, 100); }},
-      {"degenerate", "upright", "a chain standing straight up on its pin",
-       [] { return trial_of(chain(20, up), 1.0 / 100, 30); }},
-      {"whip", "crack", "a folded chain, one end released: the tip outruns gravity", crack},
-      {"whip", "spin", "a free chain turning at 100 rad/s, 0.1 rad a step", spin},
-      {"whip", "hit", "15 x 15 cloth, its middle vertex hit at 100 m/s", hit},
-      {"whip", "jump", "the pin of a hanging chain jumps by 10 edge lengths in one step", jump},
-      {"contact", "contact/smooth", "11 x 11 cloth falls onto a ball without friction",
-       [] { return on_a_ball("friction", 0); }},
-      {"contact", "contact/sticky",
-       "the same with friction 10: what has touched the ball stays there",
-       [] { return on_a_ball("friction", 10); }},
-      {"contact", "contact/corners", "the same on an icosahedron of 20 faces",
-       [] { return on_a_ball("subdivisions", 0); }},
-      {"contact", "contact/fast", "the same at 5 m/s, a quarter of an edge in a step",
-       [] { return on_a_ball("n", 11, 5); }},
-      {"contact", "contact/inside", "the same from a start 2 cm inside the ball",
-       [] { return on_a_ball("n", 11, 0, 0.021); }},
-      {"far start", "noise", "11 x 11 cloth, every vertex displaced by up to 30 % of an edge",
-       noise},
-      {"noise every step", "drift/chain",
-       "every step of a hanging chain starts with errors of up to 10 % of an edge (C10)",
-       [] { return with_noise_every_step(ten_seconds(chain(20, down))); }},
-      {"noise every step", "drift/cloth", "the same for an 11 x 11 cloth, 5 % of an edge",
-       [] { return with_noise_every_step(ten_seconds(hung_cloth(11))); }},
-      {"ten seconds", "swing/chain", "a chain of 20 swings for 10 s, h = 1/100 s (C10)",
-       [] { return ten_seconds(chain(20)); }},
-      {"ten seconds", "swing/cloth",
-       "an 11 x 11 cloth held at one corner swings for 10 s, h = 1/100 s",
-       [] { return ten_seconds(hung_cloth(11)); }},
-  };
-}
-
-// A case for each value of a list.
-struct Series {
-  const char *values, *row, *name, *what;
+// How cases are built: one by its name, a series by its row, with a value of its list.
+struct Builder {
+  std::string_view name;
   Trial (*build)(double value);
 };
-constexpr Series case_series[] = {
-    {"distances", "Q1 near", "Q1", "the candidate too long by this much only",
-     [](double d) { return one_edge(0, 1 + d); }},
-    {"distances", "Q2 near", "Q2", "J(x0) W J(x^n)^T of this size",
-     [](double d) { return one_edge(d, 0.5); }},
-    {"distances", "Q3 near", "Q3", "the candidate beside the line of the pins",
-     [](double d) { return two_edges(0.6, 0.8, 0.8 * d); }},
-    {"distances", "Q4 near", "Q4", "a sagging chain between two pins",
-     [](double d) { return two_edges(std::sqrt(1 - d * d), d, d + 0.01); }},
-    {"limits", "taut row", "taut_row", "30 links straight between pins, falling; this strain limit",
-     [](double limit) { return taut(trial_of(row_of_links(1), 1.0 / 200, 0, limit)); }},
-    {"limits", "1 m patch", "patch", "15 x 15 cloth, pinned 1 m apart, falling; this strain limit",
+constexpr Builder builders[] = {
+    {"Q1", [](double) { return one_edge(0, 2); }},
+    {"Q2", [](double) { return one_edge(0, 0.5); }},
+    {"Q3", [](double) { return two_edges(0.6, 0.8, 0); }},
+    {"Q4", [](double) { return two_edges(1, 0, 0.01); }},
+    {"infeasible/row", [](double) { return trial_of(row_of_links(1.2), 1.0 / 100, 3); }},
+    {"infeasible/duplicate", duplicate_edge},
+    {"triangles", [](double) { return taut(trial_of(cloth(9, true), 1.0 / 400, 100)); }},
+    {"triangles/midpoints",
+     [](double) { return taut(trial_of(midpoint_cloth(9), 1.0 / 400, 100)); }},
+    {"coincident", coincident},
+    {"folded", folded},
+    {"plumb", [](double) { return trial_of(chain(20, down), 1.0 / 100, 100); }},
+    {"upright", [](double) { return trial_of(chain(20, up), 1.0 / 100, 30); }},
+    {"crack", crack},
+    {"spin", spin},
+    {"hit", hit},
+    {"jump", jump},
+    {"contact/smooth", [](double) { return on_a_ball("friction", 0); }},
+    {"contact/sticky", [](double) { return on_a_ball("friction", 10); }},
+    {"contact/corners", [](double) { return on_a_ball("subdivisions", 0); }},
+    {"contact/fast", [](double) { return on_a_ball("n", 11, 5); }},
+    {"contact/inside", [](double) { return on_a_ball("n", 11, 0, 0.021); }},
+    {"noise", noise},
+    {"drift/chain", [](double) { return with_noise_every_step(ten_seconds(chain(20, down))); }},
+    {"drift/cloth", [](double) { return with_noise_every_step(ten_seconds(hung_cloth(11))); }},
+    {"swing/chain", [](double) { return ten_seconds(chain(20)); }},
+    {"swing/cloth", [](double) { return ten_seconds(hung_cloth(11)); }},
+    {"Q1 near", [](double d) { return one_edge(0, 1 + d); }},
+    {"Q2 near", [](double d) { return one_edge(d, 0.5); }},
+    {"Q3 near", [](double d) { return two_edges(0.6, 0.8, 0.8 * d); }},
+    {"Q4 near", [](double d) { return two_edges(std::sqrt(1 - d * d), d, d + 0.01); }},
+    {"taut row", [](double limit) { return taut(trial_of(row_of_links(1), 1.0 / 200, 0, limit)); }},
+    {"1 m patch",
      [](double limit) {
        return taut(
            trial_of(scene_of("patch", {{"n", 15}, {"duration", 0.5}}), 1.0 / 400, 0, limit));
      }},
-    {"ratios", "heavy end", "heavy_end", "last vertex heavier by this", heavy_end},
-    {"ratios", "light between heavy", "light_between", "every other vertex lighter by this",
-     light_between},
-    {"ratios", "heavy patch", "heavy_patch",
-     "11 x 11 cloth pinned closer, its middle 3 x 3 heavier by this", heavy_patch},
-    {"links", "long chain", "chain", "this many links, falling, h = 1/400 s",
-     [](double n) { return with_budget(chain(static_cast<int>(n))); }},
-    {"sides", "large cloth", "cloth", "this many vertices a side, held at one corner, h = 1/400 s",
-     [](double n) { return with_budget(hung_cloth(static_cast<int>(n))); }},
-    {"scales", "far start", "scaled", "a chain of 20 scaled by this", scaled},
+    {"heavy end", heavy_end},
+    {"light between heavy", light_between},
+    {"heavy patch", heavy_patch},
+    {"long chain", [](double n) { return with_budget(chain(static_cast<int>(n))); }},
+    {"large cloth", [](double n) { return with_budget(hung_cloth(static_cast<int>(n))); }},
+    {"far start", scaled},
 };
 
 // Numbers that are none, or impossible ones: refused at the door.
@@ -353,12 +317,21 @@ HardCaseValues hard_case_values(const std::string& profile) {
 }
 
 std::vector<HardCase> hard_cases(const HardCaseValues& values) {
-  std::vector<HardCase> all = fixed_cases();
-  for (const Series& one : case_series) {
-    for (const double value : values.at(one.values)) {
-      check_value(one.values, value);
-      all.push_back({one.row, std::string(one.name) + "/" + number_text(value), one.what,
-                     [build = one.build, value] { return build(value); }, value});
+  std::vector<HardCase> all;
+  for (const nlohmann::json& entry : hard_cases_document().at("cases")) {
+    const std::string name = entry.at("name"), row = entry.at("row"), what = entry.at("what"),
+                      over = entry.value("over", ""), key = over.empty() ? name : row;
+    const auto found = std::ranges::find(builders, key, &Builder::name);
+    if (found == std::end(builders))
+      throw UsageError("hard cases: nothing in harness/stability/hard_cases.cpp builds '" + key +
+                       "'");
+    const auto build_at = [build = found->build](double value) {
+      return [build, value] { return build(value); };
+    };
+    if (over.empty()) all.push_back({row, name, what, build_at(unknown)});
+    for (const double value : over.empty() ? std::vector<double>() : values.at(over)) {
+      check_value(over, value);
+      all.push_back({row, name + "/" + number_text(value), what, build_at(value), value});
     }
   }
   for (const auto& [what, state, put] : impossible_numbers) {

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "harness/base/pattern.h"
-#include "harness/base/shard.h"
 #include "harness/base/small_runs.h"
 #include "harness/judge/reference.h"
 #include "harness/stability/hard_case.h"

@@ -230,14 +230,11 @@ TrialResult run_trial(const std::function<Trial()>& build, const std::string& so
   return result;
 }
 
-json FieldCodec<Outcome>::write(Outcome outcome, bool /*nullable*/) { return to_string(outcome); }
-
-void FieldCodec<Outcome>::read(const json& from, Outcome& outcome, bool /*nullable*/) {
-  const std::string name = from.get<std::string>();
-  const auto place = std::ranges::find(outcomes, name, &OutcomeInfo::name);
+Outcome outcome_of(const json& name) {
+  const auto place = std::ranges::find(outcomes, name.get<std::string>(), &OutcomeInfo::name);
   if (place == std::end(outcomes))
-    throw json::other_error::create(502, "'" + name + "' is no outcome of a trial", nullptr);
-  outcome = static_cast<Outcome>(place - outcomes);
+    throw json::other_error::create(502, name.dump() + " is no outcome of a trial", nullptr);
+  return static_cast<Outcome>(place - outcomes);
 }
 
 json to_json(const TrialResult& result) {

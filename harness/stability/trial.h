@@ -95,11 +95,13 @@ TrialResult run_isolated_trial(const std::function<Trial()>& build, const std::s
                                std::uint64_t seed,
                                const std::function<bool()>& interrupted = nullptr);
 
+// Of its name; throws json::exception for what is no outcome.
+Outcome outcome_of(const nlohmann::json& name);
+
 template <>
 struct FieldCodec<Outcome> {
-  static nlohmann::json write(Outcome outcome, bool nullable);
-  // Throws json::exception for what is no outcome.
-  static void read(const nlohmann::json& from, Outcome& outcome, bool nullable);
+  static nlohmann::json write(Outcome outcome, bool) { return to_string(outcome); }
+  static void read(const nlohmann::json& from, Outcome& to, bool) { to = outcome_of(from); }
 };
 
 inline constexpr std::tuple trial_fields{

@@ -9,7 +9,7 @@
 
 #include "harness/analysis/findings.h"
 #include "harness/base/files.h"
-#include "harness/base/json_reader.h"
+#include "harness/base/json.h"
 #include "harness/points/result_file.h"
 #include "harness/points/schema.h"
 #include "solvers/registry.h"

@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "harness/base/errors.h"
-#include "harness/base/json_reader.h"
-#include "harness/base/json_text.h"
+#include "harness/base/json.h"
 #include "harness/base/pattern.h"
 #include "harness/base/text.h"
 

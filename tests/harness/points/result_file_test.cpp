@@ -9,7 +9,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/base/json_text.h"
+#include "harness/base/json.h"
 #include "harness/claims/claims.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"
