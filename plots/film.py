@@ -21,7 +21,7 @@ sys.dont_write_bytecode = True
 
 from PIL import Image, ImageDraw, ImageFont
 
-from parts.colors import ALARM
+from parts.style import ALARM
 from parts.words import wrapped
 
 MARGIN = 8  # pixels

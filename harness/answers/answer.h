@@ -14,7 +14,7 @@
 
 #include "harness/base/pattern.h"
 #include "harness/base/small_runs.h"
-#include "harness/points/answer_row.h"
+#include "harness/points/schema.h"
 #include "harness/scenes/scene.h"
 
 namespace harness {

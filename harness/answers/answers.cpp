@@ -4,7 +4,6 @@
 #include <iomanip>
 #include <map>
 #include <numeric>
-#include <utility>
 
 #include "harness/answers/answer.h"
 #include "harness/base/clock.h"
@@ -12,12 +11,10 @@
 #include "harness/base/fields.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
-#include "harness/base/small_runs.h"
 #include "harness/base/table.h"
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/mechanics.h"
-#include "harness/points/schema.h"
 #include "harness/run/calibration.h"
 #include "harness/scenes/chain_scenes.h"
 #include "harness/scenes/fabrics.h"

@@ -9,7 +9,6 @@
 #include <cstring>
 
 #include "harness/base/errors.h"
-#include "harness/base/files.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"
 

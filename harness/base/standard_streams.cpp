@@ -11,8 +11,6 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "harness/base/files.h"
-
 namespace harness {
 
 void open_standard_streams() {

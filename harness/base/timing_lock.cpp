@@ -12,7 +12,6 @@
 #include <thread>
 
 #include "harness/base/errors.h"
-#include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 
 namespace harness {

@@ -1,6 +1,5 @@
 #include <cstdint>
 #include <cstdio>
-#include <functional>
 #include <sstream>
 
 #include "harness/base/files.h"

@@ -144,17 +144,13 @@ Shot shot_of(const Recording& recording, const View& view, std::size_t take, std
              int width) {
   const FilmScene& stage = recording.stage;
   const FilmRun& shown = recording.takes.at(take);
-  Shot shot;
-  shot.cloth = shown.frames.at(frame);
-  shot.triangles = stage.triangles;
+  Shot shot{.stage = stage, .cloth = shown.frames.at(frame)};
   shot.colours = colours_of(stage, shot.cloth, shown.strain_limit);
   if (!stage.body.empty()) shot.body = body_at(stage, frame);
-  shot.body_triangles = stage.body_triangles;
   const double edge = mean_edge(stage), distance = (view.eye - view.centre).norm();
   const double pixel = 2 * view.tangent * distance / width;  // m
   shot.thickness = std::clamp(0.25 * edge, 0.004 * view.size, 0.03 * view.size);
   if (stage.triangles.empty()) {
-    shot.edges = stage.edges;
     shot.yarn = std::max(1.2 * pixel, std::min(0.009 * view.size, 0.25 * edge));
     return shot;
   }

@@ -48,19 +48,17 @@ View view_of(const Recording& recording, const std::vector<std::size_t>& frames)
 Eigen::Vector3d linear(const Eigen::Vector3d& srgb);
 std::array<std::uint8_t, 3> shade(const Eigen::Vector3d& rgb);  // in sRGB, of a linear colour
 
-// What a picture shows at one time.
+// What a picture shows at one time; the stage must outlive it.
 struct Shot {
-  inextensible::Positions cloth;              // m
-  std::vector<std::array<int, 3>> triangles;  // of the cloth; none: edges are drawn, as a rope
-  std::vector<std::array<int, 2>> edges;      // of a rope
+  const FilmScene& stage;         // without triangles its edges are drawn, as a rope
+  inextensible::Positions cloth;  // m
   // Which sides of each triangle are yarns: 1 from corner 0 to 1, 2 from 1 to 2, 4 from 2 to 0.
-  std::vector<std::uint8_t> yarns;
-  Eigen::Matrix3Xd colours;      // of each vertex, linear
-  inextensible::Positions body;  // m; empty: none
-  std::vector<std::array<int, 3>> body_triangles;
-  double yarn = 0;        // half the width of a line, or the radius of a rope, m
-  double yarn_shade = 0;  // how much darker a line is: 0 to 1
-  double thickness = 0;   // so far the cloth may lie inside the body, and is seen nevertheless, m
+  std::vector<std::uint8_t> yarns = {};
+  Eigen::Matrix3Xd colours = {};      // of each vertex, linear
+  inextensible::Positions body = {};  // m; empty: none
+  double yarn = 0;                    // half the width of a line, or the radius of a rope, m
+  double yarn_shade = 0;              // how much darker a line is: 0 to 1
+  double thickness = 0;  // so far the cloth may lie inside the body, and is seen nevertheless, m
 };
 
 struct Pixels {

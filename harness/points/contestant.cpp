@@ -9,7 +9,6 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/json.h"
-#include "harness/base/pattern.h"
 #include "harness/points/point_json.h"
 
 namespace harness {

@@ -16,7 +16,6 @@
 #include <fstream>
 #include <memory>
 #include <sstream>
-#include <string>
 #include <thread>
 
 #include "build_info.h"  // made by CMake

@@ -12,8 +12,8 @@
 #include "harness/base/files.h"
 #include "harness/base/json.h"
 #include "harness/base/text.h"
-#include "harness/points/answer_row.h"
 #include "harness/points/point_json.h"
+#include "harness/points/schema.h"
 #include "harness/points/suite.h"
 
 namespace harness {
@@ -122,7 +122,7 @@ ordered_json schema_document(const std::string& name) {
   return with_tables(ordered_json::parse(read_file(path, "schema")));
 }
 
-std::string schema_text(const std::string& name) { return folded_text(schema_document(name)); }
+std::string schema_text(const std::string& name) { return schema_document(name).dump(2) + "\n"; }
 
 ordered_json legend(const Contestants& contestants) {
   ordered_json solvers = ordered_json::array(), statuses = ordered_json::array();

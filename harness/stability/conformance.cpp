@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <functional>
 #include <limits>
 #include <map>
 #include <random>
@@ -92,31 +91,26 @@ Case net(std::uint64_t seed, int n, int pins, double speed, double step, int ste
   const auto uniform = [&random](double low, double high) {
     return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
   };
-  inextensible::ProblemParts parts;
-  parts.gravity.setZero();
-  Scene scene;
-  scene.size = n;
-  scene.start.x.resize(3, n * n);
-  scene.start.v.setZero(3, n * n);
+  cases::Mesh mesh = cases::points(n * n, 0);
+  mesh.parts.gravity.setZero();
+  Positions& x = mesh.start.x;
   const auto join = [&](int a, int b) {
-    if (a < pins && b < pins) return;
-    parts.edges.push_back({a, b});
-    parts.rest_length.push_back((scene.start.x.col(b) - scene.start.x.col(a)).norm());
+    if (a >= pins || b >= pins) cases::join(mesh, a, b, (x.col(b) - x.col(a)).norm());
   };
   for (int v = 0; v < n * n; ++v) {
     const int row = v / n, column = v % n;
-    scene.start.x.col(v) << column + uniform(-0.2, 0.2), uniform(-0.3, 0.3),
-        row + uniform(-0.2, 0.2);
-    parts.mass.push_back(uniform(0.1, 1));
-    if (v < pins) {
-      parts.pinned.push_back(v);
-    } else {
-      for (int axis = 0; axis < 3; ++axis) scene.start.v(axis, v) = uniform(-speed, speed);
-    }
+    x.col(v) << column + uniform(-0.2, 0.2), uniform(-0.3, 0.3), row + uniform(-0.2, 0.2);
+    mesh.parts.mass[v] = uniform(0.1, 1);
+    if (v < pins) mesh.parts.pinned.push_back(v);
+    for (int axis = 0; axis < 3 && v >= pins; ++axis)
+      mesh.start.v(axis, v) = uniform(-speed, speed);
     if (column > 0) join(v - 1, v);
     if (row > 0) join(v, v - n);  // both orientations occur
   }
-  scene.problem = std::make_shared<const Problem>(std::move(parts));
+  Scene scene;
+  scene.size = n;
+  scene.start = std::move(mesh.start);
+  scene.problem = std::make_shared<const Problem>(std::move(mesh.parts));
   return case_of(text("net of ", n, " x ", n, ", seed ", seed), std::move(scene), step, steps,
                  limit);
 }

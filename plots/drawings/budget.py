@@ -7,9 +7,9 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from parts.axes import grid
-from parts.colors import DARK_GREY, LIGHT_GREY
 from parts.result import Figures, Json, Result
 from parts.sheet import RIGHT, make_sheet
+from parts.style import DARK_GREY, LIGHT_GREY
 from parts.words import percent, place_part, shorten, subject
 
 BUDGETS = (1, 4, 16)  # ms of a frame of 1/60 s, as in `bench budget`

@@ -9,12 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from parts.axes import draw_slopes, grid, log_x, log_y
-from parts.caption import sampling, scene_sentence, settings_of_the_run
 from parts.curves import (Curve, Curves, Rows, add_strip, all_best, curves_in, draw_curves, draw_noise, draw_steps, ends_of,
                           failed_rows, letters_in)
 from parts.result import Figures, Json, Result
-from parts.sheet import (BETWEEN, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, STEPS_HEIGHT, TIME_LABEL, Sheet,
-                         add_legend, legend_height, make_sheet)
+from parts.sheet import (BETWEEN, LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, STEPS_HEIGHT, TIME_LABEL, Sheet, add_legend,
+                         legend_height, make_sheet, sampling, scene_sentence, settings_of_the_run)
 from parts.style import Styles, receding_sentences, styles_for
 from parts.words import file_part, percent, scene_words, subject
 

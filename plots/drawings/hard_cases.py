@@ -7,10 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from parts.colors import ALARM
 from parts.result import Figures, Json, Result
 from parts.sheet import Sheet, make_sheet
-from parts.style import Styles, styles_for
+from parts.style import ALARM, Styles, styles_for
 from parts.words import clean, inches, shorten
 
 # From the mildest outcome to the gravest: letter, meaning, and a colour that differs in lightness too, for gray prints.

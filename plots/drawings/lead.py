@@ -5,9 +5,9 @@ share)."""
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from parts.colors import BLACK, BLUE, GREY, ORANGE, SKY
 from parts.result import Figures, Json, Result
 from parts.sheet import RIGHT, make_sheet
+from parts.style import BLACK, BLUE, GREY, ORANGE, SKY
 from parts.words import percent, place_part, subject
 
 NAMES, WIDTH, BAR = 3.1, 4.6, 0.15  # inches

@@ -5,10 +5,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from parts.colors import DARK_GREY, LIGHT_GREY
 from parts.result import Figures, Json, Result
 from parts.sheet import LEFT, RIGHT, make_sheet
-from parts.style import Styles, styles_for
+from parts.style import DARK_GREY, LIGHT_GREY, Styles, styles_for
 from parts.words import clean, percent, place_part, subject, wrap
 
 CELL_WIDTH, CELL_HEIGHT, NAME_SIZE, SMALL = 1.75, 0.72, 7.5, 6.5

@@ -7,11 +7,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from parts.axes import grid, log_log, steps_on_x
-from parts.caption import scene_sentence
-from parts.colors import GREY
 from parts.result import Figures, Result
 from parts.runs import Series, StepSweep, step_sweeps_in
-from parts.sheet import GAP, LEFT, MAIN_HEIGHT, MAIN_WIDTH, make_sheet
+from parts.sheet import GAP, LEFT, MAIN_HEIGHT, MAIN_WIDTH, make_sheet, scene_sentence
+from parts.style import GREY
 from parts.words import file_part, percent, scene_words, step_name
 
 ByStep = dict[float, Series]

@@ -5,12 +5,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from parts.axes import grid, log_log
-from parts.caption import scene_sentence, settings_of_the_run
 from parts.curves import Rows, add_strip, draw_noise, letters_in
 from parts.result import Figures, Result
 from parts.runs import Run, StepSweep, cheapest, step_sweeps_in
-from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, TIME_LABEL, add_legend, legend_height,
-                         make_sheet)
+from parts.sheet import (LEFT, LEGEND_WIDTH, MAIN_HEIGHT, MAIN_WIDTH, ROW_HEIGHT, TIME_LABEL, add_legend, legend_height, make_sheet,
+                         scene_sentence, settings_of_the_run)
 from parts.style import SolverStyle, Styles, line_of, receding_sentences
 from parts.words import plain, scene_words
 

@@ -86,17 +86,11 @@
   // Perspective times a look at the middle of what moves.
   function view(aspect) {
     const middle = film.low.map((low, i) => low + 0.5 * film.span[i]);
-    const size = Math.hypot(...film.span), far = distance * size;
-    const eye = [middle[0] + far * Math.cos(lift) * Math.sin(turn), middle[1] + far * Math.sin(lift), middle[2] + far * Math.cos(lift) * Math.cos(turn)];
-    const z = eye.map((value, i) => (value - middle[i]) / far);
-    const x = [z[2], 0, -z[0]].map((value) => value / Math.hypot(z[2], z[0]));
-    const y = [z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]];
-    const f = 2.4, near = 0.05 * far, end = 4 * far, dot = (a) => -(a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2]);
-    const look = [x, y, z].map((axis) => [...axis, dot(axis)]);
-    const a = (end + near) / (near - end), b = 2 * end * near / (near - end);
-    const rows = [look[0].map((v) => f / Math.max(aspect, 1) * v), look[1].map((v) => f * Math.min(aspect, 1) * v),
-      look[2].map((v, i) => a * v + (i === 3 ? b : 0)), look[2].map((v) => -v)];
-    return new Float32Array([0, 1, 2, 3].flatMap((column) => rows.map((row) => row[column])));
+    const far = distance * Math.hypot(...film.span), f = 2.4, near = 0.05 * far, end = 4 * far, degrees = 180 / Math.PI;
+    return new DOMMatrix([f / Math.max(aspect, 1), 0, 0, 0, 0, f * Math.min(aspect, 1), 0, 0,
+      0, 0, (end + near) / (near - end), -1, 0, 0, 2 * end * near / (near - end), 0])
+      .translate(0, 0, -far).rotateAxisAngle(1, 0, 0, lift * degrees).rotateAxisAngle(0, 1, 0, -turn * degrees)
+      .translate(...middle.map((value) => -value)).toFloat32Array();
   }
 
   function bodyAt(frame) {

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.ticker import FixedLocator, FuncFormatter, Locator, LogLocator, NullFormatter, NullLocator
 
-from parts.colors import GREY
+from parts.style import GREY
 from parts.words import step_name
 
 COARSEST_STEP = 1 / 25  # the ladder of steps starts here (docs/measuring.md)

@@ -9,10 +9,9 @@ from matplotlib.ticker import NullLocator
 from matplotlib.transforms import ScaledTranslation
 
 from parts.axes import gap, log_steps_on_y, points_wide
-from parts.colors import DARK_GREY, LIGHT_GREY
 from parts.result import Json
 from parts.sheet import LEFT, ROW_HEIGHT, Sheet
-from parts.style import Styles, line_of
+from parts.style import DARK_GREY, LIGHT_GREY, Styles, line_of
 from parts.words import clean, shorten
 
 NAME_SIZE = 6.5

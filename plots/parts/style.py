@@ -10,10 +10,15 @@ from typing import Any, Iterable
 
 from matplotlib.lines import Line2D
 
-from parts.colors import (BLACK, BLUE, BROWN, GREEN, GREY, ORANGE, PALE_BLUE, PALE_BROWN, PALE_GREEN, PALE_GREY, PURPLE, SKY,
-                          TEAL, VERMILLION, VIOLET)
 from parts.result import Result, Solver
 from parts.words import FONT, clean
+
+# The colours of figures, films and the report.
+BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
+BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"
+VIOLET, BROWN, TEAL = "#6A3D9A", "#8C6D1F", "#3F7F7F"
+DARK_GREY, GREY, LIGHT_GREY, ALARM = "#555555", "#7F7F7F", "#F2F2F2", "#A32D00"
+PALE_GREY, PALE_BLUE, PALE_BROWN, PALE_GREEN = "#BDBDBD", "#9CC3E0", "#DDBE8B", "#94CFA9"
 
 Dashes = tuple[float, ...]  # on, off, on, off ... in points; () is a solid line
 

@@ -16,7 +16,7 @@ import pytest
 import figures
 import report
 from documents import ROOT, Json, analysed, resolution_sweep, stability, strain_sweep
-from parts.embedded import embedded, recorded, repeat_command, script_text
+from report import embedded, recorded, repeat_command, script_text
 from test_figures import HOSTILE, renamed
 from test_film import recorded as recorded_film
 
