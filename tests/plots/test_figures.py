@@ -247,8 +247,8 @@ def test_known_answers_have_a_panel_each_and_a_curve_for_each_solver(pictures: d
 # ---- looks and words ------------------------------------------------------------------------------------------------
 
 def test_families_share_a_colour_and_nobody_shares_a_look() -> None:
-    more = [{"name": f"s{k}", "label": "", "family": f"family {k}", "contestant": True} for k in range(2)]
-    solvers = [solver for solver in legend()["solvers"] if solver["contestant"]] + more
+    more = [{"name": f"s{k}", "label": "", "family": f"family {k}", "contestant": True} for k in range(5)]
+    solvers = [solver for solver in legend()["solvers"] if solver["contestant"] and solver["origin"] != "project"] + more
     result = Result({"context": {}, "legend": {"solvers": solvers, "statuses": []}})
     styles = styles_for([solver["name"] for solver in reversed(solvers)] + ["a stranger"], result)
     assert list(styles) == [*(solver["name"] for solver in solvers), "a stranger"], "the order of the legend"
