@@ -59,6 +59,7 @@ json sags(const FilmScene& stage, const FilmRun& take) {
 }
 
 json film_header(const Recording& recording) {
+  const FilmScene& stage = recording.stage;
   json takes = json::array(), body = json::array(), poses = json::array();
   for (const FilmRun& take : recording.takes)
     takes.push_back({{"solver", take.solver},
@@ -69,25 +70,26 @@ json film_header(const Recording& recording) {
                      {"energy_gained", take.energy_gained},
                      {"frames", take.frames.size()},
                      {"largest_strain", take.largest_strain},
-                     {"sag", sags(recording.stage, take)},
+                     {"sag", sags(stage, take)},
                      {"seconds", take.seconds}});
-  for (const Eigen::Vector3d& v : recording.stage.body) body.push_back({v.x(), v.y(), v.z()});
-  for (const inextensible::Pose& pose : recording.stage.body_poses) {
+  for (const Eigen::Vector3d& v : stage.body) body.push_back({v.x(), v.y(), v.z()});
+  for (const inextensible::Pose& pose : stage.body_poses) {
     json& rows = poses.emplace_back(json::array());
-    for (Eigen::Index i = 0; i < 3; ++i)
-      for (Eigen::Index k = 0; k < 4; ++k)
-        rows.push_back(k < 3 ? pose.turn(i, k) : pose.translation[i]);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      for (Eigen::Index k = 0; k < 3; ++k) rows.push_back(pose.turn(i, k));
+      rows.push_back(pose.translation[i]);
+    }
   }
   return {{"schema", "inextensible-film/1"},
           {"scene", recording.spec.scene},
           {"scene_parameters", recording.spec.parameters},
           {"frames_per_second", recording.spec.frames_per_second},
           {"vertices", recording.takes.empty() ? 0 : recording.takes[0].frames[0].cols()},
-          {"triangles", recording.stage.triangles},
-          {"edges", recording.stage.edges},
+          {"triangles", stage.triangles},
+          {"edges", stage.edges},
           {"strain_unit", strain_unit},
           {"body", body},
-          {"body_triangles", recording.stage.body_triangles},
+          {"body_triangles", stage.body_triangles},
           {"body_poses", poses},
           {"takes", takes}};
 }

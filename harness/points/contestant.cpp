@@ -16,13 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-void check_name(const Contestant& contestant, const std::string& where) {
-  const std::string& name = contestant.name;
-  check_plain_name(name, where + ": 'name'");
-  if (!contestant.own_name() && inextensible::find_backend(name))
-    throw UsageError(where + ": 'name' is \"" + name + "\", which is the name of another solver");
-}
-
 void append(Contestants& all, const json& list, const std::string& where, bool once) {
   if (!list.is_array()) throw UsageError(where + " must be a list of solvers");
   for (const json& entry : list) {
@@ -69,8 +62,7 @@ const inextensible::Problem& small_problem(const SceneType& type, const ScenePar
 }  // namespace
 
 Contestants::iterator find_contestant(Contestants& all, const std::string& name) {
-  return std::find_if(all.begin(), all.end(),
-                      [&name](const Contestant& c) { return c.name == name; });
+  return std::ranges::find(all, name, &Contestant::name);
 }
 
 std::string label_of(const Contestant& contestant) {
@@ -119,7 +111,7 @@ void check_settings(const inextensible::Settings& settings, const std::string& w
                     const inextensible::Backend& backend) {
   const std::vector<std::string> known = names_of(backend.settings);
   for (const auto& setting : settings) {
-    if (std::find(known.begin(), known.end(), setting.first) == known.end())
+    if (std::ranges::count(known, setting.first) == 0)
       throw UsageError(
           where + ": " +
           unknown_name("setting of solver " + std::string(backend.name), setting.first, known)
@@ -176,7 +168,10 @@ Contestant read_contestant(const json& entry, const std::string& where) {
   contestant.label = reader.text("label", "");
   contestant.unranked = reader.flag("unranked", false);
   reader.finish();
-  check_name(contestant, where);
+  check_plain_name(contestant.name, where + ": 'name'");
+  if (!contestant.own_name() && inextensible::find_backend(contestant.name))
+    throw UsageError(where + ": 'name' is \"" + contestant.name +
+                     "\", which is the name of another solver");
   return contestant;
 }
 

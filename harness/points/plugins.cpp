@@ -8,20 +8,13 @@
 #include <stdexcept>
 
 #include "harness/base/errors.h"
+#include "harness/base/pattern.h"
 #include "solvers/plugin.h"
 
 namespace harness {
 namespace {
 
-std::vector<Plugin>& all() {
-  static std::vector<Plugin> plugins;
-  return plugins;
-}
-
-std::string last_error() {
-  const char* text = dlerror();
-  return text ? text : "unknown error";
-}
+std::vector<Plugin> loaded;
 
 using EntryPoint = decltype(&inextensible_plugin);
 
@@ -32,7 +25,7 @@ EntryPoint entry_point(const std::string& path) {
   // A path without a slash would be looked for in the system's folders. What is missing is missed
   // now, not in the middle of a sweep.
   void* library = dlopen(std::filesystem::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!library) throw std::runtime_error(last_error());
+  if (!library) throw std::runtime_error(dlerror());
   void* symbol = dlsym(library, "inextensible_plugin");
   if (!symbol)
     throw std::runtime_error(
@@ -57,11 +50,6 @@ void check_stamp(const InextensiblePlugin& plugin) {
   }
 }
 
-bool printable(const std::string& text) {
-  return !text.empty() &&
-         std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
-}
-
 Plugin add(const std::string& path) {
   const InextensiblePlugin* table = entry_point(path)();
   if (!table) throw std::runtime_error("inextensible_plugin() returned nothing");
@@ -70,7 +58,8 @@ Plugin add(const std::string& path) {
                 table->version ? table->version : "",
                 {},
                 table->optimized};
-  if (!printable(plugin.version)) throw std::runtime_error("its version is no printable text");
+  if (!has_form(plugin.version, "[ -~]+"))
+    throw std::runtime_error("its version is no printable text");
   const std::span rows(table->backends, table->backend_count);
   if (rows.empty()) throw std::runtime_error("it brings no solver");
   inextensible::add_backends(rows);
@@ -82,7 +71,7 @@ Plugin add(const std::string& path) {
 
 void load_plugin(const std::string& path) {
   try {
-    all().push_back(add(path));
+    loaded.push_back(add(path));
   } catch (const std::exception& error) {
     std::string why = error.what();
     std::replace(why.begin(), why.end(), '\n', ' ');
@@ -90,6 +79,6 @@ void load_plugin(const std::string& path) {
   }
 }
 
-const std::vector<Plugin>& loaded_plugins() { return all(); }
+const std::vector<Plugin>& loaded_plugins() { return loaded; }
 
 }  // namespace harness

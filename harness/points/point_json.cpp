@@ -28,9 +28,8 @@ PointSpec named(PointSpec spec) {
 
 json FieldCodec<inextensible::Settings>::write(const inextensible::Settings& settings, bool) {
   json object = json::object();
-  for (const auto& [name, value] : settings) {
-    std::visit([&object, &name = name](const auto& v) { object[name] = v; }, value);
-  }
+  for (const auto& [name, value] : settings)
+    object[name] = std::visit([](const auto& v) { return json(v); }, value);
   return object;
 }
 
@@ -52,14 +51,11 @@ ordered_json FieldCodec<inextensible::Settings>::schema(const FieldTraits&) {
 json FieldCodec<PointStatus>::write(PointStatus status, bool) { return to_string(status); }
 
 void FieldCodec<PointStatus>::read(const json& from, PointStatus& status, bool) {
-  const std::string text = from.get<std::string>();
-  for (const PointStatusInfo& row : point_statuses) {
-    if (text == row.name) {
-      status = row.status;
-      return;
-    }
-  }
-  throw json::other_error::create(501, "'" + text + "' is no status of a point", nullptr);
+  const auto row =
+      std::ranges::find(point_statuses, from.get<std::string>(), &PointStatusInfo::name);
+  if (row == point_statuses.end())
+    throw json::other_error::create(501, from.dump() + " is no status of a point", nullptr);
+  status = row->status;
 }
 
 ordered_json FieldCodec<PointStatus>::schema(const FieldTraits&) {

@@ -91,8 +91,7 @@ void add_rows(json& all, const json& more, const json& again, std::set<std::stri
 // Entries whose name is new.
 void add_named(json& all, const json& more) {
   for (const json& entry : more) {
-    if (std::none_of(all.begin(), all.end(),
-                     [&](const json& one) { return one.at("name") == entry.at("name"); }))
+    if (std::ranges::none_of(all, [&](const json& one) { return one["name"] == entry["name"]; }))
       all.push_back(entry);
   }
 }
@@ -239,9 +238,9 @@ std::optional<PairNoise> noise_of(const json& context) {
 
 json joined(const std::vector<json>& documents) {
   json all = documents.front();
-  all["complete"] =
-      all_shards(documents) && std::all_of(documents.begin(), documents.end(),
-                                           [](const json& d) { return d.value("complete", true); });
+  all["complete"] = all_shards(documents) && std::ranges::all_of(documents, [](const json& d) {
+                      return d.value("complete", true);
+                    });
   if (documents.size() == 1) return all;
   const bool sweep = all.contains("points");
   const char* rows = sweep ? "points" : "matrix";

@@ -74,9 +74,8 @@ SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarses
 std::vector<SettingsAt> TunedEntry::settings_at() const { return {places.begin(), places.end()}; }
 
 const TunedEntry* Tuned::find(const std::string& kind, const std::string& solver) const {
-  const auto place = std::find_if(entries.begin(), entries.end(), [&](const TunedEntry& e) {
-    return e.kind == kind && e.solver == solver;
-  });
+  const auto place = std::ranges::find_if(
+      entries, [&](const TunedEntry& e) { return e.kind == kind && e.solver == solver; });
   return place == entries.end() ? nullptr : &*place;
 }
 

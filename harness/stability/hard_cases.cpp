@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "harness/base/errors.h"
+#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/stability/cases.h"
 #include "harness/stability/hard_case.h"
@@ -290,13 +291,12 @@ constexpr Impossible impossible_numbers[] = {
 void check_value(const std::string& name, double value) {
   const bool size = name == "links" || name == "sides",
              fraction = name == "distances" || name == "limits";
-  const bool possible = size ? value >= 2 && value <= 1e7 && value == std::floor(value)
-                             : value > 0 && value < (fraction ? 1.0 : HUGE_VAL);
-  if (!possible)
+  const Bounds bounds = size       ? Bounds{.least = 2, .most = 1e7, .whole = true}
+                        : fraction ? Bounds::strain()
+                                   : Bounds::positive();
+  if (!bounds.hold(value))
     throw UsageError("hard cases: '" + name + "' has " + number_text(value) + ", must be " +
-                     (size       ? "a whole number from 2 on"
-                      : fraction ? "above 0 and below 1"
-                                 : "above 0"));
+                     bounds.text());
 }
 
 }  // namespace

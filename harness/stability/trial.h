@@ -68,21 +68,16 @@ struct Trial {
 
 enum class Promise { none, finite, strain, contact, pins, momentum, energy, counters };
 
+// What each means: trial_fields.
 struct TrialResult {
-  Outcome fixed = Outcome::refused;  // at the trial's own step
-  Outcome outcome =
-      Outcome::refused;            // the same, or with the step controller where that was refused
-  std::string detail;              // of `fixed` if that failed: which step, why, which edge
-  double smallest_step = unknown;  // s, with the step controller
-  double max_strain = unknown;     // before the collision filter
-  double strain_first_second = unknown;  // the same within the first and the last simulated second,
-  double strain_last_second = unknown;   // where a trial lasts for two or more
-  double energy_gain = unknown;  // largest (E - E_0) / scale; negative: energy was lost throughout
-  double momentum_defect = unknown;       // largest, relative; where nothing outside acts
-  double reciprocal_condition = unknown;  // worst of the linear systems
-  double seconds = 0;                     // wall, both attempts
-  inextensible::WorkCounters work;        // of the last attempt
-  Promise broken = Promise::none;         // of a wrong outcome; not in files
+  Outcome fixed = Outcome::refused, outcome = Outcome::refused;
+  std::string detail;
+  double smallest_step = unknown, max_strain = unknown;
+  double strain_first_second = unknown, strain_last_second = unknown;
+  double energy_gain = unknown, momentum_defect = unknown, reciprocal_condition = unknown;
+  double seconds = 0;
+  inextensible::WorkCounters work;  // of the last attempt
+  Promise broken = Promise::none;   // of a wrong outcome; not in files
 };
 
 // Never throws: what goes wrong is the outcome. `build` makes the trial; a std::invalid_argument
@@ -113,12 +108,14 @@ inline constexpr std::tuple trial_fields{
     field("max_strain", &TrialResult::max_strain, "",
           "after any accepted step, before the collision filter", {.nullable = true}),
     field("strain_first_second", &TrialResult::strain_first_second, "",
-          "the same within the first simulated second", {.nullable = true}),
+          "the same within the first simulated second, of trials of two or more",
+          {.nullable = true}),
     field("strain_last_second", &TrialResult::strain_last_second, "",
           "the same within the last one", {.nullable = true}),
-    field("energy_gain", &TrialResult::energy_gain, "scale", "largest E - E_0", {.nullable = true}),
-    field("momentum_defect", &TrialResult::momentum_defect, "", "largest, relative",
-          {.nullable = true}),
+    field("energy_gain", &TrialResult::energy_gain, "scale",
+          "largest E - E_0; negative: energy was lost throughout", {.nullable = true}),
+    field("momentum_defect", &TrialResult::momentum_defect, "",
+          "largest, relative, where nothing outside acts", {.nullable = true}),
     field("reciprocal_condition", &TrialResult::reciprocal_condition, "",
           "worst of the linear systems", {.nullable = true}),
     field("seconds", &TrialResult::seconds, "s", "wall, both attempts")};

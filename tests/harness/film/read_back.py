@@ -9,31 +9,30 @@ import numpy as np
 FRAMES = 4  # a tenth of a second at 30 frames a second
 
 
-def obj(path: Path) -> tuple[np.ndarray, list[list[int]], list[list[int]]]:
+def obj(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Points; faces and lines, counted from 0."""
     lines = [line.split() for line in path.read_text().splitlines()]
-    points = np.array([[float(word) for word in words[1:]] for words in lines if words[0] == "v"])
-    faces, segments = ([[int(word) - 1 for word in words[1:]] for words in lines if words[0] == kind] for kind in ("f", "l"))
     assert {words[0] for words in lines} <= {"v", "f", "l"}
-    return points, faces, segments
+    points, faces, segments = (np.array([words[1:] for words in lines if words[0] == kind], dtype=float) for kind in "vfl")
+    return points, faces - 1, segments - 1
 
 
-def vtp(path: Path) -> tuple[np.ndarray, list[list[int]], list[list[int]], np.ndarray]:
-    """Points, polygons, lines, and the strain of each cell."""
+def vtp(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Points, triangles, lines, and the strain of each cell."""
     piece = xml.parse(path).getroot().find("PolyData/Piece")
     assert piece is not None
 
-    def numbers(where: str) -> np.ndarray:
-        return np.array((piece.find(where).text or "").split(), dtype=float)
+    def numbers(where: str, columns: int = 1) -> np.ndarray:
+        return np.array((piece.find(where).text or "").split(), dtype=float).reshape(-1, columns)
 
-    def cells(kind: str) -> list[list[int]]:
-        connectivity, offsets = (numbers(f"{kind}/DataArray[@Name='{name}']").astype(int) for name in ("connectivity", "offsets"))
-        assert len(offsets) == int(piece.get(f"NumberOf{kind}"))
-        return [part.tolist() for part in np.split(connectivity, offsets)[:-1]]
+    def cells(kind: str, corners: int) -> np.ndarray:
+        offsets = numbers(f"{kind}/DataArray[@Name='offsets']")[:, 0]
+        assert np.array_equal(offsets, corners * np.arange(1, int(piece.get(f"NumberOf{kind}")) + 1))
+        return numbers(f"{kind}/DataArray[@Name='connectivity']", corners)
 
-    points = numbers("Points/DataArray").reshape(-1, 3)
+    points = numbers("Points/DataArray", 3)
     assert len(points) == int(piece.get("NumberOfPoints"))
-    return points, cells("Polys"), cells("Lines"), numbers("CellData/DataArray[@Name='strain']")
+    return points, cells("Polys", 3), cells("Lines", 2), numbers("CellData/DataArray[@Name='strain']")
 
 
 def pc2(path: Path) -> np.ndarray:
@@ -48,49 +47,30 @@ def close(a: np.ndarray, b: np.ndarray) -> bool:
     return a.shape == b.shape and bool(np.allclose(a, b, atol=2e-7, rtol=2e-7))
 
 
-def shown(folder: Path) -> list[tuple[float, int, str]]:
-    """Entries of the collection for ParaView: time, part and file."""
-    return [(float(item.get("timestep")), int(item.get("part")), item.get("file"))
-            for item in xml.parse(folder / "it.pvd").getroot().iter("DataSet")]
+def check(folder: Path, part: int, name: str, moves: bool = True) -> np.ndarray:
+    """All formats hold the same points and cells in every frame; of a part that stays there is one. The points of a part that moves."""
+    shown = [(item.get("file"), float(item.get("timestep"))) for item in xml.parse(folder / "it.pvd").getroot().iter("DataSet")
+             if int(item.get("part")) == part]
+    numbers = [f"-{frame + 1:04d}" if moves else "" for frame in range(FRAMES)]
+    assert [file for file, _ in shown] == [f"{name}{number}.vtp" for number in numbers]
+    assert np.allclose([time for _, time in shown], np.arange(FRAMES) / 30, atol=1e-4)
+    _, faces, segments = obj(folder / f"{name}.obj")
+    cache = pc2(folder / f"{name}.pc2") if moves else [obj(folder / f"{name}.obj")[0]] * FRAMES
+    for number, cached in zip(numbers, cache, strict=True):
+        points, *cells = obj(folder / f"{name}{number}.obj")
+        again, polygons, lines, strain = vtp(folder / f"{name}{number}.vtp")
+        assert close(points, cached) and close(points, again)
+        assert len(faces) + len(segments) > 0 and all(map(np.array_equal, cells, (faces, segments)))
+        assert np.array_equal(polygons, faces.reshape(-1, 3)) and (not len(segments) or np.array_equal(lines, segments))
+        assert len(strain) == len(polygons) + len(lines) and 0 <= strain.min() and strain.max() <= 0.02 * (1 + 1e-9)
+    return cache
 
 
-def check_cloth(folder: Path) -> None:
-    cache = pc2(folder / "it.pc2")
-    assert len(cache) == FRAMES
-    _, faces, segments = obj(folder / "it.obj")
-    assert faces or segments
-    for frame in range(FRAMES):
-        points, *cells = obj(folder / f"it-{frame + 1:04d}.obj")
-        assert cells == [faces, segments]
-        assert close(points, cache[frame])
-        again, polygons, lines, strain = vtp(folder / f"it-{frame + 1:04d}.vtp")
-        assert close(points, again)
-        assert polygons == faces
-        assert not segments or segments == lines
-        assert len(strain) == len(polygons) + len(lines)
-        assert strain.min() >= 0 and strain.max() <= 0.02 * (1 + 1e-9)
-        assert (folder / f"it-{frame + 1:04d}.vtp").name in [file for time, part, file in shown(folder)
-                                                            if part == 0 and abs(time - frame / 30) < 1e-4]
-
-
-def check_body(folder: Path, moves: bool) -> None:
-    first, faces, _ = obj(folder / ("it-body-0001.obj" if moves else "it-body.obj"))
-    assert sum(part == 1 for _, part, _ in shown(folder)) == FRAMES
-    if not moves:
-        assert close(vtp(folder / "it-body.vtp")[0], first)
-        return
-    cache = pc2(folder / "it-body.pc2")
-    for frame in range(FRAMES):
-        points, again, _ = obj(folder / f"it-body-{frame + 1:04d}.obj")
-        assert again == faces
-        assert close(points, cache[frame]) and close(points, vtp(folder / f"it-body-{frame + 1:04d}.vtp")[0])
-        # It moves as a rigid body: distances stay.
-        assert np.allclose(np.linalg.norm(points - points[7], axis=1), np.linalg.norm(first - first[7], axis=1), atol=1e-6)
-    assert np.abs(cache[-1] - cache[0]).max() > 1e-3
-
-
-for name in ("garment", "drape", "chain"):
-    check_cloth(Path(name))
-check_body(Path("garment"), moves=True)
-check_body(Path("drape"), moves=False)
+for scene in ("garment", "drape", "chain"):
+    check(Path(scene), 0, "it")
+body = check(Path("garment"), 1, "it-body")
+apart = np.linalg.norm(body - body[:, 7:8], axis=2)
+assert np.allclose(apart, apart[0], atol=1e-6), "it moves as a rigid body: distances stay"
+assert np.abs(body[-1] - body[0]).max() > 1e-3
+check(Path("drape"), 1, "it-body", moves=False)
 assert not list(Path("chain").glob("*body*"))

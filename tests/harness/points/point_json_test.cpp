@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 #include <tuple>
 
@@ -20,7 +19,7 @@ class Random {
 
   void fill(double& value, bool nullable) {
     const bool none = nullable && generator_() % 4 == 0;
-    value = none ? unknown
+    value = none ? (generator_() % 2 == 0 ? unknown : HUGE_VAL)  // written as null
                  : std::ldexp(double(generator_() % 1000003 + 1), int(generator_() % 60) - 40);
   }
   template <class Whole>
@@ -113,17 +112,6 @@ TEST(PointJson, RefusesWhatLacksAField) {
     without.erase(name);
     EXPECT_THROW(point_of(without), json::exception) << name;
   }
-}
-
-TEST(PointJson, WritesNullForNumbersThatAreNotFinite) {
-  PointResult point;
-  point.spec.scene_parameters = {{"duration", 1}};
-  point.measures.max_strain = std::numeric_limits<double>::infinity();
-  point.measures.rms_strain = std::nan("");
-  const json written = json::parse(to_json(point).dump());
-  EXPECT_TRUE(written["max_strain"].is_null());
-  EXPECT_TRUE(written["rms_strain"].is_null());
-  EXPECT_TRUE(written["seconds_per_simulated_second"].is_null());
 }
 
 }  // namespace
