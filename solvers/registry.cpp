@@ -82,7 +82,6 @@ Backend paired(const Backend& method, const TimeStepper& stepper) {
   row.stepper = stepper.name;
   row.stepper_origin = stepper.origin;
   row.velocities = stepper.velocities;
-  row.takes_implicit_forces = method.takes_implicit_forces && stepper.takes_implicit_forces;
   if (*method.same_on_chains)
     row.same_on_chains = kept(pair_name(method.same_on_chains, stepper.name));
   // Directions turn from iterate to iterate, hence forces that have been applied.

@@ -38,6 +38,34 @@ void fold(Scene& scene, const SceneParameters& p, double y) {
   }
 }
 
+// Off the ball's axis and in two unlike waves, so that no symmetry is left. Along each side the
+// slope is A sin(2 pi w s + phase), whose height is `waves` m either way; the lowest vertex is at
+// y.
+void place_unevenly(Scene& scene, const SceneParameters& p, double y) {
+  const int n = whole(p);
+  const double l = square_link(p), side = p.at("side");
+  const auto curve = [&](double count, double phase) {
+    const double slope = 2 * std::numbers::pi * count * p.at("waves") / side;
+    Eigen::Matrix2Xd at(2, n);  // along, up
+    at.col(0).setZero();
+    for (int j = 1; j < n; ++j) {
+      const double s = (j - 0.5) / (n - 1);
+      const double angle = slope * std::sin(2 * std::numbers::pi * count * s + phase);
+      at.col(j) = at.col(j - 1) + l * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    }
+    at.row(0).array() -= at.row(0).mean();
+    at.row(1).array() -= at.row(1).minCoeff();
+    return at;
+  };
+  const Eigen::Matrix2Xd weft = curve(2, 0.7), warp = curve(1.5, 2.1);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j)
+      scene.start.x.col(i * n + j) << weft(0, j) + p.at("off_axis"), y + weft(1, j) + warp(1, i),
+          warp(0, i) - 0.5 * p.at("off_axis");
+  }
+  scene.mirrors.clear();
+}
+
 // A polygonal sphere, centred at the origin, if it has a radius.
 void add_ball(Draft& cloth, const SceneParameters& p) {
   if (!(p.at("radius") > 0)) return;
@@ -63,6 +91,7 @@ Scene build_drape(const SceneParameters& given) {
   Draft cloth = vertex_square(p, y);
   if (bending > 0) bend_yarns(cloth, p, bending);
   add_drag(cloth, p);
+  if (p.contains("waves")) place_unevenly(cloth.scene, p, y);
   if (folded) {
     if (p.at("folds") > 0) fold(cloth.scene, p, y);
     cloth.scene.start.v.row(1).setConstant(-p.at("speed"));
@@ -169,6 +198,24 @@ std::vector<SceneType> cloth_scenes() {
                      "the drape with a fabric's weight, shear and bending in physical units, "
                      "implicit, and air",
                      0.15, 1e-5, 20),
+      {.name = "settling_drape",
+       .summary = "canvas that falls onto a sphere in air, off its axis, and comes to rest",
+       .parameters = drape_parameters(
+           {{"n", 71, "vertices along each side", 3, 4000, true},
+            {"side", 1, "m", 0, 1e6},
+            {"density", 0.15, "kg/m^2", 0, 1e4},
+            gravity_info(),
+            {"shear", fabric_shear, "shear stiffness, N/m; 0: none", zero_too, 1e9},
+            {"bending", 5e-4, "bending rigidity of warp and weft, N m; 0: none", zero_too, 1e6}},
+           {{"drag", 4, "of still air, N s/m^3: force per area and speed; 0: none", zero_too, 1e6},
+            {"waves", 0.01, "amplitude of the start's waves, m; 0: flat", zero_too, 0.05},
+            {"off_axis", 0.08,
+             "how far its middle is from the sphere's axis along x, and half as far "
+             "along -z, m",
+             -10, 10}},
+           3),
+       .build = build_drape,
+       .counts = count_square},
       measured_fabric("cotton_drape", "fabric_drape of cotton broadcloth, as measured",
                       fabric("cotton")),
       measured_fabric("wool_drape", "fabric_drape of wool tropical, as measured", fabric("wool")),

@@ -134,7 +134,6 @@ struct TimeStepper {
   const char* phrase = "";  // after a method's label: "in BDF2"; empty for a published stepper
   Velocities velocities = Velocities::half_step;
   Along along = Along::edges;  // where corrections of a filter point
-  bool takes_implicit_forces = true;
   std::vector<SettingInfo> settings = {};  // the stepper's own
 };
 

@@ -20,6 +20,7 @@
 #include "solvers/problem/forces.h"
 #include "solvers/problem/stopwatch.h"
 #include "solvers/systems/constraint_system.h"
+#include "solvers/systems/implicit_forces.h"
 
 namespace inextensible {
 namespace {
@@ -195,11 +196,14 @@ class Shake final : public VelocityFilter {
 //   x^{n+1} = x^n + h v^n + h^2/2 (a(x^n) - W J(x^n)^T lambda)   with C(x^{n+1}) = 0  (SHAKE),
 //   v^{n+1} = (x^{n+1} - x^n)/h + h/2 a(x^{n+1}) - W J(x^{n+1})^T nu   with J(x^{n+1}) v^{n+1} = 0.
 // The matrix of the second line is the one that SHAKE needs in the next step: one factorization and
-// two solves a step.
+// two solves a step. Implicit forces are taken in the middle of the step in both lines (Stern and
+// Grinspun 2009).
 class Rattle final : public Stepper {
  public:
   Rattle(std::shared_ptr<const Problem> problem, const BackendOptions& options)
-      : Stepper(std::move(problem)), shake_(*problem_, options) {}
+      : Stepper(std::move(problem)), shake_(*problem_, options) {
+    if (problem_->implicit_forces()) implicit_ = std::make_unique<ImplicitForces>(*problem_);
+  }
   const char* linear_solver() const override { return shake_.linear_solver(); }
   double reciprocal_condition() const override { return shake_.reciprocal_condition(); }
 
@@ -207,9 +211,19 @@ class Rattle final : public Stepper {
   StepResult solve(const State& state, double h, Positions& x) override {
     Stopwatch stopwatch(phases_wanted_);
     x = state.x + h * state.v;  // position stage (Andersen 1983)
-    add_acceleration(*problem_, state.x, 0.5 * h * h, x, work_);
-    if (problem_->has_drag()) add_drag(*problem_, state.v, 0.5 * h * h, x);
+    if (implicit_) {
+      x.colwise() += 0.5 * h * h * problem_->gravity();
+    } else {
+      add_acceleration(*problem_, state.x, 0.5 * h * h, x, work_);
+      if (problem_->has_drag()) add_drag(*problem_, state.v, 0.5 * h * h, x);
+    }
     for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
+    if (implicit_) {
+      kick_ = x;
+      if (!implicit_->advance_inside(0.5, h, state.x, x, work_))
+        return {Status::singular, 0, -1, 0, singular_forces};
+      kick_ = (x - kick_) * (1 / h);
+    }
     phases_.unconstrained += stopwatch();
     const StepResult result = apply_until_clear(shake_, contacts_inside(), state.x, h, x, work_);
     phases_.filter += stopwatch();
@@ -220,11 +234,16 @@ class Rattle final : public Stepper {
                             const Positions& x, Positions& v) override {
     Stopwatch stopwatch(phases_wanted_);
     v = (x - start.x) * (1 / h);  // velocity stage
-    if (problem_->has_drag()) {   // of the velocity halfway
-      v_half_ = v;
-      add_drag(*problem_, v_half_, 0.5 * h, v);
+    if (implicit_) {
+      v += kick_;
+      v.colwise() += 0.5 * h * problem_->gravity();
+    } else {
+      if (problem_->has_drag()) {  // of the velocity halfway
+        v_half_ = v;
+        add_drag(*problem_, v_half_, 0.5 * h, v);
+      }
+      add_acceleration(*problem_, x, 0.5 * h, v, work_);
     }
-    add_acceleration(*problem_, x, 0.5 * h, v, work_);
     for (const int vertex : problem_->pinned())  // 0 unless pins follow a body
       v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
     if (const Contacts* contacts = contacts_inside()) {  // which bear what presses on them
@@ -240,7 +259,9 @@ class Rattle final : public Stepper {
   }
 
   Shake shake_;
-  Positions v_half_;  // with drag only
+  Positions v_half_;                          // with drag only
+  std::unique_ptr<ImplicitForces> implicit_;  // null: explicit
+  Positions kick_;                            // m/s, of implicit forces in half a step
 };
 
 std::vector<SettingInfo> shake_settings(double min_iterations) {
@@ -278,7 +299,6 @@ Backend rattle_row() {
           .origin = Origin::literature,
           .label = "RATTLE (SHAKE with velocities)",
           .family = "shake",
-          .takes_implicit_forces = false,
           .velocities = Velocities::whole_step,
           .stepper = "verlet"};
 }

@@ -18,6 +18,7 @@
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/problem/forces.h"
 #include "solvers/problem/stopwatch.h"
+#include "solvers/systems/implicit_forces.h"
 
 namespace inextensible {
 namespace {
@@ -35,13 +36,15 @@ class SoftStep final : public Stepper {
     length_.resize(edges_.count());
     impulse_.resize(edges_.count());
     last_force_.setZero(edges_.count());
+    if (problem().implicit_forces()) implicit_ = std::make_unique<ImplicitForces>(problem());
   }
 
  private:
   // Velocities are differences to the start of the step, times h.
   StepResult solve(const State& state, double h, Positions& x) override {
     Stopwatch stopwatch(phases_wanted_);
-    unconstrained_step(problem(), state, h, x, work_);
+    if (!unconstrained_step(problem(), implicit_.get(), state, h, x, work_))
+      return {Status::singular, 0, -1, 0, singular_forces};
     phases_.unconstrained += stopwatch();
     directions(start_positions());
     impulse_ = h * h * last_force_;
@@ -96,10 +99,11 @@ class SoftStep final : public Stepper {
   int passes_;
   double hardness_, give_, rate_;  // massScale, impulseScale and h times bias of the source
   EdgeConstraints edges_;
-  Eigen::Matrix3Xd n_;          // of the edges; 0 where one has no length
-  Eigen::VectorXd length_;      // m, at n_
-  Eigen::VectorXd impulse_;     // of this step, kg m: h times impulse
-  Eigen::VectorXd last_force_;  // of the last accepted step, N
+  std::unique_ptr<ImplicitForces> implicit_;  // null: explicit
+  Eigen::Matrix3Xd n_;                        // of the edges; 0 where one has no length
+  Eigen::VectorXd length_;                    // m, at n_
+  Eigen::VectorXd impulse_;                   // of this step, kg m: h times impulse
+  Eigen::VectorXd last_force_;                // of the last accepted step, N
 };
 
 }  // namespace
@@ -119,8 +123,7 @@ Backend soft_step_row() {
           .citation = "Catto 2024",
           .origin = Origin::literature,
           .label = "soft step (TGS)",
-          .takes_collider = false,
-          .takes_implicit_forces = false};
+          .takes_collider = false};
 }
 
 }  // namespace inextensible

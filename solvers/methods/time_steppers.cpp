@@ -50,7 +50,6 @@ std::span<const TimeStepper> time_steppers() {
        "in the midpoint rule",
        Velocities::whole_step,
        Along::middle,
-       false,
        {{spectral_radius, 0.8,
          "what an edge keeps of its rate when it bounces off its limit; 1 conserves", Range{0, 1},
          SearchRange{0, 1}}}}};

@@ -34,7 +34,8 @@ class VertexBlockDescent final : public Stepper {
       : Stepper(std::move(shared)),
         iterations_(options.count("iterations")),
         relaxation_(options.number("relaxation")),
-        passes_(problem(), all_springs(problem(), options.number("stiffness"))),
+        passes_(problem(), all_springs(problem(), options.number("stiffness")),
+                problem().bending()),
         inertial_(3, problem().vertices()),
         inertia_(problem().mass()),
         v_before_(3, problem().vertices()) {}
@@ -131,7 +132,6 @@ Backend vertex_block_descent_row() {
           .citation = "Chen et al. 2024",
           .origin = Origin::literature,
           .label = "vertex block descent",
-          .takes_bending = false,
           .conserves_momentum = false,
           .backward_euler = true};
 }

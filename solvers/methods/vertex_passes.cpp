@@ -6,40 +6,58 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
 
 namespace inextensible {
-namespace {
 
-// The first color that no neighbour has, vertex after vertex: two colors on a woven net, four with
-// its shear springs. -1: pinned.
-std::vector<int> colors_of(const Problem& problem, const std::vector<std::vector<int>>& at,
-                           const Springs& springs) {
-  std::vector<int> color(at.size(), -1);
-  std::vector<char> taken;
-  for (std::size_t v = 0; v < at.size(); ++v) {
-    if (problem.inverse_mass()[v] == 0) continue;
-    taken.assign(at[v].size() + 1, 0);
-    for (const int k : at[v]) {
-      const Edge e = springs.edges[k];
-      const int c = color[e.a == static_cast<int>(v) ? e.b : e.a];
-      if (c >= 0 && c < std::ssize(taken)) taken[c] = 1;
+// What meets at each vertex: springs' far ends in the order of springs, and bending's matrix.
+struct VertexPasses::Ends {
+  struct Spring {
+    int other;
+    double stiffness, rest_length;
+  };
+  std::vector<std::vector<Spring>> springs;
+  std::vector<std::map<int, double>> bending;  // -H_ij by j
+  std::vector<int> color;                      // -1: pinned
+
+  Ends(const Problem& problem, const Springs& all, const Bending& stencils)
+      : springs(problem.vertices()), bending(problem.vertices()), color(problem.vertices(), -1) {
+    for (std::size_t k = 0; k < all.edges.size(); ++k) {
+      const auto [a, b] = all.edges[k];
+      springs[a].push_back({b, all.stiffness[k], all.rest_length[k]});
+      springs[b].push_back({a, all.stiffness[k], all.rest_length[k]});
     }
-    color[v] = static_cast<int>(std::find(taken.begin(), taken.end(), 0) - taken.begin());
+    for (const BendingStencil& s : stencils) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        for (std::size_t j = 0; j < 4; ++j) {
+          const double entry = s.stiffness * s.coefficient[i] * s.coefficient[j];
+          if (entry != 0 && s.vertex[i] != s.vertex[j]) bending[s.vertex[i]][s.vertex[j]] -= entry;
+        }
+      }
+    }
+    // The first color that no neighbour has, vertex after vertex: two colors on a woven net, four
+    // with its shear springs.
+    std::vector<char> taken;
+    for (std::size_t v = 0; v < color.size(); ++v) {
+      if (problem.inverse_mass()[v] == 0) continue;
+      taken.assign(springs[v].size() + bending[v].size() + 1, 0);
+      const auto take = [&](int other) {
+        const int c = color[other];
+        if (c >= 0 && c < std::ssize(taken)) taken[c] = 1;
+      };
+      for (const Spring& spring : springs[v]) take(spring.other);
+      for (const auto& [other, entry] : bending[v]) take(other);
+      color[v] = static_cast<int>(std::find(taken.begin(), taken.end(), 0) - taken.begin());
+    }
   }
-  return color;
-}
+};
 
-}  // namespace
-
-VertexPasses::VertexPasses(const Problem& problem, const Springs& springs)
+VertexPasses::VertexPasses(const Problem& problem, const Springs& springs, const Bending& bending)
     : place_(problem.vertices()) {
-  std::vector<std::vector<int>> at(problem.vertices());
-  for (std::size_t k = 0; k < springs.edges.size(); ++k) {
-    at[springs.edges[k].a].push_back(static_cast<int>(k));
-    at[springs.edges[k].b].push_back(static_cast<int>(k));
-  }
-  place_vertices(problem, at, springs);
+  const Ends ends(problem, springs, bending);
+  place_vertices(ends);
   const auto places = static_cast<Eigen::Index>(vertex_.size());
   x_.setZero(places, 3);
   y_.setZero(places, 3);
@@ -50,19 +68,31 @@ VertexPasses::VertexPasses(const Problem& problem, const Springs& springs)
   std::vector<double> stiffness, rest;
   for (Group& group : groups_) {
     group.entry = static_cast<int>(other_.size());
+    group.pair = static_cast<int>(bent_with_.size());
     for (int i = group.place; i < group.place + width; ++i) {
-      if (vertex_[i] >= 0)
-        group.springs = std::max(group.springs, static_cast<int>(at[vertex_[i]].size()));
+      const int v = vertex_[i];
+      if (v < 0) continue;
+      group.springs = std::max(group.springs, static_cast<int>(ends.springs[v].size()));
+      group.pairs = std::max(group.pairs, static_cast<int>(ends.bending[v].size()));
     }
     for (int s = 0; s < group.springs; ++s) {
       for (int i = group.place; i < group.place + width; ++i) {
         const int v = vertex_[i];
-        const bool filler = v < 0 || s >= std::ssize(at[v]);
-        const int k = filler ? -1 : at[v][s];
-        other_.push_back(
-            filler ? i : place_[springs.edges[k].a == v ? springs.edges[k].b : springs.edges[k].a]);
-        stiffness.push_back(filler ? 0 : springs.stiffness[k]);
-        rest.push_back(filler ? 0 : springs.rest_length[k]);
+        const bool filler = v < 0 || s >= std::ssize(ends.springs[v]);
+        const Ends::Spring spring = filler ? Ends::Spring{} : ends.springs[v][s];
+        other_.push_back(filler ? i : place_[spring.other]);
+        stiffness.push_back(spring.stiffness);
+        rest.push_back(spring.rest_length);
+        entries_ += filler ? 0 : 1;
+      }
+    }
+    for (int s = 0; s < group.pairs; ++s) {
+      for (int i = group.place; i < group.place + width; ++i) {
+        const int v = vertex_[i];
+        const bool filler = v < 0 || s >= std::ssize(ends.bending[v]);
+        const auto pair = filler ? ends.bending[0].end() : std::next(ends.bending[v].begin(), s);
+        bent_with_.push_back(filler ? i : place_[pair->first]);
+        bend_.push_back(filler ? 0 : pair->second);
         entries_ += filler ? 0 : 1;
       }
     }
@@ -74,15 +104,15 @@ VertexPasses::VertexPasses(const Problem& problem, const Springs& springs)
 }
 
 // By color, and within one by the number of springs, so that groups are of a kind.
-void VertexPasses::place_vertices(const Problem& problem, const std::vector<std::vector<int>>& at,
-                                  const Springs& springs) {
-  const std::vector<int> color = colors_of(problem, at, springs);
+void VertexPasses::place_vertices(const Ends& ends) {
+  const std::vector<int>& color = ends.color;
   std::vector<int> order;
-  for (int v = 0; v < problem.vertices(); ++v) {
-    if (color[v] >= 0) order.push_back(v);
+  for (std::size_t v = 0; v < color.size(); ++v) {
+    if (color[v] >= 0) order.push_back(static_cast<int>(v));
   }
   std::stable_sort(order.begin(), order.end(), [&](int p, int q) {
-    return color[p] != color[q] ? color[p] < color[q] : at[p].size() > at[q].size();
+    return color[p] != color[q] ? color[p] < color[q]
+                                : ends.springs[p].size() > ends.springs[q].size();
   });
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i == 0 || color[order[i]] != color[order[i - 1]])
@@ -93,10 +123,10 @@ void VertexPasses::place_vertices(const Problem& problem, const std::vector<std:
   vertex_.resize((vertex_.size() + width - 1) / width * width, -1);
   free_places_ = static_cast<int>(vertex_.size());
   for (int i = 0; i < free_places_; i += width) groups_.push_back({i, 0, 0});
-  for (int v = 0; v < problem.vertices(); ++v) {
+  for (std::size_t v = 0; v < color.size(); ++v) {
     if (color[v] >= 0) continue;
     place_[v] = static_cast<int>(vertex_.size());
-    vertex_.push_back(v);
+    vertex_.push_back(static_cast<int>(v));
   }
 }
 
@@ -176,6 +206,25 @@ void VertexPasses::add_springs(const Group& group, double stiffness_scale, Model
   }
 }
 
+// The force of V and its matrix's diagonal, the same for all axes.
+void VertexPasses::add_bending(const Group& group, double stiffness_scale, Model& model) const {
+  auto& [f, h] = model;
+  const double *x = x_.col(0).data(), *y = x_.col(1).data(), *z = x_.col(2).data();
+  const int own = group.place;
+  for (int s = 0; s < group.pairs; ++s) {
+    const int* other = bent_with_.data() + group.pair + s * width;
+    const double* bend = bend_.data() + group.pair + s * width;
+#pragma GCC ivdep
+    for (int i = 0; i < width; ++i) {
+      const double b = stiffness_scale * bend[i];
+      f[0][i] += b * (x[other[i]] - x[own + i]);
+      f[1][i] += b * (y[other[i]] - y[own + i]);
+      f[2][i] += b * (z[other[i]] - z[own + i]);
+      h[0][i] += b, h[3][i] += b, h[5][i] += b;
+    }
+  }
+}
+
 template <bool with_planes>
 double VertexPasses::visit(const Group& group, double stiffness_scale, double relaxation) {
   Model model;
@@ -192,6 +241,7 @@ double VertexPasses::visit(const Group& group, double stiffness_scale, double re
     h[1][i] = h[2][i] = h[4][i] = 0;
   }
   add_springs(group, stiffness_scale, model);
+  add_bending(group, stiffness_scale, model);
   const double* plane[4];
   for (int n = 0; n < 4; ++n) plane[n] = plane_.col(n).data() + group.place;
   double* push = push_.data() + group.place;

@@ -1,6 +1,7 @@
 // Visits of all vertices in colors, each moved alone to the minimum of its energy's quadratic
 // model: what vertex block descent (Chen, Liu, Yang and Yuksel 2024) and its augmented
-// Lagrangian form share. Vertices of one color share no spring and are visited side by side.
+// Lagrangian form share. Vertices of one color share no spring and no bending stencil, and are
+// visited side by side.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,11 +13,12 @@
 namespace inextensible {
 
 // The energy, in kg m^2: with d_k the length of spring k, l_k at rest,
-//   1/2 sum_i m_i |x_i - y_i|^2 + sum_k (k_k / 2 (d_k - l_k)^2 + t_k (d_k - l_k)),
-// stiffnesses k_k (kg) and tensions t_k (kg m) being h^2 times those of a step of h seconds.
+//   1/2 sum_i m_i |x_i - y_i|^2 + sum_k (k_k / 2 (d_k - l_k)^2 + t_k (d_k - l_k)) + V(x),
+// V of bending, quadratic; stiffnesses k_k (kg) and V's, and tensions t_k (kg m), being h^2 times
+// those of a step of h seconds.
 class VertexPasses {
  public:
-  VertexPasses(const Problem& problem, const Springs& springs);
+  VertexPasses(const Problem& problem, const Springs& springs, const Bending& bending = {});
 
   // Positions and targets (3 x n), inertia (n); store() leaves pinned vertices alone.
   void load(const Positions& x, const Positions& y, const std::vector<double>& inertia);
@@ -39,17 +41,20 @@ class VertexPasses {
   bool update_tensions(double strain_limit);
   Eigen::ArrayXd& tensions() { return tension_; }  // by entry: both ends of a spring have one
 
-  int entries() const { return entries_; }  // ends of springs at free vertices
+  // Ends of springs, and pairs of bending, at free vertices.
+  int entries() const { return entries_; }
 
  private:
   static constexpr int width = 8;  // vertices that are visited side by side
   struct Group {
     int place, entry, springs;  // its first place and entry, entries a vertex
+    int pair = 0, pairs = 0;    // the same of bending
   };
-  void place_vertices(const Problem& problem, const std::vector<std::vector<int>>& at,
-                      const Springs& springs);
+  struct Ends;
+  void place_vertices(const Ends& ends);
   struct Model;
   void add_springs(const Group& group, double stiffness_scale, Model& model) const;
+  void add_bending(const Group& group, double stiffness_scale, Model& model) const;
   template <bool with_planes>
   double visit(const Group& group, double stiffness_scale, double relaxation);
 
@@ -59,6 +64,10 @@ class VertexPasses {
   int free_places_ = 0, entries_ = 0;
   std::vector<int> other_;  // by entry: the place of the other end
   Eigen::ArrayXd stiffness_, rest_, tension_;
+  // -H_ij of V, by pair, and the place of j. Rows of H have the sum 0: each pair is a spring of no
+  // length, whose stiffness may be negative.
+  std::vector<int> bent_with_;
+  std::vector<double> bend_;
   Eigen::MatrixX3d x_, y_, moved_;
   Eigen::ArrayXd inertia_;
   Eigen::ArrayX4d plane_;  // normal and offset, by place; 0 and -infinity: none

@@ -13,6 +13,13 @@ MidpointStepper::MidpointStepper(std::shared_ptr<const Problem> problem,
       candidate_(3, problem_->vertices()) {}
 
 bool MidpointStepper::unconstrained(const State& state, double h, Positions& x0) {
+  if (implicit_) {
+    x0 = state.x + h * state.v;
+    x0.colwise() += 0.5 * h * h * problem_->gravity();
+    for (const int vertex : problem_->pinned()) x0.col(vertex) = state.x.col(vertex);
+    candidate_ = x0;
+    return implicit_->advance_inside(1 / (1 + rho_), h, state.x, x0, work_);
+  }
   const double scale = 0.5 * h * h;
   x0 = state.x + h * state.v;
   middle_ = 0.5 * (state.x + x0);

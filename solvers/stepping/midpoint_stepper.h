@@ -12,7 +12,8 @@
 // that constraints stop, -rho times as much is left after the step. So an edge that comes to its
 // limit bounces there unless rho is less than 1. With 1 the rule is of second order; what is
 // smaller acts on constraint forces alone. Vertices that an obstacle holds end the step with
-// (x^{n+1} - x^n) / h: they do not bounce. f has shear and bending at x^n + h v^n / 2, drag at v^n.
+// (x^{n+1} - x^n) / h: they do not bounce. f has shear and bending at x^n + h v^n / 2, drag at v^n;
+// implicit forces join the constraint forces, with the same rho (ImplicitForces).
 #pragma once
 
 #include "solvers/stepping/velocity_filter.h"
@@ -21,7 +22,7 @@ namespace inextensible {
 
 class MidpointStepper final : public FilterStepper {
  public:
-  // The problem has no implicit forces. spectral_radius: rho, 0 to 1.
+  // spectral_radius: rho, 0 to 1.
   MidpointStepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter,
                   double spectral_radius);
 
@@ -32,7 +33,7 @@ class MidpointStepper final : public FilterStepper {
 
   double rho_;
   Positions middle_;     // x^n + h v^n / 2
-  Positions candidate_;  // x0
+  Positions candidate_;  // x0 before implicit forces
 };
 
 }  // namespace inextensible

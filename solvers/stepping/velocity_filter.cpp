@@ -42,19 +42,12 @@ FilterStepper::FilterStepper(std::shared_ptr<const Problem> problem,
 }
 
 bool FilterStepper::unconstrained(const State& state, double h, Positions& x0) {
-  if (!implicit_) {
-    unconstrained_step(*problem_, state, h, x0, work_);
-    return true;
-  }
-  x0 = state.x + h * state.v;
-  for (const int vertex : problem_->pinned()) x0.col(vertex) = state.x.col(vertex);
-  return implicit_->advance(h, state.v, x0, work_);
+  return unconstrained_step(*problem_, implicit_.get(), state, h, x0, work_);
 }
 
 StepResult FilterStepper::solve(const State& state, double h, Positions& x) {
   Stopwatch stopwatch(phases_wanted_);
-  if (!unconstrained(state, h, x))
-    return {Status::singular, 0, -1, 0, "the system of implicit forces is singular"};
+  if (!unconstrained(state, h, x)) return {Status::singular, 0, -1, 0, singular_forces};
   phases_.unconstrained += stopwatch();
   const StepResult result =
       apply_until_clear(*filter_, contacts_inside(), start_positions(), h, x, work_);

@@ -52,32 +52,62 @@ ImplicitForces::ImplicitForces(const Problem& problem) : problem_(problem) {
     entry.mass = problem.mass()[free_vertex_[f]];
     entry.drag = problem.drag(free_vertex_[f]);
   }
-  force_.resize(3, problem.vertices());
+  for (Positions* p : {&force_, &inside_, &velocity_}) p->resize(3, problem.vertices());
   row_.resize(static_cast<Eigen::Index>(free_vertex_.size()));
 }
 
-bool ImplicitForces::factor(double scale) {
-  if (scale == factored_) return true;
+bool ImplicitForces::factor(double scale, double drag) {
+  if (scale == factored_ && drag == factored_drag_) return true;
   double* values = solver_->values();
-  for (const Entry& e : entries_) *values++ = e.mass + scale * e.drag + scale * scale * e.stiffness;
+  for (const Entry& e : entries_) *values++ = e.mass + drag * e.drag + scale * scale * e.stiffness;
   factored_ = solver_->factor() ? scale : 0;
+  factored_drag_ = drag;
   return factored_ != 0;
 }
 
 bool ImplicitForces::advance(double scale, const Positions& w, Positions& y, WorkCounters& work) {
-  if (free_vertex_.empty()) return true;
-  if (!factor(scale)) return false;
   force_.setZero();
   add_forces(problem_, y, w, force_, work);
+  return add_solution(scale, scale, 1, y, work);
+}
+
+// About y it is (M + h / 2 D + s^2 L) theta (x0 - y) = s^2 (-grad V(y_theta) - D (y - x^n) / h),
+// with s = theta h.
+bool ImplicitForces::advance_inside(double theta, double h, const Positions& x_start, Positions& y,
+                                    WorkCounters& work) {
+  inside_ = (1 - theta) * x_start + theta * y;
+  velocity_ = (y - x_start) * (1 / h);
+  force_.setZero();
+  add_forces(problem_, inside_, velocity_, force_, work);
+  for (const int vertex : free_vertex_)
+    force_.col(vertex) -= problem_.mass()[vertex] * problem_.gravity();
+  return add_solution(theta * h, 0.5 * h, 1 / theta, y, work);
+}
+
+bool ImplicitForces::add_solution(double scale, double drag, double factor, Positions& y,
+                                  WorkCounters& work) {
+  if (free_vertex_.empty()) return true;
+  if (!this->factor(scale, drag)) return false;
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t f = 0; f < free_vertex_.size(); ++f)
       row_[static_cast<Eigen::Index>(f)] = scale * scale * force_(axis, free_vertex_[f]);
     solver_->solve(row_.data());
     ++work.force_solves;
     for (std::size_t f = 0; f < free_vertex_.size(); ++f)
-      y(axis, free_vertex_[f]) += row_[static_cast<Eigen::Index>(f)];
+      y(axis, free_vertex_[f]) += factor * row_[static_cast<Eigen::Index>(f)];
   }
   return row_.allFinite();
+}
+
+bool unconstrained_step(const Problem& problem, ImplicitForces* implicit, const State& state,
+                        double h, Positions& x0, WorkCounters& work) {
+  if (!implicit) {
+    unconstrained_step(problem, state, h, x0, work);
+    return true;
+  }
+  x0 = state.x + h * state.v;
+  for (const int vertex : problem.pinned()) x0.col(vertex) = state.x.col(vertex);
+  return implicit->advance(h, state.v, x0, work);
 }
 
 }  // namespace inextensible

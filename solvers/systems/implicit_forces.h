@@ -9,6 +9,12 @@
 // amplification sqrt(1 / (1 + h^2 L)) of a vibration is below 1 for all H <= L. L is the same for
 // all three coordinates: one sparse symmetric positive definite n x n matrix, factored once for
 // each h.
+//
+// Second-order steppers take the forces inside the step, at x_theta = x^n + theta (x0 - x^n):
+//   x0 = y + theta h^2 a,   v^{n+1} = v + h a,   M a = -grad V(x_theta) - D v_middle,
+// where y and v have gravity already and v_middle = (y - x^n) / h + h a / 2. theta = 1/2 is the
+// implicit midpoint rule, which keeps energy (with explicit gravity: Stern and Grinspun 2009); with
+// theta = 1 / (1 + rho) the spectral radius at infinite stiffness is rho.
 #pragma once
 
 #include <memory>
@@ -20,6 +26,8 @@
 
 namespace inextensible {
 
+constexpr const char* singular_forces = "the system of implicit forces is singular";
+
 class ImplicitForces {
  public:
   // The problem must outlive this.
@@ -29,8 +37,16 @@ class ImplicitForces {
   // formula. false: the matrix is singular to working precision, or a number is not finite.
   bool advance(double scale, const Positions& w, Positions& y, WorkCounters& work);
 
+  // y (3 x n, m) = x^n + h v + h^2 g / 2 in, x0 of the second formula out; theta: 1/2 to 1. Else as
+  // above.
+  bool advance_inside(double theta, double h, const Positions& x_start, Positions& y,
+                      WorkCounters& work);
+
  private:
-  bool factor(double scale);
+  // The matrix M + drag D + scale^2 L.
+  bool factor(double scale, double drag);
+  // y += factor d, with (M + drag D + scale^2 L) d = scale^2 force_.
+  bool add_solution(double scale, double drag, double factor, Positions& y, WorkCounters& work);
 
   const Problem& problem_;
   std::vector<int> free_vertex_;               // in elimination order
@@ -39,9 +55,15 @@ class ImplicitForces {
   };
   std::vector<Entry> entries_;
   std::unique_ptr<SpdSolver> solver_;
-  double factored_ = 0;  // s, the scale; 0: none yet
-  Positions force_;      // N
-  Eigen::VectorXd row_;  // one coordinate of all free vertices
+  double factored_ = 0, factored_drag_ = 0;  // s, of the matrix; 0: none yet
+  Positions force_;                          // N
+  Positions inside_, velocity_;              // x_theta and (y - x^n) / h, of advance_inside
+  Eigen::VectorXd row_;                      // one coordinate of all free vertices
 };
+
+// x0 of the pipeline of the paper's section 4.4: unconstrained_step, or with `implicit`, if it is
+// not null, those forces at the end of the step. false: as ImplicitForces::advance.
+bool unconstrained_step(const Problem& problem, ImplicitForces* implicit, const State& state,
+                        double h, Positions& x0, WorkCounters& work);
 
 }  // namespace inextensible

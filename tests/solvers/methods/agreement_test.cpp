@@ -13,7 +13,7 @@ using testing::for_seeds;
 using testing::h;
 using testing::Random;
 
-enum class Under { nothing, forces, contact };  // forces: shear springs and drag of some vertices
+enum class Under { nothing, forces, contact };  // forces: shear, bending and drag of some vertices
 
 // Theorem 1 of Goldenthal et al. 2007, by dense Newton, whatever the penalty; and backward Euler's
 // step with springs. In contact they fall onto a ground that slopes, with friction.
@@ -50,6 +50,9 @@ TEST(Agreement, MethodsOfTheSameEquationsTakeTheSameSteps) {
         if (seed % 2 == 0)
           parts.shear = Springs{{{0, 5}, {1, 4}, {5, 10}}, {1.2, 1.3, 1.4}, {30, 20, 50}};
         if (seed % 4 < 2) parts.drag.assign(parts.mass.size(), 0.7);
+        if (seed % 3 < 2)
+          parts.bending = {yarn_bending(0, 1, 2, 1, 1.1, 4), yarn_bending(1, 5, 9, 0.9, 1, 30),
+                           yarn_bending(4, 5, 6, 1, 1, 9)};
       }
       const auto problem = std::make_shared<const Problem>(std::move(parts));
       const auto one = make_stepper(pair.known, problem, pair.known_options),
