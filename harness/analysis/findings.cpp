@@ -87,12 +87,12 @@ const Cell* second_of(const Plane& plane, const Cell& headline) {
   return any && any->first()->row != headline.first()->row ? any : nullptr;
 }
 
-std::string subject_of(const Plane& plane) {
-  return scene_words(plane.scene) + " of " + std::to_string(plane.vertices) + " vertices";
-}
-
 Finding finding_of(const Plane& plane) {
-  Finding finding{plane.scene, plane.sweep, plane.vertices, subject_of(plane), {}};
+  Finding finding{plane.scene,
+                  plane.sweep,
+                  plane.vertices,
+                  scene_words(plane.scene) + " of " + std::to_string(plane.vertices) + " vertices",
+                  {}};
   const double limit = limit_next_to(plane.limits, headline_limit);
   const Cell* headline = headline_of(plane, limit);
   finding.sentences.push_back(sentence_of(headline ? *headline : plane.cell(limit, any_motion)));

@@ -11,14 +11,6 @@ namespace harness::analysis {
 
 using nlohmann::json;
 
-namespace {
-
-Ratio times(Ratio ratio, double factor) {
-  return {ratio.value * factor, ratio.low * factor, ratio.high * factor};
-}
-
-}  // namespace
-
 Point::Point(const json& document, double noise)
     : result_(std::make_shared<PointResult>(point_of(document))),
       id_(document.at("id")),
@@ -55,7 +47,9 @@ Ratio ratio(const Point& a, const Point& b) {
 }
 
 Ratio ratio_of_steps(const Point& a, const Point& b) {
-  return times(ratio(a, b), a.spec().step / b.spec().step);
+  const Ratio times = ratio(a, b);
+  const double steps = a.spec().step / b.spec().step;
+  return {times.value * steps, times.low * steps, times.high * steps};
 }
 
 ContestantRoles::ContestantRoles(const json& document) {

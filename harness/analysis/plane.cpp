@@ -121,11 +121,6 @@ double frame_seconds(const Point& point) {
   return std::nan("");
 }
 
-Reach reach_of(const Point& point) {
-  const double error = point.error_at(headline_error).distance;
-  return {point.spec().strain_limit, error, frame_seconds(point), error <= headline_error, point};
-}
-
 // What sorts the runs that reach the most first; those of no run come last.
 std::tuple<int, double, double> worth(const std::optional<Reach>& r) {
   if (!r) return {2, 0, 0};
@@ -149,7 +144,9 @@ BudgetTable table_of(std::vector<Point> points, const ContestantRoles& roles,
     Budgeted line{row, roles.of(own.front().contestant()).family, {}, {}};
     std::ranges::stable_sort(own, {}, frame_seconds);
     for (const Point& point : own) {
-      const Reach reach = reach_of(point);
+      const double error = point.error_at(headline_error).distance;
+      const Reach reach{point.spec().strain_limit, error, frame_seconds(point),
+                        error <= headline_error, point};
       if (line.stairs.empty() || worth(reach) < worth(line.stairs.back()))
         line.stairs.push_back(reach);
     }

@@ -128,12 +128,6 @@ Words list_names() {
   return names;
 }
 
-std::string list_names_text() {
-  std::string text;
-  for (const std::string& name : list_names()) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 std::string text_of(const json& row, const char* key) {
   const json value = row.value(key, json(""));
   return value.is_string() ? value.get<std::string>() : number_text(value.get<double>());
@@ -162,8 +156,10 @@ struct ListVerb : SelectionOptions {
   bool as_json = false;
 
   void declare(const Command& command) {
+    std::string names;
+    for (const std::string& name : list_names()) names += (names.empty() ? "" : ", ") + name;
     command.option("what", what,
-                   list_names_text() +
+                   names +
                        " (with --sweep); default: the first three. result.schema and the like: "
                        "that file of configs/, generated from the tables in the code",
                    "WHAT");

@@ -59,10 +59,6 @@ RouteRuns runs_beside(const std::string& path, const std::string& scene,
                     {"build", machine_context().at("fingerprint")}});
 }
 
-Ensemble ensemble_for(const Scene& scene, const std::vector<double>& times, RouteRuns& runs) {
-  return is_cloth(scene) ? compute_ensemble(scene, times, {}, runs) : Ensemble();
-}
-
 // By both routes, and of cloth an ensemble; of one that is stored the ensemble alone, and its path
 // stays as it is. What was stopped goes on after the runs that were done.
 void make_reference(const std::string& path, const std::string& scene,
@@ -70,7 +66,9 @@ void make_reference(const std::string& path, const std::string& scene,
   check_writable(path);
   RouteRuns runs = runs_beside(path, scene, parameters, finest);
   Reference reference = stored ? *stored : compute_reference(scene, parameters, finest, runs);
-  reference.ensemble = ensemble_for(find_scene(scene)->build(parameters), reference.times, runs);
+  const Scene built = find_scene(scene)->build(parameters);
+  reference.ensemble =
+      is_cloth(built) ? compute_ensemble(built, reference.times, {}, runs) : Ensemble();
   const nlohmann::json document =
       stored ? with_ensemble(parse_document(read_file(path, "reference"), path), reference.ensemble)
              : to_json(reference);

@@ -75,20 +75,17 @@ struct Undertaking {
   };
 };
 
-// Runs it into --out, a regular file, or results/local/<stem>.json, and draws the figures; an
-// ExitCode. --resume and --rerun-failed continue what an earlier run has left in the journal or,
-// where it left nothing there, in its result. Throws UsageError, with the options that would help,
-// for an unfinished run or a result that no option says what to do with, and, without --force, for
-// one of another build or selection and for a damaged journal. An interrupted run leaves its part
-// of the result, but never in place of a whole one.
+// Runs it into --out or results/local/<stem>.json, and draws the figures; an ExitCode. --resume and
+// --rerun-failed continue what an earlier run has left in the journal or else in its result. Throws
+// UsageError, with the options that would help, for what is there and not to be touched without
+// them. An interrupted run leaves its part of the result, but never in place of a whole one.
 int carry_out(const OutputOptions& options, const Undertaking& undertaking);
 
 // ---- Figures, films and reports, drawn by the scripts of plots/ ----
 
-// Runs a script of plots/ with these arguments and --out <a folder of its own>/<the name of out>,
-// of which there is none where `out` is a folder. What it has written takes its place in the folder
-// of `out`, file by file and each whole, and is named on stdout. Its exit code; where that is not
-// 0, nothing is touched.
+// Runs a script of plots/ with these arguments and an --out in a folder of its own. What it has
+// written takes its place in the folder of `out`, file by file and each whole, and is named on
+// stdout. Its exit code; where that is not 0, nothing is touched.
 int draw(const std::string& script, const Words& arguments, const std::string& out);
 
 // A result as plots/ reads it: a sweep with its analysis. Throws UsageError where nothing was

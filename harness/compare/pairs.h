@@ -33,8 +33,8 @@ int samples_for(double seconds, double least);
 void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne& run);
 
 // run_pairs, then once more, from scratch, with `confirming` pairs for points whose times have
-// changed: only what is found both times counts. A point is "same" only if it ran on both sides and
-// the 95 % interval of its times' ratio stays within what the gate lets pass; else it is undecided.
+// changed: only what is found both times counts. "Same" is said only where the 95 % interval of the
+// times' ratio stays within what the gate lets pass.
 Comparison compare_in_pairs(std::vector<PairedPoint> points, int pairs, int confirming,
                             const Gate& gate, const Comparability& can, const RunOne& run);
 

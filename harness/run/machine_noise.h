@@ -14,11 +14,9 @@
 
 namespace harness {
 
-// About a millisecond of what solvers do; s. Data stay in the second-level cache, and are brought
-// there before the clock starts.
+// About a millisecond of what solvers do, on data in the second-level cache; s.
 double fixed_work();
 
-// Looks at the machine by the time of a fixed piece of work, about a millisecond.
 class QuietProbe {
  public:
   // A look that took more than this many times the least one seen was disturbed.

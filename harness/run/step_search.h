@@ -10,24 +10,11 @@
 
 namespace harness {
 
-// The step search of docs/measuring.md, for the fastest step of any motion and for those within
-// levels of error. From coarse to fine until the time has risen twice in a row, and on until
-//  - the finest level is met and the next step takes longer, or
-//  - time has risen tenfold above the fastest within the tightest level met so far (a fast run with
-//    a wrong motion ends no search), or
-//  - the error has fallen by less than 15 % twice in a row: slack within the strain limit then
-//    dominates it, or
-//  - two steps in a row have failed.
-// With a neighbour's best step, from there in both directions. A failure counts as a rise, and
-// before the first success as a reason to go finer.
-//
-// A time has risen only if it is more than 1.5 times the best one's, or if both have
-// three samples and it is still more than 3 % above. At the end the steps next to the best ones
-// get three samples, too, unless they are twice as slow; and where a best step is an
-// end of what was tried, though the ladder goes on, the search goes on from there.
-//
-// All that is on every stride-th rung, which halve the step. Then the best of any motion and of
-// each level are refined: by the rungs between, one after the other, as long as these are faster.
+// docs/measuring.md ("The time step") has the rule, for the fastest step of any motion and for
+// those within levels of error. With a neighbour's best step the search goes from there in both
+// directions. A failure counts as a rise, and before the first success as a reason to go finer. A
+// fast run with a wrong motion ends no search. Where a best step is an end of what was tried, the
+// search goes on from there. Only then come the rungs between those that halve.
 inline constexpr std::size_t samples_when_close = 3;
 
 struct StepLadder {

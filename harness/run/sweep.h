@@ -1,8 +1,7 @@
-// Runs a suite's sweeps: for each (scene, size, limit, solver) the best step is searched on the
-// ladder coarsest, coarsest / 2, ... (a step sweep runs the whole ladder), for any motion and for
-// each level of error. Then the points that may be best at one of them (of a step sweep: all that
-// ran to the end) are repeated, interleaved in a shuffled order, and the best ones chosen by the
-// times of all their samples.
+// Runs a suite's sweeps: for each (scene, size, limit, solver) the best step is searched
+// (step_search.h; a step sweep runs the whole ladder). Then the points that may be best (of a step
+// sweep: all that ran to the end) are repeated, interleaved in a shuffled order, and the best ones
+// chosen by the times of all their samples.
 #pragma once
 
 #include <functional>
@@ -48,9 +47,8 @@ struct Estimate {
   int timed = 0;       // (scene, size, contestant)s, a few steps of each
 };
 
-// Times a few steps of each contestant at each size, at the middle limit and a middle step, and
-// takes every search for what most searches are: a handful of runs, and repetitions of one. Within
-// a factor of three, mostly. Takes a second or so for each ten contestants and sizes.
+// From a few steps of each contestant at each size, taking every search for what most searches are:
+// a handful of runs, and repetitions of one. Within a factor of three, mostly.
 Estimate estimate(const Suite& suite, const std::vector<Search>& searches);
 
 // A point is not repeated any more when its runs have taken so long together: what disturbs a

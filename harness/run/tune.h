@@ -1,12 +1,8 @@
-// What bench tune searches for: settings of a solver on scenes of one kind, at several sizes and
-// strain limits, each for itself: best relaxations and numbers of passes depend on both. A set is
-// judged by the time of the fastest step whose motion is right to the headline's error (where there
-// is no reference, any motion counts). What was found at one place is the first guess at the next.
-//
-// The search follows one rule for all, dynamically dimensioned search (Tolson and Shoemaker, Water
-// Resources Research 43, 2007): each trial moves some settings of the best set by a normal
-// distance, all of them at first and one in the end, since settings interact (a relaxation and a
-// target). Departure: distances shrink, for budgets of a few dozen trials.
+// The search for a solver's settings, by the rule of docs/measuring.md ("Tuning"): dynamically
+// dimensioned search (Tolson and Shoemaker, Water Resources Research 43, 2007). Each trial moves
+// some settings of the best set by a normal distance, all of them at first and one in the end,
+// since settings interact (a relaxation and a target). Departure: distances shrink, for budgets of
+// a few dozen trials.
 #pragma once
 
 #include <functional>

@@ -34,90 +34,68 @@ double rounded(double value) {
   return std::round(value * digits) / digits;
 }
 
-class DimensionedSearch {
- public:
-  DimensionedSearch(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
-                    const TuneRules& rules)
-      : numbers_(numbers), seconds_(seconds), rules_(rules) {}
+using Random = std::mt19937_64;
 
-  TuneOutcome run(const Values& guess) {
-    for (const TunedNumber& n : numbers_) outcome_.values.push_back(n.initial);
-    const Values initial = outcome_.values;
-    if (numbers_.empty() || rules_.budget < 2) return outcome_;
-    best_ = evaluate(initial, none);
-    if (best_ == none) return outcome_;
-    if (!guess.empty() && left() > 0) try_out(guess);
-    const int steps = left();
-    for (int step = 1; step <= steps; ++step) {
-      reach_ = rules_.reach * std::pow(last_reach, static_cast<double>(step) / steps);
-      try_out(neighbor(1 - std::log(step) / std::log(std::max(2, steps))));
-    }
-    if (outcome_.values == initial) return outcome_;
-    const double now = evaluate(outcome_.values, none), was = evaluate(initial, none);
-    if (now < none && was < none && was / now > 1 + rules_.least_gain) {
-      outcome_.gain = was / now;
-    } else {
-      outcome_.values = initial;
-    }
-    return outcome_;
-  }
-
- private:
-  double evaluate(const Values& values, double hopeless) {
-    ++outcome_.evaluations;
-    seen_.insert(values);
-    const auto seconds = seconds_(values, hopeless);
-    return seconds && std::isfinite(*seconds) ? *seconds : none;
-  }
-  // But for the last comparison, two evaluations.
-  int left() const { return rules_.budget - 2 - outcome_.evaluations; }
-
-  void try_out(const Values& values) {
-    if (seen_.contains(values)) return;
-    const double seconds = evaluate(values, give_up_trial_at * best_);
-    if (seconds >= best_) return;
-    best_ = seconds;
-    outcome_.values = values;
-  }
-
-  // The best set so far with each setting moved at the given probability, at least one of them.
-  // Rounding may lead back to what was tried: then draw again.
-  Values neighbor(double probability) {
-    std::bernoulli_distribution moves(std::clamp(probability, 0.0, 1.0));
-    std::uniform_int_distribution<std::size_t> any(0, numbers_.size() - 1);
-    Values values = outcome_.values;
-    for (int attempt = 0; attempt < 100 && seen_.contains(values); ++attempt) {
-      values = outcome_.values;
-      const std::size_t always = any(random_);
-      for (std::size_t i = 0; i < numbers_.size(); ++i)
-        if (i == always || moves(random_)) values[i] = moved(numbers_[i], values[i]);
-    }
-    return values;
-  }
-
-  double moved(const TunedNumber& number, double value) {
-    std::normal_distribution<double> distance(0, reach_);
-    double at = position_of(number, value) + distance(random_);
-    if (at < 0) at = -at > 1 ? 0 : -at;  // reflected at an end of the range
-    if (at > 1) at = at > 2 ? 1 : 2 - at;
-    return value_at(number, at);
-  }
-
-  const std::vector<TunedNumber>& numbers_;
-  const TuneObjective& seconds_;
-  TuneRules rules_;
-  TuneOutcome outcome_;
-  double best_ = none;
-  double reach_ = 0;  // of the present trial
-  std::set<Values> seen_;
-  std::mt19937_64 random_{seed};
-};
+// By a normal distance, reflected at an end of the range.
+double moved(const TunedNumber& number, double value, double reach, Random& random) {
+  double at = position_of(number, value) + std::normal_distribution<double>(0, reach)(random);
+  if (at < 0) at = -at > 1 ? 0 : -at;
+  if (at > 1) at = at > 2 ? 1 : 2 - at;
+  return value_at(number, at);
+}
 
 }  // namespace
 
 TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
                         const TuneRules& rules, const Values& guess) {
-  return DimensionedSearch(numbers, seconds, rules).run(guess);
+  TuneOutcome outcome;
+  for (const TunedNumber& n : numbers) outcome.values.push_back(n.initial);
+  const Values initial = outcome.values;
+  if (numbers.empty() || rules.budget < 2) return outcome;
+  std::set<Values> seen;
+  const auto evaluate = [&](const Values& values, double hopeless) {
+    ++outcome.evaluations;
+    seen.insert(values);
+    const auto found = seconds(values, hopeless);
+    return found && std::isfinite(*found) ? *found : none;
+  };
+  // But for the last comparison, two evaluations.
+  const auto left = [&] { return rules.budget - 2 - outcome.evaluations; };
+  double best = evaluate(initial, none);
+  if (best == none) return outcome;
+  const auto try_out = [&](const Values& values) {
+    if (seen.contains(values)) return;
+    const double found = evaluate(values, give_up_trial_at * best);
+    if (found >= best) return;
+    best = found;
+    outcome.values = values;
+  };
+  if (!guess.empty() && left() > 0) try_out(guess);
+  Random random{seed};
+  const int steps = left();
+  for (int step = 1; step <= steps; ++step) {
+    const double reach = rules.reach * std::pow(last_reach, static_cast<double>(step) / steps);
+    const double probability = 1 - std::log(step) / std::log(std::max(2, steps));
+    std::bernoulli_distribution moves(std::clamp(probability, 0.0, 1.0));
+    std::uniform_int_distribution<std::size_t> any(0, numbers.size() - 1);
+    Values values = outcome.values;
+    // Rounding may lead back to what was tried: then draw again.
+    for (int attempt = 0; attempt < 100 && seen.contains(values); ++attempt) {
+      values = outcome.values;
+      const std::size_t always = any(random);
+      for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (i == always || moves(random)) values[i] = moved(numbers[i], values[i], reach, random);
+    }
+    try_out(values);
+  }
+  if (outcome.values == initial) return outcome;
+  const double now = evaluate(outcome.values, none), was = evaluate(initial, none);
+  if (now < none && was < none && was / now > 1 + rules.least_gain) {
+    outcome.gain = was / now;
+  } else {
+    outcome.values = initial;
+  }
+  return outcome;
 }
 
 std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend,

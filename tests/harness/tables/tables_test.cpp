@@ -1,9 +1,12 @@
-// The page of results says no more than its files do: bold and intervals only beyond the noise.
+// Tables of invented results. The page says no more than its files do: bold and intervals only
+// beyond the noise. A terminal's are never wider than it may be, and have everybody if asked for.
+#include "harness/tables/tables.h"
+
 #include <gtest/gtest.h>
 
+#include <iterator>
 #include <sstream>
 
-#include "harness/tables/tables.h"
 #include "support/invented_points.h"
 
 namespace harness {
@@ -66,6 +69,53 @@ TEST(ResultsPage, SaysUpToWhenErrorsCountUnlessItIsTheWholeRun) {
   };
   has(with(0.36), "An error of at most 2 % is a mean up to 0.36 s of 1 s");
   EXPECT_EQ(with(1.0).find("is a mean up to"), std::string::npos);
+}
+
+// ---- On a terminal ----
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+TEST(Terminal, IsNoWiderThanItMayBeAndLosesNoWord) {
+  const json result =
+      invented::document({invented::run("fast_projection_adaptive@bdf2", 0.1, 0.04, 1e-3, 0.008),
+                          invented::run("icd", 0.1, 0.04, 3e-3, 0.03),
+                          invented::run("fast_projection", 0.1, 0.02, 2e-3, 0.01)});
+  std::ostringstream whole;
+  print_sweep(whole, result, "", true, 1000);
+  for (const char* words : {"chain, 80 vertices, over strain", "2.00 (1.99-2.01) fast_projection"})
+    EXPECT_NE(whole.str().find(words), std::string::npos) << whole.str();
+  for (const std::size_t columns : {60, 80, 100}) {
+    std::ostringstream out;
+    print_sweep(out, result, "", true, columns);
+    EXPECT_EQ(words_of(out.str()), words_of(whole.str()));
+    std::istringstream lines(out.str());
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), columns) << line;
+  }
+}
+
+TEST(Terminal, NamesPluginsAndTheCostOfCopying) {
+  json engine = invented::run("engine", 0.1, 0.04, 1e-3, 0.008),
+       other = invented::run("filter", 0.1, 0.04, 2e-3, 0.01);
+  engine["phases"].update(
+      {{"unconstrained", 0.1}, {"filter", 0.7}, {"collision", 0}, {"copy", 0.2}});
+  json failed = engine;
+  failed["status"] = "diverged";
+  failed["phases"]["copy"] = 9;
+  json result = invented::document({engine, other, failed});
+  std::ostringstream without, with;
+  print_sweep(without, result, "");
+  EXPECT_EQ(without.str().find("plug-in"), std::string::npos);
+  result["context"]["plugins"] = {{{"version", "Engine 1.2"}, {"solvers", {"engine"}}},
+                                  {{"version", "3"}, {"solvers", {"filter"}}}};
+  print_sweep(with, result, "");
+  EXPECT_NE(
+      with.str().find("plug-in engine: Engine 1.2; copying its state takes 20 % of its time\n"),
+      std::string::npos)
+      << with.str();
+  EXPECT_NE(with.str().find("plug-in filter: 3\n"), std::string::npos) << with.str();
 }
 
 }  // namespace
