@@ -66,7 +66,6 @@ struct Points {
   ContestantRoles roles;
   std::vector<const nlohmann::json*> matrix, freedom, same_frame;  // of stability sweeps
 
-  std::vector<Point> where(const std::function<bool(const Point&)>& wanted) const;
   // Strain and step sweeps of several sizes may come together: unless one is named, the largest
   // counts.
   std::vector<Point> in(const std::string& scene, const std::string& sweep,

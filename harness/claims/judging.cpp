@@ -94,21 +94,14 @@ Points::Points(const std::vector<json>& results) {
   }
 }
 
-std::vector<Point> Points::where(const std::function<bool(const Point&)>& wanted) const {
-  std::vector<Point> chosen;
-  std::ranges::copy_if(all, std::back_inserter(chosen), wanted);
-  return chosen;
-}
-
 std::vector<Point> Points::in(const std::string& scene, const std::string& sweep,
                               std::optional<double> vertices) const {
-  std::vector<Point> chosen =
-      where([&](const Point& p) { return p.scene() == scene && p.sweep() == sweep; });
-  if (sweep == "resolution") return chosen;
-  double size = vertices.value_or(0);
-  for (const Point& p : chosen) {
-    if (!vertices) size = std::max(size, p.vertices());
-  }
+  std::vector<Point> chosen;
+  std::ranges::copy_if(all, std::back_inserter(chosen),
+                       [&](const Point& p) { return p.scene() == scene && p.sweep() == sweep; });
+  if (sweep == "resolution" || chosen.empty()) return chosen;
+  const double size =
+      vertices ? *vertices : std::ranges::max(chosen, {}, &Point::vertices).vertices();
   std::erase_if(chosen, [size](const Point& p) { return p.vertices() != size; });
   return chosen;
 }

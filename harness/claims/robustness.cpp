@@ -36,16 +36,18 @@ Verdict springs_stiffness(const Points& points) {
   Verdict found;
   using Places = std::map<std::pair<std::string, double>, std::vector<double>>;
   std::map<double, Places> by_step;  // then by scene and vertices
-  for (const Point& p : points.where(calibrated))
-    by_step[p.step()][{p.scene(), p.vertices()}].push_back(tension_over_weight(p));
+  for (const Point& p : points.all) {
+    if (calibrated(p))
+      by_step[p.step()][{p.scene(), p.vertices()}].push_back(tension_over_weight(p));
+  }
   if (by_step.empty()) return {};
   const auto [step, places] = *std::ranges::max_element(by_step, {}, [](const auto& at) {
     std::size_t all = 0;
     for (const auto& [place, here] : at.second) all += here.size();
     return all;
   });
-  for (const Point& p : points.where(calibrated)) {
-    if (p.step() == step) found.points.push_back(p.id());
+  for (const Point& p : points.all) {
+    if (calibrated(p) && p.step() == step) found.points.push_back(p.id());
   }
   if (found.points.size() < 3) return {};
   // Where most was calibrated at one step: what it says is to be true elsewhere.

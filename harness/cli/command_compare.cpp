@@ -1,34 +1,58 @@
-// bench compare, baseline: two results point by point, and a result for the next comparisons.
+// bench compare, baseline and ab: two results point by point, a result for the next comparisons,
+// and two builds of this program timed against each other.
+#include <unistd.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "harness/base/child_process.h"
+#include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
+#include "harness/compare/comparison.h"
+#include "harness/compare/pairs.h"
+#include "harness/points/result_file.h"
+#include "harness/run/measure_point.h"
 
 namespace harness {
-
-void CompareOptions::declare(const Command& to) {
-  to.option("--gate", gate, "what passes; default: configs/gate.json", "FILE");
-  to.option("--junit", junit, "also write JUnit XML, one test case a point", "FILE");
-  to.option("--markdown", markdown, "also write the table in Markdown", "FILE");
-}
-
-void CompareOptions::check_reports() const {
-  for (const std::string& path : {junit, markdown}) {
-    if (!path.empty()) check_writable(path);
-  }
-}
-
-int CompareOptions::report(const Comparison& comparison, const std::string& name,
-                           const std::string& undecided) const {
-  if (!junit.empty()) write_atomically(junit, junit_xml(comparison, name));
-  if (!markdown.empty()) write_atomically(markdown, markdown_table(comparison, name));
-  print_comparison(std::cout, comparison);
-  if (comparison.any(is_failure)) return unexpected_outcome;
-  if (comparison.any(is_regression)) return regression;
-  if (!comparison.undecided()) return success;
-  std::cerr << "bench: " << undecided << '\n';
-  return cannot_decide;
-}
-
 namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// What the commands that compare have in common: a gate, and reports beside the table on stdout.
+struct CompareOptions {
+  std::string gate, junit, markdown;
+
+  void declare(const Command& to) {
+    to.option("--gate", gate, "what passes; default: configs/gate.json", "FILE");
+    to.option("--junit", junit, "also write JUnit XML, one test case a point", "FILE");
+    to.option("--markdown", markdown, "also write the table in Markdown", "FILE");
+  }
+
+  // Throws UsageError for a report that cannot be written, before anything is done.
+  void check_reports() const {
+    for (const std::string& path : {junit, markdown}) {
+      if (!path.empty()) check_writable(path);
+    }
+  }
+
+  // Prints the comparison, writes the reports; the exit code: a failure outranks a regression.
+  // name: of the JUnit suite and the Markdown heading. undecided: what is said if times of best
+  // points cannot be told apart.
+  int report(const Comparison& comparison, const std::string& name,
+             const std::string& undecided) const {
+    if (!junit.empty()) write_atomically(junit, junit_xml(comparison, name));
+    if (!markdown.empty()) write_atomically(markdown, markdown_table(comparison, name));
+    print_comparison(std::cout, comparison);
+    if (comparison.any(is_failure)) return unexpected_outcome;
+    if (comparison.any(is_regression)) return regression;
+    if (!comparison.undecided()) return success;
+    std::cerr << "bench: " << undecided << '\n';
+    return cannot_decide;
+  }
+};
 
 struct Compare : CompareOptions {
   std::string base;
@@ -82,9 +106,189 @@ struct Baseline {
   }
 };
 
+// ---- Two builds ----
+
+constexpr double run_timeout = 60;  // s, of one run
+constexpr double sweep_timeout = 3600;
+
+bool is_program(const fs::path& file) {
+  return fs::is_regular_file(file) && access(file.c_str(), X_OK) == 0;
+}
+
+// A name without a folder is a file here, else a program on the PATH as for a shell, else, if it is
+// its name, this program: an installed `bench ab bench bench` means itself.
+std::string program_named(const std::string& name) {
+  if (name.find('/') != std::string::npos || fs::exists(name)) return name;
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (is_program(fs::path(folder) / name)) return fs::path(folder) / name;
+  }
+  const fs::path own = fs::read_symlink("/proc/self/exe");
+  return own.filename() == name ? own.string() : name;
+}
+
+// One of the two programs, with its plug-ins.
+struct Program {
+  std::string path;
+  Words plugins;
+
+  ProgramResult run(const Words& arguments, double timeout = run_timeout,
+                    const std::string& input = "") const {
+    Words words{path};
+    for (const std::string& file : plugins) words.insert(words.end(), {"--plugin", file});
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    ProgramResult result = run_program(words, input, timeout, interrupted);
+    if (interrupted()) throw Interrupted();
+    return result;
+  }
+
+  // Before anything is timed: that it is one of ours, and takes its plug-ins.
+  void check() const {
+    if (!is_program(path)) throw UsageError("'" + path + "' is no program");
+    const ProgramResult help = Program{path, {}}.run({"point", "--help"});
+    if (help.exit_code != success || help.out.find("--samples") == std::string::npos)
+      throw NotComparable("'" + path +
+                          "' has no command `point`, which times single points: it was built from "
+                          "a commit before that");
+    if (plugins.empty()) return;
+    const ProgramResult list = run({"list", "solvers"});
+    if (list.exit_code != success) throw UsageError(own_words(list));
+  }
+
+  static std::string own_words(const ProgramResult& ran) {
+    const std::string said = ran.last_error_line();
+    return said.starts_with("bench: ") ? said.substr(7) : said;
+  }
+};
+
+// A point that no process has printed is one that failed.
+ComparedPoint run_one(const Program& program, const PairedPoint& point) {
+  const ProgramResult ran =
+      program.run({"point", "--samples", std::to_string(point.samples)},
+                  run_timeout * (point.samples + 1), point.spec.dump() + "\n");
+  const json printed = json::parse(ran.out, nullptr, false);
+  if (ran.exit_code == success && printed.is_object()) return compared_point(printed);
+  return {point.spec.at("sweep"), point.spec.at("id"),
+          ran.timed_out                  ? "timeout"
+          : ran.exit_code == usage_error ? "unsupported"
+                                         : "crashed",
+          ran.exit_code == success ? "printed no result: '" + shortened(ran.out, 60) + "'"
+                                   : ran.last_error_line()};
+}
+
+struct Ab : CompareOptions {
+  Program before, after;
+  std::string profile = "quick", config, solver, scene, filter, exclude;
+  int pairs = 15, confirming = 25;
+  bool no_wait = false;
+  // s that a process measures at least, so that runs of a millisecond are seen often enough for one
+  // of them to be undisturbed, and starting the process does not dominate.
+  double least_measured = 0.05;
+
+  void declare(const Command& command) {
+    command.option("old", before.path, "the program before", "OLD");
+    command.option("new", after.path, "the program after", "NEW");
+    command.require({"old", "new"});
+    command.repeatable("--old-plugin", before.plugins,
+                       "a plug-in of the program before; repeatable", "FILE");
+    command.repeatable("--new-plugin", after.plugins, "a plug-in of the program after; repeatable",
+                       "FILE");
+    add_profile(command, profile);
+    add_config(command, config);
+    const Bounds number_of_pairs{.least = 4, .most = 1000, .whole = true};  // fewer prove nothing
+    command.option("--pairs", pairs, "processes of each build for a point; default: 15", "N",
+                   number_of_pairs);
+    command.option("--confirm", confirming, "pairs of the second look; default: 25", "N",
+                   number_of_pairs);
+    command.option("--sample-seconds", least_measured,
+                   "least time that a process measures, in as many runs as needed; default: 0.05",
+                   "S", {.least = 1e-3, .most = 60});
+    add_solver(command, solver);
+    command.option("--scene", scene, "one of the suite's; default: all", "SCENE");
+    add_filters(command, filter, exclude);
+    add_no_wait(command, no_wait);
+    CompareOptions::declare(command);
+  }
+
+  // Counters are told and fail nothing, unless a gate was asked for: here times are the question.
+  Gate gate_of() const {
+    if (gate.empty()) {
+      Gate passes = read_gate(source_path("configs/gate.json"));
+      passes.counter_rule = CounterRule::inform;
+      passes.errors.clear();
+      return passes;
+    }
+    Gate passes = read_gate(gate);
+    if (!passes.times) throw UsageError("gate '" + gate + "': bench ab is about times");
+    return passes;
+  }
+
+  // The best points of the old program, with the stiffness that it found; the new one runs the
+  // same.
+  std::vector<PairedPoint> best_points() const {
+    const TemporaryFolder folder("ab");
+    const std::string out = folder.file("old.json");
+    Words words{"--sweep", "strain", "--reps", "1", "--no-plots", "--out", out};
+    for (const auto& [option, value] :
+         {config.empty() ? std::pair("--profile", profile) : std::pair("--config", config),
+          std::pair("--solver", solver), std::pair("--scene", scene), std::pair("--filter", filter),
+          std::pair("--exclude", exclude)}) {
+      if (!value.empty()) words.insert(words.end(), {option, value});
+    }
+    const ProgramResult ran = before.run(words, sweep_timeout);
+    if (ran.exit_code == usage_error) throw UsageError(Program::own_words(ran));
+    if (ran.exit_code != success)
+      throw std::runtime_error("the sweep of '" + before.path +
+                               "' did not end: " + ran.last_error_line());
+    std::vector<PairedPoint> points;
+    const json result = read_result(out);
+    for (json point : result.at("points")) {
+      if (!point.value("best", false)) continue;
+      if (const json& options = point.at("options"); options.contains("stiffness"))
+        point["settings"]["stiffness"] = options.at("stiffness");
+      const double seconds = point.at("seconds_per_simulated_second").at("min").get<double>() *
+                             point.at("duration").get<double>();
+      points.push_back(
+          {std::move(point), samples_for(std::max(seconds, least_sample), least_measured)});
+    }
+    if (points.empty())
+      throw NotComparable("'" + before.path + "' has no point that runs to its end");
+    return points;
+  }
+
+  int run() {
+    const Gate passes = gate_of();
+    check_reports();
+    for (Program* program : {&before, &after}) {
+      program->path = program_named(program->path);
+      program->check();
+    }
+    const TimingLock lock(!no_wait);
+    std::cerr << "looking for the best steps of " << before.path << " ..." << std::endl;
+    std::vector<PairedPoint> points = best_points();
+    // One process of each says whether their counters compare.
+    Comparability can;
+    const std::string old_print = run_one(before, points.front()).fingerprint;
+    if (old_print.empty() || old_print != run_one(after, points.front()).fingerprint)
+      can.no_counters = "compiler, flags or libraries differ";
+    std::cerr << points.size() << " points, " << pairs << " pairs each ..." << std::endl;
+    Comparison comparison =
+        compare_in_pairs(std::move(points), pairs, confirming, passes, can,
+                         [this](Side side, const PairedPoint& point) {
+                           return run_one(side == Side::old_one ? before : after, point);
+                         });
+    if (!can.counters()) comparison.notes.push_back("counters not compared: " + can.no_counters);
+    return report(comparison, "bench ab",
+                  "some points cannot be decided (AMBIGUOUS above): take more --pairs and "
+                  "--sample-seconds, or a quieter machine");
+  }
+};
+
 }  // namespace
 
 Action compare_verb(const Command& command) { return verb<Compare>(command); }
 Action baseline_verb(const Command& command) { return verb<Baseline>(command); }
+Action ab_verb(const Command& command) { return verb<Ab>(command); }
 
 }  // namespace harness

@@ -1,13 +1,7 @@
 // bench: the command line.
-#include <iostream>
-#include <nlohmann/json.hpp>
-
 #include "harness/base/child_process.h"
-#include "harness/base/errors.h"
-#include "harness/base/files.h"
-#include "harness/base/interrupt.h"
 #include "harness/base/standard_streams.h"
-#include "harness/cli/verbs.h"
+#include "harness/cli/command.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"
 #include "harness/points/plugins.h"

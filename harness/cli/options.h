@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "harness/cli/command_line.h"
-#include "harness/compare/comparison.h"
 #include "harness/points/contestant.h"
 #include "harness/run/sweep.h"
 #include "harness/scenes/scene.h"
@@ -58,20 +57,6 @@ void add_timeout(const Command& to, double& timeout, const std::string& standard
 void add_seed(const Command& to, std::int64_t& seed, const std::string& help);
 // For verbs that take times.
 void add_no_wait(const Command& to, bool& no_wait);
-
-// What the commands that compare have in common: a gate, and reports beside the table on stdout.
-struct CompareOptions {
-  std::string gate, junit, markdown;
-
-  void declare(const Command& to);
-  // Throws UsageError for a report that cannot be written, before anything is done.
-  void check_reports() const;
-  // Prints the comparison, writes the reports; the exit code: a failure outranks a regression.
-  // name: of the JUnit suite and the Markdown heading. undecided: what is said if times of best
-  // points cannot be told apart.
-  int report(const Comparison& comparison, const std::string& name,
-             const std::string& undecided) const;
-};
 
 std::vector<std::string> profiles();
 void check_known(const char* kind, const std::string& name, const std::vector<std::string>& known);
