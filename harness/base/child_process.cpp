@@ -166,26 +166,20 @@ ChildOutcome run_in_child(const std::function<std::string(Heartbeat&)>& work,
   heartbeat->restart();
   std::array<int, 2> pipe{};
   if (pipe2(pipe.data(), O_CLOEXEC) != 0) fail("pipe");
+  OpenFile from_child(pipe[0]), to_parent(pipe[1]);
   const long kills = out_of_memory_kills();
   std::cout.flush();  // or the child prints it as well
   std::fflush(stdout);
   const pid_t parent = getpid();
   const pid_t child = fork();
-  if (child < 0) {
-    const int reason = errno;
-    close(pipe[0]);
-    close(pipe[1]);
-    errno = reason;
-    fail("fork");
-  }
+  if (child < 0) fail("fork");
   if (child == 0) {
-    close(pipe[0]);
-    be_child(work, *heartbeat, limits.memory, parent, pipe[1]);
+    from_child = OpenFile();
+    be_child(work, *heartbeat, limits.memory, parent, to_parent.get());
   }
   setpgid(child, child);  // whichever process runs first
-  close(pipe[1]);
-  attend(child, pipe[0], *heartbeat, limits, outcome);
-  close(pipe[0]);
+  to_parent = OpenFile();
+  attend(child, from_child.get(), *heartbeat, limits, outcome);
   int status = 0;
   rusage usage{};
   while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {

@@ -19,18 +19,13 @@ struct Ranking {
 Ranking rank_all(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> all = a;
   all.insert(all.end(), b.begin(), b.end());
-  std::vector<std::size_t> order(all.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&all](std::size_t i, std::size_t j) { return all[i] < all[j]; });
   Ranking ranking;
-  ranking.doubled.resize(all.size());
-  for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
-    while (last < order.size() && all[order[last]] == all[order[first]]) ++last;
-    for (std::size_t i = first; i < last; ++i)
-      ranking.doubled[order[i]] = static_cast<int>(first + 1 + last);  // twice the mean rank
-    const auto t = static_cast<double>(last - first);
-    ranking.ties += t * t * t - t;
+  ranking.doubled.reserve(all.size());
+  for (const double x : all) {
+    const auto less = std::ranges::count_if(all, [x](double y) { return y < x; }),
+               equal = std::ranges::count(all, x);
+    ranking.doubled.push_back(static_cast<int>(2 * less + equal + 1));  // twice the mean rank
+    ranking.ties += static_cast<double>(equal * equal - 1);
   }
   return ranking;
 }

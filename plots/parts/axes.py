@@ -19,34 +19,34 @@ def _ticks(axis: Axis, major: Locator, minor: Locator, text=lambda value: f"{val
     axis.set_minor_formatter(NullFormatter())
 
 
+def _log(axis: Axis, values: list[float], room: float, *ticks) -> None:
+    """A logarithmic axis that reaches beyond all values by a factor."""
+    name = axis.axis_name
+    axis.axes.set(**{f"{name}scale": "log", f"{name}lim": (min(values) / room, max(values) * room)})
+    _ticks(axis, *ticks)
+
+
 def log_x(axes: Axes, ticks: list[float], inches: float) -> None:
-    """Log axis with a tick at each value that was measured, as far as their labels have room."""
-    axes.set_xscale("log")
-    low, high = min(ticks), max(ticks)
-    pad = max((high / low) ** 0.06, 1.15)
-    axes.set_xlim(low / pad, high * pad)
-    scale = inches / math.log10(high * pad * pad / low)
+    """A tick at each value that was measured, as far as their labels have room."""
+    spread = max(ticks) / min(ticks)
+    pad = max(spread**0.06, 1.15)
+    scale = inches / math.log10(spread * pad * pad)
     kept: list[float] = []  # from the largest value down, each whose label does not touch the one before it
     for tick in sorted(ticks, reverse=True):
         if not kept or math.log10(kept[-1] / tick) * scale >= 0.07 * len(f"{tick:.7g}") + 0.08:
             kept.append(tick)
-    _ticks(axes.xaxis, FixedLocator(kept), FixedLocator(ticks), lambda x: f"{x:.7g}")
+    _log(axes.xaxis, ticks, pad, FixedLocator(kept), FixedLocator(ticks), lambda x: f"{x:.7g}")
 
 
 def log_y(axes: Axes, values: list[float]) -> None:
-    axes.set_yscale("log")
-    low, high = (min(values), max(values)) if values else (0.1, 10.0)
-    axes.set_ylim(low / 1.6, high * 1.6)
-    decades = math.log10(high / low)
-    _ticks(axes.yaxis, LogLocator(subs=(1.0,) if decades > 2 else (1.0, 2.0, 5.0)), LogLocator(subs=range(2, 10)))
+    values = values or [0.1, 10.0]
+    few = max(values) / min(values) <= 100
+    _log(axes.yaxis, values, 1.6, LogLocator(subs=(1.0, 2.0, 5.0) if few else (1.0,)), LogLocator(subs=range(2, 10)))
 
 
 def log_log(axes: Axes, xs: list[float], ys: list[float]) -> None:
-    axes.set(xscale="log", yscale="log")
-    axes.set_xlim(min(xs) / 1.5, max(xs) * 1.5)
-    axes.set_ylim(min(ys) / 1.5, max(ys) * 1.5)
-    for axis in (axes.xaxis, axes.yaxis):
-        _ticks(axis, LogLocator(), LogLocator(subs=range(2, 10)))
+    for axis, values in ((axes.xaxis, xs), (axes.yaxis, ys)):
+        _log(axis, values, 1.5, LogLocator(), LogLocator(subs=range(2, 10)))
 
 
 def steps_on_x(axes: Axes, steps: list[float]) -> None:
@@ -59,12 +59,10 @@ def steps_on_x(axes: Axes, steps: list[float]) -> None:
 
 
 def log_steps_on_y(axes: Axes, steps: list[float]) -> None:
-    axes.set_yscale("log")
-    low, high = (min(steps), max(steps)) if steps else (COARSEST_STEP, COARSEST_STEP)
-    room = math.exp(max(0.6, 0.13 * math.log(high / low)))  # for arrows, which are as long however many steps there are
-    axes.set_ylim(low / room, high * room)
-    rungs = range(math.floor(math.log2(COARSEST_STEP / high)), math.ceil(math.log2(COARSEST_STEP / low)) + 1)
-    _ticks(axes.yaxis, FixedLocator([COARSEST_STEP / 2.0**k for k in rungs[::math.ceil(len(rungs) / 8)]]), NullLocator(), step_name)
+    steps = steps or [COARSEST_STEP]
+    room = math.exp(max(0.6, 0.13 * math.log(max(steps) / min(steps))))  # for arrows, which are as long however many steps there are
+    rungs = range(math.floor(math.log2(COARSEST_STEP / max(steps))), math.ceil(math.log2(COARSEST_STEP / min(steps))) + 1)
+    _log(axes.yaxis, steps, room, FixedLocator([COARSEST_STEP / 2.0**k for k in rungs[::math.ceil(len(rungs) / 8)]]), NullLocator(), step_name)
 
 
 def gap(axes: Axes, left: float, right: float) -> float:

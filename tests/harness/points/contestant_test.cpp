@@ -12,6 +12,7 @@
 #include "harness/points/suite.h"
 #include "harness/points/tuned.h"
 #include "harness/run/sweep.h"
+#include "support/invented_runs.h"
 
 namespace harness {
 namespace {
@@ -212,16 +213,8 @@ TEST(Tuned, AFileIsReadAsItIsWrittenAndItsHashIsThatOfItsSettings) {
 
 PointResult timed(const std::string& contestant, double limit, double step, double seconds,
                   const char* sweep = "strain") {
-  PointSpec spec;
-  spec.sweep = sweep;
-  spec.scene = "chain";
-  spec.contestant = contestant;
-  spec.solver = "icd";
-  spec.strain_limit = limit;
-  spec.step = step;
-  PointResult point(spec, PointStatus::ok);
-  point.samples = {seconds};
-  point.best = true;
+  PointResult point = point_of(invented::run(contestant, limit, step, seconds, 0, true));
+  point.spec.sweep = sweep;
   return point;
 }
 
