@@ -41,7 +41,7 @@ std::string leader_words(const Cell& cell, const std::vector<const Entry*>& equa
 // What it costs to take another one.
 std::string rival_words(const Cell& cell, const std::vector<const Entry*>& equals) {
   const auto slower = [&](const Entry* entry) {
-    return entry && std::find(equals.begin(), equals.end(), entry) == equals.end();
+    return entry && std::ranges::find(equals, entry) == equals.end();
   };
   const Entry* rival = cell.rival(Rival::paper_best);
   const bool of_paper = slower(rival);
@@ -71,7 +71,7 @@ const Cell* headline_of(const Plane& plane, double limit) {
 }
 
 double limit_next_to(const std::vector<double>& limits, double wanted) {
-  return *std::min_element(limits.begin(), limits.end(), [&](double a, double b) {
+  return *std::ranges::min_element(limits, [&](double a, double b) {
     return std::abs(std::log(a / wanted)) < std::abs(std::log(b / wanted));
   });
 }
@@ -154,7 +154,7 @@ std::vector<Finding> findings_of(const std::vector<Plane>& planes) {
   std::vector<Finding> findings;
   const std::vector<Growth> growths = growth_in(planes);
   for (const Plane& plane : planes) {
-    const bool largest = std::none_of(planes.begin(), planes.end(), [&](const Plane& other) {
+    const bool largest = std::ranges::none_of(planes, [&](const Plane& other) {
       return other.scene == plane.scene && other.sweep == plane.sweep &&
              other.vertices > plane.vertices;
     });

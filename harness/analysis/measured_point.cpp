@@ -38,8 +38,7 @@ ErrorAtLevel Point::error_at(double level) const {
 
 bool Point::marked_best(double level) const {
   const auto& levels = result_->best_at_errors;
-  return level == any_motion ? result_->best
-                             : std::find(levels.begin(), levels.end(), level) != levels.end();
+  return level == any_motion ? result_->best : std::ranges::count(levels, level) > 0;
 }
 
 Ratio ratio(const Point& a, const Point& b) {

@@ -24,8 +24,8 @@ std::string method_of(const std::string& row) { return row.substr(0, row.find('@
 std::string stepper_of(const std::string& row) { return row.substr(method_of(row).size()); }
 
 bool is_of_paper(const std::string& method) {
-  return std::any_of(all_paper_methods.begin(), all_paper_methods.end(),
-                     [&](const PaperMethod& known) { return method == known.name; });
+  return std::ranges::any_of(all_paper_methods,
+                             [&](const PaperMethod& known) { return method == known.name; });
 }
 
 std::string level_text(double level) { return number_text(100 * level) + " %"; }
@@ -45,13 +45,11 @@ std::string why_empty(const std::vector<Point>& here, double level, double known
 
 // An unranked contestant and its solver are one row, of which the fastest counts.
 void rank(std::vector<Entry>& entries) {
-  std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return a.point.seconds() < b.point.seconds();
-  });
+  std::ranges::stable_sort(entries, {}, [](const Entry& e) { return e.point.seconds(); });
   std::vector<std::string> rows;
   for (Entry& entry : entries) {
     if (entry.role.again || !entry.role.competes) continue;
-    entry.counts = std::find(rows.begin(), rows.end(), entry.row) == rows.end();
+    entry.counts = std::ranges::count(rows, entry.row) == 0;
     rows.push_back(entry.row);
   }
 }
@@ -84,9 +82,9 @@ void take_tighter_runs(std::vector<Cell>& cells, std::size_t levels) {
     const Cell& tight = cells[i];
     Cell& loose = cells[i - levels];
     for (const Entry& entry : tight.entries) {
-      const auto own = std::find_if(
-          loose.entries.begin(), loose.entries.end(),
-          [&](const Entry& other) { return other.point.contestant() == entry.point.contestant(); });
+      const auto own = std::ranges::find_if(loose.entries, [&](const Entry& other) {
+        return other.point.contestant() == entry.point.contestant();
+      });
       if (own == loose.entries.end()) {
         loose.entries.push_back(entry);
       } else if (entry.point.seconds() < own->point.seconds()) {
@@ -217,7 +215,7 @@ std::vector<const Entry*> Cell::equals() const {
 }
 
 bool Cell::clear() const {
-  return counting(1) && std::all_of(entries.begin(), entries.end(), [&](const Entry& entry) {
+  return counting(1) && std::ranges::all_of(entries, [&](const Entry& entry) {
            const auto lead = lead_over(&entry);
            return !entry.counts || !lead || lead->above(1);
          });

@@ -40,8 +40,7 @@ struct Check {
     const auto findings =
         examine(name, {static_cast<std::uint64_t>(seed), !quick, print, interrupted});
     const auto count = [&findings](Finding::Grade grade) {
-      return std::count_if(findings.begin(), findings.end(),
-                           [grade](const Finding& f) { return f.grade == grade; });
+      return std::ranges::count(findings, grade, &Finding::grade);
     };
     std::cout << name << (conforms(findings) ? " conforms: " : " does not conform: ")
               << count(Finding::Grade::pass) << " passed, " << count(Finding::Grade::fail)

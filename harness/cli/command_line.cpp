@@ -70,8 +70,8 @@ const CLI::App* command_of(const CLI::App& program) {
 std::string not_understood(const CLI::App& program, const Words& typed) {
   const CLI::App* command = command_of(program);
   const Words left = program.remaining(true);
-  const auto first = std::find_if(typed.begin(), typed.end(), [&left](const std::string& word) {
-    return std::find(left.begin(), left.end(), word) != left.end();
+  const auto first = std::ranges::find_if(typed, [&left](const std::string& word) {
+    return std::ranges::find(left, word) != left.end();
   });
   const std::string word = first == typed.end() ? left.front() : *first;
   const std::string of = command == &program ? "" : " of bench " + command->get_name();

@@ -129,7 +129,7 @@ struct Claims {
     const auto results = documents_of(read_all(files, ResultKinds::all), is_of_runs);
     if (results.empty()) throw UsageError("claims are about sweeps; results/*.json has some");
     const std::vector<ClaimVerdict> verdicts = judge_claims(results);
-    if (std::all_of(verdicts.begin(), verdicts.end(), [](const ClaimVerdict& claim) {
+    if (std::ranges::all_of(verdicts, [](const ClaimVerdict& claim) {
           return claim.verdict == std::string_view(claims::not_measured);
         }))
       throw UsageError("nothing in '" + files.front() +

@@ -22,8 +22,7 @@ std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec
   const Contestants all = competitors(*find_scene(scene.scene), scene.scene_parameters);
   const Pattern expression("--solver", text.empty() ? ".*" : text);
   for (const auto& backend : inextensible::backends()) {
-    const bool competes = std::any_of(
-        all.begin(), all.end(), [&](const Contestant& c) { return c.solver == backend.name; });
+    const bool competes = std::ranges::count(all, backend.name, &Contestant::solver) > 0;
     if ((competes || backend.name == text) && matches(expression, backend.name) &&
         !tunable_numbers(backend).empty())
       solvers.emplace_back(backend.name);
@@ -173,8 +172,8 @@ struct Tune {
   int run() const {
     const std::vector<SweepSpec> chosen = scenes();
     (void)solver_pattern(solver);
-    if (std::all_of(chosen.begin(), chosen.end(),
-                    [this](const SweepSpec& s) { return chosen_solvers(solver, s).empty(); }))
+    if (std::ranges::all_of(
+            chosen, [this](const SweepSpec& s) { return chosen_solvers(solver, s).empty(); }))
       throw UsageError("--solver " + solver + ": no setting of it is to be tuned");
     const std::string file = out.empty() ? source_path("configs/tuned.json") : out;
     Entries entries = read_entries(file);

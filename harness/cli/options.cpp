@@ -134,8 +134,7 @@ void add_no_wait(const Command& to, bool& no_wait) {
 std::vector<std::string> profiles() { return {"quick", "default", "paper", "large"}; }
 
 void check_known(const char* kind, const std::string& name, const std::vector<std::string>& known) {
-  if (std::find(known.begin(), known.end(), name) == known.end())
-    throw unknown_name(kind, name, known);
+  if (std::ranges::count(known, name) == 0) throw unknown_name(kind, name, known);
 }
 
 namespace {
@@ -158,8 +157,8 @@ std::optional<Pattern> solver_pattern(const std::string& text, const Contestants
   const Pattern whole("--solver", text);
   for (const std::string& part : alternatives(text)) {
     const Pattern expression("--solver", part);
-    if (std::none_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return matches(expression, name); }))
+    if (std::ranges::none_of(names,
+                             [&](const std::string& name) { return matches(expression, name); }))
       throw no_solver(part, names);
   }
   return whole;

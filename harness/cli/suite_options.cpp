@@ -59,11 +59,11 @@ bool is(const json& sweep, const char* key, const std::string& value) {
 // the scene has by itself.
 void put_in_scene(json& sweeps, const SweepOptions& options) {
   const auto of_kind = [&](const json& s) { return is(s, "sweep", options.sweep); };
-  if (options.scene.empty() || std::any_of(sweeps.begin(), sweeps.end(), [&](const json& s) {
+  if (options.scene.empty() || std::ranges::any_of(sweeps, [&](const json& s) {
         return of_kind(s) && is(s, "scene", options.scene);
       }))
     return;
-  const auto first = std::find_if(sweeps.begin(), sweeps.end(), of_kind);
+  const auto first = std::ranges::find_if(sweeps, of_kind);
   if (first == sweeps.end()) return;
   json sweep = *first;
   sweep["scene"] = options.scene;

@@ -18,10 +18,8 @@ bool worth_a_row(const PointChange& point) {
 
 std::vector<PointChange> rows_of(const Comparison& comparison) {
   std::vector<PointChange> rows;
-  std::copy_if(comparison.points.begin(), comparison.points.end(), std::back_inserter(rows),
-               worth_a_row);
-  std::stable_sort(rows.begin(), rows.end(),
-                   [](const auto& a, const auto& b) { return a.change < b.change; });
+  std::ranges::copy_if(comparison.points, std::back_inserter(rows), worth_a_row);
+  std::ranges::stable_sort(rows, {}, &PointChange::change);
   return rows;
 }
 
@@ -39,7 +37,7 @@ std::vector<std::string> all_notes(const Comparison& comparison) {
   std::vector<std::string> notes = comparison.notes;
   const auto& points = comparison.points;
   const auto too_few = [](const PointChange& point) { return point.too_few; };
-  const auto example = std::find_if(points.begin(), points.end(), too_few);
+  const auto example = std::ranges::find_if(points, too_few);
   if (example != points.end())
     notes.push_back(std::to_string(std::count_if(example, points.end(), too_few)) +
                     " of the AMBIGUOUS have too few runs, for example " + example->id + ": " +

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "harness/base/text.h"
@@ -22,9 +24,9 @@ bool within(const PointResult& point, const Wish& wish) {
 }
 
 std::optional<Pick> pick_of(const PointResult& point, const Wish& wish) {
-  const auto frame =
-      std::find_if(point.frame_times.begin(), point.frame_times.end(),
-                   [&wish](const FrameTime& f) { return std::abs(f.rate - wish.rate) < 1e-6; });
+  const auto frame = std::ranges::find_if(point.frame_times, [&wish](const FrameTime& f) {
+    return std::abs(f.rate - wish.rate) < 1e-6;
+  });
   if (!point.ok() || frame == point.frame_times.end()) return {};
   return Pick{&point, *frame, error_at(point.measures, wish.error).distance};
 }
@@ -59,8 +61,7 @@ std::vector<PointResult*> fastest_runs(std::vector<PointResult>& points, const W
   for (PointResult& point : points) {
     if (within(point, wish)) list.push_back(&point);
   }
-  std::sort(list.begin(), list.end(),
-            [](const PointResult* a, const PointResult* b) { return a->seconds() < b->seconds(); });
+  std::ranges::sort(list, {}, &PointResult::seconds);
   list.resize(std::min(list.size(), finalists));
   return list;
 }
@@ -122,17 +123,13 @@ void screen(PointResult& point, const RunLimits& limits, std::optional<double> g
 }  // namespace
 
 std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened) {
-  const auto rank = [](const PointResult& point) {
-    return point.ok() ? 0 : point.status == PointStatus::strain_missed ? 1 : 2;
-  };
   std::vector<std::size_t> order(screened.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    const PointResult &one = screened[a], &other = screened[b];
-    if (rank(one) != rank(other)) return rank(one) < rank(other);
-    if (one.samples.empty() || other.samples.empty())
-      return !one.samples.empty() && other.samples.empty();
-    return one.seconds() < other.seconds();
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&screened](std::size_t i) {
+    const PointResult& point = screened[i];
+    const int rank = point.ok() ? 0 : point.status == PointStatus::strain_missed ? 1 : 2;
+    const bool timed = !point.samples.empty();
+    return std::tuple(rank, !timed, timed ? point.seconds() : 0);
   });
   return order;
 }
@@ -213,8 +210,8 @@ std::string why_not(const std::string& contestant, const Trials& trials, const W
            " %" + at(*closest);
   if (failed)
     return std::string(to_string(failed->status)) + at(*failed) + ": " + shortened(failed->detail);
-  const auto seen = std::find_if(trials.screened.begin(), trials.screened.end(),
-                                 [&](const PointResult& p) { return p.spec.name() == contestant; });
+  const auto seen = std::ranges::find_if(
+      trials.screened, [&](const PointResult& p) { return p.spec.name() == contestant; });
   if (seen == trials.screened.end() || (seen->samples.empty() && seen->detail.empty()))
     return "not tried, the time was over";
   if (seen->samples.empty()) return "not tried: " + shortened(seen->detail);

@@ -159,9 +159,8 @@ void forget_failures(Journal& journal) {
 }
 
 std::size_t points_in(const Journal& journal) {
-  return static_cast<std::size_t>(
-      std::count_if(journal.known().begin(), journal.known().end(),
-                    [](const auto& entry) { return is_point(entry.first); }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      journal.known(), [](const auto& entry) { return is_point(entry.first); }));
 }
 
 }  // namespace harness

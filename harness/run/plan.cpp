@@ -80,7 +80,7 @@ std::vector<Search> plan(const Suite& suite, const SweepFilters& filters) {
     std::vector<double> limits = sweep.limits;
     std::sort(limits.rbegin(), limits.rend());  // loose to tight
     std::vector<int> resolutions = sweep.resolutions;
-    std::sort(resolutions.begin(), resolutions.end());
+    std::ranges::sort(resolutions);
     for (const Contestant& contestant : sweep.contestants) {
       if (filters.solver && !matches(*filters.solver, contestant.name)) continue;
       for (const int resolution : resolutions) {
@@ -135,7 +135,7 @@ std::vector<Search> shard(std::vector<Search> searches, const Shard& part) {
   std::vector<double> filled(part.count, 0);
   std::map<Group, std::size_t> place;
   for (const auto& [name, size] : largest) {
-    const auto least = std::min_element(filled.begin(), filled.end());
+    const auto least = std::ranges::min_element(filled);
     *least += size;
     place[name] = static_cast<std::size_t>(least - filled.begin()) + 1;
   }

@@ -70,8 +70,8 @@ struct Neighbour {
   // The rung of another ladder that comes next to the best step.
   std::optional<std::size_t> rung_in(const std::vector<double>& ladder) const {
     if (!best_step) return std::nullopt;
-    const auto near = std::find_if(ladder.begin(), ladder.end(),
-                                   [&](double h) { return h <= *best_step * (1 + 1e-9); });
+    const auto near =
+        std::ranges::find_if(ladder, [&](double h) { return h <= *best_step * (1 + 1e-9); });
     return static_cast<std::size_t>(near - ladder.begin());
   }
 };

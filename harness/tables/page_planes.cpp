@@ -159,7 +159,7 @@ void print_budgets(std::ostream& out, const std::vector<analysis::BudgetTable>& 
     for (const Budgeted& row : place.rows) {
       std::vector<std::string> cells{row.row};
       for (const auto& reach : row.reached) cells.push_back(reach_text(reach));
-      if (std::any_of(row.reached.begin(), row.reached.end(), [](const auto& r) { return r; })) {
+      if (std::ranges::any_of(row.reached, [](const auto& r) { return r.has_value(); })) {
         table.rows.push_back(std::move(cells));
       } else {
         none += (none.empty() ? "" : ", ") + quoted(row.row);

@@ -52,8 +52,7 @@ void print_growth(std::ostream& out, const std::vector<NamedResult>& results) {
   for (const std::string& name : in_order(names, itself)) {
     table.rows.push_back({name});
     for (const Growth& growth : all) {
-      const auto row = std::find_if(growth.rows.begin(), growth.rows.end(),
-                                    [&](const RowGrowth& each) { return each.row == name; });
+      const auto row = std::ranges::find(growth.rows, name, &RowGrowth::row);
       table.rows.back().push_back(
           row == growth.rows.end() ? "-"
                                    : exponent_words(row->exponent) + "; " +
@@ -152,9 +151,8 @@ void print_answers(std::ostream& out, const NamedResult& result) {
       }
       if (finest) given.push_back(*finest);
     }
-    std::stable_sort(given.begin(), given.end(), [](const json& a, const json& b) {
-      return std::abs(number_of(a.at("deviation"))) < std::abs(number_of(b.at("deviation")));
-    });
+    std::ranges::stable_sort(
+        given, {}, [](const json& row) { return std::abs(number_of(row.at("deviation"))); });
     std::vector<double> orders;
     for (const json& row : given) {
       if (!row.at("order").is_null()) orders.push_back(row.at("order"));

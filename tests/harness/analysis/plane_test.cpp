@@ -174,9 +174,9 @@ TEST(Plane, OfSeveralFilesIsThatOfTheWhole) {
 TEST(Plane, ComparesWithTheMethodsThatThePaperHas) {
   for (const auto& backend : inextensible::backends()) {
     if (std::string(backend.name) != backend.method) continue;  // in another stepper
-    const bool named = std::any_of(
-        all_paper_methods.begin(), all_paper_methods.end(),
-        [&](const PaperMethod& method) { return method.name == std::string(backend.name); });
+    const bool named = std::ranges::any_of(all_paper_methods, [&](const PaperMethod& method) {
+      return method.name == std::string(backend.name);
+    });
     EXPECT_EQ(named, backend.origin == inextensible::Origin::paper) << backend.name;
   }
 }

@@ -20,7 +20,6 @@ echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1], "scene_
 echo 'not JSON' >words.json
 : >empty.json
 mkdir -p folder && ln -sf nowhere.json dangling.json
-mkfifo pipe
 refused "nothing to do"
 refuse_all <<'TABLE'
 did you mean 'strain' <- --sweep strian --out out.json
@@ -47,7 +46,6 @@ does not go with adaptive steps <- SWEEP --steps adaptive --finest 0.01
 cannot read the suite <- SUITE missing.json
 --finest-error needs references, missing: chain-n7 <- SUITE small.json --profile quick --scene chain --finest-error 0.02
 there is no folder 'words.json' <- --sweep strain --profile quick --out words.json/result.json
-no regular file <- --sweep strain --profile quick --out pipe
 there is no folder 'nowhere' <- film --out nowhere/x.png
 no option '--limt'; did you mean '--limit'? <- SWEEP --limt 0.01
 no command 'shwo'; did you mean 'show'? <- shwo one.json
@@ -196,7 +194,7 @@ makes known.json answers --answer net_place --solver '^fast_projection$' --no-pl
 bench show known.json >shown.txt
 grep -q '^net_place' shown.txt && grep -Eq '^  fast_projection  +h = ' shown.txt || fail "show of known answers names nothing"
 
-# ---- Standard streams that are closed or full, outputs that are links, devices and pipes ----
+# ---- Standard streams that are closed or full, and outputs that are streams ----
 bench "${tiny[@]}" --out closed.json >/dev/null 2>&- || fail "stderr closed: exit $?"
 holds 'assert read("closed.json")["complete"]'
 bench list >/dev/full 2>err.txt
@@ -209,10 +207,6 @@ for place in - /dev/stdout; do
   bench "${comparison[@]}" --markdown $place --junit junit.xml >both.txt 2>/dev/null && grep -q '^### bench compare' both.txt && [[ ! -e - ]] ||
     fail "--markdown $place"
 done
-bench "${comparison[@]}" --markdown /dev/null >/dev/null && [[ -c /dev/null ]] || fail "--markdown /dev/null"
-mkdir there && ln -s there/result.json link.json
-makes link.json "${tiny[@]}"
-[[ -L link.json && -f there/result.json ]] || fail "--out lost its link"
 bench "${tiny[@]}" --out=-dash.json >/dev/null 2>&1 && [[ -f ./-dash.json ]] || fail "a name that begins with -"
 
 # ---- Words and options for people ----

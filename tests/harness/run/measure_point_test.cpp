@@ -49,7 +49,7 @@ TEST(Batches, ASampleOfAShortRunTakesAtLeastTwentyMilliseconds) {
     EXPECT_LT(point.cpu_samples[i], 1.5 * point.samples[i]);
   }
   EXPECT_GE(point.measured_seconds(), 4 * least_sample * (1 - 1e-9));
-  EXPECT_EQ(point.seconds(), *std::min_element(point.samples.begin(), point.samples.end()));
+  EXPECT_EQ(point.seconds(), *std::ranges::min_element(point.samples));
 }
 
 // Work is that of one run, however many a sample has.
