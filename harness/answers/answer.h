@@ -73,7 +73,6 @@ struct KnownAnswer {
   bool until_read;         // a run ends as soon as it tells
 };
 
-AnswerScene answer_scene(const KnownAnswer& answer);
 // Those of configs/answers.json.
 std::span<const KnownAnswer> known_answers();
 const KnownAnswer* find_answer(std::string_view name);

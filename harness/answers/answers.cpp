@@ -75,10 +75,6 @@ AnswerScene answer_scene(std::string_view name, const SceneParameters& given) {
   return {type, parameters, type->build(parameters)};
 }
 
-AnswerScene answer_scene(const KnownAnswer& answer) {
-  return answer_scene(answer.scene, answer.given);
-}
-
 std::span<const KnownAnswer> known_answers() {
   static const std::vector<KnownAnswer> table = [] {
     const std::string path = source_path("configs/answers.json");
@@ -168,7 +164,7 @@ Ending run_once(const KnownAnswer& answer, const AnswerScene& at, const Backend&
 
 Ending run_calibrated(const KnownAnswer& answer, const Backend& backend, double step,
                       double timeout) {
-  const AnswerScene at = answer_scene(answer);
+  const AnswerScene at = answer_scene(answer.scene, answer.given);
   if (backend.strain_control != inextensible::StrainControl::stiffness)
     return run_once(answer, at, backend, {}, step, timeout);
   std::map<double, Ending> endings;
@@ -218,7 +214,7 @@ std::vector<AnswerRun> plan_answers(const AnswerSelection& selection) {
   std::vector<AnswerRun> plan;
   for (const KnownAnswer& answer : known_answers()) {
     if (selection.answer && !selection.answer->matches(answer.name)) continue;
-    const AnswerScene at = answer_scene(answer);
+    const AnswerScene at = answer_scene(answer.scene, answer.given);
     for (const Backend& backend : inextensible::backends()) {
       if (!backend.contestant || (selection.solver && !matches(*selection.solver, backend.name)))
         continue;
@@ -238,7 +234,7 @@ AnswerOutcome run_answers(const std::vector<AnswerRun>& plan, double timeout,
   std::size_t all = 0;
   for (const AnswerRun& run : plan) all += run.answer->steps.size();
   for (const AnswerRun& run : plan) {
-    const double exact = run.answer->exact(answer_scene(*run.answer));
+    const double exact = run.answer->exact(answer_scene(run.answer->scene, run.answer->given));
     std::vector<double> deviations;
     for (const double step : run.answer->steps) {
       if (events.interrupted()) throw Interrupted();
@@ -267,7 +263,7 @@ json answers_document(json context, const std::vector<AnswerRun>& plan,
   for (const AnswerRun& run : plan) {
     if (run.answer == std::exchange(last, run.answer)) continue;
     const KnownAnswer& answer = *run.answer;
-    const AnswerScene at = answer_scene(answer);
+    const AnswerScene at = answer_scene(answer.scene, answer.given);
     answers.push_back({{"name", answer.name},
                        {"scene", answer.scene},
                        {"scene_parameters", at.parameters},
