@@ -57,15 +57,9 @@ class RetakeBudget {
   double samples_ = 0, retaken_ = 0;
 };
 
-template <class Sample>
-struct QuietSample {
-  Sample sample;
-  int retaken = 0;
-};
-
 // The first of take()'s samples whose neighbouring looks are both undisturbed; after `most`
 // tries more the one whose worse look was the least. again(sample): whether another one may be
-// taken instead. retaken: how many were dropped before.
+// taken instead. retaken: how many were dropped before. With how many were dropped in all.
 template <class Take, class Again>
 auto take_quietly(QuietProbe& probe, Take take, Again again, int retaken = 0,
                   int most = QuietProbe::most_retaken) {
@@ -80,7 +74,7 @@ auto take_quietly(QuietProbe& probe, Take take, Again again, int retaken = 0,
       calmest = std::move(sample);
       calm = worse;
     }
-    if (last) return QuietSample<Sample>{std::move(*calmest), retaken};
+    if (last) return std::pair(std::move(*calmest), retaken);
     ++retaken;
     before = after;
   }

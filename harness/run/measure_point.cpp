@@ -67,11 +67,11 @@ class Sampler {
       record_filter(phases);
     }
     const auto take = [this] { return batch(least_sample, !short_steps_); };
-    auto taken = limits_.timed ? take_quietly(quiet_probe(), take, may_be_retaken, retaken,
-                                              limits_.most_retaken)
-                               : QuietSample<Batch>{take()};
-    taken_.retaken += taken.retaken;
-    return record(std::move(taken.sample));
+    auto [sample, dropped] = limits_.timed ? take_quietly(quiet_probe(), take, may_be_retaken,
+                                                          retaken, limits_.most_retaken)
+                                           : std::pair(take(), 0);
+    taken_.retaken += dropped;
+    return record(std::move(sample));
   }
 
   std::optional<Run> record(Batch sample) {

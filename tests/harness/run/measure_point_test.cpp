@@ -225,10 +225,10 @@ TEST(QuietSamples, ADisturbedLookOnEitherSideTakesItAgainUpToThreeTimes) {
     int samples = 0, warm = 0;
     std::size_t seen = 0;
     QuietProbe probe([&, &list = looks] { return ++warm <= 10 ? 1e-3 : 1e-3 * list.at(seen++); });
-    const auto quiet = take_quietly(
+    const auto [taken, again] = take_quietly(
         probe, [&] { return ++samples; }, [](int) { return true; }, dropped);
-    EXPECT_EQ(quiet.sample, sample) << what;
-    EXPECT_EQ(quiet.retaken, retaken) << what;
+    EXPECT_EQ(taken, sample) << what;
+    EXPECT_EQ(again, retaken) << what;
     EXPECT_EQ(seen, looks.size()) << what;
   }
 }
