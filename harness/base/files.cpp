@@ -224,13 +224,15 @@ pid_t lock_holder(int file) {
   return fcntl(file, F_GETLK, &region) == 0 && region.l_type != F_UNLCK ? region.l_pid : 0;
 }
 
+bool is_installed() { return !share_folder().empty(); }
+
 std::string source_path(const std::string& relative) {
   return (share_folder().empty() ? INEXTENSIBLE_SOURCE_DIR : share_folder()) + "/" + relative;
 }
 
 std::string local_result(const std::string& name) {
   const std::string folder = "results/local";
-  const std::string place = share_folder().empty() ? source_path(folder) : folder;
+  const std::string place = is_installed() ? folder : source_path(folder);
   std::error_code error;  // the write that follows reports what is wrong
   fs::create_directories(place, error);
   return place + "/" + name;

@@ -88,6 +88,8 @@ pid_t lock_holder(int file);
 
 // ---- Where the program finds what comes with it, and where results go ----
 
+// Whether the program runs from where it was installed, and not from a build folder.
+bool is_installed();
 // A file that comes with the program, named as in the source tree: of the share folder beside an
 // installed bench, else of the source tree.
 std::string source_path(const std::string& relative);

@@ -185,7 +185,9 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
   ChildOutcome outcome = run_in_child(
       [&sweep](Heartbeat&) {
         const auto tell = [](const std::string& line) { std::cerr << line << std::endl; };
-        return compact(to_json(finer_run(sweep.scene, sweep.scene_parameters, tell)));
+        RouteRuns runs(tell);
+        return compact(
+            to_json(compute_reference(sweep.scene, sweep.scene_parameters, quick_finest, runs)));
       },
       {.timeout = limits.seconds, .interrupted = stop});
   if (limits.interrupted()) throw Interrupted();
@@ -288,7 +290,7 @@ struct Choose : SceneOptions {
     const TimingLock lock(!no_wait);
     const auto begin = Clock::now();
     const ChooseLimits limits_of_time{seconds, [begin] { return since(begin); }, interrupted};
-    const auto references = std::make_shared<ReferenceFolder>(source_path("results/references"));
+    const auto references = ReferenceFolder::usual();
     const auto reference = reference_for(tried.sweeps.front(), *references, limits_of_time);
     if (!reference) wish.error = any_motion;
     const Trials trials = measure(tried, wish, limits_of_time, references);

@@ -94,7 +94,7 @@ struct PointVerb {
   int run() const {
     RunLimits limits;
     limits.timeout = timeout;
-    limits.references = std::make_shared<ReferenceFolder>(source_path("results/references"));
+    limits.references = ReferenceFolder::usual();
     const std::string fingerprint = counters_fingerprint();
     for (const PointSpec& spec : read_specs(std::cin)) {
       json line = to_json(timed(spec, limits));

@@ -63,12 +63,13 @@ RouteRuns runs_beside(const std::string& path, const std::string& scene,
 // stays as it is. What was stopped goes on after the runs that were done.
 void make_reference(const std::string& path, const std::string& scene,
                     const SceneParameters& parameters, double finest, const Reference* stored) {
+  std::filesystem::create_directories(std::filesystem::path(path).parent_path());
   check_writable(path);
   RouteRuns runs = runs_beside(path, scene, parameters, finest);
   Reference reference = stored ? *stored : compute_reference(scene, parameters, finest, runs);
   const Scene built = find_scene(scene)->build(parameters);
-  reference.ensemble =
-      is_cloth(built) ? compute_ensemble(built, reference.times, {}, runs) : Ensemble();
+  if (is_cloth(built) && reference.valid_until < reference.duration())
+    reference.ensemble = compute_ensemble(built, reference.times, {}, runs);
   const nlohmann::json document =
       stored ? with_ensemble(parse_document(read_file(path, "reference"), path), reference.ensemble)
              : to_json(reference);
@@ -86,7 +87,7 @@ void make_reference(const std::string& path, const std::string& scene,
 bool wants_ensemble(const Reference& reference, bool again) {
   const Ensemble& ensemble = reference.ensemble;
   const bool there = ensemble.known() || !ensemble.unknown_because.empty();
-  return !reference.exact && (again || !there) &&
+  return !reference.exact && (again || !there) && reference.valid_until < reference.duration() &&
          is_cloth(find_scene(reference.scene)->build(reference.parameters));
 }
 
@@ -109,7 +110,7 @@ struct ReferenceVerb : SelectionOptions {
     if (n.empty()) return {{name(), complete_parameters()}};
     std::vector<SceneOfReference> scenes;
     SceneOptions one = *this;
-    for (const double size : numbers_of("--n", n, Bounds::whole_number(2))) {
+    for (const double size : numbers_of("--n", n, Bounds::whole_number(1))) {
       one.n = number_text(size, 10);
       scenes.emplace_back(name(), one.complete_parameters());
     }
@@ -135,12 +136,11 @@ struct ReferenceVerb : SelectionOptions {
     if (only_ensemble && finest > 0)
       throw UsageError("--finest does not go with --ensemble, whose runs have a step of their own");
     const bool one_scene = !n.empty() || !set.empty() || scene.starts_with("mesh:");  // of no suite
-    const std::string folder = source_path("results/references");
-    ReferenceFolder references(folder);
+    const auto references = ReferenceFolder::usual();
     bool nothing = true;
     for (const auto& [name, parameters] : one_scene ? given_scenes() : scenes_of_suite()) {
-      const std::string path = folder + "/" + reference_name(name, parameters);
-      const auto stored = references.find(name, parameters);
+      const std::string path = reference_path(name, parameters);
+      const auto stored = references->find(name, parameters);
       if (!only_ensemble && (!stored || again)) {
         make_reference(path, name, parameters, finest, nullptr);
       } else if (stored && wants_ensemble(*stored, again)) {

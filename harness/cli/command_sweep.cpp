@@ -158,7 +158,7 @@ int run_suite(const SweepCommand& options, const Words& typed) {
                        const nlohmann::json& before) -> Finished {
     if (options.rerun_failed) forget_failures(journal);
     SweepRunners runners;
-    const auto references = std::make_shared<ReferenceFolder>(source_path("results/references"));
+    const auto references = ReferenceFolder::usual();
     runners.references = references;
     report_missing_references(options, searches, *references);
     std::optional<TimingLock> lock;

@@ -95,7 +95,7 @@ struct Tune {
 
   void declare(const Command& command) {
     add_solver(command, solver);
-    command.option("--scene", scene, "chain, drape, patch or spinning_net; default: all", "SCENE");
+    command.option("--scene", scene, "chain, drape, settling_drape, patch or spinning_net; default: all", "SCENE");
     command.option("--n", n, "sizes of your own, whose settings are added", "N,...");
     command.option("--limit", limits, "strain limits of your own, whose settings are added",
                    "STRAIN,...");
@@ -180,7 +180,7 @@ struct Tune {
     check_writable(file);
     const TimingLock lock(!no_wait);
     SweepRunners runners;
-    runners.references = std::make_shared<ReferenceFolder>(source_path("results/references"));
+    runners.references = ReferenceFolder::usual();
     runners = isolated(runners, 0);
     std::cout << "kind          solver                             size  limit   gain   settings\n";
     for (const SweepSpec& on : chosen) {

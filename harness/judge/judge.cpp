@@ -59,6 +59,10 @@ void Judge::compare(const State& state) {
     const double part = inside ? (time - start_.time) / (state.time - start_.time) : 1;
     const Positions x = inside ? Positions((1 - part) * start_.x + part * state.x) : state.x;
     if (next_ < reference.positions.size()) compare_positions(x);
+    if (next_ + 1 == reference.positions.size() && !reference.rest_gap.empty()) {
+      running_.rest_gap = reference.rest_gap;
+      running_.rest = rest_difference(scene_, x, reference.positions.back());
+    }
     if (shape_) shape_->sample(x);
   }
 }
@@ -88,6 +92,7 @@ void Judge::add_errors(Measures& measures) const {
                                " samples at which the reference is sure to " + level;
   } else {
     measures.trajectory = at.distance;
+    measures.trajectory_mean = at.mean;
     measures.trajectory_max = at.largest;
     measures.gap = at.gap;
   }

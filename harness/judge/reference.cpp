@@ -29,6 +29,8 @@ constexpr auto reference_fields = std::tuple{
     field("gap", &Reference::gap, "size", "uncertainty at each time"),
     field("gap_max", &Reference::gap_max, "size", "the same in the maximum norm"),
     field("gap_parts", &Reference::gap_parts, "size", "whose largest is the gap", may_be_absent),
+    field("rest_gap", &Reference::rest_gap, "", "uncertainty of the shape at the end",
+          may_be_absent),
     field("valid_until", &Reference::valid_until, "s", "last time of a gap below 1 %"),
     field("energy_drift", &Reference::energy_drift, "weight times size", "of the first route"),
     field("observed_order", &Reference::observed_order, "", "under step halving", may_be_absent),
@@ -152,7 +154,8 @@ std::string reference_name(const std::string& scene, const SceneParameters& comp
     if (complete.at(name) != info.initial)
       changed += name + "=" + number_text(complete.at(name)) + ";";
   }
-  return scene + "-n" + number_text(complete.at(type->resolution)) +
+  return (type->identity.empty() ? scene : "mesh-" + type->identity) + "-n" +
+         number_text(complete.at(type->resolution)) +
          (changed.empty() ? "" : "-" + fnv1a(changed)) + ".json";
 }
 
@@ -192,11 +195,11 @@ json with_ensemble(json document, const Ensemble& ensemble) {
   return document;
 }
 
-Reference read_reference(const std::string& path) {
-  return reference_of(parse_document(read_file(path, "reference"), path), path);
+Reference read_reference(const std::string& path, const std::string& scene) {
+  return reference_of(parse_document(read_file(path, "reference"), path), path, scene);
 }
 
-Reference reference_of(const json& document, const std::string& path) {
+Reference reference_of(const json& document, const std::string& path, const std::string& scene) {
   try {
     if (document.at("schema") != reference_schema)
       throw UsageError("'" + path + "': schema is " + value_text(document.at("schema")) +
@@ -205,6 +208,7 @@ Reference reference_of(const json& document, const std::string& path) {
     read_fields(document, reference_fields, r);
     if (document.contains("ensemble"))
       read_fields(document.at("ensemble"), ensemble_fields, r.ensemble);
+    if (!scene.empty()) r.scene = scene;
     r.positions = path_of(document.at("positions"));
     const std::string why = mismatch(r);
     if (!why.empty()) throw UsageError("'" + path + "': " + why);
@@ -214,18 +218,29 @@ Reference reference_of(const json& document, const std::string& path) {
   }
 }
 
+std::string reference_path(const std::string& scene, const SceneParameters& complete) {
+  const bool own = is_installed() || !find_scene(scene)->identity.empty();
+  return (own ? local_result("references") : source_path("results/references")) + "/" +
+         reference_name(scene, complete);
+}
+
+std::shared_ptr<ReferenceFolder> ReferenceFolder::usual() {
+  std::shared_ptr<ReferenceFolder> folder(new ReferenceFolder);
+  folder->folders_ = {local_result("references"), source_path("results/references")};
+  return folder;
+}
+
 std::shared_ptr<const Reference> ReferenceFolder::find(const std::string& scene,
                                                        const SceneParameters& complete) {
   const std::string name = reference_name(scene, complete);
   auto [place, fresh] = known_.try_emplace(key_of(name, complete), nullptr);
   if (fresh) place->second = exact_reference(scene, complete);
-  if (fresh && !place->second) {
-    const std::filesystem::path path = std::filesystem::path(folder_) / name;
-    if (std::filesystem::exists(path)) {
-      auto stored = std::make_shared<const Reference>(read_reference(path.string()));
-      // A file from before a parameter, or its default, was what it is now is another motion's.
-      if (stored->name() == name) place->second = std::move(stored);
-    }
+  for (const std::string& folder : folders_) {
+    const std::filesystem::path path = std::filesystem::path(folder) / name;
+    if (!fresh || place->second || !std::filesystem::exists(path)) continue;
+    auto stored = std::make_shared<const Reference>(read_reference(path.string(), scene));
+    // A file from before a parameter, or its default, was what it is now is another motion's.
+    if (stored->name() == name) place->second = std::move(stored);
   }
   return place->second;
 }

@@ -28,6 +28,9 @@ struct Reference {
   std::vector<double> gap_max;  // the same in the maximum norm
   // The parts whose largest is the gap; empty in references made without them.
   std::map<std::string, std::vector<double>> gap_parts;
+  // Of scenes that are known to their end: how far the routes' last positions are apart in what
+  // rest_difference compares.
+  std::map<std::string, double> rest_gap;
   double valid_until = 0;   // s: the last sample before the gap exceeds 1 % of the scene's size
   double energy_drift = 0;  // of the first route, where the scene conserves energy
   // Order of the stepping route under step halving, and theory's for smooth motion. They explain a
@@ -58,25 +61,32 @@ std::shared_ptr<const Reference> exact_reference(const std::string& scene,
                                                  const SceneParameters& complete);
 
 // The file a reference of this scene is kept in: chain-n80.json, or with a hash of the parameters
-// that are not the defaults. Duration does not count.
+// that are not the defaults, mesh-9f3c...-n1.json of a scene made of files. Duration does not count.
 std::string reference_name(const std::string& scene, const SceneParameters& complete);
 
 nlohmann::json to_json(const Reference& reference);
 // A reference's document with this ensemble in place of its own, all else as it is.
 nlohmann::json with_ensemble(nlohmann::json document, const Ensemble& ensemble);
 // Throws UsageError, naming the file, for anything that is not a reference.
-Reference read_reference(const std::string& path);
+// scene: whose it is, by the name under which its files are found here; "": the document's own.
+Reference read_reference(const std::string& path, const std::string& scene = "");
 // The same of its document; `path` is for messages.
-Reference reference_of(const nlohmann::json& document, const std::string& path);
+Reference reference_of(const nlohmann::json& document, const std::string& path,
+                       const std::string& scene = "");
 
 // A path as rows of coordinates, scaled by `coordinate` on the way out.
 nlohmann::json rows_of(const Path& path, double (*coordinate)(double) = nullptr);
 Path path_of(const nlohmann::json& rows);
 
-// The references of a folder, read when they are asked for, and exact ones.
+// Where a scene's reference is written: results/references, or beside the user's own results where
+// it is made of files or the program is installed.
+std::string reference_path(const std::string& scene, const SceneParameters& complete);
+
+// The references of folders, read when they are asked for, and exact ones.
 class ReferenceFolder {
  public:
-  explicit ReferenceFolder(std::string folder) : folder_(std::move(folder)) {}
+  explicit ReferenceFolder(std::string folder) : folders_{std::move(folder)} {}
+  static std::shared_ptr<ReferenceFolder> usual();  // the user's, and those of the program
   // Null if there is none. Not thread safe.
   std::shared_ptr<const Reference> find(const std::string& scene, const SceneParameters& complete);
   // One that has no file.
@@ -85,7 +95,9 @@ class ReferenceFolder {
   nlohmann::json summaries() const;
 
  private:
-  std::string folder_;
+  ReferenceFolder() = default;
+
+  std::vector<std::string> folders_;
   std::map<std::string, std::shared_ptr<const Reference>> known_;
 };
 

@@ -53,10 +53,14 @@ struct Route {
   std::string name() const;  // "rattle, strain limit 1e-09"
 };
 
-// The two routes of a scene that is no pendulum, in steps of h seconds. The second one has the
-// first one's limit; they differ in the direction of constraint forces, the velocity's place in the
-// step and the linear solver.
-std::pair<Route, Route> contact_routes(const Scene& scene, double h);
+// The routes of a scene that is no pendulum, in steps of h seconds. The second one has the first
+// one's limit; they differ in the direction of constraint forces, the velocity's place in the step
+// and the linear solver. The third, of scenes with implicit forces, knows no constraints.
+struct Routes {
+  Route first, second;
+  std::optional<Route> third;
+};
+Routes contact_routes(const Scene& scene, double h);
 
 // After each step; sampled: whether it ends at a sample time.
 using SampleVisitor = std::function<void(const inextensible::State& state, bool sampled)>;
@@ -72,14 +76,13 @@ std::vector<inextensible::State> moved_starts(const Scene& scene, double by, int
 // ---- What is made of runs ----
 
 // Computes the reference of a scene by both routes. finest: the smallest step of step halving, s; 0
-// chooses by the scene. Throws UsageError if a route fails too early.
+// chooses by the scene. The third route is left out of quick ones, steps of quick_finest and more.
+// Throws UsageError if a route fails too early.
 Reference compute_reference(const std::string& scene, const SceneParameters& complete,
                             double finest, RouteRuns& runs);
 
-// In its place for a scene of one's own: one route alone, in steps of 1/400 s, whose gap is how far
-// it is from itself at 1/200 s and from a start moved a little. Throws UsageError if it fails too
-// early, and what `tell` throws.
-Reference finer_run(const std::string& scene, const SceneParameters& complete, const Tell& tell);
+// s; what `bench choose` takes.
+constexpr double quick_finest = sample_interval / 32;
 
 struct EnsemblePlan {
   // s; divides the sample interval. Far below the steps that are judged, and affordable.

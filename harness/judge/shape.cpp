@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -57,7 +59,71 @@ std::pair<double, double> mean_and_deviation(const std::vector<double>& values) 
   return {mean, std::sqrt(squares)};
 }
 
+// The vertices along the hem, in order: sides of one triangle only. Empty where there is not one
+// loop.
+std::vector<int> hem_of(const Scene& scene) {
+  std::set<std::pair<int, int>> open;  // sides of one triangle so far
+  for (const auto& corners : scene.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = corners[k], b = corners[(k + 1) % 3];
+      const std::pair side{std::min(a, b), std::max(a, b)};
+      if (open.erase(side) == 0) open.insert(side);
+    }
+  }
+  std::map<int, std::vector<int>> beside;
+  for (const auto& [a, b] : open) {
+    beside[a].push_back(b);
+    beside[b].push_back(a);
+  }
+  std::vector<int> hem;
+  if (beside.empty()) return hem;
+  int before = -1, at = beside.begin()->first;
+  do {
+    const std::vector<int>& both = beside[at];
+    if (both.size() != 2) return {};
+    hem.push_back(at);
+    const int after = both[0] == before ? both[1] : both[0];
+    before = at;
+    at = after;
+  } while (at != hem.front() && hem.size() < beside.size());
+  return hem.size() == beside.size() ? hem : std::vector<int>();
+}
+
 }  // namespace
+
+int count_folds(const Scene& scene, const Positions& x) {
+  constexpr double least = 0.02;
+  std::vector<int> hem = hem_of(scene);
+  if (hem.empty()) return 0;
+  const auto lower = [&](int a, int b) { return x(1, a) < x(1, b); };
+  std::rotate(hem.begin(), std::min_element(hem.begin(), hem.end(), lower), hem.end());
+  hem.push_back(hem.front());
+  // From the lowest vertex, a fold is a rise above the last valley and a fall below the last crest.
+  int folds = 0;
+  bool rising = true;
+  double valley = x(1, hem.front()), crest = valley;
+  for (const int vertex : hem) {
+    const double y = x(1, vertex);
+    crest = std::max(crest, y);
+    valley = std::min(valley, y);
+    if (rising ? crest - y < least * scene.size : y - valley < least * scene.size) continue;
+    folds += rising ? 1 : 0;
+    rising = !rising;
+    (rising ? crest : valley) = y;
+  }
+  return folds;
+}
+
+std::map<std::string, double> rest_difference(const Scene& scene, const Positions& x,
+                                              const Positions& y) {
+  const ShapeStatistics a = shape_statistics(scene, x), b = shape_statistics(scene, y);
+  std::map<std::string, double> difference{
+      {"folds", count_folds(scene, x) - count_folds(scene, y)}};
+  for (const auto& [name, member] : shape_statistic_infos) {
+    if (member != &ShapeStatistics::kinetic_energy) difference[name] = a.*member - b.*member;
+  }
+  return difference;
+}
 
 void to_json(nlohmann::json& row, const ShapeStatistics& shape) {
   row = nlohmann::json::array();

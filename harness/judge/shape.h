@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,14 @@ bool is_cloth(const Scene& scene);  // it has shape statistics
 
 // The statistics of positions, m.
 ShapeStatistics shape_statistics(const Scene& scene, const inextensible::Positions& x);
+
+// How often the hem rises and falls again by 2 % of the size or more on one way around the cloth. 0
+// where its triangles have no single hem.
+int count_folds(const Scene& scene, const inextensible::Positions& x);
+
+// What a cloth at rest is judged by, x's minus y's: potential energy, corner height, shadow, folds.
+std::map<std::string, double> rest_difference(const Scene& scene, const inextensible::Positions& x,
+                                              const inextensible::Positions& y);
 
 // The statistics of a run at sample times. Velocities that belong to the middle of a step are
 // treated as EnergyRecord does: kinetic energies are interpolated between middles.

@@ -47,7 +47,7 @@ struct Measures {
   double energy_rise = unknown;
   double symmetry_defect = unknown;
   std::string reference;
-  double trajectory = unknown, trajectory_max = unknown;
+  double trajectory = unknown, trajectory_mean = unknown, trajectory_max = unknown;
   double gap = unknown;
   int error_samples = 0;
   double error_until = unknown;
@@ -62,6 +62,7 @@ struct Measures {
   std::vector<ResidualSample> residuals;
   std::map<std::string, double> sag;
   double rest_speed = unknown;
+  std::map<std::string, double> rest, rest_gap;
 };
 
 inline constexpr FieldTraits number_or_null{.nullable = true};
@@ -98,15 +99,17 @@ inline constexpr std::tuple measure_fields{
           "largest distance to the mirror image", error_or_null),
     field("reference", &Measures::reference, "",
           "name of the reference in results/references; null: there is none", error_or_null),
-    field(
-        "trajectory", &Measures::trajectory, "scene's size",
-        "distance to the reference, root mean square over vertices (by mass) and the sample times "
-        "at which 3 gap is at most 0.02, the same for all runs; null: see unknown_because",
-        error_or_null),
+    field("trajectory", &Measures::trajectory, "scene's size",
+          "distance to the reference as root mean square over vertices (by mass), the largest over "
+          "the sample times at which 3 gap is at most 0.02, the same for all runs; null: see "
+          "unknown_because",
+          error_or_null),
+    field("trajectory_mean", &Measures::trajectory_mean, "scene's size",
+          "the same, mean over these times", error_or_null),
     field("trajectory_max", &Measures::trajectory_max, "scene's size",
-          "largest distance of a vertex to the reference, over the same samples", error_or_null),
+          "largest distance of a vertex to the reference, over the same times", error_or_null),
     field("gap", &Measures::gap, "scene's size",
-          "the reference's own uncertainty, over the same samples", error_or_null),
+          "the reference's own uncertainty, the largest over the same times", error_or_null),
     field("error_samples", &Measures::error_samples, "samples", "how many these are",
           {.inside = "error"}),
     field("error_until", &Measures::error_until, "s", "time of the last of them", error_or_null),
@@ -151,18 +154,25 @@ inline constexpr std::tuple measure_fields{
     field("rest_speed", &Measures::rest_speed, "m/s",
           "root mean square over vertices (by mass) and the last third of the run, of scenes that "
           "mark vertices: 0 at rest",
-          number_or_null)};
+          number_or_null),
+    field("rest", &Measures::rest, "",
+          "of cloth that has come to rest, minus the reference's: potential energy (over weight "
+          "times size), mean height of the corners (over size), shadow (over size squared) and "
+          "number of folds along the hem",
+          {.inside = "error"}),
+    field("rest_gap", &Measures::rest_gap, "", "how far these are known of the reference",
+          {.inside = "error"})};
 
 // The distance to the reference at a level: over the sample times at which 3 gap is at most the
 // level. These are the same for all runs, so that "within an error of 1 %" means one thing.
 struct ErrorAtLevel {
-  double distance = unknown;  // root mean square; unknown without a sample
+  double distance = unknown;  // largest root mean square over vertices; unknown without a sample
+  double mean = unknown;      // of these over time
   double largest = unknown;   // of any vertex
-  double gap = unknown;       // root mean square
+  double gap = unknown;       // the largest
   int samples = 0;
   double until = 0;  // s, the last sample
 };
-// Older files without a series have one figure for all levels.
 ErrorAtLevel error_at(const Measures& measures, double level);
 // Whether it is known to be at most the level; any_motion: always.
 bool within_error(const Measures& measures, double level);

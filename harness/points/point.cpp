@@ -35,22 +35,20 @@ double median_uncertainty(std::vector<double> samples) {
 
 ErrorAtLevel error_at(const Measures& measures, double level) {
   ErrorAtLevel at;
-  if (measures.error_series.empty()) {
-    if (!(measures.trajectory >= 0) || sure_gaps * measures.gap > level) return at;
-    return {measures.trajectory, measures.trajectory_max, measures.gap, 1, measures.valid_until};
-  }
-  double squares = 0, gap_squares = 0;
+  double sum = 0;
+  const auto raise = [](double& largest, double value) {
+    if (!(value <= largest)) largest = value;
+  };
   for (const ErrorSample& sample : measures.error_series) {
     if (!(sure_gaps * sample.gap <= level)) continue;
-    squares += sample.error * sample.error;
-    gap_squares += sample.gap * sample.gap;
-    if (!(sample.worst <= at.largest)) at.largest = sample.worst;
+    sum += sample.error;
+    raise(at.distance, sample.error);
+    raise(at.largest, sample.worst);
+    raise(at.gap, sample.gap);
     ++at.samples;
     at.until = std::max(at.until, sample.time);
   }
-  if (at.samples == 0) return at;
-  at.distance = std::sqrt(squares / at.samples);
-  at.gap = std::sqrt(gap_squares / at.samples);
+  if (at.samples > 0) at.mean = sum / at.samples;
   return at;
 }
 

@@ -147,6 +147,7 @@ const std::vector<SweepSpec>& tuning_scenes() {
   // The drape is hardest from 0.3 s on, where it has sheared.
   static const std::vector<SweepSpec> scenes{tuning_scene("chain", {50, 200}, 0.04, 1),
                                              tuning_scene("drape", {25, 55}, 0.02, 0.6),
+                                             tuning_scene("settling_drape", {21, 51}, 0.02, 3),
                                              tuning_scene("patch", {13, 19}, 0.02, 0.4),
                                              tuning_scene("spinning_net", {13, 25}, 0.04, 0.5)};
   return scenes;
@@ -155,6 +156,7 @@ const std::vector<SweepSpec>& tuning_scenes() {
 std::vector<int> smaller_sizes(const std::string& scene) {
   if (scene == "chain") return {25, 12};
   if (scene == "drape") return {15, 11};
+  if (scene == "settling_drape") return {15};
   if (scene == "spinning_net") return {9, 7};
   return {};  // of the patch there are no smaller references
 }

@@ -120,7 +120,7 @@ MeshParts parts_of(const std::string& name) {
 
 // The files, read once; scenes of all parameters are made of them.
 struct MeshModel {
-  std::string name;
+  std::string name, identity;
   MeshParts parts;
   ClothMesh cloth;
   inextensible::TriangleMesh body;
@@ -151,6 +151,12 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   auto model = std::make_shared<MeshModel>();
   model->name = name;
   model->parts = parts_of(name);
+  const MeshParts& parts = model->parts;
+  std::string content = name.substr(std::min(name.find(",pins="), name.size()));
+  content.erase(std::min(content.find(",body="), content.size()));
+  content = read_file(parts.file, "mesh") + content;
+  if (!parts.body.empty()) content += read_file(parts.body, "mesh");
+  model->identity = fnv1a(content);
   model->cloth = cloth_of(read_mesh_file(model->parts.file), model->parts.file);
   if (!model->parts.body.empty()) {
     model->body = body_of(read_mesh_file(model->parts.body));
@@ -229,7 +235,8 @@ SceneType mesh_scene(const std::string& name) {
               {.density = 0.15, .shear = 20, .bending = 1e-5, .drag = 0.05, .duration = 1}),
           .build = [model](const SceneParameters& p) { return build_mesh(*model, p); },
           .counts = [model](const SceneParameters& p) { return count_cloth(cloth_for(*model, p)); },
-          .like = model->parts.body.empty() ? "patch" : "drape"};
+          .like = model->parts.body.empty() ? "patch" : "drape",
+          .identity = model->identity};
 }
 
 }  // namespace harness

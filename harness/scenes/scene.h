@@ -72,6 +72,8 @@ struct SceneType {
   // smooth motion scenes/pendulum.h integrates in angles.
   bool pendulum = false;
   const char* resolution = "n";  // the parameter that a resolution sweep turns
+  // Of a scene made of files: a hash of what they hold. Empty: the name says all.
+  std::string identity = {};
 
   std::string kind() const { return *like ? like : name; }
 };

@@ -119,10 +119,10 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
         for (const Freedom& f : degrees_of_freedom(n)) outcome.freedom.push_back(f);
       }
     }
-    ReferenceFolder references(source_path("results/references"));
+    const auto references = ReferenceFolder::usual();
     for (const SameFrameScene& scene : plan.frames) {
       stop_if_asked();
-      outcome.same_frames.push_back(same_frame(scene, seed, references));
+      outcome.same_frames.push_back(same_frame(scene, seed, *references));
       events.done("the same frame, " + scene.name(), 0, 0);
     }
   } catch (const Interrupted&) {
