@@ -1,16 +1,19 @@
+// How much tests do with sanitizers, which look at memory and not at mathematics, and make each
+// many times as slow.
 #pragma once
 
 namespace inextensible::testing {
 
-// How many random trials of `n` are made: an eighth of them with sanitizers, which look at memory
-// and not at mathematics, and make each many times as slow.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr bool sanitized = true;
+#else
+inline constexpr bool sanitized = false;
+#endif
+
+// How many random trials, or steps, of `n` are made.
 template <class Int>
 constexpr Int trials(Int n) {
-#ifdef __SANITIZE_ADDRESS__
-  return n / 8;
-#else
-  return n;
-#endif
+  return sanitized ? n / 8 : n;
 }
 
 }  // namespace inextensible::testing

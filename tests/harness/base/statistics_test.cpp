@@ -87,6 +87,7 @@ TEST(Ratio, IntervalMatchesTheTablesOfTheTest) {
 }
 
 TEST(Ratio, SamplesOfOtherSpreadsHardlyLoseCoverage) {
+  if (inextensible::testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
   std::mt19937 random = seeded();
   std::lognormal_distribution<double> narrow(0, 0.01), wide(0, 0.1);
   const double covered = coverage(20000, 1.0, [&] {

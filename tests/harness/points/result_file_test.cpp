@@ -18,6 +18,7 @@
 #include "harness/points/tuned.h"
 #include "harness/run/sweep.h"
 #include "harness/stability/stability.h"
+#include "support/effort.h"
 
 namespace harness {
 namespace {
@@ -65,6 +66,7 @@ json small_document(std::size_t points) {
 }
 
 TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchema) {
+  if (inextensible::testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
   const Suite suite = tiny_suite();
   const auto untimed = [](const auto&, RunLimits limits, const auto& call) {
     limits.timed = false;  // one run a sample: nobody reads the times
@@ -133,6 +135,7 @@ TEST(ResultFile, OfAnUntimedRunIsNotReadForItsTimes) {
 }
 
 TEST(Schemas, AreThoseOfCommittedFiles) {
+  if (inextensible::testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
   for (const char* folder : {"results", "results/baseline", "configs"}) {
     for (const auto& entry : std::filesystem::directory_iterator(source(folder))) {
       const std::string name = entry.path().filename();

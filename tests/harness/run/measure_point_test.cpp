@@ -14,6 +14,7 @@
 #include "harness/run/calibration.h"
 #include "harness/run/machine_noise.h"
 #include "harness/run/point_runner.h"
+#include "support/effort.h"
 #include "support/param_name.h"
 
 namespace harness {
@@ -170,6 +171,7 @@ class DrapeErrors : public ::testing::TestWithParam<const char*> {};
 // step the error falls until it is what the reference cannot tell from zero, and what is dissipated
 // never comes back.
 TEST_P(DrapeErrors, FallWithTheStepToTheReferencesGap) {
+  if (inextensible::testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
   RunLimits limits{.timed = false};
   limits.references =
       std::make_shared<ReferenceFolder>(std::string(SOURCE_DIR) + "/results/references");

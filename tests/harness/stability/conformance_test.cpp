@@ -11,6 +11,7 @@
 
 #include "harness/stability/stability.h"
 #include "solvers/registry.h"
+#include "support/effort.h"
 #include "support/param_name.h"
 
 namespace inextensible {
@@ -148,6 +149,7 @@ class BrokenSolvers : public ::testing::Test {
 using Checks = std::set<std::string>;
 
 TEST_F(BrokenSolvers, FailTheCheckThatIsMeantForThemAndNoOther) {
+  if (testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
   for (const Fault& fault : faults)
     EXPECT_EQ(failed_checks(fault.name), *fault.check ? Checks{fault.check} : Checks{})
         << fault.name;
@@ -156,6 +158,7 @@ TEST_F(BrokenSolvers, FailTheCheckThatIsMeantForThemAndNoOther) {
 }
 
 TEST_F(BrokenSolvers, AreFoundByTheHardCasesAsWell) {
+  if (testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
   EXPECT_EQ(failed_checks("sound", true), Checks{});
   EXPECT_EQ(failed_checks("ignores_the_limit", true), (Checks{"limit", "hard cases"}));
   EXPECT_EQ(failed_checks("drifts", true), (Checks{"linear momentum", "hard cases"}));
@@ -201,7 +204,10 @@ TEST_F(BrokenSolvers, CannotTakeANameOrBringHalfARow) {
 
 class BuiltInSolvers : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(BuiltInSolvers, Conform) { EXPECT_EQ(failed_checks(GetParam(), true), Checks{}); }
+TEST_P(BuiltInSolvers, Conform) {
+  if (testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
+  EXPECT_EQ(failed_checks(GetParam(), true), Checks{});
+}
 
 std::vector<const char*> built_in() {
   std::vector<const char*> names;

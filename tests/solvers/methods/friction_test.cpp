@@ -9,6 +9,7 @@
 #include "solvers/registry.h"
 #include "support/contact.h"
 #include "support/motion.h"
+#include "support/param_name.h"
 
 namespace inextensible {
 namespace {
@@ -93,7 +94,9 @@ struct OnPost {
   OnPost(const char* solver, double heavy) {
     ProblemParts parts;
     parts.gravity = {0, -gravity, 0};
-    parts.collider = std::make_shared<const TriangleCollider>(post(2 * vertices, radius), friction);
+    static const auto post_of_all =
+        std::make_shared<const TriangleCollider>(post(2 * vertices, radius), friction);
+    parts.collider = post_of_all;
     const double link = 2 * radius * std::sin(turn / 2), fall = 0.25;
     state.x.resize(3, vertices + 2);
     for (int i = 0; i < vertices + 2; ++i) {
@@ -161,7 +164,8 @@ TEST_P(Friction, OfARopeRoundAPostGrowsAsTheCapstanEquationSays) {
 INSTANTIATE_TEST_SUITE_P(Methods, Friction,
                          ::testing::Values("implicit_springs", "augmented_vbd", "admm",
                                            "gauss_seidel_colored", "shake", "icd",
-                                           "fast_projection", "yarn_projection"));
+                                           "fast_projection", "yarn_projection"),
+                         names::contestant_name);
 
 }  // namespace
 }  // namespace inextensible

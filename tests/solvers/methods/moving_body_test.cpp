@@ -90,13 +90,6 @@ TEST(MovingBody, ALiftCarriesItsLoadUpAndLosesItDownwards) {
   EXPECT_NEAR(down.state.v(1, 0), -free_fall * down.state.time, 1e-12);
 }
 
-TEST(MovingBody, NeedsABody) {
-  ProblemParts parts;
-  parts.mass = {1};
-  parts.body_motion = straight({1, 0, 0});
-  EXPECT_THROW(Problem{parts}, std::invalid_argument);
-}
-
 TEST(MovingPins, AreWhereTheBodyTakesThem) {
   const BodyMotion motion = [](double time) {
     return Pose{turning(2)(time).turn, time * Vector3d(0.7, -0.2, 0.4)};

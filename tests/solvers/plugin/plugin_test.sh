@@ -95,13 +95,13 @@ done 3< <("$bench" list verbs --json | /usr/bin/python3 -c 'import json, sys; pr
 for part in '</html>' '<style>' 'const points = '; do grep -q "$part" page.html || fail "the page of an installed bench lacks $part"; done
 
 
-misfits=$BUILD_FOLDER/tests
+kinds=$BUILD_FOLDER/tests
 if ((SANITIZED)); then quick=(--quick); else quick=(); fi  # the rest takes minutes with sanitizers
 "$bench" check --solver symmetric_sweeps --plugin "$plugin" "${quick[@]}" >check.txt 2>&1 ||
   fail "a sound solver: $(cat check.txt)"
 grep -q '^symmetric_sweeps conforms: ' check.txt || fail "it must conform: $(cat check.txt)"
 ((SANITIZED)) || grep -q '^PASS  hard cases' check.txt || fail "no hard cases: $(cat check.txt)"
-"$bench" --plugin "$misfits/libplugin_broken.so" check --solver misfit --quick >check.txt 2>&1
+"$bench" --plugin "$kinds/libplugin_broken.so" check --solver misfit --quick >check.txt 2>&1
 [[ $? == 4 ]] || fail "a broken solver must exit 4: $(cat check.txt)"
 grep -q '^FAIL  limit .*(allowed 1)$' check.txt && grep -q '^      -> .*edge [0-9]* is strained' check.txt &&
   grep -q '^misfit does not conform: ' check.txt || fail "a broken solver must not conform: $(cat check.txt)"
@@ -110,7 +110,7 @@ refused "--solver is required" check
 refused "--seed" check --solver icd --seed -1
 
 # ---- What a row may ask for, and what it may lack ----
-sound() { printf '%s' "$misfits/libsound_$1.so"; }
+sound() { printf '%s' "$kinds/libplugin_$1.so"; }
 "$bench" --plugin "$(sound start)" --sweep strain --profile quick --reps 1 --filter 'strain:0.01/' --solver sound \
   --no-plots --out start.json >sweep.txt 2>&1 || fail "a set-up with positions: $(cat sweep.txt)"
 "$bench" --plugin "$(sound bare)" --sweep strain --profile quick --reps 1 --filter 'strain:0.0*1/' --solver sound \
@@ -160,10 +160,10 @@ refused "there is no such file" --plugin missing.so list
 refused "invalid ELF header" --plugin text.so list
 refused "has no function inextensible_plugin" --plugin "$(ldd "$bench" | awk '/libm\.so/ {print $3}')" list
 abi=$(sed -n 's/^#define INEXTENSIBLE_PLUGIN_ABI //p' installed/include/inextensible/solvers/plugin.h)
-refused "version of the plug-in interface is 999 there, $abi here" --plugin "$misfits/libplugin_another_version.so" list
-refused "alignment (EIGEN_MAX_ALIGN_BYTES) is 128 there, 64 here" --plugin "$misfits/libplugin_another_alignment.so" list
-refused "there is a solver 'shake' already" --plugin "$misfits/libplugin_taken_name.so" list
-refused "no licence for today" --plugin "$misfits/libplugin_throws.so" list
+refused "version of the plug-in interface is 999 there, $abi here" --plugin "$kinds/libplugin_another_version.so" list
+refused "alignment (EIGEN_MAX_ALIGN_BYTES) is 128 there, 64 here" --plugin "$kinds/libplugin_another_alignment.so" list
+refused "there is a solver 'shake' already" --plugin "$kinds/libplugin_taken_name.so" list
+refused "no licence for today" --plugin "$kinds/libplugin_throws.so" list
 refused "there is a solver 'symmetric_sweeps' already" --plugin "$plugin" list --plugin "$plugin"
 refused "there is no such file" --plugin "$plugin" --plugin missing.so "--sweep" strain --out out.json
 

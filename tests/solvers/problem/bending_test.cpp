@@ -156,7 +156,10 @@ TEST(Problem, RefusesPartsThatDoNotFit) {
       [](ProblemParts& parts) {
         parts.drag = {1, 1, -1};
       },
-      [](ProblemParts& parts) { parts.pins_follow_body = true; }};  // of none
+      [](ProblemParts& parts) { parts.pins_follow_body = true; },  // of none
+      [](ProblemParts& parts) {
+        parts.body_motion = [](double) { return Pose{Eigen::Matrix3d::Identity(), {0, 0, 0}}; };
+      }};
   for (const auto& change : misfits) {
     ProblemParts parts;
     parts.mass = {1, 1, 1};
