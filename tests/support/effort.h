@@ -13,7 +13,7 @@ inline constexpr bool sanitized = false;
 // How many random trials, or steps, of `n` are made.
 template <class Int>
 constexpr Int trials(Int n) {
-  return sanitized ? n / 8 : n;
+  return sanitized ? (n + 7) / 8 : n;
 }
 
 }  // namespace inextensible::testing

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "solvers/problem/problem.h"
+#include "support/effort.h"
 
 namespace inextensible::testing {
 
@@ -16,10 +17,11 @@ inline double uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-// test(random, seed) for as many seeds; a failure names its seed.
+// test(random, seed) for as many seeds, of which sanitizers see an eighth; a failure names its
+// seed.
 template <class Test>
 void for_seeds(std::uint64_t count, const Test& test) {
-  for (std::uint64_t seed = 0; seed < count; ++seed) {
+  for (std::uint64_t seed = 0; seed < trials(count); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     test(random, seed);

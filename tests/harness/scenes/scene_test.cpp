@@ -12,6 +12,7 @@
 #include "solvers/registry.h"
 #include "solvers/systems/schur_complement.h"
 #include "support/contact.h"
+#include "support/effort.h"
 #include "support/scenes.h"
 
 namespace harness {
@@ -184,7 +185,7 @@ TEST(Drape, IsDeliveredWithinTheLimitAndOutsideTheBallByEveryMethod) {
     SCOPED_TRACE(backend.name);
     const auto stepper = stepper_for(drape, backend.name, limit);
     State state = drape.start;
-    for (int step = 0; step < 40; ++step) {
+    for (int step = 0; step < inextensible::testing::trials(40); ++step) {
       const auto result = stepper->advance(state, h);
       ASSERT_TRUE(result) << "step " << step << ": " << result.detail;
       EXPECT_LE(strain_range(*drape.problem, state.x).most, limit * (1 + 1e-9)) << "step " << step;
