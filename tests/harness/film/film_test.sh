@@ -19,7 +19,7 @@ done
 refused "must end in" film --out out.avi
 refused "did you mean" film --scene garmnet --out out.obj
 refused "must be wider than the waist" film --scene garment --set rim=0.1 --out out.png
-refused "takes no implicit forces" film --scene garment --set n=12 --solver rattle --out out.png
+refused "takes no collider" film --scene garment --set n=12 --solver soft_step --out out.png
 refused "must end in .png" film --stills 0.1 --out out.webp
 refused "has no pictures" film --width 100 --out out.obj
 refused "not within the film" film --stills 0.5,7 --out out.png
