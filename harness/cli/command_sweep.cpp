@@ -6,6 +6,7 @@
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/judge/reference.h"
+#include "harness/judge/reference_routes.h"
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
 #include "harness/run/execute.h"
@@ -44,18 +45,25 @@ int dry_run(const Suite& suite, const std::vector<Search>& searches) {
   return success;
 }
 
+// Larger scenes than any that has a reference: even a few steps of a slow route take long.
+constexpr int most_timed_vertices = 20000;
+
 void report_missing_references(const SweepCommand& options, const std::vector<Search>& searches,
                                ReferenceFolder& references) {
   const auto missing = without_reference(searches, references);
   if (missing.empty()) return;
   std::string names;
-  for (const auto& [file, scene] : missing)
+  double seconds = 0;
+  for (const auto& [file, scene] : missing) {
     names += (names.empty() ? "" : ", ") + file.substr(0, file.rfind(".json"));
+    if (find_scene(scene.first)->counts(scene.second).first <= most_timed_vertices)
+      seconds += reference_seconds(scene.first, scene.second);
+  }
   if (options.finest_error > 0)
     throw UsageError("--finest-error needs references, missing: " + names +
                      " (bench reference, with the same scene and profile, makes them)");
   std::cerr << "bench: no reference, so no trajectory error, for " << names
-            << " (bench reference makes them)\n";
+            << " (bench reference makes them, in about " << duration_text(seconds) << ")\n";
 }
 
 // What chooses points beside the suite.

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/base/clock.h"
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
 #include "harness/judge/mechanics.h"
 #include "harness/scenes/pendulum.h"
+#include "solvers/registry.h"
 
 namespace harness {
 
@@ -21,6 +23,7 @@ constexpr int moved_start_count = 2;               // how many disturbed starts 
 constexpr double surely_known = 0.01 / sure_gaps;  // gap up to which an order is looked for
 constexpr double parted = 1e-2;                    // gap at which a reference ends
 constexpr double pendulum_tolerance = 1e-13;
+constexpr double usual_finest = sample_interval / 640;  // s, of scenes that are no pendulum
 
 // Second route of a pendulum, beside its angles.
 const Route smooth_route{"rattle", 1e-12, 2};
@@ -69,7 +72,7 @@ class ReferenceMaker {
 
   Reference by_two_routes(double finest) {
     const bool angles = type_->pendulum;
-    const double h = finest > 0 ? finest : sample_interval / (angles ? 1024 : 640);
+    const double h = finest > 0 ? finest : (angles ? sample_interval / 1024 : usual_finest);
     // The coarsest run of each route must meet the sample times.
     const int coarsest = angles ? 4 : 8;
     const double steps = sample_interval / (coarsest * h);
@@ -294,6 +297,28 @@ class ReferenceMaker {
 Reference compute_reference(const std::string& scene, const SceneParameters& complete,
                             double finest, RouteRuns& runs) {
   return ReferenceMaker(scene, complete, runs).by_two_routes(finest);
+}
+
+double reference_seconds(const std::string& name, const SceneParameters& complete) {
+  constexpr int steps = 5;
+  const auto type = find_scene(name);
+  if (type->pendulum || type->exact) return 0;
+  const Scene scene = type->build(complete);
+  const double h = usual_finest;
+  const auto [first, second, third] = contact_routes(scene, h);
+  // Of the run from the start to the end; the finest step counts 1.
+  const auto seconds = [&](const Route& route, double step, double runs) {
+    const auto stepper =
+        inextensible::make_stepper(route.solver, scene.problem, {route.limit, 1, route.settings});
+    State state = scene.start;
+    stepper->advance(state, step);
+    const auto begin = Clock::now();
+    for (int k = 0; k < steps; ++k) stepper->advance(state, step);
+    return since(begin) / steps * scene.duration / step * runs;
+  };
+  const double own = third ? 2.5 : 3.5, other = third ? 1.8 : 1.2;  // runs in by_contact_routes
+  return seconds(first, h, own) + seconds(second, h, other) +
+         (third ? seconds(*third, 8 * h, 1) : 0);
 }
 
 }  // namespace harness

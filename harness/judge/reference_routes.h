@@ -84,6 +84,10 @@ Reference compute_reference(const std::string& scene, const SceneParameters& com
 // s; what `bench choose` takes.
 constexpr double quick_finest = sample_interval / 32;
 
+// How long compute_reference takes, s, estimated from a few steps of each route. 0 for pendulums,
+// which take seconds.
+double reference_seconds(const std::string& scene, const SceneParameters& complete);
+
 struct EnsemblePlan {
   // s; divides the sample interval. Far below the steps that are judged, and affordable.
   double step = sample_interval / 160;

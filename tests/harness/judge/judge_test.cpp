@@ -68,6 +68,27 @@ TEST(Judge, CountsTheSameSampleTimesForAllRuns) {
   }
 }
 
+// The mean would hide how far off a run is at its worst: the largest counts.
+TEST(Judge, ErrorIsTheLargestOverTime) {
+  const auto reference = falling();
+  reference->gap.assign(5, 0.001);
+  Judge judge(chain_of_four, {.reference = reference});
+  State state = chain_of_four.start;
+  const double off[] = {0, 0.002, 0.011, 0.003, 0.004};
+  for (int k = 1; k <= 5; ++k) {
+    judge.before(state, 0.04);
+    state.time = 0.04 * k;
+    state.x = reference->positions[static_cast<std::size_t>(k - 1)];
+    state.x.row(2).setConstant(off[k - 1]);
+    judge.after(state.x, state, 0.04);
+  }
+  const Measures found = judge.finish();
+  EXPECT_NEAR(found.trajectory, 0.011, 1e-12);
+  EXPECT_NEAR(found.trajectory_mean, 0.004, 1e-12);
+  EXPECT_TRUE(within_error(found, 0.02));
+  EXPECT_FALSE(within_error(found, 0.01));
+}
+
 TEST(Judge, KnowsNoErrorWithoutSureSamplesAndOfARunThatEndedEarly) {
   const auto unsure = falling();
   unsure->gap.assign(5, 0.01);
