@@ -156,9 +156,8 @@ const std::vector<SweepSpec>& tuning_scenes() {
 std::vector<int> smaller_sizes(const std::string& scene) {
   if (scene == "chain") return {25, 12};
   if (scene == "drape") return {15, 11};
-  if (scene == "settling_drape") return {15};
   if (scene == "spinning_net") return {9, 7};
-  return {};  // of the patch there are no smaller references
+  return {};  // of the others there are no smaller references
 }
 
 json tuning_rule(const SweepSpec& scene, const inextensible::Backend& solver) {

@@ -118,24 +118,23 @@ StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Posit
   Stopwatch stopwatch(phases_wanted_);
   const Bdf2Coefficients c = history_.coefficients(h);
   v = (x - c.now * start.x - c.before * history_.x()) * (1 / c.beta_h);
-  history_.add_step(start, h, x, acceleration_, contacts_.get(), jumped(start, c, v), v);
+  history_.add_step(start, h, x, acceleration_, contacts_.get(), jumped(start, h, v), v);
   phases_.unconstrained += stopwatch();
   return {};
 }
 
-bool Bdf2Stepper::jumped(const State& start, const Bdf2Coefficients& c, const Positions& v) {
-  const auto& mass = problem_->mass();
+bool Bdf2Stepper::jumped(const State& start, double h, const Positions& v) {
   const auto twice_kinetic = [&](auto velocity) {
     double sum = 0;
-    for (int i = 0; i < problem_->vertices(); ++i) sum += mass[i] * velocity(i).squaredNorm();
+    for (int i = 0; i < problem_->vertices(); ++i)
+      sum += problem_->mass()[i] * velocity(i).squaredNorm();
     return sum;
   };
   const double before = kinetic_;
   kinetic_ = twice_kinetic([&](int i) { return v.col(i); });
   if (!(kinetic_ > largest_gain * before)) return false;
-  const bool jump = kinetic_ > largest_gain * twice_kinetic([&](int i) -> Eigen::Vector3d {
-                                 return c.now * start.v.col(i) + c.before * history_.v().col(i) +
-                                        c.beta_h * acceleration_.col(i);
+  const bool jump = kinetic_ > largest_gain * twice_kinetic([&](int i) {
+                                 return start.v.col(i) + h * acceleration_.col(i);
                                });
   if (jump) kinetic_ = 0;
   return jump;

@@ -66,9 +66,8 @@ class Bdf2Stepper final : public FilterStepper {
   bool unconstrained(const State& state, double h, Positions& x) override;
   StepResult end_velocities(const State& start, double h, const Positions& filtered,
                             const Positions& x, Positions& v) override;
-  // Whether edges have given the step from `start` to velocities v, backwards from the formula,
-  // much more kinetic energy than it had before them.
-  bool jumped(const State& start, const Bdf2Coefficients& c, const Positions& v);
+  // Whether v has much more kinetic energy than the flight from `start` would have.
+  bool jumped(const State& start, double h, const Positions& v);
   // x^{n+1} before the filter, and acceleration_. known: the last step's history goes on.
   void explicit_solve(const State& state, double h, bool known, Positions& x);
   bool implicit_solve(const State& state, double h, bool known, Positions& x);
