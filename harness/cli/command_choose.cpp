@@ -154,7 +154,7 @@ struct Choice {
 
 constexpr double far_behind = 4;  // times the fastest so far: a run that takes longer is stopped
 constexpr int finest_part = 32;   // of a frame: the smallest step
-constexpr double reference_share = 0.4;  // of the time, for a finer run at most
+constexpr double reference_share = 0.4;  // of the time, for a reference at most
 
 // Contestants of the scene that --solver matches, and what it names that does not compete there.
 // Throws UsageError for a name that the scene has nothing for.
@@ -174,11 +174,11 @@ Contestants contestants_for(const std::string& given, const SceneType& type,
   return all;
 }
 
-// A kept reference, or a finer run made now, which is then among `references`. Null: neither.
+// A kept reference, or a quick one made now, which is then among `references`. Null: neither.
 std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, ReferenceFolder& references,
                                                const ChooseLimits& limits) {
   if (auto kept = references.find(sweep.scene, sweep.scene_parameters)) return kept;
-  std::cerr << "this scene has no reference: making a finer run in its place ...\n";
+  std::cerr << "this scene has no reference: making a quick one ...\n";
   const auto stop = [&limits] {
     return limits.interrupted() || limits.elapsed() > reference_share * limits.seconds;
   };
@@ -192,12 +192,16 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
       {.timeout = limits.seconds, .interrupted = stop});
   if (limits.interrupted()) throw Interrupted();
   if (const auto made = answer(outcome, [](const json& document) {
-        return std::make_shared<const Reference>(reference_of(document, "the finer run"));
+        return std::make_shared<const Reference>(reference_of(document, "the quick reference"));
       })) {
     references.put(*made);
+    std::cerr << (*made)->method << " against " << (*made)->second_method << ": known to "
+              << number_text(100 * headline_error) << " % for "
+              << number_text((*made)->samples_at(headline_error) * sample_interval) << " of "
+              << number_text((*made)->duration()) << " s\n";
     return *made;
   }
-  std::cerr << "bench: no finer run, so errors are unknown: "
+  std::cerr << "bench: no reference, so errors are unknown: "
             << (outcome.end == ChildOutcome::End::interrupted
                     ? "it takes more than " + number_text(100 * reference_share) +
                           " % of --seconds " + number_text(limits.seconds)

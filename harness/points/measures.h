@@ -159,9 +159,9 @@ inline constexpr std::tuple measure_fields{
           "of cloth that has come to rest, minus the reference's: potential energy (over weight "
           "times size), mean height of the corners (over size), shadow (over size squared) and "
           "number of folds along the hem",
-          {.inside = "error"}),
+          error_or_null),
     field("rest_gap", &Measures::rest_gap, "", "how far these are known of the reference",
-          {.inside = "error"})};
+          error_or_null)};
 
 // The distance to the reference at a level: over the sample times at which 3 gap is at most the
 // level. These are the same for all runs, so that "within an error of 1 %" means one thing.

@@ -36,24 +36,6 @@ std::string cell_text(const Cell& cell) {
   return text;
 }
 
-// Up to when errors count, where that is not the whole run.
-std::string span_of_errors(const std::vector<Plane>& planes) {
-  double first = std::numeric_limits<double>::infinity(), last = 0, duration = 0;
-  for (const Plane& plane : planes) {
-    for (const Cell& cell : plane.cells) {
-      if (cell.level != headline_error || !cell.first() || cell.known_until == 0) continue;
-      first = std::min(first, cell.known_until);
-      last = std::max(last, cell.known_until);
-      duration = std::max(duration, cell.first()->point.duration());
-    }
-  }
-  if (last == 0 || first > duration * (1 - 1e-9)) return "";
-  return "An error of at most " + percent(headline_error) + " is a mean up to " +
-         (first < last ? number_text(first) + " or " : "") + number_text(last) + " s of " +
-         number_text(duration) +
-         " s: later two references differ too much, and at the end of that time it can be larger. ";
-}
-
 template <class Is>
 bool any_cell(const std::vector<Plane>& planes, Is is) {
   return std::ranges::any_of(
@@ -109,6 +91,22 @@ std::string reach_text(const std::optional<Reach>& reach) {
 }
 
 }  // namespace
+
+std::string span_of_errors(const std::vector<Plane>& planes) {
+  double first = std::numeric_limits<double>::infinity(), last = 0, duration = 0;
+  for (const Plane& plane : planes) {
+    for (const Cell& cell : plane.cells) {
+      if (cell.level != headline_error || !cell.first() || cell.known_until == 0) continue;
+      first = std::min(first, cell.known_until);
+      last = std::max(last, cell.known_until);
+      duration = std::max(duration, cell.first()->point.duration());
+    }
+  }
+  if (last == 0 || first > duration * (1 - 1e-9)) return "";
+  return "Errors of " + percent(headline_error) + " are known up to " +
+         (first < last ? number_text(first) + " or " : "") + number_text(last) + " s of " +
+         number_text(duration) + " s: later the scene's references differ too much. ";
+}
 
 std::string title_of(const Plane& plane) {
   return plane.sweep == "resolution"

@@ -45,6 +45,9 @@ std::string plain(double value, int digits);
 // "chain, 80 vertices, over strain". Planes of one title are one table: those of a resolution sweep
 // are its rows.
 std::string title_of(const analysis::Plane& plane);
+// A sentence on the time until which errors at the headline's level count. Empty: they are not
+// known.
+std::string span_of_errors(const std::vector<analysis::Plane>& planes);
 bool is_stability(const nlohmann::json& document);
 // The strain-error grid of each scene: the fastest method within each limit and level of error.
 void print_planes(std::ostream& out, const std::vector<NamedResult>& results);

@@ -91,6 +91,7 @@ void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
                  "times as long: best of the paper"}};
     for (const Plane& plane : group) add_answers(table, plane, sizes);
     out << '\n' << title << ": the fastest within a strain limit and an error\n";
+    if (const std::string span = tables::span_of_errors(group); !span.empty()) out << span << '\n';
     print_aligned(out, table);
   }
 }

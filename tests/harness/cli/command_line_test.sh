@@ -162,7 +162,7 @@ assert take["solver"] in ("rattle", "fast_projection"), take
 assert take["max_strain"] <= 0.01 and take["error"] <= 0.05 and take["step"] <= 1 / 60 + 1e-9, take
 assert 0 < take["frame_seconds"]["median"] <= take["frame_seconds"]["p99"] <= take["frame_seconds"]["worst"] * (1 + 1e-12), take
 assert choice["runner_up"] is None or choice["runner_up"]["seconds_per_simulated_second"] >= take["seconds_per_simulated_second"]'
-# Cloth of one's own, without a body: there is no reference, so a finer run takes its place.
+# Cloth of one's own, without a body: there is no reference, so a quick one takes its place.
 holds '
 n = 7
 with open("curtain.obj", "w") as file:
@@ -170,7 +170,15 @@ with open("curtain.obj", "w") as file:
     file.writelines(f"f {a} {a + 1} {a + n + 1} {a + n}\n" for j in range(n - 1) for a in range(j * n + 1, j * n + n))'
 bench choose --scene mesh:curtain.obj --pins 'y > 0.99 and x < 0.02' --solver 'yarn_projection|fast_projection' --seconds 20 \
   >chosen.txt 2>err.txt || fail "choose for a mesh: exit $?, $(tail -1 err.txt)"
+grep -q 'known to 2 % for [0-9.]* of 1 s' err.txt || fail "how long the quick reference is known: $(cat err.txt)"
 grep -q '^curtain.obj, 49 vertices' chosen.txt && grep -q '^take  .* error [0-9.e-]* %' chosen.txt || fail "choose for a mesh: $(cat chosen.txt)"
+# Its reference is named after the content of the file, wherever that lies, and lies beside the user's results.
+place=$(bench reference --scene mesh:curtain.obj --pins 'y > 0.99 and x < 0.02' --set duration=0.08 --finest 0.0005 2>err.txt | tail -1)
+[[ $place == */references/mesh-* && -s $place ]] || fail "the reference of a mesh: '$place', $(tail -1 err.txt)"
+mkdir elsewhere && cp curtain.obj elsewhere/other.obj
+bench reference --scene mesh:elsewhere/other.obj --pins 'y > 0.99 and x < 0.02' --set duration=0.08 | grep -q 'nothing is missing' ||
+  fail "the same file under another name"
+rm -f "$place"
 # Without the time for any run, and with a budget that cannot be kept, nothing is to be taken; a solver that is named is tried.
 exits 6 'no run ended within its strain limit in this time' choose --no-wait --scene drape --n 71 --seconds 0.5
 ! grep -q '^take' stdout.txt || fail "a solver to take, without any run"

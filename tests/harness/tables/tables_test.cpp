@@ -67,8 +67,8 @@ TEST(ResultsPage, SaysUpToWhenErrorsCountUnlessItIsTheWholeRun) {
       p["error"]["error_series"] = {{0.1, 0.01, 0.02, 1e-6, 1e-6}, {last, 0.01, 0.02, 1e-6, 1e-6}};
     return page(result);
   };
-  has(with(0.36), "An error of at most 2 % is a mean up to 0.36 s of 1 s");
-  EXPECT_EQ(with(1.0).find("is a mean up to"), std::string::npos);
+  has(with(0.36), "Errors of 2 % are known up to 0.36 s of 1 s");
+  EXPECT_EQ(with(1.0).find("are known up to"), std::string::npos);
 }
 
 // ---- On a terminal ----
