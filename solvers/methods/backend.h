@@ -133,7 +133,7 @@ struct TimeStepper {
   const char* citation = "";
   const char* phrase = "";  // after a method's label: "in BDF2"; empty for a published stepper
   Velocities velocities = Velocities::half_step;
-  Along along = Along::edges;  // where corrections of a filter point
+  Along along = Along::edges;              // where corrections of a filter point
   std::vector<SettingInfo> settings = {};  // the stepper's own
 };
 
