@@ -197,7 +197,7 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
     references.put(*made);
     std::cerr << (*made)->method << " against " << (*made)->second_method << ": known to "
               << number_text(100 * headline_error) << " % for "
-              << number_text((*made)->samples_at(headline_error) * sample_interval) << " of "
+              << number_text((*made)->known_until(headline_error)) << " of "
               << number_text((*made)->duration()) << " s\n";
     return *made;
   }

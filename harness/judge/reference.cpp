@@ -108,6 +108,14 @@ int Reference::samples_at(double level) const {
                                         [&](double g) { return sure_gaps * g <= level; }));
 }
 
+double Reference::known_until(double level) const {
+  double until = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (sure_gaps * gap[i] <= level) until = times[i];
+  }
+  return until;
+}
+
 std::string Reference::name() const { return exact ? "exact" : reference_name(scene, parameters); }
 
 double rms_distance(const Scene& scene, const Positions& x, const Positions& y) {

@@ -43,7 +43,8 @@ struct Reference {
   double duration() const { return times.empty() ? 0 : times.back(); }
   // How many sample times count at a level of error: those at which 3 gap is at most the level.
   int samples_at(double level) const;
-  std::string name() const;  // that of its file; "exact"
+  double known_until(double level) const;  // s: the last of these; 0: none
+  std::string name() const;                // that of its file; "exact"
 };
 
 // Mass-weighted RMS distance of two sets of positions over the scene's size.
@@ -61,7 +62,8 @@ std::shared_ptr<const Reference> exact_reference(const std::string& scene,
                                                  const SceneParameters& complete);
 
 // The file a reference of this scene is kept in: chain-n80.json, or with a hash of the parameters
-// that are not the defaults, mesh-9f3c...-n1.json of a scene made of files. Duration does not count.
+// that are not the defaults, mesh-9f3c...-n1.json of a scene made of files. Duration does not
+// count.
 std::string reference_name(const std::string& scene, const SceneParameters& complete);
 
 nlohmann::json to_json(const Reference& reference);

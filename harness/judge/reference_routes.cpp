@@ -23,6 +23,7 @@ constexpr int moved_start_count = 2;               // how many disturbed starts 
 constexpr double surely_known = 0.01 / sure_gaps;  // gap up to which an order is looked for
 constexpr double parted = 1e-2;                    // gap at which a reference ends
 constexpr double pendulum_tolerance = 1e-13;
+constexpr std::size_t most_samples = 50;
 constexpr double usual_finest = sample_interval / 640;  // s, of scenes that are no pendulum
 
 // Second route of a pendulum, beside its angles.
@@ -283,7 +284,24 @@ class ReferenceMaker {
     std::size_t valid = 0;
     while (valid < r_.gap.size() && r_.times[valid] <= r_.valid_until) ++valid;
     r_.positions.assign(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(valid));
+    if (r_.times.size() > most_samples) thin_out();
     return std::move(r_);
+  }
+
+  // Every third sample, so that files of long motions stay small.
+  void thin_out() {
+    const auto keep = [](auto& list) {
+      std::size_t kept = 0;
+      for (std::size_t i = 2; i < list.size(); i += 3) list[kept++] = list[i];
+      list.resize(kept);
+    };
+    keep(r_.times);
+    keep(r_.positions);
+    keep(r_.gap);
+    keep(r_.gap_max);
+    for (auto& [name, part] : r_.gap_parts) keep(part);
+    r_.valid_until = 0;
+    for (std::size_t i = 0; i < r_.positions.size(); ++i) r_.valid_until = r_.times[i];
   }
 
   std::shared_ptr<const SceneType> type_;

@@ -6,8 +6,7 @@
 namespace inextensible {
 namespace {
 
-constexpr double largest_growth = 2;   // the formula is stable below 1 + sqrt 2
-constexpr double largest_gain = 1.05;  // of kinetic energy in a step, by edges
+constexpr double largest_growth = 2;  // the formula is stable below 1 + sqrt 2
 
 }  // namespace
 
@@ -34,17 +33,9 @@ Bdf2Coefficients Bdf2History::coefficients(double h) const {
 }
 
 void Bdf2History::add_step(const State& start, double h, const Positions& x,
-                           const Positions& acceleration, const Contacts* contacts, bool jumped,
-                           Positions& v) {
-  if (jumped) {
-    v = (x - start.x) * (1 / h);
-    x_ = x - h * v + (0.5 * h * h) * acceleration;
-    v_ = v - h * acceleration;
-    ++restarts_;
-  } else {
-    x_ = start.x;
-    v_ = start.v;
-  }
+                           const Positions& acceleration, const Contacts* contacts, Positions& v) {
+  x_ = start.x;
+  v_ = start.v;
   for (int contact = 0; contacts && contact < contacts->count(); ++contact) {
     if (!contacts->holds(contact)) continue;
     const int i = contacts->vertex(contact);
@@ -118,26 +109,9 @@ StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Posit
   Stopwatch stopwatch(phases_wanted_);
   const Bdf2Coefficients c = history_.coefficients(h);
   v = (x - c.now * start.x - c.before * history_.x()) * (1 / c.beta_h);
-  history_.add_step(start, h, x, acceleration_, contacts_.get(), jumped(start, h, v), v);
+  history_.add_step(start, h, x, acceleration_, contacts_.get(), v);
   phases_.unconstrained += stopwatch();
   return {};
-}
-
-bool Bdf2Stepper::jumped(const State& start, double h, const Positions& v) {
-  const auto twice_kinetic = [&](auto velocity) {
-    double sum = 0;
-    for (int i = 0; i < problem_->vertices(); ++i)
-      sum += problem_->mass()[i] * velocity(i).squaredNorm();
-    return sum;
-  };
-  const double before = kinetic_;
-  kinetic_ = twice_kinetic([&](int i) { return v.col(i); });
-  if (!(kinetic_ > largest_gain * before)) return false;
-  const bool jump = kinetic_ > largest_gain * twice_kinetic([&](int i) {
-                                 return start.v.col(i) + h * acceleration_.col(i);
-                               });
-  if (jump) kinetic_ = 0;
-  return jump;
 }
 
 Bdf2OfEuler::Bdf2OfEuler(std::shared_ptr<const Problem> problem, std::unique_ptr<Stepper> euler)
@@ -179,7 +153,7 @@ StepResult Bdf2OfEuler::solve(const State& state, double h, Positions& x) {
 StepResult Bdf2OfEuler::end_velocities(const State& start, double h, const Positions& /*filtered*/,
                                        const Positions& x, Positions& v) {
   v = ahead_.v;
-  history_.add_step(start, h, x, gravity_, euler_->contacts(), false, v);
+  history_.add_step(start, h, x, gravity_, euler_->contacts(), v);
   return {};
 }
 

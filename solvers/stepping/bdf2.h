@@ -6,8 +6,6 @@
 // The formula assumes that velocities do not jump. A state that is not the one left by the last
 // step, and a vertex that the collider holds, get the history of a free flight that ends here:
 //   x^{n-1} = x^n - h v^n + h^2 a / 2,  v^{n-1} = v^n - h a.
-// So does a whole step that a filter ends with more kinetic energy than it began with: where a
-// slack edge becomes taut the formula, which extrapolates, would add energy.
 #pragma once
 
 #include "solvers/stepping/velocity_filter.h"
@@ -29,10 +27,9 @@ class Bdf2History {
   void restart(const State& state, double h, const Positions& acceleration);
   Bdf2Coefficients coefficients(double h) const;
   // The step from `start` led to x with the velocities v; those of vertices that contacts hold
-  // become (x - x^n) / h, those of pins 0. contacts: null where there is no collider. jumped: the
-  // same for all vertices.
+  // become (x - x^n) / h, those of pins 0. contacts: null where there is no collider.
   void add_step(const State& start, double h, const Positions& x, const Positions& acceleration,
-                const Contacts* contacts, bool jumped, Positions& v);
+                const Contacts* contacts, Positions& v);
 
   const Positions& x() const { return x_; }  // x^{n-1}
   const Positions& v() const { return v_; }  // v^{n-1}
@@ -66,8 +63,6 @@ class Bdf2Stepper final : public FilterStepper {
   bool unconstrained(const State& state, double h, Positions& x) override;
   StepResult end_velocities(const State& start, double h, const Positions& filtered,
                             const Positions& x, Positions& v) override;
-  // Whether v has much more kinetic energy than the flight from `start` would have.
-  bool jumped(const State& start, double h, const Positions& v);
   // x^{n+1} before the filter, and acceleration_. known: the last step's history goes on.
   void explicit_solve(const State& state, double h, bool known, Positions& x);
   bool implicit_solve(const State& state, double h, bool known, Positions& x);
@@ -76,7 +71,6 @@ class Bdf2Stepper final : public FilterStepper {
   Positions acceleration_;     // m/s^2, at x_ahead_
   Positions x_ahead_;          // x^n + h v^n, with shear or bending only
   Positions flight_velocity_;  // with implicit forces only
-  double kinetic_ = 0;         // J, twice that of the last step's end
 };
 
 // BDF2 around a method that is a backward Euler step of its own (Choi and Ko 2002 take implicit

@@ -186,32 +186,30 @@ TEST(Energy, IsNotGainedWhereOnlyStrainNearTheLimitIsTakenBack) {
   }
 }
 
-// Light links between a pin and a heavy end: what a step may gain is a flight's energy.
+// Light links between a pin and a heavy end: a step that would throw them is refused.
 TEST(Energy, IsNotGainedByAHeavyEnd) {
   constexpr int links = 20;
-  for (const char* solver : {"fast_projection", "fast_projection@bdf2"}) {
-    for (const double mass : {0.1, 0.01, 0.005}) {
-      inextensible::ProblemParts parts;
-      parts.mass.assign(links + 1, mass);
-      parts.mass.back() = 10;
-      parts.pinned = {0};
-      parts.gravity = {0, -9.81, 0};
-      State state;
-      state.x.setZero(3, links + 1);
-      state.v.setZero(3, links + 1);
-      for (int k = 1; k <= links; ++k) {
-        state.x(0, k) = k;
-        parts.edges.push_back({k - 1, k});
-        parts.rest_length.push_back(1);
-      }
-      const auto problem = std::make_shared<const inextensible::Problem>(std::move(parts));
-      const auto stepper = make_stepper(solver, problem, {0.01, 1, {}});
-      double most = 0;
-      for (int i = 0; i < 600 && stepper->advance(state, 1.0 / 60); ++i)
-        most = std::max(most, inextensible::potential_energy(*problem, state.x) +
-                                  inextensible::kinetic_energy(*problem, state.v));
-      EXPECT_LT(most / (problem->total_mass() * 9.81 * links), 0.08) << solver << ' ' << mass;
+  for (const double mass : {0.1, 0.01, 0.005}) {
+    inextensible::ProblemParts parts;
+    parts.mass.assign(links + 1, mass);
+    parts.mass.back() = 10;
+    parts.pinned = {0};
+    parts.gravity = {0, -9.81, 0};
+    State state;
+    state.x.setZero(3, links + 1);
+    state.v.setZero(3, links + 1);
+    for (int k = 1; k <= links; ++k) {
+      state.x(0, k) = k;
+      parts.edges.push_back({k - 1, k});
+      parts.rest_length.push_back(1);
     }
+    const auto problem = std::make_shared<const inextensible::Problem>(std::move(parts));
+    const auto stepper = make_stepper("fast_projection", problem, {0.01, 1, {}});
+    double most = 0;
+    for (int i = 0; i < 600 && stepper->advance(state, 1.0 / 60); ++i)
+      most = std::max(most, inextensible::potential_energy(*problem, state.x) +
+                                inextensible::kinetic_energy(*problem, state.v));
+    EXPECT_LT(most / (problem->total_mass() * 9.81 * links), 0.01) << mass;
   }
 }
 
