@@ -10,6 +10,7 @@
 #include "harness/base/files.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/judge.h"
+#include "support/effort.h"
 #include "support/random_mesh.h"
 #include "support/scenes.h"
 
@@ -50,6 +51,7 @@ double error_of(const std::string& name, const SceneParameters& given,
 }
 
 TEST(Mutation, OfTheSettlingDrapeIsDetected) {
+  if (inextensible::testing::sanitized) GTEST_SKIP() << "too slow with sanitizers";
   const SceneParameters drape{{"n", 21}};
   const double h = 1.0 / 1600;
   EXPECT_LT(error_of("settling_drape", drape, {}, h), 0.5 * headline_error);
