@@ -173,6 +173,7 @@ struct ErrorAtLevel {
   int samples = 0;
   double until = 0;  // s, the last sample
 };
+// Without a series its one figure stands for all levels.
 ErrorAtLevel error_at(const Measures& measures, double level);
 // Whether it is known to be at most the level; any_motion: always.
 bool within_error(const Measures& measures, double level);

@@ -35,6 +35,11 @@ double median_uncertainty(std::vector<double> samples) {
 
 ErrorAtLevel error_at(const Measures& measures, double level) {
   ErrorAtLevel at;
+  if (measures.error_series.empty()) {
+    if (!(measures.trajectory >= 0) || sure_gaps * measures.gap > level) return at;
+    return {measures.trajectory, measures.trajectory_mean, measures.trajectory_max, measures.gap, 1,
+            measures.valid_until};
+  }
   double sum = 0;
   const auto raise = [](double& largest, double value) {
     if (!(value <= largest)) largest = value;

@@ -32,10 +32,6 @@ namespace {
 // a rise of |C|^2 by this factor, where J W J^T was singular but for rounding, and digits are lost.
 constexpr int patience = 8;
 constexpr double overshoot = 1e8, overshoot_in_contact = 100;
-// By how much a projection that took more than one iteration may lengthen the step in the norm of
-// M: tension shortens it, compression lengthens it a little. Light links between a heavy end and a
-// pin may else be thrown to a distant solution, which adds energy.
-constexpr double longest_step = 1.05;
 constexpr double least_forcing = 1e-8, damped_forcing = 1e-4;
 constexpr double first_damping = 1e-4, least_damping = 1e-9, largest_damping = 1e8;
 
@@ -52,9 +48,6 @@ class FastProjection final : public VelocityFilter {
         target_(options.number("target")),
         inner_band_(options.number("inner_band")),
         first_forcing_(options.number("first_forcing")),
-        problem_(problem),
-        slack_(options.strain_limit * problem.longest_rest_length() *
-               std::sqrt(problem.total_mass())),
         best_{Positions(3, problem.vertices()), {}},
         u_(3, problem.constraints()),
         u_start_(3, along == Along::middle ? problem.constraints() : 0),
@@ -82,13 +75,12 @@ class FastProjection final : public VelocityFilter {
         pass(sweeps_before_, x, work);
         permissible = linearize(target_, x);
       }
-      if (permissible && j >= min_iterations_) return accepted(j, x_start, x);
+      if (permissible && j >= min_iterations_) return {Status::ok, j};
       if (j == max_iterations_)
         return refuse(Status::not_converged, j, edges, x, "iteration limit");
 
       const double error = mu_.squaredNorm();
-      if (error == 0) return accepted(j, x_start, x);  // nothing left to project
-      if (j == 1) reach_ = longest_step * distance(x_start, best_.x) + slack_;  // best_ is x_0
+      if (error == 0) return {Status::ok, j};  // nothing left to project
       if (error < least_error) {
         least_error = error;
         best_j = j;
@@ -99,11 +91,11 @@ class FastProjection final : public VelocityFilter {
       if (j > 0) forcing = std::clamp(0.9 * error / last_error, least_forcing, first_forcing_);
       last_error = error;
       const double most = (x.contact_count() > 0 ? overshoot_in_contact : overshoot) * least_error;
-      if (j - best_j == patience || !(error < most)) return damped(j, x_start, x, work);
+      if (j - best_j == patience || !(error < most)) return damped(j, x, work);
 
-      if (!system_.factor(u_, x.contacts(), work)) return damped(j, x_start, x, work);  // J W J^T
-      if (!system_.solve(mu_, work, forcing)) return damped(j, x_start, x, work);       // (7)
-      correct(x);                                                                       // (5)
+      if (!system_.factor(u_, x.contacts(), work)) return damped(j, x, work);  // J W J^T
+      if (!system_.solve(mu_, work, forcing)) return damped(j, x, work);       // (7)
+      correct(x);                                                              // (5)
       pass(smoothing_sweeps_, x, work);
       x.renew_planes(work);
     }
@@ -113,21 +105,6 @@ class FastProjection final : public VelocityFilter {
   double reciprocal_condition() const override { return system_.reciprocal_condition(); }
 
  private:
-  // After j iterations.
-  StepResult accepted(int j, const Positions& x_start, Iterate x) const {
-    if (j < 2 || distance(x_start, x) <= reach_) return {Status::ok, j};
-    return refuse(Status::not_converged, j, system_.edges(), x,
-                  "a spurious solution, far from x^n");
-  }
-
-  // |x - x_start| in the norm of M.
-  double distance(const Positions& x_start, const Positions& x) const {
-    double sum = 0;
-    for (Eigen::Index v = 0; v < x.cols(); ++v)
-      sum += problem_.mass()[v] * (x.col(v) - x_start.col(v)).squaredNorm();
-    return std::sqrt(sum);
-  }
-
   // C~(x) for this target to mu_, the gradient of C to u_; that of the middle of the step makes of
   // the iteration Newton's with J(m) W J(m)^T for J(x_j) W J(m)^T. Returns whether x is
   // permissible.
@@ -174,8 +151,7 @@ class FastProjection final : public VelocityFilter {
   }
 
   // From best_ on; j iterations are done.
-  StepResult damped(int j, const Positions& x_start, Iterate x, WorkCounters& work) {
-    if (j < 2) reach_ = longest_step * distance(x_start, best_.x) + slack_;
+  StepResult damped(int j, Iterate x, WorkCounters& work) {
     const EdgeConstraints& edges = system_.edges();
     double damping = first_damping, growth = 2;
     double error = 0;
@@ -201,7 +177,7 @@ class FastProjection final : public VelocityFilter {
       const double predicted_error = damped_prediction(damping);
       correct(x);
       if (observer_) show(j + 1, x);
-      if (linearize(inner_band_, x)) return accepted(j + 1, x_start, x);
+      if (linearize(inner_band_, x)) return {Status::ok, j + 1};
       const double next_error = mu_.squaredNorm();
       taken_back = !(next_error < error);
       if (taken_back) {
@@ -235,14 +211,11 @@ class FastProjection final : public VelocityFilter {
   int max_iterations_, min_iterations_, sweeps_before_, smoothing_sweeps_;
   double target_, inner_band_, first_forcing_;
   std::unique_ptr<StrainPasses> passes_;  // if any are asked for
-  const Problem& problem_;
-  double slack_;              // M-norm of what the strain limit lets vertices drift
-  double reach_ = 0;          // of the step: largest |x^{n+1} - x^n| that is not taken for spurious
-  Iterate::Record best_;      // x_j of least constraint error
-  Eigen::Matrix3Xd u_;        // gradient of C at x_j, or in the middle of the step
-  Eigen::Matrix3Xd u_start_;  // at x^n, for the middle of the step only
-  Eigen::VectorXd mu_;        // C~(x_j), then h^2 dlambda
-  Eigen::VectorXd excess_;    // C~ of a damped iteration
+  Iterate::Record best_;                  // x_j of least constraint error
+  Eigen::Matrix3Xd u_;                    // gradient of C at x_j, or in the middle of the step
+  Eigen::Matrix3Xd u_start_;              // at x^n, for the middle of the step only
+  Eigen::VectorXd mu_;                    // C~(x_j), then h^2 dlambda
+  Eigen::VectorXd excess_;                // C~ of a damped iteration
   // With an observer only: h^2 lambda at x_j and at best_.
   Eigen::VectorXd multipliers_, best_multipliers_;
 };

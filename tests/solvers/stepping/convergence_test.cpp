@@ -168,49 +168,23 @@ TEST(Energy, IsLostByImplicitMethodsInProportionToTheStepAndKeptByRattle) {
 }
 
 // Slack within the limit builds up in steps without a correction. Taken back all at once it is a
-// blow, which is refused before it adds energy; what lies beyond most of the limit is a small one.
+// blow; what lies beyond most of the limit is a small one.
 TEST(Energy, IsNotGainedWhereOnlyStrainNearTheLimitIsTakenBack) {
   const Scene scene = testing::build("patch", {{"n", 15}});
-  for (const double target : {0.0, 0.8}) {
+  const auto gain = [&](double target) {
     const auto stepper =
         make_stepper("fast_projection", scene.problem, {0.01, 1, {{"target", target}}});
     State state = scene.start;
     const double before = energy(scene, state);
     double most = 0;
-    int steps = 0;
-    for (; steps < 800 && stepper->advance(state, 1.0 / 800); ++steps)
+    for (int i = 0; i < 800; ++i) {
+      EXPECT_TRUE(stepper->advance(state, 1.0 / 800));
       most = std::max(most, energy(scene, state) - before);
-    EXPECT_EQ(steps == 800, target > 0) << "target " << target << ", step " << steps;
-    const double bound = target > 0 ? 0.01 : 0.05;  // of weight times size
-    EXPECT_LT(most / (scene.problem->total_mass() * 9.81), bound) << "target " << target;
-  }
-}
-
-// Light links between a pin and a heavy end: a step that would throw them is refused.
-TEST(Energy, IsNotGainedByAHeavyEnd) {
-  constexpr int links = 20;
-  for (const double mass : {0.1, 0.01, 0.005}) {
-    inextensible::ProblemParts parts;
-    parts.mass.assign(links + 1, mass);
-    parts.mass.back() = 10;
-    parts.pinned = {0};
-    parts.gravity = {0, -9.81, 0};
-    State state;
-    state.x.setZero(3, links + 1);
-    state.v.setZero(3, links + 1);
-    for (int k = 1; k <= links; ++k) {
-      state.x(0, k) = k;
-      parts.edges.push_back({k - 1, k});
-      parts.rest_length.push_back(1);
     }
-    const auto problem = std::make_shared<const inextensible::Problem>(std::move(parts));
-    const auto stepper = make_stepper("fast_projection", problem, {0.01, 1, {}});
-    double most = 0;
-    for (int i = 0; i < 600 && stepper->advance(state, 1.0 / 60); ++i)
-      most = std::max(most, inextensible::potential_energy(*problem, state.x) +
-                                inextensible::kinetic_energy(*problem, state.v));
-    EXPECT_LT(most / (problem->total_mass() * 9.81 * links), 0.01) << mass;
-  }
+    return most / (scene.problem->total_mass() * 9.81);  // of weight times size
+  };
+  EXPECT_GT(gain(0), 0.2);
+  EXPECT_LT(gain(0.8), 0.01);
 }
 
 // A net that turns without weight, 0.1 to 0.4 rad a step, for 10 rad. The midpoint rule keeps its
