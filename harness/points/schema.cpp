@@ -13,7 +13,6 @@
 #include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
-#include "harness/points/schema.h"
 #include "harness/points/suite.h"
 
 namespace harness {

@@ -182,6 +182,29 @@ SceneType measured_fabric(const char* name, const char* summary, const Fabric& c
   return fabric_on_ball(name, summary, cloth.density, cloth.bending, fabric_shear);
 }
 
+// Known to its end: air and bending let it fold in one way only.
+SceneType settling_drape() {
+  return {
+      .name = "settling_drape",
+      .summary = "canvas that falls onto a sphere in air, off its axis, and comes to rest",
+      .parameters = drape_parameters(
+          {{"n", 71, "vertices along each side", 3, 4000, true},
+           {"side", 1, "m", 0, 1e6},
+           {"density", 0.15, "kg/m^2", 0, 1e4},
+           gravity_info(),
+           {"shear", fabric_shear, "shear stiffness, N/m; 0: none", zero_too, 1e9},
+           {"bending", 5e-4, "bending rigidity of warp and weft, N m; 0: none", zero_too, 1e6}},
+          {{"drag", 4, "of still air, N s/m^3: force per area and speed; 0: none", zero_too, 1e6},
+           {"waves", 0.01, "amplitude of the start's waves, m; 0: flat", zero_too, 0.05},
+           {"off_axis", 0.08,
+            "how far its middle is from the sphere's axis along x, and half as far "
+            "along -z, m",
+            -10, 10}},
+          3),
+      .build = build_drape,
+      .counts = count_square};
+}
+
 }  // namespace
 
 std::vector<SceneType> cloth_scenes() {
@@ -198,24 +221,7 @@ std::vector<SceneType> cloth_scenes() {
                      "the drape with a fabric's weight, shear and bending in physical units, "
                      "implicit, and air",
                      0.15, 1e-5, 20),
-      {.name = "settling_drape",
-       .summary = "canvas that falls onto a sphere in air, off its axis, and comes to rest",
-       .parameters = drape_parameters(
-           {{"n", 71, "vertices along each side", 3, 4000, true},
-            {"side", 1, "m", 0, 1e6},
-            {"density", 0.15, "kg/m^2", 0, 1e4},
-            gravity_info(),
-            {"shear", fabric_shear, "shear stiffness, N/m; 0: none", zero_too, 1e9},
-            {"bending", 5e-4, "bending rigidity of warp and weft, N m; 0: none", zero_too, 1e6}},
-           {{"drag", 4, "of still air, N s/m^3: force per area and speed; 0: none", zero_too, 1e6},
-            {"waves", 0.01, "amplitude of the start's waves, m; 0: flat", zero_too, 0.05},
-            {"off_axis", 0.08,
-             "how far its middle is from the sphere's axis along x, and half as far "
-             "along -z, m",
-             -10, 10}},
-           3),
-       .build = build_drape,
-       .counts = count_square},
+      settling_drape(),
       measured_fabric("cotton_drape", "fabric_drape of cotton broadcloth, as measured",
                       fabric("cotton")),
       measured_fabric("wool_drape", "fabric_drape of wool tropical, as measured", fabric("wool")),

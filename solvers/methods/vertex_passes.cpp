@@ -225,6 +225,11 @@ void VertexPasses::add_bending(const Group& group, double stiffness_scale, Model
   }
 }
 
+void VertexPasses::add_forces(const Group& group, double stiffness_scale, Model& model) const {
+  add_springs(group, stiffness_scale, model);
+  add_bending(group, stiffness_scale, model);
+}
+
 template <bool with_planes>
 double VertexPasses::visit(const Group& group, double stiffness_scale, double relaxation) {
   Model model;
@@ -240,8 +245,7 @@ double VertexPasses::visit(const Group& group, double stiffness_scale, double re
     h[0][i] = h[3][i] = h[5][i] = inertia[i];
     h[1][i] = h[2][i] = h[4][i] = 0;
   }
-  add_springs(group, stiffness_scale, model);
-  add_bending(group, stiffness_scale, model);
+  add_forces(group, stiffness_scale, model);
   const double* plane[4];
   for (int n = 0; n < 4; ++n) plane[n] = plane_.col(n).data() + group.place;
   double* push = push_.data() + group.place;

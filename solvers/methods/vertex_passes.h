@@ -53,6 +53,7 @@ class VertexPasses {
   struct Ends;
   void place_vertices(const Ends& ends);
   struct Model;
+  void add_forces(const Group& group, double stiffness_scale, Model& model) const;
   void add_springs(const Group& group, double stiffness_scale, Model& model) const;
   void add_bending(const Group& group, double stiffness_scale, Model& model) const;
   template <bool with_planes>

@@ -142,7 +142,10 @@ TEST(ChildProcess, OneThatHangsIsEndedWithWhatItStarted) {
         if (own > 0) *started = own;
         // Its time is up now. Said again and again: a parent that was away for long may have set
         // the beginning at the same time.
-        for (; own > 0; sleep_for(50)) heartbeat.begin = heartbeat.begin - 1000;
+        while (own > 0) {
+          heartbeat.begin = heartbeat.begin - 1000;
+          sleep_for(50);
+        }
         sleep_for(60000);
         _exit(0);
       },
