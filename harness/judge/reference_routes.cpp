@@ -324,7 +324,7 @@ double reference_seconds(const std::string& name, const SceneParameters& complet
   const Scene scene = type->build(complete);
   const double h = usual_finest;
   const auto [first, second, third] = contact_routes(scene, h);
-  // Of the run from the start to the end; the finest step counts 1.
+  // runs: how many from start to end, one at this step counting 1.
   const auto seconds = [&](const Route& route, double step, double runs) {
     const auto stepper =
         inextensible::make_stepper(route.solver, scene.problem, {route.limit, 1, route.settings});

@@ -90,7 +90,7 @@ TrialResult run_isolated_trial(const std::function<Trial()>& build, const std::s
                                std::uint64_t seed,
                                const std::function<bool()>& interrupted = nullptr);
 
-// Of its name; throws json::exception for what is no outcome.
+// The outcome of that name; throws json::exception for what is none.
 Outcome outcome_of(const nlohmann::json& name);
 
 template <>

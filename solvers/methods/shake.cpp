@@ -213,16 +213,15 @@ class Rattle final : public Stepper {
     x = state.x + h * state.v;  // position stage (Andersen 1983)
     if (implicit_) {
       x.colwise() += 0.5 * h * h * problem_->gravity();
-    } else {
-      add_acceleration(*problem_, state.x, 0.5 * h * h, x, work_);
-      if (problem_->has_drag()) add_drag(*problem_, state.v, 0.5 * h * h, x);
-    }
-    for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
-    if (implicit_) {
+      for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
       kick_ = x;
       if (!implicit_->advance_inside(0.5, h, state.x, x, work_))
         return {Status::singular, 0, -1, 0, singular_forces};
       kick_ = (x - kick_) * (1 / h);
+    } else {
+      add_acceleration(*problem_, state.x, 0.5 * h * h, x, work_);
+      if (problem_->has_drag()) add_drag(*problem_, state.v, 0.5 * h * h, x);
+      for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
     }
     phases_.unconstrained += stopwatch();
     const StepResult result = apply_until_clear(shake_, contacts_inside(), state.x, h, x, work_);

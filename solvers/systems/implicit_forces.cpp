@@ -52,7 +52,7 @@ ImplicitForces::ImplicitForces(const Problem& problem) : problem_(problem) {
     entry.mass = problem.mass()[free_vertex_[f]];
     entry.drag = problem.drag(free_vertex_[f]);
   }
-  for (Positions* p : {&force_, &inside_, &velocity_}) p->resize(3, problem.vertices());
+  force_.resize(3, problem.vertices());
   row_.resize(static_cast<Eigen::Index>(free_vertex_.size()));
 }
 
