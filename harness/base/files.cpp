@@ -230,12 +230,16 @@ std::string source_path(const std::string& relative) {
   return (share_folder().empty() ? INEXTENSIBLE_SOURCE_DIR : share_folder()) + "/" + relative;
 }
 
-std::string local_result(const std::string& name) {
+std::string local_place(const std::string& name) {
   const std::string folder = "results/local";
-  const std::string place = is_installed() ? folder : source_path(folder);
+  return (is_installed() ? folder : source_path(folder)) + "/" + name;
+}
+
+std::string local_result(const std::string& name) {
+  const std::string place = local_place(name);
   std::error_code error;  // the write that follows reports what is wrong
-  fs::create_directories(place, error);
-  return place + "/" + name;
+  std::filesystem::create_directories(std::filesystem::path(place).parent_path(), error);
+  return place;
 }
 
 }  // namespace harness

@@ -96,5 +96,7 @@ std::string source_path(const std::string& relative);
 // Where results go by default: results/local of the source tree, for an installed bench of the
 // current folder.
 std::string local_result(const std::string& name);
+// The same place, which is not created.
+std::string local_place(const std::string& name);
 
 }  // namespace harness

@@ -228,13 +228,13 @@ Reference reference_of(const json& document, const std::string& path, const std:
 
 std::string reference_path(const std::string& scene, const SceneParameters& complete) {
   const bool own = is_installed() || !find_scene(scene)->identity.empty();
-  return (own ? local_result("references") : source_path("results/references")) + "/" +
+  return (own ? local_place("references") : source_path("results/references")) + "/" +
          reference_name(scene, complete);
 }
 
 std::shared_ptr<ReferenceFolder> ReferenceFolder::usual() {
   std::shared_ptr<ReferenceFolder> folder(new ReferenceFolder);
-  folder->folders_ = {local_result("references"), source_path("results/references")};
+  folder->folders_ = {local_place("references"), source_path("results/references")};
   return folder;
 }
 

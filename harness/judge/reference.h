@@ -28,8 +28,8 @@ struct Reference {
   std::vector<double> gap_max;  // the same in the maximum norm
   // The parts whose largest is the gap; empty in references made without them.
   std::map<std::string, std::vector<double>> gap_parts;
-  // Of scenes that are known to their end: how far the routes' last positions are apart in what
-  // rest_difference compares.
+  // How far the routes' last positions are apart in what rest_difference compares; empty where the
+  // scene is not known to its end.
   std::map<std::string, double> rest_gap;
   double valid_until = 0;   // s: the last sample before the gap exceeds 1 % of the scene's size
   double energy_drift = 0;  // of the first route, where the scene conserves energy

@@ -72,7 +72,7 @@ struct SceneType {
   // smooth motion scenes/pendulum.h integrates in angles.
   bool pendulum = false;
   const char* resolution = "n";  // the parameter that a resolution sweep turns
-  // Of a scene made of files: a hash of what they hold. Empty: the name says all.
+  // A hash of the files that the scene is made of. Empty: the name says all.
   std::string identity = {};
 
   std::string kind() const { return *like ? like : name; }
