@@ -236,7 +236,7 @@ std::string local_place(const std::string& name) {
 }
 
 std::string local_result(const std::string& name) {
-  const std::string place = local_place(name);
+  std::string place = local_place(name);
   std::error_code error;  // the write that follows reports what is wrong
   std::filesystem::create_directories(std::filesystem::path(place).parent_path(), error);
   return place;

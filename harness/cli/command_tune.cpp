@@ -95,7 +95,8 @@ struct Tune {
 
   void declare(const Command& command) {
     add_solver(command, solver);
-    command.option("--scene", scene, "chain, drape, settling_drape, patch or spinning_net; default: all", "SCENE");
+    command.option("--scene", scene,
+                   "chain, drape, settling_drape, patch or spinning_net; default: all", "SCENE");
     command.option("--n", n, "sizes of your own, whose settings are added", "N,...");
     command.option("--limit", limits, "strain limits of your own, whose settings are added",
                    "STRAIN,...");

@@ -109,6 +109,16 @@ Trial heavy_end(double ratio) {
   return trial_of(std::move(mesh), 1.0 / 400, 40);
 }
 
+// Three swings of the same from horizontal, in the steps of a game.
+Trial heavy_swing(double /*value*/) {
+  Mesh mesh = chain(20);
+  mesh.parts.mass.back() *= 100;
+  Trial trial = trial_of(std::move(mesh), 1.0 / 60, 180);
+  trial.stiffness = 1e5;
+  trial.slack = 2 * trial.strain_limit;  // m, of a chain of 1 m between both ends of the band
+  return trial;
+}
+
 Trial light_between(double ratio) {
   Mesh mesh = chain(20);
   for (std::size_t i = 1; i < 20; i += 2) mesh.parts.mass[i] /= ratio;
@@ -268,6 +278,7 @@ constexpr Builder builders[] = {
            trial_of(scene_of("patch", {{"n", 15}, {"duration", 0.5}}), 1.0 / 400, 0, limit));
      }},
     {"heavy end", heavy_end},
+    {"heavy_swing", heavy_swing},
     {"light between heavy", light_between},
     {"heavy patch", heavy_patch},
     {"long chain", [](double n) { return with_budget(chain(static_cast<int>(n))); }},
