@@ -56,12 +56,12 @@ std::string hash_of(const std::vector<TunedEntry>& entries) {
   return fnv1a(json(settings).dump());
 }
 
-SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarsest,
-                       double duration) {
+SweepSpec tuning_scene(const char* scene, std::vector<int> sizes, double coarsest, double duration,
+                       std::vector<double> limits = {0.02, 0.002, 0.0002}) {
   SweepSpec spec;
   spec.sweep = "strain";
   spec.scene = scene;
-  spec.limits = {0.02, 0.002, 0.0002};
+  spec.limits = std::move(limits);
   spec.resolutions = std::move(sizes);
   spec.coarsest = coarsest;
   spec.finest = 1.0 / 6400;
@@ -147,7 +147,8 @@ const std::vector<SweepSpec>& tuning_scenes() {
   // The drape is hardest from 0.3 s on, where it has sheared.
   static const std::vector<SweepSpec> scenes{
       tuning_scene("chain", {50, 200}, 0.04, 1), tuning_scene("drape", {25, 55}, 0.02, 0.6),
-      tuning_scene("settling_drape", {21, 51}, 0.02, 3), tuning_scene("patch", {13, 19}, 0.02, 0.4),
+      tuning_scene("settling_drape", {21}, 0.02, 3, {0.01, 0.001}),
+      tuning_scene("patch", {13, 19}, 0.02, 0.4),
       tuning_scene("spinning_net", {13, 25}, 0.04, 0.5)};
   return scenes;
 }
