@@ -71,6 +71,7 @@ struct KnownAnswer {
   bool needs_multipliers;  // of methods that show their iterates alone (Stepper::observe)
   bool continuum;          // exact in the limit of many vertices: runs tend to something nearby
   bool until_read;         // a run ends as soon as it tells
+  double stiffness;  // N, of methods without a limit; not-a-number: what keeps the strain limit
 };
 
 // Those of configs/answers.json.

@@ -15,9 +15,14 @@ namespace {
 
 using inextensible::Positions;
 
-// RMS distance from the scene's exact motion at the end of the run, over the scene's size.
+// RMS distance from the scene's exact motion, or its reference, at the end of the run, over the
+// scene's size.
 double distance_at_the_end(const AnswerScene& at, const Motion& motion) {
-  return rms_distance(at.scene, motion.state.x, at.type->exact(at.parameters, motion.state.time));
+  if (at.type->exact)
+    return rms_distance(at.scene, motion.state.x, at.type->exact(at.parameters, motion.state.time));
+  const auto reference = ReferenceFolder::usual()->find(at.type->name, at.parameters);
+  const bool known = reference && reference->known_until(headline_error) >= at.scene.duration;
+  return known ? rms_distance(at.scene, motion.state.x, reference->positions.back()) : unknown;
 }
 
 // The angle by which a body that stays centered on the origin turns in the last step, over the

@@ -145,11 +145,11 @@ void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
 
 const std::vector<SweepSpec>& tuning_scenes() {
   // The drape is hardest from 0.3 s on, where it has sheared.
-  static const std::vector<SweepSpec> scenes{
-      tuning_scene("chain", {50, 200}, 0.04, 1), tuning_scene("drape", {25, 55}, 0.02, 0.6),
-      tuning_scene("settling_drape", {21}, 0.02, 3, {0.01, 0.001}),
-      tuning_scene("patch", {13, 19}, 0.02, 0.4),
-      tuning_scene("spinning_net", {13, 25}, 0.04, 0.5)};
+  static const std::vector<SweepSpec> scenes{tuning_scene("chain", {50, 200}, 0.04, 1),
+                                             tuning_scene("drape", {25, 55}, 0.02, 0.6),
+                                             tuning_scene("settling_drape", {21}, 0.02, 3, {0.001}),
+                                             tuning_scene("patch", {13, 19}, 0.02, 0.4),
+                                             tuning_scene("spinning_net", {13, 25}, 0.04, 0.5)};
   return scenes;
 }
 

@@ -13,10 +13,12 @@ constexpr double clearly_slower = 1.5;
 constexpr double close_neighbor = 2;  // less than that many times slower than the best
 constexpr double noise = 1.03;        // a ratio of times up to this is none
 // A run that has stepped for this many times the best one's time cannot be the best; its time has
-// risen. While errors are too large yet, ten times.
-constexpr double hopeless_factor = 3, patient_factor = 10;
+// risen. While errors are too large yet, as many times as four halvings of the step and more take.
+constexpr double hopeless_factor = 3, patient_factor = 30;
 // An error above this part of the one at twice the step does not fall as a method of first order's.
+// Several coarse steps may let cloth settle into the same wrong folds before a finer one does not.
 constexpr double stays = 0.85;
+constexpr int longest_stay = 4;
 constexpr double never = std::numeric_limits<double>::infinity();
 
 // A point is skipped where its calibration timed out.
@@ -109,9 +111,9 @@ class StepSearch {
 
   // Whether a walk to finer steps has ended whose time has risen twice in a row.
   bool done(std::size_t rung, const PointResult& point) {
-    if (!goal_ || error_stays_ >= 2 || gave_up(point)) return true;
+    if (!goal_ || error_stays_ >= longest_stay || gave_up(point)) return true;
     if (!point.ok()) return failures_ >= 2;
-    return point.seconds() > tenfold() || slower(rung, *goal_);
+    return point.seconds() > too_long() || slower(rung, *goal_);
   }
 
   // Whether a rung that ran to the end is slower than the best one within a level, beyond noise.
@@ -183,7 +185,7 @@ class StepSearch {
     }
   }
 
-  double tenfold() const {
+  double too_long() const {
     auto base = best_seconds(any_motion);
     for (const double level : ladder_.levels) {
       if (const auto met = best_seconds(level)) base = met;
@@ -192,7 +194,7 @@ class StepSearch {
   }
 
   double longest_useful() const {
-    if (goal_ && !best_seconds(*goal_) && error_stays_ < 2) return tenfold();
+    if (goal_ && !best_seconds(*goal_) && error_stays_ < longest_stay) return too_long();
     const auto fastest = best_seconds(any_motion);
     return fastest ? hopeless_factor * *fastest : never;
   }

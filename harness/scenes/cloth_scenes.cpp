@@ -43,7 +43,7 @@ void fold(Scene& scene, const SceneParameters& p, double y) {
 // y.
 void place_unevenly(Scene& scene, const SceneParameters& p, double y) {
   const int n = whole(p);
-  const double l = square_link(p), side = p.at("side");
+  const double l = square_link(p), side = p.at("side"), aside = value_or_zero(p, "off_axis");
   const auto curve = [&](double count, double phase) {
     const double slope = 2 * std::numbers::pi * count * p.at("waves") / side;
     Eigen::Matrix2Xd at(2, n);  // along, up
@@ -60,8 +60,8 @@ void place_unevenly(Scene& scene, const SceneParameters& p, double y) {
   const Eigen::Matrix2Xd weft = curve(2, 0.7), warp = curve(1.5, 2.1);
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j)
-      scene.start.x.col(i * n + j) << weft(0, j) + p.at("off_axis"), y + weft(1, j) + warp(1, i),
-          warp(0, i) - 0.5 * p.at("off_axis");
+      scene.start.x.col(i * n + j) << weft(0, j) + aside, y + weft(1, j) + warp(1, i),
+          warp(0, i) - 0.5 * aside;
   }
   scene.mirrors.clear();
 }
@@ -110,6 +110,56 @@ Scene build_patch(const SceneParameters& p) {
   cloth.scene.mirrors.pop_back();  // the pins break front to back
   const std::vector<int> pins = {cloth.scene.corners[0], cloth.scene.corners[1]};
   return released(std::move(cloth), pins);
+}
+
+constexpr double above_the_table = 1e-6;  // m, as nothing may start in an obstacle
+
+// m, of what slides.
+double stopping_distance(const SceneParameters& p) {
+  return p.at("speed") * p.at("speed") / (2 * p.at("friction") * p.at("gravity"));
+}
+
+// A fabric in air that swings down from two corners, in waves, which leave no symmetry.
+Scene build_curtain(const SceneParameters& given) {
+  SceneParameters p = given;
+  p["mass"] = p.at("density") * p.at("side") * p.at("side");
+  Draft cloth = vertex_square(p, 0);
+  bend_yarns(cloth, p, p.at("bending"));
+  add_drag(cloth, p);
+  place_unevenly(cloth.scene, p, 0);
+  cloth.parts.pinned = {cloth.scene.corners[0], cloth.scene.corners[1]};
+  cloth.parts.implicit_forces = true;
+  return finished(std::move(cloth));
+}
+
+// Slides along x on the top of a flat box, which is wider than the way to its rest.
+Scene build_block(const SceneParameters& p) {
+  Draft cloth = vertex_square(p, above_the_table);
+  cloth.scene.start.v.row(0).setConstant(p.at("speed"));
+  const double wide = p.at("side") + 2 * stopping_distance(p), deep = p.at("side");
+  inextensible::TriangleMesh box;
+  for (const double y : {-deep, 0.0})
+    for (const auto& [x, z] : {std::pair(-wide, -wide), {wide, -wide}, {wide, wide}, {-wide, wide}})
+      box.vertices.emplace_back(x, y, z);
+  box.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}};
+  for (int i = 0; i < 4; ++i) {
+    const int j = (i + 1) % 4;
+    box.triangles.push_back({i, 4 + i, 4 + j});
+    box.triangles.push_back({i, 4 + j, j});
+  }
+  cloth.parts.collider =
+      std::make_shared<const inextensible::TriangleCollider>(std::move(box), p.at("friction"));
+  cloth.scene.mirrors.erase(cloth.scene.mirrors.begin());  // x is where it goes
+  return finished(std::move(cloth));
+}
+
+// Coulomb friction slows it by mu g until it stands.
+inextensible::Positions block_at(const SceneParameters& p, double time) {
+  const double slowing = p.at("friction") * p.at("gravity"),
+               sliding = std::min(time, p.at("speed") / slowing);
+  inextensible::Positions x = vertex_square(p, above_the_table).scene.start.x;
+  x.row(0).array() += sliding * (p.at("speed") - 0.5 * slowing * sliding);
+  return x;
 }
 
 // Below its pins, turned by `tilt` out of the vertical so that it may fold, in air that brings it
@@ -182,21 +232,26 @@ SceneType measured_fabric(const char* name, const char* summary, const Fabric& c
   return fabric_on_ball(name, summary, cloth.density, cloth.bending, fabric_shear);
 }
 
+// Stiff cotton in air, whose start has waves.
+ParameterInfos stiff_cotton(int n) {
+  return {{"n", static_cast<double>(n), "vertices along each side", 3, 4000, true},
+          {"side", 1, "m", 0, 1e6},
+          {"density", 0.15, "kg/m^2", 0, 1e4},
+          gravity_info(),
+          {"shear", fabric_shear, "shear stiffness, N/m; 0: none", zero_too, 1e9},
+          {"bending", 5e-4, "bending rigidity of warp and weft, N m; 0: none", zero_too, 1e6},
+          {"drag", 4, "of still air, N s/m^3: force per area and speed; 0: none", zero_too, 1e6},
+          {"waves", 0.01, "amplitude of the start's waves, m; 0: flat", zero_too, 0.05}};
+}
+
 // Known to its end: air and bending let it fold in one way only.
 SceneType settling_drape() {
   return {
       .name = "settling_drape",
-      .summary = "canvas that falls onto a sphere in air, off its axis, and comes to rest",
+      .summary = "stiff cotton that falls onto a sphere in air, off its axis, and comes to rest",
       .parameters = drape_parameters(
-          {{"n", 71, "vertices along each side", 3, 4000, true},
-           {"side", 1, "m", 0, 1e6},
-           {"density", 0.15, "kg/m^2", 0, 1e4},
-           gravity_info(),
-           {"shear", fabric_shear, "shear stiffness, N/m; 0: none", zero_too, 1e9},
-           {"bending", 5e-4, "bending rigidity of warp and weft, N m; 0: none", zero_too, 1e6}},
-          {{"drag", 4, "of still air, N s/m^3: force per area and speed; 0: none", zero_too, 1e6},
-           {"waves", 0.01, "amplitude of the start's waves, m; 0: flat", zero_too, 0.05},
-           {"off_axis", 0.08,
+          stiff_cotton(71),
+          {{"off_axis", 0.08,
             "how far its middle is from the sphere's axis along x, and half as far "
             "along -z, m",
             -10, 10}},
@@ -222,6 +277,23 @@ std::vector<SceneType> cloth_scenes() {
                      "implicit, and air",
                      0.15, 1e-5, 20),
       settling_drape(),
+      {.name = "curtain",
+       .summary = "stiff cotton that swings down in air from two corners",
+       .parameters = joined({stiff_cotton(31), {duration_info()}}),
+       .build = build_curtain,
+       .counts = count_square,
+       .like = "patch"},
+      {.name = "sliding_block",
+       .summary = "a square of cloth that slides on a table until friction stops it: its motion is "
+                  "known",
+       .parameters = joined({cloth_parameters(5),
+                             {{"speed", 1, "at the start, m/s", 0, 1e4},
+                              {"friction", 0.3, "Coulomb coefficient", 0, 1e3},
+                              duration_info(0.6)}}),
+       .build = build_block,
+       .counts = count_square,
+       .exact = block_at,
+       .like = "drape"},
       measured_fabric("cotton_drape", "fabric_drape of cotton broadcloth, as measured",
                       fabric("cotton")),
       measured_fabric("wool_drape", "fabric_drape of wool tropical, as measured", fabric("wool")),

@@ -81,6 +81,38 @@ void print_attribution(std::ostream& out, const Plane& plane) {
   }
 }
 
+// How much of each method's least error at 1 % is slack: what a limit of 0.1 % takes away at the
+// same step.
+void print_slack(std::ostream& out, const Runs& runs, const Plane& plane) {
+  constexpr double loose = 0.01, tight = 0.001;
+  std::string text;
+  for (const auto& [name, own] :
+       grouped(runs.points, [](const Point& p) { return p.contestant(); })) {
+    if (!runs.roles.of(name).ranked()) continue;
+    double error = unknown, kept = unknown;
+    for (const Point& p : own) {
+      const auto tighter = std::ranges::find_if(own, [&p, &plane](const Point& q) {
+        return q.ok() && q.step() == p.step() && q.strain_limit() == tight &&
+               q.scene() == plane.scene && q.vertices() == plane.vertices &&
+               q.sweep() == plane.sweep;
+      });
+      const double now = p.error_at(headline_error).distance;
+      if (p.ok() && p.strain_limit() == loose && p.scene() == plane.scene &&
+          p.vertices() == plane.vertices && tighter != own.end() && !(error < now)) {
+        error = now;
+        kept = tighter->error_at(headline_error).distance;
+      }
+    }
+    if (!(error > 0) || !std::isfinite(kept)) continue;
+    text += (text.empty() ? "" : ", ") + quoted(name) + " " + number_text(100 * error, 2) + " % (" +
+            number_text(100 * std::max(0.0, 1 - kept / error), 2) + " %)";
+  }
+  if (!text.empty())
+    out << "The least error at " << percent(loose)
+        << ", and in brackets how much of it is slack, which a limit of " << percent(tight)
+        << " takes away at the same step: " << text << ". ";
+}
+
 // "0.1 %, error 1.2 %"; in brackets where the motion is not right to the headline's error.
 std::string reach_text(const std::optional<Reach>& reach) {
   if (!reach) return "-";
@@ -122,7 +154,8 @@ void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
     if (!is_stability(result.document)) sweeps.push_back(result.document);
   }
   if (sweeps.empty()) return;
-  std::vector<Plane> all = planes_of(joined(sweeps));
+  const Runs runs(joined(sweeps));
+  std::vector<Plane> all = planes_of(runs);
   std::erase_if(all, [](const Plane& plane) {
     return !any_cell({plane}, [](const Cell& cell) { return cell.counting(1); });
   });
@@ -134,6 +167,7 @@ void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
     out << span_of_errors(planes);
     for (const Plane& plane : planes) {
       if (plane.sweep == "strain") print_attribution(out, plane);
+      if (plane.scene == "settling_drape") print_slack(out, runs, plane);
     }
     if (any_cell(planes, [](const Cell& cell) {
           return cell.first() && std::isfinite(cell.first()->point.measures().shape);

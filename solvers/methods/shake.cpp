@@ -223,6 +223,7 @@ class Rattle final : public Stepper {
       if (problem_->has_drag()) add_drag(*problem_, state.v, 0.5 * h * h, x);
       for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
     }
+    if (contacts_inside()) candidate_ = x;
     phases_.unconstrained += stopwatch();
     const StepResult result = apply_until_clear(shake_, contacts_inside(), state.x, h, x, work_);
     phases_.filter += stopwatch();
@@ -246,9 +247,13 @@ class Rattle final : public Stepper {
     for (const int vertex : problem_->pinned())  // 0 unless pins follow a body
       v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
     if (const Contacts* contacts = contacts_inside()) {  // which bear what presses on them
+      const bool friction = contacts->candidate().size() > 0;
       for (int c = 0; c < contacts->count(); ++c) {
-        const int vertex = contacts->vertex(c);
-        if (contacts->holds(c)) v.col(vertex) = (x.col(vertex) - start.x.col(vertex)) * (1 / h);
+        if (!contacts->holds(c)) continue;
+        const int i = contacts->vertex(c);
+        if (friction) v.col(i) += (contacts->candidate().col(i) - candidate_.col(i)) * (1 / h);
+        v.col(i) =
+            contacts->end_velocity(c, x.col(i), (x.col(i) - start.x.col(i)) * (1 / h), v.col(i));
       }
     }
     phases_.unconstrained += stopwatch();
@@ -260,6 +265,7 @@ class Rattle final : public Stepper {
   Shake shake_;
   Positions v_half_;                          // with drag only
   std::unique_ptr<ImplicitForces> implicit_;  // null: explicit
+  Positions candidate_;                       // before friction, with contact only
   Positions kick_;                            // m/s, of implicit forces in half a step
 };
 

@@ -18,6 +18,9 @@ constexpr double room = 0.1;
 // Weight of the last step's push by edges in the expected one; less for a vertex that passes
 // several edges in a step. A larger weight lets friction and edges drive each other.
 constexpr double newest = 0.1;
+// A vertex that starts to slide ends a step at twice its mean velocity; one that friction stops is
+// left with none of it.
+constexpr double steady = 1.5;
 
 }  // namespace
 
@@ -190,6 +193,17 @@ void Contacts::keep_on_planes(const Positions& x, Positions& v) const {
     const Eigen::Vector3d at = x.col(vertex_[c]), obstacle = (at - back(at)) / h_;
     v.col(vertex_[c]) += normal(c).dot(obstacle) * normal(c);
   }
+}
+
+Eigen::Vector3d Contacts::end_velocity(int contact, const Eigen::Vector3d& x,
+                                       const Eigen::Vector3d& mean,
+                                       const Eigen::Vector3d& own) const {
+  const Eigen::Vector3d n = normal(contact), change = own - mean;
+  Eigen::Vector3d slide = mean;  // over the obstacle
+  if (problem_.body_motion()) slide -= (x - carry_.inverse()(x)) / h_;
+  const auto along = [&n](const Eigen::Vector3d& v) { return Eigen::Vector3d(v - n.dot(v) * n); };
+  const bool goes_on = along(change).norm() <= steady * along(slide).norm();
+  return goes_on ? Eigen::Vector3d(mean + along(change)) : mean;
 }
 
 // With friction of this push, unless contacts were kept inside the solve and friction came before.

@@ -41,6 +41,8 @@ class Contacts {
   // planes): shortens the displacement of vertices along the surface. Vertices that are expected to
   // touch get a contact.
   void apply_friction(Positions& x0, WorkCounters& work);
+  // The candidate after it; empty without friction.
+  const Positions& candidate() const { return candidate_; }
   // The step is accepted, and ended at x before the collision filter: what edges did to the
   // candidate is expected of them in the next step.
   void accept(const Positions& x);
@@ -69,6 +71,13 @@ class Contacts {
   // Takes from velocities v (3 x n, m/s) of vertices at x what leads them through or out of a plane
   // that holds them, as it moves.
   void keep_on_planes(const Positions& x, Positions& v) const;
+
+  // The velocity at the end of a step, at x, of the vertex that a contact holds: `mean` over the
+  // step, `own` by the stepper's formula. Along the normal it is the mean one, so that nothing
+  // bounces. Along the surface, where friction and weight go on acting, it is the stepper's own,
+  // unless friction has stopped or turned the vertex in this step.
+  Eigen::Vector3d end_velocity(int contact, const Eigen::Vector3d& x, const Eigen::Vector3d& mean,
+                               const Eigen::Vector3d& own) const;
 
   // The end of every step: leaves no vertex inside.
   void push_out(Positions& x, WorkCounters& work);

@@ -33,15 +33,21 @@ Bdf2Coefficients Bdf2History::coefficients(double h) const {
 }
 
 void Bdf2History::add_step(const State& start, double h, const Positions& x,
-                           const Positions& acceleration, const Contacts* contacts, Positions& v) {
+                           const Contacts* contacts, Positions& v) {
   x_ = start.x;
   v_ = start.v;
   for (int contact = 0; contacts && contact < contacts->count(); ++contact) {
     if (!contacts->holds(contact)) continue;
     const int i = contacts->vertex(contact);
-    v.col(i) = (x.col(i) - start.x.col(i)) / h;
-    x_.col(i) = x.col(i) - h * v.col(i) + (0.5 * h * h) * acceleration.col(i);
-    v_.col(i) = v.col(i) - h * acceleration.col(i);
+    const Eigen::Vector3d n = contacts->normal(contact), mean = (x.col(i) - start.x.col(i)) / h;
+    v.col(i) = contacts->end_velocity(contact, x.col(i), mean, v.col(i));
+    if (v.col(i) == mean) {
+      x_.col(i) = start.x.col(i);
+      v_.col(i) = mean;
+    } else {
+      x_.col(i) += n.dot(x.col(i) - h * v.col(i) - x_.col(i)) * n;
+      v_.col(i) += n.dot(v.col(i) - v_.col(i)) * n;
+    }
   }
   for (const int vertex : problem_.pinned()) v.col(vertex).setZero();
   x_known_ = x;
@@ -109,7 +115,7 @@ StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Posit
   Stopwatch stopwatch(phases_wanted_);
   const Bdf2Coefficients c = history_.coefficients(h);
   v = (x - c.now * start.x - c.before * history_.x()) * (1 / c.beta_h);
-  history_.add_step(start, h, x, acceleration_, contacts_.get(), v);
+  history_.add_step(start, h, x, contacts_.get(), v);
   phases_.unconstrained += stopwatch();
   return {};
 }
@@ -153,7 +159,7 @@ StepResult Bdf2OfEuler::solve(const State& state, double h, Positions& x) {
 StepResult Bdf2OfEuler::end_velocities(const State& start, double h, const Positions& /*filtered*/,
                                        const Positions& x, Positions& v) {
   v = ahead_.v;
-  history_.add_step(start, h, x, gravity_, euler_->contacts(), v);
+  history_.add_step(start, h, x, euler_->contacts(), v);
   return {};
 }
 

@@ -4,8 +4,11 @@
 //   y^{n+1} = alpha y^n + (1 - alpha) y^{n-1} + beta h y'^{n+1}.
 //
 // The formula assumes that velocities do not jump. A state that is not the one left by the last
-// step, and a vertex that the collider holds, get the history of a free flight that ends here:
+// step gets the history of a free flight that ends here:
 //   x^{n-1} = x^n - h v^n + h^2 a / 2,  v^{n-1} = v^n - h a.
+// Of a vertex that the collider holds, only the way along the surface is remembered; along the
+// normal, and after friction has stopped it, its motion was a steady one:
+//   x^{n-1} = x^n - h v^n,  v^{n-1} = v^n.
 #pragma once
 
 #include "solvers/stepping/velocity_filter.h"
@@ -26,10 +29,11 @@ class Bdf2History {
   // The flight under `acceleration` (3 x n) that ends in `state`.
   void restart(const State& state, double h, const Positions& acceleration);
   Bdf2Coefficients coefficients(double h) const;
-  // The step from `start` led to x with the velocities v; those of vertices that contacts hold
-  // become (x - x^n) / h, those of pins 0. contacts: null where there is no collider.
-  void add_step(const State& start, double h, const Positions& x, const Positions& acceleration,
-                const Contacts* contacts, Positions& v);
+  // The step from `start` led to x with the velocities v by the formula; those of vertices that
+  // contacts hold become Contacts::end_velocity, those of pins 0. contacts: null where there is no
+  // collider.
+  void add_step(const State& start, double h, const Positions& x, const Contacts* contacts,
+                Positions& v);
 
   const Positions& x() const { return x_; }  // x^{n-1}
   const Positions& v() const { return v_; }  // v^{n-1}

@@ -36,9 +36,15 @@ StepResult MidpointStepper::end_velocities(const State& start, double h,
   Stopwatch stopwatch(phases_wanted_);
   v = (2 * (candidate_ - start.x) + (1 + rho_) * (x - candidate_)) * (1 / h) - start.v;
   if (contacts_) {
+    // Friction is a force of the candidate's, and no constraint's.
+    const bool friction = contacts_->candidate().size() > 0;
     for (int contact = 0; contact < contacts_->count(); ++contact) {
+      if (!contacts_->holds(contact)) continue;
       const int i = contacts_->vertex(contact);
-      if (contacts_->holds(contact)) v.col(i) = (x.col(i) - start.x.col(i)) / h;
+      if (friction)
+        v.col(i) += (1 - rho_) / h * (contacts_->candidate().col(i) - candidate_.col(i));
+      v.col(i) =
+          contacts_->end_velocity(contact, x.col(i), (x.col(i) - start.x.col(i)) / h, v.col(i));
     }
   }
   for (const int vertex : problem_->pinned()) v.col(vertex).setZero();

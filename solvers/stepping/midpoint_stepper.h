@@ -11,8 +11,8 @@
 // rho, 0 to 1, is the spectral radius at infinite stiffness (Chung and Hulbert 1993): of a rate
 // that constraints stop, -rho times as much is left after the step. So an edge that comes to its
 // limit bounces there unless rho is less than 1. With 1 the rule is of second order; what is
-// smaller acts on constraint forces alone. Vertices that an obstacle holds end the step with
-// (x^{n+1} - x^n) / h: they do not bounce. f has shear and bending at x^n + h v^n / 2, drag at v^n;
+// smaller acts on constraint forces alone. Vertices that an obstacle holds do not bounce
+// (Contacts::end_velocity). f has shear and bending at x^n + h v^n / 2, drag at v^n;
 // implicit forces join the constraint forces, with the same rho (ImplicitForces).
 #pragma once
 

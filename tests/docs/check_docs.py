@@ -13,6 +13,7 @@ and that line of that file must then contain the text. Generated blocks end with
     <!-- references -->                         the committed references
     <!-- bench list NAME -->                    what `bench list NAME` prints
     <!-- folders of solvers -->                 which folders each folder of solvers/CMakeLists.txt uses
+    <!-- orders ANSWERS.json NAME ... -->        the orders of convergence of these known answers
     <!-- methods HEADLINE, RESULT.json LIMIT, ... -->   each method's time as published and in its best stepper, within that error
 
 --fix renews them. No other measured number belongs in a document. The program is BENCH_BINARY if that is set, else that of
@@ -37,7 +38,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
 NAMED_DOCUMENT = re.compile(r"[\w/.-]*\w\.md\b")
-BLOCK = re.compile(r"<!-- (references|bench list|folders of|methods)([^>:]*?) -->\n\n?.*?<!-- end of list -->", re.DOTALL)
+BLOCK = re.compile(r"<!-- (references|bench list|folders of|methods|orders)([^>:]*?) -->\n\n?.*?<!-- end of list -->", re.DOTALL)
 SURE = 3  # gaps of a reference
 SOURCES = ("solvers", "harness", "tests", "plots", "cmake", "configs")
 SOURCE_SUFFIXES = {".cpp", ".h", ".py", ".sh", ".cmake", ".txt", ".json"}
@@ -170,7 +171,23 @@ def methods_of(words: str) -> str:
     return markdown(["method", *titles], [[f"`{m}`", *(text(column, m) for column in times)] for m in order])
 
 
-BLOCKS = {"references": references, "bench list": table_of, "folders of": folders_of, "methods": methods_of}
+def orders_of(words: str) -> str:
+    """Of each solver the order between its two finest steps, and the deviation at the finest one."""
+    file, *names = words.split()
+    finest = {(row["solver"], row["answer"]): row for row in json_of(ROOT / file)["rows"] if row["deviation"] is not None}
+
+    def text(row: dict | None) -> str:
+        if row is None:
+            return "-"
+        order = "below the limit" if row["order"] is None else f"{row['order']:.1f}"
+        return f"{order} ({100 * abs(row['deviation']):.2g} %)"
+
+    solvers = dict.fromkeys(solver for solver, answer in finest if answer in names)
+    return markdown(["method", *(f"`{name}`" for name in names)],
+                    [[f"`{solver}`", *(text(finest.get((solver, name))) for name in names)] for solver in solvers])
+
+
+BLOCKS = {"references": references, "bench list": table_of, "folders of": folders_of, "methods": methods_of, "orders": orders_of}
 
 
 def with_tables(text: str) -> str:

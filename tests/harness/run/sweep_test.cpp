@@ -47,22 +47,27 @@ TEST(StepSearch, RunsFromCoarseToFineAsLongAsThatIsOfUse) {
       {"until the finest level that the reference is sure to",
        {.seconds = slowing(1.3), .error = error_of_step(4), .gap = 0.02 / sure_gaps},
        {25, 50, 100, 200, 400}},
-      // 1, 1.5, 2.25, 3.4, 5.1, 7.6, 11.4 s: the last is stopped.
-      {"until time has risen tenfold",
-       {.seconds = slowing(1.5), .error = error_of_step(1000), .stops = true},
-       {25, 50, 100, 200, 400, 800, 1600}},
-      {"until time has risen tenfold, at once",
-       {.seconds = slowing(4), .error = error_of_step(1000), .stops = true},
+      // 1, 2.5, 6.25, 15.6, 39 s: the last is stopped.
+      {"until time has risen thirtyfold",
+       {.seconds = slowing(2.5), .error = error_of_step(1000), .stops = true},
+       {25, 50, 100, 200, 400}},
+      {"until time has risen thirtyfold, at once",
+       {.seconds = slowing(6), .error = error_of_step(1000), .stops = true},
        {25, 50, 100}},
       // A step that meets the next level is not compared with a fast one of a wrong motion: 16 % at
       // 1 s, 0.5 % at 243 s.
-      {"through tenfold times that meet another level",
+      {"through thirtyfold times that meet another level",
        {.seconds = slowing(3), .error = error_of_step(4), .stops = true},
        {25, 50, 100, 200, 400, 800, 1600}},
       {"until the error stays",
        {.seconds = slowing(1.1),
         .error = [](const PointSpec& spec) { return 0.2 + 0.01 * spec.step; }},
-       {25, 50, 100}},
+       {25, 50, 100, 200, 400}},
+      // Several steps lead to the same wrong folds.
+      {"past an error that stays for a while",
+       {.seconds = slowing(1.3),
+        .error = [](const PointSpec& spec) { return spec.step > 0.004 ? 0.2 : spec.step; }},
+       {25, 50, 100, 200, 400, 800}},
       {"until two runs in a row fail",
        {.seconds = slowing(1.1),
         .status =

@@ -67,6 +67,31 @@ TEST_P(Friction, HoldsARopeOnASlopeBelowItsAngleAndSlowsItAbove) {
   }
 }
 
+// In every stepper friction acts for the whole of a step: a rope that slides along itself at 1 m/s
+// stops after v^2 / (2 mu g).
+TEST(FrictionInEveryStepper, StopsASlidingRopeWhereCoulombSays) {
+  constexpr double friction = 0.3, speed = 1;
+  for (const char* solver : {"fast_projection", "fast_projection@bdf2", "fast_projection@midpoint",
+                             "rattle", "implicit_springs@bdf2"}) {
+    ProblemParts parts;
+    parts.mass = {0.1, 0.3, 0.2, 0.1};
+    parts.edges = {{0, 1}, {1, 2}, {2, 3}};
+    parts.rest_length = {0.1, 0.1, 0.1};
+    parts.gravity = {0, -gravity, 0};
+    parts.collider = std::make_shared<const testing::Ground>(Vector3d::UnitY(), 0, friction);
+    const auto problem = std::make_shared<const Problem>(std::move(parts));
+    State state{Positions::Zero(3, 4), Positions::Zero(3, 4), 0};
+    state.x.row(0) << 0, 0.1, 0.2, 0.3;
+    state.v.row(0).setConstant(speed);
+    const Positions start = state.x;
+    const auto stepper = make_stepper(solver, problem, {1e-3, 1, stiff_enough(solver), &state});
+    for (int step = 0; step < 200; ++step) ASSERT_TRUE(stepper->advance(state, short_step));
+    const double way = speed * speed / (2 * friction * gravity);
+    EXPECT_NEAR((state.x - start).row(0).mean(), way, 0.01 * way) << solver;
+    EXPECT_LT(state.v.cwiseAbs().maxCoeff(), 1e-6) << solver;
+  }
+}
+
 // A post of `sides` facets each way round, along z, with the radius R to the middles of its facets.
 TriangleMesh post(int sides, double radius) {
   TriangleMesh mesh;
