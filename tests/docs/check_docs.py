@@ -172,19 +172,22 @@ def methods_of(words: str) -> str:
 
 
 def orders_of(words: str) -> str:
-    """Of each solver the order between its two finest steps, and the deviation at the finest one."""
+    """A row for each method: its order between the two finest steps and its deviation at the finest one, in each stepper."""
     file, *names = words.split()
-    finest = {(row["solver"], row["answer"]): row for row in json_of(ROOT / file)["rows"] if row["deviation"] is not None}
+    finest = {(row["answer"], row["solver"]): row for row in json_of(ROOT / file)["rows"] if row["deviation"] is not None}
 
-    def text(row: dict | None) -> str:
-        if row is None:
-            return "-"
-        order = "below the limit" if row["order"] is None else f"{row['order']:.1f}"
-        return f"{order} ({100 * abs(row['deviation']):.2g} %)"
+    def text(answer: str, method: str) -> str:
+        cells = []
+        for (name, solver), row in finest.items():
+            if name == answer and solver.partition("@")[0] == method:
+                order = "-" if row["order"] is None else f"{row['order']:.1f}"
+                stepper = f" @{solver.partition('@')[2]}" if "@" in solver else ""
+                cells.append(f"{order} ({100 * abs(row['deviation']):.2g} %){stepper}")
+        return ", ".join(cells) or "-"
 
-    solvers = dict.fromkeys(solver for solver, answer in finest if answer in names)
+    methods = dict.fromkeys(solver.partition("@")[0] for answer, solver in finest if answer in names)
     return markdown(["method", *(f"`{name}`" for name in names)],
-                    [[f"`{solver}`", *(text(finest.get((solver, name))) for name in names)] for solver in solvers])
+                    [[f"`{method}`", *(text(name, method) for name in names)] for method in methods])
 
 
 BLOCKS = {"references": references, "bench list": table_of, "folders of": folders_of, "methods": methods_of, "orders": orders_of}
