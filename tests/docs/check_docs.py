@@ -13,6 +13,8 @@ and that line of that file must then contain the text. Generated blocks end with
     <!-- references -->                         the committed references
     <!-- bench list NAME -->                    what `bench list NAME` prints
     <!-- folders of solvers -->                 which folders each folder of solvers/CMakeLists.txt uses
+    <!-- gaps SCENE TIME ... -->                what the gaps of a scene's committed references are made of, at these times
+    <!-- steps RESULT.json LIMIT STEP ... -->    time and largest error of every contestant at these steps
     <!-- orders ANSWERS.json NAME ... -->        the orders of convergence of these known answers
     <!-- methods HEADLINE, RESULT.json LIMIT, ... -->   each method's time as published and in its best stepper, within that error
 
@@ -38,7 +40,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 BACKTICKS = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(r"\.?[\w-][\w./*-]*/[\w./*-]*")
 NAMED_DOCUMENT = re.compile(r"[\w/.-]*\w\.md\b")
-BLOCK = re.compile(r"<!-- (references|bench list|folders of|methods|orders)([^>:]*?) -->\n\n?.*?<!-- end of list -->", re.DOTALL)
+BLOCK = re.compile(r"<!-- (references|bench list|folders of|methods|orders|gaps|steps)([^>:]*?) -->\n\n?.*?<!-- end of list -->", re.DOTALL)
 SURE = 3  # gaps of a reference
 SOURCES = ("solvers", "harness", "tests", "plots", "cmake", "configs")
 SOURCE_SUFFIXES = {".cpp", ".h", ".py", ".sh", ".cmake", ".txt", ".json"}
@@ -110,6 +112,21 @@ def references(_: str) -> str:
         until = [max((t for t, gap in known if SURE * gap <= level), default=0) for level in levels]
         rows.append([f"`{path.stem}`", *(f"{t:g}" for t in until), str(file.get("ensemble", {}).get("runs", "-"))])
     return markdown(["reference", *(f"{100 * level:g} %" for level in levels), "runs of the ensemble"], rows)
+
+
+PARTS = {"routes": "first and second route", "third_route": "third route", "half_step": "first route at twice the step",
+         "second_half_step": "second route at twice the step", "moved_start": "start moved"}
+
+
+def gaps_of(words: str) -> str:
+    """In percent of the scene's size, at the sample time nearest to each."""
+    scene, *times = words.split()
+    rows = []
+    for path in sorted((ROOT / "results/references").glob(f"{scene}-n*.json"), key=lambda path: int(path.stem.split("-n")[1])):
+        file = json_of(path)
+        places = [min(range(len(file["times"])), key=lambda i: abs(file["times"][i] - float(time))) for time in times]
+        rows += [[f"`{path.stem}`", PARTS[part], *(f"{100 * gaps[i]:.2g}" for i in places)] for part, gaps in file["gap_parts"].items()]
+    return markdown(["reference", "distance, %", *(f"{float(time):g} s" for time in times)], rows)
 
 
 @functools.cache
@@ -190,7 +207,23 @@ def orders_of(words: str) -> str:
                     [[f"`{method}`", *(text(name, method) for name in names)] for method in methods])
 
 
-BLOCKS = {"references": references, "bench list": table_of, "folders of": folders_of, "methods": methods_of, "orders": orders_of}
+def steps_of(words: str) -> str:
+    """Milliseconds for a simulated second and the largest error in percent; a run that failed has its status."""
+    file, limit, *steps = words.split()
+    points = [p for p in json_of(ROOT / file)["points"] if p["strain_limit"] == float(limit) and not p["contestant"].endswith("_again")]
+
+    def text(contestant: str, step: str) -> str:
+        for p in points:
+            if p["contestant"] == contestant and math.isclose(p["step"], float(step)):
+                time, error = p["seconds_per_simulated_second"]["min"], p["error"]["trajectory"]
+                return f"{1e3 * time:.3g}, {100 * error:.2g} %" if p["status"] == "ok" and error is not None else p["status"]
+        return "-"
+
+    return markdown(["contestant", *(f"1/{1 / float(step):g} s" for step in steps)],
+                    [[f"`{contestant}`", *(text(contestant, step) for step in steps)] for contestant in dict.fromkeys(p["contestant"] for p in points)])
+
+
+BLOCKS = {"references": references, "bench list": table_of, "folders of": folders_of, "methods": methods_of, "orders": orders_of, "gaps": gaps_of, "steps": steps_of}
 
 
 def with_tables(text: str) -> str:
