@@ -260,6 +260,30 @@ SceneType settling_drape() {
       .counts = count_square};
 }
 
+SceneType curtain() {
+  return {.name = "curtain",
+          .summary = "stiff cotton that swings down in air from two corners",
+          .parameters = joined({stiff_cotton(31), {duration_info()}}),
+          .build = build_curtain,
+          .counts = count_square,
+          .like = "patch"};
+}
+
+SceneType sliding_block() {
+  return {.name = "sliding_block",
+          .summary =
+              "a square of cloth that slides on a table until friction stops it: its motion is "
+              "known",
+          .parameters = joined({cloth_parameters(5),
+                                {{"speed", 1, "at the start, m/s", 0, 1e4},
+                                 {"friction", 0.3, "Coulomb coefficient", 0, 1e3},
+                                 duration_info(0.6)}}),
+          .build = build_block,
+          .counts = count_square,
+          .exact = block_at,
+          .like = "drape"};
+}
+
 }  // namespace
 
 std::vector<SceneType> cloth_scenes() {
@@ -277,23 +301,8 @@ std::vector<SceneType> cloth_scenes() {
                      "implicit, and air",
                      0.15, 1e-5, 20),
       settling_drape(),
-      {.name = "curtain",
-       .summary = "stiff cotton that swings down in air from two corners",
-       .parameters = joined({stiff_cotton(31), {duration_info()}}),
-       .build = build_curtain,
-       .counts = count_square,
-       .like = "patch"},
-      {.name = "sliding_block",
-       .summary = "a square of cloth that slides on a table until friction stops it: its motion is "
-                  "known",
-       .parameters = joined({cloth_parameters(5),
-                             {{"speed", 1, "at the start, m/s", 0, 1e4},
-                              {"friction", 0.3, "Coulomb coefficient", 0, 1e3},
-                              duration_info(0.6)}}),
-       .build = build_block,
-       .counts = count_square,
-       .exact = block_at,
-       .like = "drape"},
+      curtain(),
+      sliding_block(),
       measured_fabric("cotton_drape", "fabric_drape of cotton broadcloth, as measured",
                       fabric("cotton")),
       measured_fabric("wool_drape", "fabric_drape of wool tropical, as measured", fabric("wool")),

@@ -249,9 +249,17 @@ Table differences_in(const json& document) {
                  "; would fix it: " + known.at("mends").get<std::string>();
     }
     const std::string fixed = cell.at("at_fixed_step"), outcome = cell.at("outcome");
-    table.rows.push_back({cell.at("case"), cell.at("solver"), cell.at("expected_at_fixed_step"),
-                          fixed == outcome ? fixed : fixed + ", with smaller steps " + outcome,
-                          reason});
+    std::vector<std::string> row{
+        cell.at("case"), cell.at("solver"), cell.at("expected_at_fixed_step"),
+        fixed == outcome ? fixed : fixed + ", with smaller steps " + outcome, reason};
+    const auto same = std::ranges::find_if(table.rows, [&row](const auto& other) {
+      return std::equal(row.begin() + 1, row.end(), other.begin() + 1);
+    });
+    if (same == table.rows.end()) {
+      table.rows.push_back(std::move(row));
+    } else {
+      same->front() += ", " + row.front();  // a solver's cases that end alike share a row
+    }
   }
   return table;
 }

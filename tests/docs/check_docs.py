@@ -215,8 +215,9 @@ def steps_of(words: str) -> str:
     def text(contestant: str, step: str) -> str:
         for p in points:
             if p["contestant"] == contestant and math.isclose(p["step"], float(step)):
-                time, error = p["seconds_per_simulated_second"]["min"], p["error"]["trajectory"]
-                return f"{1e3 * time:.3g}, {100 * error:.2g} %" if p["status"] == "ok" and error is not None else p["status"]
+                if p["status"] != "ok" or p["error"]["trajectory"] is None:
+                    return p["status"]
+                return f"{1e3 * p['seconds_per_simulated_second']['min']:.3g}, {100 * p['error']['trajectory']:.2g} %"
         return "-"
 
     return markdown(["contestant", *(f"1/{1 / float(step):g} s" for step in steps)],
