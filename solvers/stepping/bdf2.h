@@ -6,8 +6,8 @@
 // The formula assumes that velocities do not jump. A state that is not the one left by the last
 // step gets the history of a free flight that ends here:
 //   x^{n-1} = x^n - h v^n + h^2 a / 2,  v^{n-1} = v^n - h a.
-// Of a vertex that the collider holds, only the way along the surface is remembered; along the
-// normal, and after friction has stopped it, its motion was a steady one:
+// A vertex that the collider holds keeps its history along the surface. Along the normal, and after
+// friction has stopped it, it gets the history of a steady motion:
 //   x^{n-1} = x^n - h v^n,  v^{n-1} = v^n.
 #pragma once
 
