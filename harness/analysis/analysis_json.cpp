@@ -32,7 +32,6 @@ json entry_json(const Entry& entry) {
           {"seconds", number(entry.point.seconds())},
           {"step", number(entry.point.step())},
           {"error", number(entry.error)},
-          {"shape_error", number(entry.point.measures().shape)},
           {"delivered_strain", number(entry.point.delivered_strain())},
           {"frame_times",
            FieldCodec<std::vector<FrameTime>>::write(entry.point.result().frame_times, false)}};

@@ -47,51 +47,30 @@ std::map<double, std::map<double, Point>> iterated_runs(const Points& points, co
   return by_limit;
 }
 
-constexpr double alike = 0.01;  // of the cloth's size: a viewer sees no difference
+// A viewer sees no difference below it: root mean square distance over the cloth's size.
+constexpr double alike = 0.02;
 
 // One scene of the stability sweep's frame-by-frame comparison.
 struct Frames {
-  double before = 0;  // largest distance of a vertex up to first contact
-  double beyond = 0;  // after it: difference of a shape statistic beyond the ensemble's, largest
-  std::string which;  // statistic and time of that
+  double before = 0;  // largest distance of any vertex up to first contact
+  double after = 0;   // largest root mean square distance after it
 };
 
-// None where a run stopped, without contact, and without an ensemble to tell how far runs come
-// apart that are all right.
+// None where a run stopped, and without contact.
 std::optional<Frames> frames_of(const json& entry) {
   if (!entry.value("stopped", "").empty() || !entry.at("first_contact").is_number()) return {};
   const double contact = entry.at("first_contact");
   const auto times = entry.at("times").get<std::vector<double>>();
-  const json deviations = entry.value("ensemble_deviation", json::object());
-  const auto distances = [&](const std::string& name) -> const json& {
-    const json& list = entry.at("icd").at(name);
-    if (list.size() != times.size() ||
-        (deviations.contains(name) && deviations.at(name).size() != times.size()))
-      throw UsageError("same_frame: " + std::to_string(times.size()) + " times, but " +
-                       std::to_string(list.size()) + " distances");
-    return list;
-  };
+  const auto rms = entry.at("icd").at("rms").get<std::vector<double>>(),
+             largest = entry.at("icd").at("largest").get<std::vector<double>>();
+  if (rms.size() != times.size() || largest.size() != times.size())
+    throw UsageError("same_frame: times and distances differ in number");
   Frames frames;
   for (std::size_t i = 0; i < times.size(); ++i) {
-    if (times[i] < contact)
-      frames.before = std::max(frames.before, distances("largest")[i].get<double>());
+    double& most = times[i] < contact ? frames.before : frames.after;
+    most = std::max(most, times[i] < contact ? largest[i] : rms[i]);
   }
-  bool known = false;
-  for (const auto& [statistic, deviation] : deviations.items()) {
-    const json& differences = distances(statistic);
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      if (times[i] < contact || !deviation[i].is_number()) continue;
-      known = true;
-      // A run of an ensemble may be three standard deviations off its mean, and the difference of
-      // two runs has sqrt(2) times the deviation of one.
-      const double beyond =
-          differences[i].get<double>() - 3 * std::sqrt(2) * deviation[i].get<double>();
-      if (beyond <= frames.beyond) continue;
-      frames.beyond = beyond;
-      frames.which = statistic + " at " + text(times[i], 3) + " s";
-    }
-  }
-  return known ? std::optional(frames) : std::nullopt;
+  return frames;
 }
 
 // What is said of a method whose best points have all the limits asked for.
@@ -158,15 +137,12 @@ Verdict same_frame(const Points& points) {
     if (!scene.starts_with("drape")) continue;
     const auto frames = frames_of(*entry);
     if (!frames) continue;
-    before.push_back(yes_if(frames->before < alike));
-    after.push_back(frames->beyond < alike || frames->beyond > 2 * alike
-                        ? yes_if(frames->beyond < alike)
-                        : Answer::open);
+    before.push_back(yes_if(frames->before < alike / 2));
+    const bool open = frames->after >= alike && frames->after <= 2 * alike;
+    after.push_back(open ? Answer::open : yes_if(frames->after < alike));
     append(found.measured,
-           scene + ": before contact at most " + percent(frames->before) + " apart, after it " +
-               (frames->which.empty() ? "nowhere beyond the ensemble's spread"
-                                      : frames->which + " by " + percent(frames->beyond) +
-                                            " beyond the ensemble's spread"),
+           scene + ": before contact no vertex more than " + percent(frames->before) +
+               " apart, after it " + percent(frames->after) + " in the root mean square",
            "; ");
     found.points.push_back("same_frame/" + scene);
   }

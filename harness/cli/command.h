@@ -42,8 +42,7 @@ namespace harness {
   VERB(ab, false, "compare the speed of two builds in interleaved pairs of runs")                 \
   VERB(tune, true,                                                                                \
        "search the settings of each solver, by one rule, on scenes that no result reports")       \
-  VERB(reference, false,                                                                          \
-       "compute the trajectories and ensembles that errors are measured against")                 \
+  VERB(reference, false, "compute the trajectories that errors are measured against")             \
   VERB(point, false, "run single points, given as JSON on standard input, one a line")            \
   VERB(list, false, "print what there is: solvers, scenes, suites, verbs, cases and more")
 

@@ -1,4 +1,4 @@
-// bench reference: the trajectories and ensembles that errors are measured against.
+// bench reference: the trajectories that errors are measured against.
 #include <filesystem>
 #include <iomanip>
 
@@ -33,19 +33,6 @@ void print_reference(std::ostream& out, const Reference& reference) {
   }
 }
 
-void print_ensemble(std::ostream& out, const Ensemble& ensemble) {
-  for (const std::string& method : ensemble.methods) out << "  ensemble: " << method << '\n';
-  if (!ensemble.known()) {
-    if (!ensemble.unknown_because.empty()) out << "  " << ensemble.unknown_because << '\n';
-    return;
-  }
-  out << "  at its end, mean and standard deviation:";
-  for (const auto& [name, member] : shape_statistic_infos)
-    out << "  " << name << ' ' << number_text(ensemble.mean.back().*member, 3) << ' '
-        << number_text(ensemble.deviation.back().*member, 2);
-  out << '\n';
-}
-
 // The runs of a reference, kept beside its file.
 RouteRuns runs_beside(const std::string& path, const std::string& scene,
                       const SceneParameters& parameters, double finest) {
@@ -59,47 +46,26 @@ RouteRuns runs_beside(const std::string& path, const std::string& scene,
                     {"build", machine_context().at("fingerprint")}});
 }
 
-// By both routes, and of cloth an ensemble; of one that is stored the ensemble alone, and its path
-// stays as it is. What was stopped goes on after the runs that were done.
+// What was stopped goes on after the runs that were done.
 void make_reference(const std::string& path, const std::string& scene,
-                    const SceneParameters& parameters, double finest, const Reference* stored) {
+                    const SceneParameters& parameters, double finest) {
   std::filesystem::create_directories(std::filesystem::path(path).parent_path());
   check_writable(path);
   RouteRuns runs = runs_beside(path, scene, parameters, finest);
-  Reference reference = stored ? *stored : compute_reference(scene, parameters, finest, runs);
-  const Scene built = find_scene(scene)->build(parameters);
-  if (is_cloth(built) && reference.valid_until < reference.duration())
-    reference.ensemble = compute_ensemble(built, reference.times, {}, runs);
-  const nlohmann::json document =
-      stored ? with_ensemble(parse_document(read_file(path, "reference"), path), reference.ensemble)
-             : to_json(reference);
-  write_atomically(path, document.dump() + "\n");
+  const Reference reference = compute_reference(scene, parameters, finest, runs);
+  write_atomically(path, to_json(reference).dump() + "\n");
   runs.remove();
-  if (stored) {
-    std::cout << reference.scene << ":\n";
-  } else {
-    print_reference(std::cout, reference);
-  }
-  print_ensemble(std::cout, reference.ensemble);
+  print_reference(std::cout, reference);
   std::cout << path << std::endl;
 }
 
-bool wants_ensemble(const Reference& reference, bool again) {
-  const Ensemble& ensemble = reference.ensemble;
-  const bool there = ensemble.known() || !ensemble.unknown_because.empty();
-  return !reference.exact && (again || !there) && reference.valid_until < reference.duration() &&
-         is_cloth(find_scene(reference.scene)->build(reference.parameters));
-}
-
 struct ReferenceVerb : SelectionOptions {
-  bool again = false, only_ensemble = false;
+  bool again = false;
   double finest = 0;
 
   void declare(const Command& command) {
     declare_scenes(command, command);
     command.flag("--again", again, "also what exists already");
-    command.flag("--ensemble", only_ensemble,
-                 "only ensembles of references that exist; their paths stay as they are");
     command.option("--finest", finest, "smallest step of step halving, s", "S", Bounds::positive());
   }
 
@@ -131,25 +97,14 @@ struct ReferenceVerb : SelectionOptions {
     return scenes;
   }
 
-  // Makes what is missing, or all of it: references, and ensembles of those that are there.
+  // Makes what is missing, or all of it.
   int run() const {
-    if (only_ensemble && finest > 0)
-      throw UsageError("--finest does not go with --ensemble, whose runs have a step of their own");
     const bool one_scene = !n.empty() || !set.empty() || scene.starts_with("mesh:");  // of no suite
     const auto references = ReferenceFolder::usual();
     bool nothing = true;
     for (const auto& [name, parameters] : one_scene ? given_scenes() : scenes_of_suite()) {
-      const std::string path = reference_path(name, parameters);
-      const auto stored = references->find(name, parameters);
-      if (!only_ensemble && (!stored || again)) {
-        make_reference(path, name, parameters, finest, nullptr);
-      } else if (stored && wants_ensemble(*stored, again)) {
-        make_reference(path, name, parameters, 0, stored.get());
-      } else if (!stored) {
-        std::cerr << path << " is not there: bench reference makes it\n";
-      } else {
-        continue;
-      }
+      if (references->find(name, parameters) && !again) continue;
+      make_reference(reference_path(name, parameters), name, parameters, finest);
       nothing = false;
     }
     if (nothing) std::cout << "nothing is missing (--again computes again)\n";

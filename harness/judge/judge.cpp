@@ -36,8 +36,6 @@ Judge::Judge(const Scene& scene, const Options& options)
   options_.sample_every = std::max(1, options_.sample_every);
   if (options_.residual) probe_.emplace();
   energy_.begin(scene.start);
-  if (options_.reference && options_.reference->ensemble.known())
-    shape_.emplace(scene, options_.reference->times, options.velocities);
 }
 
 void Judge::before(const State& state, double h) {
@@ -63,7 +61,6 @@ void Judge::compare(const State& state) {
       running_.rest_gap = reference.rest_gap;
       running_.rest = rest_difference(scene_, x, reference.positions.back());
     }
-    if (shape_) shape_->sample(x);
   }
 }
 
@@ -98,31 +95,6 @@ void Judge::add_errors(Measures& measures) const {
   }
 }
 
-// "": there is one.
-std::string Judge::why_no_shape() const {
-  if (!is_cloth(scene_)) return "the scene is no cloth";
-  if (!options_.reference) return no_reference;
-  const Ensemble& ensemble = options_.reference->ensemble;
-  if (!ensemble.known())
-    return ensemble.unknown_because.empty() ? "the reference has no ensemble"
-                                            : "no ensemble: " + ensemble.unknown_because;
-  std::size_t wanted = 0;
-  for (const double time : options_.reference->times)
-    wanted += time <= scene_.duration + time_tolerance;
-  if (wanted == 0) return "the run is shorter than the first sample time";
-  if (next_ >= wanted) return "";
-  return "the run ended after " + std::to_string(next_) + " of " + std::to_string(wanted) +
-         " sample times";
-}
-
-void Judge::add_shape(Measures& measures) {
-  measures.shape_unknown_because = why_no_shape();
-  if (!measures.shape_unknown_because.empty()) return;
-  const Reference& reference = *options_.reference;
-  measure_shape(reference.ensemble, reference.times, shape_->finish(), measures);
-  if (std::isnan(measures.shape)) measures.shape_unknown_because = "positions are not finite";
-}
-
 double Judge::after(const Positions& filtered, const State& state, double h, bool counts) {
   const StrainRange range = strain_range(*scene_.problem, filtered);
   running_.max_strain = std::max(running_.max_strain, range.most);
@@ -138,7 +110,6 @@ double Judge::after(const Positions& filtered, const State& state, double h, boo
       running_.residuals.push_back({state.time, residuals->first, residuals->last});
   }
   if (options_.reference) compare(state);
-  if (shape_) shape_->step(state, h);
   return range.most;
 }
 
@@ -198,7 +169,6 @@ Measures Judge::finish() {
     }
     if (!options_.residual_series) measures.residuals.clear();
   }
-  add_shape(measures);
   if (!options_.reference) {
     measures.unknown_because = no_reference;
     return measures;

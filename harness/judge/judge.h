@@ -76,8 +76,6 @@ class Judge {
   void compare(const inextensible::State& state);
   void compare_positions(const inextensible::Positions& x);
   void add_errors(Measures& measures) const;
-  void add_shape(Measures& measures);
-  std::string why_no_shape() const;
 
   const Scene& scene_;
   Options options_;
@@ -94,7 +92,6 @@ class Judge {
   inextensible::State start_;  // of the step, where a sample lies inside it
   std::size_t next_ = 0;       // of the reference's samples
   double moved_squares_ = 0, reference_moved_squares_ = 0;  // distances from the start
-  std::optional<ShapeRecord> shape_;                        // where the reference has an ensemble
 };
 
 }  // namespace harness

@@ -35,30 +35,11 @@ constexpr auto reference_fields = std::tuple{
     field("energy_drift", &Reference::energy_drift, "weight times size", "of the first route"),
     field("observed_order", &Reference::observed_order, "", "under step halving", may_be_absent),
     field("expected_order", &Reference::expected_order, "", "by theory")};
-constexpr auto ensemble_fields = std::tuple{
-    field("methods", &Ensemble::methods, "", "of its runs"),
-    field("moved", &Ensemble::moved, "edge lengths", "how far starts are moved at most"),
-    field("runs", &Ensemble::runs, "", "that came to the end"),
-    field("mean", &Ensemble::mean, "", "of each statistic at each time"),
-    field("deviation", &Ensemble::deviation, "", "of one run"),
-    field("kinetic_deviation", &Ensemble::kinetic_deviation, "", "of means up to each time"),
-    field("unknown_because", &Ensemble::unknown_because, "", "why there is none")};
-
-json ensemble_json(const Ensemble& e) {
-  json object;
-  write_fields(object, ensemble_fields, e);
-  for (const auto& info : shape_statistic_infos) object["statistics"].push_back(info.name);
-  return object;
-}
 
 // Lists of the file that belong to its times.
 bool lengths_agree(const Reference& r) {
   const std::size_t times = r.times.size();
-  const Ensemble& e = r.ensemble;
-  const bool ensemble = !e.known() || (e.mean.size() == times && e.deviation.size() == times &&
-                                       e.kinetic_deviation.size() == times);
-  return ensemble && r.gap.size() == times && r.gap_max.size() == times &&
-         r.positions.size() <= times;
+  return r.gap.size() == times && r.gap_max.size() == times && r.positions.size() <= times;
 }
 
 // Why it is of no scene of ours, or not of as many vertices; "": it is.
@@ -193,14 +174,7 @@ json to_json(const Reference& r) {
   // A file holds the digits that its gaps leave standing.
   const double least = r.gap.empty() ? 0 : *std::min_element(r.gap.begin(), r.gap.end());
   object["positions"] = rows_of(r.positions, least > 1e-7 ? rounded<9> : rounded<12>);
-  if (r.ensemble.known() || !r.ensemble.unknown_because.empty())
-    object["ensemble"] = ensemble_json(r.ensemble);
   return object;
-}
-
-json with_ensemble(json document, const Ensemble& ensemble) {
-  document["ensemble"] = ensemble_json(ensemble);
-  return document;
 }
 
 Reference read_reference(const std::string& path, const std::string& scene) {
@@ -214,8 +188,6 @@ Reference reference_of(const json& document, const std::string& path, const std:
                        ", must be \"" + reference_schema + "\"");
     Reference r;
     read_fields(document, reference_fields, r);
-    if (document.contains("ensemble"))
-      read_fields(document.at("ensemble"), ensemble_fields, r.ensemble);
     if (!scene.empty()) r.scene = scene;
     r.positions = path_of(document.at("positions"));
     const std::string why = mismatch(r);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harness/judge/shape.h"
+#include "harness/points/measures.h"
 #include "harness/scenes/scene.h"
 
 namespace harness {
@@ -38,7 +39,6 @@ struct Reference {
   double observed_order = unknown;
   double expected_order = 1;
   bool exact = false;  // no route: the scene's motion is known
-  Ensemble ensemble;   // of cloth, up to the last of the times; chains have none
 
   double duration() const { return times.empty() ? 0 : times.back(); }
   // How many sample times count at a level of error: those at which 3 gap is at most the level.
@@ -67,8 +67,6 @@ std::shared_ptr<const Reference> exact_reference(const std::string& scene,
 std::string reference_name(const std::string& scene, const SceneParameters& complete);
 
 nlohmann::json to_json(const Reference& reference);
-// A reference's document with this ensemble in place of its own, all else as it is.
-nlohmann::json with_ensemble(nlohmann::json document, const Ensemble& ensemble);
 // Throws UsageError, naming the file, for anything that is not a reference.
 // scene: whose it is, by the name under which its files are found here; "": the document's own.
 Reference read_reference(const std::string& path, const std::string& scene = "");

@@ -1,4 +1,4 @@
-// References and ensembles by computation: two unlike routes for each scene. They are made of runs,
+// References by computation: two unlike routes for each scene. They are made of runs,
 // each by one route, at one step, from one start. A run is kept as soon as it is done, so that a
 // computation that was stopped goes on with the next one.
 #pragma once
@@ -20,7 +20,6 @@ using Tell = std::function<void(const std::string&)>;  // a line for people; may
 struct RouteRun {
   Path path;                // at the sample times, up to where it fails
   double energy_drift = 0;  // over weight times size, where the scene conserves energy
-  ShapeSeries shape;        // of an ensemble's runs, which have no path
 };
 
 class RouteRuns {
@@ -87,19 +86,5 @@ constexpr double quick_finest = sample_interval / 32;
 // How long compute_reference takes, s, estimated from a few steps of each route. 0 for pendulums,
 // which take seconds.
 double reference_seconds(const std::string& scene, const SceneParameters& complete);
-
-struct EnsemblePlan {
-  // s; divides the sample interval. Far below the steps that are judged, and affordable.
-  double step = sample_interval / 160;
-  int runs_of_a_route = 8;
-  double moved = 1e-4;  // a start's coordinates, at most, over the shortest edge
-};
-constexpr int fewest_runs = 8;  // of an ensemble, of both routes together
-
-// Ensemble of a scene of cloth at these times, by the routes of its reference. A run that fails, or
-// whose energy rises beyond the scene's bound, is left out; with fewer than the fewest runs there
-// is no ensemble, with a reason.
-Ensemble compute_ensemble(const Scene& scene, const std::vector<double>& times,
-                          const EnsemblePlan& plan, RouteRuns& runs);
 
 }  // namespace harness

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "harness/judge/mechanics.h"
 #include "solvers/problem/forces.h"
@@ -14,11 +13,8 @@
 namespace harness {
 
 using inextensible::Positions;
-using inextensible::State;
 
 namespace {
-
-constexpr double same_time = 1e-9;  // s; states add up their steps
 
 // Area covered by triangles seen from above: pixel centres of a raster, over size^2.
 double shadow_area(const Scene& scene, const Positions& x) {
@@ -48,15 +44,6 @@ double shadow_area(const Scene& scene, const Positions& x) {
   }
   const auto count = std::count(dark.begin(), dark.end(), 1);
   return static_cast<double>(count) * pixel * pixel / (scene.size * scene.size);
-}
-
-// Two passes: a spread that is small beside the mean keeps its digits.
-std::pair<double, double> mean_and_deviation(const std::vector<double>& values) {
-  const auto n = static_cast<double>(values.size());
-  double mean = 0, squares = 0;
-  for (const double value : values) mean += value / n;
-  for (const double value : values) squares += std::pow(value - mean, 2) / (n - 1);
-  return {mean, std::sqrt(squares)};
 }
 
 // The vertices along the hem, in order: sides of one triangle only. Empty where there is not one
@@ -114,122 +101,23 @@ int count_folds(const Scene& scene, const Positions& x) {
   return folds;
 }
 
-std::map<std::string, double> rest_difference(const Scene& scene, const Positions& x,
-                                              const Positions& y) {
-  const ShapeStatistics a = shape_statistics(scene, x), b = shape_statistics(scene, y);
-  std::map<std::string, double> difference{
-      {"folds", count_folds(scene, x) - count_folds(scene, y)}};
-  for (const auto& [name, member] : shape_statistic_infos) {
-    if (member != &ShapeStatistics::kinetic_energy) difference[name] = a.*member - b.*member;
-  }
-  return difference;
-}
-
-void to_json(nlohmann::json& row, const ShapeStatistics& shape) {
-  row = nlohmann::json::array();
-  for (const auto& info : shape_statistic_infos) row.push_back(shape.*info.member);
-}
-
-void from_json(const nlohmann::json& row, ShapeStatistics& shape) {
-  for (std::size_t k = 0; k < shape_statistic_infos.size(); ++k)
-    row.at(k).get_to(shape.*shape_statistic_infos[k].member);
-}
-
 bool is_cloth(const Scene& scene) { return !scene.triangles.empty(); }
 
-ShapeStatistics shape_statistics(const Scene& scene, const Positions& x) {
-  ShapeStatistics shape;
-  shape.potential_energy = inextensible::potential_energy(*scene.problem, x) / energy_scale(scene);
+Shape shape_of(const Scene& scene, const Positions& x) {
+  double corner_height = 0;
   for (const int corner : scene.corners)
-    shape.corner_height += x(1, corner) / scene.size / static_cast<double>(scene.corners.size());
-  if (is_cloth(scene)) shape.shadow = shadow_area(scene, x);
-  return shape;
+    corner_height += x(1, corner) / scene.size / static_cast<double>(scene.corners.size());
+  return {
+      {"potential_energy", inextensible::potential_energy(*scene.problem, x) / energy_scale(scene)},
+      {"corner_height", corner_height},
+      {"shadow", shadow_area(scene, x)},
+      {"folds", count_folds(scene, x)}};
 }
 
-ShapeRecord::ShapeRecord(const Scene& scene, std::vector<double> times,
-                         inextensible::Velocities velocities)
-    : scene_(scene), times_(std::move(times)), velocities_(velocities) {}
-
-void ShapeRecord::sample(const Positions& x) { series_.push_back(shape_statistics(scene_, x)); }
-
-// Linear through the last two instants, and no less than nothing beyond them.
-double ShapeRecord::kinetic_at(double time) const {
-  const double slope = (last_.kinetic - before_.kinetic) / (last_.time - before_.time);
-  return std::max(0.0, last_.kinetic + slope * (time - last_.time));
-}
-
-void ShapeRecord::step(const State& state, double h) {
-  const bool whole = velocities_ == inextensible::Velocities::whole_step;
-  before_ = last_;
-  last_ = {whole ? state.time : state.time - h / 2,
-           inextensible::kinetic_energy(*scene_.problem, state.v) / energy_scale(scene_)};
-  ++steps_;
-  for (; settled_ < series_.size() && times_[settled_] <= last_.time + same_time; ++settled_)
-    series_[settled_].kinetic_energy = steps_ == 1 ? last_.kinetic : kinetic_at(times_[settled_]);
-}
-
-// No velocity follows the last step: its own, or what the last two foretell if that is less.
-const ShapeSeries& ShapeRecord::finish() {
-  for (; settled_ < series_.size(); ++settled_) {
-    double kinetic = last_.kinetic;
-    if (steps_ > 1) kinetic = std::min(kinetic, kinetic_at(times_[settled_]));
-    series_[settled_].kinetic_energy = kinetic;
-  }
-  return series_;
-}
-
-Ensemble ensemble_of(const std::vector<ShapeSeries>& runs) {
-  Ensemble e;
-  e.runs = static_cast<int>(runs.size());
-  const std::size_t times = runs.front().size();
-  std::vector<double> values(runs.size()), kinetic_sums(runs.size(), 0);
-  for (std::size_t i = 0; i < times; ++i) {
-    ShapeStatistics mean, deviation;
-    for (const auto& [name, member] : shape_statistic_infos) {
-      for (std::size_t k = 0; k < runs.size(); ++k) values[k] = runs[k][i].*member;
-      std::tie(mean.*member, deviation.*member) = mean_and_deviation(values);
-    }
-    e.mean.push_back(mean);
-    e.deviation.push_back(deviation);
-    for (std::size_t k = 0; k < runs.size(); ++k) {
-      kinetic_sums[k] += runs[k][i].kinetic_energy;
-      values[k] = kinetic_sums[k] / static_cast<double>(i + 1);
-    }
-    e.kinetic_deviation.push_back(mean_and_deviation(values).second);
-  }
-  return e;
-}
-
-void measure_shape(const Ensemble& ensemble, const std::vector<double>& times,
-                   const ShapeSeries& run, Measures& measures) {
-  Measures found = measures;
-  const std::size_t count = std::min(run.size(), ensemble.mean.size());
-  if (count > 0) found.shape = 0;
-  double own = 0, mean = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (const auto& [name, member] : shape_statistic_infos) {
-      const double off = std::abs(run[i].*member - ensemble.mean[i].*member);
-      if (std::isnan(off)) return;
-      const double error = off - sure_deviations * ensemble.deviation[i].*member;
-      if (error <= found.shape) continue;
-      found.shape = error;
-      found.shape_statistic = name;
-      found.shape_time = times[i];
-    }
-    own += run[i].kinetic_energy;
-    mean += ensemble.mean[i].kinetic_energy;
-  }
-  if (mean > 0) {
-    found.kinetic_ratio = own / mean;
-    found.kinetic_spread =
-        sure_deviations * ensemble.kinetic_deviation[count - 1] * static_cast<double>(count) / mean;
-  }
-  measures = std::move(found);
-}
-
-bool kinetic_energy_lost(double ratio, double spread) {
-  const bool far = ratio < least_kinetic_ratio || ratio > largest_kinetic_ratio;
-  return far && std::abs(ratio - 1) > spread;
+Shape rest_difference(const Scene& scene, const Positions& x, const Positions& y) {
+  Shape difference = shape_of(scene, x);
+  for (const auto& [name, value] : shape_of(scene, y)) difference[name] -= value;
+  return difference;
 }
 
 }  // namespace harness

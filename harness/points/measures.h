@@ -55,9 +55,6 @@ struct Measures {
   std::vector<ErrorSample> error_series;
   double moved = unknown;
   double valid_until = unknown;
-  double shape = unknown, shape_time = unknown;
-  std::string shape_statistic, shape_unknown_because;
-  double kinetic_ratio = unknown, kinetic_spread = unknown;
   double residual_first = unknown, residual_last = unknown;
   std::vector<ResidualSample> residuals;
   std::map<std::string, double> sag;
@@ -125,20 +122,6 @@ inline constexpr std::tuple measure_fields{
           error_or_null),
     field("valid_until", &Measures::valid_until, "s",
           "up to here the reference is known to 1 % of the scene's size", error_or_null),
-    field("shape", &Measures::shape, "",
-          "shape error: the most by which potential energy or kinetic energy (over weight times "
-          "size), corner height (over size) or shadow (over size squared) deviates from the "
-          "ensemble's mean, beyond three standard deviations; null: see shape_unknown_because",
-          error_or_null),
-    field("shape_statistic", &Measures::shape_statistic, "", "which of these deviates so",
-          error_or_null),
-    field("shape_time", &Measures::shape_time, "s", "at which sample time", error_or_null),
-    field("shape_unknown_because", &Measures::shape_unknown_because, "",
-          "why there is no shape error", error_or_null),
-    field("kinetic_ratio", &Measures::kinetic_ratio, "",
-          "kinetic energy over the ensemble's, means over sample times", error_or_null),
-    field("kinetic_spread", &Measures::kinetic_spread, "",
-          "three standard deviations of that ratio in the ensemble", error_or_null),
     field("residual_first", &Measures::residual_first, "m",
           "fast projection's mean |F| over vertices and sampled steps, after the first iteration",
           error_or_null),

@@ -43,9 +43,8 @@ inline constexpr std::array point_statuses{
                     "an edge was strained more than permitted"},
     PointStatusInfo{PointStatus::energy_gained, "energy_gained", "E",
                     "energy rose by more than the scene's bound"},
-    PointStatusInfo{
-        PointStatus::motion_lost, "motion_lost", "M",
-        "moved less than half as far as the reference, or kinetic energy is not the ensemble's"},
+    PointStatusInfo{PointStatus::motion_lost, "motion_lost", "M",
+                    "moved less than half as far as the reference"},
     PointStatusInfo{PointStatus::not_converged, "not_converged", "N",
                     "the solver refused a step: out of iterations, or no progress"},
     PointStatusInfo{PointStatus::diverged, "diverged", "D",

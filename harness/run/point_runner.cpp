@@ -220,12 +220,6 @@ class PointRunner::Observed : public Observer {
       run_.detail = "its vertices moved " + number_text(found.moved, 3) +
                     " times as far as the reference's, " + number_text(least_motion) +
                     " are needed";
-    } else if (kinetic_energy_lost(found.kinetic_ratio, found.kinetic_spread)) {
-      run_.status = PointStatus::motion_lost;
-      run_.detail = "its mean kinetic energy is " + number_text(found.kinetic_ratio, 3) +
-                    " times that of the ensemble, permitted are " +
-                    number_text(least_kinetic_ratio) + " to " + number_text(largest_kinetic_ratio) +
-                    " and what the ensemble's runs have";
     }
   }
 

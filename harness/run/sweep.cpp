@@ -106,11 +106,8 @@ struct Sweep {
   const PointResult& add(PointResult point, std::size_t search) {
     // A point that no judge has seen: it was skipped, or its process ended early.
     Measures& measures = point.measures;
-    for (auto [figure, because] : {std::pair(measures.trajectory, &measures.unknown_because),
-                                   std::pair(measures.shape, &measures.shape_unknown_because)}) {
-      if (std::isnan(figure) && because->empty())
-        *because = "no run came to an end that could be judged";
-    }
+    if (std::isnan(measures.trajectory) && measures.unknown_because.empty())
+      measures.unknown_because = "no run came to an end that could be judged";
     points.push_back(std::move(point));
     events.point(points.back(), search, searches.size());
     return points.back();

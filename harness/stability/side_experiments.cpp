@@ -104,29 +104,9 @@ using inextensible::State;
 constexpr double densely_until = 0.05;  // s
 constexpr double at_sample = 1e-9;      // s
 
-// Velocities of both belong to one instant: the methods that are compared share that.
-ShapeStatistics shape_of(const Scene& scene, const State& state) {
-  ShapeStatistics shape = shape_statistics(scene, state.x);
-  shape.kinetic_energy =
-      inextensible::kinetic_energy(*scene.problem, state.v) / energy_scale(scene);
-  return shape;
-}
-
-void add_distance(const Scene& scene, const State& a, const State& b, FrameSeries& series) {
-  series["rms"].push_back(rms_distance(scene, a.x, b.x));
-  series["largest"].push_back(max_distance(scene, a.x, b.x));
-  const ShapeStatistics one = shape_of(scene, a), other = shape_of(scene, b);
-  for (const auto& [name, member] : shape_statistic_infos)
-    series[name].push_back(std::abs(one.*member - other.*member));
-}
-
-// The ensemble's standard deviations at a time; unknown between its sample times.
-void add_deviation(const Reference* reference, double time, FrameSeries& series) {
-  ShapeStatistics found{unknown, unknown, unknown, unknown};
-  for (std::size_t i = 0; reference && i < reference->ensemble.deviation.size(); ++i) {
-    if (std::abs(reference->times[i] - time) < at_sample) found = reference->ensemble.deviation[i];
-  }
-  for (const auto& [name, member] : shape_statistic_infos) series[name].push_back(found.*member);
+void add_distance(const Scene& scene, const State& a, const State& b, FrameDistances& series) {
+  series.rms.push_back(rms_distance(scene, a.x, b.x));
+  series.largest.push_back(max_distance(scene, a.x, b.x));
 }
 
 bool at_sample_time(double time) {
@@ -140,12 +120,9 @@ std::string SameFrameScene::name() const {
          number_text(strain_limit);
 }
 
-SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed,
-                     ReferenceFolder& references) {
+SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed) {
   const auto type = find_scene(wanted.scene);
-  const auto parameters = complete_parameters(*type, {{"n", wanted.side}});
-  const Scene scene = type->build(parameters);
-  const auto reference = references.find(wanted.scene, parameters);
+  const Scene scene = type->build(complete_parameters(*type, {{"n", wanted.side}}));
   SameFrame found;
   found.scene = wanted;
   struct Run {
@@ -176,7 +153,6 @@ SameFrame same_frame(const SameFrameScene& wanted, std::uint64_t seed,
     found.times.push_back(time);
     add_distance(scene, runs[0].state, runs[1].state, found.icd);
     add_distance(scene, runs[0].state, runs[2].state, found.moved_start);
-    add_deviation(reference.get(), time, found.ensemble_deviation);
   }
   return found;
 }

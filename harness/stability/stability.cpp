@@ -119,10 +119,9 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
         for (const Freedom& f : degrees_of_freedom(n)) outcome.freedom.push_back(f);
       }
     }
-    const auto references = ReferenceFolder::usual();
     for (const SameFrameScene& scene : plan.frames) {
       stop_if_asked();
-      outcome.same_frames.push_back(same_frame(scene, seed, *references));
+      outcome.same_frames.push_back(same_frame(scene, seed));
       events.done("the same frame, " + scene.name(), 0, 0);
     }
   } catch (const Interrupted&) {
@@ -138,8 +137,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExpectationCounts, cells, strict, two_admitte
                                    new_differences)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LargestStep, scene, solver, step, failing_step, detail)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Freedom, mesh, vertices, constraints, rank, degrees_of_freedom)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SameFrame, first_contact, times, icd, moved_start,
-                                   ensemble_deviation, stopped)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FrameDistances, rms, largest)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SameFrame, first_contact, times, icd, moved_start, stopped)
 
 namespace {
 
@@ -178,8 +177,8 @@ void print_same_frames(std::ostream& out, const std::vector<SameFrame>& frames) 
       out << ", first contact at " << number_text(f.first_contact, 3) << " s";
     for (std::size_t i = 0; i < f.times.size(); ++i) {
       if (i + 1 == f.times.size() || f.times[i] == f.first_contact)
-        out << "; " << number_text(f.times[i], 3) << " s: " << number_text(f.icd.at("rms")[i], 2)
-            << ", " << number_text(f.moved_start.at("rms")[i], 2);
+        out << "; " << number_text(f.times[i], 3) << " s: " << number_text(f.icd.rms[i], 2) << ", "
+            << number_text(f.moved_start.rms[i], 2);
     }
     out << (f.stopped.empty() ? "" : "; stopped: " + f.stopped) << '\n';
   }

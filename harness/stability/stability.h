@@ -83,22 +83,21 @@ struct SameFrameScene {
   std::string name() const;
 };
 
-// Numbers over the times of frames, by name.
-using FrameSeries = std::map<std::string, std::vector<double>>;
+// How far frames are apart, over the scene's size, at the times of frames.
+struct FrameDistances {
+  std::vector<double> rms, largest;  // root mean square over vertices by mass; any vertex
+};
 
-// How far frames are apart: "rms" and "largest" distance over the scene's size, and the difference
-// of each shape statistic.
 struct SameFrame {
   SameFrameScene scene;
   double first_contact = unknown;  // s, the first step's end at which the sphere moved a vertex, in
                                    // the run of fast projection; unknown where there is no sphere
   std::vector<double> times;       // s
-  FrameSeries icd;                 // from fast projection to ICD
-  FrameSeries moved_start;         // to fast projection from the moved start
-  FrameSeries ensemble_deviation;  // of the reference's ensemble at its sample times; else unknown
+  FrameDistances icd;              // from fast projection to ICD
+  FrameDistances moved_start;      // to fast projection from the moved start
   std::string stopped;             // empty: all three ran to the end
 };
-SameFrame same_frame(const SameFrameScene& scene, std::uint64_t seed, ReferenceFolder& references);
+SameFrame same_frame(const SameFrameScene& scene, std::uint64_t seed);
 
 // ---- The sweep ----
 

@@ -28,9 +28,6 @@ std::string cell_text(const Cell& cell) {
     text += " at " + percent(kept);
   if (cell.level == any_motion && std::isfinite(first->error))
     text += ", off by " + number_text(100 * first->error, 2) + " %";
-  const double shape = first->point.measures().shape;
-  if (cell.level == any_motion && std::isfinite(shape))
-    text += ", shape by " + number_text(100 * shape, 2) + " %";
   if (const Entry* paper = cell.rival(Rival::paper_best); paper && paper != first)
     text += "; " + analysis::text(*cell.lead_over(paper)) + " " + quoted(paper->row);
   return text;
@@ -169,10 +166,6 @@ void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
       if (plane.sweep == "strain") print_attribution(out, plane);
       if (plane.scene == "settling_drape") print_slack(out, runs, plane);
     }
-    if (any_cell(planes, [](const Cell& cell) {
-          return cell.first() && std::isfinite(cell.first()->point.measures().shape);
-        }))
-      out << "Shape errors are deviations beyond the ensemble's spread.";
     out << "\n\n";
     print_markdown(out, table_of(planes));
     out << '\n';

@@ -45,13 +45,10 @@ std::string percent_or_unknown(double fraction) {
   return std::isnan(fraction) ? "?" : number_text(100 * fraction, 2) + " %";
 }
 
-// Name, time, step and error, of any motion the error of its shape too.
-std::vector<std::string> entry_cells(const Entry& entry, const std::string& name, double level) {
-  const double shape = entry.point.measures().shape;
+// Name, time, step and error.
+std::vector<std::string> entry_cells(const Entry& entry, const std::string& name) {
   return {name, analysis::time_words(entry.point.seconds()), step_text(entry.point.step()),
-          percent_or_unknown(entry.error) + (level == any_motion && std::isfinite(shape)
-                                                 ? ", shape " + percent_or_unknown(shape)
-                                                 : "")};
+          percent_or_unknown(entry.error)};
 }
 
 std::vector<std::string> answer_row(const std::string& place, const Cell& loosest,
@@ -60,7 +57,7 @@ std::vector<std::string> answer_row(const std::string& place, const Cell& looses
   if (const Entry* first = tightest.first()) {
     const std::string name = first->row + (first->role.unranked ? " u" : "") +
                              (tightest.counting(1) && !tightest.clear() ? " ~" : "");
-    const auto cells = entry_cells(*first, name, loosest.level);
+    const auto cells = entry_cells(*first, name);
     row.insert(row.end(), cells.begin(), cells.end());
     row.push_back(lead_text(tightest));
   } else {
@@ -104,7 +101,7 @@ void print_everybody(std::ostream& out, const Plane& plane) {
     Table table{{"", "time", "step, s", "error", "strain", "times the fastest"}};
     for (const Entry& entry : cell.entries) {
       const bool first = &entry == cell.first();
-      auto row = entry_cells(entry, entry.role.name, cell.level);
+      auto row = entry_cells(entry, entry.role.name);
       row.push_back(percent_or_unknown(entry.point.delivered_strain()));
       row.push_back((first || !cell.first() ? "1" : analysis::text(*cell.lead_over(&entry))) +
                     (entry.counts           ? ""
@@ -212,13 +209,11 @@ void print_sweep(std::ostream& out, const json& document, const std::string& fil
   std::ostringstream text;
   const auto planes = analysis::planes_of(document);
   print_planes(text, planes);
-  text
-      << (planes.empty()
-              ? "\nall of these runs chose their steps by a controller, which is not ranked: "
-                "bench plot draws them\n"
-              : "(~: too close to the next, or too few samples, to tell; u: with untuned "
-                "settings; errors are over the scene's size, those of shapes beyond the ensemble's "
-                "spread)\n");
+  text << (planes.empty()
+               ? "\nall of these runs chose their steps by a controller, which is not ranked: "
+                 "bench plot draws them\n"
+               : "(~: too close to the next, or too few samples, to tell; u: with untuned "
+                 "settings; errors are over the scene's size)\n");
   for (const Plane& plane : planes) {
     if (all) print_everybody(text, plane);
   }

@@ -110,8 +110,8 @@ def references(_: str) -> str:
         file = json_of(path)
         known = list(zip(file["times"], file["gap"]))[:len(file["positions"])]
         until = [max((t for t, gap in known if SURE * gap <= level), default=0) for level in levels]
-        rows.append([f"`{path.stem}`", *(f"{t:g}" for t in until), str(file.get("ensemble", {}).get("runs", "-"))])
-    return markdown(["reference", *(f"{100 * level:g} %" for level in levels), "runs of the ensemble"], rows)
+        rows.append([f"`{path.stem}`", *(f"{t:g}" for t in until)])
+    return markdown(["reference", *(f"{100 * level:g} %" for level in levels)], rows)
 
 
 PARTS = {"routes": "first and second route", "third_route": "third route", "half_step": "first route at twice the step",

@@ -1,6 +1,5 @@
-// Real runs: their samples, which of short ones are means of batches, their frames, what becomes of
-// runs whose kinetic energy is not the ensemble's, and of contact over a run as a whole. And which
-// samples are taken again, with noise of our own making.
+// Real runs: their samples, which of short ones are means of batches, their frames, and contact
+// over a run as a whole. And which samples are taken again, with noise of our own making.
 #include "harness/run/measure_point.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +9,6 @@
 #include <fstream>
 #include <vector>
 
-#include "harness/judge/reference_routes.h"
 #include "harness/run/calibration.h"
 #include "harness/run/machine_noise.h"
 #include "harness/run/point_runner.h"
@@ -62,47 +60,6 @@ TEST(Batches, WithoutAReaderOfTimesOneRunIsASample) {
   EXPECT_EQ(point.sample_runs, (std::vector<int>{1, 1}));
   EXPECT_EQ(point.retaken, 0);
   EXPECT_EQ(run_point(spec, {}).work, point.work);
-}
-
-Reference small_reference(const SceneParameters& parameters) {
-  const Scene scene = find_scene("drape")->build(parameters);
-  Reference r;
-  r.scene = "drape";
-  r.parameters = parameters;
-  r.times = sample_times(scene.duration);
-  r.gap.assign(r.times.size(), 1);
-  r.gap_max = r.gap;
-  RouteRuns runs([](const std::string&) {});
-  r.ensemble = compute_ensemble(scene, r.times, {.step = sample_interval / 20}, runs);
-  return r;
-}
-
-TEST(PointRunner, ARunThatHangsOrShakesHasLostItsMotion) {
-  const PointSpec spec = spec_at("drape", {{"n", 5}, {"duration", 0.2}}, "fast_projection", 0.005);
-  const Reference truth = small_reference(spec.scene_parameters);
-  ASSERT_TRUE(truth.ensemble.known()) << truth.ensemble.unknown_because;
-  const std::string folder = ::testing::TempDir() + "motion_references";
-  std::filesystem::create_directories(folder);
-  // What the ensemble has in kinetic energy, over its own, and how far its runs are apart in that.
-  const auto against = [&](double times_as_much, double deviation) {
-    Reference other = truth;
-    for (ShapeStatistics& at : other.ensemble.mean) at.kinetic_energy *= times_as_much;
-    for (double& d : other.ensemble.kinetic_deviation) d += deviation;
-    std::ofstream(folder + "/" + reference_name("drape", spec.scene_parameters)) << to_json(other);
-    RunLimits limits;
-    limits.references = std::make_shared<ReferenceFolder>(folder);
-    return run_point(spec, limits);
-  };
-  const PointResult good = against(1, 0);
-  EXPECT_EQ(good.status, PointStatus::ok) << good.detail;
-  EXPECT_NEAR(good.measures.kinetic_ratio, 1, 0.1);
-  EXPECT_LT(good.measures.shape, 0.05);
-  const PointResult hangs = against(2, 0);
-  EXPECT_EQ(hangs.status, PointStatus::motion_lost);
-  EXPECT_NEAR(hangs.measures.kinetic_ratio, good.measures.kinetic_ratio / 2, 1e-9);
-  EXPECT_NE(hangs.detail.find("mean kinetic energy"), std::string::npos);
-  EXPECT_EQ(against(0.5, 0).status, PointStatus::motion_lost) << "it shakes";
-  EXPECT_EQ(against(2, 1).status, PointStatus::ok) << "the ensemble's runs are as far apart";
 }
 
 // Two runs of one command agree: what a search for a stiffness may take is work, not time.

@@ -212,26 +212,22 @@ TEST(Stability, StrainIsKeptOfTheFirstAndTheLastSecond) {
 // Frames of the same solver from a start that was hardly moved are that close before contact, and
 // ICD is within the slack of the limit.
 TEST(SameFrame, RunsAgreeBeforeContactAndAreComparedAfterIt) {
-  harness::ReferenceFolder none("no folder");
-  const auto found = harness::same_frame({"drape", 9, 0.01}, 1, none);
+  const auto found = harness::same_frame({"drape", 9, 0.01}, 1);
   EXPECT_EQ(found.stopped, "");
   EXPECT_GT(found.first_contact, 0.01);  // 1 mm above the sphere
   EXPECT_LT(found.first_contact, 0.03);
-  const auto &icd = found.icd.at("rms"), &moved = found.moved_start.at("rms");
+  const auto &icd = found.icd.rms, &moved = found.moved_start.rms;
   ASSERT_EQ(found.times.size(), icd.size());
   ASSERT_EQ(found.times.size(), moved.size());
   EXPECT_NEAR(found.times.back(), 1, 1e-12);
   for (std::size_t i = 0; i < found.times.size(); ++i) {
-    EXPECT_GE(found.icd.at("largest")[i], icd[i]);
+    EXPECT_GE(found.icd.largest[i], icd[i]);
     if (found.times[i] >= found.first_contact) continue;
     EXPECT_GT(moved[i], 1e-11);
     EXPECT_LT(moved[i], 1e-9);
     EXPECT_LT(icd[i], 0.01);
   }
   EXPECT_GT(icd.back(), 0);
-  EXPECT_GT(found.icd.at("kinetic_energy").back(), 0);
-  ASSERT_EQ(found.ensemble_deviation.at("shadow").size(), found.times.size());
-  EXPECT_TRUE(std::isnan(found.ensemble_deviation.at("shadow").back()));
 }
 
 }  // namespace
