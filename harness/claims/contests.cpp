@@ -253,7 +253,7 @@ Verdict matrix_sizes(const Points& points) {
   std::map<double, std::map<std::string, double>> nonzeros;  // by vertices and method
   for (const Point& p : points.all) {
     if (p.scene() != "drape" || !p.ok() || !(p.result().work.factor_nonzeros > 0) ||
-        p.solves_by("projected_cg") || p.solves_by("hybrid") ||
+        p.solves_by("projected_cg") ||
         (p.contestant() != fast_projection.name && p.contestant() != icd.name))
       continue;
     double& place = nonzeros[p.vertices()][p.contestant()];

@@ -433,7 +433,7 @@ void register_floors() {
 
 void register_all() {
   const std::vector<std::string> spd{"cholmod_simplicial", "cholmod_supernodal", "multifrontal",
-                                     "multifrontal_mixed", "line_cg"};
+                                     "multifrontal_mixed"};
   register_floors();
   for (const int n : {80, 1000, 100000, 1000000}) {
     register_steps("chain", n);

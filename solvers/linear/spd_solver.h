@@ -2,8 +2,6 @@
 // pattern.
 #pragma once
 
-#include <cstdint>
-
 #include "solvers/linear/symmetric_pattern.h"
 
 namespace inextensible {
@@ -26,14 +24,13 @@ class SpdSolver {
   void set_least_pivot(double relative) { least_pivot_ = relative; }
   virtual void solve(
       double* rhs) = 0;  // n numbers, overwritten by the solution; after a successful factor()
-  // Iterative solvers stop once |b - A x| <= tolerance |b|. false: not reached, or not positive
-  // definite after all; rhs is then unspecified.
+  // A solver of mixed precision stops once |b - A x| <= tolerance |b|. false: not reached; rhs is
+  // then unspecified.
   virtual bool solve_within(double /*tolerance*/, double* rhs) {
     solve(rhs);
     return true;
   }
-  static constexpr double tightest = 1e-12;              // tolerance that is sure to be reached
-  virtual std::int64_t iterations() const { return 0; }  // of all solves; direct solvers have none
+  static constexpr double tightest = 1e-12;  // tolerance that is sure to be reached
   // An estimate, of the last successful factorization: smallest over largest pivot of L D L^T.
   virtual double reciprocal_condition() const = 0;
   virtual double factor_nonzeros() const = 0;

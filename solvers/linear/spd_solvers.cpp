@@ -4,8 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "solvers/linear/hybrid.h"
-#include "solvers/linear/line_cg.h"
 #include "solvers/linear/mixed_cholesky.h"
 #include "solvers/linear/multifrontal_cholesky.h"
 
@@ -26,7 +24,7 @@ std::unique_ptr<SpdSolver> make(SymmetricPattern pattern) {
 
 constexpr auto lower = SymmetricPattern::Triangle::lower;
 constexpr auto upper = SymmetricPattern::Triangle::upper;
-constexpr bool direct = true, iterative = false, fills = true, as_is = false;
+constexpr bool fills = true, as_is = false;
 
 // For a problem without constraints or free vertices: not all libraries accept empty matrices.
 class NoEquations : public SpdSolver {
@@ -42,21 +40,17 @@ class NoEquations : public SpdSolver {
 // CHOLMOD's supernodal code transposes an upper triangle at every factorization; the up-looking
 // codes a lower one.
 constexpr SpdSolverRow rows[] = {
-    {"tridiagonal", "L D L^T from both ends", upper, direct, Takes::tridiagonal, as_is,
-     Precision::full, make_tridiagonal},
-    {"block_tridiagonal", "the same of 3 x 3 blocks", upper, direct, Takes::block_tridiagonal,
-     as_is, Precision::full, make_block_tridiagonal},
-    {"multifrontal", "multifrontal Cholesky, laid out once", lower, direct, Takes::any, fills,
+    {"tridiagonal", "L D L^T from both ends", upper, Takes::tridiagonal, as_is, Precision::full,
+     make_tridiagonal},
+    {"block_tridiagonal", "the same of 3 x 3 blocks", upper, Takes::block_tridiagonal, as_is,
+     Precision::full, make_block_tridiagonal},
+    {"multifrontal", "multifrontal Cholesky, laid out once", lower, Takes::any, fills,
      Precision::full, make<MultifrontalCholesky<double>>},
-    {"multifrontal_mixed", "the same in single precision where that is enough", lower, direct,
-     Takes::any, fills, Precision::mixed, make<MixedCholesky>},
-    {"line_cg", "conjugate gradients, preconditioned by lines", upper, iterative, Takes::any, as_is,
-     Precision::full, make<LineCgSolver>},
-    {"hybrid", "line_cg while it converges quickly, else multifrontal", upper, iterative,
-     Takes::any, as_is, Precision::full, make<HybridSpdSolver>},
-    {"cholmod_simplicial", "CHOLMOD's simplicial Cholesky", upper, direct, Takes::any, fills,
+    {"multifrontal_mixed", "the same in single precision where that is enough", lower, Takes::any,
+     fills, Precision::mixed, make<MixedCholesky>},
+    {"cholmod_simplicial", "CHOLMOD's simplicial Cholesky", upper, Takes::any, fills,
      Precision::full, make_cholmod_simplicial},
-    {"cholmod_supernodal", "CHOLMOD's supernodal Cholesky", lower, direct, Takes::any, fills,
+    {"cholmod_supernodal", "CHOLMOD's supernodal Cholesky", lower, Takes::any, fills,
      Precision::full, make_cholmod_supernodal},
 };
 

@@ -17,7 +17,6 @@ struct SpdSolverRow {
   const char* name;
   const char* summary;
   SymmetricPattern::Triangle triangle;  // that it reads
-  bool direct;                          // not iterative
   Takes takes;
   bool fills;  // wants rows in an order of little fill; others do without or find their own
   Precision precision;

@@ -14,9 +14,9 @@
 // outside a fraction of the permissible band: `inner_band` for damped projections, `target` for the
 // others (0: all of C).
 //
-// Iterative linear solvers solve (7) to a residual of a fraction of |C(x_j)|, the forcing term of
-// an inexact Newton method: first_forcing, then as |C| has fallen, squared (Eisenstat and Walker
-// 1996, choice 2), which keeps the convergence of order two.
+// A factorization in single precision solves (7) to a residual of a fraction of |C(x_j)|, the
+// forcing term of an inexact Newton method: first_forcing, then as |C| has fallen, squared
+// (Eisenstat and Walker 1996, choice 2), which keeps the convergence of order two.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -248,8 +248,8 @@ Backend fast_projection_row() {
                        {"smoothing_relaxation", 1.4, "times a pass's correction", relaxation_range,
                         tunable_relaxation, departs},
                        {"first_forcing", 1e-2,
-                        "residual of a step's first linear solve by conjugate gradients or in "
-                        "mixed precision, of the right-hand side; those of later ones are smaller",
+                        "residual of a step's first linear solve in mixed precision, of the "
+                        " right-hand side; those of later ones are smaller",
                         Range{1e-8, 1}, tunable_forcing},
                        schur_solver()},
           .make_filter = make_filter<FastProjection>,

@@ -36,7 +36,7 @@ constexpr SearchRange tunable_relaxation{0.5, 1.998, 2};
 constexpr SearchRange tunable_passes{0, 2000};
 // For methods that iterate until forces act along the edges at the end of the step.
 constexpr SearchRange tunable_direction_tolerance{0.01, 100};
-// Tolerances of iterative linear solvers.
+// Tolerances of linear solves.
 constexpr Range forcing_range{0, 1, true};
 constexpr SearchRange tunable_forcing{1e-4, 0.3};
 
@@ -80,15 +80,14 @@ SettingInfo linear_solver_setting(const char* meaning, Fits fits) {
 }
 
 inline SettingInfo schur_solver() {
-  return linear_solver_setting("factorization of J W J^T, or conjugate gradients",
+  return linear_solver_setting("factorization of J W J^T",
                                [](auto& row) { return row.takes != Takes::block_tridiagonal; });
 }
 
 // A direct one in full precision for another matrix, which may have the special pattern `takes`.
 inline SettingInfo direct_solver(const char* meaning, Takes takes) {
   return linear_solver_setting(meaning, [takes](auto& row) {
-    return (row.takes == Takes::any || row.takes == takes) && row.direct &&
-           row.precision == Precision::full;
+    return (row.takes == Takes::any || row.takes == takes) && row.precision == Precision::full;
   });
 }
 

@@ -39,7 +39,6 @@ class Shake final : public VelocityFilter {
         max_iterations_(options.count("max_iterations")),
         min_iterations_(options.count("min_iterations")),
         target_(options.number("target")),
-        forcing_(options.number("forcing")),
         u_start_(3, problem.constraints()),
         u_(3, problem.constraints()),
         c_(problem.constraints()),
@@ -149,9 +148,8 @@ class Shake final : public VelocityFilter {
 
   bool solve(Matrix matrix, WorkCounters& work) {
     mu_ = c_;
-    if (matrix == Matrix::start)
-      return system_.solve(mu_, work, forcing_);  // (7) with J(x^n) on both sides
-    current_solver_->solve(mu_.data());           // (7) with J(x_j) W J(x^n)^T
+    if (matrix == Matrix::start) return system_.solve(mu_, work);  // (7) with J(x^n) on both sides
+    current_solver_->solve(mu_.data());                            // (7) with J(x_j) W J(x^n)^T
     ++work.back_solves;
     return true;
   }
@@ -180,7 +178,7 @@ class Shake final : public VelocityFilter {
   const Problem& problem_;
   double slack_;  // M-norm of what the strain limit lets vertices drift
   int max_iterations_, min_iterations_;
-  double target_, forcing_;
+  double target_;
   Eigen::Matrix3Xd u_start_, u_;
   Positions x_factored_;  // where the factor in system_ was built; used by RATTLE only
   bool factored_ = false;
@@ -270,13 +268,8 @@ class Rattle final : public Stepper {
 };
 
 std::vector<SettingInfo> shake_settings(double min_iterations) {
-  return {
-      iteration_limit(50, "iterations a step before it is refused"),
-      least_iterations(min_iterations),
-      projection_target(),
-      {"forcing", 1e-2, "residual of linear solves by conjugate gradients, of the right-hand side",
-       forcing_range, tunable_forcing},
-      schur_solver()};
+  return {iteration_limit(50, "iterations a step before it is refused"),
+          least_iterations(min_iterations), projection_target(), schur_solver()};
 }
 
 }  // namespace

@@ -274,8 +274,7 @@ Backend fast_projection_adaptive_row() {
   std::vector<SettingInfo> settings = round_settings(
       "links and the whole cloth are projected to this fraction of the strain limit");
   settings.push_back({"forcing", 1e-2,
-                      "residual of a linear solve by conjugate gradients or in mixed precision, of "
-                      "the right-hand side",
+                      "residual of a linear solve in mixed precision, of the right-hand side",
                       Range{1e-8, 1}, tunable_forcing});
   settings.push_back(schur_solver());
   return {

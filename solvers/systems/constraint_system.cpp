@@ -12,7 +12,6 @@ std::string choose(std::string_view wanted, const SymmetricPattern& pattern,
                    ConstraintSystem::Digits digits) {
   if (wanted != "auto") return std::string(wanted);
   if (pattern.chain(1)) return "tridiagonal";
-  if (pattern.n >= ConstraintSystem::hybrid_rows) return "hybrid";
   return digits == ConstraintSystem::Digits::few ? "multifrontal_mixed" : "multifrontal";
 }
 
@@ -49,12 +48,10 @@ bool ConstraintSystem::factor(const Eigen::Matrix3Xd& u, const Contacts* contact
 }
 
 bool ConstraintSystem::solve(Eigen::VectorXd& mu, WorkCounters& work, double tolerance) {
-  const std::int64_t before = solver_->iterations();
   double largest = 0;
   for (const double c : mu) largest = std::max(largest, std::abs(c));
   const bool solved = solver_->solve_within(tolerance, mu.data());
   ++work.back_solves;
-  work.linear_iterations += solver_->iterations() - before;
   return solved && (chain_ || moderate(mu, largest));
 }
 

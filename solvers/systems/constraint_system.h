@@ -15,18 +15,15 @@ namespace inextensible {
 
 class ConstraintSystem {
  public:
-  // linear_solver: a name of make_spd_solver, or "auto": tridiagonal for a chain, hybrid from
-  // hybrid_rows on, else multifrontal, or multifrontal_mixed where solves will ask for few digits.
-  // For direct solvers edges are renumbered once, so that no factorization has to permute.
+  // linear_solver: a name of make_spd_solver, or "auto": tridiagonal for a chain, else
+  // multifrontal, or multifrontal_mixed where solves will ask for few digits. Edges are renumbered
+  // once, so that no factorization has to permute.
   enum class Digits { all, few };
   ConstraintSystem(const Problem& problem, double strain_limit, std::string_view linear_solver,
                    Digits digits = Digits::all);
 
   const EdgeConstraints& edges() const { return *edges_; }
   const SchurComplement& schur() const { return *schur_; }
-  // A grid of about 101 x 101. From there on hybrid takes 0.7 to 0.8 of multifrontal's time on
-  // the drape (0.6 s at 1/500 s and 0.1 %, in whose last third warp and weft become parallel).
-  static constexpr int hybrid_rows = 20'000;
   // J W J^T counts as singular where a pivot keeps less than this of its diagonal entry:
   // multipliers would outgrow the corrections that they make, and cancel.
   static constexpr double least_pivot = 1e-10;
@@ -45,8 +42,8 @@ class ConstraintSystem {
   // n^T) takes the place of W; null: none.
   bool factor(const Eigen::Matrix3Xd& u, const Contacts* contacts, WorkCounters& work,
               double damping = 0);
-  // mu = (J W J^T)^-1 mu; iterative solvers to a residual of `tolerance` times the right-hand side.
-  // false: one of them did not get there, or the multipliers grew too large; mu is unspecified.
+  // mu = (J W J^T)^-1 mu, to a residual of `tolerance` times the right-hand side. false: the
+  // residual stayed above it, or the multipliers grew too large; mu is unspecified.
   bool solve(Eigen::VectorXd& mu, WorkCounters& work, double tolerance = SpdSolver::tightest);
 
  private:

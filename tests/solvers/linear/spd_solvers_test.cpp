@@ -8,10 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/linear/hybrid.h"
 #include "solvers/linear/mixed_cholesky.h"
 #include "solvers/problem/edge_constraints.h"
-#include "solvers/registry.h"
 #include "support/random_graph.h"
 
 namespace inextensible {
@@ -127,7 +125,7 @@ System random_system(const SpdSolverRow& row, std::uint64_t seed) {
   // The pivots tell the condition of a Schur complement, by which mixed precision accepts a
   // solution.
   const bool meaningless = kind == 2 && row.precision == Precision::full;
-  const auto mesh = kind == 0 ? testing::random_graph(random, 40, 25, 3, row.direct ? 1e-4 : 1e-1)
+  const auto mesh = kind == 0 ? testing::random_graph(random, 40, 25, 3, 1e-4)
                               : testing::random_mesh(random, 5, 7, 2);
   MatrixXd matrix = meaningless
                         ? random_spd(random, 1 + static_cast<int>(random() % 60))
@@ -162,9 +160,8 @@ TEST_P(SpdSolvers, SolveToTheToleranceAskedForWhateverTheMagnitude) {
         const VectorXd b = size * random_matrix(random, system.pattern.n, 1);
         VectorXd x = b;
         ASSERT_TRUE(system.solver->solve_within(tolerance, x.data()));
-        // Iterations see a residual that drifts from the true one by rounding times the condition.
         const double rounding = 1e-13 * (system.dense.norm() * x.norm() + b.norm());
-        const bool exact = row.direct && row.precision == Precision::full;
+        const bool exact = row.precision == Precision::full;
         EXPECT_LE((system.dense * x - b).norm(),
                   rounding + (exact ? 0 : 1.01 * tolerance * b.norm()));
       }
@@ -187,11 +184,9 @@ TEST_P(SpdSolvers, RefuseWhatIsNotPositiveDefiniteAndForgetIt) {
       return x;
     };
     const VectorXd fresh = solution();
-    if (GetParam().direct) {
-      const double least = least_eigenvalue(system.dense);
-      EXPECT_TRUE(system.factor_shifted(0.99 * least));
-      EXPECT_FALSE(system.factor_shifted(1.01 * least));
-    }
+    const double least = least_eigenvalue(system.dense);
+    EXPECT_TRUE(system.factor_shifted(0.99 * least));
+    EXPECT_FALSE(system.factor_shifted(1.01 * least));
     for (const int column : {0, n / 2, n - 1}) {
       for (const double bad : {-1.0, 0.0, nan, -infinity, infinity}) {
         write(system.dense, system.pattern, *system.solver);
@@ -207,7 +202,7 @@ TEST_P(SpdSolvers, RefuseWhatIsNotPositiveDefiniteAndForgetIt) {
 // that is held by a weak spring. (The supernodal code takes any positive pivot.)
 TEST_P(SpdSolvers, RefusePivotsThatLostTheirDigitsWhereToldTo) {
   const SpdSolverRow& row = GetParam();
-  if (!row.direct || std::string_view(row.name) == "cholmod_supernodal") return;
+  if (std::string_view(row.name) == "cholmod_supernodal") return;
   const int block = row.takes == Takes::block_tridiagonal ? 3 : 1;
   for (const int rows : {2, 3, 12, 13}) {
     for (const int held : {0, rows / 2, rows - 1}) {
@@ -312,159 +307,6 @@ TEST(MixedCholesky, KeepsWhatItIsAskedForInWhicheverPrecisionItTakes) {
   });
   EXPECT_GT(solved[false], 0);
   EXPECT_GT(solved[true], 0);
-}
-
-// ---- Conjugate gradients along lines ----
-
-struct Lines {
-  explicit Lines(const MatrixXd& matrix)
-      : pattern(pattern_of(matrix, Triangle::upper)), solver(pattern) {
-    write(matrix, pattern, solver);
-    EXPECT_TRUE(solver.factor());
-  }
-  SymmetricPattern pattern;
-  LineCgSolver solver;
-};
-
-TEST(LineCg, SolvesASystemOfLinesAloneWithoutIterating) {
-  Random random(1);
-  MatrixXd matrix = 2.1 * MatrixXd::Identity(12, 12);
-  for (int i = 1; i < 12; ++i) {
-    if (i != 7) matrix(i, i - 1) = matrix(i - 1, i) = -1;  // two lines
-  }
-  Lines lines(matrix);
-  LineCgSolver& solver = lines.solver;
-  EXPECT_EQ(solver.lines(), 2);
-  const VectorXd b = random_matrix(random, 12, 1);
-  VectorXd x = b;
-  solver.solve(x.data());
-  EXPECT_LT((x - matrix.ldlt().solve(b)).norm(), 1e-14 * x.norm() * 12);
-  EXPECT_EQ(solver.iterations(), 0);
-}
-
-// Unequal masses and angles break yarns now and then, never into single edges.
-TEST(LineCg, FindsTheYarnsOfACrumpledCloth) {
-  testing::for_seeds(20, [&](testing::Random& random, std::uint64_t) {
-    const auto mesh = testing::random_mesh(random, 7, 9, 0);
-    const Lines cloth(schur_complement(*mesh.problem, mesh.x));
-    EXPECT_GE(cloth.solver.lines(), 7 + 9 - 4);
-    EXPECT_LE(cloth.solver.lines(), 3 * (7 + 9));
-  });
-}
-
-// What lines invert is the matrix itself where they have an entry; among eliminated rows, all of
-// it.
-TEST(LineCg, LinesAreASymmetricPositiveDefinitePreconditionerAndThoseEliminatedAreIndependent) {
-  testing::for_seeds(20, [&](testing::Random& random, std::uint64_t) {
-    const int n = 40;
-    const MatrixXd matrix = random_spd(random, n);
-    Lines lines(matrix);
-    MatrixXd inverse = MatrixXd::Identity(n, n);
-    for (int j = 0; j < n; ++j) lines.solver.solve_lines(inverse.col(j).data());
-    EXPECT_LT((inverse - inverse.transpose()).norm(), 1e-12 * inverse.norm());
-    EXPECT_GT(least_eigenvalue(inverse), 0);
-    const MatrixXd inverted = inverse.inverse();
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < n; ++j) {
-        const bool whole = lines.solver.eliminated(i) && lines.solver.eliminated(j);
-        if (whole || i == j || std::abs(inverted(i, j)) > 1e-6 * inverted.norm()) {
-          EXPECT_NEAR(inverted(i, j), matrix(i, j), 1e-9 * matrix.norm());
-        }
-      }
-    }
-  });
-}
-
-// Weak couplings, none of which makes a line; positive definite without, indefinite with them.
-TEST(LineCg, ReportsIndefiniteMatricesAndTooFewIterationsByReturnValue) {
-  MatrixXd matrix = MatrixXd::Constant(10, 10, -0.2);
-  matrix.diagonal().setOnes();
-  for (const char* name : {"line_cg", "hybrid"}) {
-    System system(spd_solver(name), matrix);
-    ASSERT_TRUE(system.factor());  // every line is positive definite
-    VectorXd x = VectorXd::Ones(10);
-    EXPECT_FALSE(system.solver->solve_within(1e-6, x.data())) << name;
-  }
-  Random random(3);
-  Lines lines(random_spd(random, 50));
-  lines.solver.set_most_iterations(2);
-  VectorXd x = random_matrix(random, 50, 1);
-  EXPECT_FALSE(lines.solver.solve_within(1e-12, x.data()));
-  EXPECT_EQ(lines.solver.iterations(), 2);
-}
-
-// J W J^T of n x n vertices, sums of two curves in the plane: the angle between warp and weft is
-// `angle`, but for random bends of either.
-MatrixXd sheared(Random& random, int n, double angle, double bend) {
-  Positions warp = Positions::Zero(3, n), weft = Positions::Zero(3, n);
-  for (int i = 1; i < n; ++i) {
-    const double p = bend * uniform(random, -1, 1), q = angle + bend * uniform(random, -1, 1);
-    warp.col(i) = warp.col(i - 1) + Eigen::Vector3d(std::cos(p), std::sin(p), 0);
-    weft.col(i) = weft.col(i - 1) + Eigen::Vector3d(std::cos(q), std::sin(q), 0);
-  }
-  ProblemParts parts;
-  parts.mass.assign(n * n, 1);
-  Positions x(3, n * n);
-  for (int v = 0; v < n * n; ++v) {
-    x.col(v) = warp.col(v % n) + weft.col(v / n);
-    if (v % n > 0) parts.edges.push_back({v - 1, v});
-    if (v / n > 0) parts.edges.push_back({v - n, v});
-  }
-  parts.rest_length.assign(parts.edges.size(), 1);
-  return schur_complement(Problem(std::move(parts)), x);
-}
-
-TEST(Hybrid, FactorsWhereConjugateGradientsAreSlowAndComesBackFromThere) {
-  Random random(5);
-  const MatrixXd easy = sheared(random, 20, 1.4, 0.1), hard = sheared(random, 20, 0.02, 0.01);
-  const SymmetricPattern pattern = pattern_of(easy, Triangle::upper);
-  HybridSpdSolver solver(pattern);
-  const auto solve = [&](const MatrixXd& matrix) {
-    write(matrix, pattern, solver);
-    ASSERT_TRUE(solver.factor());
-    const VectorXd b = random_matrix(random, pattern.n, 1);
-    VectorXd x = b;
-    ASSERT_TRUE(solver.solve_within(1e-8, x.data()));
-    EXPECT_LE((matrix * x - b).norm(), 1.1e-8 * b.norm() + 1e-13 * matrix.norm() * x.norm());
-  };
-  solve(easy);
-  EXPECT_FALSE(solver.factors());
-  for (int i = 0; i < 200 && !solver.factors(); ++i) solve(hard);
-  EXPECT_TRUE(solver.factors());
-  const auto iterations = solver.iterations();
-  solve(hard);
-  EXPECT_EQ(solver.iterations(), iterations);  // conjugate gradients have a rest
-  for (int i = 0; i < 200 && solver.factors(); ++i) solve(easy);
-  EXPECT_FALSE(solver.factors());
-}
-
-// Both lie within the limit of the manifold; along it, inner residuals add a fraction of the way
-// that the projection goes.
-TEST(FastProjection, KeepsTheLimitAlikeWithConjugateGradientsAndWithAFactorization) {
-  constexpr double limit = 1e-3;
-  testing::for_seeds(20, [&](testing::Random& random, std::uint64_t seed) {
-    const auto mesh = testing::random_mesh(random, 8, 8, static_cast<int>(seed % 3));
-    const Positions candidate = testing::perturbed(random, mesh, 0.05);
-    int exact_iterations = 0;
-    Positions expected;
-    for (const char* name : {"multifrontal", "line_cg", "hybrid"}) {
-      SCOPED_TRACE(std::string(name) + ", seed " + std::to_string(seed));
-      Positions x = candidate;
-      WorkCounters work;
-      const auto filter = make_velocity_filter("fast_projection", *mesh.problem,
-                                               {limit, 1, {{"linear_solver", std::string(name)}}});
-      const StepResult result = filter->apply(mesh.x, 0.01, x, work);
-      ASSERT_TRUE(result);
-      EXPECT_EQ(work.linear_iterations > 0, !spd_solver(name).direct);
-      EXPECT_TRUE(EdgeConstraints(*mesh.problem, limit).permissible(x));
-      if (spd_solver(name).direct) {
-        expected = x;
-        exact_iterations = result.iterations;
-      }
-      EXPECT_LE(result.iterations, exact_iterations + 2);
-      EXPECT_LE((x - expected).norm(), 0.05 * (candidate - expected).norm());
-    }
-  });
 }
 
 }  // namespace
