@@ -235,17 +235,74 @@ void substitute_back(const Real* l, Distance ld, int n, Real* w) {
   }
 }
 
+// The same of rows of four numbers: the factor is read once for three right-hand sides.
+template <class Real>
+struct FourVector {
+  typedef Real type __attribute__((vector_size(4 * sizeof(Real))));
+};
+template <class Real>
+using Four = typename FourVector<Real>::type;
+template <class Real>
+void load_four(const Real* p, Four<Real>& numbers) {
+  std::memcpy(&numbers, p, sizeof numbers);
+}
+template <class Real>
+void put_four(const Four<Real>& numbers, Real* p) {
+  std::memcpy(p, &numbers, sizeof numbers);
+}
+
+template <int K, class Real>
+void substitute_fours_forward(const Real* l, Distance ld, int n, Real* w) {
+  Four<Real> x[K];
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) load_four(w + 4 * c, x[c]);
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) {
+#pragma GCC unroll 8
+    for (int r = c + 1; r < K; ++r) x[r] -= l[c * ld + r] * x[c];
+  }
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) put_four<Real>(x[c], w + 4 * c);
+  for (int i = K; i < n; ++i) {
+    Four<Real> sum;
+    load_four(w + 4 * i, sum);
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) sum -= l[c * ld + i] * x[c];
+    put_four<Real>(sum, w + 4 * i);
+  }
+}
+
+template <int K, class Real>
+void substitute_fours_back(const Real* l, Distance ld, int n, Real* w) {
+  Four<Real> x[K];
+#pragma GCC unroll 8
+  for (int c = 0; c < K; ++c) load_four(w + 4 * c, x[c]);
+  for (int i = K; i < n; ++i) {
+    Four<Real> value;
+    load_four(w + 4 * i, value);
+#pragma GCC unroll 8
+    for (int c = 0; c < K; ++c) x[c] -= l[c * ld + i] * value;
+  }
+#pragma GCC unroll 8
+  for (int c = K - 1; c >= 0; --c) {
+#pragma GCC unroll 8
+    for (int r = 0; r < c; ++r) x[r] -= l[r * ld + c] * x[c];
+    put_four<Real>(x[c], w + 4 * c);
+  }
+}
+
 // The dense steps by the width of their panel, less one.
 template <class Real>
 struct OfWidth {
+  using Substitution = void(const Real* l, Distance ld, int n, Real* w);
   bool (*take_panel)(const Trapezoid<Real>& front, int k, const Real* bound, Real* pivots);
-  void (*forward)(const Real* l, Distance ld, int n, Real* w);
-  void (*back)(const Real* l, Distance ld, int n, Real* w);
+  Substitution *forward, *back, *fours_forward, *fours_back;
 };
 template <class Real, int... smaller>
 constexpr std::array<OfWidth<Real>, panel> of_widths(std::integer_sequence<int, smaller...>) {
   return {{{take_panel<smaller + 1, Real>, substitute_forward<smaller + 1, Real>,
-            substitute_back<smaller + 1, Real>}...}};
+            substitute_back<smaller + 1, Real>, substitute_fours_forward<smaller + 1, Real>,
+            substitute_fours_back<smaller + 1, Real>}...}};
 }
 template <class Real>
 constexpr auto of_width = of_widths<Real>(std::make_integer_sequence<int, panel>());
@@ -325,8 +382,8 @@ void MultifrontalCholesky<Real>::find_fronts() {
     fronts_.push_back(front);
   }
   factor_.resize(factor_size + lanes<Real>);  // groups of rows below may begin anywhere
-  front_rows_.resize(most_rows + lanes<Real>);
-  if constexpr (!std::is_same_v<Real, double>) rounded_.resize(pattern_.n);
+  front_rows_.resize(4 * most_rows + lanes<Real>);
+  if constexpr (!std::is_same_v<Real, double>) rounded_.resize(4 * std::size_t(pattern_.n));
 }
 
 template <class Real>
@@ -473,53 +530,76 @@ bool MultifrontalCholesky<Real>::eliminate_columns(const Front& front, Real* col
 
 template <class Real>
 void MultifrontalCholesky<Real>::solve(double* rhs) {
+  solve_rows<1>(rhs);
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::solve_coordinates(Eigen::Matrix4Xd& rhs) {
+  solve_rows<4>(rhs.data());
+}
+
+// width: numbers of the right-hand sides in each row.
+template <class Real>
+template <int width>
+void MultifrontalCholesky<Real>::solve_rows(double* rhs) {
   if constexpr (std::is_same_v<Real, double>) {
-    substitute(rhs);
+    substitute<width>(rhs);
   } else {  // scaled, so that no magnitude is out of range
+    const int numbers = width * pattern_.n;
     double largest = 0;
-    for (int i = 0; i < pattern_.n; ++i) largest = std::max(largest, std::abs(rhs[i]));
+    for (int i = 0; i < numbers; ++i) largest = std::max(largest, std::abs(rhs[i]));
     if (!(largest > 0)) return;
-    for (int i = 0; i < pattern_.n; ++i) rounded_[i] = static_cast<Real>(rhs[i] / largest);
-    substitute(rounded_.data());
-    for (int i = 0; i < pattern_.n; ++i) rhs[i] = largest * double{rounded_[i]};
+    for (int i = 0; i < numbers; ++i) rounded_[i] = static_cast<Real>(rhs[i] / largest);
+    substitute<width>(rounded_.data());
+    for (int i = 0; i < numbers; ++i) rhs[i] = largest * double{rounded_[i]};
   }
 }
 
 template <class Real>
+template <int width>
 void MultifrontalCholesky<Real>::substitute(Real* rhs) {
   Real* w = front_rows_.data();
   for (const Front& front : fronts_) {  // L y = rhs
     const Real* l = factor_.data() + front.factor_at;
     const int* row = rows_.data() + front.rows_at;
-    Real* x = rhs + front.first_column;
-    std::copy_n(x, front.columns, w);
-    std::fill_n(w + front.columns, front.below(), Real{0});
+    Real* x = rhs + width * front.first_column;
+    std::copy_n(x, width * front.columns, w);
+    std::fill_n(w + width * front.columns, width * front.below(), Real{0});
     for (int k = 0; k < front.columns; k += panel) {
-      const int width = std::min(panel, front.columns - k);
-      of_width<Real>[width - 1].forward(l + panel_at<Real>(front.rows, k),
-                                        panel_ld<Real>(width, front.rows - k), front.rows - k,
-                                        w + k);
+      const int columns = std::min(panel, front.columns - k);
+      const OfWidth<Real>& steps = of_width<Real>[columns - 1];
+      (width == 1 ? steps.forward : steps.fours_forward)(l + panel_at<Real>(front.rows, k),
+                                                         panel_ld<Real>(columns, front.rows - k),
+                                                         front.rows - k, w + width * k);
     }
-    std::copy_n(w, front.columns, x);
-    const Real* below = w + front.columns;
-    for (int i = 0; i < front.below(); ++i) rhs[row[i]] += below[i];
+    std::copy_n(w, width * front.columns, x);
+    const Real* below = w + width * front.columns;
+    for (int i = 0; i < front.below(); ++i) {
+      for (int c = 0; c < width; ++c) rhs[width * row[i] + c] += below[width * i + c];
+    }
   }
-  for (std::size_t i = 0; i < pivots_.size(); ++i) rhs[i] /= pivots_[i];
+  for (std::size_t i = 0; i < pivots_.size(); ++i) {
+    for (int c = 0; c < width; ++c) rhs[width * i + c] /= pivots_[i];
+  }
   for (std::size_t f = fronts_.size(); f-- > 0;) {  // L^T x = D^-1 y
     const Front& front = fronts_[f];
     const Real* l = factor_.data() + front.factor_at;
     const int* row = rows_.data() + front.rows_at;
-    Real* x = rhs + front.first_column;
-    std::copy_n(x, front.columns, w);
-    Real* below = w + front.columns;
-    for (int i = 0; i < front.below(); ++i) below[i] = rhs[row[i]];
-    std::fill_n(below + front.below(), lanes<Real>, Real{0});
-    for (int k = (front.columns - 1) / panel * panel; k >= 0; k -= panel) {
-      const int width = std::min(panel, front.columns - k);
-      of_width<Real>[width - 1].back(l + panel_at<Real>(front.rows, k),
-                                     panel_ld<Real>(width, front.rows - k), front.rows - k, w + k);
+    Real* x = rhs + width * front.first_column;
+    std::copy_n(x, width * front.columns, w);
+    Real* below = w + width * front.columns;
+    for (int i = 0; i < front.below(); ++i) {
+      for (int c = 0; c < width; ++c) below[width * i + c] = rhs[width * row[i] + c];
     }
-    std::copy_n(w, front.columns, x);
+    std::fill_n(below + width * front.below(), lanes<Real>, Real{0});
+    for (int k = (front.columns - 1) / panel * panel; k >= 0; k -= panel) {
+      const int columns = std::min(panel, front.columns - k);
+      const OfWidth<Real>& steps = of_width<Real>[columns - 1];
+      (width == 1 ? steps.back : steps.fours_back)(l + panel_at<Real>(front.rows, k),
+                                                   panel_ld<Real>(columns, front.rows - k),
+                                                   front.rows - k, w + width * k);
+    }
+    std::copy_n(w, width * front.columns, x);
   }
 }
 

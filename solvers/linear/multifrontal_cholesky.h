@@ -37,6 +37,7 @@ class MultifrontalCholesky final : public SpdSolver {
   double* values() override { return values_.data(); }
   bool factor() override;
   void solve(double* rhs) override;
+  void solve_coordinates(Eigen::Matrix4Xd& rhs) override;
   double reciprocal_condition() const override;
   // Those of L itself; what is stored is about a third more, for whole groups of rows and merged
   // supernodes.
@@ -66,6 +67,9 @@ class MultifrontalCholesky final : public SpdSolver {
   template <class Into>
   void add_update(const Front& child, int begin, int end, Into into) const;
   bool eliminate_columns(const Front& front, Real* columns, Real* update);
+  template <int width>
+  void solve_rows(double* rhs);
+  template <int width>
   void substitute(Real* rhs);
 
   SymmetricPattern pattern_;
@@ -78,7 +82,7 @@ class MultifrontalCholesky final : public SpdSolver {
   std::vector<Real> factor_;       // the fronts' panels
   std::vector<Real> updates_[2];   // the stacks
   std::vector<Real> pivots_;       // of L D L^T
-  std::vector<Real> front_rows_;   // solve(): one number a row of a front
+  std::vector<Real> front_rows_;   // solve(): one number a row of a front, or four
   std::vector<Real> rounded_;      // solve() in single precision: the right-hand side
   double nonzeros_ = 0, flops_ = 0;
 };

@@ -2,6 +2,8 @@
 // pattern.
 #pragma once
 
+#include <Eigen/Core>
+
 #include "solvers/linear/symmetric_pattern.h"
 
 namespace inextensible {
@@ -24,6 +26,9 @@ class SpdSolver {
   void set_least_pivot(double relative) { least_pivot_ = relative; }
   virtual void solve(
       double* rhs) = 0;  // n numbers, overwritten by the solution; after a successful factor()
+  // Three right-hand sides at once, the coordinates of a vertex in each column; its fourth number
+  // means nothing.
+  virtual void solve_coordinates(Eigen::Matrix4Xd& rhs);
   // A solver of mixed precision stops once |b - A x| <= tolerance |b|. false: not reached; rhs is
   // then unspecified.
   virtual bool solve_within(double /*tolerance*/, double* rhs) {
@@ -38,6 +43,9 @@ class SpdSolver {
 
  protected:
   double least_pivot_ = 0;
+
+ private:
+  Eigen::VectorXd one_;  // right-hand side of several
 };
 
 }  // namespace inextensible

@@ -56,6 +56,14 @@ constexpr SpdSolverRow rows[] = {
 
 }  // namespace
 
+void SpdSolver::solve_coordinates(Eigen::Matrix4Xd& rhs) {
+  for (int axis = 0; axis < 3; ++axis) {
+    one_ = rhs.row(axis);
+    solve(one_.data());
+    rhs.row(axis) = one_;
+  }
+}
+
 std::span<const SpdSolverRow> spd_solvers() { return rows; }
 
 const SpdSolverRow& spd_solver(std::string_view name) {

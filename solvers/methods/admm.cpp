@@ -53,7 +53,7 @@ class Admm final : public VelocityFilter {
       weight_.push_back(options.number("penalty") /
                         (problem.inverse_mass()[a] + problem.inverse_mass()[b]));
     }
-    rhs_.resize(static_cast<Eigen::Index>(matrix_.vertex.size()), 3);
+    rhs_.setZero(4, static_cast<Eigen::Index>(matrix_.vertex.size()));
     if (problem.contact_inside()) anchor_.resize(3, problem.vertices());
     z_.resize(3, problem.constraints());
     u_.resize(3, problem.constraints());
@@ -170,23 +170,22 @@ class Admm final : public VelocityFilter {
   void solve(Positions& x, WorkCounters& work) {
     for (std::size_t f = 0; f < matrix_.vertex.size(); ++f) {
       const int v = matrix_.vertex[f];
-      auto row = rhs_.row(static_cast<Eigen::Index>(f));
-      row = problem_.mass()[v] * target_.col(v).transpose();
-      if (problem_.contact_inside())
-        row += contact_weight * problem_.mass()[v] * anchor_.col(v).transpose();
+      auto force = rhs_.col(static_cast<Eigen::Index>(f)).head<3>();
+      force = problem_.mass()[v] * target_.col(v);
+      if (problem_.contact_inside()) force += contact_weight * problem_.mass()[v] * anchor_.col(v);
     }
     for (int k = 0; k < edges_.count(); ++k) {
       const int a = matrix_.place[edges_.a[k]], b = matrix_.place[edges_.b[k]];
-      Eigen::RowVector3d pull = weight_[k] * (z_.col(k) - u_.col(k)).transpose();
-      if (a < 0) pull += weight_[k] * x.col(edges_.a[k]).transpose();
-      if (b < 0) pull -= weight_[k] * x.col(edges_.b[k]).transpose();
-      if (a >= 0) rhs_.row(a) -= pull;
-      if (b >= 0) rhs_.row(b) += pull;
+      Eigen::Vector3d pull = weight_[k] * (z_.col(k) - u_.col(k));
+      if (a < 0) pull += weight_[k] * x.col(edges_.a[k]);
+      if (b < 0) pull -= weight_[k] * x.col(edges_.b[k]);
+      if (a >= 0) rhs_.col(a).head<3>() -= pull;
+      if (b >= 0) rhs_.col(b).head<3>() += pull;
     }
-    for (int axis = 0; axis < 3; ++axis) matrix_.solver->solve(rhs_.col(axis).data());
+    matrix_.solver->solve_coordinates(rhs_);
     work.back_solves += 3;
     for (std::size_t f = 0; f < matrix_.vertex.size(); ++f)
-      x.col(matrix_.vertex[f]) = rhs_.row(static_cast<Eigen::Index>(f)).transpose();
+      x.col(matrix_.vertex[f]) = rhs_.col(static_cast<Eigen::Index>(f)).head<3>();
   }
 
   // Moves vertices out of the obstacle; returns whether edges are still within the limit.
@@ -209,7 +208,7 @@ class Admm final : public VelocityFilter {
   std::vector<double> weight_;  // of edges, kg
   VertexMatrix matrix_;
   bool factored_ = false;
-  Eigen::MatrixX3d rhs_;             // by free vertex
+  Eigen::Matrix4Xd rhs_;             // by free vertex
   Positions target_;                 // the candidate without what planes pushed it
   Positions anchor_;                 // z - u of vertices, with contact inside only
   Eigen::Matrix3Xd z_, u_, last_u_;  // of edges; last_u_: u / h^2 of the last accepted step

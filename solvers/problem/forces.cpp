@@ -50,14 +50,12 @@ void add_spring_acceleration(const Springs& springs, const std::vector<double>& 
   }
 }
 
-}  // namespace
-
-void add_acceleration(const Problem& problem, const Positions& x, double scale, Positions& y,
-                      WorkCounters& work) {
+void add_accelerations(const Problem& problem, const Positions& x, const Positions& shear_at,
+                       double scale, Positions& y, WorkCounters& work) {
   const Eigen::Vector3d fall = scale * problem.gravity();
   y.colwise() += fall;
   if (const Springs* shear = problem.shear()) {
-    add_spring_acceleration(*shear, problem.inverse_mass(), x, scale, y);
+    add_spring_acceleration(*shear, problem.inverse_mass(), shear_at, scale, y);
     work.spring_evaluations += static_cast<std::int64_t>(shear->edges.size());
   }
   if (!problem.bending().empty()) {
@@ -66,15 +64,22 @@ void add_acceleration(const Problem& problem, const Positions& x, double scale, 
   }
 }
 
+}  // namespace
+
+void add_acceleration(const Problem& problem, const Positions& x, double scale, Positions& y,
+                      WorkCounters& work) {
+  add_accelerations(problem, x, x, scale, y, work);
+}
+
 void add_drag(const Problem& problem, const Positions& v, double scale, Positions& y) {
   for (int i = 0; i < problem.vertices(); ++i)
     y.col(i) -= scale * problem.inverse_mass()[i] * problem.drag(i) * v.col(i);
 }
 
-void add_forces(const Problem& problem, const Positions& x, const Positions& v, Positions& f,
-                WorkCounters& work) {
+void add_forces(const Problem& problem, const Positions& x, const Positions& shear_at,
+                const Positions& v, Positions& f, WorkCounters& work) {
   // As accelerations times masses: of stiff forces the rounding is that of two multiplications.
-  add_acceleration(problem, x, 1, f, work);
+  add_accelerations(problem, x, shear_at, 1, f, work);
   if (problem.has_drag()) add_drag(problem, v, 1, f);
   for (int i = 0; i < problem.vertices(); ++i) f.col(i) *= problem.mass()[i];
 }

@@ -19,9 +19,9 @@ void add_acceleration(const Problem& problem, const Positions& x, double scale, 
 // y -= scale W D v, drag's. v: 3 x n, m/s.
 void add_drag(const Problem& problem, const Positions& v, double scale, Positions& y);
 
-// f += M g - grad V(x) - D v, N, on free vertices.
-void add_forces(const Problem& problem, const Positions& x, const Positions& v, Positions& f,
-                WorkCounters& work);
+// f += M g - grad V(x) - D v, N, on free vertices, with shear at shear_at instead of x.
+void add_forces(const Problem& problem, const Positions& x, const Positions& shear_at,
+                const Positions& v, Positions& f, WorkCounters& work);
 
 // Energy of linear springs, J.
 double spring_energy(const Springs& springs, const Positions& x);

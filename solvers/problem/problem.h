@@ -43,8 +43,8 @@ struct ProblemParts {
   std::optional<Springs> shear;
   Bending bending;           // empty: none
   std::vector<double> drag;  // N s/m, one a vertex, of air at rest: force -drag v; empty: none
-  // Shear, bending and drag act with their forces at the end of a step instead of its start
-  // (systems/implicit_forces.h).
+  // Shear, bending and drag act with their forces at the end of a step instead of its start where
+  // the step is too long for that (systems/implicit_forces.h).
   bool implicit_forces = false;
   std::shared_ptr<const Collider> collider;  // null: nothing to collide with
   BodyMotion body_motion;                    // of the collider; empty: it stays
@@ -77,7 +77,7 @@ class Problem {
   const Bending& bending() const { return parts_.bending; }
   bool has_drag() const { return !parts_.drag.empty(); }
   double drag(int vertex) const { return has_drag() ? parts_.drag[vertex] : 0; }
-  // Whether there are forces that are wanted implicit.
+  // Whether there are forces that long steps take implicitly.
   bool implicit_forces() const {
     return parts_.implicit_forces && (parts_.shear || !parts_.bending.empty() || has_drag());
   }

@@ -54,7 +54,7 @@ class Bdf2History {
 //   v^{n+1} = alpha v^n + (1 - alpha) v^{n-1} + beta h a,
 // the filter moves x^{n+1}, and the first line read backwards gives v^{n+1}. Shear and bending are
 // taken at x^n + h v^n, which is second order and damps (x extrapolated from x^n and x^{n-1}
-// excites), or at x^{n+1}, where the problem asks for it (ImplicitForces).
+// excites), or at x^{n+1}, where the problem asks for it and h is too long (ImplicitForces).
 class Bdf2Stepper final : public FilterStepper {
  public:
   Bdf2Stepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter);
@@ -72,9 +72,10 @@ class Bdf2Stepper final : public FilterStepper {
   bool implicit_solve(const State& state, double h, bool known, Positions& x);
 
   Bdf2History history_;
-  Positions acceleration_;     // m/s^2, at x_ahead_
-  Positions x_ahead_;          // x^n + h v^n, with shear or bending only
-  Positions flight_velocity_;  // with implicit forces only
+  Positions acceleration_;  // m/s^2, at x_ahead_
+  Positions x_ahead_;       // x^n + h v^n, with shear or bending only
+  // With implicit forces only.
+  Positions flight_velocity_, early_;  // m/s; x^n + h v^n
 };
 
 // BDF2 around a method that is a backward Euler step of its own (Choi and Ko 2002 take implicit

@@ -13,12 +13,13 @@ MidpointStepper::MidpointStepper(std::shared_ptr<const Problem> problem,
       candidate_(3, problem_->vertices()) {}
 
 bool MidpointStepper::unconstrained(const State& state, double h, Positions& x0) {
-  if (implicit_) {
+  if (ImplicitForces* forces = implicit(h)) {
     x0 = state.x + h * state.v;
     x0.colwise() += 0.5 * h * h * problem_->gravity();
     for (const int vertex : problem_->pinned()) x0.col(vertex) = state.x.col(vertex);
     candidate_ = x0;
-    return implicit_->advance_inside(1 / (1 + rho_), h, state.x, x0, work_);
+    middle_ = state.x + 0.5 * h * state.v;
+    return forces->advance_inside(1 / (1 + rho_), h, state.x, middle_, x0, work_);
   }
   const double scale = 0.5 * h * h;
   x0 = state.x + h * state.v;

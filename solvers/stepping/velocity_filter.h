@@ -42,8 +42,8 @@ StepResult apply_until_clear(VelocityFilter& filter, Contacts* contacts, const P
                              double h, Positions& x, WorkCounters& work);
 
 // An unconstrained step, then the filter. Here the pipeline of the paper's section 4.4,
-// v* = v - h W grad V(x), x0 = x + h v*, with V explicit or, where the problem asks for it,
-// implicit (ImplicitForces).
+// v* = v - h W grad V(x), x0 = x + h v*, with V explicit or, where the problem asks for it
+// and the step is too long for that, implicit (ImplicitForces).
 class FilterStepper : public Stepper {
  public:
   FilterStepper(std::shared_ptr<const Problem> problem, std::unique_ptr<VelocityFilter> filter);
@@ -56,7 +56,12 @@ class FilterStepper : public Stepper {
   // is singular.
   virtual bool unconstrained(const State& state, double h, Positions& x0);
 
-  std::unique_ptr<ImplicitForces> implicit_;  // null: V explicit
+  // For a step of h seconds; null: V explicit.
+  ImplicitForces* implicit(double h) const {
+    return implicit_ && implicit_->needed(h) ? implicit_.get() : nullptr;
+  }
+
+  std::unique_ptr<ImplicitForces> implicit_;  // null: V always explicit
 
  private:
   StepResult solve(const State& state, double h, Positions& x) final;

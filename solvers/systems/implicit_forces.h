@@ -10,6 +10,11 @@
 // all three coordinates: one sparse symmetric positive definite n x n matrix, factored once for
 // each h.
 //
+// Steps short enough for shear at their start take it there; bending too, unless there is drag,
+// which at the start of a step is of first order. That is more accurate, and cheaper: the
+// constraint filter that follows moves the vertices without asking what implicit shear would say,
+// an error of first order, which decides into which folds a cloth falls.
+//
 // Second-order steppers take the forces inside the step, at x_theta = x^n + theta (x0 - x^n):
 //   x0 = y + theta h^2 a,   v^{n+1} = v + h a,   M a = -grad V(x_theta) - D v_middle,
 // where y and v have gravity already and v_middle = (y - x^n) / h + h a / 2. theta = 1/2 is the
@@ -33,36 +38,45 @@ class ImplicitForces {
   // The problem must outlive this.
   explicit ImplicitForces(const Problem& problem);
 
-  // y (3 x n, m) in, x0 out; w: 3 x n, m/s. Pinned vertices of y stay. scale: s, the h of the
-  // formula. false: the matrix is singular to working precision, or a number is not finite.
-  bool advance(double scale, const Positions& w, Positions& y, WorkCounters& work);
+  // Whether a step of h seconds is too long for forces at its start; for shear there.
+  bool needed(double h) const { return h > explicit_step_; }
+  bool shear_needed(double h) const { return h > shear_step_; }
+
+  // y (3 x n, m) in, x0 out; w: 3 x n, m/s. Pinned vertices of y stay. h: s, of the step. scale: s,
+  // the h of the formula. early: where shear is taken unless it is needed at the end. false: the
+  // matrix is singular to working precision, or a number is not finite.
+  bool advance(double h, double scale, const Positions& early, const Positions& w, Positions& y,
+               WorkCounters& work);
 
   // y (3 x n, m) = x^n + h v + h^2 g / 2 in, x0 of the second formula out; theta: 1/2 to 1. Else as
   // above.
-  bool advance_inside(double theta, double h, const Positions& x_start, Positions& y,
-                      WorkCounters& work);
+  bool advance_inside(double theta, double h, const Positions& x_start, const Positions& early,
+                      Positions& y, WorkCounters& work);
 
  private:
-  // The matrix M + drag D + scale^2 L.
-  bool factor(double scale, double drag);
-  // y += factor d, with (M + drag D + scale^2 L) d = scale^2 force_.
-  bool add_solution(double scale, double drag, double factor, Positions& y, WorkCounters& work);
+  // The matrix M + drag D + scale^2 L, L with shear or without.
+  bool factor(double scale, double drag, bool shear);
+  // y += factor d, with this matrix times d = scale^2 force_.
+  bool add_solution(double scale, double drag, bool shear, double factor, Positions& y,
+                    WorkCounters& work);
 
   const Problem& problem_;
-  std::vector<int> free_vertex_;               // in elimination order
-  struct Entry {                               // of the matrix
-    double stiffness = 0, drag = 0, mass = 0;  // N/m, N s/m, kg
+  std::vector<int> free_vertex_;                        // in elimination order
+  struct Entry {                                        // of the matrix
+    double shear = 0, bending = 0, drag = 0, mass = 0;  // N/m, N/m, N s/m, kg
   };
   std::vector<Entry> entries_;
   std::unique_ptr<SpdSolver> solver_;
-  double factored_ = 0, factored_drag_ = 0;  // s, of the matrix; 0: none yet
-  Positions force_;                          // N
-  Positions inside_, velocity_;              // x_theta and (y - x^n) / h, of advance_inside
-  Eigen::VectorXd row_;                      // one coordinate of all free vertices
+  double explicit_step_ = 0, shear_step_ = 0;  // s
+  double factored_ = 0, factored_drag_ = 0;    // s, of the matrix; 0: none yet
+  bool factored_shear_ = false;
+  Positions force_;              // N
+  Positions inside_, velocity_;  // x_theta and (y - x^n) / h, of advance_inside
+  Eigen::Matrix4Xd motion_;      // m, of the free vertices
 };
 
-// x0 of the pipeline of the paper's section 4.4: unconstrained_step, or with `implicit`, if it is
-// not null, those forces at the end of the step. false: as ImplicitForces::advance.
+// x0 of the pipeline of the paper's section 4.4: unconstrained_step, or where `implicit` is not
+// null and needed, with forces at the end of the step. false: as ImplicitForces::advance.
 bool unconstrained_step(const Problem& problem, ImplicitForces* implicit, const State& state,
                         double h, Positions& x0, WorkCounters& work);
 

@@ -169,6 +169,23 @@ TEST_P(SpdSolvers, SolveToTheToleranceAskedForWhateverTheMagnitude) {
   });
 }
 
+TEST_P(SpdSolvers, SolveForThreeCoordinatesAsForEachAlone) {
+  testing::for_seeds(30, [&](testing::Random& random, std::uint64_t seed) {
+    System system = random_system(GetParam(), seed);
+    ASSERT_TRUE(system.factor());
+    Eigen::Matrix4Xd together = Eigen::Matrix4Xd::Zero(4, system.pattern.n);
+    together.topRows(3) = random_matrix(random, 3, system.pattern.n);
+    const Eigen::Matrix4Xd given = together;
+    system.solver->solve_coordinates(together);
+    for (int axis = 0; axis < 3; ++axis) {
+      VectorXd alone = given.row(axis);
+      const double rounding = (GetParam().precision == Precision::full ? 1e-13 : 1e-11) *
+                              (system.dense.norm() * together.row(axis).norm() + alone.norm());
+      EXPECT_LE((system.dense * together.row(axis).transpose() - alone).norm(), rounding);
+    }
+  });
+}
+
 // A positive diagonal does not make a matrix positive definite. What is left of a refused matrix
 // must not reach the next one.
 TEST_P(SpdSolvers, RefuseWhatIsNotPositiveDefiniteAndForgetIt) {

@@ -130,7 +130,7 @@ TEST(Forces, AreTheEnergysDifferences) {
   for (Eigen::Index i = 0; i < x.size(); ++i) x(i) += 0.1 * normal(random);
   WorkCounters work;
   Positions force = Positions::Zero(3, 16), still = force;
-  add_forces(problem, x, still, force, work);
+  add_forces(problem, x, x, still, force, work);
   EXPECT_EQ(work.spring_evaluations, static_cast<std::int64_t>(2 + parts.bending.size()));
   const double d = 1e-6;
   for (int i = 0; i < 16; ++i) {
