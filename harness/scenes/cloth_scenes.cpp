@@ -292,8 +292,8 @@ std::vector<SceneType> cloth_scenes() {
        .summary = "a square of cloth that falls onto a polygonal sphere",
        .parameters = drape_parameters(
            cloth_parameters(71),
-           {{"implicit", 0, "shear as it is at the end of a long step: 1; at its start: 0", zero_too, 1,
-             true}}),
+           {{"implicit", 0, "shear as it is at the end of a long step: 1; at its start: 0",
+             zero_too, 1, true}}),
        .build = build_drape,
        .counts = count_square},
       fabric_on_ball("fabric_drape",

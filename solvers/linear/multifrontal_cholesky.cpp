@@ -40,19 +40,19 @@ constexpr int panel_ld(int K, int n) {
   return padded<Real>(K % lanes<Real> == 0 ? n : n + lanes<Real> - 1);
 }
 
-template <class Real>
-struct LaneVector {
-  typedef Real type __attribute__((vector_size(vector_bytes)));
+template <class Real, int bytes>
+struct VectorOf {
+  typedef Real type __attribute__((vector_size(bytes)));
 };
 template <class Real>
-using Lanes = typename LaneVector<Real>::type;
+using Lanes = typename VectorOf<Real, vector_bytes>::type;
 // memcpy, because numbers in memory are not aligned as vectors are.
-template <class Real>
-void load_lanes(const Real* p, Lanes<Real>& values) {
+template <class Vector, class Real>
+void load(const Real* p, Vector& values) {
   std::memcpy(&values, p, sizeof values);
 }
-template <class Real>
-void store_lanes(const Lanes<Real>& values, Real* p) {
+template <class Vector, class Real>
+void store(const Vector& values, Real* p) {
   std::memcpy(p, &values, sizeof values);
 }
 
@@ -88,12 +88,12 @@ bool eliminate(Real* l, Distance ld, int n, const Real* bound, Real* pivots) {
   for (int i = K; i < n; i += lanes<Real>) {
     Lanes<Real> y[K];  // rows of L D
 #pragma GCC unroll 8
-    for (int c = 0; c < K; ++c) load_lanes(l + c * ld + i, y[c]);
+    for (int c = 0; c < K; ++c) load(l + c * ld + i, y[c]);
 #pragma GCC unroll 8
     for (int c = 0; c < K; ++c) {
 #pragma GCC unroll 8
       for (int k = c + 1; k < K; ++k) y[k] -= y[c] * triangle[k][c];
-      store_lanes<Real>(y[c] * inverse[c], l + c * ld + i);
+      store(y[c] * inverse[c], l + c * ld + i);
     }
   }
   return true;
@@ -117,15 +117,15 @@ void subtract_columns(const Real* p, Distance ld_p, const Real* d, int n, int j,
 #pragma GCC unroll 8
     for (int k = 0; k < K; ++k) {
       Lanes<Real> value;
-      load_lanes(p + k * ld_p + i, value);
+      load(p + k * ld_p + i, value);
 #pragma GCC unroll 4
       for (int t = 0; t < J; ++t) sum[t] += value * factor[k][t];
     }
 #pragma GCC unroll 4
     for (int t = 0; t < J; ++t) {
       Lanes<Real> before = {};
-      if (!begin) load_lanes(c + t * ld_c + i, before);
-      store_lanes<Real>(before - sum[t], c + t * ld_c + i);
+      if (!begin) load(c + t * ld_c + i, before);
+      store(before - sum[t], c + t * ld_c + i);
     }
   }
 }
@@ -197,13 +197,13 @@ void substitute_forward(const Real* l, Distance ld, int n, Real* w) {
   for (int c = 0; c < K; ++c) w[c] = x[c];
   for (int i = K; i < n; i += lanes<Real>) {
     Lanes<Real> sum, column;
-    load_lanes(w + i, sum);
+    load(w + i, sum);
 #pragma GCC unroll 8
     for (int c = 0; c < K; ++c) {
-      load_lanes(l + c * ld + i, column);
+      load(l + c * ld + i, column);
       sum -= column * x[c];
     }
-    store_lanes(sum, w + i);
+    store(sum, w + i);
   }
 }
 
@@ -213,10 +213,10 @@ void substitute_back(const Real* l, Distance ld, int n, Real* w) {
   Lanes<Real> sum[K] = {};
   for (int i = K; i < n; i += lanes<Real>) {
     Lanes<Real> value, column;
-    load_lanes(w + i, value);
+    load(w + i, value);
 #pragma GCC unroll 8
     for (int c = 0; c < K; ++c) {
-      load_lanes(l + c * ld + i, column);
+      load(l + c * ld + i, column);
       sum[c] += column * value;
     }
   }
@@ -237,38 +237,26 @@ void substitute_back(const Real* l, Distance ld, int n, Real* w) {
 
 // The same of rows of four numbers: the factor is read once for three right-hand sides.
 template <class Real>
-struct FourVector {
-  typedef Real type __attribute__((vector_size(4 * sizeof(Real))));
-};
-template <class Real>
-using Four = typename FourVector<Real>::type;
-template <class Real>
-void load_four(const Real* p, Four<Real>& numbers) {
-  std::memcpy(&numbers, p, sizeof numbers);
-}
-template <class Real>
-void put_four(const Four<Real>& numbers, Real* p) {
-  std::memcpy(p, &numbers, sizeof numbers);
-}
+using Four = typename VectorOf<Real, 4 * sizeof(Real)>::type;
 
 template <int K, class Real>
 void substitute_fours_forward(const Real* l, Distance ld, int n, Real* w) {
   Four<Real> x[K];
 #pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) load_four(w + 4 * c, x[c]);
+  for (int c = 0; c < K; ++c) load(w + 4 * c, x[c]);
 #pragma GCC unroll 8
   for (int c = 0; c < K; ++c) {
 #pragma GCC unroll 8
     for (int r = c + 1; r < K; ++r) x[r] -= l[c * ld + r] * x[c];
   }
 #pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) put_four<Real>(x[c], w + 4 * c);
+  for (int c = 0; c < K; ++c) store(x[c], w + 4 * c);
   for (int i = K; i < n; ++i) {
     Four<Real> sum;
-    load_four(w + 4 * i, sum);
+    load(w + 4 * i, sum);
 #pragma GCC unroll 8
     for (int c = 0; c < K; ++c) sum -= l[c * ld + i] * x[c];
-    put_four<Real>(sum, w + 4 * i);
+    store(sum, w + 4 * i);
   }
 }
 
@@ -276,10 +264,10 @@ template <int K, class Real>
 void substitute_fours_back(const Real* l, Distance ld, int n, Real* w) {
   Four<Real> x[K];
 #pragma GCC unroll 8
-  for (int c = 0; c < K; ++c) load_four(w + 4 * c, x[c]);
+  for (int c = 0; c < K; ++c) load(w + 4 * c, x[c]);
   for (int i = K; i < n; ++i) {
     Four<Real> value;
-    load_four(w + 4 * i, value);
+    load(w + 4 * i, value);
 #pragma GCC unroll 8
     for (int c = 0; c < K; ++c) x[c] -= l[c * ld + i] * value;
   }
@@ -287,7 +275,7 @@ void substitute_fours_back(const Real* l, Distance ld, int n, Real* w) {
   for (int c = K - 1; c >= 0; --c) {
 #pragma GCC unroll 8
     for (int r = 0; r < c; ++r) x[r] -= l[r * ld + c] * x[c];
-    put_four<Real>(x[c], w + 4 * c);
+    store(x[c], w + 4 * c);
   }
 }
 
