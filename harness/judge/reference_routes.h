@@ -12,6 +12,7 @@
 
 #include "harness/base/journal.h"
 #include "harness/judge/reference.h"
+#include "solvers/methods/backend.h"
 
 namespace harness {
 
