@@ -80,7 +80,7 @@ std::string at_ends(const std::string& solver, const TunedPlace& place) {
 
 void print(const TunedEntry& entry) {
   for (const TunedPlace& p : entry.places) {
-    std::cout << std::left << std::setw(14) << entry.kind << std::setw(35) << entry.solver
+    std::cout << std::left << std::setw(15) << entry.kind << std::setw(35) << entry.solver
               << std::setw(6) << p.resolution << std::setw(8) << number_text(100 * p.limit) + " %"
               << std::setw(7) << number_text(p.gain(), 3) << to_json(p.settings).dump()
               << at_ends(entry.solver, p) << std::endl;
@@ -183,7 +183,8 @@ struct Tune {
     SweepRunners runners;
     runners.references = ReferenceFolder::usual();
     runners = isolated(runners, 0);
-    std::cout << "kind          solver                             size  limit   gain   settings\n";
+    std::cout
+        << "kind           solver                             size  limit   gain   settings\n";
     for (const SweepSpec& on : chosen) {
       for (const std::string& name : chosen_solvers(solver, on)) {
         if (tune_one(on, name, runners, entries)) write_entries(file, entries);

@@ -97,9 +97,8 @@ class ReferenceMaker {
         .run(name,
              [&] {
                RouteRun run;
-               follow(scene_, from, route, h, times, runs_, [&](const State& state, bool sampled) {
-                 if (sampled) run.path.push_back(state.x);
-               });
+               follow(scene_, from, route, h, times, runs_,
+                      [&](const State& state) { run.path.push_back(state.x); });
                return run;
              })
         .path;

@@ -1,4 +1,4 @@
-// References by computation: two unlike routes for each scene. They are made of runs,
+// References by computation: two unlike routes for each scene. References are made of runs,
 // each by one route, at one step, from one start. A run is kept as soon as it is done, so that a
 // computation that was stopped goes on with the next one.
 #pragma once
@@ -62,8 +62,8 @@ struct Routes {
 };
 Routes contact_routes(const Scene& scene, double h);
 
-// After each step; sampled: whether it ends at a sample time.
-using SampleVisitor = std::function<void(const inextensible::State& state, bool sampled)>;
+// At each sample time.
+using SampleVisitor = std::function<void(const inextensible::State& state)>;
 
 // A route's run to the last of the sample times, or up to where it fails; h divides the sample
 // interval.

@@ -1,13 +1,11 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include "harness/base/text.h"
 #include "harness/judge/drive.h"
-#include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"
 #include "harness/judge/reference_routes.h"
 #include "solvers/registry.h"
@@ -94,7 +92,7 @@ void follow(const Scene& scene, const State& start, const Route& route, double h
   const Pace pace{h, per_sample * static_cast<long>(times.size())};
   const DriveState driven =
       drive(*stepper, state, pace, [&](const State& now, const DriveState& so_far) {
-        visit(now, so_far.steps % per_sample == 0);
+        if (so_far.steps % per_sample == 0) visit(now);
         return true;
       });
   if (driven.end == DriveState::End::refused)

@@ -371,7 +371,7 @@ void MultifrontalCholesky<Real>::find_fronts() {
   }
   factor_.resize(factor_size + lanes<Real>);  // groups of rows below may begin anywhere
   front_rows_.resize(4 * most_rows + lanes<Real>);
-  if constexpr (!std::is_same_v<Real, double>) rounded_.resize(4 * std::size_t(pattern_.n));
+  if constexpr (!std::is_same_v<Real, double>) rounded_.resize(pattern_.n);
 }
 
 template <class Real>
@@ -518,48 +518,46 @@ bool MultifrontalCholesky<Real>::eliminate_columns(const Front& front, Real* col
 
 template <class Real>
 void MultifrontalCholesky<Real>::solve(double* rhs) {
-  solve_rows<1>(rhs);
+  if constexpr (std::is_same_v<Real, double>) {
+    substitute<1>(rhs);
+  } else {  // scaled, so that no magnitude is out of range
+    double largest = 0;
+    for (int i = 0; i < pattern_.n; ++i) largest = std::max(largest, std::abs(rhs[i]));
+    if (!(largest > 0)) return;
+    for (int i = 0; i < pattern_.n; ++i) rounded_[i] = static_cast<Real>(rhs[i] / largest);
+    substitute<1>(rounded_.data());
+    for (int i = 0; i < pattern_.n; ++i) rhs[i] = largest * double{rounded_[i]};
+  }
 }
 
 template <class Real>
 void MultifrontalCholesky<Real>::solve_coordinates(Eigen::Matrix4Xd& rhs) {
-  solve_rows<4>(rhs.data());
-}
-
-// width: numbers of the right-hand sides in each row.
-template <class Real>
-template <int width>
-void MultifrontalCholesky<Real>::solve_rows(double* rhs) {
   if constexpr (std::is_same_v<Real, double>) {
-    substitute<width>(rhs);
-  } else {  // scaled, so that no magnitude is out of range
-    const int numbers = width * pattern_.n;
-    double largest = 0;
-    for (int i = 0; i < numbers; ++i) largest = std::max(largest, std::abs(rhs[i]));
-    if (!(largest > 0)) return;
-    for (int i = 0; i < numbers; ++i) rounded_[i] = static_cast<Real>(rhs[i] / largest);
-    substitute<width>(rounded_.data());
-    for (int i = 0; i < numbers; ++i) rhs[i] = largest * double{rounded_[i]};
+    substitute<4>(rhs.data());
+  } else {
+    SpdSolver::solve_coordinates(rhs);
   }
 }
 
 template <class Real>
 template <int width>
 void MultifrontalCholesky<Real>::substitute(Real* rhs) {
-  Real* w = front_rows_.data();
+  using Steps = OfWidth<Real>;
+  constexpr auto forward = width == 1 ? &Steps::forward : &Steps::fours_forward,
+                 back = width == 1 ? &Steps::back : &Steps::fours_back;
+  Real* const w = front_rows_.data();
+  const auto take_panel_at = [&](const Front& front, int k, auto direction) {
+    const int columns = std::min(panel, front.columns - k), rows = front.rows - k;
+    (of_width<Real>[columns - 1].*direction)(
+        factor_.data() + front.factor_at + panel_at<Real>(front.rows, k),
+        panel_ld<Real>(columns, rows), rows, w + width * k);
+  };
   for (const Front& front : fronts_) {  // L y = rhs
-    const Real* l = factor_.data() + front.factor_at;
     const int* row = rows_.data() + front.rows_at;
     Real* x = rhs + width * front.first_column;
     std::copy_n(x, width * front.columns, w);
     std::fill_n(w + width * front.columns, width * front.below(), Real{0});
-    for (int k = 0; k < front.columns; k += panel) {
-      const int columns = std::min(panel, front.columns - k);
-      const OfWidth<Real>& steps = of_width<Real>[columns - 1];
-      (width == 1 ? steps.forward : steps.fours_forward)(l + panel_at<Real>(front.rows, k),
-                                                         panel_ld<Real>(columns, front.rows - k),
-                                                         front.rows - k, w + width * k);
-    }
+    for (int k = 0; k < front.columns; k += panel) take_panel_at(front, k, forward);
     std::copy_n(w, width * front.columns, x);
     const Real* below = w + width * front.columns;
     for (int i = 0; i < front.below(); ++i) {
@@ -571,7 +569,6 @@ void MultifrontalCholesky<Real>::substitute(Real* rhs) {
   }
   for (std::size_t f = fronts_.size(); f-- > 0;) {  // L^T x = D^-1 y
     const Front& front = fronts_[f];
-    const Real* l = factor_.data() + front.factor_at;
     const int* row = rows_.data() + front.rows_at;
     Real* x = rhs + width * front.first_column;
     std::copy_n(x, width * front.columns, w);
@@ -580,13 +577,8 @@ void MultifrontalCholesky<Real>::substitute(Real* rhs) {
       for (int c = 0; c < width; ++c) below[width * i + c] = rhs[width * row[i] + c];
     }
     std::fill_n(below + width * front.below(), lanes<Real>, Real{0});
-    for (int k = (front.columns - 1) / panel * panel; k >= 0; k -= panel) {
-      const int columns = std::min(panel, front.columns - k);
-      const OfWidth<Real>& steps = of_width<Real>[columns - 1];
-      (width == 1 ? steps.back : steps.fours_back)(l + panel_at<Real>(front.rows, k),
-                                                   panel_ld<Real>(columns, front.rows - k),
-                                                   front.rows - k, w + width * k);
-    }
+    for (int k = (front.columns - 1) / panel * panel; k >= 0; k -= panel)
+      take_panel_at(front, k, back);
     std::copy_n(w, width * front.columns, x);
   }
 }

@@ -67,8 +67,7 @@ class MultifrontalCholesky final : public SpdSolver {
   template <class Into>
   void add_update(const Front& child, int begin, int end, Into into) const;
   bool eliminate_columns(const Front& front, Real* columns, Real* update);
-  template <int width>
-  void solve_rows(double* rhs);
+  // width: numbers of right-hand sides in a row, 1 or 4.
   template <int width>
   void substitute(Real* rhs);
 

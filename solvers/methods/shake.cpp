@@ -209,12 +209,11 @@ class Rattle final : public Stepper {
   StepResult solve(const State& state, double h, Positions& x) override {
     Stopwatch stopwatch(phases_wanted_);
     x = state.x + h * state.v;  // position stage (Andersen 1983)
-    if (implicit_ && implicit_->needed(h)) {
+    if (in_step(implicit_, h)) {
       x.colwise() += 0.5 * h * h * problem_->gravity();
       for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
       kick_ = x;
-      middle_ = state.x + 0.5 * h * state.v;
-      if (!implicit_->advance_inside(0.5, h, state.x, middle_, x, work_))
+      if (!implicit_->advance_inside(state, h, 0.5, x, work_))
         return {Status::singular, 0, -1, 0, singular_forces};
       kick_ = (x - kick_) * (1 / h);
     } else {
@@ -233,7 +232,7 @@ class Rattle final : public Stepper {
                             const Positions& x, Positions& v) override {
     Stopwatch stopwatch(phases_wanted_);
     v = (x - start.x) * (1 / h);  // velocity stage
-    if (implicit_ && implicit_->needed(h)) {
+    if (in_step(implicit_, h)) {
       v += kick_;
       v.colwise() += 0.5 * h * problem_->gravity();
     } else {
@@ -263,7 +262,6 @@ class Rattle final : public Stepper {
 
   Shake shake_;
   Positions v_half_;                          // with drag only
-  Positions middle_;                          // x^n + h v^n / 2, with implicit forces only
   std::unique_ptr<ImplicitForces> implicit_;  // null: explicit
   Positions candidate_;                       // before friction, with contact only
   Positions kick_;                            // m/s, of implicit forces in half a step

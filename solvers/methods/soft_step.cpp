@@ -43,7 +43,7 @@ class SoftStep final : public Stepper {
   // Velocities are differences to the start of the step, times h.
   StepResult solve(const State& state, double h, Positions& x) override {
     Stopwatch stopwatch(phases_wanted_);
-    if (!unconstrained_step(problem(), implicit_.get(), state, h, x, work_))
+    if (!unconstrained_step(problem(), in_step(implicit_, h), state, h, x, work_))
       return {Status::singular, 0, -1, 0, singular_forces};
     phases_.unconstrained += stopwatch();
     directions(start_positions());

@@ -68,7 +68,7 @@ Bdf2Stepper::Bdf2Stepper(std::shared_ptr<const Problem> problem,
 
 bool Bdf2Stepper::unconstrained(const State& state, double h, Positions& x) {
   const bool known = history_.leads_to(state, h);
-  if (!implicit(h)) {
+  if (!in_step(implicit_, h)) {
     explicit_solve(state, h, known, x);
   } else if (!implicit_solve(state, h, known, x)) {
     return false;
@@ -94,7 +94,7 @@ void Bdf2Stepper::explicit_solve(const State& state, double h, bool known, Posit
 bool Bdf2Stepper::implicit_solve(const State& state, double h, bool known, Positions& x) {
   if (!known) {  // the present acceleration, as backward Euler sees it
     x = x_ahead_ = state.x + h * state.v;
-    if (!implicit_->advance(h, h, x_ahead_, state.v, x, work_)) return false;
+    if (!implicit_->advance(state, h, h, h, state.v, x, work_)) return false;
     acceleration_ = (x - x_ahead_) / (h * h);
     history_.restart(state, h, acceleration_);
   }
@@ -105,8 +105,7 @@ bool Bdf2Stepper::implicit_solve(const State& state, double h, bool known, Posit
   if (problem_->pins_follow_body())
     for (const int vertex : problem_->pinned()) x_ahead_.col(vertex) = state.x.col(vertex);
   x = x_ahead_;
-  early_ = state.x + h * state.v;
-  if (!implicit_->advance(h, c.beta_h, early_, flight_velocity_, x, work_)) return false;
+  if (!implicit_->advance(state, h, c.beta_h, h, flight_velocity_, x, work_)) return false;
   acceleration_ = (x - x_ahead_) / (c.beta_h * c.beta_h);
   return true;
 }

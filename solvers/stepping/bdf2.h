@@ -72,10 +72,9 @@ class Bdf2Stepper final : public FilterStepper {
   bool implicit_solve(const State& state, double h, bool known, Positions& x);
 
   Bdf2History history_;
-  Positions acceleration_;  // m/s^2, at x_ahead_
-  Positions x_ahead_;       // x^n + h v^n, with shear or bending only
-  // With implicit forces only.
-  Positions flight_velocity_, early_;  // m/s; x^n + h v^n
+  Positions acceleration_;     // m/s^2, at x_ahead_
+  Positions x_ahead_;          // x^n + h v^n, with shear or bending only
+  Positions flight_velocity_;  // with implicit forces only
 };
 
 // BDF2 around a method that is a backward Euler step of its own (Choi and Ko 2002 take implicit

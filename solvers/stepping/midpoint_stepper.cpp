@@ -13,13 +13,12 @@ MidpointStepper::MidpointStepper(std::shared_ptr<const Problem> problem,
       candidate_(3, problem_->vertices()) {}
 
 bool MidpointStepper::unconstrained(const State& state, double h, Positions& x0) {
-  if (ImplicitForces* forces = implicit(h)) {
+  if (ImplicitForces* forces = in_step(implicit_, h)) {
     x0 = state.x + h * state.v;
     x0.colwise() += 0.5 * h * h * problem_->gravity();
     for (const int vertex : problem_->pinned()) x0.col(vertex) = state.x.col(vertex);
     candidate_ = x0;
-    middle_ = state.x + 0.5 * h * state.v;
-    return forces->advance_inside(1 / (1 + rho_), h, state.x, middle_, x0, work_);
+    return forces->advance_inside(state, h, 1 / (1 + rho_), x0, work_);
   }
   const double scale = 0.5 * h * h;
   x0 = state.x + h * state.v;

@@ -42,7 +42,7 @@ FilterStepper::FilterStepper(std::shared_ptr<const Problem> problem,
 }
 
 bool FilterStepper::unconstrained(const State& state, double h, Positions& x0) {
-  return unconstrained_step(*problem_, implicit_.get(), state, h, x0, work_);
+  return unconstrained_step(*problem_, in_step(implicit_, h), state, h, x0, work_);
 }
 
 StepResult FilterStepper::solve(const State& state, double h, Positions& x) {

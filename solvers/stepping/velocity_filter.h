@@ -56,11 +56,6 @@ class FilterStepper : public Stepper {
   // is singular.
   virtual bool unconstrained(const State& state, double h, Positions& x0);
 
-  // For a step of h seconds; null: V explicit.
-  ImplicitForces* implicit(double h) const {
-    return implicit_ && implicit_->needed(h) ? implicit_.get() : nullptr;
-  }
-
   std::unique_ptr<ImplicitForces> implicit_;  // null: V always explicit
 
  private:

@@ -109,26 +109,32 @@ bool ImplicitForces::factor(double scale, double drag, bool shear) {
   return factored_ != 0;
 }
 
-bool ImplicitForces::advance(double h, double scale, const Positions& early, const Positions& w,
-                             Positions& y, WorkCounters& work) {
-  const bool shear = shear_needed(h);
+const Positions& ImplicitForces::place_of_shear(const State& start, double h, double ahead,
+                                                const Positions& end) {
+  if (h > shear_step_) return end;
+  early_ = start.x + ahead * start.v;
+  return early_;
+}
+
+bool ImplicitForces::advance(const State& start, double h, double scale, double ahead,
+                             const Positions& w, Positions& y, WorkCounters& work) {
   force_.setZero();
-  add_forces(problem_, y, shear ? y : early, w, force_, work);
-  return add_solution(scale, scale, shear, 1, y, work);
+  add_forces(problem_, y, place_of_shear(start, h, ahead, y), w, force_, work);
+  return add_solution(scale, scale, h > shear_step_, 1, y, work);
 }
 
 // About y it is (M + h / 2 D + s^2 L) theta (x0 - y) = s^2 (-grad V(y_theta) - D (y - x^n) / h),
 // with s = theta h.
-bool ImplicitForces::advance_inside(double theta, double h, const Positions& x_start,
-                                    const Positions& early, Positions& y, WorkCounters& work) {
-  const bool shear = shear_needed(h);
-  inside_ = (1 - theta) * x_start + theta * y;
-  velocity_ = (y - x_start) * (1 / h);
+bool ImplicitForces::advance_inside(const State& start, double h, double theta, Positions& y,
+                                    WorkCounters& work) {
+  inside_ = (1 - theta) * start.x + theta * y;
+  velocity_ = (y - start.x) * (1 / h);
   force_.setZero();
-  add_forces(problem_, inside_, shear ? inside_ : early, velocity_, force_, work);
+  add_forces(problem_, inside_, place_of_shear(start, h, 0.5 * h, inside_), velocity_, force_,
+             work);
   for (const int vertex : free_vertex_)
     force_.col(vertex) -= problem_.mass()[vertex] * problem_.gravity();
-  return add_solution(theta * h, 0.5 * h, shear, 1 / theta, y, work);
+  return add_solution(theta * h, 0.5 * h, h > shear_step_, 1 / theta, y, work);
 }
 
 bool ImplicitForces::add_solution(double scale, double drag, bool shear, double factor,
@@ -147,13 +153,13 @@ bool ImplicitForces::add_solution(double scale, double drag, bool shear, double 
 
 bool unconstrained_step(const Problem& problem, ImplicitForces* implicit, const State& state,
                         double h, Positions& x0, WorkCounters& work) {
-  if (!implicit || !implicit->needed(h)) {
+  if (!implicit) {
     unconstrained_step(problem, state, h, x0, work);
     return true;
   }
   x0 = state.x + h * state.v;
   for (const int vertex : problem.pinned()) x0.col(vertex) = state.x.col(vertex);
-  return implicit->advance(h, h, state.x, state.v, x0, work);
+  return implicit->advance(state, h, h, 0, state.v, x0, work);
 }
 
 }  // namespace inextensible

@@ -38,22 +38,23 @@ class ImplicitForces {
   // The problem must outlive this.
   explicit ImplicitForces(const Problem& problem);
 
-  // Whether a step of h seconds is too long for forces at its start; for shear there.
+  // Whether a step of h seconds is too long for forces at its start.
   bool needed(double h) const { return h > explicit_step_; }
-  bool shear_needed(double h) const { return h > shear_step_; }
 
-  // y (3 x n, m) in, x0 out; w: 3 x n, m/s. Pinned vertices of y stay. h: s, of the step. scale: s,
-  // the h of the formula. early: where shear is taken unless it is needed at the end. false: the
-  // matrix is singular to working precision, or a number is not finite.
-  bool advance(double h, double scale, const Positions& early, const Positions& w, Positions& y,
-               WorkCounters& work);
+  // y (3 x n, m) in, x0 out; w: 3 x n, m/s. Pinned vertices of y stay. h: s, of the step from
+  // `start`. scale: s, the h of the formula. Shear is taken at x^n + ahead v^n where the step is
+  // short enough for that. false: the matrix is singular to working precision, or a number is not
+  // finite.
+  bool advance(const State& start, double h, double scale, double ahead, const Positions& w,
+               Positions& y, WorkCounters& work);
 
-  // y (3 x n, m) = x^n + h v + h^2 g / 2 in, x0 of the second formula out; theta: 1/2 to 1. Else as
-  // above.
-  bool advance_inside(double theta, double h, const Positions& x_start, const Positions& early,
-                      Positions& y, WorkCounters& work);
+  // y (3 x n, m) = x^n + h v + h^2 g / 2 in, x0 of the second formula out; theta: 1/2 to 1. In
+  // short steps shear is taken at x^n + h v^n / 2. Else as above.
+  bool advance_inside(const State& start, double h, double theta, Positions& y, WorkCounters& work);
 
  private:
+  // Where a step takes shear; `end`: where the other forces are taken.
+  const Positions& place_of_shear(const State& start, double h, double ahead, const Positions& end);
   // The matrix M + drag D + scale^2 L, L with shear or without.
   bool factor(double scale, double drag, bool shear);
   // y += factor d, with this matrix times d = scale^2 force_.
@@ -72,11 +73,17 @@ class ImplicitForces {
   bool factored_shear_ = false;
   Positions force_;              // N
   Positions inside_, velocity_;  // x_theta and (y - x^n) / h, of advance_inside
+  Positions early_;              // x^n + ahead v^n, of short steps
   Eigen::Matrix4Xd motion_;      // m, of the free vertices
 };
 
-// x0 of the pipeline of the paper's section 4.4: unconstrained_step, or where `implicit` is not
-// null and needed, with forces at the end of the step. false: as ImplicitForces::advance.
+// Those of a step of h seconds; null: the step takes all forces at its start.
+inline ImplicitForces* in_step(const std::unique_ptr<ImplicitForces>& forces, double h) {
+  return forces && forces->needed(h) ? forces.get() : nullptr;
+}
+
+// x0 of the pipeline of the paper's section 4.4: unconstrained_step, or with `implicit`, if it is
+// not null, those forces at the end of the step. false: as ImplicitForces::advance.
 bool unconstrained_step(const Problem& problem, ImplicitForces* implicit, const State& state,
                         double h, Positions& x0, WorkCounters& work);
 
