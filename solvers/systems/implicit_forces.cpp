@@ -92,35 +92,39 @@ ImplicitForces::ImplicitForces(const Problem& problem) : problem_(problem) {
     explicit_step_ = std::min(explicit_step_, longest_explicit_step(circles(0, f), entry.mass));
     shear_step_ = std::min(shear_step_, longest_explicit_step(circles(1, f), entry.mass));
   }
-  if (problem.has_drag()) explicit_step_ = 0;
   force_.resize(3, problem.vertices());
   motion_.setZero(4, static_cast<Eigen::Index>(free_vertex_.size()));
 }
 
-bool ImplicitForces::factor(double scale, double drag, bool shear) {
-  if (scale == factored_ && drag == factored_drag_ && shear == factored_shear_) return true;
+ImplicitForces::Late ImplicitForces::late(double h) const {
+  if (h > shear_step_) return Late::bending_and_shear;
+  return h > explicit_step_ ? Late::bending : Late::nothing;
+}
+
+void ImplicitForces::find_forces(const State& start, double ahead, Late late, const Positions& end,
+                                 const Positions& w, WorkCounters& work) {
+  if (late != Late::bending_and_shear) early_ = start.x + ahead * start.v;
+  force_.setZero();
+  add_forces(problem_, late == Late::nothing ? early_ : end,
+             late == Late::bending_and_shear ? end : early_, w, force_, work);
+}
+
+bool ImplicitForces::factor(double scale, double drag, Late late) {
+  if (scale == factored_ && drag == factored_drag_ && late == factored_late_) return true;
   double* values = solver_->values();
-  const double of_shear = shear ? scale * scale : 0;
+  const double of_shear = late == Late::bending_and_shear ? scale * scale : 0;
   for (const Entry& e : entries_)
     *values++ = e.mass + drag * e.drag + scale * scale * e.bending + of_shear * e.shear;
   factored_ = solver_->factor() ? scale : 0;
   factored_drag_ = drag;
-  factored_shear_ = shear;
+  factored_late_ = late;
   return factored_ != 0;
-}
-
-const Positions& ImplicitForces::place_of_shear(const State& start, double h, double ahead,
-                                                const Positions& end) {
-  if (h > shear_step_) return end;
-  early_ = start.x + ahead * start.v;
-  return early_;
 }
 
 bool ImplicitForces::advance(const State& start, double h, double scale, double ahead,
                              const Positions& w, Positions& y, WorkCounters& work) {
-  force_.setZero();
-  add_forces(problem_, y, place_of_shear(start, h, ahead, y), w, force_, work);
-  return add_solution(scale, scale, h > shear_step_, 1, y, work);
+  find_forces(start, ahead, late(h), y, w, work);
+  return add_solution(scale, scale, late(h), 1, y, work);
 }
 
 // About y it is (M + h / 2 D + s^2 L) theta (x0 - y) = s^2 (-grad V(y_theta) - D (y - x^n) / h),
@@ -129,18 +133,23 @@ bool ImplicitForces::advance_inside(const State& start, double h, double theta, 
                                     WorkCounters& work) {
   inside_ = (1 - theta) * start.x + theta * y;
   velocity_ = (y - start.x) * (1 / h);
-  force_.setZero();
-  add_forces(problem_, inside_, place_of_shear(start, h, 0.5 * h, inside_), velocity_, force_,
-             work);
+  find_forces(start, 0.5 * h, late(h), inside_, velocity_, work);
   for (const int vertex : free_vertex_)
     force_.col(vertex) -= problem_.mass()[vertex] * problem_.gravity();
-  return add_solution(theta * h, 0.5 * h, h > shear_step_, 1 / theta, y, work);
+  return add_solution(theta * h, 0.5 * h, late(h), 1 / theta, y, work);
 }
 
-bool ImplicitForces::add_solution(double scale, double drag, bool shear, double factor,
-                                  Positions& y, WorkCounters& work) {
+bool ImplicitForces::add_solution(double scale, double drag, Late late, double factor, Positions& y,
+                                  WorkCounters& work) {
+  if (late == Late::nothing) {
+    for (const int vertex : free_vertex_) {
+      const double diagonal = problem_.mass()[vertex] + drag * problem_.drag(vertex);
+      y.col(vertex) += (factor * scale * scale / diagonal) * force_.col(vertex);
+    }
+    return y.allFinite();
+  }
   if (free_vertex_.empty()) return true;
-  if (!this->factor(scale, drag, shear)) return false;
+  if (!this->factor(scale, drag, late)) return false;
   Eigen::Index f = 0;
   for (const int vertex : free_vertex_)
     motion_.col(f++).head<3>() = scale * scale * force_.col(vertex);

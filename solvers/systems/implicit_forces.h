@@ -10,10 +10,10 @@
 // all three coordinates: one sparse symmetric positive definite n x n matrix, factored once for
 // each h.
 //
-// Steps short enough for shear at their start take it there; bending too, unless there is drag,
-// which at the start of a step is of first order. That is more accurate, and cheaper: the
-// constraint filter that follows moves the vertices without asking what implicit shear would say,
-// an error of first order, which decides into which folds a cloth falls.
+// Steps short enough for shear at their start take it there, and those short enough for bending
+// take both there, which leaves a diagonal matrix of mass and drag. That is more accurate, and
+// cheaper: the constraint filter that follows moves the vertices without asking what implicit shear
+// would say, an error of first order, which decides into which folds a cloth falls.
 //
 // Second-order steppers take the forces inside the step, at x_theta = x^n + theta (x0 - x^n):
 //   x0 = y + theta h^2 a,   v^{n+1} = v + h a,   M a = -grad V(x_theta) - D v_middle,
@@ -38,27 +38,31 @@ class ImplicitForces {
   // The problem must outlive this.
   explicit ImplicitForces(const Problem& problem);
 
-  // Whether a step of h seconds is too long for forces at its start.
-  bool needed(double h) const { return h > explicit_step_; }
+  // Whether a step of h seconds has forces that are not taken at its start.
+  bool needed(double h) const { return problem_.has_drag() || h > explicit_step_; }
 
   // y (3 x n, m) in, x0 out; w: 3 x n, m/s. Pinned vertices of y stay. h: s, of the step from
-  // `start`. scale: s, the h of the formula. Shear is taken at x^n + ahead v^n where the step is
-  // short enough for that. false: the matrix is singular to working precision, or a number is not
-  // finite.
+  // `start`. scale: s, the h of the formula. Shear and bending are taken at x^n + ahead v^n where
+  // the step is short enough for that. false: the matrix is singular to working precision, or a
+  // number is not finite.
   bool advance(const State& start, double h, double scale, double ahead, const Positions& w,
                Positions& y, WorkCounters& work);
 
   // y (3 x n, m) = x^n + h v + h^2 g / 2 in, x0 of the second formula out; theta: 1/2 to 1. In
-  // short steps shear is taken at x^n + h v^n / 2. Else as above.
+  // short steps shear and bending are taken at x^n + h v^n / 2. Else as above.
   bool advance_inside(const State& start, double h, double theta, Positions& y, WorkCounters& work);
 
  private:
-  // Where a step takes shear; `end`: where the other forces are taken.
-  const Positions& place_of_shear(const State& start, double h, double ahead, const Positions& end);
-  // The matrix M + drag D + scale^2 L, L with shear or without.
-  bool factor(double scale, double drag, bool shear);
+  // What a step of h seconds takes at its end, besides drag.
+  enum class Late { nothing, bending, bending_and_shear };
+  Late late(double h) const;
+  // force_ = M g - grad V - D w, what is late at `end`, the rest at x^n + ahead v^n.
+  void find_forces(const State& start, double ahead, Late late, const Positions& end,
+                   const Positions& w, WorkCounters& work);
+  // The matrix M + drag D + scale^2 L, L of what is late.
+  bool factor(double scale, double drag, Late late);
   // y += factor d, with this matrix times d = scale^2 force_.
-  bool add_solution(double scale, double drag, bool shear, double factor, Positions& y,
+  bool add_solution(double scale, double drag, Late late, double factor, Positions& y,
                     WorkCounters& work);
 
   const Problem& problem_;
@@ -70,7 +74,7 @@ class ImplicitForces {
   std::unique_ptr<SpdSolver> solver_;
   double explicit_step_ = 0, shear_step_ = 0;  // s
   double factored_ = 0, factored_drag_ = 0;    // s, of the matrix; 0: none yet
-  bool factored_shear_ = false;
+  Late factored_late_ = Late::nothing;
   Positions force_;              // N
   Positions inside_, velocity_;  // x_theta and (y - x^n) / h, of advance_inside
   Positions early_;              // x^n + ahead v^n, of short steps
