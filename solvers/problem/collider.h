@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "solvers/problem/work_counters.h"
@@ -23,13 +24,18 @@ class Collider {
   Collider& operator=(const Collider&) = delete;
   virtual ~Collider() = default;
 
-  // What the collider remembers of each vertex between calls; -1 at first. It makes
-  // calls cheaper, and changes no answer.
-  using Memory = std::vector<int>;
+  // What find() remembers of each vertex between calls, a row each: normal and offset of a plane
+  // with the obstacle behind it. It makes calls cheaper, and changes no answer.
+  using Memory = Eigen::MatrixX4d;
+  static Memory nothing_of(int vertices) {  // behind which everything is
+    Memory memory = Memory::Zero(vertices, 4);
+    memory.col(3).setConstant(std::numeric_limits<double>::infinity());
+    return memory;
+  }
 
   // Replaces `planes` by one for every vertex of x (3 x n, m) that is deeper than `depth` inside
   // the obstacle, but for those of inverse mass 0: through the nearest point of the surface, across
-  // the way there. By ascending vertex. `memory` has n numbers.
+  // the way there. By ascending vertex. `memory` has n rows.
   virtual void find(const Eigen::Matrix3Xd& x, const std::vector<double>& inverse_mass,
                     double depth, Memory& memory, std::vector<ContactPlane>& planes,
                     WorkCounters& work) const = 0;

@@ -164,14 +164,13 @@ void Contacts::accept(const Positions& x) {
   expected_ = scale * (x - candidate_);
   for (int c = 0; c < count_; ++c) expected_.col(vertex_[c]) -= scale * push(c) * normal(c);
   for (Eigen::Index v = 0; v < x.cols(); ++v) {
-    const auto now = expected_.col(v), before = before_.col(v);
-    const double distance = (x.col(v) - start_->col(v)).norm();
-    pressing_.col(v) += newest * std::min(1.0, edge / distance) * (now - pressing_.col(v));
-    if (now.dot(before) <= 0) {
-      pulling_.col(v).setZero();
-    } else {
-      pulling_.col(v) = now.squaredNorm() < before.squaredNorm() ? now : before;
-    }
+    const Eigen::Vector3d now = expected_.col(v), before = before_.col(v);
+    const double squared = (x.col(v) - start_->col(v)).squaredNorm();
+    const double weight = squared <= edge * edge ? newest : newest * edge / std::sqrt(squared);
+    pressing_.col(v) += weight * (now - pressing_.col(v));
+    const bool contradict = now.dot(before) <= 0, less = now.squaredNorm() < before.squaredNorm();
+    for (int axis = 0; axis < 3; ++axis)
+      pulling_(axis, v) = contradict ? 0 : less ? now[axis] : before[axis];
   }
   before_.swap(expected_);
 }

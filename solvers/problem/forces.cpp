@@ -5,48 +5,85 @@
 namespace inextensible {
 namespace {
 
-// y -= scale W grad V of each stencil.
-void add_bending_acceleration(const Bending& bending, const std::vector<double>& w,
-                              const Positions& x, double scale, Positions& y) {
-  const double* p = x.data();
-  double* q = y.data();
-  for (const BendingStencil& s : bending) {
-    double sum[3] = {0, 0, 0};
-    for (std::size_t i = 0; i < 4; ++i) {
-      const double* at = p + 3 * s.vertex[i];
-      for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += s.coefficient[i] * at[axis];
+// Stencils with consecutive vertices are found side by side, as Problem puts them in that order.
+constexpr std::size_t side_by_side = 4;
+
+bool consecutive(const BendingStencil* s) {
+  bool all = true;
+  for (std::size_t i = 1; i < side_by_side; ++i) {
+    for (std::size_t role = 0; role < 4; ++role) {
+      all &= s[i].vertex[role] == s[0].vertex[role] + static_cast<int>(i);
+      all &= s[i].coefficient[role] == s[0].coefficient[role];
     }
-    for (std::size_t i = 0; i < 4; ++i) {
-      const double f = scale * s.stiffness * s.coefficient[i] * w[s.vertex[i]];
-      double* at = q + 3 * s.vertex[i];
-      for (std::size_t axis = 0; axis < 3; ++axis) at[axis] -= f * sum[axis];
-    }
+    all &= s[i].stiffness == s[0].stiffness;
+  }
+  return all;
+}
+
+bool consecutive(const Edge* e) {
+  bool all = true;
+  for (int i = 1; i < static_cast<int>(side_by_side); ++i)
+    all &= (e[i].a == e[0].a + i) & (e[i].b == e[0].b + i);
+  return all;
+}
+
+// q -= scale W grad V of n stencils, the first of them s, at p.
+template <std::size_t n>
+void add_bending(const BendingStencil& s, const double* w, const double* p, double scale,
+                 double* q) {
+  double sum[3 * n] = {}, f[3 * n];
+  for (std::size_t role = 0; role < 4; ++role) {
+    const double* at = p + 3 * s.vertex[role];
+    for (std::size_t i = 0; i < 3 * n; ++i) sum[i] += s.coefficient[role] * at[i];
+  }
+  for (std::size_t role = 0; role < 4; ++role) {
+    const double all = scale * s.stiffness * s.coefficient[role];
+    for (std::size_t i = 0; i < n; ++i)
+      f[3 * i] = f[3 * i + 1] = f[3 * i + 2] =
+          all * w[static_cast<std::size_t>(s.vertex[role]) + i];
+    double* at = q + 3 * s.vertex[role];
+    for (std::size_t i = 0; i < 3 * n; ++i) at[i] -= f[i] * sum[i];
   }
 }
 
-// y += scale W f of each spring: f pulls b towards a with stiffness (|d| - r).
-void add_spring_acceleration(const Springs& springs, const std::vector<double>& w,
-                             const Positions& x, double scale, Positions& y) {
-  const double* p = x.data();
-  double* q = y.data();
-  for (std::size_t k = 0; k < springs.edges.size(); ++k) {
-    const auto [a, b] = springs.edges[k];
-    const double* pa = p + 3 * a;
-    const double* pb = p + 3 * b;
-    const double d0 = pb[0] - pa[0], d1 = pb[1] - pa[1], d2 = pb[2] - pa[2];
+// q += scale W f of n springs, the first of them e, at p: f pulls b towards a with k (|d| - r).
+template <std::size_t n>
+void add_springs(const Edge& e, const double* k, const double* r, const double* w, const double* p,
+                 double scale, double* q) {
+  const double *pa = p + 3 * e.a, *pb = p + 3 * e.b;
+  double d[3 * n], fa[3 * n], fb[3 * n];
+  for (std::size_t i = 0; i < 3 * n; ++i) d[i] = pb[i] - pa[i];
+  for (std::size_t i = 0; i < n; ++i) {
+    const double d0 = d[3 * i], d1 = d[3 * i + 1], d2 = d[3 * i + 2];
     const double length = std::sqrt(d0 * d0 + d1 * d1 + d2 * d2);
     // A spring of length zero has no direction; its force is taken as zero.
-    const double f =
-        length > 0 ? scale * springs.stiffness[k] * (1 - springs.rest_length[k] / length) : 0;
-    const double fa = f * w[a], fb = f * w[b];
-    double* qa = q + 3 * a;
-    double* qb = q + 3 * b;
-    qa[0] += fa * d0;
-    qa[1] += fa * d1;
-    qa[2] += fa * d2;
-    qb[0] -= fb * d0;
-    qb[1] -= fb * d1;
-    qb[2] -= fb * d2;
+    const double f = length > 0 ? scale * k[i] * (1 - r[i] / length) : 0;
+    fa[3 * i] = fa[3 * i + 1] = fa[3 * i + 2] = f * w[static_cast<std::size_t>(e.a) + i];
+    fb[3 * i] = fb[3 * i + 1] = fb[3 * i + 2] = f * w[static_cast<std::size_t>(e.b) + i];
+  }
+  double *qa = q + 3 * e.a, *qb = q + 3 * e.b;
+  for (std::size_t i = 0; i < 3 * n; ++i) qa[i] += fa[i] * d[i];
+  for (std::size_t i = 0; i < 3 * n; ++i) qb[i] -= fb[i] * d[i];
+}
+
+void add_bending_acceleration(const Bending& bending, const std::vector<double>& w,
+                              const Positions& x, double scale, Positions& y) {
+  for (std::size_t s = 0; s < bending.size();) {
+    const bool many = s + side_by_side <= bending.size() && consecutive(&bending[s]);
+    (many ? add_bending<side_by_side> : add_bending<1>)(bending[s], w.data(), x.data(), scale,
+                                                        y.data());
+    s += many ? side_by_side : 1;
+  }
+}
+
+void add_spring_acceleration(const Springs& springs, const std::vector<double>& w,
+                             const Positions& x, double scale, Positions& y) {
+  for (std::size_t s = 0; s < springs.edges.size();) {
+    const bool many = s + side_by_side <= springs.edges.size() && consecutive(&springs.edges[s]);
+    (many ? add_springs<side_by_side> : add_springs<1>)(springs.edges[s], &springs.stiffness[s],
+                                                        &springs.rest_length[s], w.data(), x.data(),
+                                                        scale, y.data());
+    s += many ? side_by_side : 1;
   }
 }
 

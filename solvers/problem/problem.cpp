@@ -1,6 +1,7 @@
 #include "solvers/problem/problem.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <sstream>
@@ -73,6 +74,33 @@ void check_drag(const std::vector<double>& drag, std::size_t vertices) {
   }
 }
 
+// Stencils alike but for being shifted by some vertices follow each other in ascending order.
+void put_in_order(Springs& springs) {
+  std::vector<std::size_t> order(springs.edges.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t s, std::size_t t) {
+    const Edge e = springs.edges[s], f = springs.edges[t];
+    return std::pair(e.b - e.a, e.a) < std::pair(f.b - f.a, f.a);
+  });
+  Springs ordered;
+  for (const std::size_t s : order) {
+    ordered.edges.push_back(springs.edges[s]);
+    ordered.rest_length.push_back(springs.rest_length[s]);
+    ordered.stiffness.push_back(springs.stiffness[s]);
+  }
+  springs = std::move(ordered);
+}
+
+void put_in_order(Bending& bending) {
+  std::stable_sort(bending.begin(), bending.end(), [](const auto& s, const auto& t) {
+    const auto shape = [](const BendingStencil& stencil) {
+      const auto [a, b, c, d] = stencil.vertex;
+      return std::array{b - a, c - a, d - a, a};
+    };
+    return shape(s) < shape(t);
+  });
+}
+
 }  // namespace
 
 Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
@@ -96,8 +124,12 @@ Problem::Problem(ProblemParts parts) : parts_(std::move(parts)) {
     if (inverse_mass_[a] + inverse_mass_[b] == 0)
       refuse("edge ", k, ": both ends are pinned, so nothing can keep its length; leave it out");
   }
-  if (parts_.shear) check_shear(*parts_.shear, n);
+  if (parts_.shear) {
+    check_shear(*parts_.shear, n);
+    put_in_order(*parts_.shear);
+  }
   check_bending(parts_.bending, n);
+  put_in_order(parts_.bending);
   check_drag(parts_.drag, n);
   if (parts_.body_motion && !parts_.collider) refuse("a body's motion without a collider");
   if (parts_.pins_follow_body && !parts_.body_motion)

@@ -26,7 +26,8 @@ struct Edge {
 };
 
 // Linear springs, energy k/2 (|x_b - x_a| - r)^2. Shear: both diagonals of each quad (paper,
-// section 3).
+// section 3). A problem has them, and its bending stencils, in an order of its own, in which those
+// of consecutive vertices follow each other.
 struct Springs {
   std::vector<Edge> edges;
   std::vector<double> rest_length;  // m

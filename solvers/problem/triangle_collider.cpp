@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -16,6 +17,25 @@ using Eigen::Vector3d;
 
 // Cells farther inside than this many cell diagonals ask all triangles.
 constexpr double deep_cells = 1;
+
+// Whether vertex v is no deeper than `depth` behind the plane that is remembered of it.
+inline bool in_front(const Collider::Memory& memory, const Eigen::Matrix3Xd& x, Eigen::Index v,
+                     double depth) {
+  const double *plane = memory.data() + v, *p = x.data() + 3 * v;
+  const Eigen::Index n = memory.rows();
+  return plane[0] * p[0] + plane[n] * p[1] + plane[2 * n] * p[2] - plane[3 * n] >= -depth;
+}
+
+constexpr Eigen::Index asked_at_once = 8;
+
+// The same of all vertices from first to first + asked_at_once, without a branch.
+inline bool outside_known(const Collider::Memory& memory, const Eigen::Matrix3Xd& x,
+                          Eigen::Index first, double depth) {
+  std::int64_t behind = 0;
+  for (Eigen::Index i = 0; i < asked_at_once; ++i)
+    behind += in_front(memory, x, first + i, depth) ? 0 : 1;
+  return behind == 0;
+}
 
 const Vector3d& corner(const TriangleMesh& mesh, int triangle, int i) {
   return mesh.vertices[mesh.triangles[triangle][i]];
@@ -252,8 +272,24 @@ TriangleCollider::Nearest TriangleCollider::nearest(const Vector3d& p) const {
   return cell == outside ? nearest_by_all(p) : nearest_among(triangles_of(lists_[cell]), p);
 }
 
+int TriangleCollider::least_behind(const List& list, const Vector3d& p, double& distance) const {
+  const double px = p.x(), py = p.y(), pz = p.z();
+  const int* listed = listed_.data() + list.first;
+  distance = -std::numeric_limits<double>::infinity();
+  int nearest = listed[0];
+  for (int i = 0; i < list.count; ++i) {
+    const Plane& t = planes_[listed[i]];
+    const double here = t.x * px + t.y * py + t.z * pz - t.offset;
+    if (here > distance) {
+      distance = here;
+      nearest = listed[i];
+    }
+  }
+  return nearest;
+}
+
 bool TriangleCollider::touches(const List& list, const Vector3d& p, double depth,
-                               ContactPlane& plane, int& witness) const {
+                               ContactPlane& plane, Memory::RowXpr witness) const {
   if (!convex_) {
     const Nearest nearest = nearest_among(triangles_of(list), p);
     if (!(nearest.signed_distance < -depth)) return false;
@@ -261,23 +297,29 @@ bool TriangleCollider::touches(const List& list, const Vector3d& p, double depth
     plane.offset = plane.normal.dot(nearest.point);
     return true;
   }
-  const double px = p.x(), py = p.y(), pz = p.z();
-  const int* listed = listed_.data() + list.first;
-  double largest = -std::numeric_limits<double>::infinity();
-  int nearest = listed[0];
-  for (int i = 0; i < list.count; ++i) {
-    const Plane& t = planes_[listed[i]];
-    const double distance = t.x * px + t.y * py + t.z * pz - t.offset;
-    if (distance > largest) {
-      largest = distance;
-      nearest = listed[i];
-    }
-  }
-  witness = nearest;
-  if (!(largest < -depth)) return false;
-  plane.normal = {planes_[nearest].x, planes_[nearest].y, planes_[nearest].z};
-  plane.offset = planes_[nearest].offset;
+  double distance = 0;
+  const Plane& t = planes_[least_behind(list, p, distance)];
+  witness << t.x, t.y, t.z, t.offset;
+  if (!(distance < -depth)) return false;
+  plane.normal = {t.x, t.y, t.z};
+  plane.offset = t.offset;
   return true;
+}
+
+void TriangleCollider::show_outside(const Vector3d& p, Memory::RowXpr witness,
+                                    WorkCounters& work) const {
+  const Vector3d high = low_ + resolution * cell_size_;
+  Eigen::Index axis = 0;
+  if (const double beyond = (p - high).cwiseMax(low_ - p).maxCoeff(&axis); beyond > 0) {
+    const bool above = p[axis] > high[axis];
+    witness << 0, 0, 0, above ? high[axis] : -low_[axis];
+    witness[axis] = above ? 1 : -1;
+  } else if (convex_) {
+    double distance = 0;
+    const Plane& t = planes_[least_behind(lists_[deep], p, distance)];
+    work.triangle_tests += lists_[deep].count;
+    witness << t.x, t.y, t.z, t.offset;
+  }
 }
 
 void TriangleCollider::find(const Eigen::Matrix3Xd& x, const std::vector<double>& inverse_mass,
@@ -285,18 +327,22 @@ void TriangleCollider::find(const Eigen::Matrix3Xd& x, const std::vector<double>
                             WorkCounters& work) const {
   planes.clear();
   ContactPlane plane;
-  for (Eigen::Index v = 0; v < x.cols(); ++v) {
-    if (const int last = memory[v]; last >= 0) {
-      const Plane& t = planes_[last];
-      if (t.x * x(0, v) + t.y * x(1, v) + t.z * x(2, v) - t.offset >= -depth) continue;
+  for (Eigen::Index first = 0; first < x.cols(); first += asked_at_once) {
+    const Eigen::Index end = std::min(first + asked_at_once, x.cols());
+    if (end == first + asked_at_once && outside_known(memory, x, first, depth)) continue;
+    for (Eigen::Index v = first; v < end; ++v) {
+      if (inverse_mass[v] == 0 || in_front(memory, x, v, depth)) continue;
+      const int cell = cell_at(x.col(v));
+      if (cell == outside) {
+        show_outside(x.col(v), memory.row(v), work);
+        continue;
+      }
+      const List& list = lists_[cell];
+      work.triangle_tests += list.count;
+      if (!touches(list, x.col(v), depth, plane, memory.row(v))) continue;
+      plane.vertex = static_cast<int>(v);
+      planes.push_back(plane);
     }
-    const int cell = cell_at(x.col(v));
-    if (cell == outside || inverse_mass[v] == 0) continue;
-    const List& list = lists_[cell];
-    work.triangle_tests += list.count;
-    if (!touches(list, x.col(v), depth, plane, memory[v])) continue;
-    plane.vertex = static_cast<int>(v);
-    planes.push_back(plane);
   }
 }
 

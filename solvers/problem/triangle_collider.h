@@ -5,8 +5,9 @@
 // point of the cell (those no farther from its centre than the nearest one plus its diagonal),
 // found by refining an octree. Cells wholly outside are empty. Of a convex mesh the planes of these
 // triangles are enough: a point is inside if it is behind all of them, and its nearest point is its
-// foot on the plane that it is least behind. A plane that it is not behind shows that it is
-// outside: the one that did so last is asked first.
+// foot on the plane that it is least behind. A plane that it is not behind, of a triangle or of
+// the box, shows that it is outside: the one that did so last is asked first, of several vertices
+// side by side.
 #pragma once
 
 #include <array>
@@ -69,10 +70,15 @@ class TriangleCollider final : public Collider {
     double x, y, z, offset;
   };
   // Whether p, of a cell that is not outside, is deeper than `depth` inside the mesh; if so,
-  // `plane` keeps it out. Of a convex mesh `witness` is the triangle whose plane shows that it is
-  // not, or will once that plane has pushed it out.
+  // `plane` keeps it out. Of a convex mesh `witness` is the plane that shows that it is not, or
+  // will once it has pushed it out.
   bool touches(const List& list, const Eigen::Vector3d& p, double depth, ContactPlane& plane,
-               int& witness) const;
+               Memory::RowXpr witness) const;
+  // A plane that p is in front of, and the mesh behind, if there is one: p is outside the box, or
+  // in one of its cells that is outside.
+  void show_outside(const Eigen::Vector3d& p, Memory::RowXpr witness, WorkCounters& work) const;
+  // The triangle of the list whose plane p is least behind, or most in front of.
+  int least_behind(const List& list, const Eigen::Vector3d& p, double& distance) const;
   List add_list(const std::vector<int>& triangles);
   std::span<const int> triangles_of(const List& list) const;
   int cell_at(const Eigen::Vector3d& p) const;  // of cell_; outside where p is outside the box

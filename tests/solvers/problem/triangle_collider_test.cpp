@@ -138,6 +138,39 @@ TEST(TriangleCollider, PushOutMovesWhatIsInsideToTheSurfaceWhateverTheFriction) 
   });
 }
 
+// Points that drift past a body, into it, and past its box.
+TEST(TriangleCollider, WhatItRemembersChangesNoAnswer) {
+  int found = 0;
+  testing::for_seeds(3, [&](Random& random, std::uint64_t) {
+    for (const TriangleMesh& mesh : {icosphere(Vector3d::Zero(), 0.6, 2), spiky(random, 1)}) {
+      const TriangleCollider collider(mesh, 0);
+      constexpr int n = 101;
+      const std::vector<double> inverse_mass(n, 1);
+      Eigen::Matrix3Xd x(3, n), step(3, n);
+      for (int v = 0; v < n; ++v) {
+        x.col(v) = random_point(random, 1.2);
+        step.col(v) = random_point(random, 0.05);
+      }
+      Collider::Memory memory = Collider::nothing_of(n);
+      std::vector<ContactPlane> planes, fresh;
+      WorkCounters work;
+      for (int time = 0; time < testing::trials(60); ++time, x += step) {
+        const double depth = time % 3 * 0.05;
+        collider.find(x, inverse_mass, depth, memory, planes, work);
+        Collider::Memory nothing = Collider::nothing_of(n);
+        collider.find(x, inverse_mass, depth, nothing, fresh, work);
+        ASSERT_EQ(planes.size(), fresh.size());
+        for (std::size_t i = 0; i < fresh.size(); ++i) {
+          ASSERT_EQ(planes[i].vertex, fresh[i].vertex);
+          ASSERT_EQ(planes[i].normal, fresh[i].normal);
+        }
+        found += static_cast<int>(fresh.size());
+      }
+    }
+  });
+  EXPECT_GT(found, testing::trials(100));
+}
+
 TEST(TriangleCollider, RefusesAMeshThatIsInsideOut) {
   TriangleMesh mesh = icosphere(Vector3d::Zero(), 1, 1);
   for (auto& triangle : mesh.triangles) std::swap(triangle[0], triangle[1]);
