@@ -12,8 +12,9 @@ namespace {
 constexpr double clearly_slower = 1.5;
 constexpr double close_neighbor = 2;  // less than that many times slower than the best
 constexpr double noise = 1.03;        // a ratio of times up to this is none
-// A run that has stepped for this many times the best one's time cannot be the best; its time has
-// risen. While errors are too large yet, as many times as four halvings of the step and more take.
+// A run that has stepped for this many times the slowest level's best time cannot be the best of
+// any level; its time has risen. While errors are too large yet, as many times as four halvings of
+// the step and more take.
 constexpr double hopeless_factor = 3, patient_factor = 30;
 // An error above this part of the one at twice the step does not fall as a method of first order's.
 // Several coarse steps may let cloth settle into the same wrong folds before a finer one does not.
@@ -195,8 +196,9 @@ class StepSearch {
 
   double longest_useful() const {
     if (goal_ && !best_seconds(*goal_) && error_stays_ < longest_stay) return too_long();
-    const auto fastest = best_seconds(any_motion);
-    return fastest ? hopeless_factor * *fastest : never;
+    double longest = 0;  // of the best steps of all levels that have one
+    for (const auto& [level, times] : seconds_) longest = std::max(longest, *best_seconds(level));
+    return longest > 0 ? hopeless_factor * longest : never;
   }
 
   std::optional<std::size_t> best_rung(double level) const {

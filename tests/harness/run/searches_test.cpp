@@ -116,6 +116,26 @@ TEST(NoisySearch, IsNotMisledByFirstSamples) {
   }
 }
 
+// Coarse steps are fast and wrong: the first right one is between rungs that halve the step, and
+// many times slower than the fastest of any motion.
+TEST(StepSearch, LooksBetweenRungsForTheFirstStepThatIsRight) {
+  constexpr std::size_t first_right = 7;
+  std::vector<PointResult> points(13);
+  const auto run = [&](std::size_t rung, double useful) -> const PointResult& {
+    PointResult& point = points[rung];
+    const double seconds = std::exp2(0.5 * static_cast<double>(rung));
+    point.status = seconds > useful ? PointStatus::timeout : PointStatus::ok;
+    point.samples = {seconds};
+    point.measures.gap = 0;
+    point.measures.trajectory = rung < first_right ? 0.05 : 0.003;
+    return point;
+  };
+  const auto again = [&](std::size_t rung) -> const PointResult& { return points[rung]; };
+  const BestSteps found = find_best_steps({points.size(), run, again, {0.02}, 2});
+  EXPECT_EQ(found.best, 0u);
+  EXPECT_EQ(found.near_best(0.02, 1), std::vector{first_right});
+}
+
 // ---- Stiffness ----
 
 constexpr double limit = 0.01;
