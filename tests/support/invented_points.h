@@ -1,4 +1,4 @@
-// Invented points for tests of claims and of the tables of results.
+// Invented points for tests of claims.
 #pragma once
 
 #include <gtest/gtest.h>
