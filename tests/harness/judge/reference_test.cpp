@@ -160,19 +160,6 @@ TEST(Reference, IsMadeInPieces) {
   std::filesystem::remove(out + ".journal");
 }
 
-TEST(RouteRuns, AreReadBackAsTheyWereMade) {
-  const std::string out = ::testing::TempDir() + "runs.json";
-  std::filesystem::remove(out + ".journal");
-  const RouteRun first{{Positions::Random(3, 4)}, 0.1};
-  const auto tell = [](const std::string&) {};
-  RouteRuns(tell, out, {{"build", 1}}).run("a", [&] { return first; });
-  RouteRuns runs(tell, out, {{"build", 1}});
-  const RouteRun& again = runs.run("a", []() -> RouteRun { throw Interrupted(); });
-  EXPECT_EQ(again.path, first.path);
-  EXPECT_EQ(again.energy_drift, first.energy_drift);
-  runs.remove();
-}
-
 // The drape at the sizes that results report: errors of 1 % are certain until 0.3 s after the
 // cloth has touched the sphere, which it does after the fall through the gap at the start.
 TEST(Reference, OfTheDrapeIsTrustedAtOnePercentPastFirstContact) {
