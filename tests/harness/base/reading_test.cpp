@@ -1,5 +1,5 @@
 // What comes from outside: JSON and expressions are bounded, without second meanings, and never
-// make a long message; what is written for people says no more and no less than it should.
+// make a long message.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +7,6 @@
 #include "harness/base/errors.h"
 #include "harness/base/json.h"
 #include "harness/base/pattern.h"
-#include "harness/base/text.h"
 
 namespace harness {
 namespace {
@@ -51,10 +50,6 @@ TEST(JsonText, SaysTheSameOnOneLineAndAsADocument) {
   for (const std::string& text : {line_of(value), document_text(value)})
     EXPECT_EQ(nlohmann::ordered_json::parse(text), value) << text;
   EXPECT_EQ(line_of(value).find('\n'), std::string::npos);
-  EXPECT_EQ(
-      document_text(value),
-      "{\n\"b\": {\n\"x\": [1, 2.5],\n\"y\": {}\n},\n\"a\": [\n[],\n{\"t\": \"q\\\"\\n\"},\n0.1\n"
-      "],\n\"c\": null\n}\n");
 }
 
 TEST(Bounds, HoldFiniteNumbersOnly) {
@@ -63,16 +58,6 @@ TEST(Bounds, HoldFiniteNumbersOnly) {
   EXPECT_TRUE(Bounds::positive().hold(1e-300));
   EXPECT_FALSE(Bounds::whole_number(1).hold(1e300)) << "does not fit into an int";
   EXPECT_FALSE(Bounds::whole_number(1).hold(1.5));
-  EXPECT_EQ(Bounds::positive().text(), "a number above 0");
-}
-
-TEST(ToldApart, HasEnoughDigitsToDifferAndNoMore) {
-  const double next = std::nextafter(0.1, 1);
-  for (const auto& [value, other, text] : {std::tuple(0.2, 0.1, "0.2"),
-                                           {0.0001, 0.0001, "0.0001"},
-                                           {0.000100000002, 0.0001, "0.000100000002"},
-                                           {next, 0.1, "0.10000000000000002"}})
-    EXPECT_EQ(told_apart(value, other), text);
 }
 
 TEST(Pattern, MatchesWholesAndFindsParts) {

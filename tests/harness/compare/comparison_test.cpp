@@ -216,6 +216,11 @@ TEST(Compare, LeavesCountersOfAnotherBuildAndTimesOfAnotherMachineAlone) {
   there.context["counters_fingerprint"] = "c";
   const Comparison counters_only = compare(here, there, Gate());
   EXPECT_EQ(counters_only.points[0].text(), "iterations 100 -> 101 (+1 %)");
+  ComparedResult untimed = here;
+  untimed.context["timed"] = false;
+  EXPECT_TRUE(comparability(here, here, {}).times());
+  EXPECT_FALSE(comparability(here, untimed, {}).times() ||
+               comparability(untimed, here, {}).times());
 }
 
 TEST(Compare, ASearchMayTakeAnotherWay) {

@@ -158,11 +158,5 @@ TEST(CompareInPairs, CountersInformUnlessTheGateSaysOtherwise) {
   EXPECT_EQ(compared({"a"}, more_work, Gate()).points[0].change, Change::slower);
 }
 
-TEST(SamplesFor, MeasuresShortRunsOften) {
-  EXPECT_EQ(samples_for(0.0005, 0.03), 60);
-  EXPECT_EQ(samples_for(1, 0.03), 1);
-  EXPECT_EQ(samples_for(0, 0.03), 1000);
-}
-
 }  // namespace
 }  // namespace harness

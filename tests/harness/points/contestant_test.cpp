@@ -50,32 +50,8 @@ std::vector<std::string> names(const Suite& suite) {
   return names_of(suite.sweeps.at(0).contestants);
 }
 
-// Whether a contestant is among those of a suite that names none, or those of `solvers`.
-bool stands(const char* scene, const std::string& name,
-            const std::string& solvers = R"("also": ["null"], )") {
-  const auto all = names(suite_with("", solvers + R"("steps": {"finest": 0.001})", scene));
-  return std::ranges::count(all, name) > 0;
-}
-
 double setting(const Search& search, const char* name) {
   return std::get<double>(search.base.settings.at(name));
-}
-
-TEST(Contestants, TakeEveryPartOfTheScene) {
-  for (const char* scene : {"chain", "patch", "drape", "fabric_drape"}) {
-    const auto type = find_scene(scene);
-    const Scene built = type->build(complete_parameters(*type, {}));
-    for (const auto& backend : inextensible::backends()) {
-      const bool another = type->kind() == "chain" && *backend.same_on_chains;
-      EXPECT_EQ(stands(scene, backend.name),
-                backend.name == std::string("null") ||
-                    (backend.contestant && !another && !part_not_taken(backend, *built.problem)))
-          << scene << ", " << backend.name;
-      EXPECT_TRUE(!*backend.same_on_chains || inextensible::find_backend(backend.same_on_chains));
-    }
-  }
-  EXPECT_TRUE(stands("drape", "soft_step", R"("solvers": ["soft_step"], )")) << "it is named";
-  EXPECT_TRUE(stands("chain", "yarn_projection@bdf2", R"("solvers": ["yarn_projection@bdf2"], )"));
 }
 
 TEST(Contestants, HaveTheirOwnNamesAndSettings) {

@@ -10,7 +10,6 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
-#include "harness/claims/claims.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
@@ -59,10 +58,10 @@ json document_of(const Suite& suite, const std::vector<PointResult>& points) {
   return result_document(machine_context(), suite, {"bench"}, true, points);
 }
 
-// With that many points that were not run.
-json small_document(std::size_t points) {
+// With one point that was not run.
+json small_document() {
   const Suite suite = tiny_suite();
-  return document_of(suite, std::vector(points, PointResult(plan(suite, {}).front().base)));
+  return document_of(suite, {PointResult(plan(suite, {}).front().base)});
 }
 
 TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchema) {
@@ -98,9 +97,9 @@ TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchema) {
 
 TEST(Schemas, RefuseWhatTheyDoNotKnow) {
   const std::string path = ::testing::TempDir() + "of_baseline.json";
-  write_atomically(path, small_document(1).dump());
-  const json result = small_document(1),
-             baseline = json::parse(document_text(baseline_document(read_compared({path}))));
+  const json result = small_document();
+  write_atomically(path, result.dump());
+  const json baseline = json::parse(document_text(baseline_document(read_compared({path}))));
   struct Row {
     const char* schema;
     json good;
@@ -116,22 +115,6 @@ TEST(Schemas, RefuseWhatTheyDoNotKnow) {
     bad[json::json_pointer(row.place)] = row.wrong;
     EXPECT_NE(misfit(bad, row.schema), "") << row.place;
   }
-}
-
-TEST(ResultFile, OfAnUntimedRunIsNotReadForItsTimes) {
-  json document = small_document(0);
-  EXPECT_TRUE(is_timed(document)) << "older files do not say";
-  for (const bool timed : {true, false}) {
-    document["context"]["timed"] = timed;
-    EXPECT_EQ(is_timed(document), timed);
-    EXPECT_EQ(misfit(document, "result"), "");
-    ComparedResult one, other;
-    one.context = other.context = {{"fingerprint", "x"}, {"cpu_model", "m"}};
-    other.context["timed"] = timed;
-    EXPECT_EQ(comparability(one, other, {}).times(), timed);
-    EXPECT_EQ(comparability(other, one, {}).times(), timed);
-  }
-  EXPECT_THROW(static_cast<void>(judge_claims({document})), UsageError);
 }
 
 TEST(Schemas, AreThoseOfCommittedFiles) {
@@ -163,16 +146,6 @@ TEST(Schemas, AreThoseOfCommittedFiles) {
   const json all = {{"counters", {{"names", counter_names()}}}};
   EXPECT_EQ(misfit(all, "gate"), "");
   EXPECT_NO_THROW(static_cast<void>(parse_gate(all.dump(), "all")));
-}
-
-TEST(ResultFile, IsOnePointALine) {
-  const json document = small_document(2);
-  const std::string text = result_text(document);
-  EXPECT_EQ(json::parse(text), document);
-  std::istringstream lines(text);
-  int points = 0;
-  for (std::string line; std::getline(lines, line);) points += line.starts_with(R"({"adaptive")");
-  EXPECT_EQ(points, 2);
 }
 
 TEST(ResultFile, OfAStabilitySweepFitsItsSchema) {

@@ -2,8 +2,6 @@
 #include "harness/run/execute.h"
 
 #include <gtest/gtest.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -160,28 +158,6 @@ TEST(Isolation, ATrialThatCrashesIsAnOutcomeAndOthersComeBackWhole) {
       run_isolated_trial([]() -> Trial { std::abort(); }, "fast_projection", 1);
   EXPECT_EQ(crash.outcome, Outcome::crashed);
   EXPECT_NE(crash.detail.find("SIGABRT"), std::string::npos);
-}
-
-TEST(Isolation, AChildDiesWithItsParent) {
-  ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);  // orphans become this process's children
-  int pipe_ends[2];
-  ASSERT_EQ(pipe(pipe_ends), 0);
-  const pid_t parent = fork();
-  if (parent == 0) {
-    const Work tell_and_sleep = [&](Heartbeat&) {
-      const pid_t me = getpid();
-      if (write(pipe_ends[1], &me, sizeof me) != sizeof me) _exit(1);
-      sleep_for_ever();
-    };
-    run_isolated(tell_and_sleep, {});
-    _exit(0);
-  }
-  pid_t child = 0;
-  ASSERT_EQ(read(pipe_ends[0], &child, sizeof child), static_cast<ssize_t>(sizeof child));
-  EXPECT_EQ(kill(child, 0), 0);
-  kill(parent, SIGKILL);
-  waitpid(parent, nullptr, 0);
-  EXPECT_EQ(waitpid(child, nullptr, 0), child);  // CTest's time-out
 }
 
 }  // namespace

@@ -192,17 +192,6 @@ TEST(QuietSamples, ADisturbedLookOnEitherSideTakesItAgainUpToThreeTimes) {
   }
 }
 
-TEST(QuietSamples, NoMoreThanAQuarterOfAllAreTakenAgain) {
-  RetakeBudget budget;
-  EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
-  budget.add(100, 45);
-  EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
-  budget.add(1, 3);
-  EXPECT_EQ(budget.most(), 0);
-  budget.add(100, 0);
-  EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
-}
-
 TEST(QuietSamples, WhatIsUsualIsLearntAnew) {
   double now = 1;
   QuietProbe probe([&now] { return now; });
@@ -234,23 +223,6 @@ TEST(NoiseProbe, SeesThatOthersTakeTheProcessor) {
   ASSERT_EQ(noise_probe.samples().size(), 3u);
   EXPECT_TRUE(noise_probe.noisy()) << "spread " << noise_probe.spread();
   EXPECT_TRUE(noise_probe.to_json().at("noisy").get<bool>());
-}
-
-TEST(NoiseProbe, SamplesWhenItIsDue) {
-  NoiseProbe seldom(3600), always(0);
-  for (int i = 0; i < 3; ++i) {
-    seldom.sample_if_due();
-    always.sample_if_due();
-  }
-  EXPECT_EQ(seldom.samples().size(), 1u);
-  EXPECT_EQ(always.samples().size(), 3u);
-}
-
-TEST(ProcessorTicks, GoOnAndGiveAShare) {
-  const ProcessorTicks before = processor_ticks();
-  EXPECT_GT(before.all, 0);
-  EXPECT_DOUBLE_EQ(stolen_share({1, 10}, {2, 14}), 0.25);
-  EXPECT_DOUBLE_EQ(stolen_share(before, before), 0);
 }
 
 }  // namespace

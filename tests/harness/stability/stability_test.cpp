@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace {
 
@@ -116,11 +115,6 @@ TEST(HardCases, HaveUniqueNamesAndReasonedExpectationsAboutSolversThatExist) {
                                 }))
             << c.name << ": " << word;
     }
-    if (c.row != "contact") continue;
-    for (const auto& backend : inextensible::backends())
-      EXPECT_EQ(c.expectation(backend.name).outcome,
-                backend.takes_collider ? Outcome::survived : Outcome::refused)
-          << c.name << ", " << backend.name;
   }
 }
 
@@ -168,8 +162,7 @@ TEST(DegreesOfFreedom, AreThoseOfAFullRankJacobian) {
   }
 }
 
-// A difference that the table does not have fails the sweep; what is wider than the terminal goes
-// on below.
+// A difference that the table does not have fails the sweep.
 TEST(Stability, ANewDifferenceIsTold) {
   std::vector<HardCase> cases = cases_of("quick");
   std::erase_if(cases, [](const HardCase& c) { return c.name != "Q1" && c.name != "Q4"; });
@@ -184,11 +177,6 @@ TEST(Stability, ANewDifferenceIsTold) {
   cases[0].expectations = {{{}, Outcome::refused, "nobody can, for once"}};
   outcome = swept();
   EXPECT_EQ(outcome.counts().new_differences, 1);
-  std::ostringstream text;
-  harness::print_stability(text, outcome, 40);
-  EXPECT_NE(text.str().find("NEW: Q1, icd: survived"), std::string::npos) << text.str();
-  std::istringstream lines(text.str());
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 40u) << line;
 }
 
 // Two rigid links without gravity turn for ever: strain, which a step that follows the tangent
