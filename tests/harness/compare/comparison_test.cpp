@@ -8,9 +8,9 @@
 #include <cmath>
 #include <random>
 
-#include "harness/base/errors.h"
 #include "harness/base/statistics.h"
 #include "support/effort.h"
+#include "support/refusal.h"
 
 namespace harness {
 namespace {
@@ -251,13 +251,8 @@ TEST(Compare, PairsPointsOfOneNameInTheirOrder) {
 // ---- Files --------------------------------------------------------------------------------------
 
 TEST(Gate, RefusesWhatItDoesNotKnow) {
-  const auto message = [](const std::string& text) -> std::string {
-    try {
-      parse_gate(text, "g.json");
-    } catch (const UsageError& error) {
-      return error.what();
-    }
-    return "";
+  const auto message = [](const std::string& text) {
+    return refusal_of([&text] { parse_gate(text, "g.json"); });
   };
   EXPECT_EQ(message("{}"), "");
   for (const auto& [text, part] : std::vector<std::pair<std::string, std::string>>{

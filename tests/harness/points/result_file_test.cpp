@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/json.h"
 #include "harness/compare/comparison.h"
@@ -18,6 +17,7 @@
 #include "harness/run/sweep.h"
 #include "harness/stability/stability.h"
 #include "support/effort.h"
+#include "support/refusal.h"
 
 namespace harness {
 namespace {
@@ -33,12 +33,7 @@ json read(const std::string& path) {
 
 // What does not fit configs/<schema>.schema.json, "" if all does.
 std::string misfit(const json& document, const std::string& schema) {
-  try {
-    check_schema(json::parse(document.dump()), schema, "it");
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_of([&] { check_schema(json::parse(document.dump()), schema, "it"); });
 }
 
 Suite tiny_suite() {

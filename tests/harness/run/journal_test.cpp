@@ -1,8 +1,6 @@
 // Journals and shards: whatever a sweep is cut into, its parts are the whole.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
 #include <random>
 
@@ -15,7 +13,6 @@ namespace harness {
 namespace {
 
 using nlohmann::json;
-namespace fs = std::filesystem;
 
 // Two scenes, two limits, three sizes: 60 searches of up to ten steps.
 Suite suite_of(const std::string& axis) {
@@ -55,13 +52,7 @@ json header_of(const Suite& suite) {
 
 class JournalTest : public ::testing::Test {
  protected:
-  JournalTest()
-      : folder_(fs::temp_directory_path() / ("journal_test_" + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~JournalTest() override { fs::remove_all(folder_); }
-
-  std::string out() const { return (folder_ / "out.json").string(); }
+  std::string out() const { return folder_.file("out.json"); }
   std::string journal() const { return out() + ".journal"; }
 
   // The whole sweep with a journal, and how many runs it took.
@@ -76,7 +67,7 @@ class JournalTest : public ::testing::Test {
   }
 
  private:
-  fs::path folder_;
+  TemporaryFolder folder_{"journal-test"};
 };
 
 TEST_F(JournalTest, CutAnywhereTheRestIsRunAndTheResultIsTheSame) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "support/motion.h"
+
 namespace {
 
 using harness::HardCase;
@@ -16,19 +18,12 @@ using inextensible::State;
 
 // Two free vertices of 1 kg, 1 m apart along x, without gravity, turning about their middle.
 Trial dumbbell(bool pinned) {
-  inextensible::ProblemParts parts;
-  parts.mass = {1, 1};
-  parts.edges = {{0, 1}};
-  parts.rest_length = {1};
-  parts.gravity.setZero();
-  if (pinned) parts.pinned = {0};
   Trial trial;
-  trial.scene.start.x.setZero(3, 2);
-  trial.scene.start.x(0, 1) = 1;
-  trial.scene.start.v.setZero(3, 2);
+  trial.scene.problem =
+      inextensible::testing::one_edge(1, 1, pinned ? std::vector<int>{0} : std::vector<int>{});
+  trial.scene.start = inextensible::testing::stretched_edge(1);
   trial.scene.start.v(1, 0) = pinned ? 0 : -1;
   trial.scene.start.v(1, 1) = 1;
-  trial.scene.problem = std::make_shared<const inextensible::Problem>(std::move(parts));
   trial.step = 0.01;
   return trial;
 }
