@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "harness/base/files.h"
@@ -94,7 +92,7 @@ using Eigen::Vector3d;
 using inextensible::Positions;
 
 // A flat square of n x n vertices, whose triangles are as a scene gives them: turned both ways.
-Recording flat_square(int n, std::size_t takes = 1) {
+Recording flat_square(int n) {
   Recording recording;
   recording.spec.scene = "test";
   FilmRun take;
@@ -116,7 +114,7 @@ Recording flat_square(int n, std::size_t takes = 1) {
   }
   recording.stage.triangles = oriented(triangles);
   recording.stage.rest_length.assign(recording.stage.edges.size(), 1.0 / (n - 1));
-  recording.takes.assign(takes, take);
+  recording.takes = {take};
   return recording;
 }
 
@@ -168,25 +166,6 @@ TEST(Oriented, TrianglesPassACommonSideInOppositeDirections) {
   for (const auto& t : flat_square(4).stage.triangles)
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_TRUE(sides.insert({t[k], t[(k + 1) % 3]}).second) << t[k] << ' ' << t[(k + 1) % 3];
-}
-
-TEST(WritePictures, EndsATakeWithItsLastFrame) {
-  Recording recording = flat_square(3, 2);
-  recording.takes[0].frames.assign(4, recording.takes[0].frames[0]);
-  const TemporaryFolder folder("pictures-test");
-  PictureSpec spec;
-  spec.frames = {0, 1, 2, 3};
-  spec.width = 16;
-  std::size_t told = 0;
-  write_pictures(
-      folder.path(), recording, spec, [] { return false; },
-      [&](std::size_t, std::size_t all) { told = all; });
-  EXPECT_EQ(told, 5U);
-  EXPECT_TRUE(std::filesystem::exists(folder.file("0-3.ppm")));
-  EXPECT_TRUE(std::filesystem::exists(folder.file("1-0.ppm")));
-  EXPECT_FALSE(std::filesystem::exists(folder.file("1-1.ppm")));
-  std::ifstream file(folder.file("pictures.json"));
-  EXPECT_EQ(nlohmann::json::parse(file).at("width"), 16);
 }
 
 }  // namespace

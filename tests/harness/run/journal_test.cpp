@@ -141,6 +141,13 @@ TEST_P(ShardTest, JoinedAreTheWhole) {
                            run_sweep(suite, some, {}, machine.runners()).points);
   };
   const json whole = result(searches, "");
+  const auto sorted = [](const json& document) {
+    std::vector<std::string> lines;
+    for (const json& point : document.at("points")) lines.push_back(point.dump());
+    std::ranges::sort(lines);
+    return lines;
+  };
+  EXPECT_TRUE(sorted(joined({whole, whole})) == sorted(whole)) << "what is there twice counts once";
   for (std::size_t count = 1; count <= 8; ++count) {
     std::vector<json> parts;
     std::map<std::string, std::size_t> owner;  // of a scene and size
@@ -154,12 +161,6 @@ TEST_P(ShardTest, JoinedAreTheWhole) {
     }
     const json table = joined(parts);
     EXPECT_EQ(table.at("complete"), true);
-    const auto sorted = [](const json& document) {
-      std::vector<std::string> lines;
-      for (const json& point : document.at("points")) lines.push_back(point.dump());
-      std::ranges::sort(lines);
-      return lines;
-    };
     EXPECT_TRUE(sorted(table) == sorted(whole)) << count << " shards";
     parts.erase(parts.begin());
     if (count == 1) continue;

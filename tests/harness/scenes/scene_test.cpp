@@ -63,21 +63,6 @@ TEST(EveryScene, StartsAsItPromises) {
   }
 }
 
-TEST(Chain, HasNoPartsThatItDoesNotAskFor) {
-  const Scene chain = build("chain");
-  EXPECT_EQ(chain.problem->shear(), nullptr);
-  EXPECT_EQ(chain.problem->collider(), nullptr);
-  State state = chain.start;
-  const auto stepper = inextensible::make_stepper("fast_projection", chain.problem, {});
-  for (int i = 0; i < 100; ++i) ASSERT_TRUE(stepper->advance(state, 0.01));
-  EXPECT_EQ(stepper->work().spring_evaluations, 0);
-  EXPECT_EQ(stepper->work().triangle_tests, 0);
-  EXPECT_STREQ(stepper->linear_solver(), "tridiagonal");
-  // Six to seven iterations a step at 80 vertices, 1 %, 0.01 s (an independent program's figure).
-  EXPECT_GE(stepper->work().iterations, 600);
-  EXPECT_LE(stepper->work().iterations, 700);
-}
-
 // Links that hang between two pins at rest.
 TEST(Catenary, OfLinksStaysWhereItHangs) {
   constexpr int links = 12;
