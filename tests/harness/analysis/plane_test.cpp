@@ -4,14 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 
 #include "harness/analysis/findings.h"
-#include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/points/result_file.h"
-#include "harness/points/schema.h"
 #include "solvers/registry.h"
 #include "support/invented_runs.h"
 
@@ -108,27 +103,6 @@ TEST(Plane, TakesARunAtATighterLimitWhereThatIsFaster) {
   EXPECT_EQ(winner(planes[0].cell(0.1, any_motion)),
             "chain/yarn_projection/n:80/strain:0.01/h:0.02");
   EXPECT_EQ(winner(planes[0].cell(0.01, 0.02)), "chain/icd/n:80/strain:0.01/h:0.02");
-}
-
-// As large as files come: all committed sweeps.
-TEST(Plane, IsThereOfEveryCommittedSweep) {
-  int sweeps = 0;
-  for (const auto& file :
-       std::filesystem::directory_iterator(std::string(SOURCE_DIR) + "/results")) {
-    if (file.path().extension() != ".json") continue;
-    const std::string name = file.path().string();
-    const json result = parse_document(read_file(name, "result file"), name);
-    if (result.at("schema") != "inextensible-bench/1") continue;
-    ++sweeps;
-    const json analysis = analysis_of(result);
-    EXPECT_NO_THROW(check_schema(analysis, "analysis", name));
-    EXPECT_GE(analysis.at("planes").size(), 1u) << name;
-    for (const json& plane : analysis.at("planes"))
-      EXPECT_TRUE(plane.at("cells").at(0).at("first").is_string()) << name;
-    for (const json& finding : analysis.at("findings"))
-      EXPECT_FALSE(finding.at("sentences").empty()) << name;
-  }
-  EXPECT_GE(sweeps, 5);
 }
 
 // The names that rankings compare with are those whose rows say that the paper has them.

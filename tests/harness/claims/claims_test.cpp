@@ -10,16 +10,6 @@
 namespace harness {
 namespace {
 
-TEST(Claims, AreSixteenAndNotMeasuredWithoutPoints) {
-  const auto claims = judge_claims({document({})});
-  ASSERT_EQ(claims.size(), 16u);
-  for (std::size_t i = 0; i < claims.size(); ++i) {
-    EXPECT_EQ(claims[i].id, "C" + std::to_string(i + 1));
-    EXPECT_EQ(claims[i].verdict, "not yet measured");
-    EXPECT_TRUE(claims[i].points.empty());
-  }
-}
-
 TEST(Claims, C7FitsTheOrdersOfResidualsThatTookTwoIterations) {
   const auto with = [](double order, double change_order, bool second, double corrupt) {
     std::vector<json> points;

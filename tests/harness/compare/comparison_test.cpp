@@ -278,18 +278,13 @@ TEST(Gate, RefusesWhatItDoesNotKnow) {
 
 // ---- Reports ------------------------------------------------------------------------------------
 
-TEST(Reports, JUnitEscapesAndCounts) {
+TEST(Reports, JUnitEscapes) {
   const Comparison comparison{
-      {{Change::newly_failing, "strain", "chain/a/h:1", {"edge <3> & \"more\" | \x01 `x`\nend"}},
-       {Change::same, "strain", "chain/b/h:1"},
-       {Change::added, "strain", "chain/c/h:1", {"ok"}}},
-      {"times not compared"}};
+      {{Change::newly_failing, "strain", "chain/a/h:1", {"edge <3> & \"more\" | \x01 `x`\nend"}}},
+      {}};
   const std::string xml = junit_xml(comparison, "bench <compare>");
-  EXPECT_NE(xml.find("tests=\"3\" failures=\"1\""), std::string::npos);
   EXPECT_NE(xml.find("name=\"bench &lt;compare&gt;\""), std::string::npos);
   EXPECT_NE(xml.find("edge &lt;3&gt; &amp; &quot;more&quot; | ? `x`&#10;end"), std::string::npos);
-  EXPECT_NE(xml.find("classname=\"strain.chain.b\" name=\"chain/b/h:1\"/>"), std::string::npos)
-      << xml;
 }
 
 }  // namespace

@@ -129,13 +129,6 @@ TEST(CompareInPairs, ADoubledTimeIsNeverTheSame) {
   }
 }
 
-TEST(CompareInPairs, EqualTimesOnAQuietMachineAreTheSame) {
-  int runs = 0;
-  const auto comparison =
-      compared({"a"}, [&runs](auto&&...) { return printed(1 + 1e-3 * (++runs % 7)); });
-  EXPECT_EQ(comparison.points[0].change, Change::same) << comparison.points[0].text();
-}
-
 TEST(CompareInPairs, WhatFailsOnBothSidesIsUndecidedAndWhatFailsBeforeOnlyIsFixed) {
   for (const std::string status : {"crashed", "timeout", "diverged"}) {
     const auto both = compared({"a"}, [&](auto&&...) { return printed(1, status); });

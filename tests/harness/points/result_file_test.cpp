@@ -7,8 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "harness/base/files.h"
-#include "harness/base/json.h"
+#include "harness/analysis/findings.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"
 #include "harness/points/point_json.h"
@@ -91,10 +90,7 @@ TEST(ResultFile, OfAllSolversOnBothScenesFitsTheSchema) {
 }
 
 TEST(Schemas, RefuseWhatTheyDoNotKnow) {
-  const std::string path = ::testing::TempDir() + "of_baseline.json";
   const json result = small_document();
-  write_atomically(path, result.dump());
-  const json baseline = json::parse(document_text(baseline_document(read_compared({path}))));
   struct Row {
     const char* schema;
     json good;
@@ -103,7 +99,6 @@ TEST(Schemas, RefuseWhatTheyDoNotKnow) {
   };
   for (const Row& row : {Row{"result", result, "/points/0/status", "fine"},
                          Row{"result", result, "/points/0/work/luck", 1},
-                         Row{"baseline", baseline, "/points/0/seconds", 1},
                          Row{"gate", read(source("configs/gate.json")), "/times/cout", true}}) {
     EXPECT_EQ(misfit(row.good, row.schema), "");
     json bad = row.good;
@@ -131,6 +126,9 @@ TEST(Schemas, AreThoseOfCommittedFiles) {
                                  : name == "gate.json"                ? "gate"
                                                                       : "suite";
       EXPECT_EQ(misfit(document, schema), "") << entry.path();
+      if (schema == "result") {
+        EXPECT_EQ(misfit(analysis::analysis_of(document), "analysis"), "") << entry.path();
+      }
       if (schema == "suite") {
         EXPECT_NO_THROW(static_cast<void>(read_suite(entry.path()))) << name;
       }

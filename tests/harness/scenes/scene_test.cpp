@@ -20,12 +20,6 @@ using inextensible::State;
 using inextensible::TriangleCollider;
 using testing::build;
 
-std::unique_ptr<inextensible::Stepper> stepper_for(const Scene& scene, const std::string& solver,
-                                                   double limit,
-                                                   const inextensible::Settings& settings = {}) {
-  return inextensible::make_stepper(solver, scene.problem, {limit, 1, settings});
-}
-
 double mirror_defect(const Scene::Mirror& mirror, const Positions& x) {
   const Positions reflected = x - 2 * mirror.normal * (mirror.normal.transpose() * x);
   return (reflected - x(Eigen::all, mirror.image)).colwise().norm().maxCoeff();
@@ -71,7 +65,7 @@ TEST(Catenary, OfLinksStaysWhereItHangs) {
   EXPECT_NEAR(scene.start.x(0, links), 0.8, 1e-12);
   EXPECT_NEAR(scene.start.x(1, links), 0, 1e-12);
   const auto drift = [&](const char* solver, double h) {
-    const auto stepper = stepper_for(scene, solver, 1e-11);
+    const auto stepper = inextensible::make_stepper(solver, scene.problem, {1e-11});
     State state = scene.start;
     while (state.time < 1 - 0.5 * h)
       if (!stepper->advance(state, h)) return std::nan("");
@@ -110,24 +104,6 @@ TEST(HungPatch, IsThePatchTurnedAboutItsPins) {
     EXPECT_EQ(hung.start.x.col(hung.marks[0].vertex), Eigen::Vector3d::Zero());
     EXPECT_NEAR(hung.start.x(1, hung.marks[1].vertex), -2 * std::cos(tilt), 1e-15);
     EXPECT_EQ(hung.marks[1].height, -2);
-  }
-}
-
-// Springs come to rest; a row that is longer by a strain sags at most as two straight halves would.
-TEST(HungPatch, OfSpringsComesToRestAndSagsNoMoreThanItsTopRowIsLonger) {
-  const Scene hung = build("hung_patch", {{"n", 9}});
-  double last_sag = 0;
-  for (const double stiffness : {1000.0, 10.0, 1.0}) {
-    State state = hung.start;
-    const auto stepper = stepper_for(hung, "implicit_springs", 0.01, {{"stiffness", stiffness}});
-    for (int i = 0; i < 300; ++i) ASSERT_TRUE(stepper->advance(state, 1.0 / 50));
-    double length = 0;
-    for (int j = 0; j + 1 < 9; ++j) length += (state.x.col(j + 1) - state.x.col(j)).norm();
-    const double sag = -state.x(1, hung.marks[0].vertex);
-    EXPECT_GT(sag, last_sag);
-    EXPECT_LE(sag, std::sqrt(length * length - 1) / 2);
-    EXPECT_LT(state.v.cwiseAbs().maxCoeff(), 0.01);
-    last_sag = sag;
   }
 }
 
