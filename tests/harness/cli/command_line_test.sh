@@ -79,7 +79,7 @@ done
 
 # ---- Sweeps ----
 sweep=(--sweep strain --profile quick --no-plots --reps 1 --solver '^fast_projection$')
-# A step sweep: an error and a sample in every point, a plane of its own; claims are judged from the file.
+# A step sweep: an error and a sample in every point; claims are judged from the file.
 makes steps.json --sweep step --profile quick --scene chain --solver 'rattle|^fast_projection$' --filter 'strain:0.0001/' --reps 1 --no-plots
 holds '
 document = read("steps.json")

@@ -2,6 +2,8 @@
 #include "harness/run/execute.h"
 
 #include <gtest/gtest.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -11,6 +13,7 @@
 
 #include "harness/base/child_process.h"
 #include "harness/points/point_json.h"
+#include "harness/run/fake_machine.h"
 #include "harness/stability/hard_case.h"
 #include "harness/stability/trial.h"
 
@@ -19,16 +22,7 @@ namespace {
 
 using Work = std::function<void(Heartbeat&)>;
 
-PointSpec chain_of_ten() {
-  PointSpec spec;
-  spec.sweep = "strain";
-  spec.scene = "chain";
-  spec.scene_parameters = complete_parameters(*find_scene("chain"), {{"n", 10}});
-  spec.resolution = spec.vertices = 10;
-  spec.constraints = 9;
-  spec.solver = "gauss_seidel";
-  return spec;
-}
+PointSpec chain_of_ten() { return spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.01); }
 
 // A point whose run does `work` when it has come to step 5, t = 0.25 s.
 PointResult run_isolated(const Work& work, const RunLimits& limits, double memory = 0) {
@@ -114,11 +108,7 @@ TEST(Isolation, ARunBeyondItsMemoryIsOutOfMemory) {
 #if defined(__SANITIZE_ADDRESS__)
   GTEST_SKIP() << "the address sanitizer needs all address space there is";
 #endif
-  PointSpec spec = chain_of_ten();
-  spec.scene = "drape";
-  spec.scene_parameters = complete_parameters(*find_scene("drape"), {{"n", 301}});
-  spec.solver = "fast_projection";
-  spec.step = 0.04;
+  const PointSpec spec = spec_at("drape", {{"n", 301}}, "fast_projection", 0.04);
   std::ifstream statm("/proc/self/statm");
   double pages = 0;
   statm >> pages;
@@ -158,6 +148,28 @@ TEST(Isolation, ATrialThatCrashesIsAnOutcomeAndOthersComeBackWhole) {
       run_isolated_trial([]() -> Trial { std::abort(); }, "fast_projection", 1);
   EXPECT_EQ(crash.outcome, Outcome::crashed);
   EXPECT_NE(crash.detail.find("SIGABRT"), std::string::npos);
+}
+
+TEST(Isolation, AChildDiesWithItsParent) {
+  ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);  // orphans become this process's children
+  int pipe_ends[2];
+  ASSERT_EQ(pipe(pipe_ends), 0);
+  const pid_t parent = fork();
+  if (parent == 0) {
+    const Work tell_and_sleep = [&](Heartbeat&) {
+      const pid_t me = getpid();
+      if (write(pipe_ends[1], &me, sizeof me) != sizeof me) _exit(1);
+      sleep_for_ever();
+    };
+    run_isolated(tell_and_sleep, {});
+    _exit(0);
+  }
+  pid_t child = 0;
+  ASSERT_EQ(read(pipe_ends[0], &child, sizeof child), static_cast<ssize_t>(sizeof child));
+  EXPECT_EQ(kill(child, 0), 0);
+  kill(parent, SIGKILL);
+  waitpid(parent, nullptr, 0);
+  EXPECT_EQ(waitpid(child, nullptr, 0), child);  // CTest's time-out
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harness/run/calibration.h"
+#include "harness/run/fake_machine.h"
 #include "harness/run/machine_noise.h"
 #include "harness/run/point_runner.h"
 #include "support/effort.h"
@@ -19,18 +20,6 @@ namespace harness {
 namespace {
 
 // ---- Runs ----
-
-// A small scene at a limit of 1 %.
-PointSpec spec_at(const std::string& scene, const SceneParameters& parameters,
-                  const std::string& solver, double step) {
-  PointSpec spec;
-  spec.sweep = "strain";
-  spec.scene = scene;
-  spec.scene_parameters = complete_parameters(*find_scene(scene), parameters);
-  spec.solver = solver;
-  spec.step = step;
-  return spec;
-}
 
 TEST(Batches, ASampleOfAShortRunTakesAtLeastTwentyMilliseconds) {
   PointResult point = run_point(spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.001), {});
