@@ -1,5 +1,5 @@
-// Runs of films: at which step they are taken, what is said of them, and that they end. Pictures,
-// judged by their pixels.
+// Runs of films: at which step they are taken, what is said of them, and that they end; the strain
+// that recordings hold, and a pixel of cloth.
 #include <gtest/gtest.h>
 
 #include <fstream>
