@@ -18,7 +18,6 @@
 namespace harness {
 namespace {
 
-using inextensible::Positions;
 using nlohmann::json;
 using testing::parameters;
 
