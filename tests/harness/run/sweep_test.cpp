@@ -209,16 +209,6 @@ TEST(StepSearch, ASolverThatNeverWorksHasNoBestPoint) {
   }
 }
 
-TEST(StepSearch, AnInterruptKeepsWhatWasFinished) {
-  FakeMachine machine{[&machine](const PointSpec& spec) {
-    if (machine.specs.size() == 4) throw Interrupted();
-    return parabola(200)(spec);
-  }};
-  const auto outcome = sweep(suite_of_chain({0.1, 0.01}), machine);
-  EXPECT_FALSE(outcome.complete);
-  EXPECT_EQ(outcome.points.size(), 3u);
-}
-
 // Ranks of the median's 95 % confidence interval: standard tables of the sign test (n: 6, 9 and
 // 20).
 TEST(MedianUncertainty, IsHalfTheIntervalOfTheTabledRanks) {
