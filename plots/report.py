@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """One page that tells what result files found: findings in words, charts to hide solvers in and tables to sort, every figure,
-the paper's claims, and scenes in motion. It needs nothing but a browser, and no network.
+and the paper's claims. It needs nothing but a browser, and no network.
 
-    plots/report.py report.json --out report.html [--motion FOLDER ...]
+    plots/report.py report.json --out report.html
 
-`bench report` runs it: report.json has the results with their analyses, the findings of all, and the claims decided; the folders are
-recordings. page/ has what the browser runs. Needs Debian's python3-matplotlib and python3-numpy.
+`bench report` runs it: report.json has the results with their analyses, the findings of all, and the claims decided. page/ has what the
+browser runs. Needs Debian's python3-matplotlib and python3-numpy.
 """
 
 import argparse
@@ -34,7 +34,7 @@ from parts.result import Json, Result, seconds_of
 from parts.style import RC, styles_for
 
 PAGE = Path(__file__).parent / "page"
-SCRIPTS = ("document.js", "contest.js", "table.js", "motion.js")
+SCRIPTS = ("document.js", "contest.js", "table.js")
 FIRST = ("drape", "strain")  # the question that most readers come with
 
 
@@ -118,7 +118,7 @@ def _address(kind: str, text: str) -> str:
     return f"data:{kind};base64,{base64.b64encode(text.encode()).decode()}"
 
 
-# ---- what the scripts work on, as one JSON document: solvers with their looks, a row a point, and scenes in motion ----------------------
+# ---- what the scripts work on, as one JSON document: solvers with their looks, and a row a point ----------------------------------------
 
 def _median(point: Json) -> float | None:
     """Of three samples or more."""
@@ -138,7 +138,7 @@ FIELDS: dict[str, Callable[[Json], Any]] = {
 }
 
 
-def embedded(results: dict[Path, Result], motions: list[Path]) -> Json:
+def embedded(results: dict[Path, Result]) -> Json:
     """Whatever a file calls its solvers, each has a look of its own: the legends are taken together."""
     solvers: dict[str, Json] = {}
     for result in results.values():
@@ -154,7 +154,6 @@ def embedded(results: dict[Path, Result], motions: list[Path]) -> Json:
         "files": [{"name": path.name, "command": repeat_command(result)} for path, result in results.items()],
         "solvers": [{"label": style.label, "color": style.color, "dashes": style.look.dashes, "marker": style.look.marker, "hollow": style.hollow,
                      "name": name} for name, style in styles.items()],
-        "motions": [recorded(folder) for folder in motions],
     }
 
 
@@ -168,21 +167,6 @@ def repeat_command(result: Result) -> str:
         elif word not in ("--force", "--resume", "--no-plots"):
             kept.append(shlex.quote(word))
     return " ".join(kept)
-
-
-def recorded(folder: Path) -> Json:
-    """What `bench film` recorded (harness/film/recording.h): positions as 16-bit steps of the box that holds them, too coarse to read
-    strains off."""
-    header = json.loads((folder / "film.json").read_text(encoding="utf-8"))
-    x = np.fromfile(folder / "film.f32", dtype="<f4").reshape(-1, 3)
-    low, high = x.min(axis=0), x.max(axis=0)
-    span = np.where(high > low, high - low, 1)
-    kept = ("scene", "frames_per_second", "vertices", "triangles", "edges", "strain_unit", "body", "body_triangles", "body_poses")
-    return {**{key: header[key] for key in kept},
-            "takes": [{key: take[key] for key in ("label", "strain_limit", "frames", "detail")} for take in header["takes"]],
-            "low": low.tolist(), "span": span.tolist(),
-            "positions": base64.b64encode(np.rint((x - low) / span * 65535).astype("<u2").tobytes()).decode(),
-            "strains": base64.b64encode((folder / "film.u8").read_bytes()).decode()}
 
 
 def script_text(value: Any) -> str:
@@ -199,11 +183,11 @@ def machine_row(path: Path, result: Result) -> list[str]:
     return [path.name, *(str(context[key]) for key in ("date", "cpu_model", "num_cpus")), commit, build["compiler"], build["flags"]]
 
 
-def page(results: dict[Path, Result], found: list[Json], claims: list[Json], motions: list[Path]) -> str:
+def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> str:
     def file(name: str) -> str:
         return (PAGE / name).read_text(encoding="utf-8")
 
-    data = embedded(results, motions)
+    data = embedded(results)
     with matplotlib.rc_context(RC):
         pictures = "".join(picture(f"{path.stem}-{name}", draw) for path, result in results.items()
                            for name, draw in all_figures(result).items())
@@ -212,7 +196,6 @@ def page(results: dict[Path, Result], found: list[Json], claims: list[Json], mot
         ("findings", "Findings", findings_part(findings(found, results.values()))),
         ("contest", "Who is fastest", file("contest.html") if data["points"] else ""),
         ("points", "All points", file("table.html") if data["points"] else ""),
-        ("motion", "In motion", file("motion.html") if motions else ""),
         ("figures", "Figures", pictures),
         ("claims", "The paper's claims", table(("Claim", "Says", "Verdict", "Measured", "Rule"), verdicts, headed=True) if claims else ""),
         ("machine", "Machine and build", table(("File", "Date", "Processor", "Cores", "Commit", "Compiler", "Flags"),
@@ -237,11 +220,10 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="report.py", description="One page that tells what result files found.")
     parser.add_argument("report", type=Path, metavar="report.json", help="results, findings and claims, as bench report gives them")
     parser.add_argument("--out", type=Path, required=True, metavar="report.html")
-    parser.add_argument("--motion", type=Path, nargs="*", default=[], metavar="FOLDER", help="recordings of bench film")
     options = parser.parse_args()
     given = json.loads(options.report.read_text(encoding="utf-8"))
     results = {Path(entry["name"]): Result(entry["document"]) for entry in given["results"]}
-    text = page(results, given["findings"], given["claims"], options.motion)
+    text = page(results, given["findings"], given["claims"])
     options.out.write_text(text, encoding="utf-8", errors="replace")
     print(options.out)
     return 0

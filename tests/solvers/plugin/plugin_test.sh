@@ -72,7 +72,7 @@ use() {
     sweep) words=(strain --profile quick --scene chain --dry-run) ;;
     show | results | budget) words=(small.json) ;;
     plot) words=(small.json --out drawn) ;;
-    report) words=(small.json --no-motion --out page.html) ;;
+    report) words=(small.json --out page.html) ;;
     answers) words=(--answer net_place --solver fast_projection --no-plots --out known.json) ;;
     film) words=(--scene chain --set n=9 --set duration=0.1 --solver fast_projection --stills 0.05 --width 160 --out film.png) ;;
     choose) words=(--scene chain --n 5 --solver fast_projection --seconds 20 --error 0.5) ;;
