@@ -19,8 +19,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "contestants/common/engine.h"
-#include "contestants/common/links.h"
+#include "contestants/common/chain_stepper.h"
 
 namespace {
 
@@ -28,10 +27,7 @@ using engines::LinkPoses;
 using engines::Links;
 using inextensible::Positions;
 using inextensible::Problem;
-using inextensible::State;
 using inextensible::Status;
-using inextensible::StepResult;
-using inextensible::Stopwatch;
 
 struct Free {
   void operator()(mjModel* model) const { mj_deleteModel(model); }
@@ -126,8 +122,6 @@ class HingeChain {
     if (!data_) throw std::bad_alloc();
   }
 
-  int hinges() const { return hinges_; }
-
   void set(const LinkPoses& poses) {
     Eigen::Quaterniond before = Eigen::Quaterniond::Identity();
     Eigen::Vector3d rate_before = Eigen::Vector3d::Zero();
@@ -186,19 +180,16 @@ struct Integrator {
 constexpr Integrator integrators[] = {
     {"rk4", mjINT_RK4, 4, 0}, {"implicit", mjINT_IMPLICIT, 1, 1}, {"euler", mjINT_EULER, 1, 0}};
 
-class MujocoChain final : public inextensible::Stepper {
+class MujocoChain final : public engines::ChainStepper {
  public:
   static constexpr const char* name = "engine_mujoco";
 
   MujocoChain(std::shared_ptr<const Problem> shared, const inextensible::BackendOptions& options)
-      : Stepper(std::move(shared)),
-        links_(problem()),
-        poses_(links_.count()),
-        v_(3, problem().vertices()) {
+      : ChainStepper(std::move(shared), options) {
     for (const Integrator& one : integrators) {
       if (options.word("integrator") == one.name) integrator_ = one;
     }
-    make(options.start && planar(links_, problem(), *options.start) ? 1 : 2);
+    build();
   }
 
   static std::vector<inextensible::SettingInfo> settings() {
@@ -210,49 +201,32 @@ class MujocoChain final : public inextensible::Stepper {
   }
 
  private:
-  void make(int hinges) {
-    chain_ = std::make_unique<HingeChain>(links_, problem().gravity(), hinges, integrator_.number);
+  void build() override {
+    chain_ = std::make_unique<HingeChain>(links_, problem().gravity(), flat_ ? 1 : 2,
+                                          integrator_.number);
   }
 
-  StepResult solve(const State& state, double h, Positions& x) override {
-    Stopwatch stopwatch(phases_wanted_);
-    const bool in_plane = planar(links_, problem(), state);
-    if (!in_plane && chain_->hinges() == 1) make(2);  // from here on, or counters would not repeat
-    if (!find_poses(links_, state, chain_->hinges() == 1, poses_))
-      return {Status::not_finite, 0, -1, 0, "a link has no direction"};
-    chain_->set(poses_);
-    phases_.copy += stopwatch();
-    bool taken = false;
-    try {
-      taken = chain_->step(h);
-    } catch (const MujocoError&) {
-      make(chain_->hinges());  // what it left is not to be trusted
-      return {Status::not_converged, 0, -1, 0, "MuJoCo gave up"};
-    }
-    if (!taken) return {Status::not_finite, 0, -1, 0, "MuJoCo met a number above 1e10"};
+  StepResult put_in(const State& state, double /*h*/) override {
+    const StepResult found = find(state);
+    if (found) chain_->set(poses_);
+    return found;
+  }
+
+  StepResult step(double h) override {
+    if (!chain_->step(h)) return {Status::not_finite, 0, -1, 0, "MuJoCo met a number above 1e10"};
     work_.assemblies += integrator_.evaluations;
     work_.factorizations += integrator_.evaluations + integrator_.factorizations;
     work_.back_solves += integrator_.evaluations + integrator_.factorizations;
-    phases_.filter += stopwatch();
-    chain_->get(links_, x, v_);
-    x.colwise() += state.x.col(links_.pin);
-    x.col(links_.pin) = state.x.col(links_.pin);
-    v_.col(links_.pin).setZero();
-    phases_.copy += stopwatch();
     return {Status::ok, integrator_.evaluations};
   }
 
-  StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& /*filtered*/,
-                            const Positions& /*x*/, Positions& v) override {
-    v = v_;
-    return {};
+  void take_out(const State& start, Positions& x, Positions& v) override {
+    chain_->get(links_, x, v);
+    x.colwise() += start.x.col(links_.pin);
   }
 
-  Links links_;
-  LinkPoses poses_;
   Integrator integrator_ = integrators[0];
   std::unique_ptr<HingeChain> chain_;
-  Positions v_;
 };
 
 }  // namespace

@@ -19,18 +19,19 @@ using inextensible::ProblemParts;
 using inextensible::Settings;
 using inextensible::State;
 
+namespace {
+
+// A plug-in's rows, in the registry; once.
 void load(const std::string& plugin) {
   static std::set<std::string> loaded;
   if (!loaded.insert(plugin).second) return;
-  void* library = dlopen(plugin.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* library = dlopen((PLUGIN_FOLDER "/" + plugin + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
   ASSERT_TRUE(library) << dlerror();
   const auto entry =
       reinterpret_cast<decltype(&inextensible_plugin)>(dlsym(library, "inextensible_plugin"));
   ASSERT_TRUE(entry);
   inextensible::add_backends({entry()->backends, entry()->backend_count});
 }
-
-namespace {
 
 ProblemParts chain_parts(int links) {
   ProblemParts parts;
@@ -88,6 +89,7 @@ Scene spinning_net(int n, double omega) {
 
 std::unique_ptr<inextensible::Stepper> make(const std::string& solver, const Scene& scene,
                                             const Settings& settings) {
+  load(solver);
   inextensible::BackendOptions options{0.01, 1, settings};
   options.start = &scene.start;
   return inextensible::make_stepper(solver, scene.problem, options);
