@@ -108,20 +108,6 @@ TEST(ColoredEdges, AreAdjacentOnClothAndChains) {
   }
 }
 
-TEST(ColoredEdges, BringPositionsThereAndBackBitForBit) {
-  Random random(5);
-  const auto mesh = testing::random_mesh(random, 9, 12, 3);
-  const ColoredEdges colored(*mesh.problem);
-  Positions x = mesh.x;
-  x(1, 4) = -0.0;
-  ColoredEdges::Places places = colored.make_places();
-  colored.load(x, places);
-  Positions back = Positions::Constant(3, x.cols(), 7);
-  colored.store(places, back);
-  for (const int v : mesh.problem->pinned()) x.col(v).setConstant(7);
-  EXPECT_TRUE(testing::same_bits(back, x));
-}
-
 // The same pass by the book: edges of `order` one by one, from `x` as it is now (in turn) or was at
 // the beginning. Returns how many were corrected.
 int pass_by_the_book(const Problem& problem, const StrainBand& band, double relaxation,
