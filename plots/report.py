@@ -1,16 +1,15 @@
 #!/usr/bin/python3
-"""One page that tells what result files found: findings in words, charts to hide solvers in and tables to sort, every figure,
+"""One page that tells what result files found: findings in words, ranks to hide solvers in, a table to sort, every figure,
 and the paper's claims. It needs nothing but a browser, and no network.
 
     plots/report.py report.json --out report.html
 
 `bench report` runs it: report.json has the results with their analyses, the findings of all, and the claims decided. page/ has what the
-browser runs. Needs Debian's python3-matplotlib and python3-numpy.
+browser runs. Needs Debian's python3-matplotlib.
 """
 
 import argparse
 import base64
-import csv
 import io
 import json
 import shlex
@@ -27,11 +26,10 @@ sys.dont_write_bytecode = True
 from figures import all_figures  # complains where matplotlib is missing
 
 import matplotlib
-import numpy as np
 from matplotlib.figure import Figure
 
 from parts.result import Json, Result, seconds_of
-from parts.style import RC, styles_for
+from parts.style import RC
 
 PAGE = Path(__file__).parent / "page"
 SCRIPTS = ("document.js", "contest.js", "table.js")
@@ -82,43 +80,20 @@ def findings_part(said: list[tuple[str, list[str]]]) -> str:
 # ---- figures ----------------------------------------------------------------------------------------------------------
 
 def picture(name: str, draw: Callable[[], Figure]) -> str:
-    """A figure as SVG that cannot run anything, and as the numbers that it draws."""
+    """A figure as SVG that cannot run anything."""
     figure, svg = draw(), io.StringIO()
     figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
     title = escape(" ".join(figure.texts[0].get_text().split()) if figure.texts else name)
     name = escape(name)
     return (f'<figure id="figure-{name}"><img src="{_address("image/svg+xml", svg.getvalue())}" alt="{title}" loading="lazy">'
-            f'<figcaption>{title} <a download="{name}.svg" data-of="figure-{name}" href="#figure-{name}">SVG</a> '
-            f'<a download="{name}.csv" href="{_address("text/csv", numbers(figure))}">CSV</a></figcaption></figure>\n')
-
-
-def numbers(figure: Figure) -> str:
-    """A line a drawn point: panel, what its axes are, series, x, y; of a picture made of cells: column, row, value."""
-    out = io.StringIO()
-    writer = csv.writer(out)
-    writer.writerow(("panel", "x axis", "y axis", "series", "x", "y", "value"))
-
-    def series(artist: object) -> str:
-        return "" if str(artist.get_label()).startswith("_") else str(artist.get_label())
-
-    for number, axes in enumerate(figure.axes):
-        panel = [" ".join(text.split()) for text in (axes.get_title() or axes.get_title(loc="left") or str(number + 1),
-                                                     axes.get_xlabel(), axes.get_ylabel())]
-        for line in axes.get_lines():
-            if series(line) or len(line.get_xdata()) > 1:
-                writer.writerows((*panel, series(line), x, y, "") for x, y in zip(line.get_xdata(), line.get_ydata()))
-        for collection in axes.collections:
-            values = np.ravel(collection.get_array()) if collection.get_array() is not None else []
-            for index, (x, y) in enumerate(np.asarray(collection.get_offsets())):
-                writer.writerow((*panel, series(collection), x, y, values[index] if index < len(values) else ""))
-    return out.getvalue()
+            f'<figcaption>{title} <a download="{name}.svg" data-of="figure-{name}" href="#figure-{name}">SVG</a></figcaption></figure>\n')
 
 
 def _address(kind: str, text: str) -> str:
     return f"data:{kind};base64,{base64.b64encode(text.encode()).decode()}"
 
 
-# ---- what the scripts work on, as one JSON document: solvers with their looks, and a row a point ----------------------------------------
+# ---- what the scripts work on, as one JSON document: solvers, and a row a point --------------------------------------------------------
 
 def _median(point: Json) -> float | None:
     """Of three samples or more."""
@@ -139,21 +114,18 @@ FIELDS: dict[str, Callable[[Json], Any]] = {
 
 
 def embedded(results: dict[Path, Result]) -> Json:
-    """Whatever a file calls its solvers, each has a look of its own: the legends are taken together."""
-    solvers: dict[str, Json] = {}
+    """The legends are taken together; what they lack comes last."""
+    labels: dict[str, str] = {}
     for result in results.values():
-        for entry in result.document["legend"]["solvers"]:
-            solvers.setdefault(entry["name"], entry)
-    styles = styles_for([point["contestant"] for result in results.values() for point in result.points],
-                        Result({"context": {}, "legend": {"solvers": list(solvers.values()), "statuses": []}}))
-    number = {name: place for place, name in enumerate(styles)}
+        for name in (*result.solvers, *(point["contestant"] for point in result.points)):
+            labels.setdefault(name, result.label(name))
+    number = {name: place for place, name in enumerate(labels)}
     return {
         "columns": ["file", "solver", *FIELDS],
         "points": [[file, number[point["contestant"]], *(read(point) for read in FIELDS.values())]
                    for file, result in enumerate(results.values()) for point in result.points],
         "files": [{"name": path.name, "command": repeat_command(result)} for path, result in results.items()],
-        "solvers": [{"label": style.label, "color": style.color, "dashes": style.look.dashes, "marker": style.look.marker, "hollow": style.hollow,
-                     "name": name} for name, style in styles.items()],
+        "solvers": [{"label": label, "name": name} for name, label in labels.items()],
     }
 
 
