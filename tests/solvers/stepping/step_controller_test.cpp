@@ -47,19 +47,6 @@ class Choosy final : public inextensible::Stepper {
   Accepts accepts_;
 };
 
-TEST(StepController, TakesTheLargestStepWhereNothingIsRefused) {
-  Choosy stepper([](double, double) { return true; });
-  StepController controller(stepper, {.largest = 0.25});
-  State state = at_rest();
-  for (int i = 0; i < 8; ++i) {
-    ASSERT_TRUE(controller.advance(state));
-    EXPECT_TRUE(controller.aligned());
-  }
-  EXPECT_DOUBLE_EQ(state.time, 2);
-  EXPECT_EQ(stepper.work().rejected_steps, 0);
-  EXPECT_EQ(controller.smallest(), 0.25);
-}
-
 TEST(StepController, HalvesToTheLargestAcceptedStepAndCountsEveryRefusal) {
   Choosy stepper([](double, double h) { return h <= 0.1; });
   StepController controller(stepper, {.largest = 1});
