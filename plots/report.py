@@ -15,7 +15,6 @@ import json
 import shlex
 import statistics
 import sys
-from collections import Counter
 from html import escape
 from operator import itemgetter
 from pathlib import Path
@@ -47,23 +46,13 @@ def table(head: Iterable[str], rows: Iterable[Iterable[str]], headed: bool = Fal
 
 # ---- findings ---------------------------------------------------------------------------------------------------------
 
-def findings(found: list[Json], results: Iterable[Result]) -> list[tuple[str, list[str]]]:
-    """The program's own, the largest drape over strain before all others, then counts of hard cases and known answers."""
+def findings(found: list[Json]) -> list[tuple[str, list[str]]]:
+    """The program's own, the largest drape over strain before all others."""
     def rank(one: Json) -> tuple[bool, int]:
         first = (one["scene"], one["sweep"]) == FIRST
         return not first, -one["vertices"] if first else 0
 
-    said = [(f"{one['subject'].replace('_', ' ').capitalize()}, over {one['sweep']}:", one["sentences"]) for one in sorted(found, key=rank)]
-    for document in (result.document for result in results):
-        if cells := document.get("matrix"):
-            outcomes = Counter(cell["outcome"].replace("_", " ") for cell in cells).most_common()
-            said.append((f"Hard cases: {len(cells)} runs of {len({cell['row'] for cell in cells})} cases, "
-                         f"{sum(not cell['as_expected'] for cell in cells)} not as theory expects; "
-                         + ", ".join(f"{count} {name}" for name, count in outcomes) + ".", []))
-        if rows := document.get("rows"):
-            said.append((f"Known answers: {len(document['answers'])} figures that theory or measurement knows, {len(rows)} runs, of which "
-                         f"{sum(row['deviation'] is not None for row in rows)} gave a figure.", []))
-    return said
+    return [(f"{one['subject'].replace('_', ' ').capitalize()}, over {one['sweep']}:", one["sentences"]) for one in sorted(found, key=rank)]
 
 
 def findings_part(said: list[tuple[str, list[str]]]) -> str:
@@ -165,7 +154,7 @@ def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> 
                            for name, draw in all_figures(result).items())
     verdicts = [[claim[key] for key in ("id", "statement", "verdict", "measured", "rule")] for claim in claims]
     parts = [(name, title, body) for name, title, body in (
-        ("findings", "Findings", findings_part(findings(found, results.values()))),
+        ("findings", "Findings", findings_part(findings(found))),
         ("contest", "Who is fastest", file("contest.html") if data["points"] else ""),
         ("points", "All points", file("table.html") if data["points"] else ""),
         ("figures", "Figures", pictures),

@@ -35,10 +35,7 @@ struct Free {
 };
 
 // MuJoCo's own ends the program, once the user has pressed Enter.
-struct MujocoError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-[[noreturn]] void throw_error(const char* message) { throw MujocoError(message); }
+[[noreturn]] void throw_error(const char* message) { throw std::runtime_error(message); }
 
 // Numbers that a step may need at a time, more than MuJoCo guesses: for the derivatives of the
 // implicit integrator four matrices of a body's six velocities by all joint velocities.
@@ -100,7 +97,7 @@ std::unique_ptr<mjModel, Free> load(const std::vector<std::string>& texts) {
   std::unique_ptr<mjModel, Free> model;
   try {
     model.reset(mj_loadXML(file_name(0).c_str(), files.get(), error, sizeof(error)));
-  } catch (const MujocoError& fatal) {
+  } catch (const std::runtime_error& fatal) {
     std::snprintf(error, sizeof(error), "%s", fatal.what());
   }
   mj_deleteVFS(files.get());
@@ -143,8 +140,7 @@ class HingeChain {
     std::memset(data_->warning, 0, sizeof(data_->warning));
   }
 
-  // False if MuJoCo met numbers that it does not accept and reset itself. Throws
-  // MujocoError.
+  // False if MuJoCo met numbers that it does not accept and reset itself.
   bool step(double h) {
     model_->opt.timestep = h;
     mj_step(model_.get(), data_.get());

@@ -23,12 +23,9 @@ using inextensible::State;
 using inextensible::Status;
 using inextensible::StepResult;
 
-// ODE's own end the program.
-struct OdeError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+// ODE's own ends the program.
 [[noreturn]] void throw_error(int /*number*/, const char* /*message*/, va_list /*values*/) {
-  throw OdeError("ODE met numbers that it does not take");
+  throw std::runtime_error("ODE met numbers that it does not take");
 }
 
 struct Destroy {

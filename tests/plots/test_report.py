@@ -20,9 +20,7 @@ FOUND = [{"scene": "chain", "sweep": "step", "vertices": 80, "subject": "chain o
 
 
 def test_findings_are_the_programs_and_the_largest_drape_comes_first() -> None:
-    found = report.findings(FOUND, [analysed(stability())])
-    assert [texts for _, texts in found] == [["C is first.", "D."], ["B is first."], ["A is first."], []]
-    assert found[3][0].startswith("Hard cases: 4 runs of 2 cases, 1 not as theory expects; 2 survived")
+    assert [texts for _, texts in report.findings(FOUND)] == [["C is first.", "D."], ["B is first."], ["A is first."]]
 
 
 def test_the_data_are_those_of_the_points() -> None:

@@ -158,26 +158,6 @@ TEST(StrainPasses, EqualALoopOverEdges) {
   });
 }
 
-// Equation 18 of Macklin et al. 2016 with compliance 0 is a correction to the rest length.
-TEST(PbdSubsteps, AreAGivenNumberOfPasses) {
-  for_seeds(20, [](Random& random, std::uint64_t) {
-    const auto mesh = testing::random_mesh(random, 1 + static_cast<int>(random() % 12),
-                                           2 + static_cast<int>(random() % 12), 2);
-    const int sweeps = 1 + static_cast<int>(random() % 3);
-    const double relaxation = testing::uniform(random, 0.5, 1.5);
-    const auto filter = make_velocity_filter(
-        "pbd_substeps", *mesh.problem,
-        {.settings = {{"sweeps", static_cast<double>(sweeps)}, {"relaxation", relaxation}}});
-    Positions x = testing::perturbed(random, mesh, 0.05), wanted = x;
-    const std::vector<int> order = ColoredEdges(*mesh.problem).problem_edge();
-    for (int i = 0; i < sweeps; ++i)
-      pass_by_the_book(*mesh.problem, {0, 0}, relaxation, order, true, wanted);
-    WorkCounters work;
-    ASSERT_TRUE(filter->apply(mesh.x, h, x, work));
-    EXPECT_LE((x - wanted).cwiseAbs().maxCoeff(), 1e-12);
-  });
-}
-
 // A corrected edge then lies on the limit, where a rounding decides: it must not be corrected for
 // ever.
 TEST(StrainLimiting, ConvergesWhereTheTargetIsTheLimit) {

@@ -289,18 +289,5 @@ TEST(Bdf2, DoesNotBounceOffACollider) {
   EXPECT_LT(highest_after, 0.1);  // it arrives at 1 m/s
 }
 
-TEST(Fit, FindsAKnownSlopeAndItsInterval) {
-  const std::vector<double> x{1, 2, 4, 8, 16}, y{3, 12, 48, 192, 768};
-  const Slope exact = log_log_slope(x, y);
-  EXPECT_NEAR(exact.value, 2, 1e-12);
-  EXPECT_LT(exact.half_width, 1e-10);
-  const std::vector<double> noisy{3, 11, 50, 190, 790};
-  const Slope fitted = log_log_slope(x, noisy);
-  EXPECT_GT(fitted.half_width, 0.01);
-  EXPECT_LT(fitted.low(), 2);
-  EXPECT_GT(fitted.high(), 2);
-  EXPECT_TRUE(std::isnan(log_log_slope(std::vector<double>{1}, std::vector<double>{1}).value));
-}
-
 }  // namespace
 }  // namespace harness
