@@ -49,22 +49,18 @@ TEST_P(EveryMethod, ShortensOneEdgeByTheClosedForm) {
   if (GetParam() == std::string_view("soft_step")) GTEST_SKIP() << "corrects a part of it";
   if (row.stepper == std::string_view("midpoint")) GTEST_SKIP() << "the direction turns";
   for_seeds(4 * seeds, [&](Random& random, std::uint64_t seed) {
-    const auto some = [&](double least, double most) {
-      return Vector3d::NullaryExpr(
-                 [&](Eigen::Index) { return testing::uniform(random, least, most); })
-          .eval();
-    };
-    const Vector3d masses = some(0.01, 1);
+    const double mass_a = testing::uniform(random, 0.01, 1),
+                 mass_b = testing::uniform(random, 0.01, 1);
     const auto problem = testing::one_edge(
-        masses[0], masses[1],
+        mass_a, mass_b,
         seed % 4 == 0 ? std::vector{static_cast<int>(seed / 4 % 2)} : std::vector<int>{});
     const double wa = problem->inverse_mass()[0], wb = problem->inverse_mass()[1];
     Positions start(3, 2);
-    start.col(0) = some(-1, 1);
-    start.col(1) = start.col(0) + some(-1, 1).normalized();
+    start.col(0) = testing::random_vector(random, 1);
+    start.col(1) = start.col(0) + testing::random_vector(random, 1).normalized();
     Positions candidate = start;
-    if (wa > 0) candidate.col(0) += some(-0.2, 0.2);
-    if (wb > 0) candidate.col(1) += some(-0.2, 0.2);
+    if (wa > 0) candidate.col(0) += testing::random_vector(random, 0.2);
+    if (wb > 0) candidate.col(1) += testing::random_vector(random, 0.2);
     const Vector3d d = candidate.col(1) - candidate.col(0), e = start.col(1) - start.col(0);
     const double along = d.dot(e);
     const Vector3d correction =  // of d
