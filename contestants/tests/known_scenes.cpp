@@ -11,6 +11,7 @@
 #include "solvers/plugin.h"
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/problem/forces.h"
+#include "support/motion.h"
 
 namespace engines {
 
@@ -54,6 +55,13 @@ Scene chain(int links, double turn) {
   for (int i = 0; i <= links; ++i)
     x.col(i) << std::cos(turn) * i / links, 0, -std::sin(turn) * i / links;
   return finished(chain_parts(links), x, Positions::Zero(3, links + 1));
+}
+
+Scene hanging_chain(int links) {
+  Scene scene = chain(links);
+  scene.start.x.row(1) = -scene.start.x.row(0);
+  scene.start.x.row(0).setZero();
+  return scene;
 }
 
 Scene swirling_chain(int links) {
@@ -112,11 +120,7 @@ double energy(const Scene& scene, const State& state) {
 }
 
 Eigen::Vector3d angular_momentum(const Scene& scene, const State& state) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int i = 0; i < scene.problem->vertices(); ++i)
-    sum += scene.problem->mass()[i] *
-           Eigen::Vector3d(state.x.col(i)).cross(Eigen::Vector3d(state.v.col(i)));
-  return sum;
+  return inextensible::testing::angular_momentum(*scene.problem, state.x, state.v);
 }
 
 double largest_strain(const Scene& scene, const State& state) {

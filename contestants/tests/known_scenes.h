@@ -16,6 +16,8 @@ struct Scene {
 // `links` equal links of 1 m and 1 kg in all, straight, pinned at the origin, at rest. Along x,
 // turned about y by `turn`.
 Scene chain(int links, double turn = 0);
+// The same, straight down.
+Scene hanging_chain(int links);
 // The same, bent and moving in all directions, every link at its length.
 Scene swirling_chain(int links);
 // n x n vertices of 1 kg and 1 m x 1 m in all, without weight, that spin about y by `omega`.

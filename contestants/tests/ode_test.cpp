@@ -20,10 +20,7 @@ TEST(Ode, TakesForces) { expect_spring(solver); }
 
 // A chain that hangs at rest stays: the factorization finds its tensions, and few passes do not.
 TEST(Ode, HangsAtRest) {
-  constexpr int links = 10;
-  Scene scene = chain(links);
-  scene.start.x.row(1) = -scene.start.x.row(0);
-  scene.start.x.row(0).setZero();
+  const Scene scene = hanging_chain(10);
   EXPECT_LT(distance(run(solver, scene, 0.01, 100).x, scene.start.x), 1e-9);
   const State strained =
       run(solver, scene, 0.01, 1, {{"solver", std::string("passes")}, {"iterations", 1.0}});

@@ -131,14 +131,18 @@ double energy(const Scene& scene, const State& state) {
          inextensible::kinetic_energy(*scene.problem, state.v);
 }
 
+double energy_after(const Scene& scene, const char* solver, double h, double duration,
+                    double limit = tight, const Settings& settings = {}) {
+  State state = scene.start;
+  run(*make_stepper(solver, scene.problem, {limit, 1, settings}), state, h, duration);
+  return energy(scene, state);
+}
+
 // Over one second the implicit methods lose energy, less at smaller steps; RATTLE does not drift.
 TEST(Energy, IsLostByImplicitMethodsInProportionToTheStepAndKeptByRattle) {
   const Scene scene = short_chain();
   const auto drift = [&](const char* solver, double h) {
-    const auto stepper = make_stepper(solver, scene.problem, {tight, 1, {}});
-    State state = scene.start;
-    run(*stepper, state, h, 1);
-    return energy(scene, state) / 9.81;
+    return energy_after(scene, solver, h, 1) / 9.81;
   };
   for (const char* solver : {"fast_projection", "fast_projection@bdf2"}) {
     const double coarse = drift(solver, 1.0 / 500), fine = drift(solver, 1.0 / 2000);
@@ -177,10 +181,7 @@ TEST(Energy, OfATurningNetIsKeptByDirectionsOfTheMiddle) {
   const Scene scene = testing::build("spinning_net", {{"n", 7}});
   const double start = energy(scene, scene.start);
   const auto lost = [&](const char* solver, const Settings& settings, double h) {
-    const auto stepper = make_stepper(solver, scene.problem, {1e-9, 1, settings});
-    State state = scene.start;
-    run(*stepper, state, h, 0.32);
-    return 1 - energy(scene, state) / start;
+    return 1 - energy_after(scene, solver, h, 0.32, 1e-9, settings) / start;
   };
   const Settings conserving{{"spectral_radius", 1.0}, {"target", 0.0}};
   std::vector<double> steps, errors;
