@@ -32,13 +32,9 @@ TEST(Bullet, OnePassCarriesALoadByOneLink) {
   EXPECT_NEAR(largest_strain(scene, after), (links - 1) * fall / l, 0.02 * links * fall / l);
 }
 
-// More passes strain less; another order is another motion.
+// More passes strain less (NetSpinsDown has 300); another order is another motion.
 TEST(Bullet, SettingsAreTaken) {
   const Scene scene = chain(10);
-  const auto strain = [&scene](double passes) {
-    return largest_strain(scene, run(solver, scene, 0.01, 20, {{"iterations", passes}}));
-  };
-  EXPECT_LT(strain(100), 0.1 * strain(1));
   const auto plain = run(solver, scene, 0.01, 20);
   const auto velocity_first = run(solver, scene, 0.01, 20, {{"velocity_iterations", 5.0}});
   EXPECT_LT(largest_strain(scene, velocity_first), 0.9 * largest_strain(scene, plain));
