@@ -181,6 +181,17 @@ TEST(QuietSamples, ADisturbedLookOnEitherSideTakesItAgainUpToThreeTimes) {
   }
 }
 
+TEST(QuietSamples, NoMoreThanAQuarterOfAllAreTakenAgain) {
+  RetakeBudget budget;
+  EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
+  budget.add(100, 45);
+  EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
+  budget.add(1, 3);
+  EXPECT_EQ(budget.most(), 0);
+  budget.add(100, 0);
+  EXPECT_EQ(budget.most(), QuietProbe::most_retaken);
+}
+
 TEST(QuietSamples, WhatIsUsualIsLearntAnew) {
   double now = 1;
   QuietProbe probe([&now] { return now; });

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "harness/judge/reference.h"
 #include "solvers/registry.h"
 #include "support/scenes.h"
 
@@ -45,6 +46,20 @@ std::vector<double> step_angles(const char* solver, double h,
     angles.push_back(angle_between(before, state.x));
   }
   return angles;
+}
+
+TEST(SpinningNet, TurnsAsItsExactMotionSays) {
+  const auto reference = exact_reference(
+      "spinning_net", testing::parameters("spinning_net", {{"n", 6}, {"duration", 0.2}}));
+  ASSERT_TRUE(reference);
+  ASSERT_EQ(reference->times.size(), 5u);
+  const Scene scene = net();
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_NEAR(angle_between(scene.start.x, reference->positions[i]), turn * reference->times[i],
+                1e-12);
+    EXPECT_EQ(reference->gap[i], 0);
+  }
+  EXPECT_FALSE(exact_reference("chain", testing::parameters("chain")));
 }
 
 // Free flight x + (x - x_before), brought back along directions at the end of the step:
