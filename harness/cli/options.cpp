@@ -63,14 +63,8 @@ void SelectionOptions::declare(const Command& to, const Command& of_suites) {
 void SweepOptions::declare(const Command& to, const Command& of_suites) {
   SelectionOptions::declare(to, of_suites);
   add_seed(to, seed, "of random orders");
-  of_suites.option(
-      "--reps", reps,
-      "samples of each point that may be best; 7..40: more until the median is known to --rel-ci",
-      "N");
-  of_suites.option("--rel-ci", rel_ci,
-                   "half width of the median's 95 % confidence interval over the median, default "
-                   "0.02",
-                   "R", Bounds::positive());
+  of_suites.option("--reps", reps, "samples of each point that may be best", "N",
+                   Bounds::whole_number(1));
   add_timeout(of_suites, timeout, "the suite's");
   of_suites.option("--steps", steps,
                    "search (each solver's best step, default), all (the whole ladder) or adaptive "

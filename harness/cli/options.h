@@ -39,8 +39,9 @@ struct SelectionOptions : SceneOptions {  // n: instead of the suite's
 
 // How it is run, too.
 struct SweepOptions : SelectionOptions {
-  std::string steps = "search", reps;  // reps: "5", or "5..40" with rel_ci
-  double timeout = 0, finest_error = 0, rel_ci = 0, finest = 0;
+  std::string steps = "search";
+  int reps = 0;
+  double timeout = 0, finest_error = 0, finest = 0;
   std::int64_t seed = -1;
   bool untimed = false;  // times are not used: does not wait for others that take times
 

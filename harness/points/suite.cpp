@@ -178,8 +178,6 @@ Suite parse_suite(const std::string& text, const std::string& path) {
   suite.profile = reader.text("profile", "custom");
   suite.seed = static_cast<std::uint64_t>(reader.number("seed", 1, Bounds::exact_number()));
   suite.reps = static_cast<int>(reader.number("reps", 3, Bounds::whole_number(1)));
-  suite.most_reps = static_cast<int>(reader.number("most_reps", 0, Bounds::whole_number(0)));
-  suite.rel_ci = reader.number("rel_ci", suite.rel_ci, Bounds::positive());
   suite.timeout = reader.number("timeout", 60, Bounds::positive());
   suite.finest_error = reader.number("finest_error", suite.finest_error, Bounds::positive());
   std::optional<Tuned> tuned;
@@ -228,8 +226,6 @@ json to_json(const Suite& suite) {
                    {"profile", suite.profile},
                    {"seed", suite.seed},
                    {"reps", suite.reps},
-                   {"most_reps", suite.most_reps},
-                   {"rel_ci", suite.rel_ci},
                    {"timeout", suite.timeout},
                    {"finest_error", suite.finest_error},
                    {"sweeps", sweeps}};

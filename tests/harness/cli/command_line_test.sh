@@ -31,7 +31,6 @@ did you mean 'ratios' <- --sweep stability --values ratio=2 --out out.json
 'distances' has 2 <- --sweep stability --values distances=2 --out out.json
 --reps <- SWEEP --reps 0
 must be i/N <- SWEEP --shard 2
-whose second number is below <- SWEEP --reps 9..5
 i must be from 1 to N <- SWEEP --shard 3/2
 '' must be a number above 0 and below 1 <- SWEEP --limit 0.01,
 --memory <- SWEEP --memory much
