@@ -25,14 +25,6 @@ using nlohmann::json;
 
 std::string ms(double seconds) { return number_text(1e3 * seconds, 3); }
 
-std::string error_text(const Pick& pick) {
-  return std::isnan(pick.error) ? "error unknown" : "error " + percent(pick.error);
-}
-
-std::string solver_and_step(const Pick& pick) {
-  return pick.point->spec.name() + " at " + step_text(pick.point->spec.step) + " s";
-}
-
 json pick_json(const std::optional<Pick>& pick) {
   if (!pick) return nullptr;
   const PointSpec& spec = pick->point->spec;
@@ -54,10 +46,6 @@ struct Choice {
   double seconds;         // that it took
   std::string reference;  // the method that errors are measured against; empty: none
   Recommendation found = recommend(trials.points, wish);
-  // s of computing time a frame: the one that was given, or what the best run takes.
-  double budget = wish.budget > 0 ? wish.budget : found.best ? found.best->frame.slow : 0;
-  std::optional<Pick> with_half = most_accurate(trials.points, wish, budget / 2);
-  std::optional<Pick> with_double = most_accurate(trials.points, wish, budget * 2);
 
   // Contestants without a run to take, and why.
   std::map<std::string, std::string> all_why_not() const {
@@ -71,11 +59,13 @@ struct Choice {
   }
 
   std::string text(const Pick& pick) const {
-    return solver_and_step(pick) + " (" +
-           std::to_string(std::lround(1 / (wish.rate * pick.point->spec.step))) +
+    const PointSpec& spec = pick.point->spec;
+    return spec.name() + " at " + step_text(spec.step) + " s (" +
+           std::to_string(std::lround(1 / (wish.rate * spec.step))) +
            " a frame): " + ms(pick.frame.median) + " ms a frame, 99 % below " +
            ms(pick.frame.slow) + ", worst " + ms(pick.frame.worst) + "; strain " +
-           percent(pick.point->measures.max_strain) + ", " + error_text(pick);
+           percent(pick.point->measures.max_strain) + ", error " +
+           (std::isnan(pick.error) ? "unknown" : percent(pick.error));
   }
 
   // Why there is no run to take.
@@ -105,13 +95,6 @@ struct Choice {
                                : "too close to rank")
           << '\n';
     }
-    const auto with = [](double frame, const std::optional<Pick>& pick) {
-      return ms(frame) + " ms a frame: " +
-             (pick ? solver_and_step(*pick) + ", " + error_text(*pick)
-                   : std::string("none that was tried"));
-    };
-    out << "with  " << with(budget / 2, with_half) << "; with " << with(budget * 2, with_double)
-        << '\n';
   }
 
   void print(std::ostream& out) const {
@@ -137,13 +120,11 @@ struct Choice {
             {"strain_limit", sweep.limits.front()},
             {"error", number(wish.error)},
             {"frame", 1 / wish.rate},
-            {"budget", budget},
+            {"budget", wish.budget},
             {"budget_kept", found.all_is_well()},
             {"take", pick_json(found.to_be_taken() ? found.best : std::nullopt)},
             {"fastest", pick_json(found.best)},
             {"runner_up", pick_json(found.next)},
-            {"half_budget", pick_json(with_half)},
-            {"double_budget", pick_json(with_double)},
             {"without_result", all_why_not()},
             {"reference", reference.empty() ? json() : json(reference)},
             {"measured_seconds", seconds}};
@@ -195,10 +176,7 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
         return std::make_shared<const Reference>(reference_of(document, "the quick reference"));
       })) {
     references.put(*made);
-    std::cerr << (*made)->method << " against " << (*made)->second_method << ": known to "
-              << number_text(100 * headline_error) << " % for "
-              << number_text((*made)->known_until(headline_error)) << " of "
-              << number_text((*made)->duration()) << " s\n";
+    std::cerr << reference_text(**made) << '\n';
     return *made;
   }
   std::cerr << "bench: no reference, so errors are unknown: "

@@ -29,11 +29,12 @@ std::string SceneOptions::name() const { return with_mesh_parts(scene, pins, bod
 SceneParameters SceneOptions::given_parameters() const {
   SceneParameters parameters;
   for (const std::string& word : set) {
-    const auto [parameter, text] = name_and_value(word);
-    const auto number = number_in(text);
+    const auto equals = word.find('=');
+    const auto number =
+        equals == std::string::npos ? std::nullopt : number_in(word.substr(equals + 1));
     if (!number)
       throw UsageError("--set " + word + ": must be NAME=NUMBER, a parameter of the scene");
-    parameters[parameter] = *number;
+    parameters[word.substr(0, equals)] = *number;
   }
   return parameters;
 }
@@ -180,11 +181,6 @@ double one_number_of(const std::string& option, const std::string& text, const B
   const std::vector<double> numbers = numbers_of(option, text, bounds);
   if (numbers.size() != 1) throw UsageError(option + " is '" + text + "', must be one number");
   return numbers.front();
-}
-
-std::pair<std::string, std::string> name_and_value(const std::string& text) {
-  const auto equals = text.find('=');
-  return {text.substr(0, equals), equals == std::string::npos ? "" : text.substr(equals + 1)};
 }
 
 }  // namespace harness

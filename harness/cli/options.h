@@ -69,8 +69,6 @@ std::optional<Pattern> pattern_of(const std::string& option, const std::string& 
 std::vector<double> numbers_of(const std::string& option, const std::string& text,
                                const Bounds& bounds);
 double one_number_of(const std::string& option, const std::string& text, const Bounds& bounds);
-// "NAME=VALUE" at its sign of equality; without one there is no value.
-std::pair<std::string, std::string> name_and_value(const std::string& text);
 
 std::string suite_path(const SelectionOptions& options);
 Suite load_suite(const SweepOptions& options);
@@ -80,5 +78,7 @@ SweepFilters filters_of(const SelectionOptions& options);
 using SceneOfReference = std::pair<std::string, SceneParameters>;
 std::map<std::string, SceneOfReference> without_reference(const std::vector<Search>& searches,
                                                           ReferenceFolder& references);
+// By which methods it was made, and for how long the motion is known.
+std::string reference_text(const Reference& reference);
 
 }  // namespace harness

@@ -165,4 +165,11 @@ std::map<std::string, SceneOfReference> without_reference(const std::vector<Sear
   return missing;
 }
 
+std::string reference_text(const Reference& reference) {
+  return reference.method + " against " + reference.second_method + ": known to " +
+         number_text(100 * headline_error) + " % for " +
+         number_text(reference.known_until(headline_error)) + " of " +
+         number_text(reference.duration()) + " s";
+}
+
 }  // namespace harness

@@ -27,8 +27,6 @@ did you mean 'strain' <- --sweep strian --out out.json
 no point is left <- SWEEP --filter nothing
 no case matches <- --sweep stability --case nothing --out out.json
 --filter goes with --sweep strain, resolution and step only (--case chooses <- --sweep stability --filter x --out out.json
-did you mean 'ratios' <- --sweep stability --values ratio=2 --out out.json
-'distances' has 2 <- --sweep stability --values distances=2 --out out.json
 --reps <- SWEEP --reps 0
 must be i/N <- SWEEP --shard 2
 i must be from 1 to N <- SWEEP --shard 3/2
