@@ -1,7 +1,6 @@
 // bench choose: which solver to take for a scene, at which step, and what a frame costs.
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "harness/analysis/measured_point.h"
@@ -10,7 +9,6 @@
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/judge/reference_routes.h"
-#include "harness/points/point_json.h"
 #include "harness/points/tuned.h"
 #include "harness/run/choose.h"
 #include "harness/run/execute.h"
@@ -25,38 +23,12 @@ using nlohmann::json;
 
 std::string ms(double seconds) { return number_text(1e3 * seconds, 3); }
 
-json pick_json(const std::optional<Pick>& pick) {
-  if (!pick) return nullptr;
-  const PointSpec& spec = pick->point->spec;
-  return {
-      {"solver", spec.solver},
-      {"settings", to_json(spec.settings)},
-      {"step", spec.step},
-      {"frame_seconds",
-       {{"median", pick->frame.median}, {"p99", pick->frame.slow}, {"worst", pick->frame.worst}}},
-      {"seconds_per_simulated_second", pick->point->seconds()},
-      {"max_strain", number(pick->point->measures.max_strain)},
-      {"error", number(pick->error)}};
-}
-
 struct Choice {
   const SweepSpec& sweep;
   Wish wish;
   const Trials& trials;
-  double seconds;         // that it took
-  std::string reference;  // the method that errors are measured against; empty: none
+  double seconds;  // that it took
   Recommendation found = recommend(trials.points, wish);
-
-  // Contestants without a run to take, and why.
-  std::map<std::string, std::string> all_why_not() const {
-    std::map<std::string, std::string> all;
-    for (const PointResult& screened : trials.screened) {
-      const std::string& name = screened.spec.name();
-      if (std::string why = why_not(name, trials, wish); !why.empty())
-        all.emplace(name, std::move(why));
-    }
-    return all;
-  }
 
   std::string text(const Pick& pick) const {
     const PointSpec& spec = pick.point->spec;
@@ -111,23 +83,11 @@ struct Choice {
     } else {
       out << nothing_found();
     }
-    for (const auto& [name, why] : all_why_not()) out << "not   " << name << ": " << why << '\n';
-  }
-
-  json to_json() const {
-    return {{"scene", sweep.scene},
-            {"scene_parameters", sweep.scene_parameters},
-            {"strain_limit", sweep.limits.front()},
-            {"error", number(wish.error)},
-            {"frame", 1 / wish.rate},
-            {"budget", wish.budget},
-            {"budget_kept", found.all_is_well()},
-            {"take", pick_json(found.to_be_taken() ? found.best : std::nullopt)},
-            {"fastest", pick_json(found.best)},
-            {"runner_up", pick_json(found.next)},
-            {"without_result", all_why_not()},
-            {"reference", reference.empty() ? json() : json(reference)},
-            {"measured_seconds", seconds}};
+    for (const PointResult& screened : trials.screened) {
+      const std::string& name = screened.spec.name();
+      if (const std::string why = why_not(name, trials, wish); !why.empty())
+        out << "not   " << name << ": " << why << '\n';
+    }
   }
 };
 
@@ -221,7 +181,7 @@ double duration_of(const std::string& option, const std::string& text) {
 struct Choose : SceneOptions {
   std::string budget, solver, limits = "0.01";
   double frames_per_second = 60, error = headline_error, seconds = 60;
-  bool as_json = false, no_wait = false;
+  bool no_wait = false;
 
   void declare(const Command& command) {
     scene = "drape";
@@ -236,7 +196,6 @@ struct Choose : SceneOptions {
     add_solver(command, solver);
     command.option("--seconds", seconds, "that measuring may take; default: 60", "S",
                    Bounds::positive());
-    command.flag("--json", as_json, "for programs");
     add_no_wait(command, no_wait);
   }
 
@@ -260,7 +219,7 @@ struct Choose : SceneOptions {
     sweep.coarsest = 1 / frames_per_second;
     sweep.finest = sweep.coarsest / finest_part;
     sweep.contestants = contestants_for(solver, *type, parameters);
-    tune(sweep.contestants, read_tuned_up_to_date("tuned.json"), type->kind(), {}, false);
+    tune(sweep.contestants, read_tuned_up_to_date("tuned.json"), type->kind());
     return chosen;
   }
 
@@ -276,13 +235,8 @@ struct Choose : SceneOptions {
     const auto reference = reference_for(tried.sweeps.front(), *references, limits_of_time);
     if (!reference) wish.error = any_motion;
     const Trials trials = measure(tried, wish, limits_of_time, references);
-    const Choice choice{tried.sweeps.front(), wish, trials, since(begin),
-                        reference ? reference->method : ""};
-    if (as_json) {
-      std::cout << choice.to_json().dump(1) << '\n';
-    } else {
-      choice.print(std::cout);
-    }
+    const Choice choice{tried.sweeps.front(), wish, trials, since(begin)};
+    choice.print(std::cout);
     return choice.found.all_is_well() ? success : cannot_decide;
   }
 };

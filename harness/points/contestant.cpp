@@ -16,19 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-void append(Contestants& all, const json& list, const std::string& where, bool once) {
-  if (!list.is_array()) throw UsageError(where + " must be a list of solvers");
-  for (const json& entry : list) {
-    Contestant contestant = read_contestant(entry, where);
-    if (find_contestant(all, contestant.name) == all.end()) {
-      all.push_back(std::move(contestant));
-    } else if (once) {
-      throw UsageError(where + ": '" + contestant.name +
-                       "' is there twice; give each a \"name\" of its own");
-    }
-  }
-}
-
 std::vector<SettingsAt> read_settings_at(const json& places, const std::string& where,
                                          const inextensible::Backend& backend) {
   if (!places.is_array()) throw UsageError(where + " must be a list");
@@ -186,12 +173,17 @@ Contestants competitors(const SceneType& type, const SceneParameters& given) {
   return all;
 }
 
-Contestants read_contestants(const json* solvers, const json* also, const Contestants& missing,
-                             const std::string& where) {
+Contestants read_contestants(const json& solvers, const std::string& where) {
+  if (!solvers.is_array() || solvers.empty())
+    throw UsageError(where + " must be a list of solvers");
   Contestants all;
-  if (solvers) append(all, *solvers, where + ": 'solvers'", true);
-  if (all.empty()) all = missing;
-  if (also) append(all, *also, where + ": 'also'", false);
+  for (const json& entry : solvers) {
+    Contestant contestant = read_contestant(entry, where);
+    if (find_contestant(all, contestant.name) != all.end())
+      throw UsageError(where + ": '" + contestant.name +
+                       "' is there twice; give each a \"name\" of its own");
+    all.push_back(std::move(contestant));
+  }
   return all;
 }
 

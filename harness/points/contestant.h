@@ -45,9 +45,7 @@ Contestant read_contestant(const nlohmann::json& entry, const std::string& where
 // The solvers of suites that name none: all that compete and take every part of the scene, on a
 // chain without those that are another one there.
 Contestants competitors(const SceneType& type, const SceneParameters& given);
-// Lists of them under the keys "solvers" (`missing` where there is none) and "also".
-Contestants read_contestants(const nlohmann::json* solvers, const nlohmann::json* also,
-                             const Contestants& missing, const std::string& where);
+Contestants read_contestants(const nlohmann::json& solvers, const std::string& where);
 inextensible::Settings read_settings(const nlohmann::json& object, const std::string& where,
                                      const inextensible::Backend& backend);
 // That the solver would take them.

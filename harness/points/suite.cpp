@@ -16,12 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-bool read_untuned(JsonReader& reader, bool tuned, bool otherwise) {
-  const bool untuned = reader.flag("untuned", otherwise);
-  if (untuned && !tuned) throw UsageError(reader.where("untuned") + " goes with 'tuned'");
-  return untuned;
-}
-
 void read_limits(JsonReader& reader, const std::string& where, SweepSpec& spec) {
   spec.limits = reader.numbers("limits", Bounds::strain());
   if (const double limit = reader.number("limit", 0, Bounds::strain()); limit > 0) {
@@ -92,7 +86,7 @@ void fit_steps_to_duration(const SceneType& type, bool coarsest_given, SweepSpec
 }
 
 SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* tuned,
-                     bool untuned_everywhere, const std::string& same) {
+                     const std::string& same) {
   JsonReader reader(object, where);
   SweepSpec spec;
   spec.sweep = reader.text("sweep", "");
@@ -104,23 +98,20 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* 
     throw UsageError(where + ": " +
                      unknown_name("scene", spec.scene, names_of(scene_types())).what());
   const json* solvers = reader.find("solvers");
-  const json* also = reader.find("also");
   read_limits(reader, where, spec);
   read_scene_parameters(reader, *type, spec);
   read_steps(reader, where, spec);
   read_solver_options(reader, where, spec);
-  const bool untuned = read_untuned(reader, tuned, untuned_everywhere);
   const json* steps = reader.find("steps");
   reader.finish();
-  Contestants missing;
   try {
     fit_steps_to_duration(*type, steps && steps->contains("coarsest"), spec);
-    if (!solvers || solvers->empty()) missing = competitors(*type, spec.scene_parameters);
+    if (!solvers) spec.contestants = competitors(*type, spec.scene_parameters);
   } catch (const UsageError& error) {
     throw UsageError(where + ": 'scene_parameters': " + error.what());
   }
-  spec.contestants = read_contestants(solvers, also, missing, where);
-  if (tuned) tune(spec.contestants, *tuned, type->kind(), spec.solver_options, untuned);
+  if (solvers) spec.contestants = read_contestants(*solvers, where + ": 'solvers'");
+  if (tuned) tune(spec.contestants, *tuned, type->kind(), spec.solver_options);
   add_double(spec.contestants, same);
   return spec;
 }
@@ -186,7 +177,6 @@ Suite parse_suite(const std::string& text, const std::string& path) {
     suite.tuned_file = tuned->file;
     suite.tuned_hash = tuned->hash;
   }
-  const bool untuned = read_untuned(reader, tuned.has_value(), false);
   suite.same = reader.text("same", "");
   const json* sweeps = reader.find("sweeps");
   if (!sweeps || !sweeps->is_array() || sweeps->empty())
@@ -194,7 +184,7 @@ Suite parse_suite(const std::string& text, const std::string& path) {
   for (std::size_t i = 0; i < sweeps->size(); ++i) {
     suite.sweeps.push_back(read_sweep((*sweeps)[i],
                                       "suite '" + path + "': sweeps[" + std::to_string(i) + "]",
-                                      tuned ? &*tuned : nullptr, untuned, suite.same));
+                                      tuned ? &*tuned : nullptr, suite.same));
   }
   check_contestants(suite, reader);
   reader.finish();

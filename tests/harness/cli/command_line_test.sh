@@ -136,14 +136,13 @@ cmp -s old.json kept.json && fail "--force did not replace it"
 
 # ---- Other verbs ----
 # Which solver to take: what it says keeps strain and error, and follows from no file.
-bench choose --scene chain --n 20 --limit 0.01 --error 0.05 --solver 'rattle|fast_projection' --seconds 20 --json >choice.json 2>/dev/null || fail "choose"
+bench choose --scene chain --n 20 --limit 0.01 --error 0.05 --solver 'rattle|fast_projection' --seconds 20 >choice.txt 2>/dev/null || fail "choose"
 holds '
-choice = read("choice.json")
-take = choice["take"]
-assert take["solver"] in ("rattle", "fast_projection"), take
-assert take["max_strain"] <= 0.01 and take["error"] <= 0.05 and take["step"] <= 1 / 60 + 1e-9, take
-assert 0 < take["frame_seconds"]["median"] <= take["frame_seconds"]["p99"] <= take["frame_seconds"]["worst"] * (1 + 1e-12), take
-assert choice["runner_up"] is None or choice["runner_up"]["seconds_per_simulated_second"] >= take["seconds_per_simulated_second"]'
+import re
+text = open("choice.txt").read()
+take = re.search(r"^take  (rattle|fast_projection) at 1/(\S+) s .*: (\S+) ms a frame, 99 % below (\S+), worst (\S+); strain (\S+) %, error (\S+) %", text, re.M)
+rate, median, p99, worst, strain, error = (float(number) for number in take.groups()[1:])
+assert strain <= 1 and error <= 5 and rate >= 60 and 0 < median <= p99 <= worst, text'
 # Cloth of one's own, without a body: there is no reference, so a quick one takes its place.
 holds '
 n = 7

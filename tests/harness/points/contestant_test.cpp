@@ -51,8 +51,30 @@ std::vector<std::string> names(const Suite& suite) {
   return names_of(suite.sweeps.at(0).contestants);
 }
 
+// Whether a contestant is among those of a suite that names none, or those of `solvers`.
+bool stands(const char* scene, const std::string& name, const std::string& solvers = "") {
+  const auto all = names(suite_with("", solvers + R"("steps": {"finest": 0.001})", scene));
+  return std::ranges::count(all, name) > 0;
+}
+
 double setting(const Search& search, const char* name) {
   return std::get<double>(search.base.settings.at(name));
+}
+
+TEST(Contestants, TakeEveryPartOfTheScene) {
+  for (const char* scene : {"chain", "patch", "drape", "fabric_drape"}) {
+    const auto type = find_scene(scene);
+    const Scene built = type->build(complete_parameters(*type, {}));
+    for (const auto& backend : inextensible::backends()) {
+      const bool another = type->kind() == "chain" && *backend.same_on_chains;
+      EXPECT_EQ(stands(scene, backend.name),
+                backend.contestant && !another && !part_not_taken(backend, *built.problem))
+          << scene << ", " << backend.name;
+      EXPECT_TRUE(!*backend.same_on_chains || inextensible::find_backend(backend.same_on_chains));
+    }
+  }
+  EXPECT_TRUE(stands("drape", "soft_step", R"("solvers": ["soft_step"], )")) << "it is named";
+  EXPECT_TRUE(stands("chain", "yarn_projection@bdf2", R"("solvers": ["yarn_projection@bdf2"], )"));
 }
 
 TEST(Contestants, HaveTheirOwnNamesAndSettings) {
@@ -108,7 +130,6 @@ TEST(Suite, NamesFileKeyAndValueOfWhatIsWrong) {
       {solvers(R"({"name": "x", "solver": "icd", "unranked": 1})"), "'unranked'"},
       {solvers("5"), "solvers' names"},
       {sweep(R"("limit": 0.1, "solvers": ["icd"])", R"("same": "idc", )"), "did you mean 'icd'"},
-      {sweep(R"("limit": 0.1, "untuned": true)"), "goes with 'tuned'"},
       {sweep(R"("limit": 0.1)", R"("tuned": "no_such.json", )"), "no_such.json"}};
   for (const auto& [text, part] : suites) {
     const std::string message =
@@ -120,24 +141,20 @@ TEST(Suite, NamesFileKeyAndValueOfWhatIsWrong) {
 TEST(Tuned, SettingsAreUsedForTheirKindOfSceneAndBelowWhatASuiteSays) {
   const std::string file =
       write_tuned({of_the_drape("jacobi", {{"relaxation", 1.6}}), of_the_drape("icd", {})});
-  const std::string tuned = R"("tuned": ")" + file + R"(", "untuned": true, )";
+  const std::string tuned = R"("tuned": ")" + file + R"(", )";
   const std::string both = R"("solvers": ["jacobi", "icd"])";
   const Suite drape = suite_with(tuned, both, "drape");
-  EXPECT_EQ(names(drape), (std::vector<std::string>{"jacobi", "jacobi_untuned", "icd"}));
+  EXPECT_EQ(names(drape), (std::vector<std::string>{"jacobi", "icd"}));
   const auto searches = plan(drape, {});
   EXPECT_EQ(setting(searches[0], "relaxation"), 1.6);
   EXPECT_TRUE(searches[1].base.settings.empty());
-  EXPECT_TRUE(drape.sweeps[0].contestants[1].unranked);
-  EXPECT_EQ(names(suite_with(tuned, both, "folded_drape")), names(drape)) << "it is like a drape";
-  EXPECT_EQ(names(suite_with(tuned, both)), (std::vector<std::string>{"jacobi", "icd"}));
-  EXPECT_EQ(names(suite_with(tuned, both + R"(, "untuned": false)", "drape")),
-            (std::vector<std::string>{"jacobi", "icd"}))
-      << "what a sweep says itself goes first";
+  EXPECT_EQ(setting(plan(suite_with(tuned, both, "folded_drape"), {})[0], "relaxation"), 1.6)
+      << "it is like a drape";
+  EXPECT_TRUE(plan(suite_with(tuned, both), {})[0].base.settings.empty()) << "a chain is not";
 
   const Suite given =
       suite_with(tuned, both + R"(, "solver_options": {"jacobi": {"relaxation": 1.1}})", "drape");
   EXPECT_EQ(setting(plan(given, {})[0], "relaxation"), 1.1);
-  EXPECT_EQ(names(given), (std::vector<std::string>{"jacobi", "icd"})) << "nothing of it is tuned";
 
   // What was run is what the result's suite says, whatever becomes of the file.
   write_tuned({});
