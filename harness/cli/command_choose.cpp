@@ -166,20 +166,9 @@ Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
   return try_contestants(suite, plan(suite, {}), wish, limits, events, runners);
 }
 
-// Seconds of "2ms", "500us" or "0.002s".
-double duration_of(const std::string& option, const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  const std::string unit = end;
-  const double scale = unit == "ms" ? 1e-3 : unit == "us" ? 1e-6 : unit == "s" ? 1 : 0;
-  if (!(value > 0) || scale == 0)
-    throw UsageError(option + " is '" + shortened(text, 40) +
-                     "', must be such as 2ms, 500us or 0.002s");
-  return value * scale;
-}
-
 struct Choose : SceneOptions {
-  std::string budget, solver, limits = "0.01";
+  std::string solver, limits = "0.01";
+  double budget = 0;  // ms; 0: none
   double frames_per_second = 60, error = headline_error, seconds = 60;
   bool no_wait = false;
 
@@ -192,7 +181,8 @@ struct Choose : SceneOptions {
                    "E", Bounds::positive());
     command.option("--fps", frames_per_second,
                    "frames a second: 24, 30 or 60 (default); no step is longer than a frame", "N");
-    command.option("--budget", budget, "computing time that a frame may take, e.g. 2ms", "TIME");
+    command.option("--budget", budget, "milliseconds of computing that a frame may take", "MS",
+                   Bounds::positive());
     add_solver(command, solver);
     command.option("--seconds", seconds, "that measuring may take; default: 60", "S",
                    Bounds::positive());
@@ -226,7 +216,7 @@ struct Choose : SceneOptions {
   int run() {
     if (std::count(std::begin(frame_rates), std::end(frame_rates), frames_per_second) == 0)
       throw UsageError("--fps is " + number_text(frames_per_second) + ", must be 24, 30 or 60");
-    Wish wish{error, frames_per_second, budget.empty() ? 0 : duration_of("--budget", budget)};
+    Wish wish{error, frames_per_second, 1e-3 * budget};
     const Suite tried = suite();
     const TimingLock lock(!no_wait);
     const auto begin = Clock::now();

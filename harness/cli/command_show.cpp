@@ -241,24 +241,15 @@ struct Plot {
   std::string out, name;
 
   void declare(const Command& command) {
-    add_results(command, files,
-                "result file; several: pieces of one sweep, drawn as one, with --name");
+    add_results(command, files, "result file; several: pieces of one sweep, drawn as one");
     command.option("--out", out, "folder for the figures; default: beside the result", "DIR");
-    command.option("--name", name, "of several files: what the pictures' names begin with", "NAME");
+    command.option("--name", name,
+                   "what the pictures' names begin with; default: the result's name", "NAME");
   }
 
   int run() {
-    const bool several = files.size() > 1;
-    if (several == name.empty())
-      throw UsageError(several
-                           ? "several result files are drawn as one: give it a --name"
-                           : "--name is for several result files; pictures of one have its name");
     const std::filesystem::path first(files.front());
-    json document = read_as_one(files);
-    if (several && !is_sweep(document))
-      throw UsageError("'" + files.front() +
-                       "' is no sweep: pieces of sweeps alone are drawn as one");
-    return draw_figures(std::move(document), several ? name : first.stem().string(),
+    return draw_figures(read_as_one(files), name.empty() ? first.stem().string() : name,
                         out.empty() ? first.parent_path().string() : out);
   }
 };

@@ -40,8 +40,7 @@ SceneParameters SceneOptions::given_parameters() const {
 }
 
 SceneParameters SceneOptions::complete_parameters() const {
-  const auto type = find_scene(name());
-  if (!type) throw unknown_name("scene", name(), names_of(scene_types()));
+  const auto type = checked_scene(name());
   SceneParameters parameters = given_parameters();
   if (!n.empty()) parameters[type->resolution] = one_number_of("--n", n, Bounds::whole_number(2));
   return harness::complete_parameters(*type, parameters);
@@ -127,21 +126,6 @@ void add_no_wait(const Command& to, bool& no_wait) {
 }
 
 std::vector<std::string> profiles() { return {"quick", "default", "paper", "large"}; }
-
-void check_known(const char* kind, const std::string& name, const std::vector<std::string>& known) {
-  if (std::ranges::count(known, name) == 0) throw unknown_name(kind, name, known);
-}
-
-namespace {
-
-// A pair that makes no sense gets its reason, any other name a suggestion.
-UsageError no_solver(const std::string& name, const std::vector<std::string>& names) {
-  const std::string reason = inextensible::why_no_pair(name);
-  if (reason.empty()) return unknown_name("solver", name, names);
-  return UsageError("there is no solver '" + name + "': " + reason);
-}
-
-}  // namespace
 
 std::optional<Pattern> solver_pattern(const std::string& text, const Contestants& contestants) {
   if (text.empty()) return std::nullopt;

@@ -60,7 +60,6 @@ void add_seed(const Command& to, std::int64_t& seed, const std::string& help);
 void add_no_wait(const Command& to, bool& no_wait);
 
 std::vector<std::string> profiles();
-void check_known(const char* kind, const std::string& name, const std::vector<std::string>& known);
 // Both: none for "". Each alternative of the first must match the name of some solver or of some
 // contestant.
 std::optional<Pattern> solver_pattern(const std::string& text, const Contestants& contestants = {});

@@ -99,8 +99,7 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
 }  // namespace
 
 std::string suite_path(const SelectionOptions& options) {
-  if (!options.scene.empty() && !find_scene(options.scene))
-    throw unknown_name("scene", options.scene, names_of(scene_types()));
+  if (!options.scene.empty()) (void)checked_scene(options.scene);
   if (!options.config.empty()) return options.config;
   check_known("profile", options.profile, profiles());
   return source_path("configs/" + options.profile + ".json");

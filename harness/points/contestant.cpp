@@ -64,10 +64,19 @@ std::string label_of(const Contestant& contestant) {
 const inextensible::Backend& checked_backend(const std::string& name, const std::string& where) {
   const auto* backend = inextensible::find_backend(name);
   if (backend) return *backend;
-  if (const std::string reason = inextensible::why_no_pair(name); !reason.empty())
-    throw UsageError(where + ": there is no solver '" + name + "': " + reason);
-  throw UsageError(where + ": " +
-                   unknown_name("solver", name, names_of(inextensible::backends())).what());
+  throw UsageError(where + ": " + no_solver(name, names_of(inextensible::backends())).what());
+}
+
+std::shared_ptr<const SceneType> checked_scene(const std::string& name, const std::string& where) {
+  auto type = find_scene(name);
+  if (!type) check_known("scene", name, names_of(scene_types()), where);
+  return type;
+}
+
+UsageError no_solver(const std::string& name, const std::vector<std::string>& known) {
+  const std::string reason = inextensible::why_no_pair(name);
+  if (reason.empty()) return unknown_name("solver", name, known);
+  return UsageError("there is no solver '" + name + "': " + reason);
 }
 
 bool matches(const Pattern& pattern, const std::string& solver) {
@@ -96,14 +105,9 @@ inextensible::Settings read_settings(const json& object, const std::string& wher
 
 void check_settings(const inextensible::Settings& settings, const std::string& where,
                     const inextensible::Backend& backend) {
-  const std::vector<std::string> known = names_of(backend.settings);
-  for (const auto& setting : settings) {
-    if (std::ranges::count(known, setting.first) == 0)
-      throw UsageError(
-          where + ": " +
-          unknown_name("setting of solver " + std::string(backend.name), setting.first, known)
-              .what());
-  }
+  const std::string kind = "setting of solver " + std::string(backend.name);
+  for (const auto& setting : settings)
+    check_known(kind, setting.first, names_of(backend.settings), where);
   try {
     complete_settings(backend, settings);
   } catch (const std::invalid_argument& error) {

@@ -90,13 +90,9 @@ SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* 
   JsonReader reader(object, where);
   SweepSpec spec;
   spec.sweep = reader.text("sweep", "");
-  if (const auto kinds = sweep_kinds(); std::ranges::count(kinds, spec.sweep) == 0)
-    throw UsageError(where + ": " + unknown_name("sweep", spec.sweep, kinds).what());
+  check_known("sweep", spec.sweep, sweep_kinds(), where);
   spec.scene = reader.text("scene", "");
-  const auto type = find_scene(spec.scene);
-  if (!type)
-    throw UsageError(where + ": " +
-                     unknown_name("scene", spec.scene, names_of(scene_types())).what());
+  const auto type = checked_scene(spec.scene, where);
   const json* solvers = reader.find("solvers");
   read_limits(reader, where, spec);
   read_scene_parameters(reader, *type, spec);
@@ -126,11 +122,8 @@ void check_contestants(const Suite& suite, const JsonReader& reader) {
                          "' in one sweep and '" + c.solver + "' in another");
     }
   }
-  if (!suite.same.empty() && !solvers.contains(suite.same)) {
-    throw UsageError(
-        reader.where("same") + ": " +
-        unknown_name("contestant", suite.same, names_of(contestants_of(suite))).what());
-  }
+  if (!suite.same.empty())
+    check_known("contestant", suite.same, names_of(contestants_of(suite)), reader.where("same"));
 }
 
 }  // namespace

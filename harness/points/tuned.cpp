@@ -35,9 +35,7 @@ constexpr std::tuple entry_fields{field("kind", &TunedEntry::kind, "", "of scene
 TunedEntry read_entry(const json& object, const std::string& where) {
   TunedEntry entry;
   read_fields(object, entry_fields, entry);
-  const auto kinds = scene_kinds();
-  if (std::ranges::count(kinds, entry.kind) == 0)
-    throw UsageError(where + ": " + unknown_name("kind of scene", entry.kind, kinds).what());
+  check_known("kind of scene", entry.kind, scene_kinds(), where);
   const auto& backend = checked_backend(entry.solver, where);
   for (const json& place : object.at("places")) {
     read_fields(place, place_fields, entry.places.emplace_back());

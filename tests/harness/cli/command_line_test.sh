@@ -53,7 +53,7 @@ cannot read the result file 'folder': it is a folder <- show folder
 'dangling.json': it is a link to 'nowhere.json', which does not exist <- show dangling.json
 cannot read the result file 'empty.json': it is empty <- show empty.json
 must be 24, 30 or 60 <- choose --fps 50
-must be such as 2ms <- choose --budget 2
+--budget <- choose --budget 2ms
 TABLE
 [[ ! -e nowhere ]] || fail "a refused --out made its folder"
 chain='{"sweep": "strain", "scene": "chain", "limits": [0.1]'
@@ -163,8 +163,8 @@ rm -f "$place"
 exits 6 'no run ended within its strain limit in this time' choose --no-wait --scene drape --n 71 --seconds 0.5
 ! grep -q '^take' stdout.txt || fail "a solver to take, without any run"
 chain=(choose --no-wait --scene chain --n 10 --error 0.5 --seconds 10 --solver 'fast_projection|yarn_projection@midpoint')
-exits 0 'take  ' "${chain[@]}" --budget 10s
-exits 6 'no solver that was tried keeps the budget' "${chain[@]}" --budget 0.000001us
+exits 0 'take  ' "${chain[@]}" --budget 10000
+exits 6 'no solver that was tried keeps the budget' "${chain[@]}" --budget 1e-9
 ! grep -q '^take' stdout.txt && grep -q fast_projection stdout.txt && grep -q yarn_projection@midpoint stdout.txt ||
   fail "a budget that cannot be kept: $(cat stdout.txt)"
 # Settings are searched and put among those of other solvers.

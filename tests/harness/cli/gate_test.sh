@@ -125,7 +125,6 @@ no solver 'jacob'; did you mean 'jacobi'?|"solver": "jacobi"/"solver": "jacob"
 no scene 'chian'; did you mean 'chain'?|"scene": "chain"/"scene": "chian"
 'step' is 0|"step": 0.005/"step": 0
 'strain_limit' is -1|"strain_limit": 0.01/"strain_limit": -1
-'vertices' is 81|"vertices": 20/"vertices": 81
 'settings': no setting|"settings": {}/"settings": {"targt": 1}
 [json|"seed"/"sed"
 [json|}$/
