@@ -11,7 +11,6 @@
 #include "harness/points/result_file.h"
 #include "harness/run/execute.h"
 #include "harness/run/machine_noise.h"
-#include "harness/run/point_runner.h"
 #include "harness/run/sweep.h"
 #include "harness/stability/stability.h"
 #include "harness/tables/tables.h"
@@ -143,7 +142,6 @@ SweepOutcome measured(const Suite& suite, const std::vector<Search>& searches,
                                    journaled(watched(runners, noise_probe, timed), journal));
   noise_probe.sample();
   context["sentinel"] = noise_probe.to_json();
-  context["harness_overhead"] = harness_overhead(outcome.points);
   return outcome;
 }
 

@@ -170,7 +170,7 @@ exits 6 'no solver that was tried keeps the budget' "${chain[@]}" --budget 1e-9
 # Settings are searched and put among those of other solvers.
 cp "$root/configs/tuned.json" before.json
 cp before.json tuned.json
-makes tuned.json tune --scene chain --solver icd --again --trials 4 --timeout 30 --quiet
+makes tuned.json tune --scene chain --solver icd --again --trials 4 --timeout 30
 holds '
 before, after = ({(e["kind"], e["solver"]): e for e in read(name)["tuned"]} for name in ("before.json", "tuned.json"))
 found = after[("chain", "icd")]
