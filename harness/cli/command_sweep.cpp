@@ -3,6 +3,7 @@
 
 #include "harness/base/small_runs.h"
 #include "harness/base/standard_streams.h"
+#include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/judge/reference.h"
@@ -224,9 +225,10 @@ int run_hard_cases(const SweepCommand& options, const Words& typed) {
     Progress progress;
     const std::uint64_t seed = options.seed < 0 ? 1 : static_cast<std::uint64_t>(options.seed);
     const StabilityOutcome outcome = run_stability(plan, seed, journaled_events(journal, progress));
+    const nlohmann::json document = stability_document(context, outcome, seed, typed);
     std::ostringstream text;
-    print_stability(text, outcome, output_columns());
-    return {stability_document(context, outcome, seed, typed), outcome.complete, text.str(),
+    print_outcomes(text, document);
+    return {document, outcome.complete, fitted(text.str(), output_columns()),
             outcome.nothing_new() ? success : unexpected_outcome};
   };
   return carry_out(

@@ -159,6 +159,7 @@ TEST(Stability, ANewDifferenceIsTold) {
   cases[0].expectations = {{{}, Outcome::refused, "nobody can, for once"}};
   outcome = swept();
   EXPECT_EQ(outcome.counts().new_differences, 1);
+  EXPECT_FALSE(outcome.nothing_new());
 }
 
 // Two rigid links without gravity turn for ever: strain, which a step that follows the tangent
