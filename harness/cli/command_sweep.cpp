@@ -98,22 +98,6 @@ void warn_if_busy(const nlohmann::json& context) {
               << processors << " processors): times will be noisy\n";
 }
 
-// The harness's own share of the shortest step that was timed.
-nlohmann::json harness_overhead(const std::vector<PointResult>& points) {
-  nlohmann::json overhead = {{"seconds_per_step", harness_seconds_per_step()}};
-  const PointResult* shortest = nullptr;
-  const auto step_seconds = [](const PointResult& p) { return p.seconds() * p.spec.step; };
-  for (const PointResult& point : points) {
-    if (point.ok() && !point.samples.empty() &&
-        (!shortest || step_seconds(point) < step_seconds(*shortest)))
-      shortest = &point;
-  }
-  if (!shortest) return overhead;
-  overhead["shortest_step"] = step_seconds(*shortest);
-  overhead["of"] = shortest->spec.id();
-  return overhead;
-}
-
 SweepEvents shown(Progress& progress) {
   SweepEvents events;
   events.interrupted = interrupted;

@@ -181,15 +181,9 @@ void print_plugins(std::ostream& out, const json& document) {
   }
 }
 
-// How far times can be trusted: the harness's own share, the A/A pair, the machine.
+// How far times can be trusted: the A/A pair, the machine.
 void print_noise(std::ostream& out, const json& document) {
   const json& context = document.at("context");
-  if (const json share = context.value("harness_overhead", json::object()); share.contains("of")) {
-    const double own = share.at("seconds_per_step"), step = share.at("shortest_step");
-    out << "\nthe harness's own share of the shortest timed step: " << number_text(1e9 * own, 2)
-        << " ns of " << number_text(1e9 * step, 3) << " ns, " << number_text(100 * own / step, 2)
-        << " % (" << share.at("of").get<std::string>() << ")\n";
-  }
   if (const auto pair = noise_of(context))
     out << "\n"
         << pair->one << " ran twice under two names: in 95 % of " << pair->places
