@@ -1,22 +1,20 @@
 #!/usr/bin/python3
-"""One page that tells what result files found: findings in words, charts to hide solvers in and tables to sort, every figure,
-the paper's claims, and scenes in motion. It needs nothing but a browser, and no network.
+"""One page that tells what result files found: findings in words, ranks to hide solvers in, a table to sort, every figure,
+and the paper's claims. It needs nothing but a browser, and no network.
 
-    plots/report.py report.json --out report.html [--motion FOLDER ...]
+    plots/report.py report.json --out report.html
 
-`bench report` runs it: report.json has the results with their analyses, the findings of all, and the claims decided; the folders are
-recordings. page/ has what the browser runs. Needs Debian's python3-matplotlib and python3-numpy.
+`bench report` runs it: report.json has the results with their analyses, the findings of all, and the claims decided. page/ has what the
+browser runs. Needs Debian's python3-matplotlib.
 """
 
 import argparse
 import base64
-import csv
 import io
 import json
 import shlex
 import statistics
 import sys
-from collections import Counter
 from html import escape
 from operator import itemgetter
 from pathlib import Path
@@ -27,14 +25,13 @@ sys.dont_write_bytecode = True
 from figures import all_figures  # complains where matplotlib is missing
 
 import matplotlib
-import numpy as np
 from matplotlib.figure import Figure
 
 from parts.result import Json, Result, seconds_of
-from parts.style import RC, styles_for
+from parts.style import RC
 
 PAGE = Path(__file__).parent / "page"
-SCRIPTS = ("document.js", "contest.js", "table.js", "motion.js")
+SCRIPTS = ("document.js", "contest.js", "table.js")
 FIRST = ("drape", "strain")  # the question that most readers come with
 
 
@@ -49,23 +46,13 @@ def table(head: Iterable[str], rows: Iterable[Iterable[str]], headed: bool = Fal
 
 # ---- findings ---------------------------------------------------------------------------------------------------------
 
-def findings(found: list[Json], results: Iterable[Result]) -> list[tuple[str, list[str]]]:
-    """The program's own, the largest drape over strain before all others, then counts of hard cases and known answers."""
+def findings(found: list[Json]) -> list[tuple[str, list[str]]]:
+    """The program's own, the largest drape over strain before all others."""
     def rank(one: Json) -> tuple[bool, int]:
         first = (one["scene"], one["sweep"]) == FIRST
         return not first, -one["vertices"] if first else 0
 
-    said = [(f"{one['subject'].replace('_', ' ').capitalize()}, over {one['sweep']}:", one["sentences"]) for one in sorted(found, key=rank)]
-    for document in (result.document for result in results):
-        if cells := document.get("matrix"):
-            outcomes = Counter(cell["outcome"].replace("_", " ") for cell in cells).most_common()
-            said.append((f"Hard cases: {len(cells)} runs of {len({cell['row'] for cell in cells})} cases, "
-                         f"{sum(not cell['as_expected'] for cell in cells)} not as theory expects; "
-                         + ", ".join(f"{count} {name}" for name, count in outcomes) + ".", []))
-        if rows := document.get("rows"):
-            said.append((f"Known answers: {len(document['answers'])} figures that theory or measurement knows, {len(rows)} runs, of which "
-                         f"{sum(row['deviation'] is not None for row in rows)} gave a figure.", []))
-    return said
+    return [(f"{one['subject'].replace('_', ' ').capitalize()}, over {one['sweep']}:", one["sentences"]) for one in sorted(found, key=rank)]
 
 
 def findings_part(said: list[tuple[str, list[str]]]) -> str:
@@ -82,43 +69,20 @@ def findings_part(said: list[tuple[str, list[str]]]) -> str:
 # ---- figures ----------------------------------------------------------------------------------------------------------
 
 def picture(name: str, draw: Callable[[], Figure]) -> str:
-    """A figure as SVG that cannot run anything, and as the numbers that it draws."""
+    """A figure as SVG that cannot run anything."""
     figure, svg = draw(), io.StringIO()
     figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
     title = escape(" ".join(figure.texts[0].get_text().split()) if figure.texts else name)
     name = escape(name)
     return (f'<figure id="figure-{name}"><img src="{_address("image/svg+xml", svg.getvalue())}" alt="{title}" loading="lazy">'
-            f'<figcaption>{title} <a download="{name}.svg" data-of="figure-{name}" href="#figure-{name}">SVG</a> '
-            f'<a download="{name}.csv" href="{_address("text/csv", numbers(figure))}">CSV</a></figcaption></figure>\n')
-
-
-def numbers(figure: Figure) -> str:
-    """A line a drawn point: panel, what its axes are, series, x, y; of a picture made of cells: column, row, value."""
-    out = io.StringIO()
-    writer = csv.writer(out)
-    writer.writerow(("panel", "x axis", "y axis", "series", "x", "y", "value"))
-
-    def series(artist: object) -> str:
-        return "" if str(artist.get_label()).startswith("_") else str(artist.get_label())
-
-    for number, axes in enumerate(figure.axes):
-        panel = [" ".join(text.split()) for text in (axes.get_title() or axes.get_title(loc="left") or str(number + 1),
-                                                     axes.get_xlabel(), axes.get_ylabel())]
-        for line in axes.get_lines():
-            if series(line) or len(line.get_xdata()) > 1:
-                writer.writerows((*panel, series(line), x, y, "") for x, y in zip(line.get_xdata(), line.get_ydata()))
-        for collection in axes.collections:
-            values = np.ravel(collection.get_array()) if collection.get_array() is not None else []
-            for index, (x, y) in enumerate(np.asarray(collection.get_offsets())):
-                writer.writerow((*panel, series(collection), x, y, values[index] if index < len(values) else ""))
-    return out.getvalue()
+            f'<figcaption>{title} <a download="{name}.svg" data-of="figure-{name}" href="#figure-{name}">SVG</a></figcaption></figure>\n')
 
 
 def _address(kind: str, text: str) -> str:
     return f"data:{kind};base64,{base64.b64encode(text.encode()).decode()}"
 
 
-# ---- what the scripts work on, as one JSON document: solvers with their looks, a row a point, and scenes in motion ----------------------
+# ---- what the scripts work on, as one JSON document: solvers, and a row a point --------------------------------------------------------
 
 def _median(point: Json) -> float | None:
     """Of three samples or more."""
@@ -138,23 +102,19 @@ FIELDS: dict[str, Callable[[Json], Any]] = {
 }
 
 
-def embedded(results: dict[Path, Result], motions: list[Path]) -> Json:
-    """Whatever a file calls its solvers, each has a look of its own: the legends are taken together."""
-    solvers: dict[str, Json] = {}
+def embedded(results: dict[Path, Result]) -> Json:
+    """The legends are taken together; what they lack comes last."""
+    labels: dict[str, str] = {}
     for result in results.values():
-        for entry in result.document["legend"]["solvers"]:
-            solvers.setdefault(entry["name"], entry)
-    styles = styles_for([point["contestant"] for result in results.values() for point in result.points],
-                        Result({"context": {}, "legend": {"solvers": list(solvers.values()), "statuses": []}}))
-    number = {name: place for place, name in enumerate(styles)}
+        for name in (*result.solvers, *(point["contestant"] for point in result.points)):
+            labels.setdefault(name, result.label(name))
+    number = {name: place for place, name in enumerate(labels)}
     return {
         "columns": ["file", "solver", *FIELDS],
         "points": [[file, number[point["contestant"]], *(read(point) for read in FIELDS.values())]
                    for file, result in enumerate(results.values()) for point in result.points],
         "files": [{"name": path.name, "command": repeat_command(result)} for path, result in results.items()],
-        "solvers": [{"label": style.label, "color": style.color, "dashes": style.look.dashes, "marker": style.look.marker, "hollow": style.hollow,
-                     "name": name} for name, style in styles.items()],
-        "motions": [recorded(folder) for folder in motions],
+        "solvers": [{"label": label, "name": name} for name, label in labels.items()],
     }
 
 
@@ -168,21 +128,6 @@ def repeat_command(result: Result) -> str:
         elif word not in ("--force", "--resume", "--no-plots"):
             kept.append(shlex.quote(word))
     return " ".join(kept)
-
-
-def recorded(folder: Path) -> Json:
-    """What `bench film` recorded (harness/film/recording.h): positions as 16-bit steps of the box that holds them, too coarse to read
-    strains off."""
-    header = json.loads((folder / "film.json").read_text(encoding="utf-8"))
-    x = np.fromfile(folder / "film.f32", dtype="<f4").reshape(-1, 3)
-    low, high = x.min(axis=0), x.max(axis=0)
-    span = np.where(high > low, high - low, 1)
-    kept = ("scene", "frames_per_second", "vertices", "triangles", "edges", "strain_unit", "body", "body_triangles", "body_poses")
-    return {**{key: header[key] for key in kept},
-            "takes": [{key: take[key] for key in ("label", "strain_limit", "frames", "detail")} for take in header["takes"]],
-            "low": low.tolist(), "span": span.tolist(),
-            "positions": base64.b64encode(np.rint((x - low) / span * 65535).astype("<u2").tobytes()).decode(),
-            "strains": base64.b64encode((folder / "film.u8").read_bytes()).decode()}
 
 
 def script_text(value: Any) -> str:
@@ -199,20 +144,19 @@ def machine_row(path: Path, result: Result) -> list[str]:
     return [path.name, *(str(context[key]) for key in ("date", "cpu_model", "num_cpus")), commit, build["compiler"], build["flags"]]
 
 
-def page(results: dict[Path, Result], found: list[Json], claims: list[Json], motions: list[Path]) -> str:
+def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> str:
     def file(name: str) -> str:
         return (PAGE / name).read_text(encoding="utf-8")
 
-    data = embedded(results, motions)
+    data = embedded(results)
     with matplotlib.rc_context(RC):
         pictures = "".join(picture(f"{path.stem}-{name}", draw) for path, result in results.items()
                            for name, draw in all_figures(result).items())
     verdicts = [[claim[key] for key in ("id", "statement", "verdict", "measured", "rule")] for claim in claims]
     parts = [(name, title, body) for name, title, body in (
-        ("findings", "Findings", findings_part(findings(found, results.values()))),
+        ("findings", "Findings", findings_part(findings(found))),
         ("contest", "Who is fastest", file("contest.html") if data["points"] else ""),
         ("points", "All points", file("table.html") if data["points"] else ""),
-        ("motion", "In motion", file("motion.html") if motions else ""),
         ("figures", "Figures", pictures),
         ("claims", "The paper's claims", table(("Claim", "Says", "Verdict", "Measured", "Rule"), verdicts, headed=True) if claims else ""),
         ("machine", "Machine and build", table(("File", "Date", "Processor", "Cores", "Commit", "Compiler", "Flags"),
@@ -237,11 +181,10 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="report.py", description="One page that tells what result files found.")
     parser.add_argument("report", type=Path, metavar="report.json", help="results, findings and claims, as bench report gives them")
     parser.add_argument("--out", type=Path, required=True, metavar="report.html")
-    parser.add_argument("--motion", type=Path, nargs="*", default=[], metavar="FOLDER", help="recordings of bench film")
     options = parser.parse_args()
     given = json.loads(options.report.read_text(encoding="utf-8"))
     results = {Path(entry["name"]): Result(entry["document"]) for entry in given["results"]}
-    text = page(results, given["findings"], given["claims"], options.motion)
+    text = page(results, given["findings"], given["claims"])
     options.out.write_text(text, encoding="utf-8", errors="replace")
     print(options.out)
     return 0

@@ -21,12 +21,8 @@
 
 namespace {
 
-using inextensible::Positions;
 using inextensible::Problem;
-using inextensible::State;
 using inextensible::Status;
-using inextensible::StepResult;
-using inextensible::Stopwatch;
 
 btVector3 to_bullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 Eigen::Vector3d from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
@@ -71,12 +67,12 @@ World::World(const Problem& problem) {
   dynamics.addSoftBody(body.get());
 }
 
-class BulletSoftBody final : public inextensible::Stepper {
+class BulletSoftBody final : public engines::EngineStepper {
  public:
   static constexpr const char* name = "engine_bullet";
 
   BulletSoftBody(std::shared_ptr<const Problem> shared, const inextensible::BackendOptions& options)
-      : Stepper(std::move(shared)), world_(problem()), forces_(problem()) {
+      : EngineStepper(std::move(shared)), world_(problem()) {
     const int iterations = options.count("iterations"),
               velocity_iterations = options.count("velocity_iterations");
     world_.body->m_cfg.piterations = iterations;
@@ -99,41 +95,36 @@ class BulletSoftBody final : public inextensible::Stepper {
   }
 
  private:
-  StepResult solve(const State& state, double h, Positions& x) override {
+  StepResult put_in(const State& state, double h) override {
     // Bullet takes no step for a time that it calls zero.
     if (btFuzzyZero(h)) return {Status::not_converged, 0, -1, 0, "Bullet takes no step so short"};
-    Stopwatch stopwatch(phases_wanted_);
-    auto& nodes = world_.body->m_nodes;
     for (int i = 0; i < problem().vertices(); ++i) {
-      nodes[i].m_x = to_bullet(state.x.col(i));
-      nodes[i].m_v = to_bullet(state.v.col(i));
+      btSoftBody::Node& node = world_.body->m_nodes[i];
+      node.m_x = to_bullet(state.x.col(i));
+      node.m_v = to_bullet(state.v.col(i));
     }
-    for (const int pin : problem().pinned()) nodes[pin].m_v.setZero();
-    phases_.copy += stopwatch();
-    forces_.give(state, work_, [this](int i, const Eigen::Vector3d& f) {
-      world_.body->addForce(to_bullet(f), i);
-    });
-    phases_.unconstrained += stopwatch();
-    world_.dynamics.stepSimulation(h, 0);
-    work_.edge_projections += std::int64_t{passes_} * problem().constraints();
-    phases_.filter += stopwatch();
-    for (int i = 0; i < problem().vertices(); ++i) x.col(i) = from_bullet(nodes[i].m_x);
-    for (const int pin : problem().pinned()) x.col(pin) = state.x.col(pin);  // -0 stays -0
-    phases_.copy += stopwatch();
-    return {Status::ok, passes_};
-  }
-
-  StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& /*filtered*/,
-                            const Positions& /*x*/, Positions& v) override {
-    Stopwatch stopwatch(phases_wanted_);
-    for (int i = 0; i < problem().vertices(); ++i)
-      v.col(i) = from_bullet(world_.body->m_nodes[i].m_v);
-    phases_.copy += stopwatch();
+    for (const int pin : problem().pinned()) world_.body->m_nodes[pin].m_v.setZero();
     return {};
   }
 
+  void give_force(int vertex, const Eigen::Vector3d& force) override {
+    world_.body->addForce(to_bullet(force), vertex);
+  }
+
+  StepResult step(double h) override {
+    world_.dynamics.stepSimulation(h, 0);
+    work_.edge_projections += std::int64_t{passes_} * problem().constraints();
+    return {Status::ok, passes_};
+  }
+
+  void take_out(const State& /*start*/, Positions& x, Positions& v) override {
+    for (int i = 0; i < problem().vertices(); ++i) {
+      x.col(i) = from_bullet(world_.body->m_nodes[i].m_x);
+      v.col(i) = from_bullet(world_.body->m_nodes[i].m_v);
+    }
+  }
+
   World world_;
-  engines::OtherForces forces_;
   int passes_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// What all engines share: how they are made, their rows, and forces that are not their own.
+// What all engines share: how they are made, their rows, and how they step.
 #pragma once
 
 #include <stdexcept>
@@ -52,30 +52,80 @@ const InextensiblePlugin* plugin_of(const std::string& version, const std::strin
   return &plugin;
 }
 
-// All forces but the weight, for engines whose own gravity that is; N, in 3 x vertices. Empty where
-// a problem has no others.
-class OtherForces {
- public:
-  explicit OtherForces(const inextensible::Problem& problem) : problem_(problem) {
-    if (problem.shear() || !problem.bending().empty() || problem.has_drag())
-      forces_.resize(3, problem.vertices());
-  }
+// A step of an engine: a state goes in, the engine steps, positions and velocities come out; the
+// parts are timed.
+class EngineStepper : public inextensible::Stepper {
+ protected:
+  using Positions = inextensible::Positions;
+  using State = inextensible::State;
+  using StepResult = inextensible::StepResult;
 
-  // give(vertex, force), for each vertex that is not pinned.
-  template <class Give>
-  void give(const inextensible::State& state, inextensible::WorkCounters& work, const Give& give) {
-    if (forces_.size() == 0) return;
-    forces_.setZero();
-    add_forces(problem_, state.x, state.v, forces_, work);
-    for (int i = 0; i < problem_.vertices(); ++i) {
-      if (problem_.inverse_mass()[i] > 0)
-        give(i, Eigen::Vector3d(forces_.col(i) - problem_.mass()[i] * problem_.gravity()));
-    }
+  explicit EngineStepper(std::shared_ptr<const inextensible::Problem> shared)
+      : Stepper(std::move(shared)), v_(3, problem().vertices()) {
+    if (problem().shear() || !problem().bending().empty() || problem().has_drag())
+      forces_.resize(3, problem().vertices());
   }
 
  private:
-  const inextensible::Problem& problem_;
-  inextensible::Positions forces_;
+  virtual StepResult put_in(const State& state, double h) = 0;
+  // A force that is not the engine's own, on a vertex that is not pinned; N.
+  virtual void give_force(int /*vertex*/, const Eigen::Vector3d& /*force*/) {}
+  virtual StepResult step(double h) = 0;
+  // Of vertices that are not pinned.
+  virtual void take_out(const State& start, Positions& x, Positions& v) = 0;
+  // What a step that may still be refused must not change.
+  virtual void accept(const Positions& /*x*/, const Positions& /*v*/) {}
+  // After an exception what the engine holds is not to be trusted.
+  virtual void build() {}
+
+  StepResult solve(const State& state, double h, Positions& x) final {
+    try {
+      return timed_step(state, h, x);
+    } catch (const std::exception&) {
+      build();
+      return {inextensible::Status::not_converged, 0, -1, 0, "the engine gave up"};
+    }
+  }
+
+  StepResult timed_step(const State& state, double h, Positions& x) {
+    inextensible::Stopwatch stopwatch(phases_wanted_);
+    const StepResult ready = put_in(state, h);
+    if (!ready) return ready;
+    phases_.copy += stopwatch();
+    give_forces(state);
+    phases_.unconstrained += stopwatch();
+    const StepResult taken = step(h);
+    phases_.filter += stopwatch();
+    if (!taken) return taken;
+    take_out(state, x, v_);
+    for (const int pin : problem().pinned()) {
+      x.col(pin) = state.x.col(pin);  // -0 stays -0
+      v_.col(pin).setZero();
+    }
+    phases_.copy += stopwatch();
+    return taken;
+  }
+
+  // All but the weight, which is the engine's.
+  void give_forces(const State& state) {
+    if (forces_.size() == 0) return;
+    forces_.setZero();
+    add_forces(problem(), state.x, state.x, state.v, forces_, work_);
+    for (int i = 0; i < problem().vertices(); ++i) {
+      if (problem().inverse_mass()[i] > 0)
+        give_force(i, forces_.col(i) - problem().mass()[i] * problem().gravity());
+    }
+  }
+
+  StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& /*filtered*/,
+                            const Positions& x, Positions& v) final {
+    v = v_;
+    accept(x, v);
+    return {};
+  }
+
+  Positions forces_;  // empty where a problem has none but the weight
+  Positions v_;
 };
 
 }  // namespace engines

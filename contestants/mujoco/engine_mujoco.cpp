@@ -19,8 +19,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "contestants/common/engine.h"
-#include "contestants/common/links.h"
+#include "contestants/common/chain_stepper.h"
 
 namespace {
 
@@ -28,10 +27,7 @@ using engines::LinkPoses;
 using engines::Links;
 using inextensible::Positions;
 using inextensible::Problem;
-using inextensible::State;
 using inextensible::Status;
-using inextensible::StepResult;
-using inextensible::Stopwatch;
 
 struct Free {
   void operator()(mjModel* model) const { mj_deleteModel(model); }
@@ -39,10 +35,7 @@ struct Free {
 };
 
 // MuJoCo's own ends the program, once the user has pressed Enter.
-struct MujocoError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-[[noreturn]] void throw_error(const char* message) { throw MujocoError(message); }
+[[noreturn]] void throw_error(const char* message) { throw std::runtime_error(message); }
 
 // Numbers that a step may need at a time, more than MuJoCo guesses: for the derivatives of the
 // implicit integrator four matrices of a body's six velocities by all joint velocities.
@@ -104,7 +97,7 @@ std::unique_ptr<mjModel, Free> load(const std::vector<std::string>& texts) {
   std::unique_ptr<mjModel, Free> model;
   try {
     model.reset(mj_loadXML(file_name(0).c_str(), files.get(), error, sizeof(error)));
-  } catch (const MujocoError& fatal) {
+  } catch (const std::runtime_error& fatal) {
     std::snprintf(error, sizeof(error), "%s", fatal.what());
   }
   mj_deleteVFS(files.get());
@@ -125,8 +118,6 @@ class HingeChain {
     data_.reset(mj_makeData(model_.get()));
     if (!data_) throw std::bad_alloc();
   }
-
-  int hinges() const { return hinges_; }
 
   void set(const LinkPoses& poses) {
     Eigen::Quaterniond before = Eigen::Quaterniond::Identity();
@@ -149,8 +140,7 @@ class HingeChain {
     std::memset(data_->warning, 0, sizeof(data_->warning));
   }
 
-  // False if MuJoCo met numbers that it does not accept and reset itself. Throws
-  // MujocoError.
+  // False if MuJoCo met numbers that it does not accept and reset itself.
   bool step(double h) {
     model_->opt.timestep = h;
     mj_step(model_.get(), data_.get());
@@ -186,19 +176,16 @@ struct Integrator {
 constexpr Integrator integrators[] = {
     {"rk4", mjINT_RK4, 4, 0}, {"implicit", mjINT_IMPLICIT, 1, 1}, {"euler", mjINT_EULER, 1, 0}};
 
-class MujocoChain final : public inextensible::Stepper {
+class MujocoChain final : public engines::ChainStepper {
  public:
   static constexpr const char* name = "engine_mujoco";
 
   MujocoChain(std::shared_ptr<const Problem> shared, const inextensible::BackendOptions& options)
-      : Stepper(std::move(shared)),
-        links_(problem()),
-        poses_(links_.count()),
-        v_(3, problem().vertices()) {
+      : ChainStepper(std::move(shared), options) {
     for (const Integrator& one : integrators) {
       if (options.word("integrator") == one.name) integrator_ = one;
     }
-    make(options.start && planar(links_, problem(), *options.start) ? 1 : 2);
+    build();
   }
 
   static std::vector<inextensible::SettingInfo> settings() {
@@ -210,49 +197,32 @@ class MujocoChain final : public inextensible::Stepper {
   }
 
  private:
-  void make(int hinges) {
-    chain_ = std::make_unique<HingeChain>(links_, problem().gravity(), hinges, integrator_.number);
+  void build() override {
+    chain_ = std::make_unique<HingeChain>(links_, problem().gravity(), flat_ ? 1 : 2,
+                                          integrator_.number);
   }
 
-  StepResult solve(const State& state, double h, Positions& x) override {
-    Stopwatch stopwatch(phases_wanted_);
-    const bool in_plane = planar(links_, problem(), state);
-    if (!in_plane && chain_->hinges() == 1) make(2);  // from here on, or counters would not repeat
-    if (!find_poses(links_, state, chain_->hinges() == 1, poses_))
-      return {Status::not_finite, 0, -1, 0, "a link has no direction"};
-    chain_->set(poses_);
-    phases_.copy += stopwatch();
-    bool taken = false;
-    try {
-      taken = chain_->step(h);
-    } catch (const MujocoError&) {
-      make(chain_->hinges());  // what it left is not to be trusted
-      return {Status::not_converged, 0, -1, 0, "MuJoCo gave up"};
-    }
-    if (!taken) return {Status::not_finite, 0, -1, 0, "MuJoCo met a number above 1e10"};
+  StepResult put_in(const State& state, double /*h*/) override {
+    const StepResult found = find(state);
+    if (found) chain_->set(poses_);
+    return found;
+  }
+
+  StepResult step(double h) override {
+    if (!chain_->step(h)) return {Status::not_finite, 0, -1, 0, "MuJoCo met a number above 1e10"};
     work_.assemblies += integrator_.evaluations;
     work_.factorizations += integrator_.evaluations + integrator_.factorizations;
     work_.back_solves += integrator_.evaluations + integrator_.factorizations;
-    phases_.filter += stopwatch();
-    chain_->get(links_, x, v_);
-    x.colwise() += state.x.col(links_.pin);
-    x.col(links_.pin) = state.x.col(links_.pin);
-    v_.col(links_.pin).setZero();
-    phases_.copy += stopwatch();
     return {Status::ok, integrator_.evaluations};
   }
 
-  StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& /*filtered*/,
-                            const Positions& /*x*/, Positions& v) override {
-    v = v_;
-    return {};
+  void take_out(const State& start, Positions& x, Positions& v) override {
+    chain_->get(links_, x, v);
+    x.colwise() += start.x.col(links_.pin);
   }
 
-  Links links_;
-  LinkPoses poses_;
   Integrator integrator_ = integrators[0];
   std::unique_ptr<HingeChain> chain_;
-  Positions v_;
 };
 
 }  // namespace

@@ -18,19 +18,14 @@
 
 namespace {
 
-using inextensible::Positions;
 using inextensible::Problem;
 using inextensible::State;
 using inextensible::Status;
 using inextensible::StepResult;
-using inextensible::Stopwatch;
 
-// ODE's own end the program.
-struct OdeError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+// ODE's own ends the program.
 [[noreturn]] void throw_error(int /*number*/, const char* /*message*/, va_list /*values*/) {
-  throw OdeError("ODE met numbers that it does not take");
+  throw std::runtime_error("ODE met numbers that it does not take");
 }
 
 struct Destroy {
@@ -38,15 +33,14 @@ struct Destroy {
 };
 using World = std::unique_ptr<dxWorld, Destroy>;
 
-class OdeBalls final : public inextensible::Stepper {
+class OdeBalls final : public engines::EngineStepper {
  public:
   static constexpr const char* name = "engine_ode";
 
   OdeBalls(std::shared_ptr<const Problem> shared, const inextensible::BackendOptions& options)
-      : Stepper(std::move(shared)),
+      : EngineStepper(std::move(shared)),
         options_(options),
         direct_(options.word("solver") == "direct"),
-        forces_(problem()),
         random_(options.seed) {
     dAllocateODEDataForThread(dAllocateMaskAll);
     build();
@@ -67,50 +61,30 @@ class OdeBalls final : public inextensible::Stepper {
   }
 
  private:
-  void build();
-  void put_in(const State& state);
+  void build() override;
+  StepResult put_in(const State& state, double h) override;
 
-  StepResult solve(const State& state, double h, Positions& x) override {
-    Stopwatch stopwatch(phases_wanted_);
-    put_in(state);
-    phases_.copy += stopwatch();
-    forces_.give(state, work_, [this](int i, const Eigen::Vector3d& f) {
-      dBodyAddForce(bodies_[i], f.x(), f.y(), f.z());
-    });
-    phases_.unconstrained += stopwatch();
-    if (!take(h)) return {Status::not_finite, 0, -1, 0, "ODE met numbers that it does not take"};
-    phases_.filter += stopwatch();
-    for (int i = 0; i < problem().vertices(); ++i) {
-      x.col(i) = bodies_[i] ? Eigen::Map<const Eigen::Vector3d>(dBodyGetPosition(bodies_[i]))
-                            : Eigen::Map<const Eigen::Vector3d>(&state.x(0, i));
-    }
-    phases_.copy += stopwatch();
-    return {Status::ok, passes()};
+  void give_force(int vertex, const Eigen::Vector3d& force) override {
+    dBodyAddForce(bodies_[vertex], force.x(), force.y(), force.z());
   }
 
-  bool take(double h);
-  int passes() const { return direct_ ? 1 : options_.count("iterations"); }
+  StepResult step(double h) override;
 
-  StepResult end_velocities(const State& /*start*/, double /*h*/, const Positions& /*filtered*/,
-                            const Positions& /*x*/, Positions& v) override {
-    Stopwatch stopwatch(phases_wanted_);
+  void take_out(const State& /*start*/, Positions& x, Positions& v) override {
     for (int i = 0; i < problem().vertices(); ++i) {
-      if (bodies_[i])
-        v.col(i) = Eigen::Map<const Eigen::Vector3d>(dBodyGetLinearVel(bodies_[i]));
-      else
-        v.col(i).setZero();
+      if (!bodies_[i]) continue;
+      x.col(i) = Eigen::Map<const Eigen::Vector3d>(dBodyGetPosition(bodies_[i]));
+      v.col(i) = Eigen::Map<const Eigen::Vector3d>(dBodyGetLinearVel(bodies_[i]));
     }
-    random_ = next_random_;
-    phases_.copy += stopwatch();
-    return {};
   }
+
+  void accept(const Positions& /*x*/, const Positions& /*v*/) override { random_ = next_random_; }
 
   const inextensible::BackendOptions options_;  // `start` is that of the construction
   bool direct_;
   World world_;
   std::vector<dBodyID> bodies_;   // null: pinned, which is the world to ODE
   std::vector<dJointID> joints_;  // one an edge
-  engines::OtherForces forces_;
   unsigned long random_, next_random_ = 0;
 };
 
@@ -143,7 +117,7 @@ void OdeBalls::build() {
 
 // Anchors are kept relative to bodies. Those on pins are places of the world, which can be set
 // again; setting one measures the distance, which is put right after that.
-void OdeBalls::put_in(const State& state) {
+StepResult OdeBalls::put_in(const State& state, double /*h*/) {
   constexpr dMatrix3 unturned = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   for (int i = 0; i < problem().vertices(); ++i) {
     if (!bodies_[i]) continue;
@@ -161,25 +135,24 @@ void OdeBalls::put_in(const State& state) {
     dJointSetDBallAnchor2(joints_[k], state.x(0, b), state.x(1, b), state.x(2, b));
     dJointSetDBallDistance(joints_[k], problem().rest_length()[k]);
   }
+  return {};
 }
 
-bool OdeBalls::take(double h) {
+StepResult OdeBalls::step(double h) {
   dRandSetSeed(random_);
-  bool taken = false;
-  try {
-    taken = (direct_ ? dWorldStep(world_.get(), h) : dWorldQuickStep(world_.get(), h)) != 0;
-  } catch (const OdeError&) {
-    build();  // what it left is not to be trusted
-  }
+  const bool taken =
+      (direct_ ? dWorldStep(world_.get(), h) : dWorldQuickStep(world_.get(), h)) != 0;
   next_random_ = dRandGetSeed();
+  const int passes = direct_ ? 1 : options_.count("iterations");
   if (direct_) {
     ++work_.assemblies;
     ++work_.factorizations;
     ++work_.back_solves;
   } else {
-    work_.edge_projections += std::int64_t{passes()} * problem().constraints();
+    work_.edge_projections += std::int64_t{passes} * problem().constraints();
   }
-  return taken;
+  if (!taken) return {Status::not_finite, 0, -1, 0, "ODE met numbers that it does not take"};
+  return {Status::ok, passes};
 }
 
 }  // namespace

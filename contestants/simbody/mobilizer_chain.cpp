@@ -89,8 +89,6 @@ MobilizerChain::MobilizerChain(const std::vector<double>& length, const std::vec
 
 MobilizerChain::~MobilizerChain() = default;
 
-bool MobilizerChain::pins() const { return parts_->pins; }
-
 void MobilizerChain::set(const std::vector<LinkPose>& poses) {
   Eigen::Matrix3d before = Eigen::Matrix3d::Identity();
   Eigen::Vector3d rate_before = Eigen::Vector3d::Zero();

@@ -23,7 +23,6 @@ class MobilizerChain {
 
   static constexpr const char* integrators[] = {"merson", "fehlberg", "verlet"};
 
-  bool pins() const;
   void set(const std::vector<LinkPose>& poses);
   // To `h` later. False if Simbody's steps became too many, or too short. Whatever Simbody throws.
   bool step(double h);

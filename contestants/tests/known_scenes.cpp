@@ -11,6 +11,7 @@
 #include "solvers/plugin.h"
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/problem/forces.h"
+#include "support/motion.h"
 
 namespace engines {
 
@@ -19,18 +20,19 @@ using inextensible::ProblemParts;
 using inextensible::Settings;
 using inextensible::State;
 
+namespace {
+
+// A plug-in's rows, in the registry; once.
 void load(const std::string& plugin) {
   static std::set<std::string> loaded;
   if (!loaded.insert(plugin).second) return;
-  void* library = dlopen(plugin.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* library = dlopen((PLUGIN_FOLDER "/" + plugin + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
   ASSERT_TRUE(library) << dlerror();
   const auto entry =
       reinterpret_cast<decltype(&inextensible_plugin)>(dlsym(library, "inextensible_plugin"));
   ASSERT_TRUE(entry);
   inextensible::add_backends({entry()->backends, entry()->backend_count});
 }
-
-namespace {
 
 ProblemParts chain_parts(int links) {
   ProblemParts parts;
@@ -53,6 +55,13 @@ Scene chain(int links, double turn) {
   for (int i = 0; i <= links; ++i)
     x.col(i) << std::cos(turn) * i / links, 0, -std::sin(turn) * i / links;
   return finished(chain_parts(links), x, Positions::Zero(3, links + 1));
+}
+
+Scene hanging_chain(int links) {
+  Scene scene = chain(links);
+  scene.start.x.row(1) = -scene.start.x.row(0);
+  scene.start.x.row(0).setZero();
+  return scene;
 }
 
 Scene swirling_chain(int links) {
@@ -88,6 +97,7 @@ Scene spinning_net(int n, double omega) {
 
 std::unique_ptr<inextensible::Stepper> make(const std::string& solver, const Scene& scene,
                                             const Settings& settings) {
+  load(solver);
   inextensible::BackendOptions options{0.01, 1, settings};
   options.start = &scene.start;
   return inextensible::make_stepper(solver, scene.problem, options);
@@ -110,11 +120,7 @@ double energy(const Scene& scene, const State& state) {
 }
 
 Eigen::Vector3d angular_momentum(const Scene& scene, const State& state) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int i = 0; i < scene.problem->vertices(); ++i)
-    sum += scene.problem->mass()[i] *
-           Eigen::Vector3d(state.x.col(i)).cross(Eigen::Vector3d(state.v.col(i)));
-  return sum;
+  return inextensible::testing::angular_momentum(*scene.problem, state.x, state.v);
 }
 
 double largest_strain(const Scene& scene, const State& state) {

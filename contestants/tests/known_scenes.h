@@ -8,9 +8,6 @@
 
 namespace engines {
 
-// A plug-in's rows, in the registry; once.
-void load(const std::string& plugin);
-
 struct Scene {
   std::shared_ptr<const inextensible::Problem> problem;
   inextensible::State start;
@@ -19,11 +16,14 @@ struct Scene {
 // `links` equal links of 1 m and 1 kg in all, straight, pinned at the origin, at rest. Along x,
 // turned about y by `turn`.
 Scene chain(int links, double turn = 0);
+// The same, straight down.
+Scene hanging_chain(int links);
 // The same, bent and moving in all directions, every link at its length.
 Scene swirling_chain(int links);
 // n x n vertices of 1 kg and 1 m x 1 m in all, without weight, that spin about y by `omega`.
 Scene spinning_net(int n, double omega);
 
+// Of a solver of the plug-in of this name, which is loaded.
 std::unique_ptr<inextensible::Stepper> make(const std::string& solver, const Scene& scene,
                                             const inextensible::Settings& settings = {});
 // The state after that many steps, all of which must be taken.

@@ -5,21 +5,16 @@ namespace {
 
 const std::string solver = "engine_simbody";
 
-class Simbody : public testing::Test {
- protected:
-  void SetUp() override { load(PLUGIN); }
-};
-
-TEST_F(Simbody, MovesAChain) { expect_a_chain(solver, {{"accuracy", 1e-10}}); }
-TEST_F(Simbody, TakesAndGivesStates) { expect_copies(solver); }
-TEST_F(Simbody, TakesUnlikeLinks) { expect_unlike_links(solver); }
-TEST_F(Simbody, LeavesThePlane) {
+TEST(Simbody, MovesAChain) { expect_a_chain(solver, {{"accuracy", 1e-10}}); }
+TEST(Simbody, TakesAndGivesStates) { expect_copies(solver); }
+TEST(Simbody, TakesUnlikeLinks) { expect_unlike_links(solver); }
+TEST(Simbody, LeavesThePlane) {
   expect_leaves_the_plane(solver, {{"integrator", std::string("verlet")}, {"accuracy", 1e-5}});
 }
-TEST_F(Simbody, TakesChainsOnly) { expect_chains_only(solver); }
+TEST(Simbody, TakesChainsOnly) { expect_chains_only(solver); }
 
 // The step of the harness is no bound of the error, the accuracy is.
-TEST_F(Simbody, ErrorFollowsAccuracy) {
+TEST(Simbody, ErrorFollowsAccuracy) {
   for (const char* integrator : {"merson", "fehlberg", "verlet"}) {
     const auto error = [integrator](double accuracy) {
       return pendulum_error(solver, 2,
@@ -31,7 +26,7 @@ TEST_F(Simbody, ErrorFollowsAccuracy) {
 }
 
 // Continuing from its own state and being set again give the same motion.
-TEST_F(Simbody, MayBeInterrupted) {
+TEST(Simbody, MayBeInterrupted) {
   const Scene scene = swirling_chain(5);
   const inextensible::Settings fine{{"accuracy", 1e-9}};
   const auto whole = run(solver, scene, 0.01, 20, fine);
@@ -40,7 +35,7 @@ TEST_F(Simbody, MayBeInterrupted) {
   EXPECT_LT(distance(run(solver, half, 0.01, 10, fine).x, whole.x), 1e-7);
 }
 
-TEST_F(Simbody, RefusesWithoutTrace) {
+TEST(Simbody, RefusesWithoutTrace) {
   const Scene scene = chain(2);
   expect_refusal_without_trace(solver, scene, scene.start,
                                1e9);  // more than 100,000 internal steps

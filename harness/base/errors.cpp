@@ -57,4 +57,10 @@ UsageError unknown_name(std::string_view kind, std::string_view name,
   return UsageError(message + ")");
 }
 
+void check_known(std::string_view kind, std::string_view name,
+                 const std::vector<std::string>& known, const std::string& where) {
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    throw UsageError((where.empty() ? "" : where + ": ") + unknown_name(kind, name, known).what());
+}
+
 }  // namespace harness

@@ -85,10 +85,7 @@ std::string JsonReader::one_of(const std::string& key, const std::string& otherw
 
 void JsonReader::finish() const {
   const std::vector<std::string> known(known_.begin(), known_.end());
-  for (const auto& [key, value] : object_.items()) {
-    if (!known_.contains(key))
-      throw UsageError(where_ + ": " + unknown_name("key", key, known).what());
-  }
+  for (const auto& entry : object_.items()) check_known("key", entry.key(), known, where_);
 }
 
 void JsonReader::fail_at(const std::string& key, const json& value,

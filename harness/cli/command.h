@@ -27,8 +27,7 @@ namespace harness {
   VERB(plot, false,                                                                               \
        "draw the figures of a result file again; of several pieces of one sweep as one")          \
   VERB(report, false,                                                                             \
-       "write one page, to open offline: findings, charts, tables, figures, claims, scenes in "   \
-       "motion")                                                                                  \
+       "write one page, to open offline: findings, ranks, points, figures and claims")            \
   VERB(answers, true, "compare each solver with exact answers (orbits, oscillations, falls)")     \
   VERB(film, false, "render a scene as stills or a film, or export it for ParaView and Blender")  \
   VERB(choose, false, "recommend a solver and a step for a scene, after a minute of measuring")   \

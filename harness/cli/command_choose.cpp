@@ -1,7 +1,6 @@
 // bench choose: which solver to take for a scene, at which step, and what a frame costs.
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "harness/analysis/measured_point.h"
@@ -10,7 +9,6 @@
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/judge/reference_routes.h"
-#include "harness/points/point_json.h"
 #include "harness/points/tuned.h"
 #include "harness/run/choose.h"
 #include "harness/run/execute.h"
@@ -25,57 +23,21 @@ using nlohmann::json;
 
 std::string ms(double seconds) { return number_text(1e3 * seconds, 3); }
 
-std::string error_text(const Pick& pick) {
-  return std::isnan(pick.error) ? "error unknown" : "error " + percent(pick.error);
-}
-
-std::string solver_and_step(const Pick& pick) {
-  return pick.point->spec.name() + " at " + step_text(pick.point->spec.step) + " s";
-}
-
-json pick_json(const std::optional<Pick>& pick) {
-  if (!pick) return nullptr;
-  const PointSpec& spec = pick->point->spec;
-  return {
-      {"solver", spec.solver},
-      {"settings", to_json(spec.settings)},
-      {"step", spec.step},
-      {"frame_seconds",
-       {{"median", pick->frame.median}, {"p99", pick->frame.slow}, {"worst", pick->frame.worst}}},
-      {"seconds_per_simulated_second", pick->point->seconds()},
-      {"max_strain", number(pick->point->measures.max_strain)},
-      {"error", number(pick->error)}};
-}
-
 struct Choice {
   const SweepSpec& sweep;
   Wish wish;
   const Trials& trials;
-  double seconds;         // that it took
-  std::string reference;  // the method that errors are measured against; empty: none
+  double seconds;  // that it took
   Recommendation found = recommend(trials.points, wish);
-  // s of computing time a frame: the one that was given, or what the best run takes.
-  double budget = wish.budget > 0 ? wish.budget : found.best ? found.best->frame.slow : 0;
-  std::optional<Pick> with_half = most_accurate(trials.points, wish, budget / 2);
-  std::optional<Pick> with_double = most_accurate(trials.points, wish, budget * 2);
-
-  // Contestants without a run to take, and why.
-  std::map<std::string, std::string> all_why_not() const {
-    std::map<std::string, std::string> all;
-    for (const PointResult& screened : trials.screened) {
-      const std::string& name = screened.spec.name();
-      if (std::string why = why_not(name, trials, wish); !why.empty())
-        all.emplace(name, std::move(why));
-    }
-    return all;
-  }
 
   std::string text(const Pick& pick) const {
-    return solver_and_step(pick) + " (" +
-           std::to_string(std::lround(1 / (wish.rate * pick.point->spec.step))) +
+    const PointSpec& spec = pick.point->spec;
+    return spec.name() + " at " + step_text(spec.step) + " s (" +
+           std::to_string(std::lround(1 / (wish.rate * spec.step))) +
            " a frame): " + ms(pick.frame.median) + " ms a frame, 99 % below " +
            ms(pick.frame.slow) + ", worst " + ms(pick.frame.worst) + "; strain " +
-           percent(pick.point->measures.max_strain) + ", " + error_text(pick);
+           percent(pick.point->measures.max_strain) + ", error " +
+           (std::isnan(pick.error) ? "unknown" : percent(pick.error));
   }
 
   // Why there is no run to take.
@@ -105,13 +67,6 @@ struct Choice {
                                : "too close to rank")
           << '\n';
     }
-    const auto with = [](double frame, const std::optional<Pick>& pick) {
-      return ms(frame) + " ms a frame: " +
-             (pick ? solver_and_step(*pick) + ", " + error_text(*pick)
-                   : std::string("none that was tried"));
-    };
-    out << "with  " << with(budget / 2, with_half) << "; with " << with(budget * 2, with_double)
-        << '\n';
   }
 
   void print(std::ostream& out) const {
@@ -128,25 +83,11 @@ struct Choice {
     } else {
       out << nothing_found();
     }
-    for (const auto& [name, why] : all_why_not()) out << "not   " << name << ": " << why << '\n';
-  }
-
-  json to_json() const {
-    return {{"scene", sweep.scene},
-            {"scene_parameters", sweep.scene_parameters},
-            {"strain_limit", sweep.limits.front()},
-            {"error", number(wish.error)},
-            {"frame", 1 / wish.rate},
-            {"budget", budget},
-            {"budget_kept", found.all_is_well()},
-            {"take", pick_json(found.to_be_taken() ? found.best : std::nullopt)},
-            {"fastest", pick_json(found.best)},
-            {"runner_up", pick_json(found.next)},
-            {"half_budget", pick_json(with_half)},
-            {"double_budget", pick_json(with_double)},
-            {"without_result", all_why_not()},
-            {"reference", reference.empty() ? json() : json(reference)},
-            {"measured_seconds", seconds}};
+    for (const PointResult& screened : trials.screened) {
+      const std::string& name = screened.spec.name();
+      if (const std::string why = why_not(name, trials, wish); !why.empty())
+        out << "not   " << name << ": " << why << '\n';
+    }
   }
 };
 
@@ -195,10 +136,7 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
         return std::make_shared<const Reference>(reference_of(document, "the quick reference"));
       })) {
     references.put(*made);
-    std::cerr << (*made)->method << " against " << (*made)->second_method << ": known to "
-              << number_text(100 * headline_error) << " % for "
-              << number_text((*made)->known_until(headline_error)) << " of "
-              << number_text((*made)->duration()) << " s\n";
+    std::cerr << reference_text(**made) << '\n';
     return *made;
   }
   std::cerr << "bench: no reference, so errors are unknown: "
@@ -228,22 +166,11 @@ Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
   return try_contestants(suite, plan(suite, {}), wish, limits, events, runners);
 }
 
-// Seconds of "2ms", "500us" or "0.002s".
-double duration_of(const std::string& option, const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  const std::string unit = end;
-  const double scale = unit == "ms" ? 1e-3 : unit == "us" ? 1e-6 : unit == "s" ? 1 : 0;
-  if (!(value > 0) || scale == 0)
-    throw UsageError(option + " is '" + shortened(text, 40) +
-                     "', must be such as 2ms, 500us or 0.002s");
-  return value * scale;
-}
-
 struct Choose : SceneOptions {
-  std::string budget, solver, limits = "0.01";
+  std::string solver, limits = "0.01";
+  double budget = 0;  // ms; 0: none
   double frames_per_second = 60, error = headline_error, seconds = 60;
-  bool as_json = false, no_wait = false;
+  bool no_wait = false;
 
   void declare(const Command& command) {
     scene = "drape";
@@ -254,11 +181,11 @@ struct Choose : SceneOptions {
                    "E", Bounds::positive());
     command.option("--fps", frames_per_second,
                    "frames a second: 24, 30 or 60 (default); no step is longer than a frame", "N");
-    command.option("--budget", budget, "computing time that a frame may take, e.g. 2ms", "TIME");
+    command.option("--budget", budget, "milliseconds of computing that a frame may take", "MS",
+                   Bounds::positive());
     add_solver(command, solver);
     command.option("--seconds", seconds, "that measuring may take; default: 60", "S",
                    Bounds::positive());
-    command.flag("--json", as_json, "for programs");
     add_no_wait(command, no_wait);
   }
 
@@ -282,14 +209,14 @@ struct Choose : SceneOptions {
     sweep.coarsest = 1 / frames_per_second;
     sweep.finest = sweep.coarsest / finest_part;
     sweep.contestants = contestants_for(solver, *type, parameters);
-    tune(sweep.contestants, read_tuned_up_to_date("tuned.json"), type->kind(), {}, false);
+    tune(sweep.contestants, read_tuned_up_to_date("tuned.json"), type->kind());
     return chosen;
   }
 
   int run() {
     if (std::count(std::begin(frame_rates), std::end(frame_rates), frames_per_second) == 0)
       throw UsageError("--fps is " + number_text(frames_per_second) + ", must be 24, 30 or 60");
-    Wish wish{error, frames_per_second, budget.empty() ? 0 : duration_of("--budget", budget)};
+    Wish wish{error, frames_per_second, 1e-3 * budget};
     const Suite tried = suite();
     const TimingLock lock(!no_wait);
     const auto begin = Clock::now();
@@ -298,13 +225,8 @@ struct Choose : SceneOptions {
     const auto reference = reference_for(tried.sweeps.front(), *references, limits_of_time);
     if (!reference) wish.error = any_motion;
     const Trials trials = measure(tried, wish, limits_of_time, references);
-    const Choice choice{tried.sweeps.front(), wish, trials, since(begin),
-                        reference ? reference->method : ""};
-    if (as_json) {
-      std::cout << choice.to_json().dump(1) << '\n';
-    } else {
-      choice.print(std::cout);
-    }
+    const Choice choice{tried.sweeps.front(), wish, trials, since(begin)};
+    choice.print(std::cout);
     return choice.found.all_is_well() ? success : cannot_decide;
   }
 };

@@ -86,8 +86,7 @@ struct Film : SceneOptions {
     for (const auto& backend : inextensible::backends()) {
       if (wanted->matches(backend.name)) film.solvers.push_back({backend.name, backend.name});
     }
-    tune(film.solvers, read_tuned_up_to_date("tuned.json"), find_scene(film.scene)->kind(), {},
-         false);
+    tune(film.solvers, read_tuned_up_to_date("tuned.json"), find_scene(film.scene)->kind());
     film.strain_limits = numbers_of("--limit", limits, Bounds::strain());
     if (step > 0) film.step = step;
     film.frames_per_second = frames_per_second;

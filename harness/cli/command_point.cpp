@@ -1,5 +1,6 @@
 // bench point: runs single points in this process; what bench ab and other programs build upon.
 #include <cmath>
+#include <tuple>
 
 #include "harness/base/json.h"
 #include "harness/base/standard_streams.h"
@@ -14,18 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-// What a point says of itself twice must agree: no run stands for another.
-void check_count(const std::string& where, const char* key, int given, int actual) {
-  if (given != actual)
-    throw UsageError(where + ": '" + key + "' is " + std::to_string(given) +
-                     ", but the scene with these parameters has " + std::to_string(actual));
-}
-
-void check_spec(const PointSpec& spec, const std::string& where) {
-  const auto type = find_scene(spec.scene);
-  if (!type)
-    throw UsageError(where + ": " +
-                     unknown_name("scene", spec.scene, names_of(scene_types())).what());
+void check_spec(PointSpec& spec, const std::string& where) {
+  const auto type = checked_scene(spec.scene, where);
   const SceneParameters parameters = [&] {
     try {
       return complete_parameters(*type, spec.scene_parameters);
@@ -36,9 +27,7 @@ void check_spec(const PointSpec& spec, const std::string& where) {
   if (parameters != spec.scene_parameters)
     throw UsageError(where + ": 'scene_parameters' is " + value_text(spec.scene_parameters) +
                      ", must hold every parameter of the scene: " + json(parameters).dump());
-  const auto [vertices, constraints] = type->counts(parameters);
-  check_count(where, "vertices", spec.vertices, vertices);
-  check_count(where, "constraints", spec.constraints, constraints);
+  std::tie(spec.vertices, spec.constraints) = type->counts(parameters);
   check_plain_name(spec.name(), where + ": 'contestant'");
   check_settings(spec.settings, where + ": 'settings'", checked_backend(spec.solver, where));
   if (!(spec.strain_limit > 0) || !std::isfinite(spec.strain_limit))

@@ -1,6 +1,5 @@
 // bench reference: the trajectories that errors are measured against.
 #include <filesystem>
-#include <iomanip>
 
 #include "harness/base/json.h"
 #include "harness/cli/command.h"
@@ -9,29 +8,6 @@
 
 namespace harness {
 namespace {
-
-// How good it is, and where the scene's last vertex is.
-void print_reference(std::ostream& out, const Reference& reference) {
-  out << reference.scene << ": " << reference.method << "\n  against " << reference.second_method
-      << "\n  observed order " << number_text(reference.observed_order, 3) << ", valid until "
-      << reference.valid_until << " s";
-  if (reference.energy_drift > 0)
-    out << ", energy drift " << number_text(reference.energy_drift, 2) << " of weight times size";
-  out << "\n  gap (over the scene's size, root mean square), what it is the largest of, end "
-         "vertex:\n";
-  for (std::size_t i = 0; i < reference.times.size(); ++i) {
-    out << "  t = " << reference.times[i] << " s  " << number_text(reference.gap[i], 2);
-    for (const auto& [name, part] : reference.gap_parts) {
-      if (i < part.size()) out << "  " << name << ' ' << number_text(part[i], 2);
-    }
-    if (i < reference.positions.size()) {
-      const auto end = reference.positions[i].col(reference.positions[i].cols() - 1);
-      out << "  (" << std::setprecision(12) << end.x() << ", " << end.y() << ", " << end.z() << ')'
-          << std::setprecision(6);
-    }
-    out << '\n';
-  }
-}
 
 // The runs of a reference, kept beside its file.
 RouteRuns runs_beside(const std::string& path, const std::string& scene,
@@ -55,8 +31,7 @@ void make_reference(const std::string& path, const std::string& scene,
   const Reference reference = compute_reference(scene, parameters, finest, runs);
   write_atomically(path, to_json(reference).dump() + "\n");
   runs.remove();
-  print_reference(std::cout, reference);
-  std::cout << path << std::endl;
+  std::cout << scene << ": " << reference_text(reference) << '\n' << path << std::endl;
 }
 
 struct ReferenceVerb : SelectionOptions {

@@ -9,8 +9,6 @@
 #include "harness/base/standard_streams.h"
 #include "harness/claims/claims.h"
 #include "harness/cli/command.h"
-#include "harness/film/recording.h"
-#include "harness/points/tuned.h"
 #include "harness/tables/tables.h"
 
 namespace harness {
@@ -224,40 +222,17 @@ json report_json(const std::vector<NamedResult>& files) {
           {"claims", std::move(claims)}};
 }
 
-// A scene in motion by three methods at 1 %, small enough for a page; the folder that it is in.
-std::string record_into(const std::string& folder, const std::string& scene, double n) {
-  const auto type = find_scene(scene);
-  FilmSpec spec;
-  spec.scene = scene;
-  spec.parameters = complete_parameters(*type, {{"n", n}});
-  for (const char* solver : {"gauss_seidel_colored", "fast_projection", "fast_projection@bdf2"})
-    spec.solvers.push_back({solver, solver});
-  tune(spec.solvers, read_tuned_up_to_date("tuned.json"), type->kind(), {}, false);
-  spec.strain_limits = {0.01};
-  std::filesystem::create_directory(folder);
-  write_recording(folder, record(spec, interrupted, [](auto&&...) {}));
-  return folder;
-}
-
 struct Report : PageOptions {
-  bool no_motion = false;
-
   void declare(const Command& command) {
     PageOptions::declare(command, "result files", "the page, report.html");
     command.require({"--out"});
-    command.flag("--no-motion", no_motion,
-                 "leave out the scenes in motion, which take seconds to simulate");
   }
 
   int run() {
     check_writable(out);
     const TemporaryFolder folder("report");
     write_atomically(folder.file("report.json"), report_json(files()).dump());
-    Words words{folder.file("report.json")};
-    if (!no_motion)
-      words.insert(words.end(), {"--motion", record_into(folder.file("drape"), "drape", 31),
-                                 record_into(folder.file("patch"), "patch", 25)});
-    return draw("report.py", words, out);
+    return draw("report.py", {folder.file("report.json")}, out);
   }
 };
 
@@ -266,24 +241,15 @@ struct Plot {
   std::string out, name;
 
   void declare(const Command& command) {
-    add_results(command, files,
-                "result file; several: pieces of one sweep, drawn as one, with --name");
+    add_results(command, files, "result file; several: pieces of one sweep, drawn as one");
     command.option("--out", out, "folder for the figures; default: beside the result", "DIR");
-    command.option("--name", name, "of several files: what the pictures' names begin with", "NAME");
+    command.option("--name", name,
+                   "what the pictures' names begin with; default: the result's name", "NAME");
   }
 
   int run() {
-    const bool several = files.size() > 1;
-    if (several == name.empty())
-      throw UsageError(several
-                           ? "several result files are drawn as one: give it a --name"
-                           : "--name is for several result files; pictures of one have its name");
     const std::filesystem::path first(files.front());
-    json document = read_as_one(files);
-    if (several && !is_sweep(document))
-      throw UsageError("'" + files.front() +
-                       "' is no sweep: pieces of sweeps alone are drawn as one");
-    return draw_figures(std::move(document), several ? name : first.stem().string(),
+    return draw_figures(read_as_one(files), name.empty() ? first.stem().string() : name,
                         out.empty() ? first.parent_path().string() : out);
   }
 };

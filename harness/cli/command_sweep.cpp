@@ -3,6 +3,7 @@
 
 #include "harness/base/small_runs.h"
 #include "harness/base/standard_streams.h"
+#include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/judge/reference.h"
@@ -11,7 +12,6 @@
 #include "harness/points/result_file.h"
 #include "harness/run/execute.h"
 #include "harness/run/machine_noise.h"
-#include "harness/run/point_runner.h"
 #include "harness/run/sweep.h"
 #include "harness/stability/stability.h"
 #include "harness/tables/tables.h"
@@ -22,9 +22,8 @@ namespace {
 struct SweepCommand : SweepOptions, OutputOptions {
   std::string shard;
   double memory = 0;  // bytes; 0: no limit
-  bool in_process = false, dry_run = false, no_wait = false;
-  std::string hard_case;  // of --sweep stability, as the next one
-  Words values;
+  bool dry_run = false, no_wait = false;
+  std::string hard_case;  // of --sweep stability
 
   void declare(const Command& command);
   int run(const Words& typed);
@@ -99,22 +98,6 @@ void warn_if_busy(const nlohmann::json& context) {
               << processors << " processors): times will be noisy\n";
 }
 
-// The harness's own share of the shortest step that was timed.
-nlohmann::json harness_overhead(const std::vector<PointResult>& points) {
-  nlohmann::json overhead = {{"seconds_per_step", harness_seconds_per_step()}};
-  const PointResult* shortest = nullptr;
-  const auto step_seconds = [](const PointResult& p) { return p.seconds() * p.spec.step; };
-  for (const PointResult& point : points) {
-    if (point.ok() && !point.samples.empty() &&
-        (!shortest || step_seconds(point) < step_seconds(*shortest)))
-      shortest = &point;
-  }
-  if (!shortest) return overhead;
-  overhead["shortest_step"] = step_seconds(*shortest);
-  overhead["of"] = shortest->spec.id();
-  return overhead;
-}
-
 SweepEvents shown(Progress& progress) {
   SweepEvents events;
   events.interrupted = interrupted;
@@ -140,13 +123,10 @@ SweepOutcome measured(const Suite& suite, const std::vector<Search>& searches,
   Progress progress;
   NoiseProbe noise_probe;
   noise_probe.sample();
-  const ProcessorTicks ticks = processor_ticks();
   SweepOutcome outcome = run_sweep(suite, searches, shown(progress),
                                    journaled(watched(runners, noise_probe, timed), journal));
   noise_probe.sample();
   context["sentinel"] = noise_probe.to_json();
-  context["stolen"] = stolen_share(ticks, processor_ticks());
-  context["harness_overhead"] = harness_overhead(outcome.points);
   return outcome;
 }
 
@@ -176,9 +156,8 @@ int run_suite(const SweepCommand& options, const Words& typed) {
     if (!options.untimed) warn_if_busy(context);
     if (before.is_object())
       context["resumed"] = {{"from", before.at("date")}, {"points", points_in(journal)}};
-    if (!options.in_process) runners = isolated(runners, options.memory);
-    const SweepOutcome outcome =
-        measured(suite, searches, runners, journal, !options.untimed, context);
+    const SweepOutcome outcome = measured(suite, searches, isolated(runners, options.memory),
+                                          journal, !options.untimed, context);
     nlohmann::json document = result_document(context, suite, typed, outcome.complete,
                                               outcome.points, references->summaries());
     std::ostringstream text;
@@ -193,21 +172,10 @@ int run_suite(const SweepCommand& options, const Words& typed) {
 
 // ---- Hard cases: they are in the program, not in a suite ----
 
-// "ratios=1e3,1e5" into `values`.
-void set_values(HardCaseValues& values, const std::string& given) {
-  const auto [name, list] = name_and_value(given);
-  std::vector<std::string> names;
-  for (const auto& entry : values) names.push_back(entry.first);
-  check_known("value of hard cases", name, names);
-  values[name] = numbers_of("--values " + name, list, {});
-}
-
 // cases must outlive it.
 StabilityPlan plan_of(const SweepCommand& options, const std::vector<HardCase>& cases) {
-  StabilityFilters filters;
-  filters.solver = solver_pattern(options.solver);
-  filters.hard_case = pattern_of("--case", options.hard_case);
-  StabilityPlan plan = plan_stability(cases, filters);
+  StabilityPlan plan = plan_stability(
+      cases, {solver_pattern(options.solver), pattern_of("--case", options.hard_case), {}});
   if (!options.shard.empty()) plan.keep(parse_shard(options.shard));
   return plan;
 }
@@ -227,8 +195,7 @@ void add_cells_of(const nlohmann::json& result, Journal& journal) {
 
 int run_hard_cases(const SweepCommand& options, const Words& typed) {
   check_known("profile", options.profile, profiles());
-  HardCaseValues values = hard_case_values(options.profile);
-  for (const std::string& given : options.values) set_values(values, given);
+  const HardCaseValues values = hard_case_values(options.profile);
   const std::vector<HardCase> cases = hard_cases(values);
   const StabilityPlan plan = plan_of(options, cases);
   if (options.dry_run) return print_plan(plan);
@@ -242,9 +209,10 @@ int run_hard_cases(const SweepCommand& options, const Words& typed) {
     Progress progress;
     const std::uint64_t seed = options.seed < 0 ? 1 : static_cast<std::uint64_t>(options.seed);
     const StabilityOutcome outcome = run_stability(plan, seed, journaled_events(journal, progress));
+    const nlohmann::json document = stability_document(context, outcome, seed, typed);
     std::ostringstream text;
-    print_stability(text, outcome, output_columns());
-    return {stability_document(context, outcome, seed, typed), outcome.complete, text.str(),
+    print_outcomes(text, document);
+    return {document, outcome.complete, fitted(text.str(), output_columns()),
             outcome.nothing_new() ? success : unexpected_outcome};
   };
   return carry_out(
@@ -264,14 +232,8 @@ void SweepCommand::declare(const Command& command) {
   of_suites_.byte_count("--memory", memory, "address space a point may have, e.g. 4G");
   of_suites_.flag("--rerun-failed", rerun_failed,
                   "as --resume, also after a finished run, and run again what failed");
-  of_suites_.flag("--in-process", in_process,
-                  "run points in this process, for debuggers and profilers");
   of_cases_.option("--case", hard_case, "only cases whose name contains a match, e.g. 'Q[12]'",
                    "REGEX");
-  of_cases_.option("--values", values,
-                   "the values of a family of cases, e.g. ratios=1e3,1e5 (distances, limits, "
-                   "ratios, links, sides, scales)",
-                   "NAME=LIST");
 }
 
 int SweepCommand::run(const Words& typed) {

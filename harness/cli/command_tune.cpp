@@ -66,24 +66,12 @@ json context_of(double timeout) {
           {"timeout", timeout}};
 }
 
-// The settings of a place that are an end of their range: beyond it there may be better ones.
-std::string at_ends(const std::string& solver, const TunedPlace& place) {
-  std::string names;
-  for (const TunedNumber& n : tunable_numbers(*inextensible::find_backend(solver))) {
-    const auto found = place.settings.find(n.name);
-    if (found == place.settings.end()) continue;
-    const double at = position_of(n, std::get<double>(found->second));
-    if (at <= 0 || at >= 1) names += (names.empty() ? "  ends of ranges: " : ", ") + n.name;
-  }
-  return names;
-}
-
 void print(const TunedEntry& entry) {
   for (const TunedPlace& p : entry.places) {
     std::cout << std::left << std::setw(15) << entry.kind << std::setw(35) << entry.solver
               << std::setw(6) << p.resolution << std::setw(8) << number_text(100 * p.limit) + " %"
               << std::setw(7) << number_text(p.gain(), 3) << to_json(p.settings).dump()
-              << at_ends(entry.solver, p) << std::endl;
+              << std::endl;
   }
 }
 
@@ -91,7 +79,7 @@ struct Tune {
   std::string solver, scene, n, limits, out;
   int trials = 0;  // 0: the rule's
   double timeout = TuneOptions{}.timeout;
-  bool no_wait = false, quiet = false, again = false;
+  bool no_wait = false, again = false;
 
   void declare(const Command& command) {
     add_solver(command, solver);
@@ -107,7 +95,6 @@ struct Tune {
     add_timeout(command, timeout, "10");
     command.flag("--again", again, "also what is up to date");
     command.option("--out", out, "the settings; default: configs/tuned.json", "FILE");
-    command.flag("--quiet", quiet, "no line for each set of settings");
     add_no_wait(command, no_wait);
   }
 
@@ -141,7 +128,7 @@ struct Tune {
     options.timeout = timeout;
     options.interrupted = interrupted;
     if (own_places()) options.longest_run = std::numeric_limits<double>::infinity();
-    if (!quiet) options.tell = [](const std::string& line) { std::cerr << line << '\n'; };
+    options.tell = [](const std::string& line) { std::cerr << line << '\n'; };
     return options;
   }
 

@@ -29,18 +29,18 @@ std::string SceneOptions::name() const { return with_mesh_parts(scene, pins, bod
 SceneParameters SceneOptions::given_parameters() const {
   SceneParameters parameters;
   for (const std::string& word : set) {
-    const auto [parameter, text] = name_and_value(word);
-    const auto number = number_in(text);
+    const auto equals = word.find('=');
+    const auto number =
+        equals == std::string::npos ? std::nullopt : number_in(word.substr(equals + 1));
     if (!number)
       throw UsageError("--set " + word + ": must be NAME=NUMBER, a parameter of the scene");
-    parameters[parameter] = *number;
+    parameters[word.substr(0, equals)] = *number;
   }
   return parameters;
 }
 
 SceneParameters SceneOptions::complete_parameters() const {
-  const auto type = find_scene(name());
-  if (!type) throw unknown_name("scene", name(), names_of(scene_types()));
+  const auto type = checked_scene(name());
   SceneParameters parameters = given_parameters();
   if (!n.empty()) parameters[type->resolution] = one_number_of("--n", n, Bounds::whole_number(2));
   return harness::complete_parameters(*type, parameters);
@@ -63,14 +63,8 @@ void SelectionOptions::declare(const Command& to, const Command& of_suites) {
 void SweepOptions::declare(const Command& to, const Command& of_suites) {
   SelectionOptions::declare(to, of_suites);
   add_seed(to, seed, "of random orders");
-  of_suites.option(
-      "--reps", reps,
-      "samples of each point that may be best; 7..40: more until the median is known to --rel-ci",
-      "N");
-  of_suites.option("--rel-ci", rel_ci,
-                   "half width of the median's 95 % confidence interval over the median, default "
-                   "0.02",
-                   "R", Bounds::positive());
+  of_suites.option("--reps", reps, "samples of each point that may be best", "N",
+                   Bounds::whole_number(1));
   add_timeout(of_suites, timeout, "the suite's");
   of_suites.option("--steps", steps,
                    "search (each solver's best step, default), all (the whole ladder) or adaptive "
@@ -133,21 +127,6 @@ void add_no_wait(const Command& to, bool& no_wait) {
 
 std::vector<std::string> profiles() { return {"quick", "default", "paper", "large"}; }
 
-void check_known(const char* kind, const std::string& name, const std::vector<std::string>& known) {
-  if (std::ranges::count(known, name) == 0) throw unknown_name(kind, name, known);
-}
-
-namespace {
-
-// A pair that makes no sense gets its reason, any other name a suggestion.
-UsageError no_solver(const std::string& name, const std::vector<std::string>& names) {
-  const std::string reason = inextensible::why_no_pair(name);
-  if (reason.empty()) return unknown_name("solver", name, names);
-  return UsageError("there is no solver '" + name + "': " + reason);
-}
-
-}  // namespace
-
 std::optional<Pattern> solver_pattern(const std::string& text, const Contestants& contestants) {
   if (text.empty()) return std::nullopt;
   std::vector<std::string> names = names_of(inextensible::backends());
@@ -186,11 +165,6 @@ double one_number_of(const std::string& option, const std::string& text, const B
   const std::vector<double> numbers = numbers_of(option, text, bounds);
   if (numbers.size() != 1) throw UsageError(option + " is '" + text + "', must be one number");
   return numbers.front();
-}
-
-std::pair<std::string, std::string> name_and_value(const std::string& text) {
-  const auto equals = text.find('=');
-  return {text.substr(0, equals), equals == std::string::npos ? "" : text.substr(equals + 1)};
 }
 
 }  // namespace harness

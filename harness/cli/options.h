@@ -39,8 +39,9 @@ struct SelectionOptions : SceneOptions {  // n: instead of the suite's
 
 // How it is run, too.
 struct SweepOptions : SelectionOptions {
-  std::string steps = "search", reps;  // reps: "5", or "5..40" with rel_ci
-  double timeout = 0, finest_error = 0, rel_ci = 0, finest = 0;
+  std::string steps = "search";
+  int reps = 0;
+  double timeout = 0, finest_error = 0, finest = 0;
   std::int64_t seed = -1;
   bool untimed = false;  // times are not used: does not wait for others that take times
 
@@ -59,7 +60,6 @@ void add_seed(const Command& to, std::int64_t& seed, const std::string& help);
 void add_no_wait(const Command& to, bool& no_wait);
 
 std::vector<std::string> profiles();
-void check_known(const char* kind, const std::string& name, const std::vector<std::string>& known);
 // Both: none for "". Each alternative of the first must match the name of some solver or of some
 // contestant.
 std::optional<Pattern> solver_pattern(const std::string& text, const Contestants& contestants = {});
@@ -68,8 +68,6 @@ std::optional<Pattern> pattern_of(const std::string& option, const std::string& 
 std::vector<double> numbers_of(const std::string& option, const std::string& text,
                                const Bounds& bounds);
 double one_number_of(const std::string& option, const std::string& text, const Bounds& bounds);
-// "NAME=VALUE" at its sign of equality; without one there is no value.
-std::pair<std::string, std::string> name_and_value(const std::string& text);
 
 std::string suite_path(const SelectionOptions& options);
 Suite load_suite(const SweepOptions& options);
@@ -79,5 +77,7 @@ SweepFilters filters_of(const SelectionOptions& options);
 using SceneOfReference = std::pair<std::string, SceneParameters>;
 std::map<std::string, SceneOfReference> without_reference(const std::vector<Search>& searches,
                                                           ReferenceFolder& references);
+// By which methods it was made, and for how long the motion is known.
+std::string reference_text(const Reference& reference);
 
 }  // namespace harness

@@ -1,6 +1,5 @@
 // The suite that a sweep runs: a profile's or one's own, with what the options say instead.
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 
 #include "harness/base/errors.h"
@@ -15,20 +14,6 @@ namespace harness {
 using nlohmann::json;
 
 namespace {
-
-// "5" or "5..40".
-std::pair<int, int> parse_reps(const std::string& text) {
-  int least = 0, most = 0;
-  char extra = 0;
-  const bool whole = has_form(text, R"(\d{1,4}(\.\.\d{1,4})?)");
-  const int numbers = whole ? std::sscanf(text.c_str(), "%d..%d%c", &least, &most, &extra) : 0;
-  if (least < 1)
-    throw UsageError("--reps is '" + shortened(text) +
-                     "', must be a number from 1 on, or two: 5..40");
-  if (numbers == 2 && most < least)
-    throw UsageError("--reps is '" + text + "', whose second number is below the first");
-  return {least, most};
-}
 
 void check_longest_step(const Suite& suite) {
   for (const SweepSpec& sweep : suite.sweeps) {
@@ -114,8 +99,7 @@ Suite edited_suite(const std::string& path, const SweepOptions& options) {
 }  // namespace
 
 std::string suite_path(const SelectionOptions& options) {
-  if (!options.scene.empty() && !find_scene(options.scene))
-    throw unknown_name("scene", options.scene, names_of(scene_types()));
+  if (!options.scene.empty()) (void)checked_scene(options.scene);
   if (!options.config.empty()) return options.config;
   check_known("profile", options.profile, profiles());
   return source_path("configs/" + options.profile + ".json");
@@ -147,8 +131,7 @@ Suite load_suite(const SweepOptions& given) {
     for (SweepSpec& sweep : suite.sweeps) sweep.every_step = true;
     suite.name += "-all";
   }
-  if (!options.reps.empty()) std::tie(suite.reps, suite.most_reps) = parse_reps(options.reps);
-  if (options.rel_ci > 0) suite.rel_ci = options.rel_ci;
+  if (options.reps > 0) suite.reps = options.reps;
   if (options.finest > 0) cut_ladders(suite, options.finest);
   if (options.timeout > 0) suite.timeout = options.timeout;
   // Where times mean nothing, no run is stopped for being slower than another contestant's.
@@ -179,6 +162,13 @@ std::map<std::string, SceneOfReference> without_reference(const std::vector<Sear
       missing.emplace(reference_name(scene.first, scene.second), scene);
   }
   return missing;
+}
+
+std::string reference_text(const Reference& reference) {
+  return reference.method + " against " + reference.second_method + ": known to " +
+         number_text(100 * headline_error) + " % for " +
+         number_text(reference.known_until(headline_error)) + " of " +
+         number_text(reference.duration()) + " s";
 }
 
 }  // namespace harness

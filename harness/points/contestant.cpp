@@ -16,19 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-void append(Contestants& all, const json& list, const std::string& where, bool once) {
-  if (!list.is_array()) throw UsageError(where + " must be a list of solvers");
-  for (const json& entry : list) {
-    Contestant contestant = read_contestant(entry, where);
-    if (find_contestant(all, contestant.name) == all.end()) {
-      all.push_back(std::move(contestant));
-    } else if (once) {
-      throw UsageError(where + ": '" + contestant.name +
-                       "' is there twice; give each a \"name\" of its own");
-    }
-  }
-}
-
 std::vector<SettingsAt> read_settings_at(const json& places, const std::string& where,
                                          const inextensible::Backend& backend) {
   if (!places.is_array()) throw UsageError(where + " must be a list");
@@ -77,10 +64,19 @@ std::string label_of(const Contestant& contestant) {
 const inextensible::Backend& checked_backend(const std::string& name, const std::string& where) {
   const auto* backend = inextensible::find_backend(name);
   if (backend) return *backend;
-  if (const std::string reason = inextensible::why_no_pair(name); !reason.empty())
-    throw UsageError(where + ": there is no solver '" + name + "': " + reason);
-  throw UsageError(where + ": " +
-                   unknown_name("solver", name, names_of(inextensible::backends())).what());
+  throw UsageError(where + ": " + no_solver(name, names_of(inextensible::backends())).what());
+}
+
+std::shared_ptr<const SceneType> checked_scene(const std::string& name, const std::string& where) {
+  auto type = find_scene(name);
+  if (!type) check_known("scene", name, names_of(scene_types()), where);
+  return type;
+}
+
+UsageError no_solver(const std::string& name, const std::vector<std::string>& known) {
+  const std::string reason = inextensible::why_no_pair(name);
+  if (reason.empty()) return unknown_name("solver", name, known);
+  return UsageError("there is no solver '" + name + "': " + reason);
 }
 
 bool matches(const Pattern& pattern, const std::string& solver) {
@@ -109,14 +105,9 @@ inextensible::Settings read_settings(const json& object, const std::string& wher
 
 void check_settings(const inextensible::Settings& settings, const std::string& where,
                     const inextensible::Backend& backend) {
-  const std::vector<std::string> known = names_of(backend.settings);
-  for (const auto& setting : settings) {
-    if (std::ranges::count(known, setting.first) == 0)
-      throw UsageError(
-          where + ": " +
-          unknown_name("setting of solver " + std::string(backend.name), setting.first, known)
-              .what());
-  }
+  const std::string kind = "setting of solver " + std::string(backend.name);
+  for (const auto& setting : settings)
+    check_known(kind, setting.first, names_of(backend.settings), where);
   try {
     complete_settings(backend, settings);
   } catch (const std::invalid_argument& error) {
@@ -186,12 +177,17 @@ Contestants competitors(const SceneType& type, const SceneParameters& given) {
   return all;
 }
 
-Contestants read_contestants(const json* solvers, const json* also, const Contestants& missing,
-                             const std::string& where) {
+Contestants read_contestants(const json& solvers, const std::string& where) {
+  if (!solvers.is_array() || solvers.empty())
+    throw UsageError(where + " must be a list of solvers");
   Contestants all;
-  if (solvers) append(all, *solvers, where + ": 'solvers'", true);
-  if (all.empty()) all = missing;
-  if (also) append(all, *also, where + ": 'also'", false);
+  for (const json& entry : solvers) {
+    Contestant contestant = read_contestant(entry, where);
+    if (find_contestant(all, contestant.name) != all.end())
+      throw UsageError(where + ": '" + contestant.name +
+                       "' is there twice; give each a \"name\" of its own");
+    all.push_back(std::move(contestant));
+  }
   return all;
 }
 

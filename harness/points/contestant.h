@@ -2,10 +2,12 @@
 // there several times.
 #pragma once
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "harness/base/errors.h"
 #include "harness/base/pattern.h"
 #include "harness/scenes/scene.h"
 #include "solvers/registry.h"
@@ -45,9 +47,7 @@ Contestant read_contestant(const nlohmann::json& entry, const std::string& where
 // The solvers of suites that name none: all that compete and take every part of the scene, on a
 // chain without those that are another one there.
 Contestants competitors(const SceneType& type, const SceneParameters& given);
-// Lists of them under the keys "solvers" (`missing` where there is none) and "also".
-Contestants read_contestants(const nlohmann::json* solvers, const nlohmann::json* also,
-                             const Contestants& missing, const std::string& where);
+Contestants read_contestants(const nlohmann::json& solvers, const std::string& where);
 inextensible::Settings read_settings(const nlohmann::json& object, const std::string& where,
                                      const inextensible::Backend& backend);
 // That the solver would take them.
@@ -56,6 +56,11 @@ void check_settings(const inextensible::Settings& settings, const std::string& w
 // That it is made of a-z, 0-9 and _, and one @ for a method in a time stepper.
 void check_plain_name(const std::string& name, const std::string& where);
 const inextensible::Backend& checked_backend(const std::string& name, const std::string& where);
+// where: may be empty.
+std::shared_ptr<const SceneType> checked_scene(const std::string& name,
+                                               const std::string& where = "");
+// A pair that makes no sense gets its reason, any other name a suggestion.
+UsageError no_solver(const std::string& name, const std::vector<std::string>& known);
 // Whether the pattern is of this contestant's or solver's name, that with its published stepper
 // included.
 bool matches(const Pattern& pattern, const std::string& solver);

@@ -53,21 +53,6 @@ std::string cpu_field(const std::string& name) {
   return "";
 }
 
-json caches() {
-  json list = json::array();
-  for (int index = 0; index < 8; ++index) {
-    const std::string folder =
-        "/sys/devices/system/cpu/cpu0/cache/index" + std::to_string(index) + "/";
-    const std::string size = first_line(folder + "size");
-    if (size.empty()) break;
-    list.push_back({{"type", first_line(folder + "type")},
-                    {"level", std::atoi(first_line(folder + "level").c_str())},
-                    {"size", std::atol(size.c_str()) * 1024},
-                    {"num_sharing", 1}});
-  }
-  return list;
-}
-
 // What the program is built from and reads: other changes, of a text or a result, do not count.
 constexpr const char* program_parts =
     "CMakeLists.txt CMakePresets.json cmake configs harness solvers";
@@ -158,7 +143,6 @@ json machine_context() {
       {"cpu_model", cpu},
       {"cpu_scaling_enabled", !governor.empty() && governor != "performance"},
       {"cpu_scaling_governor", governor},
-      {"caches", caches()},
       {"load_avg", load_known ? json(load) : json::array()},
       {"library_build_type", std::string(INEXTENSIBLE_BUILD_TYPE) == "Debug" ? "debug" : "release"},
       {"build", build},

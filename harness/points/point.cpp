@@ -1,10 +1,6 @@
 #include "harness/points/point.h"
 
-#include <gsl/gsl_cdf.h>
-
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "harness/base/statistics.h"
@@ -20,17 +16,6 @@ std::string PointSpec::id() const {
     text << step;
   }
   return text.str();
-}
-
-double median_uncertainty(std::vector<double> samples) {
-  std::sort(samples.begin(), samples.end());
-  const auto n = static_cast<unsigned>(samples.size());
-  // The median lies below the k-th smallest sample with the chance of fewer than k heads in n
-  // throws of a coin.
-  unsigned k = 0;
-  while (2 * (k + 1) <= n && gsl_cdf_binomial_P(k, 0.5, n) <= 0.025) ++k;
-  if (k == 0) return std::numeric_limits<double>::infinity();
-  return 0.5 * (samples[n - k] - samples[k - 1]) / quantile(samples, 0.5);
 }
 
 ErrorAtLevel error_at(const Measures& measures, double level) {

@@ -152,8 +152,4 @@ struct PointResult : Samples, RunOutcome {
 // Frame times replace the point's if there are any: they are those of a faster sample.
 void append(const Samples& more, PointResult& point);
 
-// Half the width of the median's 95 % confidence interval over the median, from order statistics
-// (no assumption on the distribution); infinite below six samples, which cannot tell.
-double median_uncertainty(std::vector<double> samples);
-
 }  // namespace harness

@@ -16,12 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-bool read_untuned(JsonReader& reader, bool tuned, bool otherwise) {
-  const bool untuned = reader.flag("untuned", otherwise);
-  if (untuned && !tuned) throw UsageError(reader.where("untuned") + " goes with 'tuned'");
-  return untuned;
-}
-
 void read_limits(JsonReader& reader, const std::string& where, SweepSpec& spec) {
   spec.limits = reader.numbers("limits", Bounds::strain());
   if (const double limit = reader.number("limit", 0, Bounds::strain()); limit > 0) {
@@ -92,35 +86,28 @@ void fit_steps_to_duration(const SceneType& type, bool coarsest_given, SweepSpec
 }
 
 SweepSpec read_sweep(const json& object, const std::string& where, const Tuned* tuned,
-                     bool untuned_everywhere, const std::string& same) {
+                     const std::string& same) {
   JsonReader reader(object, where);
   SweepSpec spec;
   spec.sweep = reader.text("sweep", "");
-  if (const auto kinds = sweep_kinds(); std::ranges::count(kinds, spec.sweep) == 0)
-    throw UsageError(where + ": " + unknown_name("sweep", spec.sweep, kinds).what());
+  check_known("sweep", spec.sweep, sweep_kinds(), where);
   spec.scene = reader.text("scene", "");
-  const auto type = find_scene(spec.scene);
-  if (!type)
-    throw UsageError(where + ": " +
-                     unknown_name("scene", spec.scene, names_of(scene_types())).what());
+  const auto type = checked_scene(spec.scene, where);
   const json* solvers = reader.find("solvers");
-  const json* also = reader.find("also");
   read_limits(reader, where, spec);
   read_scene_parameters(reader, *type, spec);
   read_steps(reader, where, spec);
   read_solver_options(reader, where, spec);
-  const bool untuned = read_untuned(reader, tuned, untuned_everywhere);
   const json* steps = reader.find("steps");
   reader.finish();
-  Contestants missing;
   try {
     fit_steps_to_duration(*type, steps && steps->contains("coarsest"), spec);
-    if (!solvers || solvers->empty()) missing = competitors(*type, spec.scene_parameters);
+    if (!solvers) spec.contestants = competitors(*type, spec.scene_parameters);
   } catch (const UsageError& error) {
     throw UsageError(where + ": 'scene_parameters': " + error.what());
   }
-  spec.contestants = read_contestants(solvers, also, missing, where);
-  if (tuned) tune(spec.contestants, *tuned, type->kind(), spec.solver_options, untuned);
+  if (solvers) spec.contestants = read_contestants(*solvers, where + ": 'solvers'");
+  if (tuned) tune(spec.contestants, *tuned, type->kind(), spec.solver_options);
   add_double(spec.contestants, same);
   return spec;
 }
@@ -135,11 +122,8 @@ void check_contestants(const Suite& suite, const JsonReader& reader) {
                          "' in one sweep and '" + c.solver + "' in another");
     }
   }
-  if (!suite.same.empty() && !solvers.contains(suite.same)) {
-    throw UsageError(
-        reader.where("same") + ": " +
-        unknown_name("contestant", suite.same, names_of(contestants_of(suite))).what());
-  }
+  if (!suite.same.empty())
+    check_known("contestant", suite.same, names_of(contestants_of(suite)), reader.where("same"));
 }
 
 }  // namespace
@@ -178,8 +162,6 @@ Suite parse_suite(const std::string& text, const std::string& path) {
   suite.profile = reader.text("profile", "custom");
   suite.seed = static_cast<std::uint64_t>(reader.number("seed", 1, Bounds::exact_number()));
   suite.reps = static_cast<int>(reader.number("reps", 3, Bounds::whole_number(1)));
-  suite.most_reps = static_cast<int>(reader.number("most_reps", 0, Bounds::whole_number(0)));
-  suite.rel_ci = reader.number("rel_ci", suite.rel_ci, Bounds::positive());
   suite.timeout = reader.number("timeout", 60, Bounds::positive());
   suite.finest_error = reader.number("finest_error", suite.finest_error, Bounds::positive());
   std::optional<Tuned> tuned;
@@ -188,7 +170,6 @@ Suite parse_suite(const std::string& text, const std::string& path) {
     suite.tuned_file = tuned->file;
     suite.tuned_hash = tuned->hash;
   }
-  const bool untuned = read_untuned(reader, tuned.has_value(), false);
   suite.same = reader.text("same", "");
   const json* sweeps = reader.find("sweeps");
   if (!sweeps || !sweeps->is_array() || sweeps->empty())
@@ -196,7 +177,7 @@ Suite parse_suite(const std::string& text, const std::string& path) {
   for (std::size_t i = 0; i < sweeps->size(); ++i) {
     suite.sweeps.push_back(read_sweep((*sweeps)[i],
                                       "suite '" + path + "': sweeps[" + std::to_string(i) + "]",
-                                      tuned ? &*tuned : nullptr, untuned, suite.same));
+                                      tuned ? &*tuned : nullptr, suite.same));
   }
   check_contestants(suite, reader);
   reader.finish();
@@ -228,8 +209,6 @@ json to_json(const Suite& suite) {
                    {"profile", suite.profile},
                    {"seed", suite.seed},
                    {"reps", suite.reps},
-                   {"most_reps", suite.most_reps},
-                   {"rel_ci", suite.rel_ci},
                    {"timeout", suite.timeout},
                    {"finest_error", suite.finest_error},
                    {"sweeps", sweeps}};

@@ -35,10 +35,8 @@ struct SweepSpec {
 struct Suite {
   std::string name, description, profile;
   std::uint64_t seed = 1;
-  int reps = 3;          // samples of each point that may be best, the first one included
-  int most_reps = 0;     // above reps: more of them until the median is known to rel_ci
-  double rel_ci = 0.02;  // half width of the median's 95 % confidence interval over the median
-  double timeout = 60;   // s a point
+  int reps = 3;         // samples of each point that may be best, the first one included
+  double timeout = 60;  // s a point
   // The tightest of answer_levels that the search for steps goes on for; above all of them: none.
   double finest_error = answer_levels.back();
   std::string same;  // the contestant that stands in every sweep twice; "": none
@@ -55,8 +53,8 @@ std::vector<double> levels_of(const Suite& suite);
 // Contestants of all sweeps, each name once.
 Contestants contestants_of(const Suite& suite);
 
-// Throws UsageError, naming file, key and value, for anything that is not a suite. What "tuned",
-// "untuned" and "same" say is done already: it is in the contestants.
+// Throws UsageError, naming file, key and value, for anything that is not a suite. What "tuned" and
+// "same" say is done already: it is in the contestants.
 Suite read_suite(const std::string& path);
 // The same of a text; `path` is for messages.
 Suite parse_suite(const std::string& text, const std::string& path);

@@ -35,9 +35,7 @@ constexpr std::tuple entry_fields{field("kind", &TunedEntry::kind, "", "of scene
 TunedEntry read_entry(const json& object, const std::string& where) {
   TunedEntry entry;
   read_fields(object, entry_fields, entry);
-  const auto kinds = scene_kinds();
-  if (std::ranges::count(kinds, entry.kind) == 0)
-    throw UsageError(where + ": " + unknown_name("kind of scene", entry.kind, kinds).what());
+  check_known("kind of scene", entry.kind, scene_kinds(), where);
   const auto& backend = checked_backend(entry.solver, where);
   for (const json& place : object.at("places")) {
     read_fields(place, place_fields, entry.places.emplace_back());
@@ -118,28 +116,21 @@ ordered_json tuned_document(const std::vector<TunedEntry>& entries) {
 }
 
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
-          const std::map<std::string, inextensible::Settings>& given, bool untuned) {
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const TunedEntry* entry = all[i].own_name() ? tuned.find(kind, all[i].solver) : nullptr;
+          const std::map<std::string, inextensible::Settings>& given) {
+  for (Contestant& contestant : all) {
+    const TunedEntry* entry = contestant.own_name() ? tuned.find(kind, contestant.solver) : nullptr;
     if (!entry) continue;
-    Contestant before = all[i];
-    const auto fixed = given.find(before.solver);
-    all[i].settings_at = entry->settings_at();
-    bool differs = false;
-    for (SettingsAt& at : all[i].settings_at) {
+    const auto fixed = given.find(contestant.solver);
+    contestant.settings_at = entry->settings_at();
+    for (SettingsAt& at : contestant.settings_at) {
       std::erase_if(at.settings, [&](const auto& setting) {
-        return before.settings.contains(setting.first) ||
+        return contestant.settings.contains(setting.first) ||
                (fixed != given.end() && fixed->second.contains(setting.first));
       });
-      differs = differs || !at.settings.empty();
     }
-    if (!differs) all[i].settings_at.clear();
-    before.name += "_untuned";
-    if (!untuned || !differs || find_contestant(all, before.name) != all.end()) continue;
-    before.label = label_of(all[i]) + ", untuned";
-    before.unranked = true;
-    all.insert(all.begin() + static_cast<std::ptrdiff_t>(i) + 1, std::move(before));
-    ++i;
+    if (std::ranges::all_of(contestant.settings_at,
+                            [](const SettingsAt& at) { return at.settings.empty(); }))
+      contestant.settings_at.clear();
   }
 }
 

@@ -48,10 +48,9 @@ Tuned parse_tuned(const std::string& text, const std::string& file);
 nlohmann::ordered_json tuned_document(const std::vector<TunedEntry>& entries);
 
 // Under its own name a solver gets its tuned settings, as far as neither its entry nor `given`
-// says otherwise. If `untuned`, those that get any stand there once more, unranked, without them,
-// as <name>_untuned.
+// says otherwise.
 void tune(Contestants& all, const Tuned& tuned, const std::string& kind,
-          const std::map<std::string, inextensible::Settings>& given, bool untuned);
+          const std::map<std::string, inextensible::Settings>& given = {});
 
 // The scenes that settings are searched on, one a kind, each at two sizes and three limits. No
 // reported result has these sizes. Without contestants.

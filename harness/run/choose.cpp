@@ -170,16 +170,6 @@ std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& 
       [](const Pick& p) { return p.point->seconds(); });
 }
 
-std::optional<Pick> most_accurate(const std::vector<PointResult>& points, const Wish& wish,
-                                  double seconds) {
-  return least(
-      points, wish, [&](const Pick& p) { return p.frame.slow <= seconds; },
-      [](const Pick& p) {
-        const bool known = !std::isnan(p.error);
-        return std::pair(!known, known ? p.error : p.point->spec.step);
-      });
-}
-
 Recommendation recommend(const std::vector<PointResult>& points, const Wish& wish) {
   Recommendation found;
   found.best = least(

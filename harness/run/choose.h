@@ -55,11 +55,6 @@ struct Pick {
 std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& wish,
                             const std::string& not_by = {});
 
-// The least error of those whose frames take `seconds` at most, 99 of 100 of them. Where nothing is
-// known of errors, the one with the smallest step.
-std::optional<Pick> most_accurate(const std::vector<PointResult>& points, const Wish& wish,
-                                  double seconds);
-
 // How much of a budget the frames of a run keep: 99 % of them, half of them, or fewer.
 enum class Kept { nearly_all, half, fewer };
 Kept kept(const FrameTime& frame, double budget);

@@ -1,9 +1,5 @@
 #include "harness/run/machine_noise.h"
 
-#include <array>
-#include <fstream>
-#include <string>
-
 namespace harness {
 namespace {
 
@@ -79,23 +75,6 @@ nlohmann::json NoiseProbe::to_json() const {
     seconds.push_back(s.seconds);
   }
   return {{"at", at}, {"seconds", seconds}, {"spread", spread()}, {"noisy", noisy()}};
-}
-
-ProcessorTicks processor_ticks() {
-  std::ifstream statistics("/proc/stat");
-  std::string name;
-  ProcessorTicks ticks;
-  statistics >> name;  // cpu: user nice system idle iowait irq softirq steal; guests count as user
-  std::array<double, 8> fields{};
-  for (double& field : fields) statistics >> field;
-  if (!statistics) return {};
-  for (const double field : fields) ticks.all += field;
-  ticks.stolen = fields[7];
-  return ticks;
-}
-
-double stolen_share(const ProcessorTicks& before, const ProcessorTicks& after) {
-  return after.all > before.all ? (after.stolen - before.stolen) / (after.all - before.all) : 0;
 }
 
 }  // namespace harness

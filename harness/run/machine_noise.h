@@ -109,12 +109,4 @@ class NoiseProbe {
   std::vector<Sample> samples_;
 };
 
-// Processor time of all processors since boot, in ticks; 0 where the system does not tell. Stolen:
-// what a hypervisor gave to others.
-struct ProcessorTicks {
-  double stolen = 0, all = 0;
-};
-ProcessorTicks processor_ticks();
-double stolen_share(const ProcessorTicks& before, const ProcessorTicks& after);  // 0 to 1
-
 }  // namespace harness

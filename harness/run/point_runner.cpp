@@ -263,30 +263,4 @@ void PointRunner::restart_clock(RunPart part) {
   if (limits_.heartbeat) limits_.heartbeat->restart(static_cast<int>(part));
 }
 
-double harness_seconds_per_step() {
-  PointSpec spec;
-  spec.scene = "chain";
-  spec.scene_parameters = complete_parameters(*find_scene(spec.scene), {{"n", 2}});
-  spec.solver = "null";
-  spec.strain_limit = 1;
-  constexpr int steps = 4096, rounds = 25;
-  spec.step = spec.scene_parameters.at("duration") / steps;
-  Heartbeat heartbeat;
-  RunLimits limits;
-  limits.interrupted = [] { return false; };
-  limits.heartbeat = &heartbeat;
-  const PointRunner runner(spec, limits);
-  double with = 1e300, without = 1e300;
-  for (int round = 0; round < rounds; ++round) {  // the least of each: what else runs only adds
-    with = std::min(with, runner.seconds_per_step(runner.run({}, false, diverged_strain)));
-    State state = start_of(runner.scene(), runner.backend(), spec.step);
-    const auto stepper = inextensible::make_stepper(spec.solver, runner.scene().problem,
-                                                    {spec.strain_limit, spec.seed, {}, &state});
-    const auto before = Clock::now();
-    for (int i = 0; i < steps; ++i) stepper->advance(state, spec.step);
-    without = std::min(without, since(before) / steps);
-  }
-  return std::max(0.0, with - without);
-}
-
 }  // namespace harness

@@ -146,8 +146,6 @@ void Sweep::repeat_candidates() {
     const double seconds = point.measured_seconds();
     if (seconds >= repeat_for) return true;
     if (one.tries < one.least) return false;
-    if (one.tries < suite.most_reps && median_uncertainty(point.samples) > suite.rel_ci)
-      return false;
     const bool full = one.may_be_best && suite.reps >= full_reps;
     return !full || seconds >= least_measured || one.tries >= 2 * suite.reps;
   };

@@ -48,7 +48,7 @@ using HardCaseValues = std::map<std::string, std::vector<double>>;
 
 // profile: quick, default or paper, which differ in how large chains and cloths grow.
 HardCaseValues hard_case_values(const std::string& profile);
-// values: all of the above. Throws UsageError, naming it, for a value that makes no scene.
+// values: all of the above.
 std::vector<HardCase> hard_cases(const HardCaseValues& values);
 // Those of the file that hold for each case.
 void add_expectations(std::vector<HardCase>& cases);

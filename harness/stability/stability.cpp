@@ -1,15 +1,9 @@
 #include "harness/stability/stability.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <iomanip>
-#include <sstream>
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/base/table.h"
-#include "harness/base/text.h"
 #include "harness/points/contestant.h"
 #include "harness/points/point_json.h"
 #include "harness/points/schema.h"
@@ -130,7 +124,7 @@ StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
   return outcome;
 }
 
-// ---- What a stability sweep prints, and the document it leaves ----
+// ---- The document that a stability sweep leaves ----
 
 // JSON has null for an unknown number.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ExpectationCounts, cells, strict, two_admitted, not_as_expected,
@@ -143,64 +137,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SameFrame, first_contact, times, icd, moved_s
 namespace {
 
 using nlohmann::json;
-
-constexpr double told_energy_gain = 0.05;
-
-// "S", or "S6 R2" where a row's cases differ; ! where one was not expected.
-std::string cell_text(const std::vector<const StabilityCell*>& cells) {
-  std::array<int, std::size(outcomes)> counts{};
-  bool expected = true;
-  double gain = 0;
-  for (const StabilityCell* cell : cells) {
-    if (cell->result.energy_gain > gain) gain = cell->result.energy_gain;  // false on NaN
-    ++counts[static_cast<std::size_t>(cell->result.outcome)];
-    expected = expected && cell->expected;
-  }
-  std::string text;
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (counts[i] == 0) continue;
-    if (!text.empty()) text += ' ';
-    text += outcomes[i].letter;
-    if (counts[i] < static_cast<int>(cells.size())) text += std::to_string(counts[i]);
-  }
-  if (gain > told_energy_gain) text += " E" + number_text(gain, 2);
-  return text + (expected ? "" : " !");
-}
-
-void print_same_frames(std::ostream& out, const std::vector<SameFrame>& frames) {
-  if (frames.empty()) return;
-  out << "\nthe same frame, RMS distance over the scene's size from fast projection: to ICD, to "
-         "itself from a start moved by 1e-10\n";
-  for (const SameFrame& f : frames) {
-    out << "  " << f.scene.name();
-    if (std::isfinite(f.first_contact))
-      out << ", first contact at " << number_text(f.first_contact, 3) << " s";
-    for (std::size_t i = 0; i < f.times.size(); ++i) {
-      if (i + 1 == f.times.size() || f.times[i] == f.first_contact)
-        out << "; " << number_text(f.times[i], 3) << " s: " << number_text(f.icd.rms[i], 2) << ", "
-            << number_text(f.moved_start.rms[i], 2);
-    }
-    out << (f.stopped.empty() ? "" : "; stopped: " + f.stopped) << '\n';
-  }
-}
-
-void print_expectations(std::ostream& out, const StabilityOutcome& outcome) {
-  const ExpectationCounts c = outcome.counts();
-  out << "\n"
-      << c.cells << " cells: " << c.strict << " with one expected outcome, " << c.two_admitted
-      << " that admit two; not as expected: " << c.not_as_expected << ", of them "
-      << c.new_differences << " not known\n";
-  for (const auto& cell : outcome.cells) {
-    if (cell.expected) continue;
-    out << (cell.known ? "  known: " : "  NEW: ") << cell.hard_case->name << ", " << cell.solver
-        << ": " << to_string(cell.result.outcome);
-    if (cell.result.fixed != cell.result.outcome)
-      out << " (" << to_string(cell.result.fixed) << ")";
-    out << ", expected " << to_string(cell.expectation.outcome) << "; " << cell.result.detail;
-    if (cell.known) out << "\n    " << cell.known->reason << "; " << cell.known->remedy;
-    out << '\n';
-  }
-}
 
 json known_json(const StabilityOutcome& outcome) {
   json list = json::array();
@@ -236,60 +172,7 @@ json same_frames_json(const std::vector<SameFrame>& frames) {
   return list;
 }
 
-void print_whole(std::ostream& out, const StabilityOutcome& outcome, std::size_t width) {
-  const auto table = [&](const std::string& title, const std::vector<std::string>& rows,
-                         const std::vector<std::string>& solvers, auto text) {
-    if (rows.empty()) return;
-    Table cells{{""}};
-    cells.head.insert(cells.head.end(), solvers.begin(), solvers.end());
-    for (const std::string& row : rows) {
-      auto& line = cells.rows.emplace_back(1, row);
-      for (const std::string& solver : solvers) line.push_back(text(row, solver));
-    }
-    out << '\n' << title << '\n';
-    print_aligned(out, cells, width);
-  };
-  table(
-      "S survived, s survived with smaller steps, R refused cleanly, T timed out, D diverged, W "
-      "wrong, E energy gained (over its scale), ! not as expected",
-      in_order(outcome.cells, [](const auto& c) { return c.hard_case->row; }),
-      in_order(outcome.cells, [](const auto& c) { return c.solver; }),
-      [&](const std::string& row, const std::string& solver) {
-        std::vector<const StabilityCell*> cells;
-        for (const auto& cell : outcome.cells) {
-          if (cell.hard_case->row == row && cell.solver == solver) cells.push_back(&cell);
-        }
-        return cell_text(cells);
-      });
-  table("largest step (s) at which one second is survived, strain limit 1 % (springs: without one)",
-        in_order(outcome.largest_steps, [](const auto& s) { return s.scene; }),
-        in_order(outcome.largest_steps, [](const auto& s) { return s.solver; }),
-        [&](const std::string& scene, const std::string& solver) -> std::string {
-          for (const auto& s : outcome.largest_steps) {
-            if (s.scene == scene && s.solver == solver) return step_text(s.step);
-          }
-          return "";
-        });
-  if (!outcome.freedom.empty()) {
-    out << "\ndegrees of freedom left (3 per vertex less the rank of J)\n";
-    for (const auto& f : outcome.freedom) {
-      out << "  " << std::setw(10) << f.mesh << f.vertices << " vertices, " << f.constraints
-          << " constraints, rank " << f.rank << ": " << f.degrees_of_freedom << " left, "
-          << std::setprecision(3) << static_cast<double>(f.degrees_of_freedom) / f.vertices
-          << " a vertex\n";
-    }
-  }
-  print_same_frames(out, outcome.same_frames);
-  print_expectations(out, outcome);
-}
-
 }  // namespace
-
-void print_stability(std::ostream& out, const StabilityOutcome& outcome, std::size_t columns) {
-  std::ostringstream text;
-  print_whole(text, outcome, columns);
-  out << fitted(text.str(), columns);
-}
 
 json stability_document(json context, const StabilityOutcome& outcome, std::uint64_t seed,
                         const std::vector<std::string>& command) {

@@ -7,7 +7,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -144,8 +143,6 @@ inline std::string cell_key(const std::string& hard_case, const std::string& sol
 StabilityOutcome run_stability(const StabilityPlan& plan, std::uint64_t seed,
                                const RunEvents& events);
 
-// At most `columns` wide: tables of more solvers go on below.
-void print_stability(std::ostream& out, const StabilityOutcome& outcome, std::size_t columns = 120);
 nlohmann::json stability_document(nlohmann::json context, const StabilityOutcome& outcome,
                                   std::uint64_t seed, const std::vector<std::string>& command);
 

@@ -230,10 +230,10 @@ TrialResult run_trial(const std::function<Trial()>& build, const std::string& so
 }
 
 Outcome outcome_of(const json& name) {
-  const auto place = std::ranges::find(outcomes, name.get<std::string>(), &OutcomeInfo::name);
-  if (place == std::end(outcomes))
+  const auto place = std::ranges::find(outcome_names, name.get<std::string>());
+  if (place == std::end(outcome_names))
     throw json::other_error::create(502, name.dump() + " is no outcome of a trial", nullptr);
-  return static_cast<Outcome>(place - outcomes);
+  return static_cast<Outcome>(place - outcome_names);
 }
 
 json to_json(const TrialResult& result) {

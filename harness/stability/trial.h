@@ -28,16 +28,10 @@ enum class Outcome {
   wrong,     // claimed success, and a check says otherwise
   crashed,   // took its process with it
 };
-struct OutcomeInfo {
-  const char* name;
-  char letter;  // in tables
-};
-inline constexpr OutcomeInfo outcomes[] = {{"survived", 'S'}, {"survived_smaller", 's'},
-                                           {"refused", 'R'},  {"timeout", 'T'},
-                                           {"diverged", 'D'}, {"wrong", 'W'},
-                                           {"crashed", 'C'}};
+inline constexpr const char* outcome_names[] = {
+    "survived", "survived_smaller", "refused", "timeout", "diverged", "wrong", "crashed"};
 constexpr const char* to_string(Outcome outcome) {
-  return outcomes[static_cast<std::size_t>(outcome)].name;
+  return outcome_names[static_cast<std::size_t>(outcome)];
 }
 
 // What is put through the solver. A trial fails nothing by itself: `judge_...` say what must hold.

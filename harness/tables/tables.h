@@ -22,7 +22,7 @@ namespace harness {
 // the document is called in hints.
 void print_sweep(std::ostream& out, const nlohmann::json& document, const std::string& file,
                  bool all = false, std::size_t columns = 120);
-// How each solver's hard cases ended, and which did not end as expected.
+// How each solver's hard cases ended, which did not end as expected, and its largest stable steps.
 void print_outcomes(std::ostream& out, const nlohmann::json& document);
 
 // ---- In Markdown ----

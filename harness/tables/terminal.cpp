@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "harness/analysis/findings.h"
+#include "harness/base/fields.h"
 #include "harness/base/text.h"
 #include "harness/tables/tables.h"
 
@@ -180,15 +181,9 @@ void print_plugins(std::ostream& out, const json& document) {
   }
 }
 
-// How far times can be trusted: the harness's own share, the A/A pair, the machine.
+// How far times can be trusted: the A/A pair, the machine.
 void print_noise(std::ostream& out, const json& document) {
   const json& context = document.at("context");
-  if (const json share = context.value("harness_overhead", json::object()); share.contains("of")) {
-    const double own = share.at("seconds_per_step"), step = share.at("shortest_step");
-    out << "\nthe harness's own share of the shortest timed step: " << number_text(1e9 * own, 2)
-        << " ns of " << number_text(1e9 * step, 3) << " ns, " << number_text(100 * own / step, 2)
-        << " % (" << share.at("of").get<std::string>() << ")\n";
-  }
   if (const auto pair = noise_of(context))
     out << "\n"
         << pair->one << " ran twice under two names: in 95 % of " << pair->places
@@ -232,12 +227,31 @@ void print_sweep(std::ostream& out, const json& document, const std::string& fil
 }
 
 void print_outcomes(std::ostream& out, const json& document) {
+  const json &counts = document.at("counts"), &steps = document.at("largest_steps");
   const Table differences = tables::differences_in(document);
-  out << document.at("matrix").size() << " hard cases and solvers; how they ended:\n";
+  out << counts.at("cells") << " hard cases and solvers, " << counts.at("new_differences")
+      << " with a new difference; how they ended:\n";
   print_aligned(out, tables::outcomes_in(document));
-  if (differences.rows.empty()) return;
-  out << "\nnot as expected:\n";
-  print_aligned(out, differences);
+  if (!differences.rows.empty()) {
+    out << "\nnot as expected:\n";
+    print_aligned(out, differences);
+  }
+  if (steps.empty()) return;
+  const auto scene_of = [](const json& entry) { return entry.at("scene").get<std::string>(); };
+  const auto solver_of = [](const json& entry) { return entry.at("solver").get<std::string>(); };
+  Table table{{"solver"}};
+  for (const std::string& scene : in_order(steps, scene_of)) table.head.push_back(scene);
+  for (const std::string& solver : in_order(steps, solver_of)) {
+    auto& row = table.rows.emplace_back(1, solver);
+    row.resize(table.head.size());
+    for (const json& entry : steps) {
+      const auto column = std::ranges::find(table.head, scene_of(entry)) - table.head.begin();
+      if (solver_of(entry) == solver)
+        row[static_cast<std::size_t>(column)] = step_text(number_of(entry.at("step")));
+    }
+  }
+  out << "\nlargest step (s) at which one second is survived, strain limit 1 %:\n";
+  print_aligned(out, table);
 }
 
 }  // namespace harness

@@ -14,13 +14,6 @@ function element(name, properties = {}, ...children) {
   return made;
 }
 
-function drawn(name, attributes, ...children) {
-  const made = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  made.append(...children);
-  return made;
-}
-
 function timeText(seconds) {
   if (seconds === null) return "";
   for (const [unit, scale] of [["s", 1], ["ms", 1e-3], ["µs", 1e-6]]) {
@@ -38,7 +31,8 @@ function commandOf(point) {
   return `${data.files[point.file].command} --filter '${pattern.replaceAll("'", "'\\''")}'`;
 }
 
-function tell(place, point) {
+// What is behind a point, in words.
+function story(point) {
   const solver = data.solvers[point.solver];
   const parts = [solver.label, point.id];
   if (point.seconds !== null) {
@@ -50,17 +44,22 @@ function tell(place, point) {
     if (point[name]) parts.push(`${point[name]} ${name}`);
   }
   if (point.error !== null) parts.push(`error ${point.error.toPrecision(3)}`);
-  place.textContent = parts.join(" · ");
+  return parts.join(" · ");
 }
 
-async function copy(place, point) {
-  const command = commandOf(point);
-  try {
-    await navigator.clipboard.writeText(command);
-    place.textContent = `Copied: ${command}`;
-  } catch {
-    place.textContent = command;  // a page from a file may not write to the clipboard
-  }
+// Copies the command that repeats a point, and shows it.
+function repeatButton(place, point) {
+  const button = element("button", {type: "button"}, "Copy command");
+  button.addEventListener("click", async () => {
+    const command = commandOf(point);
+    try {
+      await navigator.clipboard.writeText(command);
+      place.textContent = `Copied: ${command}`;
+    } catch {
+      place.textContent = command;  // a page from a file may not write to the clipboard
+    }
+  });
+  return button;
 }
 
 // The picture that is shown is the file: it need not be in the page twice.

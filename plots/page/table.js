@@ -32,9 +32,7 @@
     columns.forEach(([, name], index) => head.cells[index].setAttribute("aria-sort", name === key ? (down ? "descending" : "ascending") : "none"));
     table.tBodies[0].replaceChildren(...kept.slice(0, limit).map((point) => {
       const cells = columns.map(([, , show], index) => element("td", {className: index > 2 && index < 13 && index !== 6 ? "number" : ""}, String(show(point))));
-      const button = element("button", {type: "button"}, "Copy command");
-      button.addEventListener("click", () => copy(count, point));
-      return element("tr", {title: point.id}, ...cells, element("td", {}, button));
+      return element("tr", {title: story(point)}, ...cells, element("td", {}, repeatButton(count, point)));
     }));
     count.textContent = `${kept.length} of ${points.length} points`;
     more.hidden = kept.length <= limit;

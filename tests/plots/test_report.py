@@ -1,8 +1,5 @@
 """The report: what is computed for it, and the page in a browser (Debian: chromium-driver, python3-selenium; skipped without)."""
 
-import base64
-import csv
-import io
 import json
 import shutil
 import subprocess
@@ -10,15 +7,12 @@ import sys
 from pathlib import Path
 from typing import Any, Iterator
 
-import numpy as np
 import pytest
 
-import figures
 import report
 from documents import ROOT, Json, analysed, resolution_sweep, stability, strain_sweep
-from report import embedded, recorded, repeat_command, script_text
+from report import embedded, repeat_command, script_text
 from test_figures import HOSTILE, renamed
-from test_film import recorded as recorded_film
 
 FOUND = [{"scene": "chain", "sweep": "step", "vertices": 80, "subject": "chain of 80 vertices", "sentences": ["A is first."]},
          {"scene": "drape", "sweep": "strain", "vertices": 441, "subject": "drape of 441 vertices", "sentences": ["B is first."]},
@@ -26,14 +20,12 @@ FOUND = [{"scene": "chain", "sweep": "step", "vertices": 80, "subject": "chain o
 
 
 def test_findings_are_the_programs_and_the_largest_drape_comes_first() -> None:
-    found = report.findings(FOUND, [analysed(stability())])
-    assert [texts for _, texts in found] == [["C is first.", "D."], ["B is first."], ["A is first."], []]
-    assert found[3][0].startswith("Hard cases: 4 runs of 2 cases, 1 not as theory expects; 2 survived")
+    assert [texts for _, texts in report.findings(FOUND)] == [["C is first.", "D."], ["B is first."], ["A is first."]]
 
 
 def test_the_data_are_those_of_the_points() -> None:
     result = analysed(strain_sweep())
-    data = embedded({Path("it.json"): result}, [])
+    data = embedded({Path("it.json"): result})
     rows = [dict(zip(data["columns"], row)) for row in data["points"]]
     assert [(row["id"], data["solvers"][row["solver"]]["name"]) for row in rows] == [(made["id"], made["solver"]) for made in result.points]
     assert all(row["seconds"] is None or row["seconds"] <= row["high"] for row in rows)
@@ -46,21 +38,6 @@ def test_data_end_no_script() -> None:
     assert json.loads(text)["name"].startswith("</script>")
 
 
-def test_a_figures_numbers_are_what_it_draws() -> None:
-    made = strain_sweep()
-    rows = csv.DictReader(io.StringIO(report.numbers(figures.all_figures(analysed(made))["figure4a"]())))
-    drawn = {(round(float(row["x"]), 9), round(float(row["y"]), 9)) for row in rows}
-    assert {(round(100 * entry["strain_limit"], 9), round(entry["seconds_per_simulated_second"]["min"], 9))
-            for entry in made["points"] if entry["best"]} <= drawn
-
-
-def test_motion_is_kept_to_a_part_in_65535(tmp_path: Path) -> None:
-    made = recorded(recorded_film(tmp_path))
-    whole = np.frombuffer(base64.b64decode(made["positions"]), dtype="<u2").reshape(-1, 3)
-    x = np.fromfile(tmp_path / "film.f32", dtype="<f4").reshape(-1, 3)
-    assert np.abs(np.array(made["low"]) + whole / 65535 * np.array(made["span"]) - x).max() <= max(made["span"]) / 65535
-
-
 # ---- in a browser ----
 
 @pytest.fixture(scope="module")
@@ -71,8 +48,7 @@ def browser() -> Iterator[Any]:
     if not driver:
         pytest.skip("chromedriver is not installed")
     options = webdriver.ChromeOptions()
-    for option in ("--headless=new", "--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader",
-                   "--enable-unsafe-swiftshader", "--window-size=1200,900"):
+    for option in ("--headless=new", "--no-sandbox", "--disable-gpu", "--window-size=1200,900"):
         options.add_argument(option)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     made = webdriver.Chrome(service=Service(driver), options=options)
@@ -84,9 +60,8 @@ def opened(browser: Any, folder: Path, documents: list[Json]) -> None:
     claims = [{"id": "C1", "statement": "<b>fast</b>", "verdict": "reproduced", "measured": "twice", "rule": "is above 1"}]
     results = [{"name": f"it{number}.json", "document": analysed(made).document} for number, made in enumerate(documents)]
     (folder / "report.json").write_text(json.dumps({"results": results, "findings": FOUND, "claims": claims}))
-    (folder / "motion").mkdir()
-    ran = subprocess.run([sys.executable, ROOT / "plots/report.py", folder / "report.json", "--out", folder / "report.html", "--motion",
-                          recorded_film(folder / "motion", body=True)], capture_output=True, text=True, check=False)
+    ran = subprocess.run([sys.executable, ROOT / "plots/report.py", folder / "report.json", "--out", folder / "report.html"],
+                         capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr
     browser.get((folder / "report.html").as_uri())
 
@@ -104,14 +79,13 @@ def find(browser: Any, selector: str) -> list[Any]:
 
 
 def complaints(browser: Any) -> list[str]:
-    return [entry["message"] for entry in browser.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")
-            and "GPU stall" not in entry["message"]]
+    return [entry["message"] for entry in browser.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")]
 
 
 def test_every_part_is_there_and_nothing_complains(browser: Any, tmp_path: Path) -> None:
     opened(browser, tmp_path, [strain_sweep(), resolution_sweep(), stability()])
     assert complaints(browser) == []
-    for name in ("findings", "contest", "points", "motion", "figures", "claims", "machine"):
+    for name in ("findings", "contest", "points", "figures", "claims", "machine"):
         assert len(find(browser, f"section#{name}")) == 1, name
     assert find(browser, "p.answer")[0].text == "Drape of 961 vertices, over strain: C is first. D."
     pictures = find(browser, "figure img")
@@ -124,19 +98,18 @@ def test_every_part_is_there_and_nothing_complains(browser: Any, tmp_path: Path)
         assert link.get_attribute("href").startswith("data:")
 
 
-def test_ranks_follow_when_a_solver_is_hidden_and_marks_tell_what_is_behind_them_by_keyboard_alone(page: Any) -> None:
+def test_ranks_follow_when_a_solver_is_hidden_and_tell_the_command_of_a_point(page: Any) -> None:
     def ranks() -> list[str]:
         return [row.text for row in find(page, "#contest-ranks tbody tr td:nth-child(2)")]
 
-    page.execute_script("document.querySelector('#contest-chart .mark').focus()")
-    detail = find(page, "#contest-detail")[0]
-    assert "chain/" in detail.text and "9 runs" in detail.text
-    page.switch_to.active_element.send_keys("\ue007")
-    assert "./bench --sweep strain --reps 9 --filter '^chain/" in detail.text
     assert ranks()[:2] == ["fast projection", "SHAKE"]
-    marks = len(find(page, "#contest-chart .mark"))
+    story = find(page, "#contest-ranks tbody tr")[0].get_attribute("title")
+    assert "chain/" in story and "9 runs" in story
+    find(page, "#contest-ranks tbody button")[0].click()
+    page.execute_async_script("setTimeout(arguments[0], 200)")  # the clipboard answers later
+    assert "./bench --sweep strain --reps 9 --filter '^chain/" in find(page, "#contest-detail")[0].text
     find(page, "#contest-solvers input")[[label.text for label in find(page, "#contest-solvers label")].index("fast projection")].click()
-    assert ranks()[0] == "SHAKE" and len(find(page, "#contest-chart .mark")) == marks - 3
+    assert ranks()[0] == "SHAKE"
     assert not any("fast projection" == row.text for row in find(page, "#points-table tbody td:first-child"))
 
 
@@ -152,28 +125,6 @@ def test_the_table_filters_and_sorts(page: Any) -> None:
         times = page.execute_script("return [...document.querySelectorAll('#points-table tbody tr')].map(row => row.cells[7].textContent)")
         seconds = [float(text.split()[0]) * {"s": 1, "ms": 1e-3}[text.split()[1]] for text in times]
         assert len(seconds) > 5 and seconds == sorted(seconds, reverse=down)
-
-
-def test_the_view_draws_turns_and_plays(page: Any) -> None:
-    if find(page, "#motion-labels")[0].text.startswith("This browser draws no"):
-        pytest.skip("no WebGL here")
-    view = find(page, "#motion-view")[0]
-    page.execute_script("arguments[0].scrollIntoView()", view)
-    first = view.screenshot_as_base64
-    page.execute_script("arguments[0].focus()", view)
-    view.send_keys("\ue012" * 5)  # left
-    assert view.screenshot_as_base64 != first
-    page.execute_script("const s = document.getElementById('motion-time'); s.value = 2; s.dispatchEvent(new Event('input'))")
-    assert find(page, "#motion-clock")[0].text == "0.20 s"
-
-
-@pytest.mark.parametrize("width", [360, 1200])
-def test_no_part_is_wider_than_the_page(page: Any, width: int) -> None:
-    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": 800, "deviceScaleFactor": 1, "mobile": width < 500})
-    wide = page.execute_script("""return [...document.querySelectorAll('main *')].filter(e => !e.closest('.wide') && !e.closest('svg')
-        && e.getBoundingClientRect().right > document.documentElement.clientWidth + 1).map(e => e.outerHTML.slice(0, 80))""")
-    page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
-    assert wide == []
 
 
 @pytest.mark.parametrize("kind", HOSTILE)

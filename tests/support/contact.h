@@ -39,21 +39,18 @@ class Ground final : public Collider {
 };
 
 // Points without edges, of mass 1, beside an obstacle.
-inline Problem points(int n, std::shared_ptr<const Collider> collider, std::vector<int> pinned = {},
-                      bool contact_inside = true) {
+inline Problem points(int n, std::shared_ptr<const Collider> collider, bool contact_inside = true) {
   ProblemParts parts;
   parts.contact_inside = contact_inside;
   parts.mass.assign(static_cast<std::size_t>(n), 1.0);
-  parts.pinned = std::move(pinned);
   parts.collider = std::move(collider);
   return Problem(std::move(parts));
 }
 
 // A collision filter's pass over points that were at `start`, as the paper's pipeline ends.
 inline void push_out(std::shared_ptr<const Collider> collider, const Positions& start, Positions& x,
-                     WorkCounters& work, std::vector<int> pinned = {}) {
-  const Problem problem =
-      points(static_cast<int>(x.cols()), std::move(collider), std::move(pinned), false);
+                     WorkCounters& work) {
+  const Problem problem = points(static_cast<int>(x.cols()), std::move(collider), false);
   Contacts contacts(problem);
   contacts.begin(start, 0, 1);
   contacts.push_out(x, work);

@@ -1,11 +1,15 @@
-// Invented points for tests of claims and of the tables of results.
+// Invented points for tests of claims.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <sstream>
+#include <tuple>
+#include <utility>
 
 #include "harness/claims/claims.h"
 #include "support/invented_runs.h"
@@ -73,6 +77,15 @@ inline ClaimVerdict verdict_in(const std::string& id, const json& result) {
 inline ClaimVerdict verdict(const std::string& id, const std::vector<json>& points,
                             double noise = 0) {
   return verdict_in(id, document(points, noise));
+}
+
+// Verdicts on the points that `with` makes of each row's numbers.
+template <std::size_t Numbers, class With>
+void expect_verdicts(
+    const With& with,
+    std::initializer_list<std::pair<std::array<double, Numbers>, const char*>> rows) {
+  for (const auto& [numbers, wanted] : rows)
+    EXPECT_EQ(std::apply(with, numbers).verdict, wanted) << ::testing::PrintToString(numbers);
 }
 
 inline bool says(const ClaimVerdict& claim, const std::string& words) {

@@ -17,6 +17,10 @@ inline double uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
+inline Eigen::Vector3d random_vector(Random& random, double size) {
+  return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
+}
+
 // test(random, seed) for as many seeds, of which sanitizers see an eighth; a failure names its
 // seed.
 template <class Test>

@@ -4,14 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 
 #include "harness/analysis/findings.h"
-#include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/points/result_file.h"
-#include "harness/points/schema.h"
 #include "solvers/registry.h"
 #include "support/invented_runs.h"
 
@@ -108,66 +103,6 @@ TEST(Plane, TakesARunAtATighterLimitWhereThatIsFaster) {
   EXPECT_EQ(winner(planes[0].cell(0.1, any_motion)),
             "chain/yarn_projection/n:80/strain:0.01/h:0.02");
   EXPECT_EQ(winner(planes[0].cell(0.01, 0.02)), "chain/icd/n:80/strain:0.01/h:0.02");
-}
-
-TEST(Plane, SaysWhyACellIsEmpty) {
-  json failed = run("icd", 0.0001, 0.01, 1, 0.01);
-  failed["status"] = "strain_missed";
-  json unsure = run("icd", 0.01, 0.01, 1, 0.01);
-  unsure["error"]["error_series"] = {{0.5, 0.01, 0.01, 0.009, 0.009}};
-  json alone = run("icd", 0.001, 0.01, 1, 0.01);
-  alone["error"].update(
-      {{"reference", nullptr}, {"trajectory", nullptr}, {"error_series", json::array()}});
-  const json result = document({failed, unsure, alone});
-  const auto planes = planes_of(result);
-  EXPECT_EQ(winner(planes.at(0).cell(0.0001, any_motion)), "none: no run keeps the strain limit");
-  EXPECT_EQ(winner(planes.at(0).cell(0.01, 0.02)), "none: the reference is not sure to 2 %");
-  EXPECT_EQ(winner(planes.at(0).cell(0.01, 0.05)), "chain/icd/n:80/strain:0.01/h:0.01");
-  EXPECT_EQ(winner(planes.at(0).cell(0.001, 0.05)), "none: there is no reference");
-}
-
-// As large as files come: all committed sweeps.
-TEST(Plane, IsThereOfEveryCommittedSweep) {
-  int sweeps = 0;
-  for (const auto& file :
-       std::filesystem::directory_iterator(std::string(SOURCE_DIR) + "/results")) {
-    if (file.path().extension() != ".json") continue;
-    const std::string name = file.path().string();
-    const json result = parse_document(read_file(name, "result file"), name);
-    if (result.at("schema") != "inextensible-bench/1") continue;
-    ++sweeps;
-    const json analysis = analysis_of(result);
-    EXPECT_NO_THROW(check_schema(analysis, "analysis", name));
-    EXPECT_GE(analysis.at("planes").size(), 1u) << name;
-    for (const json& plane : analysis.at("planes"))
-      EXPECT_TRUE(plane.at("cells").at(0).at("first").is_string()) << name;
-    for (const json& finding : analysis.at("findings"))
-      EXPECT_FALSE(finding.at("sentences").empty()) << name;
-  }
-  EXPECT_GE(sweeps, 5);
-}
-
-// A limit in each file, and engines in a file of their own: their table is that of one file.
-TEST(Plane, OfSeveralFilesIsThatOfTheWhole) {
-  std::vector<json> all, pieces;
-  for (const double limit : {0.01, 0.1, 0.001}) {  // in any order
-    const json strips = run("yarn_projection", limit, 0.04, 1e-3 / limit, 0.008),
-               icd = run("icd", limit, 0.04, 3e-3, 0.03);
-    all.insert(all.end(), {strips, icd});
-    pieces.push_back(document({strips}));
-    pieces.push_back(document({icd}));
-  }
-  json slower = run("yarn_projection", 0.01, 0.02, 7, 0.008);
-  pieces.push_back(document({slower}));  // searched already: counts once
-  const json table = joined(pieces), whole = document(all);
-  EXPECT_EQ(table.at("points").size(), all.size());
-  const Plane plane = planes_of(table).at(0), expected = planes_of(whole).at(0);
-  EXPECT_EQ(plane.limits, expected.limits);
-  ASSERT_EQ(plane.cells.size(), expected.cells.size());
-  for (std::size_t i = 0; i < expected.cells.size(); ++i) {
-    EXPECT_EQ(winner(plane.cells[i]), winner(expected.cells[i]));
-    EXPECT_EQ(plane.cells[i].entries.size(), expected.cells[i].entries.size());
-  }
 }
 
 // The names that rankings compare with are those whose rows say that the paper has them.

@@ -8,7 +8,6 @@
 #include "harness/answers/answer.h"
 #include "harness/scenes/chain_scenes.h"
 #include "harness/scenes/meshes.h"
-#include "solvers/registry.h"
 #include "solvers/systems/constrained_acceleration.h"
 
 namespace harness {
@@ -163,28 +162,6 @@ TEST(DrapeCoefficient, OfConesIsThatOfTheirShadows) {
     EXPECT_NEAR(read_off("drape_of_cotton", at, x), 100 * (rim * rim - table * table) / ring, 1.5)
         << slope;
   }
-}
-
-// By the method that takes shear, bending and stretch in one system: its rest does not depend on
-// steps.
-double coefficient_at_rest(const SceneParameters& given, double stiffness) {
-  const AnswerScene at = answer_scene("cusick", given);
-  const auto stepper = inextensible::make_stepper("implicit_springs", at.scene.problem,
-                                                  {.settings = {{"stiffness", stiffness}}});
-  State state = at.scene.start;
-  for (int i = 0; i < 400; ++i) EXPECT_TRUE(stepper->advance(state, 0.005));
-  return read_off("drape_of_cotton", at, state.x);
-}
-
-TEST(DrapeCoefficient, DependsOnRatiosOfStiffnessAndWeightAlone) {
-  const SceneParameters light{
-      {"n", 25}, {"density", 0.1}, {"bending", 5e-6}, {"shear", 5}, {"drag", 1}};
-  SceneParameters heavy = light, stiff = light;
-  for (const char* name : {"density", "bending", "shear", "drag"}) heavy[name] *= 4;
-  const double coefficient = coefficient_at_rest(light, 0.5);
-  EXPECT_NEAR(coefficient_at_rest(heavy, 2), coefficient, 0.5);
-  stiff["bending"] *= 10;
-  EXPECT_GT(coefficient_at_rest(stiff, 0.5), coefficient + 5);
 }
 
 // The rows of one answer by one solver.

@@ -100,17 +100,6 @@ TEST_F(Files, PermissionsOfAFileThatIsReplacedAreKept) {
   EXPECT_EQ(fs::status(at("b.json")).permissions(), fs::perms(0644));
 }
 
-TEST_F(Files, AMissingFolderIsNamedAndNotMade) {
-  std::string message;
-  try {
-    check_writable(at("x/y/a.json"));
-  } catch (const UsageError& error) {
-    message = error.what();
-  }
-  EXPECT_NE(message.find("there is no folder '" + at("x/y") + "'"), std::string::npos) << message;
-  EXPECT_FALSE(fs::exists(at("x")));
-}
-
 // Two writers of one file at a time: one of the two texts is there in the end, whole.
 TEST_F(Files, TwoWritersDoNotMix) {
   const std::string a(1 << 16, 'a'), b(1 << 16, 'b');

@@ -25,20 +25,11 @@ using std::chrono::milliseconds;
 
 void sleep_for(int ms) { std::this_thread::sleep_for(milliseconds(ms)); }
 
-// A number that children can leave for their parents.
-class SharedPid {
- public:
-  SharedPid()
-      : place_(static_cast<pid_t*>(mmap(nullptr, sizeof(pid_t), PROT_READ | PROT_WRITE,
-                                        MAP_SHARED | MAP_ANONYMOUS, -1, 0))) {}
-  ~SharedPid() { munmap(place_, sizeof(pid_t)); }
-  SharedPid(const SharedPid&) = delete;
-  SharedPid& operator=(const SharedPid&) = delete;
-  pid_t& operator*() const { return *place_; }
-
- private:
-  pid_t* place_;
-};
+// A number that children can leave for their parents; it stays until this process ends.
+pid_t& shared_pid() {
+  return *static_cast<pid_t*>(
+      mmap(nullptr, sizeof(pid_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+}
 
 // Makes this process the parent of orphans below it. Who else takes them, and when, is the
 // machine's affair: where nobody does, a process that was killed is there for ever.
@@ -65,7 +56,7 @@ TEST(ChildProcess, AnAnswerThatCannotBeReadIsHowItEnded) {
 
 TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParent) {
   adopt_orphans();
-  const SharedPid left;
+  pid_t& left = shared_pid();
   const ChildOutcome outcome = run_in_child(
       [&](Heartbeat&) -> std::string {
         const pid_t own = fork();
@@ -73,14 +64,14 @@ TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParent) {
           sleep_for(60000);  // with the pipe open
           _exit(0);
         }
-        *left = own;
+        left = own;
         _exit(3);
       },
       {});
   EXPECT_EQ(outcome.end, End::exited);
   EXPECT_EQ(outcome.code, 3);
-  ASSERT_GT(*left, 0);
-  EXPECT_TRUE(was_killed(*left)) << "its parent waited for the process that it left behind";
+  ASSERT_GT(left, 0);
+  EXPECT_TRUE(was_killed(left)) << "its parent waited for the process that it left behind";
 }
 
 // Whether a process whose child does `work` gets its answer in spite of what disturbs it meanwhile.
@@ -135,11 +126,11 @@ TEST(ChildProcess, AnAnswerIsNotLostToASignal) {
 
 TEST(ChildProcess, OneThatHangsIsEndedWithWhatItStarted) {
   adopt_orphans();
-  const SharedPid started;
+  pid_t& started = shared_pid();
   const ChildOutcome outcome = run_in_child(
       [&](Heartbeat& heartbeat) -> std::string {
         const pid_t own = fork();
-        if (own > 0) *started = own;
+        if (own > 0) started = own;
         // Its time is up now. Said again and again: a parent that was away for long may have set
         // the beginning at the same time.
         while (own > 0) {
@@ -151,8 +142,8 @@ TEST(ChildProcess, OneThatHangsIsEndedWithWhatItStarted) {
       },
       {.timeout = 100});
   EXPECT_EQ(outcome.end, End::timed_out);
-  ASSERT_GT(*started, 0);
-  EXPECT_TRUE(was_killed(*started));
+  ASSERT_GT(started, 0);
+  EXPECT_TRUE(was_killed(started));
 }
 
 class Lock : public testing::Test {

@@ -1,25 +1,15 @@
 // What comes from outside: JSON and expressions are bounded, without second meanings, and never
-// make a long message; what is written for people says no more and no less than it should.
+// make a long message.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "harness/base/errors.h"
 #include "harness/base/json.h"
 #include "harness/base/pattern.h"
-#include "harness/base/text.h"
+#include "support/refusal.h"
 
 namespace harness {
 namespace {
-
-std::string complaint(const std::string& text) {
-  try {
-    parse_document(text, "a.json");
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 TEST(JsonReader, RefusesKeysThatStandTwiceAndWhatIsNestedDeep) {
   const struct {
@@ -30,7 +20,8 @@ TEST(JsonReader, RefusesKeysThatStandTwiceAndWhatIsNestedDeep) {
                {R"([{"a":)" + std::string(100000, '['), "nested"},
                {"[[[[[[[[[[1]]]]]]]]]]", ""}};
   for (const auto& [text, part] : cases) {
-    const std::string found = complaint(text);
+    const std::string found =
+        refusal_of([&document = text] { parse_document(document, "a.json"); });
     EXPECT_TRUE(part.empty() ? found.empty() : found.find(part) != std::string::npos) << found;
     EXPECT_LT(found.size(), 400u);
   }
@@ -51,10 +42,6 @@ TEST(JsonText, SaysTheSameOnOneLineAndAsADocument) {
   for (const std::string& text : {line_of(value), document_text(value)})
     EXPECT_EQ(nlohmann::ordered_json::parse(text), value) << text;
   EXPECT_EQ(line_of(value).find('\n'), std::string::npos);
-  EXPECT_EQ(
-      document_text(value),
-      "{\n\"b\": {\n\"x\": [1, 2.5],\n\"y\": {}\n},\n\"a\": [\n[],\n{\"t\": \"q\\\"\\n\"},\n0.1\n"
-      "],\n\"c\": null\n}\n");
 }
 
 TEST(Bounds, HoldFiniteNumbersOnly) {
@@ -63,16 +50,6 @@ TEST(Bounds, HoldFiniteNumbersOnly) {
   EXPECT_TRUE(Bounds::positive().hold(1e-300));
   EXPECT_FALSE(Bounds::whole_number(1).hold(1e300)) << "does not fit into an int";
   EXPECT_FALSE(Bounds::whole_number(1).hold(1.5));
-  EXPECT_EQ(Bounds::positive().text(), "a number above 0");
-}
-
-TEST(ToldApart, HasEnoughDigitsToDifferAndNoMore) {
-  const double next = std::nextafter(0.1, 1);
-  for (const auto& [value, other, text] : {std::tuple(0.2, 0.1, "0.2"),
-                                           {0.0001, 0.0001, "0.0001"},
-                                           {0.000100000002, 0.0001, "0.000100000002"},
-                                           {next, 0.1, "0.10000000000000002"}})
-    EXPECT_EQ(told_apart(value, other), text);
 }
 
 TEST(Pattern, MatchesWholesAndFindsParts) {
@@ -87,12 +64,9 @@ TEST(Pattern, PathologicalOnesEndAndGiantsAreRefusedInALine) {
   const Pattern pattern("--filter", "(a*)*(a*)*(a*)*b|(a|aa)+$");
   EXPECT_FALSE(pattern.found_in(std::string(5000, 'a') + "c"));
   for (const std::string& bad : {std::string("[z-a]"), std::string(100000, '(')}) {
-    try {
-      const Pattern giant("--filter", bad);
-      ADD_FAILURE() << "taken";
-    } catch (const UsageError& error) {
-      EXPECT_LT(std::string(error.what()).size(), 400u);
-    }
+    const std::string said = refusal_of([&bad] { const Pattern giant("--filter", bad); });
+    EXPECT_NE(said, "");
+    EXPECT_LT(said.size(), 400u);
   }
 }
 

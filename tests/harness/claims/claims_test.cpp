@@ -4,22 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "support/invented_points.h"
 
 namespace harness {
 namespace {
-
-TEST(Claims, AreSixteenAndNotMeasuredWithoutPoints) {
-  const auto claims = judge_claims({document({})});
-  ASSERT_EQ(claims.size(), 16u);
-  for (std::size_t i = 0; i < claims.size(); ++i) {
-    EXPECT_EQ(claims[i].id, "C" + std::to_string(i + 1));
-    EXPECT_EQ(claims[i].verdict, "not yet measured");
-    EXPECT_TRUE(claims[i].points.empty());
-  }
-}
 
 TEST(Claims, C7FitsTheOrdersOfResidualsThatTookTwoIterations) {
   const auto with = [](double order, double change_order, bool second, double corrupt) {
@@ -54,7 +43,6 @@ TEST(Claims, C7FitsTheOrdersOfResidualsThatTookTwoIterations) {
   for (const auto& c : cases)
     EXPECT_EQ(with(c.order, c.change_order, c.second, c.corrupt).verdict, c.verdict);
   EXPECT_EQ(with(2, 1, true, 0).points.size(), 5u);
-  EXPECT_TRUE(says(with(2, 1, true, 0), "chain at 0.1 %: slope of the first 2"));
 }
 
 json stability(const std::vector<json>& matrix, const json& same_frame = json::array()) {
@@ -75,13 +63,12 @@ TEST(Claims, C8ComparesVerticesBeforeContactAndTheWholeClothAfterIt) {
   const auto with = [&](double before, double after, const char* stopped = "") {
     return verdict_in("C8", stability({}, json::array({entry(before, after, stopped)})));
   };
-  EXPECT_EQ(with(0.001, 0.005).verdict, "reproduced");
-  EXPECT_EQ(with(0.001, 0.03).verdict, "undecided");
-  EXPECT_EQ(with(0.001, 0.05).verdict, "changed");
-  EXPECT_EQ(with(0.02, 0.005).verdict, "changed");
-  EXPECT_EQ(with(0.02, 0.2).verdict, "not reproduced");
+  expect_verdicts<2>(with, {{{0.001, 0.005}, "reproduced"},
+                            {{0.001, 0.03}, "undecided"},
+                            {{0.001, 0.05}, "changed"},
+                            {{0.02, 0.005}, "changed"},
+                            {{0.02, 0.2}, "not reproduced"}});
   EXPECT_EQ(with(0.001, 0.005, "icd at step 7").verdict, "not yet measured");
-  EXPECT_TRUE(says(with(0.001, 0.2), "20 % in the root mean square"));
   json other = entry(0.001, 0.2);
   other["scene"] = "patch";
   EXPECT_EQ(verdict_in("C8", stability({}, json::array({other}))).verdict, "not yet measured");
@@ -106,10 +93,7 @@ TEST(Claims, C10HoldsTheLastSecondAgainstTheFirst) {
   EXPECT_EQ(with(cell("icd", 0.004, "survived_smaller"), fast(0.005)).verdict, "reproduced");
   EXPECT_EQ(with(icd, fast(0.008)).verdict, "undecided");
   EXPECT_EQ(with(icd, fast(0.02)).verdict, "not reproduced");
-  EXPECT_TRUE(says(with(icd, fast(0.02)), "from 1 to 5 in 2 runs"));
-  const ClaimVerdict refused = with(icd, cell("fast_projection", 0, "refused"));
-  EXPECT_EQ(refused.verdict, "changed");
-  EXPECT_TRUE(says(refused, "fast_projection ends as refused in swing"));
+  EXPECT_EQ(with(icd, cell("fast_projection", 0, "refused")).verdict, "changed");
 }
 
 TEST(Claims, C11ComparesNonzerosOfFactorsOfOneSize) {
@@ -141,7 +125,6 @@ TEST(Claims, C13HoldsTheDeliveredStrainOfThePapersOrderAgainstTheLimit) {
   EXPECT_EQ(with(0.0012, 0.001).verdict, "changed");
   EXPECT_EQ(with(0.0012, 0.05).verdict, "undecided");  // two of four
   EXPECT_EQ(with(0.05, 0.05).verdict, "not reproduced");
-  EXPECT_TRUE(says(with(0.0012, 0.05), "so at 2 of 4 points"));
   // With contact inside the solve there is no collision filter to strain anything.
   EXPECT_EQ(verdict("C13", {run("icd", 0.001, 1)}).verdict, "not yet measured");
   EXPECT_EQ(verdict("C13", {run("icd", 0.05), run("shake", 0.001, 1)}).verdict, "not reproduced");
@@ -157,11 +140,10 @@ TEST(Claims, C15AsksForSmallerAndCheaperStepsOfRunsThatHoldTheirEnergy) {
   const auto with = [&](double shake_step, double shake_seconds, double noise = 0) {
     return verdict("C15", {held("shake", shake_step, shake_seconds), icd}, noise);
   };
-  EXPECT_EQ(with(0.001, 2).verdict, "reproduced");
-  EXPECT_EQ(with(0.001, 20).verdict, "not reproduced");  // small, but expensive
-  EXPECT_EQ(with(0.02, 0.1).verdict, "not reproduced");
-  EXPECT_EQ(with(0.001, 8, 0.5).verdict, "undecided");
-  EXPECT_TRUE(says(with(0.001, 2), "SHAKE 1/1000 s, ICD 1/100 s, whose step takes 5.00 ("));
+  expect_verdicts<3>(with, {{{0.001, 2, 0}, "reproduced"},
+                            {{0.001, 20, 0}, "not reproduced"},  // small, but expensive
+                            {{0.02, 0.1, 0}, "not reproduced"},
+                            {{0.001, 8, 0.5}, "undecided"}});
   // A larger step of SHAKE's that takes as long might be its best one as well.
   json slower = held("shake", 0.01, 2.0005);
   slower["best"] = false;
@@ -183,7 +165,6 @@ TEST(Claims, OfTwoDocumentsTheFirstCountsAndAVerdictThatFlipsIsUndecided) {
   EXPECT_TRUE(says(c3(25, 30), "ratio 25"));
   EXPECT_EQ(c3(0.5, 25).verdict, "undecided");
   EXPECT_EQ(c3(25, 0.5).verdict, "undecided");
-  EXPECT_TRUE(says(c3(25, 0.5), "reproduced by the first measurement of each run, not reproduced"));
 }
 
 TEST(Claims, OfTwoSizesTheLargerCountsAndAdaptiveStepsDoNot) {
@@ -242,7 +223,6 @@ TEST(Claims, C12HoldsTheLowerEdgesSagAgainstOnePercentOfTheSide) {
   };
   const std::vector<json> sags = hung("jacobi", 0.3, 0.1, 0.05);
   EXPECT_EQ(verdict("C12", sags).verdict, "reproduced");
-  EXPECT_TRUE(says(verdict("C12", sags), "10 % and 2.5 % of the side with Jacobi"));
   EXPECT_EQ(verdict("C12", hung("jacobi", 0.3, 0.1, 0.09)).verdict, "not reproduced");
   EXPECT_EQ(verdict("C12", sags + hung("fast_projection", 0.05, 0.05, 0.05)).verdict, "changed");
   // Who is not the paper's does not count.
@@ -257,7 +237,6 @@ TEST(Claims, C16WantsBothEndsOfTheRimAboveTheHipsAtOnePercentAndBelowThemAtTen) 
   };
   const std::vector<json> slips = worn("fast_projection", 0.5, 0.5, 0.1);
   EXPECT_EQ(verdict("C16", slips).verdict, "reproduced");
-  EXPECT_TRUE(says(verdict("C16", slips), "fast projection 50 % at 1 %, 250 % at 10 %"));
   EXPECT_EQ(verdict("C16", worn("icd", 0.1, 0.1, 0.1)).verdict, "not reproduced");
   EXPECT_EQ(verdict("C16", worn("icd", 0.5, 0.5, 0.3)).verdict, "not reproduced");
   EXPECT_EQ(verdict("C16", worn("icd", 0.5, 0.15, 0.1)).verdict, "not reproduced");  // neither

@@ -18,7 +18,7 @@ PYTHON
 bench show planted.json >terminal.txt || fail "show"
 bench show planted.json --json >analysis.json || fail "show --json"
 bench results planted.json >page.md || fail "results"
-bench report planted.json --no-motion --out report.html >/dev/null || fail "report"
+bench report planted.json --out report.html >/dev/null || fail "report"
 bench plot planted.json --out figures >/dev/null || fail "plot"
 
 /usr/bin/python3 - <<'PYTHON' || fail "the printers differ"

@@ -17,12 +17,10 @@ done
 /usr/bin/python3 "$here/read_back.py" || fail "read_back.py"
 
 refused "must end in" film --out out.avi
-refused "did you mean" film --scene garmnet --out out.obj
 refused "must be wider than the waist" film --scene garment --set rim=0.1 --out out.png
 refused "takes no collider" film --scene garment --set n=12 --solver soft_step --out out.png
 refused "must end in .png" film --stills 0.1 --out out.webp
 refused "has no pictures" film --width 100 --out out.obj
-refused "not within the film" film --stills 0.5,7 --out out.png
 refused "'x' must be a number of at least 0" film --stills 0.1,x --out out.png
 
 # Pictures, under a name of their own where none is given: by an installed program, which writes below the current folder.

@@ -1,11 +1,13 @@
 // The judge on motions that are made up: which samples of a reference count, what is delivered
-// after a collision, and what hardly moves.
+// after a collision, and what hardly moves. Strain against figures found by hand.
 #include "harness/judge/judge.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
+#include "harness/judge/mechanics.h"
 #include "support/scenes.h"
 
 namespace harness {
@@ -102,6 +104,35 @@ TEST(Judge, KnowsNoErrorWithoutSureSamplesAndOfARunThatEndedEarly) {
 TEST(Judge, MeasuresHowFarARunHasMoved) {
   EXPECT_NEAR(judged(falling(), 0.3, 0).moved, 0.3, 1e-12);
   EXPECT_EQ(judged(falling(), 0, 0).moved, 0);
+}
+
+TEST(Strain, OfEdgesThatAreTooLongAndTooShort) {
+  inextensible::ProblemParts parts;
+  parts.mass = {1, 2, 3};
+  parts.edges = {{0, 1}, {1, 2}};
+  parts.rest_length = {1, 2};
+  const inextensible::Problem problem(std::move(parts));
+  inextensible::Positions x = inextensible::Positions::Zero(3, 3);
+  x.row(0) << 0, 1, 3;
+  const auto expect = [&](double most, double stretch, std::size_t edge) {
+    const StrainRange found = strain_range(problem, x);
+    EXPECT_NEAR(found.most, most, 1e-15);
+    EXPECT_NEAR(found.stretch, stretch, 1e-15);
+    EXPECT_EQ(found.edge, edge);
+  };
+  EXPECT_EQ(strain_range(problem, x).most, 0);
+  x(0, 2) = 2.5;  // the second edge: 1.5 m of 2 m
+  expect(0.25, 0, 1);
+  x(0, 0) = -0.5;  // the first: 1.5 m of 1 m
+  expect(0.5, 0.5, 0);
+  std::vector<double> strains;
+  append_strains(problem, x, strains);
+  EXPECT_EQ(strains, (std::vector<double>{0.5, 0.25}));
+  for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    x(1, 2) = value;
+    EXPECT_TRUE(std::isinf(strain_range(problem, x).most));
+    EXPECT_EQ(strain_range(problem, x).edge, 1u);
+  }
 }
 
 TEST(Judge, MeasuresStrainBeforeAndAfterTheObstacle) {

@@ -5,25 +5,14 @@
 #include <sstream>
 #include <string>
 
-#include "harness/base/errors.h"
 #include "harness/claims/claims.h"
 #include "harness/points/result_file.h"
 #include "harness/points/suite.h"
 #include "harness/run/sweep.h"
 #include "harness/tables/tables.h"
+#include "support/refusal.h"
 
 namespace harness::testing {
-
-// The message of the refusal, "" if the text was taken.
-template <class Read>
-std::string refusal_of(const Read& read) {
-  try {
-    read();
-    return "";
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-}
 
 inline std::string read_as_suite(const std::string& text) {
   return refusal_of([&text] {

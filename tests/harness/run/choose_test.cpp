@@ -37,14 +37,6 @@ TEST(Choose, TheFastestIsThatWithinTheError) {
   EXPECT_FALSE(fastest(measured_runs, {.error = 0.02, .rate = 30})) << "no frames of that rate";
 }
 
-TEST(Choose, WhatABudgetBuysIsTheLeastErrorOfThoseThatKeepIt) {
-  EXPECT_EQ(most_accurate(measured_runs, {}, 7.0 / 60)->point, &measured_runs[2]);
-  EXPECT_EQ(most_accurate(measured_runs, {}, 5.0 / 60)->point, &measured_runs[1])
-      << "99 % of frames, not the median";
-  EXPECT_EQ(most_accurate(measured_runs, {}, 1)->point, &measured_runs[3]);
-  EXPECT_FALSE(most_accurate(measured_runs, {}, 1.0 / 60));
-}
-
 TEST(Choose, ABudgetIsKeptByTheFramesAndNotByTheMean) {
   std::vector<PointResult> all = measured_runs;  // frames of "b": 3 / 60 s, 99 % below 6 / 60 s
   all[1].frame_times = {{60, 2.0 / 60, 9.0 / 60, 9.0 / 60}};

@@ -13,6 +13,7 @@
 
 #include "harness/base/child_process.h"
 #include "harness/points/point_json.h"
+#include "harness/run/fake_machine.h"
 #include "harness/stability/hard_case.h"
 #include "harness/stability/trial.h"
 
@@ -21,16 +22,7 @@ namespace {
 
 using Work = std::function<void(Heartbeat&)>;
 
-PointSpec chain_of_ten() {
-  PointSpec spec;
-  spec.sweep = "strain";
-  spec.scene = "chain";
-  spec.scene_parameters = complete_parameters(*find_scene("chain"), {{"n", 10}});
-  spec.resolution = spec.vertices = 10;
-  spec.constraints = 9;
-  spec.solver = "gauss_seidel";
-  return spec;
-}
+PointSpec chain_of_ten() { return spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.01); }
 
 // A point whose run does `work` when it has come to step 5, t = 0.25 s.
 PointResult run_isolated(const Work& work, const RunLimits& limits, double memory = 0) {
@@ -116,11 +108,7 @@ TEST(Isolation, ARunBeyondItsMemoryIsOutOfMemory) {
 #if defined(__SANITIZE_ADDRESS__)
   GTEST_SKIP() << "the address sanitizer needs all address space there is";
 #endif
-  PointSpec spec = chain_of_ten();
-  spec.scene = "drape";
-  spec.scene_parameters = complete_parameters(*find_scene("drape"), {{"n", 301}});
-  spec.solver = "fast_projection";
-  spec.step = 0.04;
+  const PointSpec spec = spec_at("drape", {{"n", 301}}, "fast_projection", 0.04);
   std::ifstream statm("/proc/self/statm");
   double pages = 0;
   statm >> pages;

@@ -1,15 +1,29 @@
-// A machine whose runs are formulas: plans are tested with it, without a solver and without a
-// clock.
+// Small runs of real solvers, and a machine whose runs are formulas: plans are tested with it,
+// without a solver and without a clock.
 #pragma once
 
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "harness/run/sweep.h"
+#include "harness/scenes/scene.h"
 
 namespace harness {
+
+// A run at a limit of 1 %.
+inline PointSpec spec_at(const std::string& scene, const SceneParameters& parameters,
+                         const std::string& solver, double step) {
+  PointSpec spec;
+  spec.sweep = "strain";
+  spec.scene = scene;
+  spec.scene_parameters = complete_parameters(*find_scene(scene), parameters);
+  spec.solver = solver;
+  spec.step = step;
+  return spec;
+}
 
 struct FakeMachine {
   std::function<double(const PointSpec&)> seconds;  // of a simulated second

@@ -1,8 +1,6 @@
 // Journals and shards: whatever a sweep is cut into, its parts are the whole.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
 #include <random>
 
@@ -15,7 +13,6 @@ namespace harness {
 namespace {
 
 using nlohmann::json;
-namespace fs = std::filesystem;
 
 // Two scenes, two limits, three sizes: 60 searches of up to ten steps.
 Suite suite_of(const std::string& axis) {
@@ -55,13 +52,7 @@ json header_of(const Suite& suite) {
 
 class JournalTest : public ::testing::Test {
  protected:
-  JournalTest()
-      : folder_(fs::temp_directory_path() / ("journal_test_" + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~JournalTest() override { fs::remove_all(folder_); }
-
-  std::string out() const { return (folder_ / "out.json").string(); }
+  std::string out() const { return folder_.file("out.json"); }
   std::string journal() const { return out() + ".journal"; }
 
   // The whole sweep with a journal, and how many runs it took.
@@ -76,7 +67,7 @@ class JournalTest : public ::testing::Test {
   }
 
  private:
-  fs::path folder_;
+  TemporaryFolder folder_{"journal-test"};
 };
 
 TEST_F(JournalTest, CutAnywhereTheRestIsRunAndTheResultIsTheSame) {
@@ -150,6 +141,13 @@ TEST_P(ShardTest, JoinedAreTheWhole) {
                            run_sweep(suite, some, {}, machine.runners()).points);
   };
   const json whole = result(searches, "");
+  const auto sorted = [](const json& document) {
+    std::vector<std::string> lines;
+    for (const json& point : document.at("points")) lines.push_back(point.dump());
+    std::ranges::sort(lines);
+    return lines;
+  };
+  EXPECT_TRUE(sorted(joined({whole, whole})) == sorted(whole)) << "what is there twice counts once";
   for (std::size_t count = 1; count <= 8; ++count) {
     std::vector<json> parts;
     std::map<std::string, std::size_t> owner;  // of a scene and size
@@ -163,12 +161,6 @@ TEST_P(ShardTest, JoinedAreTheWhole) {
     }
     const json table = joined(parts);
     EXPECT_EQ(table.at("complete"), true);
-    const auto sorted = [](const json& document) {
-      std::vector<std::string> lines;
-      for (const json& point : document.at("points")) lines.push_back(point.dump());
-      std::ranges::sort(lines);
-      return lines;
-    };
     EXPECT_TRUE(sorted(table) == sorted(whole)) << count << " shards";
     parts.erase(parts.begin());
     if (count == 1) continue;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harness/run/calibration.h"
+#include "harness/run/fake_machine.h"
 #include "harness/run/machine_noise.h"
 #include "harness/run/point_runner.h"
 #include "support/effort.h"
@@ -19,18 +20,6 @@ namespace harness {
 namespace {
 
 // ---- Runs ----
-
-// A small scene at a limit of 1 %.
-PointSpec spec_at(const std::string& scene, const SceneParameters& parameters,
-                  const std::string& solver, double step) {
-  PointSpec spec;
-  spec.sweep = "strain";
-  spec.scene = scene;
-  spec.scene_parameters = complete_parameters(*find_scene(scene), parameters);
-  spec.solver = solver;
-  spec.step = step;
-  return spec;
-}
 
 TEST(Batches, ASampleOfAShortRunTakesAtLeastTwentyMilliseconds) {
   PointResult point = run_point(spec_at("chain", {{"n", 10}}, "gauss_seidel", 0.001), {});
@@ -234,23 +223,6 @@ TEST(NoiseProbe, SeesThatOthersTakeTheProcessor) {
   ASSERT_EQ(noise_probe.samples().size(), 3u);
   EXPECT_TRUE(noise_probe.noisy()) << "spread " << noise_probe.spread();
   EXPECT_TRUE(noise_probe.to_json().at("noisy").get<bool>());
-}
-
-TEST(NoiseProbe, SamplesWhenItIsDue) {
-  NoiseProbe seldom(3600), always(0);
-  for (int i = 0; i < 3; ++i) {
-    seldom.sample_if_due();
-    always.sample_if_due();
-  }
-  EXPECT_EQ(seldom.samples().size(), 1u);
-  EXPECT_EQ(always.samples().size(), 3u);
-}
-
-TEST(ProcessorTicks, GoOnAndGiveAShare) {
-  const ProcessorTicks before = processor_ticks();
-  EXPECT_GT(before.all, 0);
-  EXPECT_DOUBLE_EQ(stolen_share({1, 10}, {2, 14}), 0.25);
-  EXPECT_DOUBLE_EQ(stolen_share(before, before), 0);
 }
 
 }  // namespace

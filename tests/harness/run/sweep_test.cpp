@@ -209,45 +209,6 @@ TEST(StepSearch, ASolverThatNeverWorksHasNoBestPoint) {
   }
 }
 
-TEST(StepSearch, AnInterruptKeepsWhatWasFinished) {
-  FakeMachine machine{[&machine](const PointSpec& spec) {
-    if (machine.specs.size() == 4) throw Interrupted();
-    return parabola(200)(spec);
-  }};
-  const auto outcome = sweep(suite_of_chain({0.1, 0.01}), machine);
-  EXPECT_FALSE(outcome.complete);
-  EXPECT_EQ(outcome.points.size(), 3u);
-}
-
-// Ranks of the median's 95 % confidence interval: standard tables of the sign test (n: 6, 9 and
-// 20).
-TEST(MedianUncertainty, IsHalfTheIntervalOfTheTabledRanks) {
-  const auto first = [](int n) {  // 1, 2, ..., n: the rank is the value
-    std::vector<double> samples;
-    for (int i = n; i >= 1; --i) samples.push_back(i);
-    return samples;
-  };
-  EXPECT_TRUE(std::isinf(median_uncertainty(first(5))));
-  EXPECT_DOUBLE_EQ(median_uncertainty(first(6)), 0.5 * (6 - 1) / 3.5);
-  EXPECT_DOUBLE_EQ(median_uncertainty(first(9)), 0.5 * (8 - 2) / 5);
-  EXPECT_DOUBLE_EQ(median_uncertainty(first(20)), 0.5 * (15 - 6) / 10.5);
-}
-
-TEST(Repetitions, GoOnUntilTheMedianIsKnown) {
-  Suite suite = suite_of_chain({0.1, 0.01});
-  suite.sweeps[0].every_step = true;
-  suite.reps = 2;
-  suite.most_reps = 30;
-  suite.rel_ci = 0.02;
-  FakeMachine machine{parabola(50)};
-  machine.again = [&machine](const PointResult& point) {
-    const bool steady = point.spec.strain_limit > 0.05;
-    return point.samples.front() * (steady ? 1 : 1 + 0.5 * (machine.repetitions % 3));
-  };
-  for (const PointResult& point : sweep(suite, machine).points)
-    EXPECT_EQ(point.samples.size(), !point.best ? 1u : point.spec.strain_limit > 0.05 ? 6u : 30u);
-}
-
 bool has_level(const PointResult& point, double level) {
   return std::ranges::count(point.best_at_errors, level) > 0;
 }

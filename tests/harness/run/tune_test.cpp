@@ -9,8 +9,8 @@
 #include <random>
 #include <set>
 
-#include "harness/base/errors.h"
 #include "harness/run/fake_machine.h"
+#include "support/refusal.h"
 
 namespace harness {
 namespace {
@@ -258,12 +258,8 @@ TEST(Tune, AnEntryIsRefusedOnceItsRuleHasChanged) {
     EXPECT_EQ(rule_change(other), row.change);
     const std::string file = ::testing::TempDir() + "/tuned.json";
     std::ofstream(file) << tuned_document({other});
-    std::string message;
-    try {
-      static_cast<void>(read_tuned_up_to_date(file));
-    } catch (const UsageError& error) {
-      message = error.what();
-    }
+    const std::string message =
+        refusal_of([&file] { static_cast<void>(read_tuned_up_to_date(file)); });
     EXPECT_NE(message.find(row.change), std::string::npos) << message;
     EXPECT_EQ(message.empty(), row.change.empty()) << message;
   }

@@ -1,4 +1,4 @@
-// Scenes as they are meant to be, what all of them promise, and exact invariants of whole runs.
+// Scenes as they are meant to be, what all of them promise, and invariants of whole runs.
 #include "harness/scenes/scene.h"
 
 #include <gtest/gtest.h>
@@ -7,12 +7,9 @@
 
 #include "harness/judge/mechanics.h"
 #include "solvers/problem/edge_constraints.h"
-#include "solvers/problem/forces.h"
 #include "solvers/problem/triangle_collider.h"
 #include "solvers/registry.h"
 #include "solvers/systems/schur_complement.h"
-#include "support/contact.h"
-#include "support/effort.h"
 #include "support/scenes.h"
 
 namespace harness {
@@ -22,12 +19,6 @@ using inextensible::Positions;
 using inextensible::State;
 using inextensible::TriangleCollider;
 using testing::build;
-
-std::unique_ptr<inextensible::Stepper> stepper_for(const Scene& scene, const std::string& solver,
-                                                   double limit,
-                                                   const inextensible::Settings& settings = {}) {
-  return inextensible::make_stepper(solver, scene.problem, {limit, 1, settings});
-}
 
 double mirror_defect(const Scene::Mirror& mirror, const Positions& x) {
   const Positions reflected = x - 2 * mirror.normal * (mirror.normal.transpose() * x);
@@ -66,19 +57,29 @@ TEST(EveryScene, StartsAsItPromises) {
   }
 }
 
-TEST(Chain, HasNoPartsThatItDoesNotAskFor) {
-  const Scene chain = build("chain");
-  EXPECT_EQ(chain.problem->shear(), nullptr);
-  EXPECT_EQ(chain.problem->collider(), nullptr);
-  State state = chain.start;
-  const auto stepper = inextensible::make_stepper("fast_projection", chain.problem, {});
-  for (int i = 0; i < 100; ++i) ASSERT_TRUE(stepper->advance(state, 0.01));
-  EXPECT_EQ(stepper->work().spring_evaluations, 0);
-  EXPECT_EQ(stepper->work().triangle_tests, 0);
-  EXPECT_STREQ(stepper->linear_solver(), "tridiagonal");
-  // Six to seven iterations a step at 80 vertices, 1 %, 0.01 s (an independent program's figure).
-  EXPECT_GE(stepper->work().iterations, 600);
-  EXPECT_LE(stepper->work().iterations, 700);
+// Links that hang between two pins at rest.
+TEST(Catenary, OfLinksStaysWhereItHangs) {
+  constexpr int links = 12;
+  const Scene scene =
+      build("catenary", {{"n", links + 1}, {"length", 1.2}, {"mass", links + 1}, {"slack", 1.5}});
+  EXPECT_NEAR(scene.start.x(0, links), 0.8, 1e-12);
+  EXPECT_NEAR(scene.start.x(1, links), 0, 1e-12);
+  const auto drift = [&](const char* solver, double h) {
+    const auto stepper = inextensible::make_stepper(solver, scene.problem, {1e-11});
+    State state = scene.start;
+    while (state.time < 1 - 0.5 * h)
+      if (!stepper->advance(state, h)) return std::nan("");
+    return (state.x - scene.start.x).cwiseAbs().maxCoeff();
+  };
+  // Solutions of the step's equations stay; what the strain limit leaves of each fall adds up.
+  for (const char* solver : {"shake", "rattle", "icd"})
+    EXPECT_LT(drift(solver, 0.01), 1e-6) << solver;
+  // Iterations that end elsewhere on the constraints shift the equilibrium, less by smaller steps.
+  for (const char* solver : {"fast_projection", "fast_projection@bdf2", "gauss_seidel"}) {
+    const double coarse = drift(solver, 0.01), fine = drift(solver, 0.0025);
+    EXPECT_LT(coarse, 1e-3) << solver;
+    EXPECT_LT(fine, coarse / 4) << solver << ": " << coarse << ", " << fine;
+  }
 }
 
 TEST(Drape, HasThePapersSizes) {
@@ -93,36 +94,6 @@ TEST(Drape, HasThePapersSizes) {
   EXPECT_EQ(schur.pattern().entries(), 39338);
 }
 
-// What fast projection does for singular matrices costs nothing where they are regular: one
-// assembly, one factorization and one solve an iteration, nothing taken back.
-TEST(FastProjection, DampsNothingWhereTheMatrixIsRegular) {
-  for (const auto& [name, n] : {std::pair("chain", 80), {"spinning_net", 15}}) {
-    const Scene scene = build(name, {{"n", n}});
-    State state = scene.start;
-    const auto stepper = stepper_for(scene, "fast_projection", 0.001);
-    for (int i = 0; i < 400; ++i) ASSERT_TRUE(stepper->advance(state, 1.0 / 400));
-    const auto& work = stepper->work();
-    EXPECT_GT(work.iterations, 0);
-    EXPECT_EQ(work.line_search_steps, 0);
-    EXPECT_EQ(work.assemblies, work.iterations);
-    EXPECT_EQ(work.factorizations, work.iterations);
-    EXPECT_EQ(work.back_solves, work.iterations);
-  }
-}
-
-// Figure 1 of the paper: the row between the pins is straight at full length, J W J^T singular.
-TEST(Patch, IsSurvivedByFastProjectionAtAllLimits) {
-  const Scene patch = build("patch", {{"n", 15}});
-  for (const double limit : {0.1, 0.01, 0.001}) {
-    State state = patch.start;
-    const auto stepper = stepper_for(patch, "fast_projection", limit);
-    for (int i = 0; i < 400; ++i) {
-      const auto step = stepper->advance(state, 1.0 / 400);
-      ASSERT_TRUE(step) << "limit " << limit << ", step " << i << ": " << step.detail;
-    }
-  }
-}
-
 // Rows lie below their pins, as the cloth was cut; marks are the middles of the first and the last
 // row.
 TEST(HungPatch, IsThePatchTurnedAboutItsPins) {
@@ -133,93 +104,6 @@ TEST(HungPatch, IsThePatchTurnedAboutItsPins) {
     EXPECT_EQ(hung.start.x.col(hung.marks[0].vertex), Eigen::Vector3d::Zero());
     EXPECT_NEAR(hung.start.x(1, hung.marks[1].vertex), -2 * std::cos(tilt), 1e-15);
     EXPECT_EQ(hung.marks[1].height, -2);
-  }
-}
-
-// Springs come to rest; a row that is longer by a strain sags at most as two straight halves would.
-TEST(HungPatch, OfSpringsComesToRestAndSagsNoMoreThanItsTopRowIsLonger) {
-  const Scene hung = build("hung_patch", {{"n", 9}});
-  double last_sag = 0;
-  for (const double stiffness : {1000.0, 10.0, 1.0}) {
-    State state = hung.start;
-    const auto stepper = stepper_for(hung, "implicit_springs", 0.01, {{"stiffness", stiffness}});
-    for (int i = 0; i < 300; ++i) ASSERT_TRUE(stepper->advance(state, 1.0 / 50));
-    double length = 0;
-    for (int j = 0; j + 1 < 9; ++j) length += (state.x.col(j + 1) - state.x.col(j)).norm();
-    const double sag = -state.x(1, hung.marks[0].vertex);
-    EXPECT_GT(sag, last_sag);
-    EXPECT_LE(sag, std::sqrt(length * length - 1) / 2);
-    EXPECT_LT(state.v.cwiseAbs().maxCoeff(), 0.01);
-    last_sag = sag;
-  }
-}
-
-// Backward Euler's and the end-of-step direction's dissipation outweighs what is left of strain.
-TEST(Energy, OfTheEightyVertexChainNeverRisesUnderImplicitMethods) {
-  const Scene chain = build("chain");
-  const double before = total_energy(*chain.problem, chain.start), weight_times_length = 9.81;
-  for (const char* solver : {"icd", "fast_projection", "implicit_springs"}) {
-    SCOPED_TRACE(solver);
-    const bool springs = solver == std::string("implicit_springs");
-    const auto stepper = stepper_for(
-        chain, solver, 1e-6,
-        springs ? inextensible::Settings{{"stiffness", 1e5}} : inextensible::Settings{});
-    State state = chain.start;
-    for (int step = 0; step < 200; ++step) {
-      ASSERT_TRUE(stepper->advance(state, 0.005));
-      ASSERT_LE(total_energy(*chain.problem, state) - before, 1e-9 * weight_times_length);
-    }
-  }
-}
-
-// With contact inside, cloth is what was promised after the collision filter, too: within the limit
-// and outside the ball; and friction and collision only take energy.
-TEST(Drape, IsDeliveredWithinTheLimitAndOutsideTheBallByEveryMethod) {
-  constexpr double limit = 0.01, h = 0.005, invisible = 1e-6;
-  const Scene drape = build("drape", {{"n", 11}});
-  const auto& ball = dynamic_cast<const TriangleCollider&>(*drape.problem->collider());
-  const double scale = energy_scale(drape), before = total_energy(*drape.problem, drape.start);
-  for (const inextensible::Backend& backend : inextensible::backends()) {
-    if (!backend.contestant || backend.strain_control != inextensible::StrainControl::strain_limit)
-      continue;
-    SCOPED_TRACE(backend.name);
-    const auto stepper = stepper_for(drape, backend.name, limit);
-    State state = drape.start;
-    for (int step = 0; step < inextensible::testing::trials(40); ++step) {
-      const auto result = stepper->advance(state, h);
-      ASSERT_TRUE(result) << "step " << step << ": " << result.detail;
-      EXPECT_LE(strain_range(*drape.problem, state.x).most, limit * (1 + 1e-9)) << "step " << step;
-      EXPECT_LE(total_energy(*drape.problem, state) - before, 0.05 * scale) << "step " << step;
-      ASSERT_GE(least_distance(ball, state.x), -invisible) << "step " << step;
-    }
-    EXPECT_GT(stepper->work().contacts, 0);
-  }
-}
-
-TEST(Drape, OfFullSizeKeepsItsMirrorSymmetryUntilFirstContact) {
-  // The defaults of the first two factor in single precision.
-  const std::pair<const char*, inextensible::Settings> methods[] = {
-      {"fast_projection", {{"linear_solver", std::string("multifrontal")}}},
-      {"icd", {{"linear_solver", std::string("quasi_definite")}}},
-      {"jacobi", {}}};
-  for (const auto& [solver, settings] : methods) {
-    SCOPED_TRACE(solver);
-    const Scene drape = build("drape", {{"gap", 0.05}, {"contact", 0}});
-    State state = drape.start;
-    // Bends and stretches it, symmetrically in both planes.
-    state.v.row(1) =
-        (2 * state.x.row(0).array().square() - state.x.row(2).array().square()).matrix();
-    const auto stepper = stepper_for(drape, solver, 0.001, settings);
-    int steps = 0;
-    while (steps < 8) {
-      ASSERT_TRUE(stepper->advance(state, 0.01));
-      if (stepper->work().contacts > 0) break;
-      ++steps;
-      for (const auto& mirror : drape.mirrors)
-        EXPECT_LT(mirror_defect(mirror, state.x), 1e-9) << "step " << steps;
-    }
-    EXPECT_GE(steps, 4) << "too few steps before contact to mean anything";
-    EXPECT_GT(stepper->work().iterations, 0) << "nothing was stretched, nothing tested";
   }
 }
 
@@ -238,16 +122,6 @@ TEST(Icosphere, IsMirrorSymmetric) {
       }
     }
   }
-}
-
-TEST(TriangleCollider, LeavesPinnedVerticesWhereTheyAre) {
-  const auto collider = std::make_shared<const TriangleCollider>(
-      inextensible::icosphere(Eigen::Vector3d::Zero(), 0.25, 2), 0.3);
-  const Positions start = Positions::Constant(3, 1, 0.01);
-  Positions x = start;
-  inextensible::WorkCounters work;
-  inextensible::testing::push_out(collider, start, x, work, {0});
-  EXPECT_EQ(x, start);
 }
 
 }  // namespace

@@ -58,14 +58,6 @@ TEST(Garment, SlipsPastHipsThatItsRimMayPass) {
   EXPECT_LT(after(scene, 0.1, 1).x.row(1).head(around).maxCoeff(), -0.12);
 }
 
-TEST(Garment, IsCarriedAlongByTheBodyThatItIsOn) {
-  const Scene scene = garment({{"n", around}, {"sway", 0.1}, {"turn", 0}, {"period", 1}});
-  const State state = after(scene, 0.01, 1.25);  // when the body is farthest to one side
-  const Pose pose = scene.problem->body_motion()(state.time);
-  ASSERT_NEAR(pose.translation.x(), 0.1, 1e-9);
-  EXPECT_NEAR(state.x.row(0).head(around).mean(), pose.translation.x(), 0.01);
-}
-
 TEST(Garment, ItsBodyStartsAtRestWhereItIs) {
   const Scene scene = garment({{"n", around}});
   const auto& motion = scene.problem->body_motion();
@@ -90,12 +82,6 @@ TEST(Cape, HangsFromTheMovingBody) {
   for (const int pin : problem.pinned())
     EXPECT_LT((state.x.col(pin) - pose(scene.start.x.col(pin))).norm(), 1e-9);
   EXPECT_LT(strain_range(problem, state.x).stretch, 0.0101);
-}
-
-TEST(Worn, WhatDoesNotFitIsRefused) {
-  EXPECT_THROW(garment({{"rim", 0.1}}), std::invalid_argument);  // narrower than the waist
-  EXPECT_THROW(garment({{"flare", 10}}), std::invalid_argument);
-  EXPECT_THROW(testing::build("cape", {{"flare", 20}}), std::invalid_argument);
 }
 
 }  // namespace

@@ -164,27 +164,6 @@ TEST_F(BrokenSolvers, AreFoundByTheHardCasesAsWell) {
   EXPECT_EQ(failed_checks("drifts", true), (Checks{"linear momentum", "hard cases"}));
 }
 
-// A stranger may refuse where theory expects others to survive, but nobody may be wrong, and what
-// is impossible must be refused.
-TEST_F(BrokenSolvers, StrangersMayRefuseInHardCases) {
-  using harness::Outcome;
-  const harness::Expectation survives{{}, Outcome::survived, ""}, refuses{{}, Outcome::refused, ""};
-  const auto ends = [](const harness::Expectation& e, const char* solver, Outcome outcome) {
-    harness::TrialResult result;
-    result.fixed = result.outcome = outcome;
-    return harness::acceptable(e, solver, result);
-  };
-  for (const char* solver : {"fast_projection", "sound"}) {
-    const bool stranger = solver == std::string("sound");
-    EXPECT_TRUE(ends(survives, solver, Outcome::survived)) << solver;
-    EXPECT_EQ(ends(survives, solver, Outcome::refused), stranger) << solver;
-    EXPECT_EQ(ends(survives, solver, Outcome::timeout), stranger) << solver;
-    EXPECT_FALSE(ends(survives, solver, Outcome::wrong)) << solver;
-    EXPECT_TRUE(ends(refuses, solver, Outcome::refused)) << solver;
-    EXPECT_FALSE(ends(refuses, solver, Outcome::survived)) << solver;
-  }
-}
-
 TEST_F(BrokenSolvers, CannotTakeANameOrBringHalfARow) {
   const std::size_t count = backends().size();
   const Backend good = row("good");

@@ -5,7 +5,8 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
+
+#include "support/motion.h"
 
 namespace {
 
@@ -17,19 +18,12 @@ using inextensible::State;
 
 // Two free vertices of 1 kg, 1 m apart along x, without gravity, turning about their middle.
 Trial dumbbell(bool pinned) {
-  inextensible::ProblemParts parts;
-  parts.mass = {1, 1};
-  parts.edges = {{0, 1}};
-  parts.rest_length = {1};
-  parts.gravity.setZero();
-  if (pinned) parts.pinned = {0};
   Trial trial;
-  trial.scene.start.x.setZero(3, 2);
-  trial.scene.start.x(0, 1) = 1;
-  trial.scene.start.v.setZero(3, 2);
+  trial.scene.problem =
+      inextensible::testing::one_edge(1, 1, pinned ? std::vector<int>{0} : std::vector<int>{});
+  trial.scene.start = inextensible::testing::stretched_edge(1);
   trial.scene.start.v(1, 0) = pinned ? 0 : -1;
   trial.scene.start.v(1, 1) = 1;
-  trial.scene.problem = std::make_shared<const inextensible::Problem>(std::move(parts));
   trial.step = 0.01;
   return trial;
 }
@@ -116,11 +110,6 @@ TEST(HardCases, HaveUniqueNamesAndReasonedExpectationsAboutSolversThatExist) {
                                 }))
             << c.name << ": " << word;
     }
-    if (c.row != "contact") continue;
-    for (const auto& backend : inextensible::backends())
-      EXPECT_EQ(c.expectation(backend.name).outcome,
-                backend.takes_collider ? Outcome::survived : Outcome::refused)
-          << c.name << ", " << backend.name;
   }
 }
 
@@ -141,19 +130,6 @@ TEST(KnownDifferences, AreOfCasesAndSolversThatExistAndDifferFromWhatIsExpected)
   EXPECT_EQ(harness::known_difference("Q1", "icd", {}), nullptr);
 }
 
-TEST(HardCases, WhatIsImpossibleIsRefusedAndTheEdgeOrVertexNamed) {
-  for (const HardCase& c : cases_of("quick")) {
-    const bool door = c.name.starts_with("door/");
-    if (!door && !c.name.starts_with("infeasible/")) continue;
-    for (const char* solver : {"fast_projection", "icd", "shake", "gauss_seidel", "jacobi"}) {
-      const TrialResult result = harness::run_trial(c.build, solver, 1);
-      EXPECT_EQ(result.fixed, Outcome::refused) << c.name << ", " << solver;
-      const char* named = !door || c.name.starts_with("door/length") ? "edge " : "door: vertex ";
-      EXPECT_NE(result.detail.find(named), std::string::npos) << c.name << ": " << result.detail;
-    }
-  }
-}
-
 // Quads: 3 n^2 - 2 n (n - 1). Triangles with one diagonal: 3 n^2 - 2 n (n - 1) - (n - 1)^2.
 TEST(DegreesOfFreedom, AreThoseOfAFullRankJacobian) {
   for (const int n : {3, 8, 15}) {
@@ -168,8 +144,7 @@ TEST(DegreesOfFreedom, AreThoseOfAFullRankJacobian) {
   }
 }
 
-// A difference that the table does not have fails the sweep; what is wider than the terminal goes
-// on below.
+// A difference that the table does not have fails the sweep.
 TEST(Stability, ANewDifferenceIsTold) {
   std::vector<HardCase> cases = cases_of("quick");
   std::erase_if(cases, [](const HardCase& c) { return c.name != "Q1" && c.name != "Q4"; });
@@ -184,11 +159,7 @@ TEST(Stability, ANewDifferenceIsTold) {
   cases[0].expectations = {{{}, Outcome::refused, "nobody can, for once"}};
   outcome = swept();
   EXPECT_EQ(outcome.counts().new_differences, 1);
-  std::ostringstream text;
-  harness::print_stability(text, outcome, 40);
-  EXPECT_NE(text.str().find("NEW: Q1, icd: survived"), std::string::npos) << text.str();
-  std::istringstream lines(text.str());
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 40u) << line;
+  EXPECT_FALSE(outcome.nothing_new());
 }
 
 // Two rigid links without gravity turn for ever: strain, which a step that follows the tangent

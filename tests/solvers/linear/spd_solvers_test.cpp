@@ -43,19 +43,6 @@ MatrixXd random_spd(Random& random, int n) {
   return b * b.transpose();
 }
 
-// Diagonally dominant, with one dense row in the middle.
-MatrixXd dominant(Random& random, int n) {
-  MatrixXd matrix = random_matrix(random, n, n);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) {
-      if (i != n / 2 && j != n / 2 && uniform(random, 0, 1) > 0.1) matrix(i, j) = 0;
-    }
-  }
-  matrix = (matrix + matrix.transpose()).eval();
-  matrix.diagonal() = VectorXd::Ones(n) + matrix.cwiseAbs().rowwise().sum();
-  return matrix;
-}
-
 // A sum of positive semidefinite matrices of two blocks each, and a little on the diagonal.
 MatrixXd random_chain(Random& random, int rows, int block) {
   MatrixXd matrix = 1e-3 * MatrixXd::Identity(rows * block, rows * block);
@@ -260,41 +247,7 @@ TEST(ChainSolvers, TakeTheirPatternOnly) {
                std::invalid_argument);
 }
 
-TEST(FillReducingOrder, IsAPermutation) {
-  Random random(3);
-  const auto mesh = testing::random_mesh(random, 9, 7, 2);
-  const SymmetricPattern pattern =
-      pattern_of(schur_complement(*mesh.problem, mesh.x), Triangle::upper);
-  std::vector<int> order = fill_reducing_order(pattern);
-  std::sort(order.begin(), order.end());
-  for (int i = 0; i < pattern.n; ++i) EXPECT_EQ(order[i], i);
-}
-
 // ---- The multifrontal factorization in single precision ----
-
-TEST(MultifrontalCholesky, InSinglePrecisionAgreesToFiveDigitsWhateverTheMagnitude) {
-  testing::for_seeds(60, [&](testing::Random& random, std::uint64_t seed) {
-    const MatrixXd matrix = dominant(random, 1 + static_cast<int>(seed));
-    const SymmetricPattern pattern = pattern_of(matrix, Triangle::lower);
-    MultifrontalCholesky<float> solver(pattern);
-    write(matrix, pattern, solver);
-    ASSERT_TRUE(solver.factor());
-    VectorXd x = 1e60 * VectorXd::LinSpaced(pattern.n, -1, 2);
-    const VectorXd expected = matrix.ldlt().solve(x);
-    solver.solve(x.data());
-    EXPECT_LT((x - expected).norm(), 1e-5 * expected.norm());
-  });
-}
-
-// A pivot of 1e-6 of its diagonal entry is noise in single precision.
-TEST(MultifrontalCholesky, InSinglePrecisionRefusesPivotsWithoutDigits) {
-  MultifrontalCholesky<float> solver(chain_pattern(2, 1, Triangle::lower));
-  for (const double pivot : {1e-3, 1e-6, 0.0, -1e-6}) {
-    const double values[] = {1, 1, 1 + pivot};
-    std::copy(values, values + 3, solver.values());
-    EXPECT_EQ(solver.factor(), pivot == 1e-3) << pivot;
-  }
-}
 
 // Graphs with edges so nearly parallel that single precision has few digits, or none.
 TEST(MixedCholesky, KeepsWhatItIsAskedForInWhicheverPrecisionItTakes) {

@@ -30,9 +30,10 @@ Settings stiff_enough(const char* solver) {
 
 class Friction : public ::testing::TestWithParam<const char*> {};
 
-// Three links of a rope, down a slope of 20 degrees, at rest.
+// Three links of a rope, down a slope, at rest.
 struct OnSlope {
-  OnSlope(const char* solver, double friction) {
+  OnSlope(const char* solver, double friction, double angle)
+      : down(std::cos(angle), -std::sin(angle), 0) {
     const Vector3d normal(std::sin(angle), std::cos(angle), 0);
     ProblemParts parts;
     parts.mass = {0.1, 0.3, 0.2, 0.1};
@@ -46,22 +47,22 @@ struct OnSlope {
     stepper = make_stepper(solver, std::make_shared<const Problem>(std::move(parts)),
                            {1e-3, 1, stiff_enough(solver), &state});
   }
-  static constexpr double angle = pi / 9;
-  const Vector3d down{std::cos(angle), -std::sin(angle), 0};
+  Vector3d down;
   State state;
   std::unique_ptr<Stepper> stepper;
 };
 
 TEST_P(Friction, HoldsARopeOnASlopeBelowItsAngleAndSlowsItAbove) {
-  const double critical = std::tan(OnSlope::angle);
-  OnSlope held(GetParam(), 1.02 * critical), slides(GetParam(), 0.5 * critical);
+  constexpr double angle = pi / 9;
+  const double critical = std::tan(angle);
+  OnSlope held(GetParam(), 1.02 * critical, angle), slides(GetParam(), 0.5 * critical, angle);
   const Positions start = held.state.x;
   for (int step = 0; step < 200; ++step) {
     ASSERT_TRUE(held.stepper->advance(held.state, short_step));
     ASSERT_TRUE(slides.stepper->advance(slides.state, short_step));
   }
   EXPECT_LT((held.state.x - start).cwiseAbs().maxCoeff(), 1e-6);
-  const double a = gravity * std::sin(OnSlope::angle) * 0.5;  // half of it is friction's
+  const double a = gravity * std::sin(angle) * 0.5;  // half of it is friction's
   for (int i = 0; i < 4; ++i) {
     EXPECT_NEAR(slides.state.v.col(i).dot(slides.down), a * slides.state.time, 1e-3);
   }
@@ -73,22 +74,14 @@ TEST(FrictionInEveryStepper, StopsASlidingRopeWhereCoulombSays) {
   constexpr double friction = 0.3, speed = 1;
   for (const char* solver : {"fast_projection", "fast_projection@bdf2", "fast_projection@midpoint",
                              "rattle", "implicit_springs@bdf2"}) {
-    ProblemParts parts;
-    parts.mass = {0.1, 0.3, 0.2, 0.1};
-    parts.edges = {{0, 1}, {1, 2}, {2, 3}};
-    parts.rest_length = {0.1, 0.1, 0.1};
-    parts.gravity = {0, -gravity, 0};
-    parts.collider = std::make_shared<const testing::Ground>(Vector3d::UnitY(), 0, friction);
-    const auto problem = std::make_shared<const Problem>(std::move(parts));
-    State state{Positions::Zero(3, 4), Positions::Zero(3, 4), 0};
-    state.x.row(0) << 0, 0.1, 0.2, 0.3;
-    state.v.row(0).setConstant(speed);
-    const Positions start = state.x;
-    const auto stepper = make_stepper(solver, problem, {1e-3, 1, stiff_enough(solver), &state});
-    for (int step = 0; step < 200; ++step) ASSERT_TRUE(stepper->advance(state, short_step));
+    OnSlope rope(solver, friction, 0);
+    rope.state.v.row(0).setConstant(speed);
+    const Positions start = rope.state.x;
+    for (int step = 0; step < 200; ++step)
+      ASSERT_TRUE(rope.stepper->advance(rope.state, short_step));
     const double way = speed * speed / (2 * friction * gravity);
-    EXPECT_NEAR((state.x - start).row(0).mean(), way, 0.01 * way) << solver;
-    EXPECT_LT(state.v.cwiseAbs().maxCoeff(), 1e-6) << solver;
+    EXPECT_NEAR((rope.state.x - start).row(0).mean(), way, 0.01 * way) << solver;
+    EXPECT_LT(rope.state.v.cwiseAbs().maxCoeff(), 1e-6) << solver;
   }
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "solvers/problem/edge_constraints.h"
 #include "solvers/problem/triangle_collider.h"
 #include "solvers/registry.h"
 #include "support/contact.h"
@@ -88,25 +87,6 @@ TEST(MovingBody, ALiftCarriesItsLoadUpAndLosesItDownwards) {
   }
   EXPECT_NEAR(up.state.x(1, 0), 0.5 * up.state.time, 1e-8);
   EXPECT_NEAR(down.state.v(1, 0), -free_fall * down.state.time, 1e-12);
-}
-
-TEST(MovingPins, AreWhereTheBodyTakesThem) {
-  const BodyMotion motion = [](double time) {
-    return Pose{turning(2)(time).turn, time * Vector3d(0.7, -0.2, 0.4)};
-  };
-  Random random(1);
-  const auto chain = testing::random_mesh(random, 1, 8, 1);
-  ProblemParts parts = testing::parts_of(*chain.problem);
-  parts.collider = std::make_shared<const testing::Ground>(Vector3d(0, 1, 0), -100, 0);
-  parts.body_motion = motion;
-  parts.pins_follow_body = true;
-  const auto problem = std::make_shared<const Problem>(parts);
-  State state{chain.x, Positions::Zero(3, 8), 0};
-  const auto stepper = make_stepper("fast_projection", problem, {1e-6, 1, {}, &state});
-  for (int step = 0; step < 100; ++step) ASSERT_TRUE(stepper->advance(state, tick));
-  const int pin = problem->pinned()[0];
-  EXPECT_LT((state.x.col(pin) - motion(state.time)(chain.x.col(pin))).norm(), 1e-10);
-  EXPECT_TRUE(EdgeConstraints(*problem, 1e-6).permissible(state.x));
 }
 
 class MovingBodies : public ::testing::TestWithParam<const char*> {};

@@ -108,20 +108,6 @@ TEST(ColoredEdges, AreAdjacentOnClothAndChains) {
   }
 }
 
-TEST(ColoredEdges, BringPositionsThereAndBackBitForBit) {
-  Random random(5);
-  const auto mesh = testing::random_mesh(random, 9, 12, 3);
-  const ColoredEdges colored(*mesh.problem);
-  Positions x = mesh.x;
-  x(1, 4) = -0.0;
-  ColoredEdges::Places places = colored.make_places();
-  colored.load(x, places);
-  Positions back = Positions::Constant(3, x.cols(), 7);
-  colored.store(places, back);
-  for (const int v : mesh.problem->pinned()) x.col(v).setConstant(7);
-  EXPECT_TRUE(testing::same_bits(back, x));
-}
-
 // The same pass by the book: edges of `order` one by one, from `x` as it is now (in turn) or was at
 // the beginning. Returns how many were corrected.
 int pass_by_the_book(const Problem& problem, const StrainBand& band, double relaxation,
@@ -169,26 +155,6 @@ TEST(StrainPasses, EqualALoopOverEdges) {
   for_seeds(20, [](Random& random, std::uint64_t) {
     expect_passes_by_the_book(random, testing::random_mesh(random, 17, 24, 2));
     expect_passes_by_the_book(random, testing::random_graph(random, 150, 200, 2, 0.1));
-  });
-}
-
-// Equation 18 of Macklin et al. 2016 with compliance 0 is a correction to the rest length.
-TEST(PbdSubsteps, AreAGivenNumberOfPasses) {
-  for_seeds(20, [](Random& random, std::uint64_t) {
-    const auto mesh = testing::random_mesh(random, 1 + static_cast<int>(random() % 12),
-                                           2 + static_cast<int>(random() % 12), 2);
-    const int sweeps = 1 + static_cast<int>(random() % 3);
-    const double relaxation = testing::uniform(random, 0.5, 1.5);
-    const auto filter = make_velocity_filter(
-        "pbd_substeps", *mesh.problem,
-        {.settings = {{"sweeps", static_cast<double>(sweeps)}, {"relaxation", relaxation}}});
-    Positions x = testing::perturbed(random, mesh, 0.05), wanted = x;
-    const std::vector<int> order = ColoredEdges(*mesh.problem).problem_edge();
-    for (int i = 0; i < sweeps; ++i)
-      pass_by_the_book(*mesh.problem, {0, 0}, relaxation, order, true, wanted);
-    WorkCounters work;
-    ASSERT_TRUE(filter->apply(mesh.x, h, x, work));
-    EXPECT_LE((x - wanted).cwiseAbs().maxCoeff(), 1e-12);
   });
 }
 

@@ -6,7 +6,6 @@
 //     plain  as it is
 //     slow   every projection made four times: what bench ab must see
 //     loud   prints to standard output, by C and by C++, as it is loaded, used and unloaded
-//     start  with a set-up that needs the start's positions, and fails without
 //     bare   takes neither shear nor a collider
 #include <dlfcn.h>
 #include <unistd.h>
@@ -72,26 +71,15 @@ class Repeated final : public VelocityFilter {
   WorkCounters not_counted_;
 };
 
-void need_start(const Problem& problem, const State* start) {
-  if (!start) throw std::runtime_error("no start");
-  if (start->x.cols() != problem.vertices() || start->v.cols() != problem.vertices())
-    throw std::runtime_error("a start of another size");
-  for (const Edge& edge : problem.edges()) {
-    if (start->x.col(edge.a) == start->x.col(edge.b))
-      throw std::runtime_error("a start without positions");
-  }
-}
-
 std::unique_ptr<Stepper> make_repeated(std::shared_ptr<const Problem> problem,
                                        const BackendOptions& options) {
-  if (is("start")) need_start(*problem, options.start);
   auto filter = std::make_unique<Repeated>(*problem, options.strain_limit);
   return std::make_unique<FilterStepper>(std::move(problem), std::move(filter));
 }
 
 Backend row() {
   const auto limit = StrainControl::strain_limit;
-  for (const char* kind : {"plain", "slow", "loud", "start", "bare"}) {
+  for (const char* kind : {"plain", "slow", "loud", "bare"}) {
     if (!is(kind)) continue;
     Backend sound{"sound", "fast projection once more", limit, true, {}, make_repeated};
     if (is("bare")) sound.takes_shear = sound.takes_collider = false;

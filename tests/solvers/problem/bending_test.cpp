@@ -163,12 +163,8 @@ TEST(Problem, RefusesPartsThatDoNotFit) {
   const std::function<void(ProblemParts&)> misfits[] = {
       [](ProblemParts& parts) { parts.bending = {yarn_bending(0, 1, 3, 1, 1, 1)}; },
       [](ProblemParts& parts) { parts.bending = {yarn_bending(0, 1, 2, 1, 1, -1)}; },
-      [](ProblemParts& parts) {
-        parts.drag = {1, 1};
-      },
-      [](ProblemParts& parts) {
-        parts.drag = {1, 1, -1};
-      },
+      [](ProblemParts& parts) { parts.drag.assign(2, 1); },
+      [](ProblemParts& parts) { parts.drag.assign(3, -1); },
       [](ProblemParts& parts) { parts.pins_follow_body = true; },  // of none
       [](ProblemParts& parts) {
         parts.body_motion = [](double) { return Pose{Eigen::Matrix3d::Identity(), {0, 0, 0}}; };

@@ -12,11 +12,8 @@ namespace {
 using Eigen::Vector3d;
 using testing::Ground;
 using testing::Random;
+using testing::random_vector;
 using testing::uniform;
-
-Vector3d random_vector(Random& random, double size) {
-  return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
-}
 
 // Points that fell through a ground: n of them, where they began, and where they would be.
 struct Fallen {

@@ -16,6 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 using testing::Random;
+using testing::random_vector;
 
 // An icosphere with every vertex pulled towards the centre by its own factor: spikes and pits.
 TriangleMesh spiky(Random& random, int subdivisions) {
@@ -55,18 +56,13 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
   return sum / (4 * M_PI);
 }
 
-Vector3d random_point(Random& random, double size) {
-  return {testing::uniform(random, -size, size), testing::uniform(random, -size, size),
-          testing::uniform(random, -size, size)};
-}
-
 TEST(TriangleCollider, DistanceAndSignAreRightOnAMeshThatIsNotConvex) {
   int inside = 0, outside = 0, all = 0;
   testing::for_seeds(4, [&](testing::Random& random, std::uint64_t) {
     const TriangleMesh mesh = spiky(random, 2);
     const TriangleCollider collider(mesh, 0.3);
     for (int i = 0; i < testing::trials(3000); ++i, ++all) {
-      const Vector3d p = random_point(random, i % 3 ? 0.8 : 1.2);  // also beyond the grid's box
+      const Vector3d p = random_vector(random, i % 3 ? 0.8 : 1.2);  // also beyond the grid's box
       double distance = std::numeric_limits<double>::infinity();
       for (const auto& t : mesh.triangles) {
         distance = std::min(distance, distance_to_triangle(mesh.vertices[t[0]], mesh.vertices[t[1]],
@@ -95,7 +91,7 @@ TEST(TriangleCollider, PushOutMovesWhatIsInsideToTheSurfaceWhateverTheFriction) 
     const auto ellipsoid = [&random](int subdivisions) {
       TriangleMesh mesh = icosphere(Vector3d::Zero(), 0.9, subdivisions);
       Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity();
-      for (int i = 0; i < 3; ++i) stretch.col(i) += random_point(random, 0.3);
+      for (int i = 0; i < 3; ++i) stretch.col(i) += random_vector(random, 0.3);
       EXPECT_GT(stretch.determinant(), 0);
       for (Vector3d& v : mesh.vertices) v = (stretch * v).eval();
       return mesh;
@@ -113,8 +109,8 @@ TEST(TriangleCollider, PushOutMovesWhatIsInsideToTheSurfaceWhateverTheFriction) 
         const int n = testing::trials(3000);
         Eigen::Matrix3Xd start(3, n), candidate(3, n);
         for (int v = 0; v < n; ++v) {
-          candidate.col(v) = random_point(random, 1.2);
-          start.col(v) = candidate.col(v) + random_point(random, 0.3);
+          candidate.col(v) = random_vector(random, 1.2);
+          start.col(v) = candidate.col(v) + random_vector(random, 0.3);
         }
         Eigen::Matrix3Xd x = candidate;
         WorkCounters work;
@@ -148,8 +144,8 @@ TEST(TriangleCollider, WhatItRemembersChangesNoAnswer) {
       const std::vector<double> inverse_mass(n, 1);
       Eigen::Matrix3Xd x(3, n), step(3, n);
       for (int v = 0; v < n; ++v) {
-        x.col(v) = random_point(random, 1.2);
-        step.col(v) = random_point(random, 0.05);
+        x.col(v) = random_vector(random, 1.2);
+        step.col(v) = random_vector(random, 0.05);
       }
       Collider::Memory memory = Collider::nothing_of(n);
       std::vector<ContactPlane> planes, fresh;

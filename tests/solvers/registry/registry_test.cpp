@@ -48,11 +48,6 @@ TEST(Registry, EveryPairIsARowOrHasAReason) {
       EXPECT_TRUE(pair->contestant);
     }
   }
-  EXPECT_NE(find_backend("gauss_seidel_colored@bdf2"), nullptr);
-  EXPECT_NE(find_backend("implicit_springs@bdf2"), nullptr);
-  EXPECT_NE(find_backend("jacobi@midpoint"), nullptr);
-  EXPECT_EQ(find_backend("shake@bdf2"), nullptr);
-  EXPECT_EQ(find_backend("icd@midpoint"), nullptr);
   EXPECT_NE(why_no_pair("icd@leapfrog"), "");
   EXPECT_EQ(why_no_pair("icy@bdf2"), "");
 }
@@ -78,40 +73,28 @@ TEST(Registry, SettingsOutOfRangeAreRefusedByName) {
   const struct {
     const char *solver, *setting;
     std::variant<double, std::string> value;
-    std::string refusal;  // "..." for any
-  } cases[] = {
-      {"jacobi", "relaxation", 2.0,
-       "solver 'jacobi': setting 'relaxation' is 2, must be finite, above 0 and below 2"},
-      {"jacobi", "relaxation", 1.99, ""},
-      {"shake", "max_iterations", 1.5,
-       "solver 'shake': setting 'max_iterations' is 1.5, must be an integer, at least 1 and at "
-       "most 1e+09"},
-      {"shake", "max_iterations", 0.0, "..."},
-      {"gauss_seidel", "target", 1.01, "..."},
-      {"gauss_seidel", "target", 1.0, ""},
-      {"yarn_projection@midpoint", "spectral_radius", 1.01, "..."},
-      {"icd", "cg_tolerance", std::nan(""), "..."},
-      {"icd", "cg_tolerance", "low", "solver 'icd': setting 'cg_tolerance' must be a number"},
-      {"icd", "colour", 1.0, "solver 'icd': setting 'colour' does not exist"}};
-  for (const auto& [solver, setting, value, expected] : cases) {
-    std::string found;
+    bool taken;
+  } cases[] = {{"jacobi", "relaxation", 2.0, false},
+               {"jacobi", "relaxation", 1.99, true},
+               {"shake", "max_iterations", 1.5, false},
+               {"shake", "max_iterations", 0.0, false},
+               {"gauss_seidel", "target", 1.01, false},
+               {"gauss_seidel", "target", 1.0, true},
+               {"icd", "cg_tolerance", std::nan(""), false},
+               {"icd", "cg_tolerance", "low", false},
+               {"icd", "colour", 1.0, false}};
+  for (const auto& [solver, setting, value, taken] : cases) {
+    std::string refusal;
     try {
       complete_settings(*find_backend(solver), {{setting, value}});
     } catch (const std::invalid_argument& error) {
-      found = error.what();
+      refusal = error.what();
     }
-    EXPECT_TRUE(expected == "..." ? !found.empty() : found == expected) << found;
+    EXPECT_EQ(refusal.empty(), taken) << refusal;
+    EXPECT_TRUE(taken || refusal.starts_with(std::string("solver '") + solver + "': setting '" +
+                                             setting + "' "))
+        << refusal;
   }
-}
-
-TEST(BackendOptions, GiveSettingsAndDefaultsByTheirNames) {
-  BackendOptions options{0.25, 7, {}};
-  options.settings = complete_settings(
-      *find_backend("fast_projection@bdf2"),
-      {{"max_iterations", 12.0}, {"linear_solver", std::string("cholmod_simplicial")}});
-  EXPECT_EQ(options.count("max_iterations"), 12);
-  EXPECT_EQ(options.number("inner_band"), 0.6);  // the default
-  EXPECT_EQ(options.word("linear_solver"), "cholmod_simplicial");
 }
 
 struct Recorder final : IterateObserver {
