@@ -92,7 +92,8 @@ double pair_noise_of(const json& document) {
 
 Runs::Runs(const json& document) : roles(document), levels{any_motion} {
   const double noise = pair_noise_of(document);
-  for (const json& p : document.at("points")) points.emplace_back(p, noise);
+  // Where results were joined, each point has its own file's.
+  for (const json& p : document.at("points")) points.emplace_back(p, p.value("noise", noise));
   const double finest =
       document.value(json::json_pointer("/context/suite/finest_error"), answer_levels.back());
   for (const double level : answer_levels) {

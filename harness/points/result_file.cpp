@@ -253,11 +253,15 @@ json joined(const std::vector<json>& documents) {
   for (const json& document : documents) {
     if (document.value("schema", "") != all.value("schema", ""))
       throw UsageError("results of different kinds of sweeps are no one table");
-    add_rows(all[rows], document.at(rows), document.value(again, json()), taken);
+    const json own = document.value(q95, json());
+    json its_rows = document.at(rows);
+    if (own.is_number()) {
+      for (json& row : its_rows) row["noise"] = own;
+    }
+    add_rows(all[rows], its_rows, document.value(again, json()), taken);
     if (document.contains(legend)) add_named(all[legend], document.at(legend));
     if (document.contains("references")) add_named(all["references"], document.at("references"));
-    if (const json own = document.value(q95, json()); own.is_number())
-      noise = std::fmax(noise, own.get<double>());
+    if (own.is_number()) noise = std::fmax(noise, own.get<double>());
     if (!is_timed(document)) all["context"]["timed"] = false;
     if (!sweep && &document != &documents.front()) add_stability(all, document);
   }

@@ -276,7 +276,7 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
   std::vector<NamedResult> all = results;
   all.insert(all.end(), growth.begin(), growth.end());
 
-  out << "## The paper's claims\n\n`bench claims` on the same files gives each rule.\n\n";
+  out << "## The paper's claims (`bench claims` gives each rule)\n\n";
   print_claims_markdown(out, judge_claims(documents));
   out << "\n## Who is fastest, by strain and error\n\nIn each cell the fastest: its time for one "
          "simulated second and its step in s; then how many times as long the best of the paper's "
