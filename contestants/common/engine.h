@@ -71,7 +71,7 @@ class EngineStepper : public inextensible::Stepper {
   // A force that is not the engine's own, on a vertex that is not pinned; N.
   virtual void give_force(int /*vertex*/, const Eigen::Vector3d& /*force*/) {}
   virtual StepResult step(double h) = 0;
-  // Of vertices that are not pinned.
+  // Positions and velocities of the vertices that are not pinned.
   virtual void take_out(const State& start, Positions& x, Positions& v) = 0;
   // What a step that may still be refused must not change.
   virtual void accept(const Positions& /*x*/, const Positions& /*v*/) {}

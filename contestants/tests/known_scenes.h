@@ -23,7 +23,7 @@ Scene swirling_chain(int links);
 // n x n vertices of 1 kg and 1 m x 1 m in all, without weight, that spin about y by `omega`.
 Scene spinning_net(int n, double omega);
 
-// Of a solver of the plug-in of this name, which is loaded.
+// Makes a stepper of the plug-in with this name, and loads the plug-in first.
 std::unique_ptr<inextensible::Stepper> make(const std::string& solver, const Scene& scene,
                                             const inextensible::Settings& settings = {});
 // The state after that many steps, all of which must be taken.

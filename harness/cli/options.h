@@ -77,7 +77,7 @@ SweepFilters filters_of(const SelectionOptions& options);
 using SceneOfReference = std::pair<std::string, SceneParameters>;
 std::map<std::string, SceneOfReference> without_reference(const std::vector<Search>& searches,
                                                           ReferenceFolder& references);
-// By which methods it was made, and for how long the motion is known.
+// The methods that made it, and for how long the motion is known.
 std::string reference_text(const Reference& reference);
 
 }  // namespace harness

@@ -27,7 +27,7 @@ class Collider {
   // What find() remembers of each vertex between calls, a row each: normal and offset of a plane
   // with the obstacle behind it. It makes calls cheaper, and changes no answer.
   using Memory = Eigen::MatrixX4d;
-  static Memory nothing_of(int vertices) {  // behind which everything is
+  static Memory nothing_of(int vertices) {  // planes with everything behind them
     Memory memory = Memory::Zero(vertices, 4);
     memory.col(3).setConstant(std::numeric_limits<double>::infinity());
     return memory;
