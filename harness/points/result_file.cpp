@@ -254,11 +254,10 @@ json joined(const std::vector<json>& documents) {
     if (document.value("schema", "") != all.value("schema", ""))
       throw UsageError("results of different kinds of sweeps are no one table");
     const json own = document.value(q95, json());
-    json its_rows = document.at(rows);
-    if (own.is_number()) {
-      for (json& row : its_rows) row["noise"] = own;
-    }
-    add_rows(all[rows], its_rows, document.value(again, json()), taken);
+    const std::size_t before = all[rows].size();
+    add_rows(all[rows], document.at(rows), document.value(again, json()), taken);
+    for (std::size_t i = before; own.is_number() && i < all[rows].size(); ++i)
+      all[rows][i]["noise"] = own;
     if (document.contains(legend)) add_named(all[legend], document.at(legend));
     if (document.contains("references")) add_named(all["references"], document.at("references"));
     if (own.is_number()) noise = std::fmax(noise, own.get<double>());
