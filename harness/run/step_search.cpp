@@ -19,7 +19,7 @@ constexpr double hopeless_factor = 3, patient_factor = 30;
 // An error above this part of the one at twice the step does not fall as a method of first order's.
 // Several coarse steps may let cloth settle into the same wrong folds before a finer one does not.
 constexpr double stays = 0.85;
-constexpr int longest_stay = 4;
+constexpr int longest_stay = 5;
 constexpr double never = std::numeric_limits<double>::infinity();
 
 // A point is skipped where its calibration timed out.
