@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "solvers/problem/problem.h"
+
 namespace engines {
 namespace {
 

@@ -71,14 +71,13 @@ void MobilizerChain::Parts::set(std::size_t link, const Eigen::Matrix3d& against
   }
 }
 
-MobilizerChain::MobilizerChain(const std::vector<double>& length, const std::vector<double>& mass,
-                               const Eigen::Vector3d& gravity, bool pins,
+MobilizerChain::MobilizerChain(const Links& links, const Eigen::Vector3d& gravity, bool pins,
                                std::string_view integrator, double accuracy)
     : parts_(std::make_unique<Parts>()) {
   parts_->pins = pins;
   const SimTK::Force::UniformGravity weight(parts_->forces, parts_->matter, to_simbody(gravity));
   parts_->matter.setShowDefaultGeometry(false);
-  for (std::size_t i = 0; i < length.size(); ++i) parts_->add_link(length[i], mass[i]);
+  for (int i = 0; i < links.count(); ++i) parts_->add_link(links.length[i], links.mass[i]);
   parts_->start = parts_->system.realizeTopology();
   parts_->system.realizeModel(parts_->start);
   parts_->integrator = integrator_named(integrator, parts_->system);
@@ -89,7 +88,7 @@ MobilizerChain::MobilizerChain(const std::vector<double>& length, const std::vec
 
 MobilizerChain::~MobilizerChain() = default;
 
-void MobilizerChain::set(const std::vector<LinkPose>& poses) {
+void MobilizerChain::set(const LinkPoses& poses) {
   Eigen::Matrix3d before = Eigen::Matrix3d::Identity();
   Eigen::Vector3d rate_before = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < poses.size(); ++i) {
