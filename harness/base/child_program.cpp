@@ -1,16 +1,15 @@
 // Children that run this program's own work to its end, or another program.
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <iostream>
-#include <memory>
 #include <stdexcept>
 
 #include "harness/base/child_process.h"
@@ -69,24 +68,11 @@ class Child {
 };
 
 // Files without a name instead of pipes: nothing can block, however much is written.
-using TemporaryFile = std::unique_ptr<FILE, int (*)(FILE*)>;
-
-TemporaryFile temporary_file(const std::string& text = "") {
-  TemporaryFile file(std::tmpfile(), std::fclose);
-  if (!file || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() ||
-      std::fflush(file.get()) != 0)
+OpenFile nameless_file(const std::string& text = "") {
+  OpenFile file(memfd_create("bench", MFD_CLOEXEC));
+  if (!file || !write_whole(file.get(), text) || lseek(file.get(), 0, SEEK_SET) != 0)
     throw std::runtime_error(std::string("no temporary file: ") + std::strerror(errno));
-  std::rewind(file.get());
   return file;
-}
-
-std::string contents(FILE* file) {
-  std::rewind(file);
-  std::string text;
-  std::array<char, 4096> buffer{};
-  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file))
-    text.append(buffer.data(), n);
-  return text;
 }
 
 }  // namespace
@@ -136,7 +122,7 @@ std::string ProgramResult::last_error_line() const {
 
 ProgramResult run_program(const std::vector<std::string>& words, const std::string& input,
                           double timeout, const std::function<bool()>& interrupted) {
-  const TemporaryFile in = temporary_file(input), out = temporary_file(), err = temporary_file();
+  const OpenFile in = nameless_file(input), out = nameless_file(), err = nameless_file();
   std::vector<std::string> copies = words;
   std::vector<char*> argv;
   argv.reserve(words.size() + 1);
@@ -144,7 +130,7 @@ ProgramResult run_program(const std::vector<std::string>& words, const std::stri
   argv.push_back(nullptr);
   Child child([&] {  // nothing but system calls until it is the other program
     int descriptor = 0;
-    for (FILE* file : {in.get(), out.get(), err.get()}) dup2(fileno(file), descriptor++);
+    for (const int file : {in.get(), out.get(), err.get()}) dup2(file, descriptor++);
     execv(argv[0], argv.data());
   });
   ProgramResult result;
@@ -154,8 +140,8 @@ ProgramResult run_program(const std::vector<std::string>& words, const std::stri
   }
   const int status = child.status();
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  result.out = contents(out.get());
-  result.err = contents(err.get());
+  result.out = read_whole(out.get());
+  result.err = read_whole(err.get());
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -137,6 +138,15 @@ bool write_whole(int file, const std::string& text) {
     done += static_cast<std::size_t>(written);
   }
   return true;
+}
+
+std::string read_whole(int file) {
+  std::string text;
+  std::array<char, 65536> buffer{};
+  for (ssize_t count;
+       (count = pread(file, buffer.data(), buffer.size(), static_cast<off_t>(text.size()))) > 0;)
+    text.append(buffer.data(), static_cast<std::size_t>(count));
+  return text;
 }
 
 std::string read_file(const std::string& path, const std::string& what) {

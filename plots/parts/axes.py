@@ -66,13 +66,9 @@ def log_steps_on_y(axes: Axes, steps: list[float]) -> None:
 
 
 def gap(axes: Axes, left: float, right: float) -> float:
-    """Distance of two x values as a fraction of the axes' width."""
-    to_axes = axes.transData + axes.transAxes.inverted()
-    return to_axes.transform((right, 0))[0] - to_axes.transform((left, 0))[0]
-
-
-def points_wide(axes: Axes) -> float:
-    return axes.get_figure().get_figwidth() * axes.get_position().width * 72
+    """Distance of two x values, in points."""
+    (start, _), (end, _) = axes.transData.transform([(left, 1), (right, 1)])
+    return (end - start) * 72 / axes.get_figure().dpi
 
 
 def grid(axes: Axes) -> None:
