@@ -126,12 +126,6 @@ def script_text(value: Any) -> str:
 
 # ---- the page ---------------------------------------------------------------------------------------------------------
 
-def machine_row(path: Path, result: Result) -> list[str]:
-    context, build = result.context, result.context["build"]
-    commit = build["git"][:12] + (" with changes" if build["dirty"] else "")
-    return [path.name, *(str(context[key]) for key in ("date", "cpu_model", "num_cpus")), commit, build["compiler"], build["flags"]]
-
-
 def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> str:
     def file(name: str) -> str:
         return (PAGE / name).read_text(encoding="utf-8")
@@ -140,6 +134,9 @@ def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> 
     with matplotlib.rc_context(RC):
         pictures = "".join(picture(f"{path.stem}-{name}", draw) for path, result in results.items()
                            for name, draw in all_figures(result).items())
+    machines = [[path.name, *(str(result.context[key]) for key in ("date", "cpu_model", "num_cpus")),
+                 build["git"][:12] + (" with changes" if build["dirty"] else ""), build["compiler"], build["flags"]]
+                for path, result in results.items() if (build := result.context["build"])]
     verdicts = [[claim[key] for key in ("id", "statement", "verdict", "measured", "rule")] for claim in claims]
     parts = [(name, title, body) for name, title, body in (
         ("findings", "Findings", findings(found)),
@@ -147,8 +144,7 @@ def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> 
         ("points", "All points", file("table.html") if data["points"] else ""),
         ("figures", "Figures", pictures),
         ("claims", "The paper's claims", table(("Claim", "Says", "Verdict", "Measured", "Rule"), verdicts) if claims else ""),
-        ("machine", "Machine and build", table(("File", "Date", "Processor", "Cores", "Commit", "Compiler", "Flags"),
-                                               (machine_row(path, result) for path, result in results.items()))),
+        ("machine", "Machine and build", table(("File", "Date", "Processor", "Cores", "Commit", "Compiler", "Flags"), machines)),
     ) if body]
     links = "".join(f'<a href="#{name}">{title}</a>' for name, title, _ in parts)
     sections = "".join(f'<section id="{name}" aria-labelledby="{name}-title">\n<h2 id="{name}-title">{title}</h2>\n{body}\n</section>\n'
