@@ -182,27 +182,21 @@ TEST_F(Lock, IsHeldByOneProcessAndNotInTheWayOfProgramsStartedUnderIt) {
 }
 
 TEST_F(Lock, EndsWithItsProcessThoughAChildOfThatLives) {
-  std::array<int, 2> tell{}, stop{};
-  ASSERT_EQ(pipe(tell.data()), 0);
-  ASSERT_EQ(pipe(stop.data()), 0);
+  std::array<int, 2> held{};
+  ASSERT_EQ(pipe(held.data()), 0);
+  char c = 'x';
   const pid_t holder = fork();
   if (holder == 0) {
+    setpgid(0, 0);
     const TimingLock lock;
-    if (fork() == 0) {  // outlives its parent until told to stop
-      char c = 0;
-      close(stop[1]);
-      _exit(static_cast<int>(read(stop[0], &c, 1)));
-    }
-    const char c = 'x';
-    if (write(tell[1], &c, 1) != 1) _exit(1);
-    pause();
+    if (fork() > 0 && write(held[1], &c, 1) != 1) _exit(1);
+    while (true) pause();  // both: the child outlives its parent
   }
-  char c = 0;
-  ASSERT_EQ(read(tell[0], &c, 1), 1);
+  ASSERT_EQ(read(held[0], &c, 1), 1);
   kill(holder, SIGKILL);
   waitpid(holder, nullptr, 0);
   EXPECT_EQ(try_in_child(), 0);
-  for (const int end : {tell[0], tell[1], stop[0], stop[1]}) close(end);
+  kill(-holder, SIGKILL);
 }
 
 }  // namespace
