@@ -71,7 +71,7 @@ def picture(name: str, draw: Callable[[], Figure]) -> str:
             f'<figcaption>{title} <a download="{name}.svg" data-of="figure-{name}" href="#figure-{name}">SVG</a></figcaption></figure>\n')
 
 
-# ---- what the scripts work on, as one JSON document: solvers, and a row a point --------------------------------------------------------
+# ---- what the scripts work on, as one JSON document: labels of solvers, and a row a point --------------------------------------------------------
 
 def _samples(point: Json) -> list[float]:
     return (point["seconds_per_simulated_second"] or {"samples": []})["samples"]
@@ -80,7 +80,7 @@ def _samples(point: Json) -> list[float]:
 # What a row holds; the scripts know it by these names.
 FIELDS: dict[str, Callable[[Json], Any]] = {
     **{name: itemgetter(name) for name in ("id", "scene", "sweep", "vertices", "step", "status", "best", "adaptive")},
-    "limit": itemgetter("strain_limit"), "detail": itemgetter("status_detail"),
+    "solver": itemgetter("contestant"), "limit": itemgetter("strain_limit"), "detail": itemgetter("status_detail"),
     "seconds": seconds_of, "high": lambda point: point["seconds_per_simulated_second"]["median"] if len(_samples(point)) >= 3 else None,
     "runs": lambda point: len(_samples(point)),
     "strain": itemgetter("max_strain"), "delivered": itemgetter("max_strain_after_collision"),
@@ -91,18 +91,14 @@ FIELDS: dict[str, Callable[[Json], Any]] = {
 
 
 def embedded(results: dict[Path, Result]) -> Json:
-    """The legends are taken together; what they lack comes last."""
-    labels: dict[str, str] = {}
-    for result in results.values():
-        for name in (*result.solvers, *(point["contestant"] for point in result.points)):
-            labels.setdefault(name, result.label(name))
-    number = {name: place for place, name in enumerate(labels)}
+    """The legends are taken together."""
     return {
-        "columns": ["file", "solver", *FIELDS],
-        "points": [[file, number[point["contestant"]], *(read(point) for read in FIELDS.values())]
+        "columns": ["file", *FIELDS],
+        "points": [[file, *(read(point) for read in FIELDS.values())]
                    for file, result in enumerate(results.values()) for point in result.points],
         "files": [{"name": path.name, "command": repeat_command(result)} for path, result in results.items()],
-        "solvers": [{"label": label, "name": name} for name, label in labels.items()],
+        "labels": {name: result.label(name) for result in results.values()
+                   for name in (*result.solvers, *(point["contestant"] for point in result.points))},
     }
 
 
