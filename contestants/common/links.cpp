@@ -21,7 +21,6 @@ using inextensible::State;
 int only_pin(const Problem& problem) {
   const std::size_t pins = problem.pinned().size();
   if (pins != 1) refuse(std::to_string(pins) + " vertices are pinned");
-  if (problem.pins_follow_body()) refuse("the pin moves");
   return problem.pinned().front();
 }
 
