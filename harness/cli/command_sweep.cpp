@@ -1,8 +1,7 @@
 // bench --sweep strain|resolution|step|stability, and the sweeps of a suite.
-#include <sstream>
+#include <utility>
 
 #include "harness/base/small_runs.h"
-#include "harness/base/standard_streams.h"
 #include "harness/base/text.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
@@ -14,7 +13,6 @@
 #include "harness/run/machine_noise.h"
 #include "harness/run/sweep.h"
 #include "harness/stability/stability.h"
-#include "harness/tables/tables.h"
 
 namespace harness {
 namespace {
@@ -142,8 +140,7 @@ int run_suite(const SweepCommand& options, const Words& typed) {
   if (!options.shard.empty()) searches = shard(std::move(searches), parse_shard(options.shard));
   if (options.dry_run) return dry_run(suite, searches);
   nlohmann::json context = context_of(options);
-  const auto run = [&](const std::string& out, Journal& journal,
-                       const nlohmann::json& before) -> Finished {
+  const auto run = [&](Journal& journal, const nlohmann::json& before) -> Finished {
     if (options.rerun_failed) forget_failures(journal);
     SweepRunners runners;
     const auto references = ReferenceFolder::usual();
@@ -158,11 +155,9 @@ int run_suite(const SweepCommand& options, const Words& typed) {
       context["resumed"] = {{"from", before.at("date")}, {"points", points_in(journal)}};
     const SweepOutcome outcome = measured(suite, searches, isolated(runners, options.memory),
                                           journal, !options.untimed, context);
-    nlohmann::json document = result_document(context, suite, typed, outcome.complete,
-                                              outcome.points, references->summaries());
-    std::ostringstream text;
-    print_sweep(text, document, out, false, output_columns());
-    return {std::move(document), outcome.complete, text.str()};
+    return {result_document(context, suite, typed, outcome.complete, outcome.points,
+                            references->summaries()),
+            outcome.complete};
   };
   OutputOptions output = options;
   output.no_plots |= options.untimed;
@@ -171,14 +166,6 @@ int run_suite(const SweepCommand& options, const Words& typed) {
 }
 
 // ---- Hard cases: they are in the program, not in a suite ----
-
-// cases must outlive it.
-StabilityPlan plan_of(const SweepCommand& options, const std::vector<HardCase>& cases) {
-  StabilityPlan plan = plan_stability(
-      cases, {solver_pattern(options.solver), pattern_of("--case", options.hard_case), {}});
-  if (!options.shard.empty()) plan.keep(parse_shard(options.shard));
-  return plan;
-}
 
 int print_plan(const StabilityPlan& plan) {
   std::cout << plan.cells() << " cells: " << plan.cases.size() << " hard cases by "
@@ -197,7 +184,9 @@ int run_hard_cases(const SweepCommand& options, const Words& typed) {
   check_known("profile", options.profile, profiles());
   const HardCaseValues values = hard_case_values(options.profile);
   const std::vector<HardCase> cases = hard_cases(values);
-  const StabilityPlan plan = plan_of(options, cases);
+  StabilityPlan plan = plan_stability(
+      cases, {solver_pattern(options.solver), pattern_of("--case", options.hard_case), {}});
+  if (!options.shard.empty()) plan.keep(parse_shard(options.shard));
   if (options.dry_run) return print_plan(plan);
   nlohmann::json context = machine_context();
   context["selection"] = {{"solver", options.solver},
@@ -205,14 +194,11 @@ int run_hard_cases(const SweepCommand& options, const Words& typed) {
                           {"values", values},
                           {"seed", options.seed},
                           {"shard", options.shard}};
-  const auto run = [&](const std::string&, Journal& journal, const nlohmann::json&) -> Finished {
+  const auto run = [&](Journal& journal, const nlohmann::json&) -> Finished {
     Progress progress;
     const std::uint64_t seed = options.seed < 0 ? 1 : static_cast<std::uint64_t>(options.seed);
     const StabilityOutcome outcome = run_stability(plan, seed, journaled_events(journal, progress));
-    const nlohmann::json document = stability_document(context, outcome, seed, typed);
-    std::ostringstream text;
-    print_outcomes(text, document);
-    return {document, outcome.complete, fitted(text.str(), output_columns()),
+    return {stability_document(context, outcome, seed, typed), outcome.complete,
             outcome.nothing_new() ? success : unexpected_outcome};
   };
   return carry_out(
