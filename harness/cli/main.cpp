@@ -133,20 +133,17 @@ Words usual_words(int argc, char** argv) {
   return words;
 }
 
-// Help for the verb that was typed, or for the program.
+// The verb that was typed, or the program.
 const CLI::App* command_of(const CLI::App& program) {
-  const CLI::App* command = &program;
-  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
-  return command;
+  const auto typed = program.get_subcommands();
+  return typed.empty() ? &program : typed.front();
 }
 
 // What is wrong with the first of the typed words that CLI11 had no place for.
 std::string not_understood(const CLI::App& program, const Words& typed) {
   const CLI::App* command = command_of(program);
   const Words left = program.remaining(true);
-  const auto first = std::ranges::find_if(typed, [&left](const std::string& word) {
-    return std::ranges::find(left, word) != left.end();
-  });
+  const auto first = std::ranges::find_first_of(typed, left);
   const std::string word = first == typed.end() ? left.front() : *first;
   const std::string of = command == &program ? "" : " of bench " + command->get_name();
   Words known;
