@@ -134,8 +134,8 @@ std::string ProgramResult::last_error_line() const {
                          : "exit code " + std::to_string(exit_code);
 }
 
-ProgramResult run_program(const std::vector<std::string>& words, const std::string& input,
-                          double timeout, const std::function<bool()>& interrupted) {
+ProgramResult run_program(const std::vector<std::string>& words, double timeout,
+                          const std::string& input) {
   const TemporaryFile in = temporary_file(input), out = temporary_file(), err = temporary_file();
   std::vector<std::string> copies = words;
   std::vector<char*> argv;
@@ -152,6 +152,7 @@ ProgramResult run_program(const std::vector<std::string>& words, const std::stri
     result.timed_out = since(start) > timeout;
     if (result.timed_out || interrupted()) child.send(SIGKILL);
   }
+  if (interrupted()) throw Interrupted();
   const int status = child.status();
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   result.out = contents(out.get());

@@ -138,9 +138,7 @@ struct Program {
     Words words{path};
     for (const std::string& file : plugins) words.insert(words.end(), {"--plugin", file});
     words.insert(words.end(), arguments.begin(), arguments.end());
-    ProgramResult result = run_program(words, input, timeout, interrupted);
-    if (interrupted()) throw Interrupted();
-    return result;
+    return run_program(words, timeout, input);
   }
 
   // Before anything is timed: that it is one of ours, and takes its plug-ins.

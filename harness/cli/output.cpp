@@ -211,9 +211,7 @@ int draw(const std::string& script, const Words& arguments, const std::string& o
   Words words{"/usr/bin/python3", source_path("plots/" + script)};
   words.insert(words.end(), arguments.begin(), arguments.end());
   words.insert(words.end(), {"--out", scratch.file(place.filename().string())});
-  const ProgramResult ran =
-      run_program(words, "", std::numeric_limits<double>::infinity(), interrupted);
-  if (interrupted()) throw Interrupted();
+  const ProgramResult ran = run_program(words, std::numeric_limits<double>::infinity());
   std::cerr << ran.err;
   if (ran.exit_code == 127)
     std::cerr << "bench: figures need /usr/bin/python3 with matplotlib (Debian: "
