@@ -100,8 +100,6 @@ bool takes_a_part(const std::string& out) {
 
 }  // namespace
 
-Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
-
 void Progress::begin_part() {
   part_ = std::chrono::steady_clock::now();
   lines_ = 0;

@@ -2,6 +2,8 @@
 // file of results, with a journal beside it until it is whole, and pictures.
 #pragma once
 
+#include <unistd.h>
+
 #include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -18,7 +20,7 @@ namespace harness {
 // On a terminal one line, rewritten; otherwise, for logs, some twenty lines for each part.
 class Progress {
  public:
-  Progress();
+  Progress() = default;
   ~Progress() { clear(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -30,7 +32,7 @@ class Progress {
 
  private:
   using Time = std::chrono::steady_clock::time_point;
-  bool terminal_;
+  const bool terminal_ = isatty(STDERR_FILENO) == 1;
   Time start_ = std::chrono::steady_clock::now(), part_ = start_;
   int lines_ = 0;          // of the log, in this part
   std::size_t width_ = 0;  // of the line on the terminal
