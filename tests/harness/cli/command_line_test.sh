@@ -56,17 +56,6 @@ must be 24, 30 or 60 <- choose --fps 50
 --budget <- choose --budget 2ms
 TABLE
 [[ ! -e nowhere ]] || fail "a refused --out made its folder"
-chain='{"sweep": "strain", "scene": "chain", "limits": [0.1]'
-while read -r part suite; do
-  echo "$suite" >suite.json
-  refused "$part" --sweep strain --config suite.json --out out.json
-done <<TABLE
-suite {"name": "../x", "sweeps": [$chain}]}
-suite {"reps": 1e300, "sweeps": [$chain}]}
-suite {"name": "a", "name": "b", "sweeps": [$chain}]}
-duration {"sweeps": [$chain, "scene_parameters": {"duration": 1e9}, "steps": {"coarsest": 0.01}}]}
-solver_options {"sweeps": [$chain, "solver_options": {"fast_projection": {"linear_solver": 3}}}]}
-TABLE
 for document in '{"schema": "inextensible-bench/1"}' "$(head -c 100000 /dev/zero | tr '\0' '[')" '{"schema": 1, "schema": 2}' '[]'; do
   echo "$document" >bad.json
   for verb in "show bad.json" "compare bad.json bad.json" "baseline bad.json --out out.json" "results bad.json"; do
