@@ -62,9 +62,9 @@ struct ProgramResult {
   std::string last_error_line() const;  // of err, or how it ended
 };
 
-// Runs another program to its end. words: the program's path, then its arguments. It ends with this
-// process at the latest. After `timeout` s of wall time, or an interruption, it is killed. Throws
-// Interrupted, and std::runtime_error if no process can be made.
+// Runs another program to its end. words: the program as for a shell, then its arguments. It ends
+// with this process at the latest. After `timeout` s of wall time, or an interruption, it is
+// killed. Throws Interrupted, and std::runtime_error if no process can be made.
 ProgramResult run_program(const std::vector<std::string>& words, double timeout,
                           const std::string& input = "");
 

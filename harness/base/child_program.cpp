@@ -145,7 +145,7 @@ ProgramResult run_program(const std::vector<std::string>& words, double timeout,
   Child child([&] {  // nothing but system calls until it is the other program
     int descriptor = 0;
     for (FILE* file : {in.get(), out.get(), err.get()}) dup2(fileno(file), descriptor++);
-    execv(argv[0], argv.data());
+    execvp(argv[0], argv.data());
   });
   ProgramResult result;
   for (const auto start = Clock::now(); !child.ended();) {

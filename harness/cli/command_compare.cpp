@@ -1,11 +1,7 @@
 // bench compare, baseline and ab: two results point by point, a result for the next comparisons,
 // and two builds of this program timed against each other.
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <sstream>
 
 #include "harness/base/child_process.h"
 #include "harness/base/timing_lock.h"
@@ -111,19 +107,10 @@ struct Baseline {
 constexpr double run_timeout = 60;  // s, of one run
 constexpr double sweep_timeout = 3600;
 
-bool is_program(const fs::path& file) {
-  return fs::is_regular_file(file) && access(file.c_str(), X_OK) == 0;
-}
-
-// A name without a folder is a file here, else a program on the PATH as for a shell, else, if it is
-// its name, this program: an installed `bench ab bench bench` means itself.
+// A name without a folder is a file here, else, if it is its name, this program, else one on the
+// PATH.
 std::string program_named(const std::string& name) {
-  if (name.find('/') != std::string::npos || fs::exists(name)) return name;
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    if (is_program(fs::path(folder) / name)) return fs::path(folder) / name;
-  }
+  if (name.find('/') == std::string::npos && fs::exists(name)) return "./" + name;
   const fs::path own = fs::read_symlink("/proc/self/exe");
   return own.filename() == name ? own.string() : name;
 }
@@ -143,8 +130,8 @@ struct Program {
 
   // Before anything is timed: that it is one of ours, and takes its plug-ins.
   void check() const {
-    if (!is_program(path)) throw UsageError("'" + path + "' is no program");
     const ProgramResult help = Program{path, {}}.run({"point", "--help"});
+    if (help.exit_code == 127) throw UsageError("'" + path + "' is no program");
     if (help.exit_code != success || help.out.find("--samples") == std::string::npos)
       throw NotComparable("'" + path +
                           "' has no command `point`, which times single points: it was built from "
