@@ -254,15 +254,11 @@ int run(int argc, char** argv) {
   CLI::App program(description, "bench");
   program.set_version_flag("-V,--version", version_text);
   program.require_subcommand(0, 1);  // a word after a verb is never another verb: list answers
-  struct Choice {
-    Action act;
-    bool has_children;
-  };
-  std::map<const CLI::App*, Choice> choices;
+  std::map<const CLI::App*, std::pair<Action, bool>> actions;  // and Verb::has_children
   Words plugins;
   for (const Verb& verb : verbs()) {
-    CLI::App* app = choices.empty() ? &program : program.add_subcommand(verb.name, verb.summary);
-    choices[app] = {verb.add(Command(app)), verb.has_children};
+    CLI::App* app = actions.empty() ? &program : program.add_subcommand(verb.name, verb.summary);
+    actions[app] = {verb.add(Command(app)), verb.has_children};
     app->add_option_function<Words>(
            "--plugin",
            [&plugins](const Words& files) {
@@ -274,14 +270,14 @@ int run(int argc, char** argv) {
   }
   if (const auto done = parse(program, usual_words(argc, argv))) return *done;
   catch_interrupts();
-  const Choice& chosen = choices.at(command_of(program));
-  const auto act = [&] {
+  const auto& [action, has_children] = actions.at(command_of(program));
+  const auto act = [&, &run_verb = action] {
     return guarded([&] {
       load(plugins);
-      return chosen.act(recorded_words(argc, argv));
+      return run_verb(recorded_words(argc, argv));
     });
   };
-  return chosen.has_children ? act() : supervised(act);
+  return has_children ? act() : supervised(act);
 }
 
 }  // namespace
