@@ -27,6 +27,10 @@ struct CompareOptions {
     to.option("--markdown", markdown, "also write the table in Markdown", "FILE");
   }
 
+  Gate given_gate() const {
+    return read_gate(gate.empty() ? source_path("configs/gate.json") : gate);
+  }
+
   // Throws UsageError for a report that cannot be written, before anything is done.
   void check_reports() const {
     for (const std::string& path : {junit, markdown}) {
@@ -62,7 +66,7 @@ struct Compare : CompareOptions {
   }
 
   int run() {
-    const Gate passes = read_gate(gate.empty() ? source_path("configs/gate.json") : gate);
+    const Gate passes = given_gate();
     const ComparedResult before = read_compared({base}), after = read_compared(next);
     check_reports();
     try {
@@ -198,14 +202,13 @@ struct Ab : CompareOptions {
 
   // Counters are told and fail nothing, unless a gate was asked for: here times are the question.
   Gate gate_of() const {
+    Gate passes = given_gate();
     if (gate.empty()) {
-      Gate passes = read_gate(source_path("configs/gate.json"));
       passes.counter_rule = CounterRule::inform;
       passes.errors.clear();
-      return passes;
+    } else if (!passes.times) {
+      throw UsageError("gate '" + gate + "': bench ab is about times");
     }
-    Gate passes = read_gate(gate);
-    if (!passes.times) throw UsageError("gate '" + gate + "': bench ab is about times");
     return passes;
   }
 

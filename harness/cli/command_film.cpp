@@ -33,7 +33,6 @@ std::string name_of(const FilmRun& run, const std::string& solver) {
   return solver + ", " + percent(run.strain_limit) + ", steps of " + step_text(run.step) + " s";
 }
 
-// How long a frame took: what an engine asks for.
 void print_times(const Recording& recording) {
   std::cout << "milliseconds a frame:\n";
   for (const FilmRun& run : recording.takes) {

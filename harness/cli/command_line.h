@@ -43,7 +43,6 @@ class Command {
   explicit Command(CLI::App* app = nullptr, std::string group = {})
       : app_(app), group_(std::move(group)) {}
 
-  // Where a value goes.
   using Place = std::variant<std::reference_wrapper<std::string>, std::reference_wrapper<Words>,
                              std::reference_wrapper<double>, std::reference_wrapper<int>,
                              std::reference_wrapper<std::int64_t>>;

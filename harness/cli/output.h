@@ -45,7 +45,6 @@ struct OutputOptions {
   std::string out;
   bool resume = false, rerun_failed = false, force = false, no_plots = false;
 
-  // --out, --resume, --force and --no-plots.
   void declare(const Command& to, const std::string& standard);
 };
 

@@ -4,16 +4,6 @@
 root=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../..
 # makes NAME ARGUMENTS...: runs the program quietly into NAME.
 makes() { bench "${@:2}" --out "$1" >"$1.txt" 2>"$1.err" || fail "$* -> exit $?: $(tail -1 "$1.err")"; }
-# refuse_all: a line "PART <- ARGUMENTS" each. SWEEP and SUITE stand for what precedes most of them.
-refuse_all() {
-  local line words
-  while read -r line; do
-    words=${line#* <- }
-    words=${words/SWEEP/--sweep strain --profile quick --out out.json --no-plots}
-    words=${words/SUITE/--sweep strain --out out.json --config}
-    eval "refused \"\${line%% <- *}\" $words"
-  done
-}
 
 # ---- Bad input ----
 echo '{"sweeps": [{"sweep": "strain", "scene": "chain", "limits": [0.1], "scene_parameters": {"n": 7}}]}' >small.json
@@ -21,7 +11,13 @@ echo 'not JSON' >words.json
 : >empty.json
 mkdir -p folder && ln -sf nowhere.json dangling.json
 refused "nothing to do"
-refuse_all <<'TABLE'
+# A line "PART <- ARGUMENTS" each. SWEEP and SUITE stand for what precedes most of them.
+while read -r line; do
+  words=${line#* <- }
+  words=${words/SWEEP/--sweep strain --profile quick --out out.json --no-plots}
+  words=${words/SUITE/--sweep strain --out out.json --config}
+  eval "refused \"\${line%% <- *}\" $words"
+done <<'TABLE'
 did you mean 'strain' <- --sweep strian --out out.json
 --steps adaptive does not go with <- --sweep step --profile quick --steps adaptive --out out.json
 no point is left <- SWEEP --filter nothing
