@@ -33,22 +33,13 @@ assert len(a) == len(b), (len(a), len(b))
 PYTHON
 }
 
-# lines JOURNAL N: waits until the journal has so many lines; fails where it does not come to that.
-lines() {
-  for _ in $(seq 3000); do
-    [[ -e $1 && $(wc -l <"$1") -ge $2 ]] && return
-    kill -0 "$!" 2>/dev/null || return 1
-    sleep 0.01
-  done
-  return 1
-}
-
 # hold RESULT LINES [OPTION...]: a run in the background ($!), stopped by SIGSTOP in its middle, once its journal has so
 # many lines. A busy machine may let a run finish unseen: then again. What is done to a held run meets it where it stands.
 hold() {
   for _ in $(seq 20); do
     "$BENCH_BINARY" "${sweep[@]}" "${@:3}" --out "$1" >/dev/null 2>err.txt &
-    if lines "$1.journal" "$2" && kill -STOP "$!" && [[ $(wc -l <"$1.journal") -lt $whole ]]; then return; fi
+    while kill -0 "$!" && ! [[ -e $1.journal && $(wc -l <"$1.journal") -ge $2 ]]; do sleep 0.01; done
+    if kill -STOP "$!" && [[ $(wc -l <"$1.journal") -lt $whole ]]; then return; fi
     kill -KILL "$!" 2>/dev/null
     wait "$!"
     rm -f "$1" "$1.journal"
