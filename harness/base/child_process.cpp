@@ -317,8 +317,8 @@ std::string ProgramResult::last_error_line() const {
                          : "exit code " + std::to_string(exit_code);
 }
 
-ProgramResult run_program(const std::vector<std::string>& words, const std::string& input,
-                          double timeout, const std::function<bool()>& interrupted) {
+ProgramResult run_program(const std::vector<std::string>& words, double timeout,
+                          const std::string& input) {
   const OpenFile in = nameless_file(input), out = nameless_file(), err = nameless_file();
   std::vector<std::string> copies = words;
   std::vector<char*> argv;
@@ -328,13 +328,14 @@ ProgramResult run_program(const std::vector<std::string>& words, const std::stri
   Child child([&] {  // nothing but system calls until it is the other program
     int descriptor = 0;
     for (const int file : {in.get(), out.get(), err.get()}) dup2(file, descriptor++);
-    execv(argv[0], argv.data());
+    execvp(argv[0], argv.data());
   });
   ProgramResult result;
   for (const auto start = Clock::now(); !child.ended();) {
     result.timed_out = since(start) > timeout;
     if (result.timed_out || interrupted()) child.send(SIGKILL);
   }
+  if (interrupted()) throw Interrupted();
   const int status = child.status();
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   result.out = read_whole(out.get());

@@ -78,11 +78,10 @@ struct Choice {
                                       : std::string("any motion"))
         << ": " << tried.size() << " of " << trials.screened.size() << " solvers tried in "
         << duration_text(seconds) << '\n';
-    if (found.best) {
+    if (found.best)
       print_found(out);
-    } else {
+    else
       out << nothing_found();
-    }
     for (const PointResult& screened : trials.screened) {
       const std::string& name = screened.spec.name();
       if (const std::string why = why_not(name, trials, wish); !why.empty())
@@ -125,8 +124,7 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
   };
   ChildOutcome outcome = run_in_child(
       [&sweep](Heartbeat&) {
-        const auto tell = [](const std::string& line) { std::cerr << line << std::endl; };
-        RouteRuns runs(tell);
+        RouteRuns runs([](const std::string& line) { std::cerr << line << std::endl; });
         return compact(
             to_json(compute_reference(sweep.scene, sweep.scene_parameters, quick_finest, runs)));
       },
@@ -190,9 +188,7 @@ struct Choose : SceneOptions {
   }
 
   Suite suite() const {
-    const SceneParameters parameters = complete_parameters();
-    const std::string named = name();
-    const auto type = find_scene(named);
+    const auto type = find_scene(name());
     Suite chosen;
     chosen.name = "choose";
     chosen.reps = 1;
@@ -202,13 +198,13 @@ struct Choose : SceneOptions {
     SweepSpec& sweep = chosen.sweeps.emplace_back();
     sweep.sweep = "strain";
     sweep.refine = false;  // the time is better spent on other contestants
-    sweep.scene = named;
+    sweep.scene = name();
     sweep.limits = {one_number_of("--limit", limits, Bounds::strain())};
-    sweep.scene_parameters = parameters;
+    sweep.scene_parameters = complete_parameters();
     sweep.resolutions = {static_cast<int>(sweep.scene_parameters.at(type->resolution))};
     sweep.coarsest = 1 / frames_per_second;
     sweep.finest = sweep.coarsest / finest_part;
-    sweep.contestants = contestants_for(solver, *type, parameters);
+    sweep.contestants = contestants_for(solver, *type, sweep.scene_parameters);
     tune(sweep.contestants, read_tuned_up_to_date("tuned.json"), type->kind());
     return chosen;
   }

@@ -72,9 +72,8 @@ struct PointVerb {
     add_timeout(command, timeout, "60");
   }
 
-  // A line of the solver's own among the results would be read as one of them.
   PointResult timed(const PointSpec& spec, const RunLimits& limits) const {
-    const OutputToError no_output;
+    const OutputToError no_output;  // a line of the solver's own would be read as a result
     PointResult point = run_point(spec, limits);
     for (int i = 1; i < samples && point.ok(); ++i) append(repeat_point(point, limits), point);
     return point;

@@ -32,11 +32,6 @@ std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec
 
 using Entries = std::vector<TunedEntry>;
 
-Entries read_entries(const std::string& file) {
-  if (!std::filesystem::exists(file)) return {};
-  return parse_tuned(read_file(file, "file of tuned settings"), file).entries;
-}
-
 // In the order of scenes and solvers, whatever was tuned first.
 void write_entries(const std::string& file, Entries& entries) {
   std::ranges::stable_sort(entries, {}, [kinds = scene_kinds()](const TunedEntry& entry) {
@@ -46,8 +41,7 @@ void write_entries(const std::string& file, Entries& entries) {
   write_atomically(file, document_text(tuned_document(entries)));
 }
 
-// Adds what was found at places of the user's own, or takes it instead of what was found there
-// before.
+// Instead of what was found there before.
 void add_places(TunedEntry& entry, const std::vector<TunedPlace>& found) {
   for (const TunedPlace& place : found) {
     std::erase_if(entry.places, [&](const TunedPlace& p) {
@@ -104,7 +98,6 @@ struct Tune {
     std::vector<SweepSpec> chosen = tuning_scenes();
     if (!scene.empty()) {
       std::vector<std::string> names;
-      names.reserve(chosen.size());
       for (const SweepSpec& each : chosen) names.push_back(each.scene);
       check_known("scene to tune on", scene, names);
       std::erase_if(chosen, [this](const SweepSpec& s) { return s.scene != scene; });
@@ -164,7 +157,9 @@ struct Tune {
             chosen, [this](const SweepSpec& s) { return chosen_solvers(solver, s).empty(); }))
       throw UsageError("--solver " + solver + ": no setting of it is to be tuned");
     const std::string file = out.empty() ? source_path("configs/tuned.json") : out;
-    Entries entries = read_entries(file);
+    Entries entries;
+    if (std::filesystem::exists(file))
+      entries = parse_tuned(read_file(file, "file of tuned settings"), file).entries;
     check_writable(file);
     const TimingLock lock(!no_wait);
     SweepRunners runners;
