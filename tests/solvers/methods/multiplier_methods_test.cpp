@@ -5,13 +5,11 @@
 
 #include "solvers/problem/edge_constraints.h"
 #include "solvers/registry.h"
-#include "support/hanging_rope.h"
 #include "support/motion.h"
 
 namespace inextensible {
 namespace {
 
-using testing::for_seeds;
 using testing::h;
 using testing::Random;
 using testing::random_mesh;

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "solvers/registry.h"
-#include "support/hanging_rope.h"
 #include "support/motion.h"
 
 namespace inextensible {
@@ -43,15 +42,10 @@ TEST(PbdSubsteps, LeaveAHangingRopeTheStrainOfTheory) {
 
 // The way along edges, here around a corner of a net.
 TEST(PbdSubsteps, AttachmentsFollowEdgesOrGoStraight) {
-  ProblemParts parts;
-  parts.gravity.setZero();
-  parts.mass.assign(4, 1);
-  parts.pinned = {0};
-  parts.edges = {{0, 1}, {1, 3}, {0, 2}, {2, 3}};
-  parts.rest_length.assign(4, 1);
-  const Problem square(parts);
   Positions rest(3, 4);
   rest << 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0;
+  const Problem square(
+      testing::parts_at_rest(rest, {{0, 1}, {1, 3}, {0, 2}, {2, 3}}, {1, 1, 1, 1}, {0}));
   const State start{rest, 0 * rest, 0};
   for (const auto& [kind, distance] :
        {std::pair<const char*, double>{"edges", 2}, {"straight", std::sqrt(2.0)}}) {

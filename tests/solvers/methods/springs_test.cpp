@@ -7,7 +7,6 @@
 
 #include "solvers/methods/vertex_passes.h"
 #include "solvers/registry.h"
-#include "support/hanging_rope.h"
 #include "support/motion.h"
 #include "support/random_graph.h"
 
