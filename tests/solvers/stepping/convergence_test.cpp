@@ -13,6 +13,7 @@
 #include "solvers/registry.h"
 #include "solvers/stepping/bdf2.h"
 #include "solvers/systems/constrained_acceleration.h"
+#include "support/motion.h"
 #include "support/param_name.h"
 #include "support/scenes.h"
 
@@ -194,10 +195,8 @@ TEST(Energy, OfATurningNetIsKeptByDirectionsOfTheMiddle) {
 }
 
 std::shared_ptr<const inextensible::Problem> free_edge() {
-  inextensible::ProblemParts parts;
-  parts.mass = {1, 2};
-  parts.edges = {{0, 1}};
-  parts.rest_length = {1};
+  auto parts = inextensible::testing::parts_of(*inextensible::testing::one_edge(1, 2));
+  parts.gravity = {0, -9.81, 0};
   return std::make_shared<const inextensible::Problem>(parts);
 }
 
@@ -209,8 +208,7 @@ Bdf2Stepper bdf2(const std::shared_ptr<const inextensible::Problem>& problem,
 TEST(Bdf2, IsExactInFreeFallWhateverTheSteps) {
   const auto problem = free_edge();
   auto stepper = bdf2(problem);
-  State state{Positions::Zero(3, 2), Positions::Zero(3, 2), 0};
-  state.x(0, 1) = 1;
+  State state = inextensible::testing::stretched_edge(1);
   state.v.colwise() += Eigen::Vector3d(1, 2, 3);
   const State start = state;
   for (const double h : {0.01, 0.01, 0.01, 0.01, 0.02, 0.005, 0.01, 0.03}) {
@@ -226,8 +224,7 @@ TEST(Bdf2, IsExactInFreeFallWhateverTheSteps) {
 TEST(Bdf2, StartsAnewFromAStateThatIsNotItsOwn) {
   const auto problem = free_edge();
   auto used = bdf2(problem), fresh = bdf2(problem);
-  State state{Positions::Zero(3, 2), Positions::Zero(3, 2), 0};
-  state.x(0, 1) = 1;
+  State state = inextensible::testing::stretched_edge(1);
   state.v(1, 1) = 4;  // spins
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(used.advance(state, 0.01));
   state.v *= 0.5;
