@@ -1,17 +1,33 @@
 // What every method in every time stepper must hold, besides what `bench check` asks of it
-// (conformance_test.cpp): the limit, pins, counters, repetition, and refusal of the impossible.
+// (conformance_test.cpp): coordinates and units, obstacles that move, refusals that leave nothing
+// behind, honest random steps, no allocation.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 
 #include "harness/stability/trial.h"
+#include "solvers/problem/triangle_collider.h"
 #include "solvers/systems/constraint_system.h"
 #include "support/motion.h"
 #include "support/param_name.h"
 #include "support/random_graph.h"
 #include "support/scenes.h"
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+#if !defined(__SANITIZE_ADDRESS__)            // the sanitizer has a malloc of its own
+extern "C" void* __libc_malloc(std::size_t);  // NOLINT(bugprone-reserved-identifier): glibc's own
+extern "C" void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+#endif
 
 namespace inextensible {
 namespace {
@@ -263,6 +279,69 @@ TEST_P(EveryMethod, LetsVerticesWithoutEdgesFall) {
         EXPECT_NEAR(state.x(0, v), start(0, v), free ? 1e-14 : 0);
       }
     }
+  }
+}
+
+// Cloth that falls onto a ball, free or pinned beside it, sees no difference between a ball at rest
+// and both in the same steady motion, but for what iterations stop at: a method that did not carry
+// contacts along would be wrong by 0.1, one that left pins behind by 0.6.
+TEST_P(EveryMethod, SeesNoSteadyMotionThatItShares) {
+  if (!row.contestant || !row.takes_collider) GTEST_SKIP() << "takes no obstacle";
+  constexpr double tick = 1.0 / 128;  // s, so that times are exact
+  const Vector3d velocity(0.7, -0.4, 1.1);
+  const Eigen::Matrix3d turned =
+      Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitY()).toRotationMatrix();
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const auto run = [&](bool moves) {
+      Random random(seed);
+      const Vector3d middle(2, -1.15 + uniform(random, -0.1, 0.1), 1.5);
+      const auto mesh = testing::random_mesh(random, 4, 5, seed == 0);
+      ProblemParts parts = testing::parts_of(*mesh.problem);
+      parts.gravity = {0, -9.81, 0};
+      // In coordinates of its own that are turned, which its pose turns back.
+      TriangleMesh ball = icosphere(middle, 0.9, 2);
+      if (moves)
+        for (Vector3d& v : ball.vertices) v = turned.transpose() * v;
+      parts.collider = std::make_shared<const TriangleCollider>(ball, 0.3);
+      if (moves) parts.body_motion = [=](double time) { return Pose{turned, time * velocity}; };
+      parts.pins_follow_body = moves;
+      State state{mesh.x, Positions::Zero(3, mesh.x.cols()), 0};
+      if (moves) state.v.colwise() += velocity;
+      Settings settings;
+      if (elastic) settings["stiffness"] = 2000.0;
+      const auto stepper = make_stepper(row.name, std::make_shared<const Problem>(parts),
+                                        {0.01, 1, settings, &state});
+      for (int step = 0; step < 56; ++step) EXPECT_TRUE(stepper->advance(state, tick));
+      EXPECT_GT(stepper->work().contacts, 0) << "nothing touched: this tests nothing";
+      if (moves) state.x.colwise() -= state.time * velocity;
+      return state.x;
+    };
+    EXPECT_LT((run(true) - run(false)).cwiseAbs().maxCoeff(), 5e-3);
+  }
+}
+
+// Nothing is allocated inside a step after warm-up. Counted at malloc itself, so that Eigen's and
+// the libraries' memory is seen too; UMFPACK, which allocates its numeric object by design, is not
+// among the default solvers tested here.
+TEST_P(EveryMethod, AllocatesNothingInsideAStepAfterWarmUp) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "malloc belongs to the sanitizer";
+#endif
+  if (!row.contestant) GTEST_SKIP() << "does not promise it";
+  // Forces along the start of a step want short ones.
+  const double step = row.direction == Direction::start ? 0.0005 : 0.002;
+  for (const auto& scene : {harness::testing::build("chain", {{"n", 80}}),
+                            harness::testing::build("drape", {{"n", 15}})}) {
+    if (part_not_taken(row, *scene.problem)) continue;
+    const auto stepper = make(scene.problem, 0.01);
+    State state = scene.start;
+    // Long enough for every method to have solved its first linear system.
+    for (int i = 0; i < 60; ++i) ASSERT_TRUE(stepper->advance(state, step));
+    const long before = allocations;
+    ASSERT_GT(before, 0) << "the counter does not count";
+    for (int i = 0; i < 30; ++i) ASSERT_TRUE(stepper->advance(state, step));
+    EXPECT_EQ(allocations - before, 0) << scene.problem->vertices() << " vertices";
   }
 }
 

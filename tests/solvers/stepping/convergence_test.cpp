@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "harness/base/statistics.h"
+#include "harness/judge/mechanics.h"
 #include "harness/judge/reference.h"
 #include "harness/scenes/pendulum.h"
-#include "solvers/problem/forces.h"
 #include "solvers/registry.h"
 #include "solvers/stepping/bdf2.h"
 #include "solvers/systems/constrained_acceleration.h"
@@ -127,16 +127,11 @@ INSTANTIATE_TEST_SUITE_P(Pairs, PairOrder,
                          })),
                          inextensible::names::contestant_name);
 
-double energy(const Scene& scene, const State& state) {
-  return inextensible::potential_energy(*scene.problem, state.x) +
-         inextensible::kinetic_energy(*scene.problem, state.v);
-}
-
 double energy_after(const Scene& scene, const char* solver, double h, double duration,
                     double limit = tight, const Settings& settings = {}) {
   State state = scene.start;
   run(*make_stepper(solver, scene.problem, {limit, 1, settings}), state, h, duration);
-  return energy(scene, state);
+  return total_energy(*scene.problem, state);
 }
 
 // Over one second the implicit methods lose energy, less at smaller steps; RATTLE does not drift.
@@ -163,11 +158,11 @@ TEST(Energy, IsNotGainedWhereOnlyStrainNearTheLimitIsTakenBack) {
     const auto stepper =
         make_stepper("fast_projection", scene.problem, {0.01, 1, {{"target", target}}});
     State state = scene.start;
-    const double before = energy(scene, state);
+    const double before = total_energy(*scene.problem, state);
     double most = 0;
     for (int i = 0; i < 800; ++i) {
       EXPECT_TRUE(stepper->advance(state, 1.0 / 800));
-      most = std::max(most, energy(scene, state) - before);
+      most = std::max(most, total_energy(*scene.problem, state) - before);
     }
     return most / (scene.problem->total_mass() * 9.81);  // of weight times size
   };
@@ -180,7 +175,7 @@ TEST(Energy, IsNotGainedWhereOnlyStrainNearTheLimitIsTakenBack) {
 // first.
 TEST(Energy, OfATurningNetIsKeptByDirectionsOfTheMiddle) {
   const Scene scene = testing::build("spinning_net", {{"n", 7}});
-  const double start = energy(scene, scene.start);
+  const double start = total_energy(*scene.problem, scene.start);
   const auto lost = [&](const char* solver, const Settings& settings, double h) {
     return 1 - energy_after(scene, solver, h, 0.32, 1e-9, settings) / start;
   };
