@@ -18,8 +18,8 @@ using testing::uniform;
 // Points that fell through a ground: n of them, where they began, and where they would be.
 struct Fallen {
   Fallen(Random& random, int n, double friction)
-      : normal(random_vector(random, 1).normalized()),
-        ground(std::make_shared<const Ground>(normal, uniform(random, -1, 1), friction)),
+      : ground(std::make_shared<const Ground>(random_vector(random, 1), uniform(random, -1, 1),
+                                              friction)),
         problem(testing::points(n, ground)),
         start(3, n),
         candidate(3, n),
@@ -32,7 +32,6 @@ struct Fallen {
     found = contacts.find(candidate, work);
   }
 
-  Vector3d normal;
   std::shared_ptr<const Ground> ground;
   Problem problem;
   Positions start, candidate;
@@ -51,10 +50,9 @@ TEST(Contacts, FrictionTakesFromTheWayWhatCoulombGrants) {
     Positions x = fallen.candidate;
     contacts.apply_friction(x, fallen.work);
     for (int v = 0; v < 20; ++v) {
-      const Vector3d n = fallen.ground->normal(),
-                     way = fallen.candidate.col(v) - fallen.start.col(v);
+      const Vector3d n = fallen.ground->normal, way = fallen.candidate.col(v) - fallen.start.col(v);
       const Vector3d slide = way - n.dot(way) * n;
-      const double depth = fallen.ground->offset() - n.dot(fallen.candidate.col(v));
+      const double depth = fallen.ground->offset - n.dot(fallen.candidate.col(v));
       // Sticks, or slides on the way that it was going, by what friction leaves of it.
       const double left = depth > 0 ? std::max(0.0, slide.norm() - mu * depth) : slide.norm();
       const Vector3d moved = x.col(v) - fallen.start.col(v), slid = moved - n.dot(moved) * n;
@@ -138,7 +136,7 @@ TEST(Contacts, RestoreTakesUpWhatWasSavedAndBeginForgets) {
     return y;
   };
   const Positions first = pulled();
-  Positions deep = saved - 10 * fallen.normal.replicate(1, 20);
+  Positions deep = saved - 10 * fallen.ground->normal.replicate(1, 20);
   EXPECT_EQ(contacts.find(deep, fallen.work), 20);
   EXPECT_EQ(contacts.count(), 20);
   contacts.restore(record);
