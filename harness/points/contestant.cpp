@@ -193,9 +193,8 @@ Contestants read_contestants(const json& solvers, const std::string& where) {
 
 json to_json(const Contestant& contestant) {
   if (contestant == Contestant{contestant.solver, contestant.solver}) return contestant.solver;
-  json object = {{"name", contestant.name},
-                 {"solver", contestant.solver},
-                 {"settings", to_json(contestant.settings)}};
+  json object = {
+      {"name", contestant.name}, {"solver", contestant.solver}, {"settings", contestant.settings}};
   if (!contestant.label.empty()) object["label"] = contestant.label;
   if (contestant.unranked) object["unranked"] = true;
   if (!contestant.settings_at.empty()) object["settings_at"] = to_json(contestant.settings_at);
@@ -205,8 +204,7 @@ json to_json(const Contestant& contestant) {
 json to_json(const std::vector<SettingsAt>& places) {
   json list = json::array();
   for (const SettingsAt& at : places)
-    list.push_back(
-        {{"resolution", at.resolution}, {"limit", at.limit}, {"settings", to_json(at.settings)}});
+    list.push_back({{"resolution", at.resolution}, {"limit", at.limit}, {"settings", at.settings}});
   return list;
 }
 

@@ -5,7 +5,6 @@
 namespace harness {
 
 using nlohmann::json;
-using nlohmann::ordered_json;
 
 namespace {
 
@@ -26,44 +25,14 @@ PointSpec named(PointSpec spec) {
 
 }  // namespace
 
-json FieldCodec<inextensible::Settings>::write(const inextensible::Settings& settings, bool) {
-  json object = json::object();
-  for (const auto& [name, value] : settings)
-    object[name] = std::visit([](const auto& v) { return json(v); }, value);
-  return object;
-}
+void to_json(json& to, PointStatus status) { to = to_string(status); }
 
-void FieldCodec<inextensible::Settings>::read(const json& from, inextensible::Settings& settings,
-                                              bool) {
-  for (const auto& [name, value] : from.items()) {
-    if (value.is_string()) {
-      settings[name] = value.get<std::string>();
-    } else {
-      settings[name] = value.get<double>();
-    }
-  }
-}
-
-ordered_json FieldCodec<inextensible::Settings>::schema(const FieldTraits&) {
-  return {{"type", "object"}, {"additionalProperties", {{"type", {"number", "string"}}}}};
-}
-
-json FieldCodec<PointStatus>::write(PointStatus status, bool) { return to_string(status); }
-
-void FieldCodec<PointStatus>::read(const json& from, PointStatus& status, bool) {
+void from_json(const json& from, PointStatus& status) {
   const auto row =
       std::ranges::find(point_statuses, from.get<std::string>(), &PointStatusInfo::name);
   if (row == point_statuses.end())
     throw json::other_error::create(501, from.dump() + " is no status of a point", nullptr);
   status = row->status;
-}
-
-ordered_json FieldCodec<PointStatus>::schema(const FieldTraits&) {
-  return {{"$ref", "#/definitions/status"}};
-}
-
-json to_json(const inextensible::Settings& settings) {
-  return FieldCodec<inextensible::Settings>::write(settings, false);
 }
 
 json to_json(const inextensible::WorkCounters& work) {

@@ -187,8 +187,6 @@ Suite parse_suite(const std::string& text, const std::string& path) {
 json to_json(const Suite& suite) {
   json sweeps = json::array();
   for (const SweepSpec& s : suite.sweeps) {
-    json options = json::object();
-    for (const auto& [solver, settings] : s.solver_options) options[solver] = to_json(settings);
     json contestants = json::array();
     for (const Contestant& c : s.contestants) contestants.push_back(to_json(c));
     sweeps.push_back({{"sweep", s.sweep},
@@ -202,7 +200,7 @@ json to_json(const Suite& suite) {
                         {"adaptive", s.adaptive},
                         {"all", s.every_step}}},
                       {"scene_parameters", s.scene_parameters},
-                      {"solver_options", options}});
+                      {"solver_options", s.solver_options}});
   }
   json document = {{"name", suite.name},
                    {"description", suite.description},

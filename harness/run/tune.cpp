@@ -168,8 +168,8 @@ class Tuner {
       for (int i = 1; i < samples; ++i) repeated(fastest);
     }
     if (rung && fastest.seconds() > hopeless) rung.reset();
-    options_.tell(scene_.scene + "/" + search_.base.solver + " " + to_json(settings).dump() + ": " +
-                  (rung ? duration_text(fastest.seconds()) + "/s" : "too slow"));
+    options_.tell(scene_.scene + "/" + search_.base.solver + " " + nlohmann::json(settings).dump() +
+                  ": " + (rung ? duration_text(fastest.seconds()) + "/s" : "too slow"));
     if (!rung) return {};
     last_[values] = {*rung, fastest.seconds()};
     learn(last_[values]);
