@@ -123,7 +123,7 @@ struct Tune {
 
   TuneOptions tuning() const {
     TuneOptions options;
-    if (trials > 0) options.rules.budget = options.trials_each = trials;
+    if (trials > 0) options.budget = options.trials_each = trials;
     options.timeout = timeout;
     options.interrupted = interrupted;
     if (own_places()) options.longest_run = std::numeric_limits<double>::infinity();

@@ -46,6 +46,38 @@ const inextensible::Problem& small_problem(const SceneType& type, const ScenePar
   return *problem;
 }
 
+Contestant read_contestant(const json& entry, const std::string& where) {
+  if (entry.is_string()) {
+    const std::string name = entry.get<std::string>();
+    const std::string solver = checked_backend(name, where).name;
+    return {solver, solver};
+  }
+  if (!entry.is_object())
+    throw UsageError(where + " is " + value_text(entry) +
+                     ", must be solvers' names, or objects such as {\"name\": \"icd_loose\", "
+                     "\"solver\": \"icd\", \"settings\": {}}");
+  JsonReader reader(entry, where);
+  Contestant contestant;
+  contestant.name = reader.text("name", "");
+  contestant.solver = reader.text("solver", contestant.name);
+  const auto& backend = checked_backend(contestant.solver, where);
+  if (contestant.name == contestant.solver) contestant.name = backend.name;
+  contestant.solver = backend.name;
+  if (contestant.name.empty()) contestant.name = contestant.solver;
+  if (const json* settings = reader.find("settings"))
+    contestant.settings = read_settings(*settings, where + ": 'settings'", backend);
+  if (const json* places = reader.find("settings_at"))
+    contestant.settings_at = read_settings_at(*places, where + ": 'settings_at'", backend);
+  contestant.label = reader.text("label", "");
+  contestant.unranked = reader.flag("unranked", false);
+  reader.finish();
+  check_plain_name(contestant.name, where + ": 'name'");
+  if (!contestant.own_name() && inextensible::find_backend(contestant.name))
+    throw UsageError(where + ": 'name' is \"" + contestant.name +
+                     "\", which is the name of another solver");
+  return contestant;
+}
+
 }  // namespace
 
 Contestants::iterator find_contestant(Contestants& all, const std::string& name) {
@@ -132,38 +164,6 @@ inextensible::Settings Contestant::settings_for(int resolution, double limit) co
   const auto nearest = std::ranges::min_element(settings_at, {}, distance);
   if (nearest != settings_at.end()) all.insert(nearest->settings.begin(), nearest->settings.end());
   return all;
-}
-
-Contestant read_contestant(const json& entry, const std::string& where) {
-  if (entry.is_string()) {
-    const std::string name = entry.get<std::string>();
-    const std::string solver = checked_backend(name, where).name;
-    return {solver, solver};
-  }
-  if (!entry.is_object())
-    throw UsageError(where + " is " + value_text(entry) +
-                     ", must be solvers' names, or objects such as {\"name\": \"icd_loose\", "
-                     "\"solver\": \"icd\", \"settings\": {}}");
-  JsonReader reader(entry, where);
-  Contestant contestant;
-  contestant.name = reader.text("name", "");
-  contestant.solver = reader.text("solver", contestant.name);
-  const auto& backend = checked_backend(contestant.solver, where);
-  if (contestant.name == contestant.solver) contestant.name = backend.name;
-  contestant.solver = backend.name;
-  if (contestant.name.empty()) contestant.name = contestant.solver;
-  if (const json* settings = reader.find("settings"))
-    contestant.settings = read_settings(*settings, where + ": 'settings'", backend);
-  if (const json* places = reader.find("settings_at"))
-    contestant.settings_at = read_settings_at(*places, where + ": 'settings_at'", backend);
-  contestant.label = reader.text("label", "");
-  contestant.unranked = reader.flag("unranked", false);
-  reader.finish();
-  check_plain_name(contestant.name, where + ": 'name'");
-  if (!contestant.own_name() && inextensible::find_backend(contestant.name))
-    throw UsageError(where + ": 'name' is \"" + contestant.name +
-                     "\", which is the name of another solver");
-  return contestant;
 }
 
 Contestants competitors(const SceneType& type, const SceneParameters& given) {

@@ -41,13 +41,12 @@ using Contestants = std::vector<Contestant>;
 Contestants::iterator find_contestant(Contestants& all, const std::string& name);
 std::string label_of(const Contestant& contestant);
 
-// "icd", or {"name": "icd_loose", "solver": "icd", "settings": {...}, "label": "...", "unranked":
-// true}. All throw UsageError, naming `where`, key and value.
-Contestant read_contestant(const nlohmann::json& entry, const std::string& where);
+// A list of "icd", or {"name": "icd_loose", "solver": "icd", "settings": {...}, "label": "...",
+// "unranked": true}. All throw UsageError, naming `where`, key and value.
+Contestants read_contestants(const nlohmann::json& solvers, const std::string& where);
 // The solvers of suites that name none: all that compete and take every part of the scene, on a
 // chain without those that are another one there.
 Contestants competitors(const SceneType& type, const SceneParameters& given);
-Contestants read_contestants(const nlohmann::json& solvers, const std::string& where);
 inextensible::Settings read_settings(const nlohmann::json& object, const std::string& where,
                                      const inextensible::Backend& backend);
 // That the solver would take them.

@@ -145,7 +145,6 @@ struct PointResult : Samples, RunOutcome {
   bool ok() const { return status == PointStatus::ok; }
   double seconds() const;           // the point's time: of its samples, by time_of()
   double measured_seconds() const;  // s that the runs of all samples took together
-  double filter_seconds() const;    // of the filter's samples, by time_of()
   double mean_step() const;         // s; the spec's, but for adaptive steps
 };
 

@@ -96,9 +96,9 @@ ordered_json answer_row_schema() {
   return row;
 }
 
-}  // namespace
-
-ordered_json with_tables(ordered_json schema) {
+ordered_json schema_document(const std::string& name) {
+  const std::string path = source_path("configs/" + name + ".schema.json");
+  ordered_json schema = ordered_json::parse(read_file(path, "schema"));
   if (!schema.contains("definitions")) return schema;
   ordered_json& definitions = schema["definitions"];
   const auto renew = [&definitions](const char* name, auto made) {
@@ -112,13 +112,10 @@ ordered_json with_tables(ordered_json schema) {
   return schema;
 }
 
+}  // namespace
+
 std::vector<std::string> generated_schemas() {
   return {"result", "baseline", "gate", "stability", "tuned", "answers"};
-}
-
-ordered_json schema_document(const std::string& name) {
-  const std::string path = source_path("configs/" + name + ".schema.json");
-  return with_tables(ordered_json::parse(read_file(path, "schema")));
 }
 
 std::string schema_text(const std::string& name) { return schema_document(name).dump(2) + "\n"; }

@@ -27,7 +27,7 @@ std::optional<Pick> pick_of(const PointResult& point, const Wish& wish) {
   const auto frame = std::ranges::find_if(point.frame_times, [&wish](const FrameTime& f) {
     return std::abs(f.rate - wish.rate) < 1e-6;
   });
-  if (!point.ok() || frame == point.frame_times.end()) return {};
+  if (frame == point.frame_times.end()) return {};
   return Pick{&point, *frame, error_at(point.measures, wish.error).distance};
 }
 
@@ -80,48 +80,6 @@ void repeat_finalists(std::vector<PointResult>& points, const Suite& suite, cons
   }
 }
 
-// The pick of least rank, of those that may be taken.
-template <class May, class Rank>
-std::optional<Pick> least(const std::vector<PointResult>& points, const Wish& wish, May may,
-                          Rank rank) {
-  std::optional<Pick> best;
-  for (const PointResult& point : points) {
-    const auto pick = pick_of(point, wish);
-    if (pick && may(*pick) && (!best || rank(*pick) < rank(*best))) best = pick;
-  }
-  return best;
-}
-
-void screen(PointResult& point, const RunLimits& limits, std::optional<double> guess) {
-  using inextensible::StrainControl;
-  const PointSpec& spec = point.spec;
-  const PointRunner runner(spec, limits);
-  const StrainControl control = runner.backend().strain_control;
-  inextensible::Settings settings = spec.settings;
-  const bool springs = control == StrainControl::stiffness && !settings.contains("stiffness");
-  if (springs)
-    settings["stiffness"] = guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
-  const Run run = runner.run(settings, true, std::numeric_limits<double>::infinity());
-  const auto steps = static_cast<double>(run.stepper->work().steps);
-  // The first step sets up what the others use.
-  if (steps > 0)
-    point.samples = {
-        (steps == 1 ? run.seconds : (run.seconds - run.first_step_seconds) / (steps - 1)) /
-        spec.step};
-  point.status = PointStatus::ok;
-  if (run.status == PointStatus::not_converged || run.status == PointStatus::diverged) {
-    point.status = run.status;
-    point.detail = run.detail;
-  } else if (const double strain = run.measures.max_strain;
-             !springs && control != StrainControl::none &&
-             !(strain <= spec.strain_limit * (1 + 1e-9))) {
-    point.status = PointStatus::strain_missed;
-    point.detail = "strain " + told_apart(strain, spec.strain_limit);
-  }
-}
-
-}  // namespace
-
 std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened) {
   std::vector<std::size_t> order(screened.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -133,6 +91,13 @@ std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened) 
   });
   return order;
 }
+
+Kept kept(const FrameTime& frame, double budget) {
+  if (!(budget > 0) || frame.slow <= budget) return Kept::nearly_all;
+  return frame.median <= budget ? Kept::half : Kept::fewer;
+}
+
+}  // namespace
 
 Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
                        const ChooseLimits& limits, const SweepEvents& events,
@@ -157,27 +122,27 @@ Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, 
   return trials;
 }
 
-Kept kept(const FrameTime& frame, double budget) {
-  if (!(budget > 0) || frame.slow <= budget) return Kept::nearly_all;
-  return frame.median <= budget ? Kept::half : Kept::fewer;
-}
-
 std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& wish,
                             const std::string& not_by) {
-  return least(
-      points, wish,
-      [&](const Pick& p) { return p.point->spec.name() != not_by && within(*p.point, wish); },
-      [](const Pick& p) { return p.point->seconds(); });
+  const auto rank = [&wish](const Pick& pick) {
+    return std::pair(kept(pick.frame, wish.budget), pick.point->seconds());
+  };
+  std::optional<Pick> best;
+  for (const PointResult& point : points) {
+    if (point.spec.name() == not_by || !within(point, wish)) continue;
+    const auto pick = pick_of(point, wish);
+    if (pick && (!best || rank(*pick) < rank(*best))) best = pick;
+  }
+  return best;
 }
 
 Recommendation recommend(const std::vector<PointResult>& points, const Wish& wish) {
-  Recommendation found;
-  found.best = least(
-      points, wish, [&](const Pick& p) { return within(*p.point, wish); },
-      [&](const Pick& p) { return std::pair(kept(p.frame, wish.budget), p.point->seconds()); });
+  Recommendation found{.best = fastest(points, wish)};
   if (!found.best) return found;
   found.budget = kept(found.best->frame, wish.budget);
-  found.next = fastest(points, wish, found.best->point->spec.name());
+  Wish without_budget = wish;
+  without_budget.budget = 0;
+  found.next = fastest(points, without_budget, found.best->point->spec.name());
   return found;
 }
 
@@ -212,7 +177,32 @@ std::string why_not(const std::string& contestant, const Trials& trials, const W
 PointResult screen_point(const PointSpec& spec, const RunLimits& limits,
                          std::optional<double> guess) {
   PointResult point(spec);
-  with_failures_in(point, [&] { screen(point, limits, guess); });
+  with_failures_in(point, [&] {
+    using inextensible::StrainControl;
+    const PointRunner runner(spec, limits);
+    const StrainControl control = runner.backend().strain_control;
+    inextensible::Settings settings = spec.settings;
+    const bool springs = control == StrainControl::stiffness && !settings.contains("stiffness");
+    if (springs)
+      settings["stiffness"] = guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
+    const Run run = runner.run(settings, true, std::numeric_limits<double>::infinity());
+    const auto steps = static_cast<double>(run.stepper->work().steps);
+    // The first step sets up what the others use.
+    if (steps > 0)
+      point.samples = {
+          (steps == 1 ? run.seconds : (run.seconds - run.first_step_seconds) / (steps - 1)) /
+          spec.step};
+    point.status = PointStatus::ok;
+    if (run.status == PointStatus::not_converged || run.status == PointStatus::diverged) {
+      point.status = run.status;
+      point.detail = run.detail;
+    } else if (const double strain = run.measures.max_strain;
+               !springs && control != StrainControl::none &&
+               !(strain <= spec.strain_limit * (1 + 1e-9))) {
+      point.status = PointStatus::strain_missed;
+      point.detail = "strain " + told_apart(strain, spec.strain_limit);
+    }
+  });
   return point;
 }
 

@@ -59,7 +59,7 @@ void NoiseProbe::sample() {
 }
 
 void NoiseProbe::sample_if_due() {
-  if (samples_.empty() || since(start_) - samples_.back().at >= every_) sample();
+  if (samples_.empty() || since(start_) - samples_.back().at >= 60) sample();
 }
 
 double NoiseProbe::spread() const {

@@ -86,9 +86,7 @@ class NoiseProbe {
   // Spread (largest over smallest time, less 1) from which on the machine counts as noisy.
   static constexpr double noisy_from = 0.1;
 
-  // every: s between samples.
-  explicit NoiseProbe(double every = 60, QuietProbe::Work work = fixed_work)
-      : every_(every), work_(std::move(work)) {}
+  explicit NoiseProbe(QuietProbe::Work work = fixed_work) : work_(std::move(work)) {}
 
   void sample();
   void sample_if_due();
@@ -103,7 +101,6 @@ class NoiseProbe {
   nlohmann::json to_json() const;
 
  private:
-  double every_;
   QuietProbe::Work work_;
   Clock::time_point start_ = Clock::now();
   std::vector<Sample> samples_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "harness/base/child_process.h"
 #include "harness/base/statistics.h"
@@ -37,13 +36,13 @@ constexpr double work_patience = 4;
 constexpr double rounding = 1e-6;  // of a frame: times add up their steps
 
 std::string refusal(const inextensible::StepResult& result, std::int64_t step, double time) {
-  std::ostringstream text;
-  text << "step " << step << " (t = " << time << " s): " << inextensible::to_string(result.status)
-       << ", " << result.detail << " after " << result.iterations << " iterations";
-  if (result.worst_edge >= 0 && std::isfinite(result.worst_strain)) {
-    text << "; edge " << result.worst_edge << " strained by " << result.worst_strain;
-  }
-  return text.str();
+  const bool edge_known = result.worst_edge >= 0 && std::isfinite(result.worst_strain);
+  return "step " + std::to_string(step) + " (t = " + number_text(time) +
+         " s): " + inextensible::to_string(result.status) + ", " + result.detail + " after " +
+         std::to_string(result.iterations) + " iterations" +
+         (edge_known ? "; edge " + std::to_string(result.worst_edge) + " strained by " +
+                           number_text(result.worst_strain)
+                     : "");
 }
 
 }  // namespace
@@ -197,10 +196,9 @@ class PointRunner::Observed : public Observer {
     }
     const bool slow = driven.end == End::stopped;
     run_.status = PointStatus::timeout;
-    std::ostringstream text;
-    text << "longer than " << (slow ? limits_.hopeless : limits_.timeout) << " s"
-         << (slow ? ", far above the best time so far" : "") << "; stopped at t = " << time << " s";
-    run_.detail = text.str();
+    run_.detail = "longer than " + number_text(slow ? limits_.hopeless : limits_.timeout) + " s" +
+                  (slow ? ", far above the best time so far" : "") +
+                  "; stopped at t = " + number_text(time) + " s";
   }
 
   // What kept a run that reached its end from being one of this motion.

@@ -49,7 +49,7 @@ class Tuner {
     };
     std::vector<TunedNumber> from = numbers_;
     for (std::size_t i = 0; i < from.size(); ++i) from[i].initial = start_[i];
-    const TuneOutcome outcome = tune_values(from, seconds, options_.rules, guess);
+    const TuneOutcome outcome = tune_values(from, seconds, options_.budget, guess);
     const auto was = last_.find(start_), is = last_.find(outcome.values);
     if (was == last_.end() || is == last_.end()) return {};
     guess = outcome.values;
@@ -124,7 +124,7 @@ class Tuner {
   void draw_start(const Values& guess) {
     std::mt19937_64 random{1};
     std::uniform_real_distribution<double> position(0, 1);
-    for (int trial = 0; trial < options_.rules.budget && best_.seconds >= 1e300; ++trial) {
+    for (int trial = 0; trial < options_.budget && best_.seconds >= 1e300; ++trial) {
       for (std::size_t i = 0; i < start_.size(); ++i)
         start_[i] = value_at(numbers_[i], position(random));
       if (trial == 0 && !guess.empty()) start_ = guess;
@@ -229,11 +229,10 @@ TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOp
                        const SweepRunners& runners, const TunedEntry* known) {
   const inextensible::Backend& backend = *inextensible::find_backend(solver);
   const std::vector<TunedNumber> numbers = tunable_numbers(backend);
-  options.rules.budget =
-      std::min(options.rules.budget, options.trials_each * static_cast<int>(numbers.size()));
+  options.budget = std::min(options.budget, options.trials_each * static_cast<int>(numbers.size()));
   TunedEntry entry{.kind = find_scene(scene.scene)->kind(),
                    .solver = solver,
-                   .budget = options.rules.budget,
+                   .budget = options.budget,
                    .places = {},
                    .rule = tuning_rule(scene, backend),
                    .context = {}};

@@ -11,7 +11,9 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();  // seconds of what fails
 constexpr double give_up_trial_at = 1.5;                          // times the best seconds
-constexpr double last_reach = 0.15;                               // times the first
+constexpr double first_reach = 0.3;  // standard deviation of the first moves, over the range
+constexpr double last_reach = 0.15;  // times the first
+constexpr double least_gain = 0.05;  // all of it must be faster than the defaults by more than this
 constexpr std::uint64_t seed = 1;
 
 double shift(const TunedNumber& number) {
@@ -47,11 +49,11 @@ double moved(const TunedNumber& number, double value, double reach, Random& rand
 }  // namespace
 
 TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
-                        const TuneRules& rules, const Values& guess) {
+                        int budget, const Values& guess) {
   TuneOutcome outcome;
   for (const TunedNumber& n : numbers) outcome.values.push_back(n.initial);
   const Values initial = outcome.values;
-  if (numbers.empty() || rules.budget < 2) return outcome;
+  if (numbers.empty() || budget < 2) return outcome;
   std::set<Values> seen;
   const auto evaluate = [&](const Values& values, double hopeless) {
     ++outcome.evaluations;
@@ -60,7 +62,7 @@ TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjec
     return found && std::isfinite(*found) ? *found : none;
   };
   // But for the last comparison, two evaluations.
-  const auto left = [&] { return rules.budget - 2 - outcome.evaluations; };
+  const auto left = [&] { return budget - 2 - outcome.evaluations; };
   double best = evaluate(initial, none);
   if (best == none) return outcome;
   const auto try_out = [&](const Values& values) {
@@ -74,7 +76,7 @@ TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjec
   Random random{seed};
   const int steps = left();
   for (int step = 1; step <= steps; ++step) {
-    const double reach = rules.reach * std::pow(last_reach, static_cast<double>(step) / steps);
+    const double reach = first_reach * std::pow(last_reach, static_cast<double>(step) / steps);
     const double probability = 1 - std::log(step) / std::log(std::max(2, steps));
     std::bernoulli_distribution moves(std::clamp(probability, 0.0, 1.0));
     std::uniform_int_distribution<std::size_t> any(0, numbers.size() - 1);
@@ -90,19 +92,15 @@ TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjec
   }
   if (outcome.values == initial) return outcome;
   const double now = evaluate(outcome.values, none), was = evaluate(initial, none);
-  if (now < none && was < none && was / now > 1 + rules.least_gain) {
-    outcome.gain = was / now;
-  } else {
-    outcome.values = initial;
-  }
+  const bool gained = now < none && was < none && was / now > 1 + least_gain;
+  if (!gained) outcome.values = initial;
   return outcome;
 }
 
-std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend,
-                                         const inextensible::Settings& given) {
+std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend) {
   std::vector<TunedNumber> numbers;
   for (const auto& info : backend.settings) {
-    if (!info.tunable || given.contains(info.name)) continue;
+    if (!info.tunable) continue;
     numbers.push_back({info.name, std::get<double>(info.initial), *info.tunable, info.range.whole});
   }
   return numbers;

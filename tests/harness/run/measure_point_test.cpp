@@ -212,7 +212,7 @@ TEST(QuietSamples, WhatIsUsualIsLearntAnew) {
 TEST(NoiseProbe, SeesThatOthersTakeTheProcessor) {
   bool shared = false;
   int turn = 0;
-  NoiseProbe noise_probe(60, [&] { return shared && ++turn % 10 == 0 ? 5e-3 : 1e-3; });
+  NoiseProbe noise_probe([&] { return shared && ++turn % 10 == 0 ? 5e-3 : 1e-3; });
   EXPECT_EQ(noise_probe.spread(), 0);
   EXPECT_FALSE(noise_probe.noisy());
   noise_probe.sample();
