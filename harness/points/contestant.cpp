@@ -9,7 +9,6 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/json.h"
-#include "harness/points/point_json.h"
 
 namespace harness {
 namespace {
@@ -197,15 +196,8 @@ json to_json(const Contestant& contestant) {
       {"name", contestant.name}, {"solver", contestant.solver}, {"settings", contestant.settings}};
   if (!contestant.label.empty()) object["label"] = contestant.label;
   if (contestant.unranked) object["unranked"] = true;
-  if (!contestant.settings_at.empty()) object["settings_at"] = to_json(contestant.settings_at);
+  if (!contestant.settings_at.empty()) object["settings_at"] = contestant.settings_at;
   return object;
-}
-
-json to_json(const std::vector<SettingsAt>& places) {
-  json list = json::array();
-  for (const SettingsAt& at : places)
-    list.push_back({{"resolution", at.resolution}, {"limit", at.limit}, {"settings", at.settings}});
-  return list;
 }
 
 std::string double_of(const std::string& name) { return name + "_again"; }

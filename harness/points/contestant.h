@@ -9,6 +9,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/pattern.h"
+#include "harness/points/point_json.h"
 #include "harness/scenes/scene.h"
 #include "solvers/registry.h"
 
@@ -21,6 +22,7 @@ struct SettingsAt {
   inextensible::Settings settings;
   bool operator==(const SettingsAt&) const = default;
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SettingsAt, resolution, limit, settings)
 
 struct Contestant {
   std::string name;    // a-z, 0-9, _ and @; the solver's own unless it stands there more than once
@@ -66,7 +68,6 @@ bool matches(const Pattern& pattern, const std::string& solver);
 
 // The way back.
 nlohmann::json to_json(const Contestant& contestant);
-nlohmann::json to_json(const std::vector<SettingsAt>& places);
 
 // The same solver with the same settings once more, right after it, as <name>_again: how far two
 // equal ones are apart is the noise of a result. Nothing if `name` does not stand there, or its

@@ -50,7 +50,7 @@ TunedEntry read_entry(const json& object, const std::string& where) {
 std::string hash_of(const std::vector<TunedEntry>& entries) {
   std::map<std::string, json> settings;
   for (const TunedEntry& entry : entries)
-    settings[entry.kind + "/" + entry.solver] = to_json(entry.settings_at());
+    settings[entry.kind + "/" + entry.solver] = entry.settings_at();
   return fnv1a(json(settings).dump());
 }
 

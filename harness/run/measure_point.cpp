@@ -58,9 +58,9 @@ class Sampler {
         short_steps_(short_steps),
         limits_(limits) {}
 
-  // Takes a sample; returns the run that failed, if one did. retaken: tries that were dropped
+  // Takes a sample; returns the last run, which may have failed. retaken: tries that were dropped
   // before.
-  std::optional<Run> add(int retaken) {
+  Run add(int retaken) {
     if (short_steps_) {
       Batch phases = batch(least_filter_sample, true);
       if (!phases.ok()) return std::move(phases.last);
@@ -74,7 +74,7 @@ class Sampler {
     return record(std::move(sample));
   }
 
-  std::optional<Run> record(Batch sample) {
+  Run record(Batch sample) {
     if (!sample.ok()) return std::move(sample.last);
     if (!short_steps_) record_filter(sample);
     const double seconds = of_a_second(sample.seconds, sample);
@@ -82,7 +82,7 @@ class Sampler {
     taken_.samples.push_back(seconds);
     taken_.cpu_samples.push_back(of_a_second(sample.cpu_seconds, sample));
     taken_.sample_runs.push_back(sample.runs);
-    return std::nullopt;
+    return std::move(sample.last);
   }
 
   const Samples& taken() const { return taken_; }
@@ -161,20 +161,18 @@ void measure(PointResult& point, PointRunner& runner, const inextensible::Settin
   point.work = judged.last.stepper->work();
   point.linear_solver = judged.last.stepper->linear_solver();
   if (!point.ok()) return;
-  const bool short_steps = runner.seconds_per_step(judged.last) < shortest_judged_step;
+  const bool short_steps = judged.last.seconds / runner.steps() < shortest_judged_step;
   Sampler sampler(point, runner, settings, short_steps, limits);
   const bool a_sample =
       !judged.last.observed && !short_steps && (!timed || judged.seconds >= least_sample);
   const bool disturbed = timed && limits.most_retaken > 0 && may_be_retaken(judged) &&
                          quiet_probe().disturbed(std::max(before, after));
-  const auto failed =
+  const Run last =
       a_sample && !disturbed ? sampler.record(std::move(judged)) : sampler.add(a_sample ? 1 : 0);
   append(sampler.taken(), point);
   if (!point.filter_samples.empty()) point.phases = sampler.phases();
-  if (failed) {
-    point.status = failed->status;  // without a time it is no result
-    point.detail = failed->detail;
-  }
+  point.status = last.status;  // without a time it is no result
+  point.detail = last.detail;
 }
 
 }  // namespace

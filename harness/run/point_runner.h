@@ -65,7 +65,6 @@ class PointRunner {
   const PointSpec& spec() const { return spec_; }
   const Scene& scene() const { return scene_; }
   int steps() const { return steps_; }
-  double seconds_per_step(const Run& run) const { return run.seconds / steps_; }
 
  private:
   class Observed;  // a run in progress
