@@ -121,14 +121,10 @@ inextensible::Settings read_settings(const json& object, const std::string& wher
   if (!object.is_object()) throw UsageError(where + ": must be an object { ... }");
   inextensible::Settings settings;
   for (const auto& [key, value] : object.items()) {
-    if (value.is_number()) {
-      settings[key] = value.get<double>();
-    } else if (value.is_string()) {
-      settings[key] = value.get<std::string>();
-    } else {
+    if (!value.is_number() && !value.is_string())
       throw UsageError(where + ": '" + key + "' is " + value_text(value) +
                        ", must be a number or a text");
-    }
+    value.get_to(settings[key]);
   }
   check_settings(settings, where, backend);
   return settings;
@@ -190,14 +186,16 @@ Contestants read_contestants(const json& solvers, const std::string& where) {
   return all;
 }
 
-json to_json(const Contestant& contestant) {
-  if (contestant == Contestant{contestant.solver, contestant.solver}) return contestant.solver;
-  json object = {
+void to_json(json& to, const Contestant& contestant) {
+  if (contestant == Contestant{contestant.solver, contestant.solver}) {
+    to = contestant.solver;
+    return;
+  }
+  to = {
       {"name", contestant.name}, {"solver", contestant.solver}, {"settings", contestant.settings}};
-  if (!contestant.label.empty()) object["label"] = contestant.label;
-  if (contestant.unranked) object["unranked"] = true;
-  if (!contestant.settings_at.empty()) object["settings_at"] = contestant.settings_at;
-  return object;
+  if (!contestant.label.empty()) to["label"] = contestant.label;
+  if (contestant.unranked) to["unranked"] = true;
+  if (!contestant.settings_at.empty()) to["settings_at"] = contestant.settings_at;
 }
 
 std::string double_of(const std::string& name) { return name + "_again"; }

@@ -67,7 +67,7 @@ UsageError no_solver(const std::string& name, const std::vector<std::string>& kn
 bool matches(const Pattern& pattern, const std::string& solver);
 
 // The way back.
-nlohmann::json to_json(const Contestant& contestant);
+void to_json(nlohmann::json& to, const Contestant& contestant);
 
 // The same solver with the same settings once more, right after it, as <name>_again: how far two
 // equal ones are apart is the noise of a result. Nothing if `name` does not stand there, or its

@@ -15,7 +15,6 @@
 #include <ctime>
 #include <fstream>
 #include <memory>
-#include <sstream>
 #include <thread>
 
 #include "build_info.h"  // made by CMake

@@ -10,7 +10,6 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 #include "harness/points/suite.h"

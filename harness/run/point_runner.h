@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "harness/base/clock.h"
-#include "harness/judge/drive.h"
-#include "harness/judge/judge.h"
 #include "harness/run/measure_point.h"
 #include "solvers/registry.h"
 
