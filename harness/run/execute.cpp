@@ -36,9 +36,6 @@ PointResult lost(const PointSpec& spec, const ChildOutcome& outcome, double time
   return point;
 }
 
-// What did not come back is no sample.
-Samples lost(const PointResult&, const ChildOutcome&, double) { return {}; }
-
 constexpr const char* repetition_mark = " #";
 
 std::string key_of_repetition(const std::string& key, int i) {
@@ -82,15 +79,13 @@ bool same_start(const PointResult& point, std::optional<double> guess) {
 void find_reference(const RunLimits& limits, const PointSpec& spec) {
   if (limits.references) limits.references->find(spec.scene, spec.scene_parameters);
 }
-void find_reference(const RunLimits& limits, const PointResult& point) {
-  find_reference(limits, point.spec);
-}
 
 }  // namespace
 
 SweepRunners isolated(const SweepRunners& inner, double memory) {
-  return wrapped(inner, [memory](const auto& what, const RunLimits& limits, const auto& call) {
-    find_reference(limits, what);
+  return wrapped(inner, [memory](const PointSpec& spec, const RunLimits& limits, const auto& call) {
+    constexpr bool a_sample = std::is_same_v<decltype(call(limits)), Samples>;
+    find_reference(limits, spec);
     return in_child(
         {limits.timeout, memory, limits.interrupted},
         [&](Heartbeat& heartbeat) {
@@ -100,12 +95,17 @@ SweepRunners isolated(const SweepRunners& inner, double memory) {
           return to_json(call(own));
         },
         [](const json& result) {
-          if constexpr (std::is_same_v<decltype(call(limits)), Samples>)
+          if constexpr (a_sample)
             return samples_of(result);
           else
             return point_of(result);
         },
-        [&](const ChildOutcome& child) { return lost(what, child, limits.timeout); });
+        [&](const ChildOutcome& child) {
+          if constexpr (a_sample)
+            return Samples{};  // what did not come back is no sample
+          else
+            return lost(spec, child, limits.timeout);
+        });
   });
 }
 

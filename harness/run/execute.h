@@ -19,18 +19,18 @@ struct SweepRunners {
   std::shared_ptr<ReferenceFolder> references = nullptr;  // null: no errors against references
 };
 
-// Both functions with the same done around each call. around(what, limits, call): what is run, a
-// spec or a point once more; call(limits) does it, under limits of around's choice.
+// Both functions with the same done around each call. around(spec, limits, call): call(limits) runs
+// the point or takes a sample of it, under limits of around's choice.
 template <class Around>
 SweepRunners wrapped(const SweepRunners& inner, const Around& around) {
-  return {[around, run = inner.run](const PointSpec& spec, const RunLimits& limits, auto guess) {
-            return around(spec, limits,
-                          [&](const RunLimits& own) { return run(spec, own, guess); });
-          },
-          [around, repeat = inner.repeat](const PointResult& point, const RunLimits& limits) {
-            return around(point, limits, [&](const RunLimits& own) { return repeat(point, own); });
-          },
-          inner.references};
+  return {
+      [around, run = inner.run](const PointSpec& spec, const RunLimits& limits, auto guess) {
+        return around(spec, limits, [&](const RunLimits& own) { return run(spec, own, guess); });
+      },
+      [around, repeat = inner.repeat](const PointResult& point, const RunLimits& limits) {
+        return around(point.spec, limits, [&](const RunLimits& own) { return repeat(point, own); });
+      },
+      inner.references};
 }
 
 // Each run in a child process: a crash, a hang or want of memory is one point's status, with signal

@@ -91,10 +91,6 @@ class NoiseProbe {
   void sample();
   void sample_if_due();
 
-  struct Sample {
-    double at, seconds;  // s since construction; the work's mean time
-  };
-  const std::vector<Sample>& samples() const { return samples_; }
   double spread() const;
   bool noisy() const { return spread() > noisy_from; }
   // {"at": [...], "seconds": [...], "spread": x, "noisy": b}
@@ -103,7 +99,7 @@ class NoiseProbe {
  private:
   QuietProbe::Work work_;
   Clock::time_point start_ = Clock::now();
-  std::vector<Sample> samples_;
+  std::vector<double> at_, seconds_;  // s since construction; the work's mean time
 };
 
 }  // namespace harness

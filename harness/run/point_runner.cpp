@@ -92,14 +92,7 @@ class PointRunner::Observed : public Observer {
  public:
   // Without the judge, all time is left to the steps.
   Observed(const PointRunner& runner, bool judged, double stop_at, bool by_work, Run& run)
-      : runner_(runner),
-        spec_(runner.spec_),
-        limits_(runner.limits_),
-        backend_(runner.backend_),
-        stop_at_(stop_at),
-        by_work_(by_work),
-        run_(run),
-        frames_(spec_.step) {
+      : runner_(runner), stop_at_(stop_at), by_work_(by_work), run_(run) {
     if (!judged) return;
     judge_.emplace(runner.scene_, judging());
     run.stepper->observe(judge_->observer());
@@ -222,14 +215,14 @@ class PointRunner::Observed : public Observer {
   }
 
   const PointRunner& runner_;
-  const PointSpec& spec_;
-  const RunLimits& limits_;
-  const inextensible::Backend& backend_;
+  const PointSpec& spec_ = runner_.spec_;
+  const RunLimits& limits_ = runner_.limits_;
+  const inextensible::Backend& backend_ = runner_.backend_;
   double stop_at_;
   bool by_work_;
   Run& run_;
   std::optional<Judge> judge_;
-  FrameTimes frames_;
+  FrameTimes frames_{spec_.step};
   int block_ = 1;  // steps that are timed as one
   double cpu_begin_ = 0;
   Clock::time_point begin_;
