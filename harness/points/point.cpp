@@ -8,7 +8,7 @@
 namespace harness {
 
 std::string PointSpec::id() const {
-  return scene + '/' + name() + "/n:" + std::to_string(vertices) +
+  return scene + '/' + contestant + "/n:" + std::to_string(vertices) +
          "/strain:" + number_text(strain_limit) +
          "/h:" + (adaptive ? "adaptive" : number_text(step));
 }

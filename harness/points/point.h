@@ -76,7 +76,7 @@ struct PointSpec {
   SceneParameters scene_parameters;  // complete
   int resolution = 0;                // the scene's own resolution parameter
   int vertices = 0, constraints = 0;
-  std::string contestant;  // empty: the solver under its own name
+  std::string contestant;  // the solver, or its name where it is in a run several times
   std::string solver;
   inextensible::Settings settings;  // given ones only
   double strain_limit = 0.01;
@@ -84,7 +84,6 @@ struct PointSpec {
   bool adaptive = false;  // `step` is the largest one of a step controller
   std::uint64_t seed = 1;
 
-  const std::string& name() const { return contestant.empty() ? solver : contestant; }
   std::string id()
       const;  // drape/fast_projection/n:5041/strain:0.01/h:0.004 (adaptive: /h:adaptive)
 };

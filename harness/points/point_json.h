@@ -162,6 +162,16 @@ inline constexpr std::tuple phase_fields{
           "wall time of the same run in copying the state into an engine and out of it",
           in_phases)};
 
+// All tables of a point but that of its samples, each with what it is the table of.
+template <class Point, class Visit>
+void for_each_table(Point& point, const Visit& visit) {
+  visit(spec_fields, point.spec);
+  visit(size_fields, point.spec);
+  visit(result_fields, point);
+  visit(phase_fields, point.phases);
+  visit(measure_fields, point.measures);
+}
+
 nlohmann::json to_json(const inextensible::WorkCounters& work);
 nlohmann::json to_json(const PointResult& point);
 nlohmann::json to_json(const Samples& samples);

@@ -199,11 +199,12 @@ std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
   PairNoise noise{{one, double_of(one)}};
   std::map<std::string, double> first;
   for (const PointResult& point : points) {
-    if (counts(point) && point.spec.name() == one) first[place_of(point.spec)] = point.seconds();
+    if (counts(point) && point.spec.contestant == one)
+      first[place_of(point.spec)] = point.seconds();
   }
   std::vector<double> distances;
   for (const PointResult& point : points) {
-    if (!counts(point) || point.spec.name() != noise.pair[1]) continue;
+    if (!counts(point) || point.spec.contestant != noise.pair[1]) continue;
     if (const auto twin = first.find(place_of(point.spec)); twin != first.end())
       distances.push_back(std::abs(std::log(point.seconds() / twin->second)));
   }

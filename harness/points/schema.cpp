@@ -77,15 +77,12 @@ ordered_json work_schema() {
 
 // What no table has, such as what is written for readers, stays as it is.
 ordered_json point_schema(ordered_json point) {
-  add_fields(point, spec_fields);
+  add_fields(point, sample_fields);
+  const PointResult any;
+  for_each_table(any, [&point](const auto& table, const auto&) { add_fields(point, table); });
   point["properties"]["sweep"] = {{"enum", sweep_kinds()}};
   point["properties"]["scene_parameters"].update(
       {{"additionalProperties", {{"type", "number"}}}, {"required", {"duration"}}});
-  add_fields(point, size_fields);
-  add_fields(point, sample_fields);
-  add_fields(point, result_fields);
-  add_fields(point, phase_fields);
-  add_fields(point, measure_fields);
   return point;
 }
 

@@ -129,7 +129,7 @@ std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& 
   };
   std::optional<Pick> best;
   for (const PointResult& point : points) {
-    if (point.spec.name() == not_by || !within(point, wish)) continue;
+    if (point.spec.contestant == not_by || !within(point, wish)) continue;
     const auto pick = pick_of(point, wish);
     if (pick && (!best || rank(*pick) < rank(*best))) best = pick;
   }
@@ -142,14 +142,14 @@ Recommendation recommend(const std::vector<PointResult>& points, const Wish& wis
   found.budget = kept(found.best->frame, wish.budget);
   Wish without_budget = wish;
   without_budget.budget = 0;
-  found.next = fastest(points, without_budget, found.best->point->spec.name());
+  found.next = fastest(points, without_budget, found.best->point->spec.contestant);
   return found;
 }
 
 std::string why_not(const std::string& contestant, const Trials& trials, const Wish& wish) {
   const PointResult *closest = nullptr, *failed = nullptr;
   for (const PointResult& point : trials.points) {
-    if (point.spec.name() != contestant) continue;
+    if (point.spec.contestant != contestant) continue;
     if (within(point, wish)) return "";
     if (!point.ok()) failed = &point;
     const auto error = [&wish](const PointResult& p) {
@@ -166,7 +166,7 @@ std::string why_not(const std::string& contestant, const Trials& trials, const W
   if (failed)
     return std::string(to_string(failed->status)) + at(*failed) + ": " + shortened(failed->detail);
   const auto seen = std::ranges::find_if(
-      trials.screened, [&](const PointResult& p) { return p.spec.name() == contestant; });
+      trials.screened, [&](const PointResult& p) { return p.spec.contestant == contestant; });
   if (seen == trials.screened.end() || (seen->samples.empty() && seen->detail.empty()))
     return "not tried, the time was over";
   if (seen->samples.empty()) return "not tried: " + shortened(seen->detail);

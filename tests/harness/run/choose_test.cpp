@@ -14,7 +14,7 @@ namespace {
 
 PointResult run(const std::string& solver, double step, double seconds, double error) {
   PointResult point;
-  point.spec.solver = solver;
+  point.spec.contestant = point.spec.solver = solver;
   point.spec.step = step;
   point.status = PointStatus::ok;
   point.samples = {seconds};

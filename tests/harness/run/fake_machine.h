@@ -19,7 +19,7 @@ inline PointSpec spec_at(const std::string& scene, const SceneParameters& parame
   spec.sweep = "strain";
   spec.scene = scene;
   spec.scene_parameters = complete_parameters(*find_scene(scene), parameters);
-  spec.solver = solver;
+  spec.contestant = spec.solver = solver;
   spec.step = step;
   return spec;
 }
