@@ -76,7 +76,9 @@ struct PointVerb {
   PointResult timed(const PointSpec& spec, const RunLimits& limits) const {
     const OutputToError no_output;
     PointResult point = run_point(spec, limits);
-    for (int i = 1; i < samples && point.ok(); ++i) append(repeat_point(point, limits), point);
+    RunLimits of_more = limits;
+    of_more.sample_of = &point;
+    for (int i = 1; i < samples && point.ok(); ++i) append(run_point(spec, of_more), point);
     return point;
   }
 

@@ -45,12 +45,8 @@ const inextensible::Problem& small_problem(const SceneType& type, const ScenePar
   return *problem;
 }
 
-Contestant read_contestant(const json& entry, const std::string& where) {
-  if (entry.is_string()) {
-    const std::string name = entry.get<std::string>();
-    const std::string solver = checked_backend(name, where).name;
-    return {solver, solver};
-  }
+Contestant read_contestant(const json& given, const std::string& where) {
+  const json entry = given.is_string() ? json::object({{"name", given}}) : given;
   if (!entry.is_object())
     throw UsageError(where + " is " + value_text(entry) +
                      ", must be solvers' names, or objects such as {\"name\": \"icd_loose\", "

@@ -102,8 +102,7 @@ struct FrameTime {
 struct Samples {
   // Wall seconds per simulated second. A sample is one run, or of a short run the mean of several.
   std::vector<double> samples = {};
-  std::vector<double> cpu_samples =
-      {};  // processor time of the thread in the same runs; may be empty
+  std::vector<double> cpu_samples = {};     // of the thread in the same runs; may be empty
   std::vector<double> filter_samples = {};  // the same, spent in the inextensibility filter
   std::vector<int> sample_runs = {};        // runs that each sample is the mean of; may be empty
   int retaken = 0;                          // samples taken again because something disturbed them

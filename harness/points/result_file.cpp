@@ -122,6 +122,14 @@ bool all_shards(const std::vector<json>& documents) {
   return found.size() == count;
 }
 
+// In words, where that is more than a result to be quoted may have; else empty.
+std::string noise_warning(const PairNoise& noise) {
+  constexpr double most = 0.06;
+  if (noise.q95 <= most) return {};
+  return "noisy: equal programs differ by " + number_text(100 * std::expm1(noise.q95), 2) +
+         " % here, more than the 6 % that a result to be quoted may have";
+}
+
 }  // namespace
 
 json result_document(json context, const Suite& suite, const std::vector<std::string>& command,
@@ -213,13 +221,6 @@ std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
   noise.median = quantile(distances, 0.5);
   noise.q95 = quantile(distances, 0.95);
   return noise;
-}
-
-std::string noise_warning(const PairNoise& noise) {
-  constexpr double most = 0.06;
-  if (noise.q95 <= most) return {};
-  return "noisy: equal programs differ by " + number_text(100 * std::expm1(noise.q95), 2) +
-         " % here, more than the 6 % that a result to be quoted may have";
 }
 
 std::optional<PairNoise> noise_of(const json& context) {

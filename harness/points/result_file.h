@@ -55,9 +55,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PairNoise, pair, places, median, q95)
 // None where `one` and double_of(one) have no place in common.
 std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points, const std::string& one);
 
-// In words, where that is more than a result to be quoted may have, 6 %; else empty.
-std::string noise_warning(const PairNoise& noise);
-
 // `context.noise` of a result file; none in files without a pair.
 std::optional<PairNoise> noise_of(const nlohmann::json& context);
 

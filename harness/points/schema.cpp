@@ -53,12 +53,6 @@ void add_fields(ordered_json& object, const Table& table) {
   });
 }
 
-ordered_json status_schema() {
-  ordered_json names = ordered_json::array();
-  for (const auto& row : point_statuses) names.push_back(row.name);
-  return {{"enum", names}};
-}
-
 ordered_json work_schema() {
   ordered_json work = closed_object();
   for (const auto& counter : inextensible::work_counters) {
@@ -100,7 +94,7 @@ ordered_json schema_document(const std::string& name) {
   const auto renew = [&definitions](const char* name, auto made) {
     if (definitions.contains(name)) definitions[name] = made();
   };
-  renew("status", status_schema);
+  renew("status", [] { return ordered_json{{"enum", names_of(point_statuses)}}; });
   renew("counter", [] { return ordered_json{{"enum", counter_names()}}; });
   renew("work", work_schema);
   renew("point", [&definitions] { return point_schema(definitions["point"]); });
@@ -145,9 +139,7 @@ ordered_json legend(const Contestants& contestants) {
 }
 
 std::vector<std::string> counter_names() {
-  std::vector<std::string> names;
-  names.reserve(std::size(inextensible::work_counters) + 1);
-  for (const auto& counter : inextensible::work_counters) names.emplace_back(counter.name);
+  std::vector<std::string> names = names_of(inextensible::work_counters);
   for_each_field(result_fields, [&names](const auto& row) {
     if (row.traits.inside == std::string("work")) names.emplace_back(row.name);
   });

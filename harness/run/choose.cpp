@@ -73,7 +73,7 @@ void repeat_finalists(std::vector<PointResult>& points, const Suite& suite, cons
     for (std::size_t round = 1; round < final_samples; ++round) {
       for (PointResult* point : fastest_runs(points, wish)) {
         if (stop()) return;
-        append(runners.repeat(*point, {.timeout = suite.timeout, .interrupted = stop}), *point);
+        runners.add_sample(*point, {.timeout = suite.timeout, .interrupted = stop});
       }
     }
   } catch (const Interrupted&) {

@@ -84,7 +84,6 @@ void find_reference(const RunLimits& limits, const PointSpec& spec) {
 
 SweepRunners isolated(const SweepRunners& inner, double memory) {
   return wrapped(inner, [memory](const PointSpec& spec, const RunLimits& limits, const auto& call) {
-    constexpr bool a_sample = std::is_same_v<decltype(call(limits)), Samples>;
     find_reference(limits, spec);
     return in_child(
         {limits.timeout, memory, limits.interrupted},
@@ -94,26 +93,25 @@ SweepRunners isolated(const SweepRunners& inner, double memory) {
           own.heartbeat = &heartbeat;
           return to_json(call(own));
         },
-        [](const json& result) {
-          if constexpr (a_sample)
-            return samples_of(result);
-          else
-            return point_of(result);
-        },
-        [&](const ChildOutcome& child) {
-          if constexpr (a_sample)
-            return Samples{};  // what did not come back is no sample
-          else
-            return lost(spec, child, limits.timeout);
-        });
+        point_of, [&](const ChildOutcome& child) { return lost(spec, child, limits.timeout); });
   });
 }
 
 SweepRunners journaled(const SweepRunners& inner, Journal& journal) {
-  const auto repeated = std::make_shared<std::map<std::string, int>>();
-  return {[run = inner.run, &journal](const PointSpec& spec, const RunLimits& limits,
-                                      std::optional<double> guess) {
+  const auto samples_of_key = std::make_shared<std::map<std::string, int>>();
+  return {[=, run = inner.run, &journal](const PointSpec& spec, const RunLimits& limits,
+                                         std::optional<double> guess) {
             const std::string key = key_of(spec);
+            if (limits.sample_of) {
+              const auto take = [&] {
+                const Samples taken = run(spec, limits, guess);
+                return to_json(taken);
+              };
+              const std::string repetition = key_of_repetition(key, ++(*samples_of_key)[key]);
+              PointResult more(spec);
+              append(samples_of(journal.once(repetition, take)), more);
+              return more;
+            }
             if (const json* known = journal.find(key)) {
               PointResult point = point_of(*known);
               if (same_start(point, guess)) {
@@ -125,12 +123,6 @@ SweepRunners journaled(const SweepRunners& inner, Journal& journal) {
             PointResult point = run(spec, limits, guess);
             journal.add(key, to_json(point));
             return point;
-          },
-          [repeat = inner.repeat, repeated, &journal](const PointResult& point,
-                                                      const RunLimits& limits) {
-            const std::string key = key_of(point.spec);
-            return samples_of(journal.once(key_of_repetition(key, ++(*repeated)[key]),
-                                           [&] { return to_json(repeat(point, limits)); }));
           },
           inner.references};
 }

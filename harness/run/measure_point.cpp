@@ -162,12 +162,24 @@ void measure(PointResult& point, PointRunner& runner, const inextensible::Settin
   point.detail = last.detail;
 }
 
+void add_sample(PointResult& more, const RunLimits& limits) {
+  const PointResult& point = *limits.sample_of;
+  inextensible::Settings settings = point.spec.settings;
+  if (point.stiffness) settings["stiffness"] = *point.stiffness;
+  PointRunner runner(point.spec, limits);
+  const bool short_steps = point.seconds() * point.spec.step < shortest_judged_step;
+  Sampler sampler{point, runner, settings, short_steps, limits};
+  sampler.add(0);
+  append(sampler.taken, more);
+}
+
 }  // namespace
 
 PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optional<double> guess) {
   PointResult point(spec);
   reset_peak_rss();
   with_failures_in(point, [&] {
+    if (limits.sample_of) return add_sample(point, limits);
     PointRunner runner(spec, limits);
     point.steps_planned = runner.steps();
     inextensible::Settings settings = spec.settings;
@@ -179,16 +191,6 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
   });
   point.peak_rss_bytes = peak_rss_bytes();
   return point;
-}
-
-Samples repeat_point(const PointResult& point, const RunLimits& limits) {
-  inextensible::Settings settings = point.spec.settings;
-  if (point.stiffness) settings["stiffness"] = *point.stiffness;
-  PointRunner runner(point.spec, limits);
-  const bool short_steps = point.seconds() * point.spec.step < shortest_judged_step;
-  Sampler sampler{point, runner, settings, short_steps, limits};
-  sampler.add(0);
-  return sampler.taken;
 }
 
 }  // namespace harness

@@ -30,17 +30,16 @@ struct RunLimits {
   Heartbeat* heartbeat = nullptr;  // notified of every step; see child_process.h
   int most_retaken = 3;            // times that a sample may be taken again
   bool timed = true;               // false: times are not used, and one run is a sample
+  // If it is not null, all that is wanted is one sample more of this point: the judge stays out.
+  const PointResult* sample_of = nullptr;
 };
 
-// One judged run, and a first sample of its time. guess: a stiffness to begin calibration from,
-// where one is needed. Throws Interrupted, and nothing else: whatever goes wrong is the point's
-// status.
+// One judged run, and a first sample of its time; or a sample more, with nothing beside it. A
+// sample is the mean time of as many runs as take least_sample together; it is taken again where
+// the machine was disturbed (machine_noise.h), unless it takes longer than longest_retaken. There
+// is none where the run failed. guess: a stiffness to begin calibration from, where one is needed.
+// Throws Interrupted, and nothing else: whatever goes wrong is the point's status.
 PointResult run_point(const PointSpec& spec, const RunLimits& limits,
                       std::optional<double> guess = {});
-
-// One sample more, for time alone: the judge stays out. It is the mean time of as many runs as take
-// least_sample together; it is taken again where the machine was disturbed (machine_noise.h),
-// unless it takes longer than longest_retaken. Without a sample where the run failed.
-Samples repeat_point(const PointResult& point, const RunLimits& limits);
 
 }  // namespace harness

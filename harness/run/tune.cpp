@@ -139,8 +139,7 @@ struct Tuner {
 
   // With a sample more.
   const PointResult& repeated(PointResult& point) const {
-    append(runners.repeat(point, {.timeout = options.timeout, .interrupted = options.interrupted}),
-           point);
+    runners.add_sample(point, {.timeout = options.timeout, .interrupted = options.interrupted});
     return point;
   }
 

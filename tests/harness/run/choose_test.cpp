@@ -89,13 +89,8 @@ class InventedMachine {
       return spend(spec, limits.hopeless, limits);
     };
     runners.run = [this](const PointSpec& spec, const RunLimits& limits, auto) {
-      calls.push_back("run " + spec.solver);
+      calls.push_back((limits.sample_of ? "repeat " : "run ") + spec.solver);
       return spend(spec, std::min(cost(spec), limits.hopeless), limits);
-    };
-    runners.repeat = [this](const PointResult& point, const RunLimits& limits) {
-      calls.push_back("repeat " + point.spec.solver);
-      spend(point.spec, cost(point.spec), limits);
-      return Samples{{cost(point.spec)}};
     };
     return try_contestants(
         suite, plan(suite, {}), {},
