@@ -158,12 +158,9 @@ Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
                              : to_string(point.status))
               << std::endl;
   };
-  SweepRunners inner;
-  inner.references = std::move(references);
-  ChooseRunners runners{isolated(inner, 0), {}};
-  inner.run = screen_point;
-  runners.screen = isolated(inner, 0).run;
-  return try_contestants(suite, plan(suite, {}), wish, limits, events, runners);
+  SweepRunners runners;
+  runners.references = std::move(references);
+  return try_contestants(suite, plan(suite, {}), wish, limits, events, isolated(runners, 0));
 }
 
 struct Choose : SceneOptions {

@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "harness/base/text.h"
-#include "harness/run/calibration.h"
-#include "harness/run/point_runner.h"
 
 namespace harness {
 namespace {
@@ -39,7 +36,7 @@ std::function<bool()> stop_at(const ChooseLimits& limits, double share) {
 }
 
 std::vector<PointResult> screen_all(const std::vector<Search>& searches, const ChooseLimits& limits,
-                                    const ChooseRunners& runners) {
+                                    const SweepRunners& runners) {
   const double most = screening_share * limits.seconds / static_cast<double>(searches.size());
   const auto stop = stop_at(limits, search_share);
   std::vector<PointResult> screened(searches.size());
@@ -48,7 +45,12 @@ std::vector<PointResult> screen_all(const std::vector<Search>& searches, const C
     spec.step = searches[i].ladder[searches[i].ladder.size() / 2];
     if (stop()) continue;
     try {
-      screened[i] = runners.screen(spec, {most, std::min(usual_look, most), stop}, {});
+      screened[i] = runners.run(spec,
+                                {.timeout = most,
+                                 .hopeless = std::min(usual_look, most),
+                                 .interrupted = stop,
+                                 .look = true},
+                                {});
     } catch (const Interrupted&) {
       screened[i].detail = "its first step took too long";
     }
@@ -101,7 +103,7 @@ Kept kept(const FrameTime& frame, double budget) {
 
 Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
                        const ChooseLimits& limits, const SweepEvents& events,
-                       const ChooseRunners& runners) {
+                       const SweepRunners& runners) {
   Trials trials;
   trials.screened = screen_all(searches, limits, runners);
   std::vector<Search> ordered;
@@ -172,38 +174,6 @@ std::string why_not(const std::string& contestant, const Trials& trials, const W
   if (seen->samples.empty()) return "not tried: " + shortened(seen->detail);
   return "no run ended in time; its first steps took " + duration_text(seen->seconds()) +
          " a simulated second";
-}
-
-PointResult screen_point(const PointSpec& spec, const RunLimits& limits,
-                         std::optional<double> guess) {
-  PointResult point(spec);
-  with_failures_in(point, [&] {
-    using inextensible::StrainControl;
-    const PointRunner runner(spec, limits);
-    const StrainControl control = runner.backend().strain_control;
-    inextensible::Settings settings = spec.settings;
-    const bool springs = control == StrainControl::stiffness && !settings.contains("stiffness");
-    if (springs)
-      settings["stiffness"] = guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
-    const Run run = runner.run(settings, true, std::numeric_limits<double>::infinity());
-    const auto steps = static_cast<double>(run.stepper->work().steps);
-    // The first step sets up what the others use.
-    if (steps > 0)
-      point.samples = {
-          (steps == 1 ? run.seconds : (run.seconds - run.first_step_seconds) / (steps - 1)) /
-          spec.step};
-    point.status = PointStatus::ok;
-    if (run.status == PointStatus::not_converged || run.status == PointStatus::diverged) {
-      point.status = run.status;
-      point.detail = run.detail;
-    } else if (const double strain = run.measures.max_strain;
-               !springs && control != StrainControl::none &&
-               !(strain <= spec.strain_limit * (1 + 1e-9))) {
-      point.status = PointStatus::strain_missed;
-      point.detail = "strain " + told_apart(strain, spec.strain_limit);
-    }
-  });
-  return point;
 }
 
 }  // namespace harness

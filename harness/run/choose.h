@@ -18,14 +18,9 @@ struct Wish {
 };
 
 struct ChooseLimits {
-  double seconds = 60;              // for everything
-  std::function<double()> elapsed;  // s since the beginning
-  std::function<bool()> interrupted;
-};
-
-// screen stands for screen_point. Runs throw Interrupted as soon as their limits say so.
-struct ChooseRunners : SweepRunners {
-  decltype(SweepRunners::run) screen;
+  double seconds = 60;                // for everything
+  std::function<double()> elapsed;    // s since the beginning
+  std::function<bool()> interrupted;  // asked in runs, too, which then throw Interrupted
 };
 
 struct Trials {
@@ -40,7 +35,7 @@ struct Trials {
 // time is over. Throws Interrupted if limits.interrupted() says so, whatever has been found.
 Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
                        const ChooseLimits& limits, const SweepEvents& events,
-                       const ChooseRunners& runners);
+                       const SweepRunners& runners);
 
 struct Pick {
   const PointResult* point = nullptr;
@@ -67,13 +62,5 @@ Recommendation recommend(const std::vector<PointResult>& points, const Wish& wis
 
 // Why a contestant has no run within strain limit and error; empty: it has one.
 std::string why_not(const std::string& contestant, const Trials& trials, const Wish& wish);
-
-inline constexpr double usual_look = 0.1;  // s
-
-// Takes steps for about limits.hopeless seconds. The point's one sample is their time, where one
-// step succeeded, and its status is ok if they met the strain limit. Springs have the stiffness
-// that a calibration begins with; their strain says nothing yet and counts as met.
-PointResult screen_point(const PointSpec& spec, const RunLimits& limits,
-                         std::optional<double> guess = {});
 
 }  // namespace harness

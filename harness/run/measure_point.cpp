@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <utility>
 
+#include "harness/base/text.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/calibration.h"
 #include "harness/run/machine_noise.h"
@@ -173,6 +175,34 @@ void add_sample(PointResult& more, const RunLimits& limits) {
   append(sampler.taken, more);
 }
 
+void look(PointResult& point, const RunLimits& limits, std::optional<double> guess) {
+  const PointSpec& spec = point.spec;
+  using inextensible::StrainControl;
+  const PointRunner runner(spec, limits);
+  const StrainControl control = runner.backend().strain_control;
+  inextensible::Settings settings = spec.settings;
+  const bool springs = control == StrainControl::stiffness && !settings.contains("stiffness");
+  if (springs)
+    settings["stiffness"] = guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
+  const Run run = runner.run(settings, true, std::numeric_limits<double>::infinity());
+  const auto steps = static_cast<double>(run.stepper->work().steps);
+  // The first step sets up what the others use.
+  if (steps > 0)
+    point.samples = {
+        (steps == 1 ? run.seconds : (run.seconds - run.first_step_seconds) / (steps - 1)) /
+        spec.step};
+  point.status = PointStatus::ok;
+  if (run.status == PointStatus::not_converged || run.status == PointStatus::diverged) {
+    point.status = run.status;
+    point.detail = run.detail;
+  } else if (const double strain = run.measures.max_strain;
+             !springs && control != StrainControl::none &&
+             !(strain <= spec.strain_limit * (1 + 1e-9))) {
+    point.status = PointStatus::strain_missed;
+    point.detail = "strain " + told_apart(strain, spec.strain_limit);
+  }
+}
+
 }  // namespace
 
 PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optional<double> guess) {
@@ -180,6 +210,7 @@ PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optio
   reset_peak_rss();
   with_failures_in(point, [&] {
     if (limits.sample_of) return add_sample(point, limits);
+    if (limits.look) return look(point, limits, guess);
     PointRunner runner(spec, limits);
     point.steps_planned = runner.steps();
     inextensible::Settings settings = spec.settings;

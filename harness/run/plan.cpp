@@ -4,7 +4,7 @@
 #include <span>
 
 #include "harness/base/errors.h"
-#include "harness/run/choose.h"
+#include "harness/run/measure_point.h"
 #include "harness/run/sweep.h"
 
 namespace harness {
@@ -62,7 +62,7 @@ constexpr double around_a_run = 1.3;
 double seconds_per_second(const Search& search, double step, double timeout) {
   PointSpec spec = search.base;
   spec.step = step;
-  const PointResult seen = screen_point(spec, {.hopeless = usual_look});
+  const PointResult seen = run_point(spec, {.hopeless = usual_look, .look = true});
   if (seen.status == PointStatus::unsupported) return 0;
   return seen.samples.empty() ? timeout : seen.seconds();
 }

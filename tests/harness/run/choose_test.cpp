@@ -82,15 +82,15 @@ class InventedMachine {
     std::ranges::reverse(sweep.contestants);
     sweep.coarsest = 1.0 / 60;
     sweep.finest = 1.0 / 240;
-    ChooseRunners runners;
-    runners.screen = [this](const PointSpec& spec, const RunLimits& limits, auto) {
-      calls.push_back("screen " + spec.solver);
-      EXPECT_LE(limits.hopeless, 0.1);
-      return spend(spec, limits.hopeless, limits);
-    };
+    SweepRunners runners;
     runners.run = [this](const PointSpec& spec, const RunLimits& limits, auto) {
-      calls.push_back((limits.sample_of ? "repeat " : "run ") + spec.solver);
-      return spend(spec, std::min(cost(spec), limits.hopeless), limits);
+      calls.push_back((limits.look        ? "screen "
+                       : limits.sample_of ? "repeat "
+                                          : "run ") +
+                      spec.solver);
+      EXPECT_TRUE(!limits.look || limits.hopeless <= 0.1);
+      const double wanted = limits.look ? limits.hopeless : cost(spec);
+      return spend(spec, std::min(wanted, limits.hopeless), limits);
     };
     return try_contestants(
         suite, plan(suite, {}), {},
