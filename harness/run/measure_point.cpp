@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -203,23 +205,37 @@ void look(PointResult& point, const RunLimits& limits, std::optional<double> gue
   }
 }
 
+void run_whole(PointResult& point, const RunLimits& limits, std::optional<double> guess) {
+  PointRunner runner(point.spec, limits);
+  point.steps_planned = runner.steps();
+  inextensible::Settings settings = point.spec.settings;
+  const bool needs_stiffness =
+      runner.backend().strain_control == inextensible::StrainControl::stiffness &&
+      !settings.contains("stiffness");
+  if (!needs_stiffness || calibrate(point, runner, settings, guess))
+    measure(point, runner, settings, limits);
+}
+
 }  // namespace
 
 PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optional<double> guess) {
   PointResult point(spec);
   reset_peak_rss();
-  with_failures_in(point, [&] {
-    if (limits.sample_of) return add_sample(point, limits);
-    if (limits.look) return look(point, limits, guess);
-    PointRunner runner(spec, limits);
-    point.steps_planned = runner.steps();
-    inextensible::Settings settings = spec.settings;
-    const bool needs_stiffness =
-        runner.backend().strain_control == inextensible::StrainControl::stiffness &&
-        !settings.contains("stiffness");
-    if (!needs_stiffness || calibrate(point, runner, settings, guess))
-      measure(point, runner, settings, limits);
-  });
+  try {
+    if (limits.sample_of) {
+      add_sample(point, limits);
+    } else if (limits.look) {
+      look(point, limits, guess);
+    } else {
+      run_whole(point, limits, guess);
+    }
+  } catch (const std::bad_alloc&) {
+    point.status = PointStatus::out_of_memory;
+    point.detail = "an allocation failed";
+  } catch (const std::invalid_argument& error) {  // the solver does not take the problem
+    point.status = PointStatus::unsupported;
+    point.detail = error.what();
+  }
   point.peak_rss_bytes = peak_rss_bytes();
   return point;
 }
