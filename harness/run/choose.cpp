@@ -139,7 +139,8 @@ std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& 
 }
 
 Recommendation recommend(const std::vector<PointResult>& points, const Wish& wish) {
-  Recommendation found{.best = fastest(points, wish)};
+  Recommendation found;
+  found.best = fastest(points, wish);
   if (!found.best) return found;
   found.budget = kept(found.best->frame, wish.budget);
   Wish without_budget = wish;
