@@ -26,7 +26,7 @@ class Point {
   const PointSpec& spec() const { return result_->spec; }
   const Measures& measures() const { return result_->measures; }
   const std::string& id() const { return id_; }
-  const std::string& contestant() const { return spec().name(); }  // a solver with its settings
+  const std::string& contestant() const { return spec().contestant; }  // a solver with its settings
   bool ok() const { return result_->ok(); }
   bool timed() const { return !result_->samples.empty(); }
 

@@ -32,7 +32,7 @@ struct Choice {
 
   std::string text(const Pick& pick) const {
     const PointSpec& spec = pick.point->spec;
-    return spec.name() + " at " + step_text(spec.step) + " s (" +
+    return spec.contestant + " at " + step_text(spec.step) + " s (" +
            std::to_string(std::lround(1 / (wish.rate * spec.step))) +
            " a frame): " + ms(pick.frame.median) + " ms a frame, 99 % below " +
            ms(pick.frame.slow) + ", worst " + ms(pick.frame.worst) + "; strain " +
@@ -71,7 +71,7 @@ struct Choice {
 
   void print(std::ostream& out) const {
     std::set<std::string> tried;
-    for (const PointResult& point : trials.points) tried.insert(point.spec.name());
+    for (const PointResult& point : trials.points) tried.insert(point.spec.contestant);
     out << analysis::scene_words(sweep.scene) << ", " << trials.screened.front().spec.vertices
         << " vertices, " << percent(sweep.limits.front()) << " strain, "
         << (std::isfinite(wish.error) ? "motion error at most " + percent(wish.error)
@@ -83,7 +83,7 @@ struct Choice {
     else
       out << nothing_found();
     for (const PointResult& screened : trials.screened) {
-      const std::string& name = screened.spec.name();
+      const std::string& name = screened.spec.contestant;
       if (const std::string why = why_not(name, trials, wish); !why.empty())
         out << "not   " << name << ": " << why << '\n';
     }
@@ -150,18 +150,15 @@ Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
                std::shared_ptr<ReferenceFolder> references) {
   SweepEvents events;
   events.point = [](const PointResult& point, std::size_t search, std::size_t all) {
-    std::cerr << '[' << search + 1 << '/' << all << "] " << point.spec.name() << " at "
+    std::cerr << '[' << search + 1 << '/' << all << "] " << point.spec.contestant << " at "
               << step_text(point.spec.step) << " s: "
               << (point.ok() ? duration_text(point.seconds()) + " a simulated second"
                              : to_string(point.status))
               << std::endl;
   };
-  SweepRunners inner;
-  inner.references = std::move(references);
-  ChooseRunners runners{isolated(inner, 0), {}};
-  inner.run = screen_point;
-  runners.screen = isolated(inner, 0).run;
-  return try_contestants(suite, plan(suite, {}), wish, limits, events, runners);
+  SweepRunners runners;
+  runners.references = std::move(references);
+  return try_contestants(suite, plan(suite, {}), wish, limits, events, isolated(runners, 0));
 }
 
 struct Choose : SceneOptions {

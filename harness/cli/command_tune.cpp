@@ -64,8 +64,7 @@ void print(const TunedEntry& entry) {
   for (const TunedPlace& p : entry.places) {
     std::cout << std::left << std::setw(15) << entry.kind << std::setw(35) << entry.solver
               << std::setw(6) << p.resolution << std::setw(8) << number_text(100 * p.limit) + " %"
-              << std::setw(7) << number_text(p.gain(), 3) << to_json(p.settings).dump()
-              << std::endl;
+              << std::setw(7) << number_text(p.gain(), 3) << json(p.settings).dump() << std::endl;
   }
 }
 
@@ -117,7 +116,7 @@ struct Tune {
 
   TuneOptions tuning() const {
     TuneOptions options;
-    if (trials > 0) options.rules.budget = options.trials_each = trials;
+    if (trials > 0) options.budget = options.trials_each = trials;
     options.timeout = timeout;
     options.interrupted = interrupted;
     if (own_places()) options.longest_run = std::numeric_limits<double>::infinity();

@@ -186,7 +186,7 @@ void print_noise(std::ostream& out, const json& document) {
   const json& context = document.at("context");
   if (const auto pair = noise_of(context))
     out << "\n"
-        << pair->one << " ran twice under two names: in 95 % of " << pair->places
+        << pair->pair[0] << " ran twice under two names: in 95 % of " << pair->places
         << " places its two times are within " << number_text(100 * std::expm1(pair->q95), 2)
         << " % of each other; smaller differences between solvers are noise\n";
   if (document.contains("warning"))

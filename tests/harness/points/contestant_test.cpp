@@ -227,7 +227,7 @@ TEST(Noise, IsTheSpreadOfThePairsRatiosWhateverItsSteps) {
   EXPECT_EQ(noise->places, 21);
   EXPECT_NEAR(noise->median, 0.1, 1e-12);
   EXPECT_NEAR(noise->q95, 0.19, 1e-12);
-  EXPECT_EQ(noise_of({{"noise", to_json(*noise)}})->q95, noise->q95);
+  EXPECT_EQ(noise_of({{"noise", *noise}})->q95, noise->q95);
   EXPECT_FALSE(noise_of(json::object()));
   EXPECT_FALSE(pair_noise(points, "jacobi"));
   // A step sweep compares equal steps.
