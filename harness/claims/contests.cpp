@@ -46,7 +46,7 @@ Ways growth_at_levels(const Points& points, const char* sweep,
 
 std::string effort(const Point& p) {
   const auto iterations = static_cast<double>(p.result().work.iterations);
-  return text(p.steps(), 5) + " steps of " +
+  return text(p.duration() / p.step(), 5) + " steps of " +
          text(iterations / static_cast<double>(p.result().work.steps), 2) + " iterations of " +
          text(1e6 * p.seconds() * p.duration() / iterations, 3) + " us";
 }
@@ -253,7 +253,7 @@ Verdict matrix_sizes(const Points& points) {
   std::map<double, std::map<std::string, double>> nonzeros;  // by vertices and method
   for (const Point& p : points.all) {
     if (p.scene() != "drape" || !p.ok() || !(p.result().work.factor_nonzeros > 0) ||
-        p.solves_by("projected_cg") ||
+        p.result().linear_solver == "projected_cg" ||
         (p.contestant() != fast_projection.name && p.contestant() != icd.name))
       continue;
     double& place = nonzeros[p.vertices()][p.contestant()];

@@ -80,9 +80,9 @@ Points::Points(const std::vector<json>& results) {
       }
       continue;
     }
+    const Runs runs(result);
     std::set<Key> here;
-    for (const json& p : result.at("points")) {
-      const Point point(p, pair_noise_of(result));
+    for (const Point& point : runs.points) {
       if (point.spec().adaptive) continue;
       const Key key(point.id(), point.contestant(), point.sweep(), point.collides_last());
       repeated = repeated || seen.contains(key);

@@ -144,8 +144,9 @@ void print_failures(std::ostream& out, const json& document, bool all) {
     const analysis::Point point(p);
     if (point.ok()) continue;
     ++failed;
-    ++statuses[point.status()];
-    ++of_contestants[point.scene() + ", " + point.contestant() + ": " + point.status()];
+    const std::string status = to_string(point.result().status);
+    ++statuses[status];
+    ++of_contestants[point.scene() + ", " + point.contestant() + ": " + status];
   }
   if (failed == 0) return;
   std::string counts;
