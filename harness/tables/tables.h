@@ -36,7 +36,7 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
                         const std::vector<NamedResult>& answers = {});
 void print_budgets(std::ostream& out, const std::vector<analysis::BudgetTable>& tables);
 
-namespace tables {
+// ---- What both have in common ----
 
 inline std::string quoted(const std::string& name) { return '`' + name + '`'; }
 // As number_text(), but never with a power of ten where the number has more digits.
@@ -48,13 +48,11 @@ std::string title_of(const analysis::Plane& plane);
 // A sentence on the time until which errors at the headline's level count. Empty: they are not
 // known.
 std::string span_of_errors(const std::vector<analysis::Plane>& planes);
-bool is_stability(const nlohmann::json& document);
 // The strain-error grid of each scene: the fastest method within each limit and level of error.
-void print_planes(std::ostream& out, const std::vector<NamedResult>& results);
+void print_planes(std::ostream& out, const std::vector<nlohmann::json>& sweeps);
 // Hard cases: how many of each solver's ended in which way; and what did not end as theory
 // expects, with the reason where one is known.
 Table outcomes_in(const nlohmann::json& document);
 Table differences_in(const nlohmann::json& document);
 
-}  // namespace tables
 }  // namespace harness

@@ -10,11 +10,7 @@
 
 namespace harness {
 
-using analysis::Cell;
-using analysis::Entry;
-using analysis::percent;
-using analysis::Plane;
-using analysis::Rival;
+using namespace analysis;  // tables print what was analysed
 using nlohmann::json;
 
 namespace {
@@ -48,7 +44,7 @@ std::string percent_or_unknown(double fraction) {
 
 // Name, time, step and error.
 std::vector<std::string> entry_cells(const Entry& entry, const std::string& name) {
-  return {name, analysis::time_words(entry.point.seconds()), step_text(entry.point.step()),
+  return {name, time_words(entry.point.seconds()), step_text(entry.point.step()),
           percent_or_unknown(entry.error)};
 }
 
@@ -82,14 +78,14 @@ void add_answers(Table& table, const Plane& plane, bool sizes) {
   }
 }
 
-void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
-  for (const auto& [title, group] : analysis::grouped(planes, tables::title_of)) {
+void print_grid(std::ostream& out, const std::vector<Plane>& planes) {
+  for (const auto& [title, group] : grouped(planes, title_of)) {
     const bool sizes = group.front().sweep == "resolution";
     Table table{{sizes ? "vertices" : "strain", "within", "fastest", "time", "step, s", "error",
                  "times as long: best of the paper"}};
     for (const Plane& plane : group) add_answers(table, plane, sizes);
     out << '\n' << title << ": the fastest within a strain limit and an error\n";
-    if (const std::string span = tables::span_of_errors(group); !span.empty()) out << span << '\n';
+    if (const std::string span = span_of_errors(group); !span.empty()) out << span << '\n';
     print_aligned(out, table);
   }
 }
@@ -112,7 +108,7 @@ void print_everybody(std::ostream& out, const Plane& plane) {
       table.rows.push_back(std::move(row));
     }
     out << '\n'
-        << analysis::scene_words(plane.scene) << " of " << plane.vertices << " vertices at "
+        << scene_words(plane.scene) << " of " << plane.vertices << " vertices at "
         << percent(cell.strain_limit) << " strain, "
         << (cell.level == any_motion ? "any motion" : "motion error at most " + percent(cell.level))
         << '\n';
@@ -120,18 +116,18 @@ void print_everybody(std::ostream& out, const Plane& plane) {
   }
 }
 
-void print_growth(std::ostream& out, const analysis::Growth& growth) {
+void print_growth(std::ostream& out, const Growth& growth) {
   Table table{{"", "power (95 %)", "vertices", "ms a step", "GiB at the largest"}};
-  for (const analysis::RowGrowth& row : growth.rows) {
-    const analysis::Point& largest = row.largest;
+  for (const RowGrowth& row : growth.rows) {
+    const Point& largest = row.largest;
     table.rows.push_back(
-        {row.row, analysis::exponent_words(row.exponent),
+        {row.row, exponent_words(row.exponent),
          number_text(row.smallest.vertices(), 7) + ".." + number_text(largest.vertices(), 7),
          number_text(1e3 * largest.seconds() * largest.step(), 3),
          number_text(largest.result().peak_rss_bytes / (1 << 30), 3)});
   }
   out << '\n'
-      << analysis::scene_words(growth.scene) << " at " << percent(growth.strain_limit)
+      << scene_words(growth.scene) << " at " << percent(growth.strain_limit)
       << " strain, any motion: the time of a step grows as the number of vertices to a power\n";
   print_aligned(out, table);
 }
@@ -141,7 +137,7 @@ void print_failures(std::ostream& out, const json& document, bool all) {
   std::map<std::string, int> statuses, of_contestants;
   int failed = 0;
   for (const json& p : document.at("points")) {
-    const analysis::Point point(p);
+    const Point point(p);
     if (point.ok()) continue;
     ++failed;
     const std::string status = to_string(point.result().status);
@@ -203,8 +199,8 @@ void print_noise(std::ostream& out, const json& document) {
 void print_sweep(std::ostream& out, const json& document, const std::string& file, bool all,
                  std::size_t columns) {
   std::ostringstream text;
-  const auto planes = analysis::planes_of(document);
-  print_planes(text, planes);
+  const auto planes = planes_of(document);
+  print_grid(text, planes);
   text << (planes.empty()
                ? "\nall of these runs chose their steps by a controller, which is not ranked: "
                  "bench plot draws them\n"
@@ -213,8 +209,8 @@ void print_sweep(std::ostream& out, const json& document, const std::string& fil
   for (const Plane& plane : planes) {
     if (all) print_everybody(text, plane);
   }
-  for (const analysis::Growth& growth : analysis::growth_in(planes)) print_growth(text, growth);
-  for (const analysis::Finding& finding : analysis::findings_of(planes)) {
+  for (const Growth& growth : growth_in(planes)) print_growth(text, growth);
+  for (const Finding& finding : findings_of(planes)) {
     text << '\n' << finding.subject << ":\n";
     for (const std::string& sentence : finding.sentences) text << sentence << '\n';
   }
@@ -229,10 +225,10 @@ void print_sweep(std::ostream& out, const json& document, const std::string& fil
 
 void print_outcomes(std::ostream& out, const json& document) {
   const json &counts = document.at("counts"), &steps = document.at("largest_steps");
-  const Table differences = tables::differences_in(document);
+  const Table differences = differences_in(document);
   out << counts.at("cells") << " hard cases and solvers, " << counts.at("new_differences")
       << " with a new difference; how they ended:\n";
-  print_aligned(out, tables::outcomes_in(document));
+  print_aligned(out, outcomes_in(document));
   if (!differences.rows.empty()) {
     out << "\nnot as expected:\n";
     print_aligned(out, differences);
