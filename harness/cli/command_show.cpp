@@ -80,7 +80,7 @@ struct Show {
     if (is_answers(document)) {
       print_answers(text, document);
     } else if (is_sweep(document)) {
-      print_sweep(text, document, name, all, output_columns());
+      print_sweep(text, document, name, all);
     } else {
       print_outcomes(text, document);
     }

@@ -161,8 +161,8 @@ int run_suite(const SweepCommand& options, const Words& typed) {
     nlohmann::json document = result_document(context, suite, typed, outcome.complete,
                                               outcome.points, references->summaries());
     std::ostringstream text;
-    print_sweep(text, document, out, false, output_columns());
-    return {std::move(document), outcome.complete, text.str()};
+    print_sweep(text, document, out);
+    return {std::move(document), outcome.complete, fitted(text.str(), output_columns())};
   };
   OutputOptions output = options;
   output.no_plots |= options.untimed;

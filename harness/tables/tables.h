@@ -1,7 +1,6 @@
 // What result files say, as tables on a terminal and on a page of Markdown (docs/results.md).
 #pragma once
 
-#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
@@ -15,13 +14,13 @@ namespace harness {
 
 // ---- On a terminal ----
 
-// A sweep's result, at most `columns` wide. For each scene and size a line for each answer of the
+// A sweep's result. For each scene and size a line for each answer of the
 // strain-error grid, levels of error with the same answer in one; its findings
 // (analysis/findings.h), of resolution sweeps the growth of a step's time; how much of that is
 // noise. all: every contestant too, fastest first, and how the runs that failed ended. file: what
 // the document is called in hints.
 void print_sweep(std::ostream& out, const nlohmann::json& document, const std::string& file,
-                 bool all = false, std::size_t columns = 120);
+                 bool all = false);
 // How each solver's hard cases ended, which did not end as expected, and its largest stable steps.
 void print_outcomes(std::ostream& out, const nlohmann::json& document);
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 
 #include "harness/analysis/findings.h"
 #include "harness/base/fields.h"
@@ -196,31 +195,28 @@ void print_noise(std::ostream& out, const json& document) {
 
 }  // namespace
 
-void print_sweep(std::ostream& out, const json& document, const std::string& file, bool all,
-                 std::size_t columns) {
-  std::ostringstream text;
+void print_sweep(std::ostream& out, const json& document, const std::string& file, bool all) {
   const auto planes = planes_of(document);
-  print_grid(text, planes);
-  text << (planes.empty()
-               ? "\nall of these runs chose their steps by a controller, which is not ranked: "
-                 "bench plot draws them\n"
-               : "(~: too close to the next, or too few samples, to tell; u: with untuned "
-                 "settings; errors are over the scene's size)\n");
+  print_grid(out, planes);
+  out << (planes.empty()
+              ? "\nall of these runs chose their steps by a controller, which is not ranked: "
+                "bench plot draws them\n"
+              : "(~: too close to the next, or too few samples, to tell; u: with untuned "
+                "settings; errors are over the scene's size)\n");
   for (const Plane& plane : planes) {
-    if (all) print_everybody(text, plane);
+    if (all) print_everybody(out, plane);
   }
-  for (const Growth& growth : growth_in(planes)) print_growth(text, growth);
+  for (const Growth& growth : growth_in(planes)) print_growth(out, growth);
   for (const Finding& finding : findings_of(planes)) {
-    text << '\n' << finding.subject << ":\n";
-    for (const std::string& sentence : finding.sentences) text << sentence << '\n';
+    out << '\n' << finding.subject << ":\n";
+    for (const std::string& sentence : finding.sentences) out << sentence << '\n';
   }
-  print_failures(text, document, all);
-  print_plugins(text, document);
-  print_noise(text, document);
+  print_failures(out, document, all);
+  print_plugins(out, document);
+  print_noise(out, document);
   if (!all)
-    text << "\nall contestants: bench show " << file << " --all; a page with figures: bench report "
-         << file << " --out report.html\n";
-  out << fitted(text.str(), columns);
+    out << "\nall contestants: bench show " << file << " --all; a page with figures: bench report "
+        << file << " --out report.html\n";
 }
 
 void print_outcomes(std::ostream& out, const json& document) {
