@@ -49,16 +49,13 @@ std::vector<std::string> entry_cells(const Entry& entry, const std::string& name
 
 std::vector<std::string> answer_row(const std::string& place, const Cell& loosest,
                                     const Cell& tightest) {
-  std::vector<std::string> row{place, levels_text(loosest, tightest)};
-  if (const Entry* first = tightest.first()) {
-    const std::string name = first->row + (first->role.unranked ? " u" : "") +
-                             (tightest.counting(1) && !tightest.clear() ? " ~" : "");
-    const auto cells = entry_cells(*first, name);
-    row.insert(row.end(), cells.begin(), cells.end());
-    row.push_back(lead_text(tightest));
-  } else {
-    row.push_back("- " + tightest.empty_because);
-  }
+  const std::string levels = levels_text(loosest, tightest);
+  const Entry* first = tightest.first();
+  if (!first) return {place, levels, "- " + tightest.empty_because};
+  auto row = entry_cells(*first, first->row + (first->role.unranked ? " u" : "") +
+                                     (tightest.counting(1) && !tightest.clear() ? " ~" : ""));
+  row.insert(row.begin(), {place, levels});
+  row.push_back(lead_text(tightest));
   return row;
 }
 
@@ -132,11 +129,10 @@ void print_growth(std::ostream& out, const Growth& growth) {
 }
 
 // How runs that failed did so.
-void print_failures(std::ostream& out, const json& document, bool all) {
+void print_failures(std::ostream& out, const Runs& runs, bool all) {
   std::map<std::string, int> statuses, of_contestants;
   int failed = 0;
-  for (const json& p : document.at("points")) {
-    const Point point(p);
+  for (const Point& point : runs.points) {
     if (point.ok()) continue;
     ++failed;
     const std::string status = to_string(point.result().status);
@@ -148,7 +144,7 @@ void print_failures(std::ostream& out, const json& document, bool all) {
   for (const auto& [status, count] : statuses)
     counts += (counts.empty() ? "" : ", ") + status + " " + std::to_string(count);
   out << '\n'
-      << failed << " of " << document.at("points").size()
+      << failed << " of " << runs.points.size()
       << " trial runs failed (coarse steps are tried until they do): " << counts << '\n';
   if (!all) return;
   for (const auto& [name, count] : of_contestants) out << "  " << name << " x " << count << '\n';
@@ -156,18 +152,16 @@ void print_failures(std::ostream& out, const json& document, bool all) {
 
 // Which solvers came from plug-ins, of which version, and what copying states into an engine and
 // out of it took of their time.
-void print_plugins(std::ostream& out, const json& document) {
-  const auto plugins = document.at("context").value("plugins", json::array());
+void print_plugins(std::ostream& out, const Runs& runs, const json& plugins) {
   if (!plugins.empty()) out << '\n';
   for (const auto& plugin : plugins) {
     for (const auto& solver : plugin.at("solvers")) {
       double copy = 0, all = 0;  // s
-      for (const auto& point : document.at("points")) {
-        if (point.at("solver") != solver || point.at("status") != "ok") continue;
-        const auto phases = point.value("phases", json::object());
-        copy += phases.value("copy", 0.0);
-        for (const char* phase : {"unconstrained", "filter", "collision", "copy"})
-          all += phases.value(phase, 0.0);
+      for (const Point& point : runs.points) {
+        if (point.spec().solver != solver || !point.ok()) continue;
+        const auto& phases = point.result().phases;
+        copy += phases.copy;
+        all += phases.unconstrained + phases.filter + phases.collision + phases.copy;
       }
       out << "plug-in " << solver.get<std::string>() << ": "
           << plugin.at("version").get<std::string>();
@@ -196,7 +190,8 @@ void print_noise(std::ostream& out, const json& document) {
 }  // namespace
 
 void print_sweep(std::ostream& out, const json& document, const std::string& file, bool all) {
-  const auto planes = planes_of(document);
+  const Runs runs(document);
+  const auto planes = planes_of(runs);
   print_grid(out, planes);
   out << (planes.empty()
               ? "\nall of these runs chose their steps by a controller, which is not ranked: "
@@ -211,8 +206,8 @@ void print_sweep(std::ostream& out, const json& document, const std::string& fil
     out << '\n' << finding.subject << ":\n";
     for (const std::string& sentence : finding.sentences) out << sentence << '\n';
   }
-  print_failures(out, document, all);
-  print_plugins(out, document);
+  print_failures(out, runs, all);
+  print_plugins(out, runs, document.at("context").value("plugins", json::array()));
   print_noise(out, document);
   if (!all)
     out << "\nall contestants: bench show " << file << " --all; a page with figures: bench report "
@@ -233,14 +228,13 @@ void print_outcomes(std::ostream& out, const json& document) {
   const auto scene_of = [](const json& entry) { return entry.at("scene").get<std::string>(); };
   const auto solver_of = [](const json& entry) { return entry.at("solver").get<std::string>(); };
   Table table{{"solver"}};
-  for (const std::string& scene : in_order(steps, scene_of)) table.head.push_back(scene);
-  for (const std::string& solver : in_order(steps, solver_of)) {
-    auto& row = table.rows.emplace_back(1, solver);
-    row.resize(table.head.size());
-    for (const json& entry : steps) {
-      const auto column = std::ranges::find(table.head, scene_of(entry)) - table.head.begin();
-      if (solver_of(entry) == solver)
-        row[static_cast<std::size_t>(column)] = step_text(number_of(entry.at("step")));
+  const auto scenes = in_order(steps, scene_of);
+  table.head.insert(table.head.end(), scenes.begin(), scenes.end());
+  for (const auto& [solver, own] : grouped(steps, solver_of)) {
+    table.rows.push_back({solver});
+    for (const std::string& scene : scenes) {
+      const auto at = std::ranges::find(own, scene, scene_of);
+      table.rows.back().push_back(at == own.end() ? "" : step_text(number_of(at->at("step"))));
     }
   }
   out << "\nlargest step (s) at which one second is survived, strain limit 1 %:\n";
