@@ -1,10 +1,10 @@
 // Interleaved pairs with a fake clock: no process runs here.
-#include "harness/compare/pairs.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "harness/compare/comparison.h"
 
 namespace harness {
 namespace {
