@@ -7,7 +7,6 @@
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/compare/comparison.h"
-#include "harness/compare/pairs.h"
 #include "harness/points/result_file.h"
 #include "harness/run/measure_point.h"
 

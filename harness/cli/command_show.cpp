@@ -208,7 +208,7 @@ json report_json(const std::vector<NamedResult>& files) {
                       {"measured", claim.measured},
                       {"rule", claim.rule}});
   if (const auto sweeps = documents_of(files, is_sweep); !sweeps.empty())
-    findings = analysis::findings_json(analysis::planes_of(joined(sweeps)));
+    findings = analysis::findings_of(analysis::planes_of(joined(sweeps)));
   return {{"results", std::move(results)},
           {"findings", std::move(findings)},
           {"claims", std::move(claims)}};

@@ -233,7 +233,7 @@ std::string text_of_result(const json& document, const std::string& name, bool a
   if (is_answers(document)) {
     print_answers(text, document);
   } else if (is_sweep(document)) {
-    print_sweep(text, document, name, all, output_columns());
+    print_sweep(text, document, name, all);
   } else {
     print_outcomes(text, document);
   }
