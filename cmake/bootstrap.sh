@@ -21,29 +21,19 @@ progress_every=10  # s between two lines in a log
 # with_progress COMMAND...: quietly, for ninja: "[3/81] Building ..." becomes "3 of 81 steps, 12 s", on a terminal in one line that
 # is rewritten.
 with_progress() {
-  local begin=$SECONDS told=$SECONDS output='' done='' line='' more status
-  while :; do
-    status=0
-    IFS= read -r -t 1 more || status=$?
-    line+=$more
-    ((status == 0 || status > 128)) || break  # neither a line nor a second without one: the end
-    if ((status == 0)); then
-      if [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]]; then
-        done="${BASH_REMATCH[1]} of ${BASH_REMATCH[2]} steps, "
-      else
-        output+=$line$'\n'
-      fi
-      line=''
-    fi
+  local begin=$SECONDS told=$SECONDS output='' line
+  while IFS= read -r line; do
+    [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || { output+=$line$'\n' && continue; }
+    line="building, ${BASH_REMATCH[1]} of ${BASH_REMATCH[2]} steps, $((SECONDS - begin)) s"
     if [[ -t 2 ]]; then
-      printf '\r%s: building, %s%s s ' "$program" "$done" $((SECONDS - begin)) >&2
+      printf '\r%s: %s ' "$program" "$line" >&2
     elif ((SECONDS - told >= progress_every)); then
-      say "building, $done$((SECONDS - begin)) s"
+      say "$line"
       told=$SECONDS
     fi
   done < <("$@" 2>&1 </dev/null)
   [[ ! -t 2 ]] || printf '\r\e[K' >&2
-  wait $! || { printf '%s\n' "$output$line" >&2 && return 1; }
+  wait $! || { printf '%s' "$output" >&2 && return 1; }
 }
 
 # locked FOLDER COMMAND...: only one process at a time does something to the folder.
@@ -72,13 +62,6 @@ missing_packages() {
     sed -n 's/^installed //p' | sort -u)
 }
 
-# The package lists of a bare machine are empty or old: an attempt that failed is repeated after an update.
-install_packages() {
-  local install=(apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 "$@")
-  export DEBIAN_FRONTEND=noninteractive
-  quietly "${install[@]}" 2>/dev/null || { quietly apt-get update && quietly "${install[@]}"; }
-}
-
 # ensure_packages SECTION...: installs what is missing, or says what to type and ends the script.
 ensure_packages() {
   if ! [[ -e /etc/debian_version ]] || ! command -v dpkg-query >/dev/null; then
@@ -100,7 +83,11 @@ ensure_debian_packages() {
     return 2
   fi
   say "installing them ..."
-  install_packages "${missing[@]}" || { say "that failed; by hand: $by_hand"; return 2; }
+  export DEBIAN_FRONTEND=noninteractive
+  local install=(apt-get install -y --no-install-recommends -o DPkg::Lock::Timeout=300 "${missing[@]}")
+  # The package lists of a bare machine are empty or old: an attempt that failed is repeated after an update.
+  quietly "${install[@]}" 2>/dev/null || { quietly apt-get update && quietly "${install[@]}"; } ||
+    { say "that failed; by hand: $by_hand"; return 2; }
 }
 
 # ---- Build ----

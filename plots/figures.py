@@ -11,6 +11,7 @@ they share.
 """
 
 import argparse
+import json
 import sys
 from functools import partial
 from importlib import import_module
@@ -26,7 +27,7 @@ except ImportError:
     print("figures.py: matplotlib is missing (Debian: apt-get install python3-matplotlib)", file=sys.stderr)
     sys.exit(2)
 
-from parts.result import Result, load, refused
+from parts.result import Result
 from parts.style import RC
 
 # Which figures there are, in the order that they are drawn in: the files of drawings/ (see there).
@@ -58,9 +59,10 @@ def main() -> int:
     parser.add_argument("result", type=Path, help="result file of the bench program, checked and analysed (JSON)")
     parser.add_argument("--out", type=Path, required=True, help="folder for the figures")
     options = parser.parse_args()
-    figures = all_figures(load(options.result))
+    figures = all_figures(Result(json.loads(options.result.read_text(encoding="utf-8"))))
     if not figures:
-        return refused("figures.py", f"{options.result.name}: no points to draw")
+        print(f"figures.py: {options.result.name}: no points to draw", file=sys.stderr)
+        return 2
     with matplotlib.rc_context(RC):
         for name, draw in figures.items():
             path = options.out / f"{options.result.stem}-{name}.svg"

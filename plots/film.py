@@ -31,10 +31,6 @@ FRAME_RATE = 30  # Hz, of the frames whose time captions tell, as the paper does
 GREY = 0.4       # how far the picture of a run that gave up goes towards the background
 
 
-class FilmError(Exception):
-    """One line for the user."""
-
-
 class Film:
     """What a folder holds, and the font that its pictures have room for."""
 
@@ -152,7 +148,7 @@ def moving(film: Film) -> Iterator[Image.Image]:
 
 def save_mp4(film: Film, out: Path) -> None:
     if not shutil.which("ffmpeg"):
-        raise FilmError("ffmpeg missing (Debian: apt-get install ffmpeg); .webp needs none")
+        raise OSError("ffmpeg missing (Debian: apt-get install ffmpeg); .webp needs none")
     command = ["ffmpeg", "-y", "-loglevel", "error", "-f", "image2pipe", "-c:v", "ppm", "-framerate", str(film.rate), "-i", "-",
                "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20", str(out)]
     with tempfile.TemporaryFile() as errors, subprocess.Popen(command, stdin=subprocess.PIPE, stderr=errors) as ffmpeg:
@@ -165,7 +161,7 @@ def save_mp4(film: Film, out: Path) -> None:
             pass
         if ffmpeg.wait() != 0:
             errors.seek(0)
-            raise FilmError("ffmpeg failed: " + (errors.read().decode(errors="replace").strip().splitlines() or ["no message"])[-1][:200])
+            raise OSError("ffmpeg failed: " + (errors.read().decode(errors="replace").strip().splitlines() or ["no message"])[-1][:200])
 
 
 def save(film: Film, out: Path) -> None:
@@ -185,7 +181,7 @@ def main() -> int:
     given = parser.parse_args()
     try:
         save(Film(given.folder), given.out)
-    except (FilmError, OSError, ValueError) as error:
+    except (OSError, ValueError) as error:
         print(f"film.py: {error}", file=sys.stderr)
         return 2
     print(given.out)

@@ -13,7 +13,6 @@ import base64
 import io
 import json
 import shlex
-import statistics
 import sys
 from html import escape
 from operator import itemgetter
@@ -35,35 +34,29 @@ SCRIPTS = ("document.js", "contest.js", "table.js")
 FIRST = ("drape", "strain")  # the question that most readers come with
 
 
-def table(head: Iterable[str], rows: Iterable[Iterable[str]], headed: bool = False) -> str:
-    """Scrolled sideways where it is wide; headed: the first cell of a row names it."""
-    def cells(row: Iterable[str]) -> str:
-        return "".join(f'<th scope="row">{escape(cell)}</th>' if headed and number == 0 else f"<td>{escape(cell)}</td>"
-                       for number, cell in enumerate(row))
-    return ('<div class="wide" tabindex="0"><table><thead><tr>' + "".join(f'<th scope="col">{name}</th>' for name in head)
-            + "</tr></thead><tbody>\n" + "".join(f"<tr>{cells(row)}</tr>\n" for row in rows) + "</tbody></table></div>")
+def table(head: Iterable[str], rows: Iterable[list[str]]) -> str:
+    """Scrolled sideways where it is wide; the first cell of a row names it."""
+    columns = "".join(f'<th scope="col">{name}</th>' for name in head)
+    lines = "".join(f'<tr><th scope="row">{escape(name)}</th>' + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>\n"
+                    for name, *cells in rows)
+    return f'<div class="wide" tabindex="0"><table><thead><tr>{columns}</tr></thead><tbody>\n{lines}</tbody></table></div>'
 
 
 # ---- findings ---------------------------------------------------------------------------------------------------------
 
-def findings(found: list[Json]) -> list[tuple[str, list[str]]]:
-    """The program's own, the largest drape over strain before all others."""
+def findings(found: list[Json]) -> str:
+    """The program's own. The answer that most readers come for, of the largest drape over strain, is first, and large."""
     def rank(one: Json) -> tuple[bool, int]:
         first = (one["scene"], one["sweep"]) == FIRST
         return not first, -one["vertices"] if first else 0
 
-    return [(f"{one['subject'].replace('_', ' ').capitalize()}, over {one['sweep']}:", one["sentences"]) for one in sorted(found, key=rank)]
-
-
-def findings_part(said: list[tuple[str, list[str]]]) -> str:
-    """The answer that most readers come for is first, and large."""
     def items(texts: list[str]) -> str:
         return "<ul>\n" + "".join(f"<li>{text}</li>\n" for text in texts) + "</ul>" if texts else ""
-    answer = ""
-    if said and said[0][1]:
-        answer = f'<p class="answer">{escape(" ".join([said[0][0], *said[0][1]]))}</p>\n'
-        said = said[1:]
-    return answer + items([escape(text) + items([escape(part) for part in parts]) for text, parts in said])
+
+    said = [[escape(text) for text in (f"{one['subject'].replace('_', ' ').capitalize()}, over {one['sweep']}:", *one["sentences"])]
+            for one in sorted(found, key=rank)]
+    answer = f'<p class="answer">{" ".join(said.pop(0))}</p>\n' if said and len(said[0]) > 1 else ""
+    return answer + items([text + items(sentences) for text, *sentences in said])
 
 
 # ---- figures ----------------------------------------------------------------------------------------------------------
@@ -73,28 +66,23 @@ def picture(name: str, draw: Callable[[], Figure]) -> str:
     figure, svg = draw(), io.StringIO()
     figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
     title = escape(" ".join(figure.texts[0].get_text().split()) if figure.texts else name)
-    name = escape(name)
-    return (f'<figure id="figure-{name}"><img src="{_address("image/svg+xml", svg.getvalue())}" alt="{title}" loading="lazy">'
+    name, image = escape(name), base64.b64encode(svg.getvalue().encode()).decode()
+    return (f'<figure id="figure-{name}"><img src="data:image/svg+xml;base64,{image}" alt="{title}" loading="lazy">'
             f'<figcaption>{title} <a download="{name}.svg" data-of="figure-{name}" href="#figure-{name}">SVG</a></figcaption></figure>\n')
 
 
-def _address(kind: str, text: str) -> str:
-    return f"data:{kind};base64,{base64.b64encode(text.encode()).decode()}"
+# ---- what the scripts work on, as one JSON document: labels of solvers, and a row a point --------------------------------------------------------
 
-
-# ---- what the scripts work on, as one JSON document: solvers, and a row a point --------------------------------------------------------
-
-def _median(point: Json) -> float | None:
-    """Of three samples or more."""
-    samples = (point["seconds_per_simulated_second"] or {}).get("samples", [])
-    return statistics.median(samples) if len(samples) >= 3 else None
+def _samples(point: Json) -> list[float]:
+    return (point["seconds_per_simulated_second"] or {"samples": []})["samples"]
 
 
 # What a row holds; the scripts know it by these names.
 FIELDS: dict[str, Callable[[Json], Any]] = {
     **{name: itemgetter(name) for name in ("id", "scene", "sweep", "vertices", "step", "status", "best", "adaptive")},
-    "limit": itemgetter("strain_limit"), "detail": itemgetter("status_detail"),
-    "seconds": seconds_of, "high": _median, "runs": lambda point: len((point["seconds_per_simulated_second"] or {}).get("samples", [])),
+    "solver": itemgetter("contestant"), "limit": itemgetter("strain_limit"), "detail": itemgetter("status_detail"),
+    "seconds": seconds_of, "high": lambda point: point["seconds_per_simulated_second"]["median"] if len(_samples(point)) >= 3 else None,
+    "runs": lambda point: len(_samples(point)),
     "strain": itemgetter("max_strain"), "delivered": itemgetter("max_strain_after_collision"),
     "error": lambda point: point["error"]["trajectory"], "energy": lambda point: point["error"]["energy_gain"],
     "iterations": lambda point: point["work"]["iterations"], "factorizations": lambda point: point["work"]["factorizations"],
@@ -103,18 +91,14 @@ FIELDS: dict[str, Callable[[Json], Any]] = {
 
 
 def embedded(results: dict[Path, Result]) -> Json:
-    """The legends are taken together; what they lack comes last."""
-    labels: dict[str, str] = {}
-    for result in results.values():
-        for name in (*result.solvers, *(point["contestant"] for point in result.points)):
-            labels.setdefault(name, result.label(name))
-    number = {name: place for place, name in enumerate(labels)}
+    """The legends are taken together."""
     return {
-        "columns": ["file", "solver", *FIELDS],
-        "points": [[file, number[point["contestant"]], *(read(point) for read in FIELDS.values())]
+        "columns": ["file", *FIELDS],
+        "points": [[file, *(read(point) for read in FIELDS.values())]
                    for file, result in enumerate(results.values()) for point in result.points],
         "files": [{"name": path.name, "command": repeat_command(result)} for path, result in results.items()],
-        "solvers": [{"label": label, "name": name} for name, label in labels.items()],
+        "labels": {name: result.label(name) for result in results.values()
+                   for name in (*result.solvers, *(point["contestant"] for point in result.points))},
     }
 
 
@@ -138,12 +122,6 @@ def script_text(value: Any) -> str:
 
 # ---- the page ---------------------------------------------------------------------------------------------------------
 
-def machine_row(path: Path, result: Result) -> list[str]:
-    context, build = result.context, result.context["build"]
-    commit = build["git"][:12] + (" with changes" if build["dirty"] else "")
-    return [path.name, *(str(context[key]) for key in ("date", "cpu_model", "num_cpus")), commit, build["compiler"], build["flags"]]
-
-
 def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> str:
     def file(name: str) -> str:
         return (PAGE / name).read_text(encoding="utf-8")
@@ -152,15 +130,17 @@ def page(results: dict[Path, Result], found: list[Json], claims: list[Json]) -> 
     with matplotlib.rc_context(RC):
         pictures = "".join(picture(f"{path.stem}-{name}", draw) for path, result in results.items()
                            for name, draw in all_figures(result).items())
+    machines = [[path.name, *(str(result.context[key]) for key in ("date", "cpu_model", "num_cpus")),
+                 build["git"][:12] + (" with changes" if build["dirty"] else ""), build["compiler"], build["flags"]]
+                for path, result in results.items() if (build := result.context["build"])]
     verdicts = [[claim[key] for key in ("id", "statement", "verdict", "measured", "rule")] for claim in claims]
     parts = [(name, title, body) for name, title, body in (
-        ("findings", "Findings", findings_part(findings(found))),
+        ("findings", "Findings", findings(found)),
         ("contest", "Who is fastest", file("contest.html") if data["points"] else ""),
         ("points", "All points", file("table.html") if data["points"] else ""),
         ("figures", "Figures", pictures),
-        ("claims", "The paper's claims", table(("Claim", "Says", "Verdict", "Measured", "Rule"), verdicts, headed=True) if claims else ""),
-        ("machine", "Machine and build", table(("File", "Date", "Processor", "Cores", "Commit", "Compiler", "Flags"),
-                                               (machine_row(path, result) for path, result in results.items()))),
+        ("claims", "The paper's claims", table(("Claim", "Says", "Verdict", "Measured", "Rule"), verdicts) if claims else ""),
+        ("machine", "Machine and build", table(("File", "Date", "Processor", "Cores", "Commit", "Compiler", "Flags"), machines)),
     ) if body]
     links = "".join(f'<a href="#{name}">{title}</a>' for name, title, _ in parts)
     sections = "".join(f'<section id="{name}" aria-labelledby="{name}-title">\n<h2 id="{name}-title">{title}</h2>\n{body}\n</section>\n'

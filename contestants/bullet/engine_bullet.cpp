@@ -29,7 +29,30 @@ Eigen::Vector3d from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; 
 
 // A world with one body in it.
 struct World {
-  explicit World(const Problem& problem);
+  explicit World(const Problem& problem) {
+    btSoftBodyWorldInfo& info = dynamics.getWorldInfo();
+    info.m_gravity = to_bullet(problem.gravity());
+    info.air_density = info.water_density = 0;
+    info.m_maxDisplacement = BT_LARGE_FLOAT;
+    std::vector<btScalar> mass = problem.mass();
+    for (const int vertex : problem.pinned()) mass[vertex] = 0;  // Bullet's word for infinite
+    const std::vector<btVector3> origin(mass.size(), btVector3(0, 0, 0));
+    body = std::make_unique<btSoftBody>(&info, problem.vertices(), origin.data(), mass.data());
+    body->m_materials[0]->m_kLST = 1;
+    body->m_cfg.kDP = 0;
+    body->m_cfg.collisions = 0;
+    body->m_cfg.diterations = 0;
+    for (int k = 0; k < problem.constraints(); ++k) {
+      body->appendLink(problem.edges()[k].a, problem.edges()[k].b);
+      btSoftBody::Link& link = body->m_links[k];
+      link.m_rl = problem.rest_length()[k];
+      link.m_c1 = link.m_rl * link.m_rl;
+    }
+    body->updateLinkConstants();
+    body->m_bUpdateRtCst = false;  // else Bullet takes the first positions for rest lengths
+    body->setActivationState(DISABLE_DEACTIVATION);
+    dynamics.addSoftBody(body.get());
+  }
   World(const World&) = delete;
   World& operator=(const World&) = delete;
   ~World() { dynamics.removeSoftBody(body.get()); }
@@ -41,31 +64,6 @@ struct World {
   btSoftRigidDynamicsWorld dynamics{&dispatcher, &broadphase, &solver, &configuration};
   std::unique_ptr<btSoftBody> body;
 };
-
-World::World(const Problem& problem) {
-  btSoftBodyWorldInfo& info = dynamics.getWorldInfo();
-  info.m_gravity = to_bullet(problem.gravity());
-  info.air_density = info.water_density = 0;
-  info.m_maxDisplacement = BT_LARGE_FLOAT;
-  std::vector<btScalar> mass = problem.mass();
-  for (const int vertex : problem.pinned()) mass[vertex] = 0;  // Bullet's word for infinite
-  const std::vector<btVector3> origin(mass.size(), btVector3(0, 0, 0));
-  body = std::make_unique<btSoftBody>(&info, problem.vertices(), origin.data(), mass.data());
-  body->m_materials[0]->m_kLST = 1;
-  body->m_cfg.kDP = 0;
-  body->m_cfg.collisions = 0;
-  body->m_cfg.diterations = 0;
-  for (int k = 0; k < problem.constraints(); ++k) {
-    body->appendLink(problem.edges()[k].a, problem.edges()[k].b);
-    btSoftBody::Link& link = body->m_links[k];
-    link.m_rl = problem.rest_length()[k];
-    link.m_c1 = link.m_rl * link.m_rl;
-  }
-  body->updateLinkConstants();
-  body->m_bUpdateRtCst = false;  // else Bullet takes the first positions for rest lengths
-  body->setActivationState(DISABLE_DEACTIVATION);
-  dynamics.addSoftBody(body.get());
-}
 
 class BulletSoftBody final : public engines::EngineStepper {
  public:

@@ -78,16 +78,7 @@ class EngineStepper : public inextensible::Stepper {
   // After an exception what the engine holds is not to be trusted.
   virtual void build() {}
 
-  StepResult solve(const State& state, double h, Positions& x) final {
-    try {
-      return timed_step(state, h, x);
-    } catch (const std::exception&) {
-      build();
-      return {inextensible::Status::not_converged, 0, -1, 0, "the engine gave up"};
-    }
-  }
-
-  StepResult timed_step(const State& state, double h, Positions& x) {
+  StepResult solve(const State& state, double h, Positions& x) final try {
     inextensible::Stopwatch stopwatch(phases_wanted_);
     const StepResult ready = put_in(state, h);
     if (!ready) return ready;
@@ -104,6 +95,9 @@ class EngineStepper : public inextensible::Stepper {
     }
     phases_.copy += stopwatch();
     return taken;
+  } catch (const std::exception&) {
+    build();
+    return {inextensible::Status::not_converged, 0, -1, 0, "the engine gave up"};
   }
 
   // All but the weight, which is the engine's.

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "solvers/problem/problem.h"
+
 namespace engines {
 namespace {
 
@@ -19,7 +21,6 @@ using inextensible::State;
 int only_pin(const Problem& problem) {
   const std::size_t pins = problem.pinned().size();
   if (pins != 1) refuse(std::to_string(pins) + " vertices are pinned");
-  if (problem.pins_follow_body()) refuse("the pin moves");
   return problem.pinned().front();
 }
 

@@ -1,12 +1,15 @@
 // A chain that hangs from one pinned end, as links in place of vertices: what engines in joint
-// coordinates (reduced coordinates) are made from and set from.
+// coordinates (reduced coordinates) are made from and set from. No header of the library, for
+// engines whose headers are older than C++20.
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
-#include "contestants/common/link_pose.h"
-#include "solvers/problem/problem.h"
+namespace inextensible {
+class Problem;
+struct State;
+}  // namespace inextensible
 
 namespace engines {
 
@@ -20,6 +23,12 @@ struct Links {
   int pin = -1;
   std::vector<int> vertex;
   std::vector<double> length, mass;
+};
+
+// How a link lies and turns.
+struct LinkPose {
+  Eigen::Matrix3d axes;  // the link's own, as columns: the first along it, the third z in a plane
+  Eigen::Vector3d rate;  // rad/s; no link spins about itself against the one before it
 };
 
 using LinkPoses = std::vector<LinkPose>;

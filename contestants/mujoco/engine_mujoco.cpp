@@ -23,9 +23,7 @@
 
 namespace {
 
-using engines::LinkPoses;
 using engines::Links;
-using inextensible::Positions;
 using inextensible::Problem;
 using inextensible::Status;
 
@@ -108,65 +106,6 @@ std::unique_ptr<mjModel, Free> load(const std::vector<std::string>& texts) {
   return model;
 }
 
-// The chain with one or two hinges a link, as MuJoCo has it.
-class HingeChain {
- public:
-  HingeChain(const Links& links, const Eigen::Vector3d& gravity, int hinges, int integrator)
-      : hinges_(hinges), model_(load(model_files(links, gravity, hinges, integrator))) {
-    model_->opt.integrator = integrator;
-    std::fill_n(model_->body_inertia, 3 * model_->nbody, 0.0);
-    data_.reset(mj_makeData(model_.get()));
-    if (!data_) throw std::bad_alloc();
-  }
-
-  void set(const LinkPoses& poses) {
-    Eigen::Quaterniond before = Eigen::Quaterniond::Identity();
-    Eigen::Vector3d rate_before = Eigen::Vector3d::Zero();
-    for (int i = 0; i < model_->nbody - 1; ++i) {
-      const Eigen::Matrix3d& axes = poses[i].axes;
-      const Eigen::Quaterniond turned(axes);
-      const Eigen::Quaterniond against = before.conjugate() * turned;
-      mjtNum* quaternion = model_->body_quat + 4 * (i + 1);
-      quaternion[0] = against.w();
-      for (int c = 0; c < 3; ++c) quaternion[1 + c] = against.vec()[c];
-      const Eigen::Vector3d rate = poses[i].rate - rate_before;
-      mjtNum* qvel = data_->qvel + hinges_ * i;
-      qvel[0] = rate.dot(axes.col(2));
-      if (hinges_ == 2) qvel[1] = rate.dot(axes.col(1));
-      before = turned;
-      rate_before = poses[i].rate;
-    }
-    mju_zero(data_->qpos, model_->nq);
-    std::memset(data_->warning, 0, sizeof(data_->warning));
-  }
-
-  // False if MuJoCo met numbers that it does not accept and reset itself.
-  bool step(double h) {
-    model_->opt.timestep = h;
-    mj_step(model_.get(), data_.get());
-    return data_->warning[mjWARN_BADQPOS].number == 0 &&
-           data_->warning[mjWARN_BADQVEL].number == 0 && data_->warning[mjWARN_BADQACC].number == 0;
-  }
-
-  // Positions and velocities of the ends of links, relative to the pin.
-  void get(const Links& links, Positions& x, Positions& v) {
-    mj_kinematics(model_.get(), data_.get());
-    mj_comPos(model_.get(), data_.get());
-    mj_comVel(model_.get(), data_.get());
-    for (int i = 0; i < links.count(); ++i) {
-      mjtNum spin_and_velocity[6];
-      mj_objectVelocity(model_.get(), data_.get(), mjOBJ_BODY, i + 1, spin_and_velocity, 0);
-      x.col(links.vertex[i]) = Eigen::Map<const Eigen::Vector3d>(data_->xipos + 3 * (i + 1));
-      v.col(links.vertex[i]) = Eigen::Map<const Eigen::Vector3d>(spin_and_velocity + 3);
-    }
-  }
-
- private:
-  int hinges_;
-  std::unique_ptr<mjModel, Free> model_;
-  std::unique_ptr<mjData, Free> data_;
-};
-
 struct Integrator {
   const char* name;
   int number;
@@ -197,32 +136,71 @@ class MujocoChain final : public engines::ChainStepper {
   }
 
  private:
+  int hinges() const { return flat_ ? 1 : 2; }  // of a link
+
   void build() override {
-    chain_ = std::make_unique<HingeChain>(links_, problem().gravity(), flat_ ? 1 : 2,
-                                          integrator_.number);
+    model_ = load(model_files(links_, problem().gravity(), hinges(), integrator_.number));
+    model_->opt.integrator = integrator_.number;
+    std::fill_n(model_->body_inertia, 3 * model_->nbody, 0.0);
+    data_.reset(mj_makeData(model_.get()));
+    if (!data_) throw std::bad_alloc();
   }
 
   StepResult put_in(const State& state, double /*h*/) override {
     const StepResult found = find(state);
-    if (found) chain_->set(poses_);
+    if (!found) return found;
+    Eigen::Quaterniond before = Eigen::Quaterniond::Identity();
+    Eigen::Vector3d rate_before = Eigen::Vector3d::Zero();
+    for (int i = 0; i < links_.count(); ++i) {
+      const Eigen::Matrix3d& axes = poses_[i].axes;
+      const Eigen::Quaterniond turned(axes);
+      const Eigen::Quaterniond against = before.conjugate() * turned;
+      mjtNum* quaternion = model_->body_quat + 4 * (i + 1);
+      quaternion[0] = against.w();
+      for (int c = 0; c < 3; ++c) quaternion[1 + c] = against.vec()[c];
+      const Eigen::Vector3d rate = poses_[i].rate - rate_before;
+      mjtNum* qvel = data_->qvel + hinges() * i;
+      qvel[0] = rate.dot(axes.col(2));
+      if (hinges() == 2) qvel[1] = rate.dot(axes.col(1));
+      before = turned;
+      rate_before = poses_[i].rate;
+    }
+    mju_zero(data_->qpos, model_->nq);
+    std::memset(data_->warning, 0, sizeof(data_->warning));
     return found;
   }
 
   StepResult step(double h) override {
-    if (!chain_->step(h)) return {Status::not_finite, 0, -1, 0, "MuJoCo met a number above 1e10"};
+    model_->opt.timestep = h;
+    mj_step(model_.get(), data_.get());
+    // After one of these it has reset itself.
+    for (const int warning : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
+      if (data_->warning[warning].number != 0)
+        return {Status::not_finite, 0, -1, 0, "MuJoCo met a number above 1e10"};
+    }
     work_.assemblies += integrator_.evaluations;
     work_.factorizations += integrator_.evaluations + integrator_.factorizations;
     work_.back_solves += integrator_.evaluations + integrator_.factorizations;
     return {Status::ok, integrator_.evaluations};
   }
 
+  // MuJoCo's chain hangs on the origin.
   void take_out(const State& start, Positions& x, Positions& v) override {
-    chain_->get(links_, x, v);
+    mj_kinematics(model_.get(), data_.get());
+    mj_comPos(model_.get(), data_.get());
+    mj_comVel(model_.get(), data_.get());
+    for (int i = 0; i < links_.count(); ++i) {
+      mjtNum spin_and_velocity[6];
+      mj_objectVelocity(model_.get(), data_.get(), mjOBJ_BODY, i + 1, spin_and_velocity, 0);
+      x.col(links_.vertex[i]) = Eigen::Map<const Eigen::Vector3d>(data_->xipos + 3 * (i + 1));
+      v.col(links_.vertex[i]) = Eigen::Map<const Eigen::Vector3d>(spin_and_velocity + 3);
+    }
     x.colwise() += start.x.col(links_.pin);
   }
 
   Integrator integrator_ = integrators[0];
-  std::unique_ptr<HingeChain> chain_;
+  std::unique_ptr<mjModel, Free> model_;
+  std::unique_ptr<mjData, Free> data_;
 };
 
 }  // namespace

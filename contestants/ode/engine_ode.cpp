@@ -61,14 +61,76 @@ class OdeBalls final : public engines::EngineStepper {
   }
 
  private:
-  void build() override;
-  StepResult put_in(const State& state, double h) override;
+  void build() override {
+    world_.reset(dWorldCreate());
+    const Eigen::Vector3d& g = problem().gravity();
+    dWorldSetGravity(world_.get(), g.x(), g.y(), g.z());
+    dWorldSetERP(world_.get(), options_.number("erp"));
+    dWorldSetCFM(world_.get(), options_.number("cfm"));
+    dWorldSetAutoDisableFlag(world_.get(), 0);
+    dWorldSetDamping(world_.get(), 0, 0);
+    dWorldSetQuickStepNumIterations(world_.get(), options_.count("iterations"));
+    dWorldSetQuickStepW(world_.get(), options_.number("relaxation"));
+    bodies_.assign(problem().vertices(), nullptr);
+    for (int i = 0; i < problem().vertices(); ++i) {
+      if (problem().inverse_mass()[i] == 0) continue;
+      bodies_[i] = dBodyCreate(world_.get());
+      dMass mass;  // ODE wants an inertia; nothing turns a body whose joints act on its centre
+      const double radius = problem().constraints() > 0 ? problem().shortest_rest_length() : 1;
+      dMassSetSphereTotal(&mass, problem().mass()[i], radius);
+      dBodySetMass(bodies_[i], &mass);
+      dBodySetGyroscopicMode(bodies_[i], 0);
+    }
+    joints_.clear();
+    for (const auto& edge : problem().edges()) {
+      joints_.push_back(dJointCreateDBall(world_.get(), nullptr));
+      dJointAttach(joints_.back(), bodies_[edge.a], bodies_[edge.b]);
+    }
+  }
+
+  // Anchors are kept relative to bodies. Those on pins are places of the world, which can be set
+  // again; setting one measures the distance, which is put right after that.
+  StepResult put_in(const State& state, double /*h*/) override {
+    constexpr dMatrix3 unturned = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    for (int i = 0; i < problem().vertices(); ++i) {
+      if (!bodies_[i]) continue;
+      dBodySetPosition(bodies_[i], state.x(0, i), state.x(1, i), state.x(2, i));
+      dBodySetLinearVel(bodies_[i], state.v(0, i), state.v(1, i), state.v(2, i));
+      // Nothing turns it, but for a step that overflowed.
+      dBodySetRotation(bodies_[i], unturned);
+      dBodySetAngularVel(bodies_[i], 0, 0, 0);
+      dBodySetForce(bodies_[i], 0, 0, 0);
+      dBodySetTorque(bodies_[i], 0, 0, 0);
+    }
+    for (int k = 0; k < problem().constraints(); ++k) {
+      const auto [a, b] = problem().edges()[k];
+      dJointSetDBallAnchor1(joints_[k], state.x(0, a), state.x(1, a), state.x(2, a));
+      dJointSetDBallAnchor2(joints_[k], state.x(0, b), state.x(1, b), state.x(2, b));
+      dJointSetDBallDistance(joints_[k], problem().rest_length()[k]);
+    }
+    return {};
+  }
 
   void give_force(int vertex, const Eigen::Vector3d& force) override {
     dBodyAddForce(bodies_[vertex], force.x(), force.y(), force.z());
   }
 
-  StepResult step(double h) override;
+  StepResult step(double h) override {
+    dRandSetSeed(random_);
+    const bool taken =
+        (direct_ ? dWorldStep(world_.get(), h) : dWorldQuickStep(world_.get(), h)) != 0;
+    next_random_ = dRandGetSeed();
+    const int passes = direct_ ? 1 : options_.count("iterations");
+    if (direct_) {
+      ++work_.assemblies;
+      ++work_.factorizations;
+      ++work_.back_solves;
+    } else {
+      work_.edge_projections += std::int64_t{passes} * problem().constraints();
+    }
+    if (!taken) return {Status::not_finite, 0, -1, 0, "ODE met numbers that it does not take"};
+    return {Status::ok, passes};
+  }
 
   void take_out(const State& /*start*/, Positions& x, Positions& v) override {
     for (int i = 0; i < problem().vertices(); ++i) {
@@ -87,73 +149,6 @@ class OdeBalls final : public engines::EngineStepper {
   std::vector<dJointID> joints_;  // one an edge
   unsigned long random_, next_random_ = 0;
 };
-
-void OdeBalls::build() {
-  world_.reset(dWorldCreate());
-  const Eigen::Vector3d& g = problem().gravity();
-  dWorldSetGravity(world_.get(), g.x(), g.y(), g.z());
-  dWorldSetERP(world_.get(), options_.number("erp"));
-  dWorldSetCFM(world_.get(), options_.number("cfm"));
-  dWorldSetAutoDisableFlag(world_.get(), 0);
-  dWorldSetDamping(world_.get(), 0, 0);
-  dWorldSetQuickStepNumIterations(world_.get(), options_.count("iterations"));
-  dWorldSetQuickStepW(world_.get(), options_.number("relaxation"));
-  bodies_.assign(problem().vertices(), nullptr);
-  for (int i = 0; i < problem().vertices(); ++i) {
-    if (problem().inverse_mass()[i] == 0) continue;
-    bodies_[i] = dBodyCreate(world_.get());
-    dMass mass;  // ODE wants an inertia; nothing turns a body whose joints act on its centre
-    const double radius = problem().constraints() > 0 ? problem().shortest_rest_length() : 1;
-    dMassSetSphereTotal(&mass, problem().mass()[i], radius);
-    dBodySetMass(bodies_[i], &mass);
-    dBodySetGyroscopicMode(bodies_[i], 0);
-  }
-  joints_.clear();
-  for (const auto& edge : problem().edges()) {
-    joints_.push_back(dJointCreateDBall(world_.get(), nullptr));
-    dJointAttach(joints_.back(), bodies_[edge.a], bodies_[edge.b]);
-  }
-}
-
-// Anchors are kept relative to bodies. Those on pins are places of the world, which can be set
-// again; setting one measures the distance, which is put right after that.
-StepResult OdeBalls::put_in(const State& state, double /*h*/) {
-  constexpr dMatrix3 unturned = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-  for (int i = 0; i < problem().vertices(); ++i) {
-    if (!bodies_[i]) continue;
-    dBodySetPosition(bodies_[i], state.x(0, i), state.x(1, i), state.x(2, i));
-    dBodySetLinearVel(bodies_[i], state.v(0, i), state.v(1, i), state.v(2, i));
-    // Nothing turns it, but for a step that overflowed.
-    dBodySetRotation(bodies_[i], unturned);
-    dBodySetAngularVel(bodies_[i], 0, 0, 0);
-    dBodySetForce(bodies_[i], 0, 0, 0);
-    dBodySetTorque(bodies_[i], 0, 0, 0);
-  }
-  for (int k = 0; k < problem().constraints(); ++k) {
-    const auto [a, b] = problem().edges()[k];
-    dJointSetDBallAnchor1(joints_[k], state.x(0, a), state.x(1, a), state.x(2, a));
-    dJointSetDBallAnchor2(joints_[k], state.x(0, b), state.x(1, b), state.x(2, b));
-    dJointSetDBallDistance(joints_[k], problem().rest_length()[k]);
-  }
-  return {};
-}
-
-StepResult OdeBalls::step(double h) {
-  dRandSetSeed(random_);
-  const bool taken =
-      (direct_ ? dWorldStep(world_.get(), h) : dWorldQuickStep(world_.get(), h)) != 0;
-  next_random_ = dRandGetSeed();
-  const int passes = direct_ ? 1 : options_.count("iterations");
-  if (direct_) {
-    ++work_.assemblies;
-    ++work_.factorizations;
-    ++work_.back_solves;
-  } else {
-    work_.edge_projections += std::int64_t{passes} * problem().constraints();
-  }
-  if (!taken) return {Status::not_finite, 0, -1, 0, "ODE met numbers that it does not take"};
-  return {Status::ok, passes};
-}
 
 }  // namespace
 

@@ -40,8 +40,8 @@ class SimbodyChain final : public engines::ChainStepper {
 
  private:
   void build() override {
-    chain_ = std::make_unique<MobilizerChain>(links_.length, links_.mass, problem().gravity(),
-                                              flat_, integrator_, accuracy_);
+    chain_ = std::make_unique<MobilizerChain>(links_, problem().gravity(), flat_, integrator_,
+                                              accuracy_);
     ours_.time = -1;
   }
 

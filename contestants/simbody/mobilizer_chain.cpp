@@ -39,46 +39,41 @@ struct MobilizerChain::Parts {
   SimTK::State start;
   std::unique_ptr<SimTK::Integrator> integrator;
 
-  void add_link(double length, double mass);
-  void set(std::size_t link, const Eigen::Matrix3d& against, const Eigen::Vector3d& own_rate);
+  // Line orientations want the link along z, pins turn about z.
+  void add_link(double length, double mass) {
+    const SimTK::Vec3 end = pins ? SimTK::Vec3(length, 0, 0) : SimTK::Vec3(0, 0, length);
+    const SimTK::Body::Rigid body(SimTK::MassProperties(mass, end, SimTK::Inertia(end, mass)));
+    SimTK::MobilizedBody parent = bodies.empty() ? matter.updGround() : bodies.back();
+    const SimTK::Vec3 joint = bodies.empty() ? SimTK::Vec3(0) : ends.back();
+    if (pins) {
+      bodies.push_back(SimTK::MobilizedBody::Pin(parent, joint, body, SimTK::Vec3(0)));
+    } else {
+      bodies.push_back(SimTK::MobilizedBody::LineOrientation(parent, joint, body, SimTK::Vec3(0)));
+    }
+    ends.push_back(end);
+  }
+
+  // against: the axes, in those of the link before; own_rate: what it turns faster, in its own.
+  void set(std::size_t link, const Eigen::Matrix3d& against, const Eigen::Vector3d& own_rate) {
+    SimTK::MobilizedBody& body = bodies[link];
+    if (pins) {
+      body.setOneQ(start, 0, std::atan2(against(1, 0), against(0, 0)));
+      body.setOneU(start, 0, own_rate.z());
+    } else {
+      body.setQToFitRotation(start, to_simbody(against));
+      body.setOneU(start, 0, own_rate.x());
+      body.setOneU(start, 1, own_rate.y());
+    }
+  }
 };
 
-// Line orientations want the link along z, pins turn about z.
-void MobilizerChain::Parts::add_link(double length, double mass) {
-  const SimTK::Vec3 end = pins ? SimTK::Vec3(length, 0, 0) : SimTK::Vec3(0, 0, length);
-  const SimTK::Body::Rigid body(SimTK::MassProperties(mass, end, SimTK::Inertia(end, mass)));
-  SimTK::MobilizedBody parent = bodies.empty() ? matter.updGround() : bodies.back();
-  const SimTK::Vec3 joint = bodies.empty() ? SimTK::Vec3(0) : ends.back();
-  if (pins) {
-    bodies.push_back(SimTK::MobilizedBody::Pin(parent, joint, body, SimTK::Vec3(0)));
-  } else {
-    bodies.push_back(SimTK::MobilizedBody::LineOrientation(parent, joint, body, SimTK::Vec3(0)));
-  }
-  ends.push_back(end);
-}
-
-// against: the axes, in those of the link before; own_rate: what it turns faster, in its own.
-void MobilizerChain::Parts::set(std::size_t link, const Eigen::Matrix3d& against,
-                                const Eigen::Vector3d& own_rate) {
-  SimTK::MobilizedBody& body = bodies[link];
-  if (pins) {
-    body.setOneQ(start, 0, std::atan2(against(1, 0), against(0, 0)));
-    body.setOneU(start, 0, own_rate.z());
-  } else {
-    body.setQToFitRotation(start, to_simbody(against));
-    body.setOneU(start, 0, own_rate.x());
-    body.setOneU(start, 1, own_rate.y());
-  }
-}
-
-MobilizerChain::MobilizerChain(const std::vector<double>& length, const std::vector<double>& mass,
-                               const Eigen::Vector3d& gravity, bool pins,
+MobilizerChain::MobilizerChain(const Links& links, const Eigen::Vector3d& gravity, bool pins,
                                std::string_view integrator, double accuracy)
     : parts_(std::make_unique<Parts>()) {
   parts_->pins = pins;
   const SimTK::Force::UniformGravity weight(parts_->forces, parts_->matter, to_simbody(gravity));
   parts_->matter.setShowDefaultGeometry(false);
-  for (std::size_t i = 0; i < length.size(); ++i) parts_->add_link(length[i], mass[i]);
+  for (int i = 0; i < links.count(); ++i) parts_->add_link(links.length[i], links.mass[i]);
   parts_->start = parts_->system.realizeTopology();
   parts_->system.realizeModel(parts_->start);
   parts_->integrator = integrator_named(integrator, parts_->system);
@@ -89,7 +84,7 @@ MobilizerChain::MobilizerChain(const std::vector<double>& length, const std::vec
 
 MobilizerChain::~MobilizerChain() = default;
 
-void MobilizerChain::set(const std::vector<LinkPose>& poses) {
+void MobilizerChain::set(const LinkPoses& poses) {
   Eigen::Matrix3d before = Eigen::Matrix3d::Identity();
   Eigen::Vector3d rate_before = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -4,9 +4,8 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "contestants/common/link_pose.h"
+#include "contestants/common/links.h"
 
 namespace engines {
 
@@ -15,15 +14,14 @@ std::string simbody_version();
 // Links on pins, in the plane of x and y, or on line orientations. The first hangs on the origin.
 class MobilizerChain {
  public:
-  // length (m) and mass (kg) of each link, gravity in m/s^2; one of `integrators`.
-  MobilizerChain(const std::vector<double>& length, const std::vector<double>& mass,
-                 const Eigen::Vector3d& gravity, bool pins, std::string_view integrator,
-                 double accuracy);
+  // gravity in m/s^2; one of `integrators`.
+  MobilizerChain(const Links& links, const Eigen::Vector3d& gravity, bool pins,
+                 std::string_view integrator, double accuracy);
   ~MobilizerChain();
 
   static constexpr const char* integrators[] = {"merson", "fehlberg", "verlet"};
 
-  void set(const std::vector<LinkPose>& poses);
+  void set(const LinkPoses& poses);
   // To `h` later. False if Simbody's steps became too many, or too short. Whatever Simbody throws.
   bool step(double h);
   // Tried since set().

@@ -1,54 +1,208 @@
 // Scenes whose motion, or part of it, theory knows, and what the tests of engines share.
 #pragma once
 
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
 #include <memory>
+#include <numbers>
+#include <set>
 #include <string>
 
+#include "solvers/plugin.h"
+#include "solvers/problem/edge_constraints.h"
+#include "solvers/problem/forces.h"
 #include "solvers/registry.h"
+#include "support/motion.h"
 
 namespace engines {
 
+using inextensible::Positions;
+using inextensible::ProblemParts;
+using inextensible::Settings;
+using inextensible::State;
+
 struct Scene {
   std::shared_ptr<const inextensible::Problem> problem;
-  inextensible::State start;
+  State start;
 };
+
+// A plug-in's rows, in the registry; once.
+inline void load(const std::string& plugin) {
+  static std::set<std::string> loaded;
+  if (!loaded.insert(plugin).second) return;
+  void* library = dlopen((PLUGIN_FOLDER "/" + plugin + ".so").c_str(), RTLD_NOW | RTLD_LOCAL);
+  ASSERT_TRUE(library) << dlerror();
+  const auto entry =
+      reinterpret_cast<decltype(&inextensible_plugin)>(dlsym(library, "inextensible_plugin"));
+  ASSERT_TRUE(entry);
+  inextensible::add_backends({entry()->backends, entry()->backend_count});
+}
+
+inline ProblemParts chain_parts(int links) {
+  ProblemParts parts;
+  parts.mass.assign(links + 1, 1.0 / links);
+  parts.pinned = {0};
+  for (int i = 0; i < links; ++i) parts.edges.push_back({i, i + 1});
+  parts.rest_length.assign(links, 1.0 / links);
+  return parts;
+}
+
+inline Scene finished(ProblemParts parts, Positions x, Positions v) {
+  return {std::make_shared<const inextensible::Problem>(std::move(parts)),
+          {std::move(x), std::move(v)}};
+}
 
 // `links` equal links of 1 m and 1 kg in all, straight, pinned at the origin, at rest. Along x,
 // turned about y by `turn`.
-Scene chain(int links, double turn = 0);
+inline Scene chain(int links, double turn = 0) {
+  Positions x(3, links + 1);
+  for (int i = 0; i <= links; ++i)
+    x.col(i) << std::cos(turn) * i / links, 0, -std::sin(turn) * i / links;
+  return finished(chain_parts(links), x, Positions::Zero(3, links + 1));
+}
+
 // The same, straight down.
-Scene hanging_chain(int links);
+inline Scene hanging_chain(int links) {
+  Scene scene = chain(links);
+  scene.start.x.row(1) = -scene.start.x.row(0);
+  scene.start.x.row(0).setZero();
+  return scene;
+}
+
 // The same, bent and moving in all directions, every link at its length.
-Scene swirling_chain(int links);
+inline Scene swirling_chain(int links) {
+  Positions x = Positions::Zero(3, links + 1), v = x;
+  for (int i = 0; i < links; ++i) {
+    // Directions all over the sphere, one of them straight along z, and rates across them.
+    const double polar = i == 1 ? 0 : 2.3 * std::sin(1.7 * i), azimuth = 2.1 * i;
+    const Eigen::Vector3d e(std::sin(polar) * std::cos(azimuth),
+                            std::sin(polar) * std::sin(azimuth), std::cos(polar));
+    const Eigen::Vector3d rate(std::cos(i), std::sin(2.0 * i), std::cos(3.0 * i));
+    x.col(i + 1) = x.col(i) + e / links;
+    v.col(i + 1) = v.col(i) + rate.cross(e) / links;
+  }
+  return finished(chain_parts(links), x, v);
+}
+
 // n x n vertices of 1 kg and 1 m x 1 m in all, without weight, that spin about y by `omega`.
-Scene spinning_net(int n, double omega);
+inline Scene spinning_net(int n, double omega) {
+  ProblemParts parts;
+  parts.mass.assign(n * n, 1.0 / (n * n));
+  parts.gravity.setZero();
+  const double length = 1.0 / (n - 1);
+  Positions x(3, n * n), v(3, n * n);
+  for (int i = 0; i < n * n; ++i) {
+    const int row = i / n, column = i % n;
+    x.col(i) << column * length - 0.5, 0, row * length - 0.5;
+    v.col(i) = omega * Eigen::Vector3d::UnitY().cross(Eigen::Vector3d(x.col(i)));
+    if (column + 1 < n) parts.edges.push_back({i, i + 1});
+    if (row + 1 < n) parts.edges.push_back({i, i + n});
+  }
+  parts.rest_length.assign(parts.edges.size(), length);
+  return finished(parts, x, v);
+}
 
 // Makes a stepper of the plug-in with this name, and loads the plug-in first.
-std::unique_ptr<inextensible::Stepper> make(const std::string& solver, const Scene& scene,
-                                            const inextensible::Settings& settings = {});
+inline std::unique_ptr<inextensible::Stepper> make(const std::string& solver, const Scene& scene,
+                                                   const Settings& settings = {}) {
+  load(solver);
+  inextensible::BackendOptions options{0.01, 1, settings};
+  options.start = &scene.start;
+  return inextensible::make_stepper(solver, scene.problem, options);
+}
+
 // The state after that many steps, all of which must be taken.
-inextensible::State run(const std::string& solver, const Scene& scene, double h, int steps,
-                        const inextensible::Settings& settings = {});
+inline State run(const std::string& solver, const Scene& scene, double h, int steps,
+                 const Settings& settings = {}) {
+  const auto stepper = make(solver, scene, settings);
+  State state = scene.start;
+  for (int i = 0; i < steps; ++i) {
+    const auto result = stepper->advance(state, h);
+    EXPECT_TRUE(result) << "step " << i << ": " << result.detail;
+    if (!result) break;
+  }
+  return state;
+}
 
-double energy(const Scene& scene, const inextensible::State& state);
-Eigen::Vector3d angular_momentum(const Scene& scene, const inextensible::State& state);
-double largest_strain(const Scene& scene, const inextensible::State& state);
-double distance(const inextensible::Positions& a, const inextensible::Positions& b);
+inline Eigen::Vector3d angular_momentum(const Scene& scene, const State& state) {
+  return inextensible::testing::angular_momentum(*scene.problem, state.x, state.v);
+}
 
-// ---- What every engine must fulfil; they report to GoogleTest ----
+inline double largest_strain(const Scene& scene, const State& state) {
+  return std::abs(inextensible::EdgeConstraints(*scene.problem, 1).worst(state.x).strain);
+}
+
+inline double distance(const Positions& a, const Positions& b) {
+  return (a - b).colwise().norm().maxCoeff();
+}
+
+// ---- What every engine must fulfil ----
+
 // A link that is released level hangs down after a quarter of its period; the distance, m.
-double pendulum_error(const std::string& solver, int steps,
-                      const inextensible::Settings& settings = {});
+inline double pendulum_error(const std::string& solver, int steps, const Settings& settings = {}) {
+  const Scene scene = chain(1);
+  // A quarter of the period 4 sqrt(l / g) K(sin(90 degrees / 2)), with l = 1.
+  const double quarter = std::comp_ellint_1(std::sqrt(0.5)) / std::sqrt(9.81);
+  const State end = run(solver, scene, quarter / steps, steps, settings);
+  return (end.x.col(1) + Eigen::Vector3d::UnitY()).norm();
+}
+
 // An impossible step is refused, leaves the state as it was, and nothing behind for the next.
-void expect_refusal_without_trace(const std::string& solver, const Scene& scene,
-                                  const inextensible::State& impossible, double h);
-// For engines of first order that take vertices: the error of a pendulum halves with the step; what
-// flies freely goes on as it was, momentum and all, and never falls asleep; and two vertices on a
-// spring alone swing with omega^2 = 2 k / m, and keep their middle.
-void expect_first_order(const std::string& solver);
-void expect_free_flight(const std::string& solver);
-void expect_spring(const std::string& solver);
-// make() refuses, and says why.
-void expect_unsupported(const std::string& solver, const Scene& scene, const std::string& why);
+inline void expect_refusal_without_trace(const std::string& solver, const Scene& scene,
+                                         const State& impossible, double h) {
+  const auto stepper = make(solver, scene), fresh = make(solver, scene);
+  State state = impossible;
+  EXPECT_FALSE(stepper->advance(state, h));
+  EXPECT_TRUE(state.x == impossible.x && state.v == impossible.v && state.time == impossible.time);
+  State after = scene.start, expected = scene.start;
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_TRUE(stepper->advance(after, 1e-3));
+    ASSERT_TRUE(fresh->advance(expected, 1e-3));
+  }
+  EXPECT_TRUE(after.x == expected.x && after.v == expected.v);
+}
+
+// A step that takes numbers beyond what doubles hold.
+inline void expect_overflow_refused(const std::string& solver) {
+  const Scene scene = chain(5);
+  State fast = scene.start;
+  fast.v.rightCols(2).setConstant(1e300);
+  expect_refusal_without_trace(solver, scene, fast, 1e10);
+}
+
+// For engines of first order that take vertices: the error of a pendulum halves with the step.
+inline void expect_first_order(const std::string& solver) {
+  const double coarse = pendulum_error(solver, 1000), fine = pendulum_error(solver, 2000);
+  EXPECT_LT(fine, 0.01);
+  EXPECT_NEAR(std::log2(coarse / fine), 1, 0.1);
+}
+
+// What flies freely goes on as it was, momentum and all, and never falls asleep.
+inline void expect_free_flight(const std::string& solver) {
+  Scene scene = spinning_net(4, 0);
+  scene.start.v.colwise() = Eigen::Vector3d(3, -2, 1);
+  constexpr double h = 1.0 / 128;  // that single precision holds
+  const State after = run(solver, scene, h, 1);
+  EXPECT_LT(distance(after.x, scene.start.x + h * scene.start.v), 1e-14);
+  EXPECT_LT(distance(after.v, scene.start.v), 1e-12);
+  EXPECT_LT(distance(run(solver, scene, h, 1000).v, scene.start.v), 1e-10);
+}
+
+// Two vertices on a spring alone swing with omega^2 = 2 k / m, and keep their middle.
+inline void expect_spring(const std::string& solver) {
+  ProblemParts parts;
+  parts.mass = {1, 1};
+  parts.gravity.setZero();
+  parts.shear = inextensible::Springs{{{0, 1}}, {1}, {50}};
+  Positions x = Positions::Zero(3, 2);
+  x.row(0) << -0.55, 0.55;
+  const Scene scene = finished(parts, x, Positions::Zero(3, 2));
+  const State after = run(solver, scene, std::numbers::pi / 10 / 3200, 3200);  // half a period
+  EXPECT_NEAR(after.x(0, 1), 0.45, 1e-4);
+  EXPECT_NEAR(after.x(0, 0), -0.45, 1e-4);
+}
 
 }  // namespace engines

@@ -11,98 +11,94 @@ namespace harness::analysis {
 
 using nlohmann::json;
 
-namespace {
-
-json ratio_json(const std::optional<Ratio>& ratio) {
+static json ratio_json(const std::optional<Ratio>& ratio) {
   if (!ratio) return nullptr;
-  json object = {{"value", number(ratio->value)}, {"low", nullptr}, {"high", nullptr}};
-  if (ratio->known()) {
-    object["low"] = ratio->low;
-    object["high"] = ratio->high;
-  }
-  return object;
+  const bool known = ratio->known();
+  return {{"value", number(ratio->value)},
+          {"low", known ? json(ratio->low) : json()},
+          {"high", known ? json(ratio->high) : json()}};
 }
 
-json entry_json(const Entry& entry) {
-  return {{"contestant", entry.role.name},
-          {"row", entry.row},
-          {"unranked", entry.role.unranked},
-          {"counts", entry.counts},
-          {"id", entry.point.id()},
-          {"seconds", number(entry.point.seconds())},
-          {"step", number(entry.point.step())},
-          {"error", number(entry.error)},
-          {"delivered_strain", number(entry.point.delivered_strain())},
-          {"frame_times",
-           FieldCodec<std::vector<FrameTime>>::write(entry.point.result().frame_times, false)}};
+static json name_of(const Entry* entry) { return entry ? json(entry->row) : json(); }
+
+// The library finds these by the type of what is put into a document, or a list of it.
+
+static void to_json(json& to, const Entry& entry) {
+  to = {{"contestant", entry.role.name},
+        {"row", entry.row},
+        {"unranked", entry.role.unranked},
+        {"counts", entry.counts},
+        {"id", entry.point.id()},
+        {"seconds", number(entry.point.seconds())},
+        {"step", number(entry.point.step())},
+        {"error", number(entry.error)},
+        {"delivered_strain", number(entry.point.delivered_strain())},
+        {"frame_times",
+         FieldCodec<std::vector<FrameTime>>::write(entry.point.result().frame_times, false)}};
 }
 
-json name_of(const Entry* entry) { return entry ? json(entry->row) : json(nullptr); }
-
-json cell_json(const Cell& cell) {
-  json entries = json::array();
-  for (const Entry& entry : cell.entries) entries.push_back(entry_json(entry));
-  json object = {
-      {"strain_limit", cell.strain_limit}, {"error_level", number(cell.level)},  // null: any motion
-      {"known_until", cell.known_until},   {"empty_because", cell.empty_because},
-      {"first", name_of(cell.first())},    {"clear", cell.clear()},
-      {"entries", std::move(entries)}};
+static void to_json(json& to, const Cell& cell) {
+  to = {{"strain_limit", cell.strain_limit},
+        {"error_level", number(cell.level)},  // null: any motion
+        {"known_until", cell.known_until},
+        {"empty_because", cell.empty_because},
+        {"first", name_of(cell.first())},
+        {"clear", cell.clear()},
+        {"entries", cell.entries}};
   for (std::size_t i = 0; i < rival_infos.size(); ++i) {
     const Entry* rival = cell.rival(static_cast<Rival>(i));
-    object[rival_infos[i].name] = name_of(rival);
-    object[rival_infos[i].lead] = ratio_json(cell.lead_over(rival));
+    to[rival_infos[i].name] = name_of(rival);
+    to[rival_infos[i].lead] = ratio_json(cell.lead_over(rival));
   }
-  return object;
 }
 
-json plane_json(const Plane& plane) {
-  json cells = json::array();
-  for (const Cell& cell : plane.cells) cells.push_back(cell_json(cell));
-  json levels = json::array();
-  for (const double level : plane.levels) levels.push_back(number(level));
-  return {{"scene", plane.scene},
-          {"sweep", plane.sweep},
-          {"scene_parameters", plane.scene_parameters},
-          {"resolution", plane.resolution},
-          {"vertices", plane.vertices},
-          {"strain_limits", plane.limits},
-          {"error_levels", std::move(levels)},
-          {"leaders", plane.leaders()},
-          {"cells", std::move(cells)}};
+static void to_json(json& to, const Plane& plane) {
+  to = {{"scene", plane.scene},
+        {"sweep", plane.sweep},
+        {"scene_parameters", plane.scene_parameters},
+        {"resolution", plane.resolution},
+        {"vertices", plane.vertices},
+        {"strain_limits", plane.limits},
+        {"error_levels", plane.levels},  // any motion, which is infinite, is written as null
+        {"leaders", plane.leaders()},
+        {"cells", plane.cells}};
 }
 
-json growth_json(const Growth& growth) {
-  json rows = json::array();
-  for (const RowGrowth& row : growth.rows) {
-    const bool sure = std::isfinite(row.exponent.half_width);
-    rows.push_back({{"row", row.row},
-                    {"exponent", number(row.exponent.value)},
-                    {"low", sure ? json(row.exponent.low()) : json(nullptr)},
-                    {"high", sure ? json(row.exponent.high()) : json(nullptr)},
-                    {"sizes", row.exponent.points},
-                    {"smallest", row.smallest.vertices()},
-                    {"largest", row.largest.vertices()}});
-  }
-  return {{"scene", growth.scene}, {"strain_limit", growth.strain_limit}, {"rows", rows}};
+static void to_json(json& to, const RowGrowth& row) {
+  const bool sure = std::isfinite(row.exponent.half_width);
+  to = {{"row", row.row},
+        {"exponent", number(row.exponent.value)},
+        {"low", sure ? json(row.exponent.low()) : json()},
+        {"high", sure ? json(row.exponent.high()) : json()},
+        {"sizes", row.exponent.points},
+        {"smallest", row.smallest.vertices()},
+        {"largest", row.largest.vertices()}};
 }
 
-json budget_json(const BudgetTable& table) {
-  json rows = json::array();
-  for (const Budgeted& row : table.rows) {
-    json stairs = json::array();
-    for (const Reach& reach : row.stairs)
-      stairs.push_back({{"id", reach.point.id()},
-                        {"frame_seconds", reach.frame_seconds},
-                        {"strain_limit", reach.strain_limit},
-                        {"error", number(reach.error)},
-                        {"right", reach.right}});
-    rows.push_back({{"row", row.row}, {"stairs", std::move(stairs)}});
-  }
-  return {{"scene", table.scene},
-          {"resolution", table.resolution},
-          {"vertices", table.vertices},
-          {"rows", std::move(rows)}};
+static void to_json(json& to, const Growth& growth) {
+  to = {{"scene", growth.scene}, {"strain_limit", growth.strain_limit}, {"rows", growth.rows}};
 }
+
+static void to_json(json& to, const Reach& reach) {
+  to = {{"id", reach.point.id()},
+        {"frame_seconds", reach.frame_seconds},
+        {"strain_limit", reach.strain_limit},
+        {"error", number(reach.error)},
+        {"right", reach.right}};
+}
+
+static void to_json(json& to, const Budgeted& row) {
+  to = {{"row", row.row}, {"stairs", row.stairs}};
+}
+
+static void to_json(json& to, const BudgetTable& table) {
+  to = {{"scene", table.scene},
+        {"resolution", table.resolution},
+        {"vertices", table.vertices},
+        {"rows", table.rows}};
+}
+
+namespace {
 
 // ---- curves of cost ----
 
@@ -181,30 +177,15 @@ void add_curves(json& list, const Runs& runs, const std::vector<Plane>& planes, 
 
 }  // namespace
 
-json findings_json(const std::vector<Plane>& planes) {
-  json findings = json::array();
-  for (const Finding& finding : findings_of(planes))
-    findings.push_back({{"scene", finding.scene},
-                        {"sweep", finding.sweep},
-                        {"vertices", finding.vertices},
-                        {"subject", finding.subject},
-                        {"sentences", finding.sentences}});
-  return findings;
-}
-
 json analysis_of(const Runs& runs) {
   const std::vector<Plane> planes = planes_of(runs);
-  json list = json::array(), growth = json::array(), budgets = json::array();
-  for (const Plane& plane : planes) list.push_back(plane_json(plane));
-  for (const Growth& each : growth_in(planes)) growth.push_back(growth_json(each));
-  for (const BudgetTable& each : budget_tables(runs, {})) budgets.push_back(budget_json(each));
   json curves = json::array();  // runs with a step controller have figures of their own
   add_curves(curves, runs, planes, false);
   add_curves(curves, runs, planes_of(runs, true), true);
   return {{"schema", "inextensible-analysis/1"}, {"headline_error", headline_error},
-          {"findings", findings_json(planes)},   {"planes", std::move(list)},
-          {"curves", std::move(curves)},         {"growth", std::move(growth)},
-          {"budgets", std::move(budgets)}};
+          {"findings", findings_of(planes)},     {"planes", planes},
+          {"curves", std::move(curves)},         {"growth", growth_in(planes)},
+          {"budgets", budget_tables(runs, {})}};
 }
 
 }  // namespace harness::analysis

@@ -103,17 +103,6 @@ Finding finding_of(const Plane& plane) {
   return finding;
 }
 
-// Growth of one row of the ranking at one limit.
-RowGrowth growth_of(const std::string& row, std::vector<Point> points) {
-  std::ranges::stable_sort(points, {}, &Point::vertices);
-  std::vector<double> vertices, seconds;
-  for (const Point& point : points) {
-    vertices.push_back(point.vertices());
-    seconds.push_back(point.seconds() * point.step());
-  }
-  return {row, log_log_slope(vertices, seconds), points.front(), points.back()};
-}
-
 }  // namespace
 
 std::string sentence_of(const Cell& cell) {
@@ -184,10 +173,16 @@ std::vector<Growth> growth_in(const std::vector<Plane>& planes) {
   std::vector<Growth> all;
   for (const auto& [place, here] : grouped(entries, [](const auto& e) { return e.first; })) {
     Growth growth{place.first, place.second, {}};
-    for (const auto& [row, own] : grouped(here, [](const auto& e) { return e.second->row; })) {
-      std::vector<Point> points;
-      for (const auto& each : own) points.push_back(each.second->point);
-      if (own.size() > 1) growth.rows.push_back(growth_of(row, std::move(points)));
+    for (auto& [row, own] : grouped(here, [](const auto& e) { return e.second->row; })) {
+      if (own.size() < 2) continue;
+      std::ranges::stable_sort(own, {}, [](const auto& e) { return e.second->point.vertices(); });
+      std::vector<double> vertices, seconds;
+      for (const auto& [at, entry] : own) {
+        vertices.push_back(entry->point.vertices());
+        seconds.push_back(entry->point.seconds() * entry->point.step());
+      }
+      growth.rows.push_back({row, log_log_slope(vertices, seconds), own.front().second->point,
+                             own.back().second->point});
     }
     std::ranges::stable_sort(growth.rows, {}, [](const RowGrowth& r) { return r.exponent.value; });
     if (!growth.rows.empty()) all.push_back(std::move(growth));

@@ -38,6 +38,7 @@ struct Finding {
   // an answer; then what a tighter limit, or a motion of any kind, changes.
   std::vector<std::string> sentences;
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, scene, sweep, vertices, subject, sentences)
 
 // "At 1 % strain, motion error at most 2 %, x is the fastest: 41.3 ms a simulated second with steps
 // of 1/200 s and an error of 1.4 %; y, the best of the paper's six, takes 2.1 (1.9-2.3) times as
@@ -50,10 +51,7 @@ std::string sentence_of(const Growth& growth);
 
 std::vector<Finding> findings_of(const std::vector<Plane>& planes);
 
-// ---- As JSON, schema inextensible-analysis/1: for `bench show --json` and for figures ----
-
+// As JSON, schema inextensible-analysis/1: for `bench show --json` and for figures.
 nlohmann::json analysis_of(const Runs& runs);
-// Its part "findings".
-nlohmann::json findings_json(const std::vector<Plane>& planes);
 
 }  // namespace harness::analysis

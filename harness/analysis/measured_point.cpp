@@ -42,7 +42,7 @@ bool Point::marked_best(double level) const {
 }
 
 Ratio ratio(const Point& a, const Point& b) {
-  return ratio_of_times(a.samples(), b.samples(), std::fmax(a.noise(), b.noise()));
+  return ratio_of_times(a.result().samples, b.result().samples, std::fmax(a.noise(), b.noise()));
 }
 
 Ratio ratio_of_steps(const Point& a, const Point& b) {
@@ -64,16 +64,13 @@ ContestantRoles::ContestantRoles(const json& document) {
   const json pair = document.value(json::json_pointer("/context/noise/pair"), json());
   if (pair.is_array()) {
     const std::string second = pair.at(1);
-    known_.try_emplace(second, Role{.name = second, .family = second, .solver = second});
-    known_.at(second).again = true;
+    known_.try_emplace(second, Role{second, second, second}).first->second.again = true;
   }
 }
 
 Role ContestantRoles::of(const std::string& contestant) const {
   const auto place = known_.find(contestant);
-  return place != known_.end()
-             ? place->second
-             : Role{.name = contestant, .family = contestant, .solver = contestant};
+  return place != known_.end() ? place->second : Role{contestant, contestant, contestant};
 }
 
 std::string ContestantRoles::at_any_settings(const std::string& contestant) const {
@@ -85,13 +82,9 @@ void ContestantRoles::add(const ContestantRoles& other) {
   known_.insert(other.known_.begin(), other.known_.end());
 }
 
-double pair_noise_of(const json& document) {
-  const json q95 = document.value(json::json_pointer("/context/noise/q95"), json());
-  return q95.is_number() ? q95.get<double>() : std::nan("");
-}
-
 Runs::Runs(const json& document) : roles(document), levels{any_motion} {
-  const double noise = pair_noise_of(document);
+  const json q95 = document.value(json::json_pointer("/context/noise/q95"), json());
+  const double noise = q95.is_number() ? q95.get<double>() : std::nan("");
   // Where results were joined, each point has its own file's.
   for (const json& p : document.at("points")) points.emplace_back(p, p.value("noise", noise));
   const double finest =

@@ -26,27 +26,21 @@ class Point {
   const PointSpec& spec() const { return result_->spec; }
   const Measures& measures() const { return result_->measures; }
   const std::string& id() const { return id_; }
-  const std::string& contestant() const { return spec().name(); }  // a solver with its settings
+  const std::string& contestant() const { return spec().contestant; }  // a solver with its settings
   bool ok() const { return result_->ok(); }
   bool timed() const { return !result_->samples.empty(); }
 
   const std::string& scene() const { return spec().scene; }
   const std::string& sweep() const { return spec().sweep; }
-  const char* status() const { return to_string(result_->status); }
   double vertices() const { return spec().vertices; }
   double strain_limit() const { return spec().strain_limit; }
   double step() const { return spec().step; }                      // s
   double duration() const { return scene_parameter("duration"); }  // s
   double scene_parameter(const char* name) const;                  // not-a-number: none
   double stiffness() const;  // EA, N, as given or found; not-a-number: none
-  bool solves_by(const std::string& linear_solver) const {
-    return result_->linear_solver == linear_solver;
-  }
 
   double seconds() const { return result_->seconds(); }  // not-a-number where nothing was timed
-  const std::vector<double>& samples() const { return result_->samples; }
   double noise() const { return noise_; }
-  double steps() const { return duration() / step(); }
   // The largest strain after the collision filter, which is what a user gets.
   double delivered_strain() const;
   // The paper's order: the obstacle pushes vertices out after the solve (contact 0).
@@ -93,8 +87,6 @@ class ContestantRoles {
  private:
   std::map<std::string, Role> known_;
 };
-
-double pair_noise_of(const nlohmann::json& document);  // not-a-number: it has no A/A pair
 
 // A result file of schema inextensible-bench/1, which views are functions of.
 struct Runs {

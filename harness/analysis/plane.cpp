@@ -28,18 +28,16 @@ bool is_of_paper(const std::string& method) {
                              [&](const PaperMethod& known) { return method == known.name; });
 }
 
-std::string level_text(double level) { return number_text(100 * level) + " %"; }
-
 // Why there is no entry: the first of the reasons that holds of all.
 std::string why_empty(const std::vector<Point>& here, double level, double known_until) {
   const auto any = [&](auto has) { return std::ranges::any_of(here, has); };
   if (!any(may_answer)) return "no run keeps the strain limit";
   if (known_until > 0)
-    return "no run that was tried has a motion error of at most " + level_text(level);
+    return "no run that was tried has a motion error of at most " + percent(level);
   if (!any([](const Point& p) { return !p.measures().reference.empty(); }))
     return "there is no reference";
   return any([](const Point& p) { return !p.measures().error_series.empty(); })
-             ? "the reference is not sure to " + level_text(level)
+             ? "the reference is not sure to " + percent(level)
              : "the file has no errors";
 }
 
@@ -56,9 +54,7 @@ void rank(std::vector<Entry>& entries) {
 
 Cell cell_of(const std::vector<Point>& here, double limit, double level,
              const ContestantRoles& roles) {
-  Cell cell;
-  cell.strain_limit = limit;
-  cell.level = level;
+  Cell cell{limit, level, {}, 0, ""};
   for (const Point& p : here) {
     const ErrorAtLevel error = p.error_at(level);
     if (error.samples > 0 && std::isfinite(error.until))
@@ -139,7 +135,7 @@ BudgetTable table_of(std::vector<Point> points, const ContestantRoles& roles,
   BudgetTable table{one.scene, one.resolution, one.vertices, budgets, {}};
   const auto row_of = [&](const Point& p) { return roles.at_any_settings(p.contestant()); };
   for (auto& [row, own] : grouped(points, row_of)) {
-    Budgeted line{row, roles.of(own.front().contestant()).family, {}, {}};
+    Budgeted line{row, {}, {}};
     std::ranges::stable_sort(own, {}, frame_seconds);
     for (const Point& point : own) {
       const double error = point.error_at(headline_error).distance;

@@ -95,8 +95,7 @@ struct Reach {
 };
 
 struct Budgeted {
-  std::string row;  // an unranked contestant's is its solver's
-  std::string family;
+  std::string row;            // an unranked contestant's is its solver's
   std::vector<Reach> stairs;  // runs that reach more than every run with shorter frames
   std::vector<std::optional<Reach>> reached;  // one for each budget; none: no run is that fast
 };

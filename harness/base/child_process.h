@@ -62,11 +62,11 @@ struct ProgramResult {
   std::string last_error_line() const;  // of err, or how it ended
 };
 
-// Runs another program to its end. words: the program's path, then its arguments. It ends with this
-// process at the latest. After `timeout` s of wall time, or as soon as `interrupted` says so, it is
-// killed. Throws std::runtime_error if no process can be made.
-ProgramResult run_program(const std::vector<std::string>& words, const std::string& input,
-                          double timeout, const std::function<bool()>& interrupted);
+// Runs another program to its end. words: the program as for a shell, then its arguments. It ends
+// with this process at the latest. After `timeout` s of wall time, or an interruption, it is
+// killed. Throws Interrupted, and std::runtime_error if no process can be made.
+ProgramResult run_program(const std::vector<std::string>& words, double timeout,
+                          const std::string& input = "");
 
 // What became of a child that ended by itself, or was ended by others, without a result.
 std::string ending(const ChildOutcome& outcome);

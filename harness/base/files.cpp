@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -68,14 +69,14 @@ class Beside {
   }
 
   bool made() const { return static_cast<bool>(file_); }  // false: errno says why
-  bool write(const std::string& text) const { return write_whole(file_.get(), text); }
 
-  // Renames the file to `path`, with the permissions of the old file there or of a new one.
-  bool replace(const std::string& path) {
+  // Takes the place of `path` with this text, and the permissions of the old file there or of a new
+  // one.
+  bool replace(const std::string& path, const std::string& text) {
     struct stat status {};
     const mode_t mode = stat(path.c_str(), &status) == 0 ? status.st_mode & 07777 : new_file_mode();
-    kept_ = fchmod(file_.get(), mode) == 0 && fsync(file_.get()) == 0 &&
-            rename(name_.c_str(), path.c_str()) == 0;
+    kept_ = write_whole(file_.get(), text) && fchmod(file_.get(), mode) == 0 &&
+            fsync(file_.get()) == 0 && rename(name_.c_str(), path.c_str()) == 0;
     return kept_;
   }
 
@@ -139,6 +140,15 @@ bool write_whole(int file, const std::string& text) {
   return true;
 }
 
+std::string read_whole(int file) {
+  std::string text;
+  std::array<char, 65536> buffer{};
+  for (ssize_t count;
+       (count = pread(file, buffer.data(), buffer.size(), static_cast<off_t>(text.size()))) > 0;)
+    text.append(buffer.data(), static_cast<std::size_t>(count));
+  return text;
+}
+
 std::string read_file(const std::string& path, const std::string& what) {
   errno = 0;
   std::ifstream file(path);
@@ -194,8 +204,7 @@ void write_atomically(const std::string& path, const std::string& text) {
     if (!file || !write_whole(file.get(), text)) throw FileError(path, "write");
   } else {
     Beside beside(place);
-    if (!beside.made() || !beside.write(text) || !beside.replace(place))
-      throw FileError(path, "write");
+    if (!beside.made() || !beside.replace(place, text)) throw FileError(path, "write");
   }
 }
 

@@ -41,6 +41,8 @@ class OpenFile {
 
 // Writes all of the text at the current position. False if that fails; errno has the reason.
 bool write_whole(int file, const std::string& text);
+// Its content from the beginning on, wherever the current position is.
+std::string read_whole(int file);
 
 // what: the role of the file ("suite"), for messages. Throws UsageError if it cannot be read.
 std::string read_file(const std::string& path, const std::string& what);

@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -16,16 +15,6 @@ namespace harness {
 namespace {
 
 using nlohmann::json;
-
-// Not by opening the file again: closing that would give up the lock.
-std::string content(int file) {
-  std::string text;
-  std::array<char, 65536> buffer{};
-  for (ssize_t count;
-       (count = pread(file, buffer.data(), buffer.size(), static_cast<off_t>(text.size()))) > 0;)
-    text.append(buffer.data(), static_cast<std::size_t>(count));
-  return text;
-}
 
 std::string check_of(const json& line) { return fnv1a(compact(line)); }
 
@@ -64,7 +53,8 @@ void Journal::lock(const std::string& out) {
 }
 
 void Journal::read() {
-  const std::string text = content(file_.get());
+  // Not by opening the file again: closing that would give up the lock.
+  const std::string text = read_whole(file_.get());
   std::size_t number = 0;
   // A last line without its end was being written when the program ended.
   for (std::size_t end; (end = text.find('\n', length_)) != std::string::npos; length_ = end + 1) {

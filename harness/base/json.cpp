@@ -1,6 +1,5 @@
 #include "harness/base/json.h"
 
-#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -78,8 +77,7 @@ std::string JsonReader::one_of(const std::string& key, const std::string& otherw
   const json* value = find(key);
   if (!value) return otherwise;
   std::string name = value->is_string() ? value->get<std::string>() : value_text(*value);
-  if (std::find(known.begin(), known.end(), name) == known.end())
-    throw UsageError(where(key) + ": " + unknown_name(kind, name, known).what());
+  check_known(kind, name, known, where(key));
   return name;
 }
 

@@ -137,17 +137,12 @@ Slope log_log_slope(std::span<const double> x, std::span<const double> y) {
   }
   Slope slope;
   slope.points = static_cast<int>(log_x.size());
-  if (slope.points < 2) {
-    slope.value = std::numeric_limits<double>::quiet_NaN();
-    slope.half_width = std::numeric_limits<double>::infinity();
-    return slope;
-  }
+  if (slope.points < 2) return slope;
   double intercept, cov00, cov01, cov11, squares;
   gsl_fit_linear(log_x.data(), 1, log_y.data(), 1, log_x.size(), &intercept, &slope.value, &cov00,
                  &cov01, &cov11, &squares);
-  slope.half_width = slope.points > 2
-                         ? std::sqrt(cov11) * gsl_cdf_tdist_Pinv(0.975, slope.points - 2)
-                         : std::numeric_limits<double>::infinity();
+  if (slope.points > 2)
+    slope.half_width = std::sqrt(cov11) * gsl_cdf_tdist_Pinv(0.975, slope.points - 2);
   return slope;
 }
 

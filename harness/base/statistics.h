@@ -50,8 +50,9 @@ Ratio ratio_of_times(const std::vector<double>& a, const std::vector<double>& b,
                      double noise = std::numeric_limits<double>::quiet_NaN());
 
 struct Slope {
-  double value = 0;
-  double half_width = 0;  // of the 95 % confidence interval (Student's t); infinite for two points
+  double value = std::numeric_limits<double>::quiet_NaN();
+  // Of the 95 % confidence interval (Student's t); infinite for two points.
+  double half_width = std::numeric_limits<double>::infinity();
   int points = 0;
 
   double low() const { return value - half_width; }

@@ -19,8 +19,7 @@ struct Table {
 
 void print_markdown(std::ostream& out, const Table& table);
 // Columns are as wide as their cells need; the last cell of a row may be wider than its column.
-// Columns beyond `most` characters follow below, beside the first one.
-void print_aligned(std::ostream& out, const Table& table, std::size_t most = std::string::npos);
+void print_aligned(std::ostream& out, const Table& table);
 
 // The different values of key(item), in order of first appearance.
 template <class Items, class Key>

@@ -23,18 +23,16 @@ double rounded_to(double value, int digits) {
 std::string told_apart(double value, double other) {
   constexpr int all_digits = 17;
   int digits = 6;
-  if (value != other) {
-    while (digits < all_digits && number_text(value, digits) == number_text(other, digits))
-      ++digits;
-  }
+  while (value != other && digits < all_digits &&
+         number_text(value, digits) == number_text(other, digits))
+    ++digits;
   return number_text(value, digits);
 }
 
 std::string shortened(const std::string& text, std::size_t most) {
   std::string line = text.substr(0, most);
-  for (char& c : line) {
-    if (std::iscntrl(static_cast<unsigned char>(c)) != 0) c = ' ';
-  }
+  std::ranges::replace_if(
+      line, [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
   return text.size() > most ? line + "..." : line;
 }
 

@@ -27,14 +27,9 @@ bool is_for_us(pid_t process) {
 
 }  // namespace
 
-std::string timing_lock_path() {
-  return (std::filesystem::temp_directory_path() /
-          ("inextensible-bench-" + std::to_string(getuid()) + ".lock"))
-      .string();
-}
-
 TimingLock::TimingLock(bool wait) {
-  const std::string path = timing_lock_path();
+  const std::string name = "inextensible-bench-" + std::to_string(getuid()) + ".lock",
+                    path = std::filesystem::temp_directory_path() / name;
   file_ = OpenFile(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
   if (!file_)
     throw UsageError("cannot open '" + path + "', the lock on taking times: " +

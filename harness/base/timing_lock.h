@@ -2,13 +2,12 @@
 // neither's times mean anything.
 #pragma once
 
-#include <string>
-
 #include "harness/base/files.h"
 
 namespace harness {
 
-// Held from construction to destruction, and no longer than the process lives, however it ends.
+// One a user and machine, in the folder of temporary files (TMPDIR, or /tmp). Held from
+// construction to destruction, and no longer than the process lives, however it ends.
 // Forked children do not hold it; programs that the process starts may go on under it.
 class TimingLock {
  public:
@@ -23,8 +22,5 @@ class TimingLock {
   OpenFile file_;  // none: the program that started this one holds it
   bool waited_ = false;
 };
-
-// One a user and machine, in the folder of temporary files (TMPDIR, or /tmp).
-std::string timing_lock_path();
 
 }  // namespace harness

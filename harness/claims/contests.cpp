@@ -46,7 +46,7 @@ Ways growth_at_levels(const Points& points, const char* sweep,
 
 std::string effort(const Point& p) {
   const auto iterations = static_cast<double>(p.result().work.iterations);
-  return text(p.steps(), 5) + " steps of " +
+  return text(p.duration() / p.step(), 5) + " steps of " +
          text(iterations / static_cast<double>(p.result().work.steps), 2) + " iterations of " +
          text(1e6 * p.seconds() * p.duration() / iterations, 3) + " us";
 }
@@ -253,7 +253,7 @@ Verdict matrix_sizes(const Points& points) {
   std::map<double, std::map<std::string, double>> nonzeros;  // by vertices and method
   for (const Point& p : points.all) {
     if (p.scene() != "drape" || !p.ok() || !(p.result().work.factor_nonzeros > 0) ||
-        p.solves_by("projected_cg") ||
+        p.result().linear_solver == "projected_cg" ||
         (p.contestant() != fast_projection.name && p.contestant() != icd.name))
       continue;
     double& place = nonzeros[p.vertices()][p.contestant()];
@@ -277,10 +277,9 @@ Verdict shake_small_steps(const Points& points) {
   return in_ways(at_levels([&](double level) -> Verdict {
     std::vector<Answer> answers;
     std::string details;
-    std::vector<Curve> evidence;
+    std::vector<std::string> evidence;
     for (const char* sweep : {"strain", "resolution"}) {
       const Curve icd_curve = points.best("drape", sweep, icd.name, level);
-      Curve compared, compared_icd;
       for (const auto& [place, p] : points.best("drape", sweep, shake.name, level)) {
         const auto other = at(icd_curve, place);
         if (!other || std::isnan(p.measures().energy_gain) ||
@@ -292,10 +291,8 @@ Verdict shake_small_steps(const Points& points) {
         details += "; " + vertices_of(p.vertices()) + " at " + percent(p.strain_limit()) +
                    ": SHAKE " + steps.words() + ", ICD " + larger.words() + ", whose step takes " +
                    text(costlier) + " times as long";
-        compared.try_emplace(place, p);
-        compared_icd.try_emplace(place, *other);
+        evidence.insert(evidence.end(), {p.id(), other->id()});
       }
-      evidence.insert(evidence.end(), {compared, compared_icd});
     }
     if (answers.empty()) return {};
     const auto all = static_cast<int>(answers.size()),
@@ -304,7 +301,7 @@ Verdict shake_small_steps(const Points& points) {
     return {verdict_of_counts(yes, no, all),
             "so at " + std::to_string(yes) + " of " + std::to_string(all) + " places, not so at " +
                 std::to_string(no) + details,
-            ids_of(evidence)};
+            evidence};
   }));
 }
 

@@ -12,6 +12,11 @@ namespace harness::claims {
 
 using nlohmann::json;
 
+static void keep_faster(Curve& curve, double x, const Point& point) {
+  const auto [place, added] = curve.try_emplace(x, point);
+  if (!added && point.seconds() < place->second.seconds()) place->second = point;
+}
+
 Answer above(const Ratio& ratio, double threshold) {
   if (ratio.above(threshold)) return Answer::yes;
   return ratio.below(threshold) ? Answer::no : Answer::open;
@@ -75,14 +80,12 @@ Points::Points(const std::vector<json>& results) {
     if (result.value("schema", "") == "inextensible-stability/1") {
       for (const json& cell : result.at("matrix")) matrix.push_back(&cell);
       for (const json& mesh : result.at("degrees_of_freedom")) freedom.push_back(&mesh);
-      if (const auto frames = result.find("same_frame"); frames != result.end()) {
-        for (const json& frame : *frames) same_frame.push_back(&frame);
-      }
+      for (const json& frame : result.at("same_frame")) same_frame.push_back(&frame);
       continue;
     }
+    const Runs runs(result);
     std::set<Key> here;
-    for (const json& p : result.at("points")) {
-      const Point point(p, pair_noise_of(result));
+    for (const Point& point : runs.points) {
       if (point.spec().adaptive) continue;
       const Key key(point.id(), point.contestant(), point.sweep(), point.collides_last());
       repeated = repeated || seen.contains(key);
@@ -106,21 +109,11 @@ std::vector<Point> Points::in(const std::string& scene, const std::string& sweep
   return chosen;
 }
 
-namespace {
-
-void keep_faster(Curve& curve, double x, const Point& point) {
-  const auto [place, added] = curve.try_emplace(x, point);
-  if (!added && point.seconds() < place->second.seconds()) place->second = point;
-}
-
-}  // namespace
-
 Curve Points::best(const std::string& scene, const std::string& sweep,
                    const std::string& contestant, double level,
                    std::optional<double> vertices) const {
-  const std::vector<Point> points = in(scene, sweep, vertices);
   std::map<std::pair<double, std::string>, std::vector<Point>> places;
-  for (const Point& p : points) {
+  for (const Point& p : in(scene, sweep, vertices)) {
     const Role role = roles.of(p.contestant());
     if (contestant.empty() ? role.competes && !role.again
                            : roles.at_any_settings(p.contestant()) == contestant)

@@ -24,8 +24,7 @@ struct Residuals {
 Residuals iterated(const Point& p) {
   Residuals sums;
   for (const auto& [time, first, last] : p.measures().residuals) {
-    if (!std::isfinite(first) || !std::isfinite(last)) continue;
-    if (last == first) continue;
+    if (!std::isfinite(first) || !std::isfinite(last) || last == first) continue;
     ++sums.samples;
     sums.first += first;
     sums.last += last;

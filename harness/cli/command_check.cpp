@@ -75,15 +75,11 @@ struct Answers : OutputOptions {
     const auto plan = plan_answers({pattern_of("--answer", answer), solver_pattern(solver)});
     nlohmann::json context = machine_context();
     context["selection"] = {{"solver", solver}, {"answer", answer}, {"timeout", timeout}};
-    const auto compute = [&](const std::string&, Journal& journal,
-                             const nlohmann::json&) -> Finished {
+    const auto compute = [&](Journal& journal, const nlohmann::json&) -> Finished {
       Progress progress;
       const AnswerOutcome outcome = run_answers(plan, timeout, journaled_events(journal, progress));
       if (!outcome.complete) return {.complete = false};
-      nlohmann::json document = answers_document(context, plan, outcome, typed);
-      std::ostringstream text;
-      print_answers(text, document);
-      return {std::move(document), true, text.str()};
+      return {answers_document(context, plan, outcome, typed)};
     };
     return carry_out(*this, {"answers", context, {}, "rows", "runs", compute});
   }

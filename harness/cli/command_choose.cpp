@@ -32,7 +32,7 @@ struct Choice {
 
   std::string text(const Pick& pick) const {
     const PointSpec& spec = pick.point->spec;
-    return spec.name() + " at " + step_text(spec.step) + " s (" +
+    return spec.contestant + " at " + step_text(spec.step) + " s (" +
            std::to_string(std::lround(1 / (wish.rate * spec.step))) +
            " a frame): " + ms(pick.frame.median) + " ms a frame, 99 % below " +
            ms(pick.frame.slow) + ", worst " + ms(pick.frame.worst) + "; strain " +
@@ -71,20 +71,19 @@ struct Choice {
 
   void print(std::ostream& out) const {
     std::set<std::string> tried;
-    for (const PointResult& point : trials.points) tried.insert(point.spec.name());
+    for (const PointResult& point : trials.points) tried.insert(point.spec.contestant);
     out << analysis::scene_words(sweep.scene) << ", " << trials.screened.front().spec.vertices
         << " vertices, " << percent(sweep.limits.front()) << " strain, "
         << (std::isfinite(wish.error) ? "motion error at most " + percent(wish.error)
                                       : std::string("any motion"))
         << ": " << tried.size() << " of " << trials.screened.size() << " solvers tried in "
         << duration_text(seconds) << '\n';
-    if (found.best) {
+    if (found.best)
       print_found(out);
-    } else {
+    else
       out << nothing_found();
-    }
     for (const PointResult& screened : trials.screened) {
-      const std::string& name = screened.spec.name();
+      const std::string& name = screened.spec.contestant;
       if (const std::string why = why_not(name, trials, wish); !why.empty())
         out << "not   " << name << ": " << why << '\n';
     }
@@ -125,8 +124,7 @@ std::shared_ptr<const Reference> reference_for(const SweepSpec& sweep, Reference
   };
   ChildOutcome outcome = run_in_child(
       [&sweep](Heartbeat&) {
-        const auto tell = [](const std::string& line) { std::cerr << line << std::endl; };
-        RouteRuns runs(tell);
+        RouteRuns runs([](const std::string& line) { std::cerr << line << std::endl; });
         return compact(
             to_json(compute_reference(sweep.scene, sweep.scene_parameters, quick_finest, runs)));
       },
@@ -152,18 +150,15 @@ Trials measure(const Suite& suite, const Wish& wish, const ChooseLimits& limits,
                std::shared_ptr<ReferenceFolder> references) {
   SweepEvents events;
   events.point = [](const PointResult& point, std::size_t search, std::size_t all) {
-    std::cerr << '[' << search + 1 << '/' << all << "] " << point.spec.name() << " at "
+    std::cerr << '[' << search + 1 << '/' << all << "] " << point.spec.contestant << " at "
               << step_text(point.spec.step) << " s: "
               << (point.ok() ? duration_text(point.seconds()) + " a simulated second"
                              : to_string(point.status))
               << std::endl;
   };
-  SweepRunners inner;
-  inner.references = std::move(references);
-  ChooseRunners runners{isolated(inner, 0), {}};
-  inner.run = screen_point;
-  runners.screen = isolated(inner, 0).run;
-  return try_contestants(suite, plan(suite, {}), wish, limits, events, runners);
+  SweepRunners runners;
+  runners.references = std::move(references);
+  return try_contestants(suite, plan(suite, {}), wish, limits, events, isolated(runners, 0));
 }
 
 struct Choose : SceneOptions {
@@ -190,9 +185,7 @@ struct Choose : SceneOptions {
   }
 
   Suite suite() const {
-    const SceneParameters parameters = complete_parameters();
-    const std::string named = name();
-    const auto type = find_scene(named);
+    const auto type = find_scene(name());
     Suite chosen;
     chosen.name = "choose";
     chosen.reps = 1;
@@ -202,13 +195,13 @@ struct Choose : SceneOptions {
     SweepSpec& sweep = chosen.sweeps.emplace_back();
     sweep.sweep = "strain";
     sweep.refine = false;  // the time is better spent on other contestants
-    sweep.scene = named;
+    sweep.scene = name();
     sweep.limits = {one_number_of("--limit", limits, Bounds::strain())};
-    sweep.scene_parameters = parameters;
+    sweep.scene_parameters = complete_parameters();
     sweep.resolutions = {static_cast<int>(sweep.scene_parameters.at(type->resolution))};
     sweep.coarsest = 1 / frames_per_second;
     sweep.finest = sweep.coarsest / finest_part;
-    sweep.contestants = contestants_for(solver, *type, parameters);
+    sweep.contestants = contestants_for(solver, *type, sweep.scene_parameters);
     tune(sweep.contestants, read_tuned_up_to_date("tuned.json"), type->kind());
     return chosen;
   }

@@ -1,17 +1,12 @@
 // bench compare, baseline and ab: two results point by point, a result for the next comparisons,
 // and two builds of this program timed against each other.
-#include <unistd.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
-#include <sstream>
 
 #include "harness/base/child_process.h"
 #include "harness/base/timing_lock.h"
 #include "harness/cli/command.h"
 #include "harness/compare/comparison.h"
-#include "harness/compare/pairs.h"
 #include "harness/points/result_file.h"
 #include "harness/run/measure_point.h"
 
@@ -29,6 +24,10 @@ struct CompareOptions {
     to.option("--gate", gate, "what passes; default: configs/gate.json", "FILE");
     to.option("--junit", junit, "also write JUnit XML, one test case a point", "FILE");
     to.option("--markdown", markdown, "also write the table in Markdown", "FILE");
+  }
+
+  Gate given_gate() const {
+    return read_gate(gate.empty() ? source_path("configs/gate.json") : gate);
   }
 
   // Throws UsageError for a report that cannot be written, before anything is done.
@@ -66,7 +65,7 @@ struct Compare : CompareOptions {
   }
 
   int run() {
-    const Gate passes = read_gate(gate.empty() ? source_path("configs/gate.json") : gate);
+    const Gate passes = given_gate();
     const ComparedResult before = read_compared({base}), after = read_compared(next);
     check_reports();
     try {
@@ -111,19 +110,10 @@ struct Baseline {
 constexpr double run_timeout = 60;  // s, of one run
 constexpr double sweep_timeout = 3600;
 
-bool is_program(const fs::path& file) {
-  return fs::is_regular_file(file) && access(file.c_str(), X_OK) == 0;
-}
-
-// A name without a folder is a file here, else a program on the PATH as for a shell, else, if it is
-// its name, this program: an installed `bench ab bench bench` means itself.
+// A name without a folder is a file here, else, if it is its name, this program, else one on the
+// PATH.
 std::string program_named(const std::string& name) {
-  if (name.find('/') != std::string::npos || fs::exists(name)) return name;
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    if (is_program(fs::path(folder) / name)) return fs::path(folder) / name;
-  }
+  if (name.find('/') == std::string::npos && fs::exists(name)) return "./" + name;
   const fs::path own = fs::read_symlink("/proc/self/exe");
   return own.filename() == name ? own.string() : name;
 }
@@ -138,15 +128,13 @@ struct Program {
     Words words{path};
     for (const std::string& file : plugins) words.insert(words.end(), {"--plugin", file});
     words.insert(words.end(), arguments.begin(), arguments.end());
-    ProgramResult result = run_program(words, input, timeout, interrupted);
-    if (interrupted()) throw Interrupted();
-    return result;
+    return run_program(words, timeout, input);
   }
 
   // Before anything is timed: that it is one of ours, and takes its plug-ins.
   void check() const {
-    if (!is_program(path)) throw UsageError("'" + path + "' is no program");
     const ProgramResult help = Program{path, {}}.run({"point", "--help"});
+    if (help.exit_code == 127) throw UsageError("'" + path + "' is no program");
     if (help.exit_code != success || help.out.find("--samples") == std::string::npos)
       throw NotComparable("'" + path +
                           "' has no command `point`, which times single points: it was built from "
@@ -213,14 +201,13 @@ struct Ab : CompareOptions {
 
   // Counters are told and fail nothing, unless a gate was asked for: here times are the question.
   Gate gate_of() const {
+    Gate passes = given_gate();
     if (gate.empty()) {
-      Gate passes = read_gate(source_path("configs/gate.json"));
       passes.counter_rule = CounterRule::inform;
       passes.errors.clear();
-      return passes;
+    } else if (!passes.times) {
+      throw UsageError("gate '" + gate + "': bench ab is about times");
     }
-    Gate passes = read_gate(gate);
-    if (!passes.times) throw UsageError("gate '" + gate + "': bench ab is about times");
     return passes;
   }
 

@@ -33,7 +33,6 @@ std::string name_of(const FilmRun& run, const std::string& solver) {
   return solver + ", " + percent(run.strain_limit) + ", steps of " + step_text(run.step) + " s";
 }
 
-// How long a frame took: what an engine asks for.
 void print_times(const Recording& recording) {
   std::cout << "milliseconds a frame:\n";
   for (const FilmRun& run : recording.takes) {
@@ -137,16 +136,16 @@ struct Film : SceneOptions {
   }
 
   // Pictures go to the script that puts them together in a folder of their own.
-  int draw_pictures(const Recording& recording, bool still) const {
+  int draw_pictures(const Recording& recording, const std::vector<std::size_t>& frames,
+                    bool still) const {
     const TemporaryFolder folder("film");
     write_film_header(folder.path(), recording);
     Progress progress;
-    write_pictures(folder.path(), recording,
-                   {shown_frames(recording.spec, still), width > 0 ? width : default_width,
-                    still ? still_samples : film_samples},
-                   interrupted, [&progress](std::size_t done, std::size_t all) {
-                     progress.show(done, all, "pictures");
-                   });
+    write_pictures(
+        folder.path(), recording,
+        {frames, width > 0 ? width : default_width, still ? still_samples : film_samples},
+        interrupted,
+        [&progress](std::size_t done, std::size_t all) { progress.show(done, all, "pictures"); });
     progress.clear();
     return draw("film.py", {folder.path()}, out);
   }
@@ -159,12 +158,13 @@ struct Film : SceneOptions {
     const std::filesystem::path place(out);
     const std::string ending = place.extension().string();
     check_format(ending);
-    (void)shown_frames(film, ending == ".png");  // refused before anything runs
+    const bool still = ending == ".png";
+    const auto frames = shown_frames(film, still);  // refused before anything runs
     check_writable(out);
     const Recording recording = recorded(film);
     print_times(recording);
     const Writer writer = formats.at(ending);
-    if (!writer) return draw_pictures(recording, ending == ".png");
+    if (!writer) return draw_pictures(recording, frames, still);
     const std::string folder = place.has_parent_path() ? place.parent_path().string() : ".";
     for (const FilmRun& run : recording.takes) {
       const std::string own_part =

@@ -1,5 +1,4 @@
-// The words on the command line. CLI11 reads them. Only command_line.cpp includes it, because every
-// file that does takes ten seconds to compile.
+// What a verb is, and how it says which options it has.
 #pragma once
 
 #include <cstdint>
@@ -44,13 +43,14 @@ class Command {
   explicit Command(CLI::App* app = nullptr, std::string group = {})
       : app_(app), group_(std::move(group)) {}
 
+  using Place = std::variant<std::reference_wrapper<std::string>, std::reference_wrapper<Words>,
+                             std::reference_wrapper<double>, std::reference_wrapper<int>,
+                             std::reference_wrapper<std::int64_t>>;
+
   // An option if the name begins with dashes, a word in its place if not. `type`: what the help
-  // calls the value, which is a string, Words, a double, an int or an int64_t.
-  template <class Value>
-  void option(const std::string& name, Value& value, const std::string& help,
-              const std::string& type, const Bounds& bounds = {}) const {
-    add(name, &value, help, type, bounds);
-  }
+  // calls the value.
+  void option(const std::string& name, Place place, const std::string& help,
+              const std::string& type, const Bounds& bounds = {}) const;
   // One value each time; Words as an option take all words that follow.
   void repeatable(const std::string& name, Words& values, const std::string& help,
                   const std::string& type) const;
@@ -67,9 +67,6 @@ class Command {
   std::string one_typed() const;
 
  private:
-  using Place = std::variant<std::string*, Words*, double*, int*, std::int64_t*>;
-  void add(const std::string& name, Place place, const std::string& help, const std::string& type,
-           const Bounds& bounds) const;
   CLI::Option* placed(CLI::Option* option) const;
 
   CLI::App* app_;
@@ -97,29 +94,5 @@ Action verb(const Command& command) {
       return options->run();
   };
 }
-
-class CommandLine {
- public:
-  // version: asked for by -V and --version. Options of the first verb are the program's own, which
-  // goes without a name: its first option has that.
-  CommandLine(const std::string& description, const std::vector<Verb>& verbs,
-              std::function<std::string()> version);
-  ~CommandLine();
-  CommandLine(const CommandLine&) = delete;
-  CommandLine& operator=(const CommandLine&) = delete;
-
-  // `help VERB` is VERB --help, and `sweep AXIS` is --sweep AXIS. An exit code if nothing is left
-  // to do: help was printed, or a word is wrong, which is said on stderr.
-  std::optional<int> read(int argc, char** argv);
-  int run() const { return action_(words_); }
-  bool has_children() const { return has_children_; }  // of the verb that was typed
-  const Words& plugins() const { return plugins_; }    // of --plugin, which every verb takes
-
- private:
-  std::unique_ptr<CLI::App> app_;
-  Words words_, plugins_;
-  Action action_;
-  bool has_children_ = false;
-};
 
 }  // namespace harness

@@ -21,12 +21,15 @@ struct List {
 };
 
 template <class Items, class Row>
+json rows_of(const Items& items, const Row& row) {
+  json rows = json::array();
+  for (const auto& item : items) rows.push_back(row(item));
+  return rows;
+}
+
+template <class Items, class Row>
 List list(const char* name, const Items& items, const Row& row) {
-  return {name, [=] {
-            json rows = json::array();
-            for (const auto& item : items()) rows.push_back(row(item));
-            return rows;
-          }};
+  return {name, [=] { return rows_of(items(), row); }};
 }
 
 // With further keys.
@@ -36,23 +39,16 @@ json row_of(const std::string& name, const std::string& meaning, json row = json
   return row;
 }
 
-json settings_of(const inextensible::Backend& backend) {
-  json rows = json::array();
-  for (const inextensible::SettingInfo& setting : backend.settings) {
-    json row = row_of(setting.name, setting.meaning);
-    std::visit([&row](const auto& value) { row["default"] = value; }, setting.initial);
-    if (!setting.choices.empty()) row["choices"] = setting.choices;
-    if (setting.tunable) row["tunable"] = {setting.tunable->least, setting.tunable->largest};
-    rows.push_back(std::move(row));
-  }
-  return rows;
+json setting_row(const inextensible::SettingInfo& setting) {
+  json row = row_of(setting.name, setting.meaning);
+  std::visit([&row](const auto& value) { row["default"] = value; }, setting.initial);
+  if (!setting.choices.empty()) row["choices"] = setting.choices;
+  if (setting.tunable) row["tunable"] = {setting.tunable->least, setting.tunable->largest};
+  return row;
 }
 
-json parameters_of(const SceneType& type) {
-  json rows = json::array();
-  for (const auto& parameter : type.parameters)
-    rows.push_back(row_of(parameter.name, parameter.meaning, {{"default", parameter.initial}}));
-  return rows;
+json parameter_row(const SceneParameterInfo& parameter) {
+  return row_of(parameter.name, parameter.meaning, {{"default", parameter.initial}});
 }
 
 json metrics() {
@@ -79,14 +75,14 @@ const std::vector<List> lists{
                        {"method", b.method},
                        {"stepper", b.stepper},
                        {"contestant", b.contestant},
-                       {"settings", settings_of(b)}};
+                       {"settings", rows_of(b.settings, setting_row)}};
          }),
     list("scenes", scene_types,
          [](const SceneType& type) {
            return json{{"name", type.name},
                        {"summary", type.summary},
                        {"resolution", type.resolution},
-                       {"parameters", parameters_of(type)}};
+                       {"parameters", rows_of(type.parameters, parameter_row)}};
          }),
     list("suites", profiles,
          [](const std::string& name) {
@@ -151,7 +147,7 @@ void print_rows(const json& rows) {
   }
 }
 
-struct ListVerb : SelectionOptions {
+struct ListVerb : SweepOptions {
   std::string what;
   bool as_json = false;
 
@@ -168,9 +164,7 @@ struct ListVerb : SelectionOptions {
   }
 
   void print_points() const {
-    SweepOptions options;
-    static_cast<SelectionOptions&>(options) = *this;
-    for (const Search& search : plan(load_suite(options), filters_of(options))) {
+    for (const Search& search : plan(load_suite(*this), filters_of(*this))) {
       PointSpec spec = search.base;
       for (const double step : search.ladder) {
         spec.step = step;

@@ -28,7 +28,7 @@ void check_spec(PointSpec& spec, const std::string& where) {
     throw UsageError(where + ": 'scene_parameters' is " + value_text(spec.scene_parameters) +
                      ", must hold every parameter of the scene: " + json(parameters).dump());
   std::tie(spec.vertices, spec.constraints) = type->counts(parameters);
-  check_plain_name(spec.name(), where + ": 'contestant'");
+  check_plain_name(spec.contestant, where + ": 'contestant'");
   check_settings(spec.settings, where + ": 'settings'", checked_backend(spec.solver, where));
   if (!(spec.strain_limit > 0) || !std::isfinite(spec.strain_limit))
     throw UsageError(where + ": 'strain_limit' is " + json(spec.strain_limit).dump() +
@@ -72,11 +72,12 @@ struct PointVerb {
     add_timeout(command, timeout, "60");
   }
 
-  // A line of the solver's own among the results would be read as one of them.
   PointResult timed(const PointSpec& spec, const RunLimits& limits) const {
-    const OutputToError no_output;
+    const OutputToError no_output;  // a line of the solver's own would be read as a result
     PointResult point = run_point(spec, limits);
-    for (int i = 1; i < samples && point.ok(); ++i) append(repeat_point(point, limits), point);
+    RunLimits of_more = limits;
+    of_more.sample_of = &point;
+    for (int i = 1; i < samples && point.ok(); ++i) append(run_point(spec, of_more), point);
     return point;
   }
 

@@ -9,29 +9,23 @@
 namespace harness {
 namespace {
 
-// The runs of a reference, kept beside its file.
-RouteRuns runs_beside(const std::string& path, const std::string& scene,
-                      const SceneParameters& parameters, double finest) {
-  const std::string name = std::filesystem::path(path).filename().string();
-  return RouteRuns([name](const std::string& line) { std::cerr << name << ": " << line << '\n'; },
-                   path,
-                   {{"schema", "inextensible-reference-pieces/1"},
-                    {"scene", scene},
-                    {"scene_parameters", parameters},
-                    {"finest", finest},
-                    {"build", machine_context().at("fingerprint")}});
-}
-
-// What was stopped goes on after the runs that were done.
-void make_reference(const std::string& path, const std::string& scene,
-                    const SceneParameters& parameters, double finest) {
-  std::filesystem::create_directories(std::filesystem::path(path).parent_path());
+// Its runs are kept beside it: what was stopped goes on after those that were done.
+void make_reference(const std::string& scene, const SceneParameters& parameters, double finest) {
+  const std::filesystem::path path(reference_path(scene, parameters));
+  std::filesystem::create_directories(path.parent_path());
   check_writable(path);
-  RouteRuns runs = runs_beside(path, scene, parameters, finest);
+  RouteRuns runs([name = path.filename().string()](
+                     const std::string& line) { std::cerr << name << ": " << line << '\n'; },
+                 path,
+                 {{"schema", "inextensible-reference-pieces/1"},
+                  {"scene", scene},
+                  {"scene_parameters", parameters},
+                  {"finest", finest},
+                  {"build", machine_context().at("fingerprint")}});
   const Reference reference = compute_reference(scene, parameters, finest, runs);
   write_atomically(path, to_json(reference).dump() + "\n");
   runs.remove();
-  std::cout << scene << ": " << reference_text(reference) << '\n' << path << std::endl;
+  std::cout << scene << ": " << reference_text(reference) << '\n' << path.string() << std::endl;
 }
 
 struct ReferenceVerb : SelectionOptions {
@@ -79,7 +73,7 @@ struct ReferenceVerb : SelectionOptions {
     bool nothing = true;
     for (const auto& [name, parameters] : one_scene ? given_scenes() : scenes_of_suite()) {
       if (references->find(name, parameters) && !again) continue;
-      make_reference(reference_path(name, parameters), name, parameters, finest);
+      make_reference(name, parameters, finest);
       nothing = false;
     }
     if (nothing) std::cout << "nothing is missing (--again computes again)\n";

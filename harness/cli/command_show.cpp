@@ -16,8 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-bool is_sweep(const json& document) { return document.at("schema") == "inextensible-bench/1"; }
-
 std::vector<NamedResult> read_all(const Words& files, ResultKinds kinds) {
   std::vector<NamedResult> results;
   for (const std::string& file : files) results.push_back({file, read_result(file, kinds)});
@@ -39,9 +37,10 @@ json read_as_one(const Words& files) {
   return files.size() == 1 ? read_result(files.front(), ResultKinds::all) : read_results(files);
 }
 
-void print_head(std::ostream& out, const json& document, const std::string& file) {
+std::string head_of(const json& document, const std::string& file) {
   const json& context = document.at("context");
   const json& build = context.at("build");
+  std::ostringstream out;
   out << file << ": " << context.at("date").get<std::string>() << " on "
       << context.at("cpu_model").get<std::string>() << ", commit "
       << build.at("git").get<std::string>().substr(0, 12)
@@ -50,6 +49,7 @@ void print_head(std::ostream& out, const json& document, const std::string& file
   if (!document.value("complete", true))
     out << "not complete: a run was interrupted, or a shard is missing\n";
   if (!is_timed(document)) out << "made with --untimed: its times mean nothing\n";
+  return out.str();
 }
 
 struct Show {
@@ -75,16 +75,8 @@ struct Show {
       std::cout << analysis::analysis_of(document).dump(1) << '\n';
       return success;
     }
-    std::ostringstream text;
-    print_head(text, document, name);
-    if (is_answers(document)) {
-      print_answers(text, document);
-    } else if (is_sweep(document)) {
-      print_sweep(text, document, name, all, output_columns());
-    } else {
-      print_outcomes(text, document);
-    }
-    std::cout << fitted(text.str(), output_columns());
+    std::cout << fitted(head_of(document, name), output_columns())
+              << text_of_result(document, name, all);
     return success;
   }
 };
@@ -216,7 +208,7 @@ json report_json(const std::vector<NamedResult>& files) {
                       {"measured", claim.measured},
                       {"rule", claim.rule}});
   if (const auto sweeps = documents_of(files, is_sweep); !sweeps.empty())
-    findings = analysis::findings_json(analysis::planes_of(joined(sweeps)));
+    findings = analysis::findings_of(analysis::planes_of(joined(sweeps)));
   return {{"results", std::move(results)},
           {"findings", std::move(findings)},
           {"claims", std::move(claims)}};

@@ -32,11 +32,6 @@ std::vector<std::string> chosen_solvers(const std::string& text, const SweepSpec
 
 using Entries = std::vector<TunedEntry>;
 
-Entries read_entries(const std::string& file) {
-  if (!std::filesystem::exists(file)) return {};
-  return parse_tuned(read_file(file, "file of tuned settings"), file).entries;
-}
-
 // In the order of scenes and solvers, whatever was tuned first.
 void write_entries(const std::string& file, Entries& entries) {
   std::ranges::stable_sort(entries, {}, [kinds = scene_kinds()](const TunedEntry& entry) {
@@ -46,8 +41,7 @@ void write_entries(const std::string& file, Entries& entries) {
   write_atomically(file, document_text(tuned_document(entries)));
 }
 
-// Adds what was found at places of the user's own, or takes it instead of what was found there
-// before.
+// Instead of what was found there before.
 void add_places(TunedEntry& entry, const std::vector<TunedPlace>& found) {
   for (const TunedPlace& place : found) {
     std::erase_if(entry.places, [&](const TunedPlace& p) {
@@ -70,8 +64,7 @@ void print(const TunedEntry& entry) {
   for (const TunedPlace& p : entry.places) {
     std::cout << std::left << std::setw(15) << entry.kind << std::setw(35) << entry.solver
               << std::setw(6) << p.resolution << std::setw(8) << number_text(100 * p.limit) + " %"
-              << std::setw(7) << number_text(p.gain(), 3) << to_json(p.settings).dump()
-              << std::endl;
+              << std::setw(7) << number_text(p.gain(), 3) << json(p.settings).dump() << std::endl;
   }
 }
 
@@ -104,7 +97,6 @@ struct Tune {
     std::vector<SweepSpec> chosen = tuning_scenes();
     if (!scene.empty()) {
       std::vector<std::string> names;
-      names.reserve(chosen.size());
       for (const SweepSpec& each : chosen) names.push_back(each.scene);
       check_known("scene to tune on", scene, names);
       std::erase_if(chosen, [this](const SweepSpec& s) { return s.scene != scene; });
@@ -124,7 +116,7 @@ struct Tune {
 
   TuneOptions tuning() const {
     TuneOptions options;
-    if (trials > 0) options.rules.budget = options.trials_each = trials;
+    if (trials > 0) options.budget = options.trials_each = trials;
     options.timeout = timeout;
     options.interrupted = interrupted;
     if (own_places()) options.longest_run = std::numeric_limits<double>::infinity();
@@ -164,7 +156,9 @@ struct Tune {
             chosen, [this](const SweepSpec& s) { return chosen_solvers(solver, s).empty(); }))
       throw UsageError("--solver " + solver + ": no setting of it is to be tuned");
     const std::string file = out.empty() ? source_path("configs/tuned.json") : out;
-    Entries entries = read_entries(file);
+    Entries entries;
+    if (std::filesystem::exists(file))
+      entries = parse_tuned(read_file(file, "file of tuned settings"), file).entries;
     check_writable(file);
     const TimingLock lock(!no_wait);
     SweepRunners runners;

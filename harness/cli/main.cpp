@@ -1,4 +1,10 @@
-// bench: the command line.
+// bench: the command line. CLI11 is included here only, because it takes ten seconds to compile.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+
 #include "harness/base/child_process.h"
 #include "harness/base/standard_streams.h"
 #include "harness/cli/command.h"
@@ -7,7 +13,157 @@
 #include "harness/points/plugins.h"
 
 namespace harness {
+
+// ---- Options ----
+
 namespace {
+
+// A number that is one, and holds the bounds; said as everything else says it.
+CLI::Validator within(const Bounds& bounds) {
+  return CLI::Validator(
+      [bounds](const std::string& text) {
+        const auto number = number_in(text);
+        if (number && bounds.hold(*number)) return std::string();
+        return "is '" + shortened(text, 40) + "', must be " + bounds.text();
+      },
+      "");
+}
+
+// Names of version 0.2, which --solver takes for one more version.
+std::string renamed(std::string text) {
+  for (const auto& [was, is] :
+       {std::pair("strips", "yarn_projection"), std::pair("oracle", "dense_newton"),
+        std::pair("projective_dynamics", "admm"), std::pair("xpbd_small_steps", "pbd_substeps")}) {
+    for (std::size_t at = 0; (at = text.find(was, at)) != std::string::npos;)
+      text.replace(at, std::string(was).size(), is);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::optional<double> number_in(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  return text.empty() || *end != '\0' ? std::nullopt : std::optional(number);
+}
+
+CLI::Option* Command::placed(CLI::Option* option) const {
+  return group_.empty() ? option : option->group(group_);
+}
+
+void Command::option(const std::string& name, Place place, const std::string& help,
+                     const std::string& type, const Bounds& bounds) const {
+  std::visit(
+      [&](auto value) {
+        CLI::Option* option =
+            placed(app_->add_option(name == "--out" ? "-o,--out" : name, value.get(), help));
+        option->type_name(type);
+        if constexpr (std::is_arithmetic_v<typename decltype(value)::type>)
+          option->check(within(bounds));
+      },
+      place);
+}
+
+void Command::repeatable(const std::string& name, Words& values, const std::string& help,
+                         const std::string& type) const {
+  placed(app_->add_option(name, values, help))->type_name(type)->allow_extra_args(false);
+}
+
+void Command::alternatives(const std::string& name, std::string& value,
+                           const std::string& help) const {
+  placed(app_->add_option(name, value, help))
+      ->type_name("REGEX")
+      ->transform([](std::string text) {
+        std::replace(text.begin(), text.end(), ',', '|');
+        return renamed(std::move(text));
+      })
+      ->delimiter('|')  // they are joined by it again
+      ->multi_option_policy(CLI::MultiOptionPolicy::Join);
+}
+
+void Command::byte_count(const std::string& name, double& value, const std::string& help) const {
+  placed(app_->add_option(name, value, help))
+      ->transform(CLI::AsSizeValue(false).description(""))
+      ->type_name("BYTES")
+      ->check(within({.least = 1 << 20}));
+}
+
+void Command::flag(const std::string& name, bool& value, const std::string& help) const {
+  placed(app_->add_flag(name, value, help));
+}
+
+void Command::require(std::initializer_list<const char*> names) const {
+  for (const char* name : names) app_->get_option(name)->required();
+}
+
+std::string Command::one_typed() const {
+  for (const CLI::Option* option : app_->get_options()) {
+    if (option->get_group() == group_ && option->count() > 0) return option->get_name();
+  }
+  return "";
+}
+
+// ---- Words ----
+
+namespace {
+
+// As a result records them: it is no place for a machine's folders.
+Words recorded_words(int argc, char** argv) {
+  Words words{"bench"};
+  for (int i = 1; i < argc; ++i) {
+    const std::filesystem::path argument(argv[i]);
+    words.push_back(argument.is_absolute() ? argument.filename().string() : argument.string());
+  }
+  return words;
+}
+
+// The words in the order of typing, without the program's name.
+Words usual_words(int argc, char** argv) {
+  Words words(argv + std::min(argc, 1), argv + argc);
+  if (words.empty()) return words;
+  if (words.front() == "help") {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
+  if (words.front() == "sweep") {
+    words.front() = "--sweep";
+    if (words.size() == 1 || words[1].starts_with('-')) words.erase(words.begin());
+  }
+  return words;
+}
+
+// The verb that was typed, or the program.
+const CLI::App* command_of(const CLI::App& program) {
+  const auto typed = program.get_subcommands();
+  return typed.empty() ? &program : typed.front();
+}
+
+// What is wrong with the first of the typed words that CLI11 had no place for.
+std::string not_understood(const CLI::App& program, const Words& typed) {
+  const CLI::App* command = command_of(program);
+  const Words left = program.remaining(true);
+  const auto first = std::ranges::find_first_of(typed, left);
+  const std::string word = first == typed.end() ? left.front() : *first;
+  const std::string of = command == &program ? "" : " of bench " + command->get_name();
+  Words known;
+  std::string message;
+  if (word.starts_with('-')) {
+    for (const CLI::Option* option : command->get_options())
+      for (const std::string& long_name : option->get_lnames()) known.push_back("--" + long_name);
+    message = "no option '" + shortened(word, 40) + "'" + of;
+  } else if (command == &program) {
+    for (const CLI::App* sub : program.get_subcommands([](const CLI::App*) { return true; }))
+      known.push_back(sub->get_name());
+    message = "no command '" + shortened(word, 40) + "'";
+  } else {
+    return "unexpected argument '" + shortened(word, 40) + "'" + of;
+  }
+  const std::string meant = closest(word.substr(0, word.find('=')), known);
+  return message + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
+}
+
+// ---- Running ----
 
 constexpr const char* description =
     "bench: benchmark of solvers for inextensible cloth and chains: time at each strain limit, "
@@ -43,6 +199,11 @@ void load(const Words& plugins) {
   }
 }
 
+int failed(const std::string& why, ExitCode code) {
+  std::cerr << "bench: " << why << '\n';
+  return code;
+}
+
 // What goes wrong is said in a line on stderr, and is an exit code.
 int guarded(const std::function<int()>& work) {
   try {
@@ -51,38 +212,72 @@ int guarded(const std::function<int()>& work) {
     send_output_to_error();  // what plug-ins print as they are unloaded
     return code;
   } catch (const UsageError& error) {
-    std::cerr << "bench: " << error.what() << '\n';
-    return usage_error;
+    return failed(error.what(), usage_error);
   } catch (const nlohmann::json::exception& error) {
     // Schemas are checked where files are read; what a schema leaves open is reported here.
-    std::cerr << "bench: a value in a file has the wrong type: " << error.what() << '\n';
-    return usage_error;
+    return failed(std::string("a value in a file has the wrong type: ") + error.what(),
+                  usage_error);
   } catch (const NotComparable& reason) {
-    std::cerr << "bench: " << reason.what() << '\n';
-    return not_comparable;
+    return failed(reason.what(), not_comparable);
   } catch (const Interrupted&) {
-    std::cerr << "bench: interrupted\n";
-    return interrupted_exit;
+    return failed("interrupted", interrupted_exit);
   } catch (const FileError& error) {
-    std::cerr << "bench: " << error.what() << '\n';
-    return internal_error;
+    return failed(error.what(), internal_error);
   } catch (const std::exception& error) {
-    std::cerr << "bench: internal error: " << error.what() << '\n';
-    return internal_error;
+    return failed(std::string("internal error: ") + error.what(), internal_error);
   }
 }
 
+// An exit code if nothing is left to do: help was printed, or a word is wrong, which is said on
+// stderr.
+std::optional<int> parse(CLI::App& program, const Words& words) {
+  const auto refused = [&program](const std::string& why) {
+    const CLI::App* command = command_of(program);
+    return failed(
+        why + " (see bench " + (command == &program ? "" : command->get_name() + " ") + "--help)",
+        usage_error);
+  };
+  try {
+    program.parse(Words(words.rbegin(), words.rend()));  // as CLI11 takes them
+  } catch (const CLI::ExtrasError&) {
+    return refused(not_understood(program, words));
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) return refused(error.what());
+    const bool no_verb = !words.front().starts_with('-') && program.get_subcommands().empty();
+    if (no_verb) return refused(not_understood(program, words));  // help of what is not there
+    return program.exit(error);                                   // --help, --version
+  }
+  return std::nullopt;
+}
+
 int run(int argc, char** argv) {
-  CommandLine line(description, verbs(), version_text);
-  if (const std::optional<int> done = line.read(argc, argv)) return *done;
+  CLI::App program(description, "bench");
+  program.set_version_flag("-V,--version", version_text);
+  program.require_subcommand(0, 1);  // a word after a verb is never another verb: list answers
+  std::map<const CLI::App*, std::pair<Action, bool>> actions;  // and Verb::has_children
+  Words plugins;
+  for (const Verb& verb : verbs()) {
+    CLI::App* app = actions.empty() ? &program : program.add_subcommand(verb.name, verb.summary);
+    actions[app] = {verb.add(Command(app)), verb.has_children};
+    app->add_option_function<Words>(
+           "--plugin",
+           [&plugins](const Words& files) {
+             plugins.insert(plugins.end(), files.begin(), files.end());
+           },
+           "load solvers of your own from a shared library (solvers/plugin.h); repeatable")
+        ->allow_extra_args(false)
+        ->type_name("FILE");
+  }
+  if (const auto done = parse(program, usual_words(argc, argv))) return *done;
   catch_interrupts();
-  const auto act = [&line] {
-    return guarded([&line] {
-      load(line.plugins());
-      return line.run();
+  const auto& [action, has_children] = actions.at(command_of(program));
+  const auto act = [&, &run_verb = action] {
+    return guarded([&] {
+      load(plugins);
+      return run_verb(recorded_words(argc, argv));
     });
   };
-  return line.has_children() ? act() : supervised(act);
+  return has_children ? act() : supervised(act);
 }
 
 }  // namespace

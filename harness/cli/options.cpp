@@ -1,16 +1,21 @@
 #include "harness/cli/options.h"
 
 #include <algorithm>
-#include <cstdlib>
+#include <limits>
 #include <sstream>
 
 #include "harness/base/errors.h"
+#include "harness/base/files.h"
+#include "harness/base/json.h"
 #include "harness/base/pattern.h"
 #include "harness/base/text.h"
+#include "harness/judge/reference.h"
 #include "harness/scenes/mesh_scenes.h"
 #include "solvers/registry.h"
 
 namespace harness {
+
+using nlohmann::json;
 
 void SceneOptions::declare(const Command& to, const std::string& standard) {
   to.option("--scene", scene, "one of `bench list scenes`, or mesh:FILE.obj; default: " + standard,
@@ -165,6 +170,165 @@ double one_number_of(const std::string& option, const std::string& text, const B
   const std::vector<double> numbers = numbers_of(option, text, bounds);
   if (numbers.size() != 1) throw UsageError(option + " is '" + text + "', must be one number");
   return numbers.front();
+}
+
+// ---- The suite that a sweep runs: a profile's or one's own, with what the options say instead
+// ----
+
+namespace {
+
+void check_longest_step(const Suite& suite) {
+  for (const SweepSpec& sweep : suite.sweeps) {
+    if (sweep.coarsest > longest_step * (1 + 1e-9))
+      throw UsageError("the ladder of " + sweep.scene + " begins at " +
+                       number_text(sweep.coarsest) +
+                       " s ('steps': 'coarsest'), must be a frame, 1/24 s, at most");
+  }
+}
+
+// For all sweeps a ladder that ends earlier or later.
+void cut_ladders(Suite& suite, double finest) {
+  for (SweepSpec& sweep : suite.sweeps) {
+    if (sweep.adaptive)
+      throw UsageError("--finest does not go with adaptive steps, which have no ladder");
+    if (finest > sweep.coarsest)
+      throw UsageError("--finest " + number_text(finest) + " leaves no step: the ladder of " +
+                       sweep.scene + " begins at " + number_text(sweep.coarsest) + " s");
+    sweep.finest = finest;
+  }
+}
+
+bool is(const json& sweep, const char* key, const std::string& value) {
+  return sweep.is_object() && sweep.value(key, json()) == value;
+}
+
+// A scene that the suite has not takes the place of its first sweep of that kind, at the size that
+// the scene has by itself.
+void put_in_scene(json& sweeps, const SweepOptions& options) {
+  const auto of_kind = [&](const json& s) { return is(s, "sweep", options.sweep); };
+  if (options.scene.empty() || std::ranges::any_of(sweeps, [&](const json& s) {
+        return of_kind(s) && is(s, "scene", options.scene);
+      }))
+    return;
+  const auto first = std::ranges::find_if(sweeps, of_kind);
+  if (first == sweeps.end()) return;
+  json sweep = *first;
+  sweep["scene"] = options.scene;
+  for (const char* key : {"scene_parameters", "resolutions", "solver_options", "steps"})
+    sweep.erase(key);
+  if (options.sweep == "resolution" && options.n.empty())
+    throw UsageError("the suite has no resolutions of scene '" + options.scene + "': give --n");
+  sweeps.push_back(std::move(sweep));
+}
+
+// The suite with what the options say instead: it then is one like any other, checked as a whole.
+Suite edited_suite(const std::string& path, const SweepOptions& options) {
+  const std::string text = read_file(path, "suite");
+  const SceneParameters given = options.given_parameters();
+  if (!given.empty() && options.scene.empty())
+    throw UsageError("--set goes with --scene: of which scene is the parameter?");
+  json document = parse_commented(text, path);
+  if (!document.is_object() || !document.contains("sweeps") || !document["sweeps"].is_array())
+    return parse_suite(text, path);  // which says what is wrong
+  json& sweeps = document["sweeps"];
+  put_in_scene(sweeps, options);
+  for (json& sweep : sweeps) {
+    if (!is(sweep, "sweep", options.sweep)) continue;
+    if (is(sweep, "scene", options.scene)) {
+      for (const auto& [name, value] : given) sweep["scene_parameters"][name] = value;
+    }
+    if (!options.limits.empty()) {
+      const json limits = numbers_of("--limit", options.limits, Bounds::strain());
+      if (options.sweep == "resolution" && limits.size() > 1)
+        throw UsageError("--limit: a resolution sweep has one");
+      sweep.erase("limit");
+      sweep["limits"] = limits;
+    }
+    if (options.n.empty()) continue;
+    const json sizes = numbers_of("--n", options.n, Bounds::whole_number(2));
+    if (options.sweep != "resolution" && sizes.size() > 1)
+      throw UsageError("--n: a " + options.sweep + " sweep has one size");
+    const auto type = find_scene(sweep.value("scene", ""));
+    if (type && sweep.contains("scene_parameters"))
+      sweep["scene_parameters"].erase(type->resolution);
+    sweep["resolutions"] = sizes;
+  }
+  return parse_suite(document.dump(), path);
+}
+
+}  // namespace
+
+std::string suite_path(const SelectionOptions& options) {
+  if (!options.scene.empty()) (void)checked_scene(options.scene);
+  if (!options.config.empty()) return options.config;
+  check_known("profile", options.profile, profiles());
+  return source_path("configs/" + options.profile + ".json");
+}
+
+Suite load_suite(const SweepOptions& given) {
+  SweepOptions options = given;
+  options.scene = given.name();
+  const std::string path = suite_path(options);
+  Suite suite = edited_suite(path, options);
+  (void)solver_pattern(options.solver, contestants_of(suite));
+  std::vector<std::string> kinds = sweep_kinds();
+  kinds.emplace_back("stability");
+  check_known("sweep", options.sweep, kinds);
+  std::erase_if(suite.sweeps, [&](const SweepSpec& s) {
+    return s.sweep != options.sweep || (!options.scene.empty() && s.scene != options.scene);
+  });
+  if (suite.sweeps.empty())
+    throw UsageError("'" + path + "' has no such sweep: --sweep " + options.sweep + " --scene " +
+                     options.scene);
+  check_known("choice of steps", options.steps, {"search", "adaptive", "all"});
+  check_longest_step(suite);
+  if (options.steps == "adaptive") {
+    if (options.sweep == "step")
+      throw UsageError("--steps adaptive does not go with --sweep step, whose steps are fixed");
+    for (SweepSpec& sweep : suite.sweeps) sweep.adaptive = true;
+    suite.name += "-adaptive";  // files and figures of their own
+  } else if (options.steps == "all" && options.sweep != "step") {
+    for (SweepSpec& sweep : suite.sweeps) sweep.every_step = true;
+    suite.name += "-all";
+  }
+  if (options.reps > 0) suite.reps = options.reps;
+  if (options.finest > 0) cut_ladders(suite, options.finest);
+  if (options.timeout > 0) suite.timeout = options.timeout;
+  // Where times mean nothing, no run is stopped for being slower than another contestant's.
+  if (options.untimed) suite.far_behind = std::numeric_limits<double>::infinity();
+  if (options.finest_error > 0) suite.finest_error = options.finest_error;
+  if (options.seed >= 0) suite.seed = static_cast<std::uint64_t>(options.seed);
+  // A solver that is no contestant joins when it is asked for by its own name.
+  if (const auto* backend = inextensible::find_backend(options.solver);
+      backend && !backend->contestant) {
+    for (SweepSpec& sweep : suite.sweeps) sweep.contestants = {{options.solver, options.solver}};
+  }
+  Contestants left = contestants_of(suite);
+  if (find_contestant(left, suite.same) == left.end()) suite.same.clear();
+  return suite;
+}
+
+SweepFilters filters_of(const SelectionOptions& options) {
+  return {pattern_of("--solver", options.solver), pattern_of("--filter", options.filter),
+          pattern_of("--exclude", options.exclude)};
+}
+
+std::map<std::string, SceneOfReference> without_reference(const std::vector<Search>& searches,
+                                                          ReferenceFolder& references) {
+  std::map<std::string, SceneOfReference> missing;
+  for (const Search& search : searches) {
+    const SceneOfReference scene{search.base.scene, search.base.scene_parameters};
+    if (!references.find(scene.first, scene.second))
+      missing.emplace(reference_name(scene.first, scene.second), scene);
+  }
+  return missing;
+}
+
+std::string reference_text(const Reference& reference) {
+  return reference.method + " against " + reference.second_method + ": known to " +
+         number_text(100 * headline_error) + " % for " +
+         number_text(reference.known_until(headline_error)) + " of " +
+         number_text(reference.duration()) + " s";
 }
 
 }  // namespace harness

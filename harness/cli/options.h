@@ -56,7 +56,6 @@ void add_profile(const Command& to, std::string& profile);
 void add_config(const Command& to, std::string& config);
 void add_timeout(const Command& to, double& timeout, const std::string& standard);
 void add_seed(const Command& to, std::int64_t& seed, const std::string& help);
-// For verbs that take times.
 void add_no_wait(const Command& to, bool& no_wait);
 
 std::vector<std::string> profiles();

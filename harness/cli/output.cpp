@@ -7,10 +7,13 @@
 #include <fstream>
 #include <iostream>
 #include <limits>
+#include <optional>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include "harness/analysis/findings.h"
+#include "harness/answers/answer.h"
 #include "harness/base/child_process.h"
 #include "harness/base/clock.h"
 #include "harness/base/errors.h"
@@ -21,6 +24,7 @@
 #include "harness/claims/claims.h"
 #include "harness/points/context.h"
 #include "harness/points/result_file.h"
+#include "harness/tables/tables.h"
 
 namespace harness {
 namespace {
@@ -41,14 +45,10 @@ void check_same(const OutputOptions& options, const std::string& path, const jso
                      "; --resume --force continues nevertheless");
 }
 
-// What there was before: the context of the run that this one continues, or null.
-struct Past {
-  bool finished = false;  // a whole result: nothing to do, and the journal is untouched
-  json context = nullptr;
-};
-
-Past begin_journal(const OutputOptions& options, const std::string& out, Journal& journal,
-                   const Undertaking& run) {
+// The context of the run that this one continues, or null. None: there is a whole result, so there
+// is nothing to do, and the journal is untouched.
+std::optional<json> begin_journal(const OutputOptions& options, const std::string& out,
+                                  Journal& journal, const Undertaking& run) {
   const auto identity_of = [](const json& context, const json& suite) {
     return identity(context, suite, context.value("selection", json::object()));
   };
@@ -69,7 +69,7 @@ Past begin_journal(const OutputOptions& options, const std::string& out, Journal
     const json was = journal.header().is_object() ? journal.header() : json::object();
     check_same(options, journal.path(), was.value("identity", json()), mine);
     journal.go_on(header);
-    return {false, was.value("context", json())};
+    return was.value("context", json());
   }
   if (again && exists(out)) {
     const json result = read_result(out, ResultKinds::all);
@@ -77,17 +77,17 @@ Past begin_journal(const OutputOptions& options, const std::string& out, Journal
       throw UsageError("'" + out + "' is the result of another kind of sweep: nothing to resume");
     const json& context = result.at("context");
     check_same(options, out, identity_of(context, context.value("suite", json())), mine);
-    if (result.at("complete").get<bool>() && !options.rerun_failed) return {true};
+    if (result.at("complete").get<bool>() && !options.rerun_failed) return std::nullopt;
     journal.start(header);
     run.add(result, journal);
-    return {false, context};
+    return context;
   }
   if (!options.force && exists(out))
     throw UsageError("'" + out +
                      "' exists: --force replaces it, --resume completes it, and another "
                      "--out keeps both");
   journal.start(header);
-  return {};
+  return json();
 }
 
 // A part of a result takes no place but that of another part.
@@ -99,8 +99,6 @@ bool takes_a_part(const std::string& out) {
 }
 
 }  // namespace
-
-Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
 void Progress::begin_part() {
   part_ = std::chrono::steady_clock::now();
@@ -176,21 +174,21 @@ int carry_out(const OutputOptions& options, const Undertaking& undertaking) {
                                               : regular_output_path(options.out);
   check_writable(out);
   Journal journal(out);
-  const Past past = begin_journal(options, out, journal, undertaking);
-  if (past.finished) {
+  const std::optional<json> before = begin_journal(options, out, journal, undertaking);
+  if (!before) {
     std::cout << out << " is complete already\n";
     return success;
   }
   Finished done;
   try {
-    done = undertaking.run(out, journal, past.context);
+    done = undertaking.run(journal, *before);
   } catch (const UsageError&) {
     if (undertaking.count(journal) == 0) journal.remove();  // refused: nothing has come of it
     throw;
   }
   const bool written = !done.document.is_null() && (done.complete || takes_a_part(out));
   if (written) write_atomically(out, result_text(done.document));
-  std::cout << done.text;
+  if (!done.document.is_null()) std::cout << text_of_result(done.document, out);
   if (written) std::cout << "\nwritten:\n" << out << std::endl;
   if (!done.complete) {
     if (!written && exists(out)) std::cerr << "bench: '" << out << "' stays as it was\n";
@@ -211,9 +209,7 @@ int draw(const std::string& script, const Words& arguments, const std::string& o
   Words words{"/usr/bin/python3", source_path("plots/" + script)};
   words.insert(words.end(), arguments.begin(), arguments.end());
   words.insert(words.end(), {"--out", scratch.file(place.filename().string())});
-  const ProgramResult ran =
-      run_program(words, "", std::numeric_limits<double>::infinity(), interrupted);
-  if (interrupted()) throw Interrupted();
+  const ProgramResult ran = run_program(words, std::numeric_limits<double>::infinity());
   std::cerr << ran.err;
   if (ran.exit_code == 127)
     std::cerr << "bench: figures need /usr/bin/python3 with matplotlib (Debian: "
@@ -230,8 +226,22 @@ int draw(const std::string& script, const Words& arguments, const std::string& o
   return success;
 }
 
+bool is_sweep(const json& document) { return document.at("schema") == "inextensible-bench/1"; }
+
+std::string text_of_result(const json& document, const std::string& name, bool all) {
+  std::ostringstream text;
+  if (is_answers(document)) {
+    print_answers(text, document);
+  } else if (is_sweep(document)) {
+    print_sweep(text, document, name, all);
+  } else {
+    print_outcomes(text, document);
+  }
+  return fitted(text.str(), output_columns());
+}
+
 json with_analysis(json document) {
-  if (document.contains("points")) {
+  if (is_sweep(document)) {
     check_timed(document);
     document["analysis"] = analysis::analysis_of(document);
   }

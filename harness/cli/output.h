@@ -2,6 +2,8 @@
 // file of results, with a journal beside it until it is whole, and pictures.
 #pragma once
 
+#include <unistd.h>
+
 #include <chrono>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -18,7 +20,7 @@ namespace harness {
 // On a terminal one line, rewritten; otherwise, for logs, some twenty lines for each part.
 class Progress {
  public:
-  Progress();
+  Progress() = default;
   ~Progress() { clear(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -30,7 +32,7 @@ class Progress {
 
  private:
   using Time = std::chrono::steady_clock::time_point;
-  bool terminal_;
+  const bool terminal_ = isatty(STDERR_FILENO) == 1;
   Time start_ = std::chrono::steady_clock::now(), part_ = start_;
   int lines_ = 0;          // of the log, in this part
   std::size_t width_ = 0;  // of the line on the terminal
@@ -43,7 +45,6 @@ struct OutputOptions {
   std::string out;
   bool resume = false, rerun_failed = false, force = false, no_plots = false;
 
-  // --out, --resume, --force and --no-plots.
   void declare(const Command& to, const std::string& standard);
 };
 
@@ -54,7 +55,6 @@ std::string default_output(const std::string& stem, const std::string& ending, b
 struct Finished {
   nlohmann::json document = nullptr;  // null: there is nothing to write
   bool complete = true;               // false: interrupted
-  std::string text = {};              // the document for people
   int code = success;                 // of a complete one
 };
 
@@ -65,8 +65,7 @@ struct Undertaking {
   const char* rows;               // the list of results in its file: "points", "matrix" or "rows"
   const char* what;               // these are, for messages
   // Runs what the journal does not know. before: context of the run that it continues, or null.
-  std::function<Finished(const std::string& out, Journal& journal, const nlohmann::json& before)>
-      run;
+  std::function<Finished(Journal& journal, const nlohmann::json& before)> run;
   // Adds the results of a file to the journal.
   std::function<void(const nlohmann::json& result, Journal&)> add = [](auto&&...) {};
   // Results in a journal.
@@ -87,6 +86,13 @@ int carry_out(const OutputOptions& options, const Undertaking& undertaking);
 // written takes its place in the folder of `out`, file by file and each whole, and is named on
 // stdout. Its exit code; where that is not 0, nothing is touched.
 int draw(const std::string& script, const Words& arguments, const std::string& out);
+
+bool is_sweep(const nlohmann::json& document);  // over strain, resolution or step
+
+// A result for people, as wide as the terminal. name: what hints call it. all: of a sweep every
+// contestant too, and how runs failed.
+std::string text_of_result(const nlohmann::json& document, const std::string& name,
+                           bool all = false);
 
 // A result as plots/ reads it: a sweep with its analysis. Throws UsageError where nothing was
 // timed.

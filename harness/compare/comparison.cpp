@@ -69,10 +69,9 @@ void note_times(const ComparedPoint& base, const ComparedPoint& next, const Gate
   if (drifted)
     times = {Change::ambiguous, times.reason + ": the machine's own speed varied by as much"};
   result.reasons.push_back(times.reason);
-  const bool settled = is_regression(result.change);
   result.too_few = times.too_few && result.reasons.size() == 1;
   result.undecided = (times.too_few || drifted) && base.best;
-  if (times.change == Change::slower || !settled) result.change = times.change;
+  if (times.change == Change::slower || !is_regression(result.change)) result.change = times.change;
 }
 
 // Both failed: how far a run got before a time-out depends on the machine.

@@ -1,10 +1,9 @@
-#include "harness/compare/pairs.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "harness/base/statistics.h"
 #include "harness/base/text.h"
+#include "harness/compare/comparison.h"
 
 namespace harness {
 namespace {
@@ -79,10 +78,9 @@ int samples_for(double seconds, double least) {
 
 void run_pairs(const std::vector<PairedPoint*>& points, int pairs, const RunOne& run) {
   for (int pair = 0; pair < pairs; ++pair) {
-    const Side first = pair % 2 == 0 ? Side::old_one : Side::new_one;
     for (PairedPoint* point : points) {
-      run_side(first, *point, run);
-      run_side(first == Side::old_one ? Side::new_one : Side::old_one, *point, run);
+      run_side(pair % 2 == 0 ? Side::old_one : Side::new_one, *point, run);
+      run_side(pair % 2 == 0 ? Side::new_one : Side::old_one, *point, run);
     }
   }
 }

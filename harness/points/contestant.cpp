@@ -9,7 +9,6 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/json.h"
-#include "harness/points/point_json.h"
 
 namespace harness {
 namespace {
@@ -44,6 +43,34 @@ const inextensible::Problem& small_problem(const SceneType& type, const ScenePar
   auto& problem = built[{type.name, small}];
   if (!problem) problem = type.build(small).problem;
   return *problem;
+}
+
+Contestant read_contestant(const json& given, const std::string& where) {
+  const json entry = given.is_string() ? json::object({{"name", given}}) : given;
+  if (!entry.is_object())
+    throw UsageError(where + " is " + value_text(entry) +
+                     ", must be solvers' names, or objects such as {\"name\": \"icd_loose\", "
+                     "\"solver\": \"icd\", \"settings\": {}}");
+  JsonReader reader(entry, where);
+  Contestant contestant;
+  contestant.name = reader.text("name", "");
+  contestant.solver = reader.text("solver", contestant.name);
+  const auto& backend = checked_backend(contestant.solver, where);
+  if (contestant.name == contestant.solver) contestant.name = backend.name;
+  contestant.solver = backend.name;
+  if (contestant.name.empty()) contestant.name = contestant.solver;
+  if (const json* settings = reader.find("settings"))
+    contestant.settings = read_settings(*settings, where + ": 'settings'", backend);
+  if (const json* places = reader.find("settings_at"))
+    contestant.settings_at = read_settings_at(*places, where + ": 'settings_at'", backend);
+  contestant.label = reader.text("label", "");
+  contestant.unranked = reader.flag("unranked", false);
+  reader.finish();
+  check_plain_name(contestant.name, where + ": 'name'");
+  if (!contestant.own_name() && inextensible::find_backend(contestant.name))
+    throw UsageError(where + ": 'name' is \"" + contestant.name +
+                     "\", which is the name of another solver");
+  return contestant;
 }
 
 }  // namespace
@@ -90,14 +117,10 @@ inextensible::Settings read_settings(const json& object, const std::string& wher
   if (!object.is_object()) throw UsageError(where + ": must be an object { ... }");
   inextensible::Settings settings;
   for (const auto& [key, value] : object.items()) {
-    if (value.is_number()) {
-      settings[key] = value.get<double>();
-    } else if (value.is_string()) {
-      settings[key] = value.get<std::string>();
-    } else {
+    if (!value.is_number() && !value.is_string())
       throw UsageError(where + ": '" + key + "' is " + value_text(value) +
                        ", must be a number or a text");
-    }
+    value.get_to(settings[key]);
   }
   check_settings(settings, where, backend);
   return settings;
@@ -134,38 +157,6 @@ inextensible::Settings Contestant::settings_for(int resolution, double limit) co
   return all;
 }
 
-Contestant read_contestant(const json& entry, const std::string& where) {
-  if (entry.is_string()) {
-    const std::string name = entry.get<std::string>();
-    const std::string solver = checked_backend(name, where).name;
-    return {solver, solver};
-  }
-  if (!entry.is_object())
-    throw UsageError(where + " is " + value_text(entry) +
-                     ", must be solvers' names, or objects such as {\"name\": \"icd_loose\", "
-                     "\"solver\": \"icd\", \"settings\": {}}");
-  JsonReader reader(entry, where);
-  Contestant contestant;
-  contestant.name = reader.text("name", "");
-  contestant.solver = reader.text("solver", contestant.name);
-  const auto& backend = checked_backend(contestant.solver, where);
-  if (contestant.name == contestant.solver) contestant.name = backend.name;
-  contestant.solver = backend.name;
-  if (contestant.name.empty()) contestant.name = contestant.solver;
-  if (const json* settings = reader.find("settings"))
-    contestant.settings = read_settings(*settings, where + ": 'settings'", backend);
-  if (const json* places = reader.find("settings_at"))
-    contestant.settings_at = read_settings_at(*places, where + ": 'settings_at'", backend);
-  contestant.label = reader.text("label", "");
-  contestant.unranked = reader.flag("unranked", false);
-  reader.finish();
-  check_plain_name(contestant.name, where + ": 'name'");
-  if (!contestant.own_name() && inextensible::find_backend(contestant.name))
-    throw UsageError(where + ": 'name' is \"" + contestant.name +
-                     "\", which is the name of another solver");
-  return contestant;
-}
-
 Contestants competitors(const SceneType& type, const SceneParameters& given) {
   const inextensible::Problem& problem = small_problem(type, given);
   Contestants all;
@@ -191,23 +182,16 @@ Contestants read_contestants(const json& solvers, const std::string& where) {
   return all;
 }
 
-json to_json(const Contestant& contestant) {
-  if (contestant == Contestant{contestant.solver, contestant.solver}) return contestant.solver;
-  json object = {{"name", contestant.name},
-                 {"solver", contestant.solver},
-                 {"settings", to_json(contestant.settings)}};
-  if (!contestant.label.empty()) object["label"] = contestant.label;
-  if (contestant.unranked) object["unranked"] = true;
-  if (!contestant.settings_at.empty()) object["settings_at"] = to_json(contestant.settings_at);
-  return object;
-}
-
-json to_json(const std::vector<SettingsAt>& places) {
-  json list = json::array();
-  for (const SettingsAt& at : places)
-    list.push_back(
-        {{"resolution", at.resolution}, {"limit", at.limit}, {"settings", to_json(at.settings)}});
-  return list;
+void to_json(json& to, const Contestant& contestant) {
+  if (contestant == Contestant{contestant.solver, contestant.solver}) {
+    to = contestant.solver;
+    return;
+  }
+  to = {
+      {"name", contestant.name}, {"solver", contestant.solver}, {"settings", contestant.settings}};
+  if (!contestant.label.empty()) to["label"] = contestant.label;
+  if (contestant.unranked) to["unranked"] = true;
+  if (!contestant.settings_at.empty()) to["settings_at"] = contestant.settings_at;
 }
 
 std::string double_of(const std::string& name) { return name + "_again"; }

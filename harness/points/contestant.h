@@ -9,6 +9,7 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/pattern.h"
+#include "harness/points/point_json.h"
 #include "harness/scenes/scene.h"
 #include "solvers/registry.h"
 
@@ -21,6 +22,7 @@ struct SettingsAt {
   inextensible::Settings settings;
   bool operator==(const SettingsAt&) const = default;
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SettingsAt, resolution, limit, settings)
 
 struct Contestant {
   std::string name;    // a-z, 0-9, _ and @; the solver's own unless it stands there more than once
@@ -41,13 +43,12 @@ using Contestants = std::vector<Contestant>;
 Contestants::iterator find_contestant(Contestants& all, const std::string& name);
 std::string label_of(const Contestant& contestant);
 
-// "icd", or {"name": "icd_loose", "solver": "icd", "settings": {...}, "label": "...", "unranked":
-// true}. All throw UsageError, naming `where`, key and value.
-Contestant read_contestant(const nlohmann::json& entry, const std::string& where);
+// A list of "icd", or {"name": "icd_loose", "solver": "icd", "settings": {...}, "label": "...",
+// "unranked": true}. All throw UsageError, naming `where`, key and value.
+Contestants read_contestants(const nlohmann::json& solvers, const std::string& where);
 // The solvers of suites that name none: all that compete and take every part of the scene, on a
 // chain without those that are another one there.
 Contestants competitors(const SceneType& type, const SceneParameters& given);
-Contestants read_contestants(const nlohmann::json& solvers, const std::string& where);
 inextensible::Settings read_settings(const nlohmann::json& object, const std::string& where,
                                      const inextensible::Backend& backend);
 // That the solver would take them.
@@ -66,8 +67,7 @@ UsageError no_solver(const std::string& name, const std::vector<std::string>& kn
 bool matches(const Pattern& pattern, const std::string& solver);
 
 // The way back.
-nlohmann::json to_json(const Contestant& contestant);
-nlohmann::json to_json(const std::vector<SettingsAt>& places);
+void to_json(nlohmann::json& to, const Contestant& contestant);
 
 // The same solver with the same settings once more, right after it, as <name>_again: how far two
 // equal ones are apart is the noise of a result. Nothing if `name` does not stand there, or its

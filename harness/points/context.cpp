@@ -15,7 +15,6 @@
 #include <ctime>
 #include <fstream>
 #include <memory>
-#include <sstream>
 #include <thread>
 
 #include "build_info.h"  // made by CMake
@@ -150,12 +149,7 @@ json machine_context() {
       {"counters_fingerprint", counters_fingerprint()},
       {"fingerprint",
        fnv1a(cpu + INEXTENSIBLE_COMPILER + INEXTENSIBLE_FLAGS + commit + libraries.dump())}};
-  for (const Plugin& plugin : loaded_plugins()) {
-    context["plugins"].push_back({{"file", plugin.file},
-                                  {"version", plugin.version},
-                                  {"solvers", plugin.solvers},
-                                  {"optimized", plugin.optimized}});
-  }
+  if (!loaded_plugins().empty()) context["plugins"] = loaded_plugins();
   return context;
 }
 

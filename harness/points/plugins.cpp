@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <sstream>
+#include <span>
 #include <stdexcept>
 
 #include "harness/base/errors.h"
@@ -35,10 +35,9 @@ EntryPoint entry_point(const std::string& path) {
 
 void check_stamp(const InextensiblePlugin& plugin) {
   const auto refuse = [](const std::string& why, std::int64_t there, std::int64_t here) {
-    std::ostringstream text;
-    text << "it was built differently: " << why << " is " << there << " there, " << here
-         << " here; build it against this program's headers";
-    throw std::runtime_error(text.str());
+    throw std::runtime_error("it was built differently: " + why + " is " + std::to_string(there) +
+                             " there, " + std::to_string(here) +
+                             " here; build it against this program's headers");
   };
   if (plugin.abi != INEXTENSIBLE_PLUGIN_ABI)
     refuse("version of the plug-in interface", plugin.abi, INEXTENSIBLE_PLUGIN_ABI);

@@ -1,6 +1,7 @@
 // Backends from shared libraries (`bench --plugin FILE`, solvers/plugin.h).
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ struct Plugin {
   std::vector<std::string> solvers;
   bool optimized = false;  // by the compiler; if not, its times say nothing
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Plugin, file, version, solvers, optimized)
 
 // Adds the file's backends to the registry; at program start. Throws UsageError, having added
 // nothing, if it is no plug-in, was built unlike this program, or brings a solver that exists.

@@ -1,21 +1,16 @@
 #include "harness/points/point.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include "harness/base/statistics.h"
+#include "harness/base/text.h"
 
 namespace harness {
 
 std::string PointSpec::id() const {
-  std::ostringstream text;
-  text << scene << '/' << name() << "/n:" << vertices << "/strain:" << strain_limit << "/h:";
-  if (adaptive) {
-    text << "adaptive";
-  } else {
-    text << step;
-  }
-  return text.str();
+  return scene + '/' + contestant + "/n:" + std::to_string(vertices) +
+         "/strain:" + number_text(strain_limit) +
+         "/h:" + (adaptive ? "adaptive" : number_text(step));
 }
 
 ErrorAtLevel error_at(const Measures& measures, double level) {
@@ -57,7 +52,6 @@ double PointResult::measured_seconds() const {
     sum += samples[i] * (i < sample_runs.size() ? sample_runs[i] : 1);
   return sum * spec.step * steps_planned;
 }
-double PointResult::filter_seconds() const { return time_of(filter_samples); }
 double PointResult::mean_step() const {
   if (!spec.adaptive || work.steps == 0) return spec.step;
   return spec.scene_parameters.at("duration") / static_cast<double>(work.steps);

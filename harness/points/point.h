@@ -76,7 +76,7 @@ struct PointSpec {
   SceneParameters scene_parameters;  // complete
   int resolution = 0;                // the scene's own resolution parameter
   int vertices = 0, constraints = 0;
-  std::string contestant;  // empty: the solver under its own name
+  std::string contestant;  // the solver, or its name where it is in a run several times
   std::string solver;
   inextensible::Settings settings;  // given ones only
   double strain_limit = 0.01;
@@ -84,7 +84,6 @@ struct PointSpec {
   bool adaptive = false;  // `step` is the largest one of a step controller
   std::uint64_t seed = 1;
 
-  const std::string& name() const { return contestant.empty() ? solver : contestant; }
   std::string id()
       const;  // drape/fast_projection/n:5041/strain:0.01/h:0.004 (adaptive: /h:adaptive)
 };
@@ -103,8 +102,7 @@ struct FrameTime {
 struct Samples {
   // Wall seconds per simulated second. A sample is one run, or of a short run the mean of several.
   std::vector<double> samples = {};
-  std::vector<double> cpu_samples =
-      {};  // processor time of the thread in the same runs; may be empty
+  std::vector<double> cpu_samples = {};     // of the thread in the same runs; may be empty
   std::vector<double> filter_samples = {};  // the same, spent in the inextensibility filter
   std::vector<int> sample_runs = {};        // runs that each sample is the mean of; may be empty
   int retaken = 0;                          // samples taken again because something disturbed them
@@ -145,7 +143,6 @@ struct PointResult : Samples, RunOutcome {
   bool ok() const { return status == PointStatus::ok; }
   double seconds() const;           // the point's time: of its samples, by time_of()
   double measured_seconds() const;  // s that the runs of all samples took together
-  double filter_seconds() const;    // of the filter's samples, by time_of()
   double mean_step() const;         // s; the spec's, but for adaptive steps
 };
 

@@ -5,7 +5,6 @@
 namespace harness {
 
 using nlohmann::json;
-using nlohmann::ordered_json;
 
 namespace {
 
@@ -18,52 +17,16 @@ json seconds_json(const std::vector<double>& samples) {
           {"samples", samples}};
 }
 
-// A solver under its own name is written as a contestant, too, so that readers need not know.
-PointSpec named(PointSpec spec) {
-  spec.contestant = spec.name();
-  return spec;
-}
-
 }  // namespace
 
-json FieldCodec<inextensible::Settings>::write(const inextensible::Settings& settings, bool) {
-  json object = json::object();
-  for (const auto& [name, value] : settings)
-    object[name] = std::visit([](const auto& v) { return json(v); }, value);
-  return object;
-}
+void to_json(json& to, PointStatus status) { to = to_string(status); }
 
-void FieldCodec<inextensible::Settings>::read(const json& from, inextensible::Settings& settings,
-                                              bool) {
-  for (const auto& [name, value] : from.items()) {
-    if (value.is_string()) {
-      settings[name] = value.get<std::string>();
-    } else {
-      settings[name] = value.get<double>();
-    }
-  }
-}
-
-ordered_json FieldCodec<inextensible::Settings>::schema(const FieldTraits&) {
-  return {{"type", "object"}, {"additionalProperties", {{"type", {"number", "string"}}}}};
-}
-
-json FieldCodec<PointStatus>::write(PointStatus status, bool) { return to_string(status); }
-
-void FieldCodec<PointStatus>::read(const json& from, PointStatus& status, bool) {
+void from_json(const json& from, PointStatus& status) {
   const auto row =
       std::ranges::find(point_statuses, from.get<std::string>(), &PointStatusInfo::name);
   if (row == point_statuses.end())
     throw json::other_error::create(501, from.dump() + " is no status of a point", nullptr);
   status = row->status;
-}
-
-ordered_json FieldCodec<PointStatus>::schema(const FieldTraits&) {
-  return {{"$ref", "#/definitions/status"}};
-}
-
-json to_json(const inextensible::Settings& settings) {
-  return FieldCodec<inextensible::Settings>::write(settings, false);
 }
 
 json to_json(const inextensible::WorkCounters& work) {
@@ -102,20 +65,16 @@ Samples samples_of(const json& object) {
 }
 
 json to_json(const PointResult& point) {
-  const PointSpec spec = named(point.spec);
   json object = to_json(static_cast<const Samples&>(point));
-  write_fields(object, spec_fields, spec);
-  write_fields(object, size_fields, spec);
   object["work"] = to_json(point.work);
-  write_fields(object, result_fields, point);
-  write_fields(object, phase_fields, point.phases);
-  write_fields(object, measure_fields, point.measures);
+  for_each_table(
+      point, [&object](const auto& table, const auto& part) { write_fields(object, table, part); });
   json& options = object["options"] = object["settings"];
   if (point.stiffness) options["stiffness"] = *point.stiffness;
   if (!point.linear_solver.empty()) options["linear_solver"] = point.linear_solver;
   // For readers, from the others.
-  object["id"] = spec.id();
-  object["duration"] = spec.scene_parameters.at("duration");
+  object["id"] = point.spec.id();
+  object["duration"] = point.spec.scene_parameters.at("duration");
   return object;
 }
 
@@ -125,7 +84,8 @@ PointSpec spec_of(const json& object) {
   read_fields(object, size_fields, spec);
   if (!spec.scene_parameters.contains("duration"))
     throw json::other_error::create(503, "a point without duration", nullptr);
-  return named(spec);
+  if (spec.contestant.empty()) spec.contestant = spec.solver;
+  return spec;
 }
 
 PointResult point_of(const json& object) {
@@ -145,7 +105,7 @@ PointResult point_of(const json& object) {
 
 std::string key_of(const PointSpec& spec) {
   json key;
-  write_fields(key, spec_fields, named(spec));
+  write_fields(key, spec_fields, spec);
   return key.dump();
 }
 

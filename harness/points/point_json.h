@@ -2,24 +2,50 @@
 // tables of its fields are here, and in measures.h and work_counters.h.
 #pragma once
 
+#include <variant>
+
 #include "harness/base/fields.h"
 #include "harness/points/point.h"
 
+template <>
+struct nlohmann::adl_serializer<std::variant<double, std::string>> {  // a setting's value
+  static void to_json(json& to, const std::variant<double, std::string>& value) {
+    std::visit([&to](const auto& held) { to = held; }, value);
+  }
+  static void from_json(const json& from, std::variant<double, std::string>& value) {
+    if (from.is_string()) {
+      value = from.get<std::string>();
+    } else {
+      value = from.get<double>();
+    }
+  }
+};
+
 namespace harness {
 
-template <>
-struct FieldCodec<inextensible::Settings> {
-  static nlohmann::json write(const inextensible::Settings& settings, bool nullable);
-  static void read(const nlohmann::json& from, inextensible::Settings& settings, bool nullable);
-  static nlohmann::ordered_json schema(const FieldTraits& traits);
-};
+void to_json(nlohmann::json& to, PointStatus status);
+void from_json(const nlohmann::json& from, PointStatus& status);
 
 template <>
-struct FieldCodec<PointStatus> {
-  static nlohmann::json write(PointStatus status, bool nullable);
-  static void read(const nlohmann::json& from, PointStatus& status, bool nullable);
-  static nlohmann::ordered_json schema(const FieldTraits& traits);
-};
+inline nlohmann::ordered_json FieldCodec<PointStatus>::schema(const FieldTraits&) {
+  return {{"$ref", "#/definitions/status"}};
+}
+
+template <>
+inline nlohmann::ordered_json FieldCodec<inextensible::Settings>::schema(const FieldTraits&) {
+  return {{"type", "object"}, {"additionalProperties", {{"type", {"number", "string"}}}}};
+}
+
+// Lists of numbers have positive ones.
+template <>
+inline nlohmann::ordered_json FieldCodec<std::vector<double>>::schema(const FieldTraits&) {
+  return {{"type", "array"}, {"items", {{"type", "number"}, {"exclusiveMinimum", 0}}}};
+}
+
+template <>
+inline nlohmann::ordered_json FieldCodec<std::vector<int>>::schema(const FieldTraits&) {
+  return {{"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 1}}}};
+}
 
 // A list of rows, each a list of a struct's numbers.
 template <class Row, double Row::*... members>
@@ -60,23 +86,6 @@ template <>
 struct FieldCodec<std::vector<FrameTime>>
     : RowsCodec<FrameTime, &FrameTime::rate, &FrameTime::median, &FrameTime::slow,
                 &FrameTime::worst> {};
-
-// Positive numbers, counts among them.
-template <class Number>
-requires std::is_arithmetic_v<Number>
-struct FieldCodec<std::vector<Number>> {
-  static nlohmann::json write(const std::vector<Number>& numbers, bool /*nullable*/) {
-    return numbers;
-  }
-  static void read(const nlohmann::json& from, std::vector<Number>& numbers, bool /*nullable*/) {
-    from.get_to(numbers);
-  }
-  static nlohmann::ordered_json schema(const FieldTraits& /*traits*/) {
-    if constexpr (std::is_integral_v<Number>)
-      return {{"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 1}}}};
-    return {{"type", "array"}, {"items", {{"type", "number"}, {"exclusiveMinimum", 0}}}};
-  }
-};
 
 // What is run: two runs that agree in these may stand for each other.
 inline constexpr std::tuple spec_fields{
@@ -153,7 +162,16 @@ inline constexpr std::tuple phase_fields{
           "wall time of the same run in copying the state into an engine and out of it",
           in_phases)};
 
-nlohmann::json to_json(const inextensible::Settings& settings);
+// All tables of a point but that of its samples, each with what it is the table of.
+template <class Point, class Visit>
+void for_each_table(Point& point, const Visit& visit) {
+  visit(spec_fields, point.spec);
+  visit(size_fields, point.spec);
+  visit(result_fields, point);
+  visit(phase_fields, point.phases);
+  visit(measure_fields, point.measures);
+}
+
 nlohmann::json to_json(const inextensible::WorkCounters& work);
 nlohmann::json to_json(const PointResult& point);
 nlohmann::json to_json(const Samples& samples);

@@ -122,6 +122,14 @@ bool all_shards(const std::vector<json>& documents) {
   return found.size() == count;
 }
 
+// In words, where that is more than a result to be quoted may have; else empty.
+std::string noise_warning(const PairNoise& noise) {
+  constexpr double most = 0.06;
+  if (noise.q95 <= most) return {};
+  return "noisy: equal programs differ by " + number_text(100 * std::expm1(noise.q95), 2) +
+         " % here, more than the 6 % that a result to be quoted may have";
+}
+
 }  // namespace
 
 json result_document(json context, const Suite& suite, const std::vector<std::string>& command,
@@ -132,7 +140,7 @@ json result_document(json context, const Suite& suite, const std::vector<std::st
   if (!suite.tuned_file.empty())
     context["tuned"] = {{"file", suite.tuned_file}, {"hash", suite.tuned_hash}};
   const auto noise = pair_noise(points, suite.same);
-  if (noise) context["noise"] = to_json(*noise);
+  if (noise) context["noise"] = *noise;
   context["retaken_samples"] = retaken_samples(points);
   json list = json::array(), benchmarks = json::array();
   int family = 0;
@@ -196,15 +204,15 @@ json read_result(const std::string& path, ResultKinds kinds) {
 
 std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
                                     const std::string& one) {
-  PairNoise noise{one, double_of(one)};
+  PairNoise noise{{one, double_of(one)}};
   std::map<std::string, double> first;
   for (const PointResult& point : points) {
-    if (counts(point) && point.spec.name() == noise.one)
+    if (counts(point) && point.spec.contestant == one)
       first[place_of(point.spec)] = point.seconds();
   }
   std::vector<double> distances;
   for (const PointResult& point : points) {
-    if (!counts(point) || point.spec.name() != noise.other) continue;
+    if (!counts(point) || point.spec.contestant != noise.pair[1]) continue;
     if (const auto twin = first.find(place_of(point.spec)); twin != first.end())
       distances.push_back(std::abs(std::log(point.seconds() / twin->second)));
   }
@@ -215,25 +223,9 @@ std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points,
   return noise;
 }
 
-std::string noise_warning(const PairNoise& noise) {
-  constexpr double most = 0.06;
-  if (noise.q95 <= most) return {};
-  return "noisy: equal programs differ by " + number_text(100 * std::expm1(noise.q95), 2) +
-         " % here, more than the 6 % that a result to be quoted may have";
-}
-
-json to_json(const PairNoise& noise) {
-  return {{"pair", {noise.one, noise.other}},
-          {"places", noise.places},
-          {"median", noise.median},
-          {"q95", noise.q95}};
-}
-
 std::optional<PairNoise> noise_of(const json& context) {
   if (!context.contains("noise")) return {};
-  const json& noise = context.at("noise");
-  return PairNoise{noise.at("pair").at(0), noise.at("pair").at(1), noise.at("places"),
-                   noise.at("median"), noise.at("q95")};
+  return context.at("noise").get<PairNoise>();
 }
 
 json joined(const std::vector<json>& documents) {

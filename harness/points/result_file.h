@@ -1,6 +1,7 @@
 // The result file, schema inextensible-bench/1 (configs/result.schema.json).
 #pragma once
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -45,19 +46,16 @@ struct NamedResult {
 // their best points, in a step sweep of all points that ran to the end. A difference below q95 is
 // none.
 struct PairNoise {
-  std::string one, other;  // contestants
+  std::array<std::string, 2> pair;  // contestants
   int places = 0;
   double median = 0, q95 = 0;
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PairNoise, pair, places, median, q95)
 
 // None where `one` and double_of(one) have no place in common.
 std::optional<PairNoise> pair_noise(const std::vector<PointResult>& points, const std::string& one);
 
-// In words, where that is more than a result to be quoted may have, 6 %; else empty.
-std::string noise_warning(const PairNoise& noise);
-
 // `context.noise` of a result file; none in files without a pair.
-nlohmann::json to_json(const PairNoise& noise);
 std::optional<PairNoise> noise_of(const nlohmann::json& context);
 
 // documents: results of one kind (check_result), at least one. Points that belong to one search for

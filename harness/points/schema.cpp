@@ -10,7 +10,6 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
-#include "harness/base/json.h"
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
 #include "harness/points/suite.h"
@@ -54,12 +53,6 @@ void add_fields(ordered_json& object, const Table& table) {
   });
 }
 
-ordered_json status_schema() {
-  ordered_json names = ordered_json::array();
-  for (const auto& row : point_statuses) names.push_back(row.name);
-  return {{"enum", names}};
-}
-
 ordered_json work_schema() {
   ordered_json work = closed_object();
   for (const auto& counter : inextensible::work_counters) {
@@ -78,15 +71,12 @@ ordered_json work_schema() {
 
 // What no table has, such as what is written for readers, stays as it is.
 ordered_json point_schema(ordered_json point) {
-  add_fields(point, spec_fields);
+  add_fields(point, sample_fields);
+  const PointResult any;
+  for_each_table(any, [&point](const auto& table, const auto&) { add_fields(point, table); });
   point["properties"]["sweep"] = {{"enum", sweep_kinds()}};
   point["properties"]["scene_parameters"].update(
       {{"additionalProperties", {{"type", "number"}}}, {"required", {"duration"}}});
-  add_fields(point, size_fields);
-  add_fields(point, sample_fields);
-  add_fields(point, result_fields);
-  add_fields(point, phase_fields);
-  add_fields(point, measure_fields);
   return point;
 }
 
@@ -96,15 +86,15 @@ ordered_json answer_row_schema() {
   return row;
 }
 
-}  // namespace
-
-ordered_json with_tables(ordered_json schema) {
+ordered_json schema_document(const std::string& name) {
+  const std::string path = source_path("configs/" + name + ".schema.json");
+  ordered_json schema = ordered_json::parse(read_file(path, "schema"));
   if (!schema.contains("definitions")) return schema;
   ordered_json& definitions = schema["definitions"];
   const auto renew = [&definitions](const char* name, auto made) {
     if (definitions.contains(name)) definitions[name] = made();
   };
-  renew("status", status_schema);
+  renew("status", [] { return ordered_json{{"enum", names_of(point_statuses)}}; });
   renew("counter", [] { return ordered_json{{"enum", counter_names()}}; });
   renew("work", work_schema);
   renew("point", [&definitions] { return point_schema(definitions["point"]); });
@@ -112,13 +102,10 @@ ordered_json with_tables(ordered_json schema) {
   return schema;
 }
 
+}  // namespace
+
 std::vector<std::string> generated_schemas() {
   return {"result", "baseline", "gate", "stability", "tuned", "answers"};
-}
-
-ordered_json schema_document(const std::string& name) {
-  const std::string path = source_path("configs/" + name + ".schema.json");
-  return with_tables(ordered_json::parse(read_file(path, "schema")));
 }
 
 std::string schema_text(const std::string& name) { return schema_document(name).dump(2) + "\n"; }
@@ -152,9 +139,7 @@ ordered_json legend(const Contestants& contestants) {
 }
 
 std::vector<std::string> counter_names() {
-  std::vector<std::string> names;
-  names.reserve(std::size(inextensible::work_counters) + 1);
-  for (const auto& counter : inextensible::work_counters) names.emplace_back(counter.name);
+  std::vector<std::string> names = names_of(inextensible::work_counters);
   for_each_field(result_fields, [&names](const auto& row) {
     if (row.traits.inside == std::string("work")) names.emplace_back(row.name);
   });

@@ -36,14 +36,9 @@ inline constexpr std::tuple answer_row_fields{
           {.nullable = true}),
     field("detail", &AnswerRow::detail, "", "why there is no value", {.nullable = true})};
 
-// The schema with those of its definitions replaced that follow from tables: "status", "counter",
-// "work", "point", "answer_row".
-nlohmann::ordered_json with_tables(nlohmann::ordered_json schema);
-
-// configs/<name>.schema.json, with_tables.
-nlohmann::ordered_json schema_document(const std::string& name);
-// As it is to stand in configs/<name>.schema.json; "result", "baseline", "gate", "stability",
-// "tuned", "answers".
+// As it is to stand in configs/<name>.schema.json: the definitions that follow from tables,
+// "status", "counter", "work", "point" and "answer_row", are replaced. "result", "baseline",
+// "gate", "stability", "tuned", "answers".
 std::string schema_text(const std::string& name);
 std::vector<std::string> generated_schemas();
 

@@ -29,15 +29,10 @@ void read_limits(JsonReader& reader, const std::string& where, SweepSpec& spec) 
 void read_scene_parameters(JsonReader& reader, const SceneType& type, SweepSpec& spec) {
   for (const double n : reader.numbers("resolutions", Bounds::whole_number(2)))
     spec.resolutions.push_back(static_cast<int>(n));
-  if (const json* parameters = reader.find("scene_parameters")) {
-    if (!parameters->is_object())
-      reader.fail_at("scene_parameters", *parameters, "an object { ... }");
-    for (const auto& [key, value] : parameters->items()) {
-      if (!value.is_number())
-        throw UsageError(reader.where("scene_parameters") + ": '" + key + "' is " +
-                         value_text(value) + ", must be a number");
-      spec.scene_parameters[key] = value.get<double>();
-    }
+  if (const json* given = reader.find("scene_parameters")) {
+    JsonReader parameters(*given, reader.where("scene_parameters"));
+    for (const auto& entry : given->items())
+      spec.scene_parameters[entry.key()] = parameters.number(entry.key(), 0, {});
   }
   if (!spec.resolutions.empty()) return;
   const SceneParameters complete = complete_parameters(type, spec.scene_parameters);
@@ -131,10 +126,8 @@ void check_contestants(const Suite& suite, const JsonReader& reader) {
 std::vector<std::string> sweep_kinds() { return {"strain", "resolution", "step"}; }
 
 std::vector<double> levels_of(const Suite& suite) {
-  std::vector<double> levels;
-  for (const double level : answer_levels) {
-    if (level >= suite.finest_error) levels.push_back(level);
-  }
+  std::vector<double> levels(answer_levels.begin(), answer_levels.end());
+  std::erase_if(levels, [&suite](double level) { return level < suite.finest_error; });
   return levels;
 }
 
@@ -187,13 +180,9 @@ Suite parse_suite(const std::string& text, const std::string& path) {
 json to_json(const Suite& suite) {
   json sweeps = json::array();
   for (const SweepSpec& s : suite.sweeps) {
-    json options = json::object();
-    for (const auto& [solver, settings] : s.solver_options) options[solver] = to_json(settings);
-    json contestants = json::array();
-    for (const Contestant& c : s.contestants) contestants.push_back(to_json(c));
     sweeps.push_back({{"sweep", s.sweep},
                       {"scene", s.scene},
-                      {"solvers", contestants},
+                      {"solvers", s.contestants},
                       {"limits", s.limits},
                       {"resolutions", s.resolutions},
                       {"steps",
@@ -202,7 +191,7 @@ json to_json(const Suite& suite) {
                         {"adaptive", s.adaptive},
                         {"all", s.every_step}}},
                       {"scene_parameters", s.scene_parameters},
-                      {"solver_options", options}});
+                      {"solver_options", s.solver_options}});
   }
   json document = {{"name", suite.name},
                    {"description", suite.description},

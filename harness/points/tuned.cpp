@@ -50,7 +50,7 @@ TunedEntry read_entry(const json& object, const std::string& where) {
 std::string hash_of(const std::vector<TunedEntry>& entries) {
   std::map<std::string, json> settings;
   for (const TunedEntry& entry : entries)
-    settings[entry.kind + "/" + entry.solver] = to_json(entry.settings_at());
+    settings[entry.kind + "/" + entry.solver] = entry.settings_at();
   return fnv1a(json(settings).dump());
 }
 
@@ -75,12 +75,6 @@ const TunedEntry* Tuned::find(const std::string& kind, const std::string& solver
   const auto place = std::ranges::find_if(
       entries, [&](const TunedEntry& e) { return e.kind == kind && e.solver == solver; });
   return place == entries.end() ? nullptr : &*place;
-}
-
-Tuned read_tuned(const std::string& file) {
-  const bool path = file.find('/') != std::string::npos;
-  return parse_tuned(
-      read_file(path ? file : source_path("configs/" + file), "file of tuned settings"), file);
 }
 
 Tuned parse_tuned(const std::string& text, const std::string& file) {
@@ -178,7 +172,9 @@ std::string rule_change(const TunedEntry& entry) {
 }
 
 Tuned read_tuned_up_to_date(const std::string& file) {
-  Tuned tuned = read_tuned(file);
+  const bool path = file.find('/') != std::string::npos;
+  Tuned tuned = parse_tuned(
+      read_file(path ? file : source_path("configs/" + file), "file of tuned settings"), file);
   for (const TunedEntry& entry : tuned.entries) {
     if (const std::string change = rule_change(entry); !change.empty())
       throw UsageError("tuned settings '" + tuned.file + "': those of " + entry.solver +

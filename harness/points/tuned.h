@@ -40,9 +40,7 @@ struct Tuned {
   const TunedEntry* find(const std::string& kind, const std::string& solver) const;
 };
 
-// "tuned.json" is looked for in configs/, a path with a slash from where the program runs. Throws
-// UsageError, naming file, key and value.
-Tuned read_tuned(const std::string& file);
+// Throws UsageError, naming file, key and value.
 Tuned parse_tuned(const std::string& text, const std::string& file);
 
 nlohmann::ordered_json tuned_document(const std::vector<TunedEntry>& entries);
@@ -67,7 +65,8 @@ nlohmann::json tuning_rule(const SweepSpec& scene, const inextensible::Backend& 
 
 // The first difference between the rule that an entry was found by and today's; "": there is none.
 std::string rule_change(const TunedEntry& entry);
-// read_tuned(), and UsageError for the first entry whose rule has changed, which says how.
+// "tuned.json" is looked for in configs/, a path with a slash from where the program runs. Throws
+// UsageError for the first entry whose rule has changed, too, and says how.
 Tuned read_tuned_up_to_date(const std::string& file);
 
 }  // namespace harness

@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "harness/base/text.h"
-#include "harness/run/calibration.h"
-#include "harness/run/point_runner.h"
 
 namespace harness {
 namespace {
@@ -27,7 +24,7 @@ std::optional<Pick> pick_of(const PointResult& point, const Wish& wish) {
   const auto frame = std::ranges::find_if(point.frame_times, [&wish](const FrameTime& f) {
     return std::abs(f.rate - wish.rate) < 1e-6;
   });
-  if (!point.ok() || frame == point.frame_times.end()) return {};
+  if (frame == point.frame_times.end()) return {};
   return Pick{&point, *frame, error_at(point.measures, wish.error).distance};
 }
 
@@ -39,7 +36,7 @@ std::function<bool()> stop_at(const ChooseLimits& limits, double share) {
 }
 
 std::vector<PointResult> screen_all(const std::vector<Search>& searches, const ChooseLimits& limits,
-                                    const ChooseRunners& runners) {
+                                    const SweepRunners& runners) {
   const double most = screening_share * limits.seconds / static_cast<double>(searches.size());
   const auto stop = stop_at(limits, search_share);
   std::vector<PointResult> screened(searches.size());
@@ -48,7 +45,12 @@ std::vector<PointResult> screen_all(const std::vector<Search>& searches, const C
     spec.step = searches[i].ladder[searches[i].ladder.size() / 2];
     if (stop()) continue;
     try {
-      screened[i] = runners.screen(spec, {most, std::min(usual_look, most), stop}, {});
+      screened[i] = runners.run(spec,
+                                {.timeout = most,
+                                 .hopeless = std::min(usual_look, most),
+                                 .interrupted = stop,
+                                 .look = true},
+                                {});
     } catch (const Interrupted&) {
       screened[i].detail = "its first step took too long";
     }
@@ -73,54 +75,12 @@ void repeat_finalists(std::vector<PointResult>& points, const Suite& suite, cons
     for (std::size_t round = 1; round < final_samples; ++round) {
       for (PointResult* point : fastest_runs(points, wish)) {
         if (stop()) return;
-        append(runners.repeat(*point, {.timeout = suite.timeout, .interrupted = stop}), *point);
+        runners.add_sample(*point, {.timeout = suite.timeout, .interrupted = stop});
       }
     }
   } catch (const Interrupted&) {
   }
 }
-
-// The pick of least rank, of those that may be taken.
-template <class May, class Rank>
-std::optional<Pick> least(const std::vector<PointResult>& points, const Wish& wish, May may,
-                          Rank rank) {
-  std::optional<Pick> best;
-  for (const PointResult& point : points) {
-    const auto pick = pick_of(point, wish);
-    if (pick && may(*pick) && (!best || rank(*pick) < rank(*best))) best = pick;
-  }
-  return best;
-}
-
-void screen(PointResult& point, const RunLimits& limits, std::optional<double> guess) {
-  using inextensible::StrainControl;
-  const PointSpec& spec = point.spec;
-  const PointRunner runner(spec, limits);
-  const StrainControl control = runner.backend().strain_control;
-  inextensible::Settings settings = spec.settings;
-  const bool springs = control == StrainControl::stiffness && !settings.contains("stiffness");
-  if (springs)
-    settings["stiffness"] = guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
-  const Run run = runner.run(settings, true, std::numeric_limits<double>::infinity());
-  const auto steps = static_cast<double>(run.stepper->work().steps);
-  // The first step sets up what the others use.
-  if (steps > 0)
-    point.samples = {
-        (steps == 1 ? run.seconds : (run.seconds - run.first_step_seconds) / (steps - 1)) /
-        spec.step};
-  point.status = PointStatus::ok;
-  if (run.status == PointStatus::not_converged || run.status == PointStatus::diverged) {
-    point.status = run.status;
-    point.detail = run.detail;
-  } else if (const double strain = run.measures.max_strain;
-             !springs && control != StrainControl::none &&
-             !(strain <= spec.strain_limit * (1 + 1e-9))) {
-    point.status = PointStatus::strain_missed;
-    point.detail = "strain " + told_apart(strain, spec.strain_limit);
-  }
-}
-
-}  // namespace
 
 std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened) {
   std::vector<std::size_t> order(screened.size());
@@ -134,9 +94,16 @@ std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened) 
   return order;
 }
 
+Kept kept(const FrameTime& frame, double budget) {
+  if (!(budget > 0) || frame.slow <= budget) return Kept::nearly_all;
+  return frame.median <= budget ? Kept::half : Kept::fewer;
+}
+
+}  // namespace
+
 Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
                        const ChooseLimits& limits, const SweepEvents& events,
-                       const ChooseRunners& runners) {
+                       const SweepRunners& runners) {
   Trials trials;
   trials.screened = screen_all(searches, limits, runners);
   std::vector<Search> ordered;
@@ -157,34 +124,35 @@ Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, 
   return trials;
 }
 
-Kept kept(const FrameTime& frame, double budget) {
-  if (!(budget > 0) || frame.slow <= budget) return Kept::nearly_all;
-  return frame.median <= budget ? Kept::half : Kept::fewer;
-}
-
 std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& wish,
                             const std::string& not_by) {
-  return least(
-      points, wish,
-      [&](const Pick& p) { return p.point->spec.name() != not_by && within(*p.point, wish); },
-      [](const Pick& p) { return p.point->seconds(); });
+  const auto rank = [&wish](const Pick& pick) {
+    return std::pair(kept(pick.frame, wish.budget), pick.point->seconds());
+  };
+  std::optional<Pick> best;
+  for (const PointResult& point : points) {
+    if (point.spec.contestant == not_by || !within(point, wish)) continue;
+    const auto pick = pick_of(point, wish);
+    if (pick && (!best || rank(*pick) < rank(*best))) best = pick;
+  }
+  return best;
 }
 
 Recommendation recommend(const std::vector<PointResult>& points, const Wish& wish) {
   Recommendation found;
-  found.best = least(
-      points, wish, [&](const Pick& p) { return within(*p.point, wish); },
-      [&](const Pick& p) { return std::pair(kept(p.frame, wish.budget), p.point->seconds()); });
+  found.best = fastest(points, wish);
   if (!found.best) return found;
   found.budget = kept(found.best->frame, wish.budget);
-  found.next = fastest(points, wish, found.best->point->spec.name());
+  Wish without_budget = wish;
+  without_budget.budget = 0;
+  found.next = fastest(points, without_budget, found.best->point->spec.contestant);
   return found;
 }
 
 std::string why_not(const std::string& contestant, const Trials& trials, const Wish& wish) {
   const PointResult *closest = nullptr, *failed = nullptr;
   for (const PointResult& point : trials.points) {
-    if (point.spec.name() != contestant) continue;
+    if (point.spec.contestant != contestant) continue;
     if (within(point, wish)) return "";
     if (!point.ok()) failed = &point;
     const auto error = [&wish](const PointResult& p) {
@@ -201,19 +169,12 @@ std::string why_not(const std::string& contestant, const Trials& trials, const W
   if (failed)
     return std::string(to_string(failed->status)) + at(*failed) + ": " + shortened(failed->detail);
   const auto seen = std::ranges::find_if(
-      trials.screened, [&](const PointResult& p) { return p.spec.name() == contestant; });
+      trials.screened, [&](const PointResult& p) { return p.spec.contestant == contestant; });
   if (seen == trials.screened.end() || (seen->samples.empty() && seen->detail.empty()))
     return "not tried, the time was over";
   if (seen->samples.empty()) return "not tried: " + shortened(seen->detail);
   return "no run ended in time; its first steps took " + duration_text(seen->seconds()) +
          " a simulated second";
-}
-
-PointResult screen_point(const PointSpec& spec, const RunLimits& limits,
-                         std::optional<double> guess) {
-  PointResult point(spec);
-  with_failures_in(point, [&] { screen(point, limits, guess); });
-  return point;
 }
 
 }  // namespace harness

@@ -18,14 +18,9 @@ struct Wish {
 };
 
 struct ChooseLimits {
-  double seconds = 60;              // for everything
-  std::function<double()> elapsed;  // s since the beginning
-  std::function<bool()> interrupted;
-};
-
-// screen stands for screen_point. Runs throw Interrupted as soon as their limits say so.
-struct ChooseRunners : SweepRunners {
-  decltype(SweepRunners::run) screen;
+  double seconds = 60;                // for everything
+  std::function<double()> elapsed;    // s since the beginning
+  std::function<bool()> interrupted;  // asked in runs, too, which then throw Interrupted
 };
 
 struct Trials {
@@ -34,16 +29,13 @@ struct Trials {
   bool complete = true;               // false: the time was over before all ladders were done
 };
 
-// The order of the searches' ladders: the fastest first of those that met the strain limit when
-// they were screened, then that of those that missed it, then the rest.
-std::vector<std::size_t> ladder_order(const std::vector<PointResult>& screened);
-
-// Screens all contestants before the first ladder, runs ladders in ladder_order(), and takes more
-// samples of the fastest runs. A run in progress is stopped when the time is over. Throws
-// Interrupted if limits.interrupted() says so, whatever has been found.
+// Screens all contestants before the first ladder, and takes more samples of the fastest runs. The
+// order of the ladders: the fastest first of those that met the strain limit when they were
+// screened, then that of those that missed it, then the rest. A run in progress is stopped when the
+// time is over. Throws Interrupted if limits.interrupted() says so, whatever has been found.
 Trials try_contestants(const Suite& suite, const std::vector<Search>& searches, const Wish& wish,
                        const ChooseLimits& limits, const SweepEvents& events,
-                       const ChooseRunners& runners);
+                       const SweepRunners& runners);
 
 struct Pick {
   const PointResult* point = nullptr;
@@ -51,18 +43,17 @@ struct Pick {
   double error = unknown;  // over the scene's size; unknown: nothing says
 };
 
-// The fastest that ran to the end within strain limit and error; `not_by`: of other contestants.
+// How much of a budget the frames of a run keep: 99 % of them, half of them, or fewer.
+enum class Kept { nearly_all, half, fewer };
+
+// The fastest within strain limit and error of those that keep most of the budget; `not_by`: of
+// other contestants.
 std::optional<Pick> fastest(const std::vector<PointResult>& points, const Wish& wish,
                             const std::string& not_by = {});
 
-// How much of a budget the frames of a run keep: 99 % of them, half of them, or fewer.
-enum class Kept { nearly_all, half, fewer };
-Kept kept(const FrameTime& frame, double budget);
-
-// best: the fastest within strain limit and error of those that keep most of the budget. One that
-// keeps it in fewer than half of its frames is not to be taken.
+// A run that keeps the budget in fewer than half of its frames is not to be taken.
 struct Recommendation {
-  std::optional<Pick> best, next;  // next: of another contestant
+  std::optional<Pick> best, next;  // next: of another contestant, whatever the budget
   Kept budget = Kept::nearly_all;  // without one: nearly_all
   bool to_be_taken() const { return best && budget != Kept::fewer; }
   bool all_is_well() const { return best && budget == Kept::nearly_all; }
@@ -71,13 +62,5 @@ Recommendation recommend(const std::vector<PointResult>& points, const Wish& wis
 
 // Why a contestant has no run within strain limit and error; empty: it has one.
 std::string why_not(const std::string& contestant, const Trials& trials, const Wish& wish);
-
-inline constexpr double usual_look = 0.1;  // s
-
-// Takes steps for about limits.hopeless seconds. The point's one sample is their time, where one
-// step succeeded, and its status is ok if they met the strain limit. Springs have the stiffness
-// that a calibration begins with; their strain says nothing yet and counts as met.
-PointResult screen_point(const PointSpec& spec, const RunLimits& limits,
-                         std::optional<double> guess = {});
 
 }  // namespace harness

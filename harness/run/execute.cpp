@@ -36,9 +36,6 @@ PointResult lost(const PointSpec& spec, const ChildOutcome& outcome, double time
   return point;
 }
 
-// What did not come back is no sample.
-Samples lost(const PointResult&, const ChildOutcome&, double) { return {}; }
-
 constexpr const char* repetition_mark = " #";
 
 std::string key_of_repetition(const std::string& key, int i) {
@@ -82,15 +79,12 @@ bool same_start(const PointResult& point, std::optional<double> guess) {
 void find_reference(const RunLimits& limits, const PointSpec& spec) {
   if (limits.references) limits.references->find(spec.scene, spec.scene_parameters);
 }
-void find_reference(const RunLimits& limits, const PointResult& point) {
-  find_reference(limits, point.spec);
-}
 
 }  // namespace
 
 SweepRunners isolated(const SweepRunners& inner, double memory) {
-  return wrapped(inner, [memory](const auto& what, const RunLimits& limits, const auto& call) {
-    find_reference(limits, what);
+  return wrapped(inner, [memory](const PointSpec& spec, const RunLimits& limits, const auto& call) {
+    find_reference(limits, spec);
     return in_child(
         {limits.timeout, memory, limits.interrupted},
         [&](Heartbeat& heartbeat) {
@@ -99,21 +93,25 @@ SweepRunners isolated(const SweepRunners& inner, double memory) {
           own.heartbeat = &heartbeat;
           return to_json(call(own));
         },
-        [](const json& result) {
-          if constexpr (std::is_same_v<decltype(call(limits)), Samples>)
-            return samples_of(result);
-          else
-            return point_of(result);
-        },
-        [&](const ChildOutcome& child) { return lost(what, child, limits.timeout); });
+        point_of, [&](const ChildOutcome& child) { return lost(spec, child, limits.timeout); });
   });
 }
 
 SweepRunners journaled(const SweepRunners& inner, Journal& journal) {
-  const auto repeated = std::make_shared<std::map<std::string, int>>();
-  return {[run = inner.run, &journal](const PointSpec& spec, const RunLimits& limits,
-                                      std::optional<double> guess) {
+  const auto samples_of_key = std::make_shared<std::map<std::string, int>>();
+  return {[=, run = inner.run, &journal](const PointSpec& spec, const RunLimits& limits,
+                                         std::optional<double> guess) {
             const std::string key = key_of(spec);
+            if (limits.sample_of) {
+              const auto take = [&] {
+                const Samples taken = run(spec, limits, guess);
+                return to_json(taken);
+              };
+              const std::string repetition = key_of_repetition(key, ++(*samples_of_key)[key]);
+              PointResult more(spec);
+              append(samples_of(journal.once(repetition, take)), more);
+              return more;
+            }
             if (const json* known = journal.find(key)) {
               PointResult point = point_of(*known);
               if (same_start(point, guess)) {
@@ -125,12 +123,6 @@ SweepRunners journaled(const SweepRunners& inner, Journal& journal) {
             PointResult point = run(spec, limits, guess);
             journal.add(key, to_json(point));
             return point;
-          },
-          [repeat = inner.repeat, repeated, &journal](const PointResult& point,
-                                                      const RunLimits& limits) {
-            const std::string key = key_of(point.spec);
-            return samples_of(journal.once(key_of_repetition(key, ++(*repeated)[key]),
-                                           [&] { return to_json(repeat(point, limits)); }));
           },
           inner.references};
 }

@@ -1,5 +1,5 @@
 // How the runs that a plan asks for are carried out: each in a process of its own, each kept in the
-// journal, under limits of their own. All are wrappers of the same two functions.
+// journal, under limits of their own. All are wrappers of the same function.
 #pragma once
 
 #include <functional>
@@ -15,20 +15,21 @@ namespace harness {
 struct SweepRunners {
   std::function<PointResult(const PointSpec&, const RunLimits&, std::optional<double>)> run =
       run_point;
-  std::function<Samples(const PointResult&, const RunLimits&)> repeat = repeat_point;
   std::shared_ptr<ReferenceFolder> references = nullptr;  // null: no errors against references
+
+  void add_sample(PointResult& point, RunLimits limits) const {
+    limits.sample_of = &point;
+    append(run(point.spec, limits, {}), point);
+  }
 };
 
-// Both functions with the same done around each call. around(what, limits, call): what is run, a
-// spec or a point once more; call(limits) does it, under limits of around's choice.
+// The same with something done around each run. around(spec, limits, call): call(limits) is the
+// run, under limits of around's choice.
 template <class Around>
 SweepRunners wrapped(const SweepRunners& inner, const Around& around) {
   return {[around, run = inner.run](const PointSpec& spec, const RunLimits& limits, auto guess) {
             return around(spec, limits,
                           [&](const RunLimits& own) { return run(spec, own, guess); });
-          },
-          [around, repeat = inner.repeat](const PointResult& point, const RunLimits& limits) {
-            return around(point, limits, [&](const RunLimits& own) { return repeat(point, own); });
           },
           inner.references};
 }

@@ -54,27 +54,23 @@ void NoiseProbe::sample() {
     sum += seconds;
     least = std::min(least, seconds);
   }
-  samples_.push_back({since(start_), sum / runs});
+  at_.push_back(since(start_));
+  seconds_.push_back(sum / runs);
   quiet_probe().renew(least);
 }
 
 void NoiseProbe::sample_if_due() {
-  if (samples_.empty() || since(start_) - samples_.back().at >= every_) sample();
+  if (at_.empty() || since(start_) - at_.back() >= 60) sample();
 }
 
 double NoiseProbe::spread() const {
-  if (samples_.empty()) return 0;
-  const auto [low, high] = std::ranges::minmax(samples_, {}, &Sample::seconds);
-  return high.seconds / low.seconds - 1;
+  if (seconds_.empty()) return 0;
+  const auto [low, high] = std::ranges::minmax(seconds_);
+  return high / low - 1;
 }
 
 nlohmann::json NoiseProbe::to_json() const {
-  nlohmann::json at = nlohmann::json::array(), seconds = nlohmann::json::array();
-  for (const Sample& s : samples_) {
-    at.push_back(s.at);
-    seconds.push_back(s.seconds);
-  }
-  return {{"at", at}, {"seconds", seconds}, {"spread", spread()}, {"noisy", noisy()}};
+  return {{"at", at_}, {"seconds", seconds_}, {"spread", spread()}, {"noisy", noisy()}};
 }
 
 }  // namespace harness

@@ -86,27 +86,20 @@ class NoiseProbe {
   // Spread (largest over smallest time, less 1) from which on the machine counts as noisy.
   static constexpr double noisy_from = 0.1;
 
-  // every: s between samples.
-  explicit NoiseProbe(double every = 60, QuietProbe::Work work = fixed_work)
-      : every_(every), work_(std::move(work)) {}
+  explicit NoiseProbe(QuietProbe::Work work = fixed_work) : work_(std::move(work)) {}
 
   void sample();
   void sample_if_due();
 
-  struct Sample {
-    double at, seconds;  // s since construction; the work's mean time
-  };
-  const std::vector<Sample>& samples() const { return samples_; }
   double spread() const;
   bool noisy() const { return spread() > noisy_from; }
   // {"at": [...], "seconds": [...], "spread": x, "noisy": b}
   nlohmann::json to_json() const;
 
  private:
-  double every_;
   QuietProbe::Work work_;
   Clock::time_point start_ = Clock::now();
-  std::vector<Sample> samples_;
+  std::vector<double> at_, seconds_;  // s since construction; the work's mean time
 };
 
 }  // namespace harness

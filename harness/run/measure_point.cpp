@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "harness/base/text.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/calibration.h"
 #include "harness/run/machine_noise.h"
@@ -45,76 +49,63 @@ struct Batch {
 
 bool may_be_retaken(const Batch& batch) { return batch.ok() && batch.seconds < longest_retaken; }
 
-// Takes the samples of one point.
-class Sampler {
- public:
-  // short_steps: reads of the clock between phases are part of the time of a short step, so that it
-  // is timed without them, and the phases in runs of their own.
-  Sampler(const PointResult& point, PointRunner& runner, const inextensible::Settings& settings,
-          bool short_steps, const RunLimits& limits)
-      : fastest_(point.seconds()),
-        runner_(runner),
-        settings_(settings),
-        short_steps_(short_steps),
-        limits_(limits) {}
+// Takes samples of one point.
+struct Sampler {
+  const PointResult& point;  // with the samples before
+  PointRunner& runner;
+  const inextensible::Settings& settings;
+  // Reads of the clock between phases are part of the time of a short step, so that it is timed
+  // without them, and the phases in runs of their own.
+  bool short_steps;
+  const RunLimits& limits;
+  Samples taken = {};
+  inextensible::PhaseSeconds phases = {};  // of the filter sample
 
-  // Takes a sample; returns the run that failed, if one did. retaken: tries that were dropped
+  // Takes a sample; returns the last run, which may have failed. retaken: tries that were dropped
   // before.
-  std::optional<Run> add(int retaken) {
-    if (short_steps_) {
-      Batch phases = batch(least_filter_sample, true);
-      if (!phases.ok()) return std::move(phases.last);
-      record_filter(phases);
+  Run add(int retaken) {
+    if (short_steps) {
+      Batch in_phases = batch(least_filter_sample, true);
+      if (!in_phases.ok()) return std::move(in_phases.last);
+      record_filter(in_phases);
     }
-    const auto take = [this] { return batch(least_sample, !short_steps_); };
-    auto [sample, dropped] = limits_.timed ? take_quietly(quiet_probe(), take, may_be_retaken,
-                                                          retaken, limits_.most_retaken)
-                                           : std::pair(take(), 0);
-    taken_.retaken += dropped;
+    const auto take = [this] { return batch(least_sample, !short_steps); };
+    auto [sample, dropped] = limits.timed ? take_quietly(quiet_probe(), take, may_be_retaken,
+                                                         retaken, limits.most_retaken)
+                                          : std::pair(take(), 0);
+    taken.retaken += dropped;
     return record(std::move(sample));
   }
 
-  std::optional<Run> record(Batch sample) {
+  Run record(Batch sample) {
     if (!sample.ok()) return std::move(sample.last);
-    if (!short_steps_) record_filter(sample);
+    if (!short_steps) record_filter(sample);
     const double seconds = of_a_second(sample.seconds, sample);
-    if (!(seconds >= fastest_)) taken_.frame_times = sample.last.frame_times;
-    taken_.samples.push_back(seconds);
-    taken_.cpu_samples.push_back(of_a_second(sample.cpu_seconds, sample));
-    taken_.sample_runs.push_back(sample.runs);
-    return std::nullopt;
+    if (!(seconds >= point.seconds())) taken.frame_times = sample.last.frame_times;
+    taken.samples.push_back(seconds);
+    taken.cpu_samples.push_back(of_a_second(sample.cpu_seconds, sample));
+    taken.sample_runs.push_back(sample.runs);
+    return std::move(sample.last);
   }
 
-  const Samples& taken() const { return taken_; }
-  const inextensible::PhaseSeconds& phases() const { return phases_; }  // of the filter sample
-
- private:
   // As many runs as take at least that long together, s; each has the whole time-out to itself.
-  Batch batch(double at_least, bool phases) {
+  Batch batch(double at_least, bool with_phases) {
     Batch batch;
     do {
-      runner_.restart_clock(RunPart::measured);
-      batch.add(runner_.run(settings_, false, diverged_strain, phases));
-    } while (limits_.timed && batch.ok() && batch.seconds < at_least);
+      runner.restart_clock(RunPart::measured);
+      batch.add(runner.run(settings, false, diverged_strain, with_phases));
+    } while (limits.timed && batch.ok() && batch.seconds < at_least);
     return batch;
   }
 
   void record_filter(const Batch& batch) {
-    phases_ = batch.last.stepper->phases();
-    taken_.filter_samples.push_back(of_a_second(batch.filter_seconds, batch));
+    phases = batch.last.stepper->phases();
+    taken.filter_samples.push_back(of_a_second(batch.filter_seconds, batch));
   }
 
   double of_a_second(double seconds, const Batch& batch) const {
-    return seconds / batch.runs / (runner_.steps() * runner_.spec().step);
+    return seconds / batch.runs / (runner.steps() * runner.spec().step);
   }
-
-  double fastest_;  // s/s, of the samples before; not-a-number without one
-  PointRunner& runner_;
-  const inextensible::Settings& settings_;
-  bool short_steps_;
-  const RunLimits& limits_;
-  Samples taken_;
-  inextensible::PhaseSeconds phases_;
 };
 
 // The stiffness that a point's springs need, in its settings too. False: there is none, and the
@@ -161,20 +152,68 @@ void measure(PointResult& point, PointRunner& runner, const inextensible::Settin
   point.work = judged.last.stepper->work();
   point.linear_solver = judged.last.stepper->linear_solver();
   if (!point.ok()) return;
-  const bool short_steps = runner.seconds_per_step(judged.last) < shortest_judged_step;
-  Sampler sampler(point, runner, settings, short_steps, limits);
+  const bool short_steps = judged.last.seconds / runner.steps() < shortest_judged_step;
+  Sampler sampler{point, runner, settings, short_steps, limits};
   const bool a_sample =
       !judged.last.observed && !short_steps && (!timed || judged.seconds >= least_sample);
   const bool disturbed = timed && limits.most_retaken > 0 && may_be_retaken(judged) &&
                          quiet_probe().disturbed(std::max(before, after));
-  const auto failed =
+  const Run last =
       a_sample && !disturbed ? sampler.record(std::move(judged)) : sampler.add(a_sample ? 1 : 0);
-  append(sampler.taken(), point);
-  if (!point.filter_samples.empty()) point.phases = sampler.phases();
-  if (failed) {
-    point.status = failed->status;  // without a time it is no result
-    point.detail = failed->detail;
+  append(sampler.taken, point);
+  if (!point.filter_samples.empty()) point.phases = sampler.phases;
+  point.status = last.status;  // without a time it is no result
+  point.detail = last.detail;
+}
+
+void add_sample(PointResult& more, const RunLimits& limits) {
+  const PointResult& point = *limits.sample_of;
+  inextensible::Settings settings = point.spec.settings;
+  if (point.stiffness) settings["stiffness"] = *point.stiffness;
+  PointRunner runner(point.spec, limits);
+  const bool short_steps = point.seconds() * point.spec.step < shortest_judged_step;
+  Sampler sampler{point, runner, settings, short_steps, limits};
+  sampler.add(0);
+  append(sampler.taken, more);
+}
+
+void look(PointResult& point, const RunLimits& limits, std::optional<double> guess) {
+  const PointSpec& spec = point.spec;
+  using inextensible::StrainControl;
+  const PointRunner runner(spec, limits);
+  const StrainControl control = runner.backend().strain_control;
+  inextensible::Settings settings = spec.settings;
+  const bool springs = control == StrainControl::stiffness && !settings.contains("stiffness");
+  if (springs)
+    settings["stiffness"] = guess.value_or(first_stiffness(runner.scene(), spec.strain_limit));
+  const Run run = runner.run(settings, true, std::numeric_limits<double>::infinity());
+  const auto steps = static_cast<double>(run.stepper->work().steps);
+  // The first step sets up what the others use.
+  if (steps > 0)
+    point.samples = {
+        (steps == 1 ? run.seconds : (run.seconds - run.first_step_seconds) / (steps - 1)) /
+        spec.step};
+  point.status = PointStatus::ok;
+  if (run.status == PointStatus::not_converged || run.status == PointStatus::diverged) {
+    point.status = run.status;
+    point.detail = run.detail;
+  } else if (const double strain = run.measures.max_strain;
+             !springs && control != StrainControl::none &&
+             !(strain <= spec.strain_limit * (1 + 1e-9))) {
+    point.status = PointStatus::strain_missed;
+    point.detail = "strain " + told_apart(strain, spec.strain_limit);
   }
+}
+
+void run_whole(PointResult& point, const RunLimits& limits, std::optional<double> guess) {
+  PointRunner runner(point.spec, limits);
+  point.steps_planned = runner.steps();
+  inextensible::Settings settings = point.spec.settings;
+  const bool needs_stiffness =
+      runner.backend().strain_control == inextensible::StrainControl::stiffness &&
+      !settings.contains("stiffness");
+  if (!needs_stiffness || calibrate(point, runner, settings, guess))
+    measure(point, runner, settings, limits);
 }
 
 }  // namespace
@@ -182,28 +221,23 @@ void measure(PointResult& point, PointRunner& runner, const inextensible::Settin
 PointResult run_point(const PointSpec& spec, const RunLimits& limits, std::optional<double> guess) {
   PointResult point(spec);
   reset_peak_rss();
-  with_failures_in(point, [&] {
-    PointRunner runner(spec, limits);
-    point.steps_planned = runner.steps();
-    inextensible::Settings settings = spec.settings;
-    const bool needs_stiffness =
-        runner.backend().strain_control == inextensible::StrainControl::stiffness &&
-        !settings.contains("stiffness");
-    if (!needs_stiffness || calibrate(point, runner, settings, guess))
-      measure(point, runner, settings, limits);
-  });
+  try {
+    if (limits.sample_of) {
+      add_sample(point, limits);
+    } else if (limits.look) {
+      look(point, limits, guess);
+    } else {
+      run_whole(point, limits, guess);
+    }
+  } catch (const std::bad_alloc&) {
+    point.status = PointStatus::out_of_memory;
+    point.detail = "an allocation failed";
+  } catch (const std::invalid_argument& error) {  // the solver does not take the problem
+    point.status = PointStatus::unsupported;
+    point.detail = error.what();
+  }
   point.peak_rss_bytes = peak_rss_bytes();
   return point;
-}
-
-Samples repeat_point(const PointResult& point, const RunLimits& limits) {
-  inextensible::Settings settings = point.spec.settings;
-  if (point.stiffness) settings["stiffness"] = *point.stiffness;
-  PointRunner runner(point.spec, limits);
-  const bool short_steps = point.seconds() * point.spec.step < shortest_judged_step;
-  Sampler sampler(point, runner, settings, short_steps, limits);
-  sampler.add(0);
-  return sampler.taken();
 }
 
 }  // namespace harness

@@ -17,6 +17,8 @@ inline constexpr double least_sample = 0.02;  // s: a thousand times a block of 
 // milliseconds hardly shows.
 inline constexpr double longest_retaken = 0.25;
 
+inline constexpr double usual_look = 0.1;  // s
+
 // What a point is at; a heartbeat's part.
 enum class RunPart { measured, calibration };
 
@@ -30,17 +32,20 @@ struct RunLimits {
   Heartbeat* heartbeat = nullptr;  // notified of every step; see child_process.h
   int most_retaken = 3;            // times that a sample may be taken again
   bool timed = true;               // false: times are not used, and one run is a sample
+  // If it is not null, all that is wanted is one sample more of this point: the judge stays out.
+  const PointResult* sample_of = nullptr;
+  // true: only steps for about `hopeless` seconds. The point's one sample is their time, where one
+  // step succeeded, and its status is ok if they met the strain limit. Springs have the stiffness
+  // that a calibration begins with; their strain says nothing yet and counts as met.
+  bool look = false;
 };
 
-// One judged run, and a first sample of its time. guess: a stiffness to begin calibration from,
-// where one is needed. Throws Interrupted, and nothing else: whatever goes wrong is the point's
-// status.
+// One judged run, and a first sample of its time; or only a sample more, or a look. A
+// sample is the mean time of as many runs as take least_sample together; it is taken again where
+// the machine was disturbed (machine_noise.h), unless it takes longer than longest_retaken. There
+// is none where the run failed. guess: a stiffness to begin calibration from, where one is needed.
+// Throws Interrupted, and nothing else: whatever goes wrong is the point's status.
 PointResult run_point(const PointSpec& spec, const RunLimits& limits,
                       std::optional<double> guess = {});
-
-// One sample more, for time alone: the judge stays out. It is the mean time of as many runs as take
-// least_sample together; it is taken again where the machine was disturbed (machine_noise.h),
-// unless it takes longer than longest_retaken. Without a sample where the run failed.
-Samples repeat_point(const PointResult& point, const RunLimits& limits);
 
 }  // namespace harness

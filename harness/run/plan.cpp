@@ -1,12 +1,10 @@
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <span>
 
 #include "harness/base/errors.h"
-#include "harness/base/text.h"
-#include "harness/run/choose.h"
+#include "harness/run/measure_point.h"
 #include "harness/run/sweep.h"
 
 namespace harness {
@@ -64,7 +62,7 @@ constexpr double around_a_run = 1.3;
 double seconds_per_second(const Search& search, double step, double timeout) {
   PointSpec spec = search.base;
   spec.step = step;
-  const PointResult seen = screen_point(spec, {.hopeless = usual_look});
+  const PointResult seen = run_point(spec, {.hopeless = usual_look, .look = true});
   if (seen.status == PointStatus::unsupported) return 0;
   return seen.samples.empty() ? timeout : seen.seconds();
 }
@@ -157,9 +155,8 @@ Estimate estimate(const Suite& suite, const std::vector<Search>& searches) {
     const bool calibrated =
         backend && backend->strain_control == inextensible::StrainControl::stiffness;
     for (const Search* search : members) {
-      const double tried = search->every_step ? static_cast<double>(search->ladder.size())
-                                              : std::min(static_cast<double>(search->ladder.size()),
-                                                         runs_of_a_search);
+      const auto rungs = static_cast<double>(search->ladder.size());
+      const double tried = search->every_step ? rungs : std::min(rungs, runs_of_a_search);
       const double repeated = search->base.sweep == "step" ? tried : repeated_of_a_search;
       const double sample = std::max(run, around_a_run * least_sample);
       result.seconds += run * tried * (calibrated ? runs_of_a_calibration : 1) +

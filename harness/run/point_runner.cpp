@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "harness/base/child_process.h"
 #include "harness/base/statistics.h"
@@ -37,13 +36,13 @@ constexpr double work_patience = 4;
 constexpr double rounding = 1e-6;  // of a frame: times add up their steps
 
 std::string refusal(const inextensible::StepResult& result, std::int64_t step, double time) {
-  std::ostringstream text;
-  text << "step " << step << " (t = " << time << " s): " << inextensible::to_string(result.status)
-       << ", " << result.detail << " after " << result.iterations << " iterations";
-  if (result.worst_edge >= 0 && std::isfinite(result.worst_strain)) {
-    text << "; edge " << result.worst_edge << " strained by " << result.worst_strain;
-  }
-  return text.str();
+  const bool edge_known = result.worst_edge >= 0 && std::isfinite(result.worst_strain);
+  return "step " + std::to_string(step) + " (t = " + number_text(time) +
+         " s): " + inextensible::to_string(result.status) + ", " + result.detail + " after " +
+         std::to_string(result.iterations) + " iterations" +
+         (edge_known ? "; edge " + std::to_string(result.worst_edge) + " strained by " +
+                           number_text(result.worst_strain)
+                     : "");
 }
 
 }  // namespace
@@ -93,14 +92,7 @@ class PointRunner::Observed : public Observer {
  public:
   // Without the judge, all time is left to the steps.
   Observed(const PointRunner& runner, bool judged, double stop_at, bool by_work, Run& run)
-      : runner_(runner),
-        spec_(runner.spec_),
-        limits_(runner.limits_),
-        backend_(runner.backend_),
-        stop_at_(stop_at),
-        by_work_(by_work),
-        run_(run),
-        frames_(spec_.step) {
+      : runner_(runner), stop_at_(stop_at), by_work_(by_work), run_(run) {
     if (!judged) return;
     judge_.emplace(runner.scene_, judging());
     run.stepper->observe(judge_->observer());
@@ -197,10 +189,9 @@ class PointRunner::Observed : public Observer {
     }
     const bool slow = driven.end == End::stopped;
     run_.status = PointStatus::timeout;
-    std::ostringstream text;
-    text << "longer than " << (slow ? limits_.hopeless : limits_.timeout) << " s"
-         << (slow ? ", far above the best time so far" : "") << "; stopped at t = " << time << " s";
-    run_.detail = text.str();
+    run_.detail = "longer than " + number_text(slow ? limits_.hopeless : limits_.timeout) + " s" +
+                  (slow ? ", far above the best time so far" : "") +
+                  "; stopped at t = " + number_text(time) + " s";
   }
 
   // What kept a run that reached its end from being one of this motion.
@@ -224,14 +215,14 @@ class PointRunner::Observed : public Observer {
   }
 
   const PointRunner& runner_;
-  const PointSpec& spec_;
-  const RunLimits& limits_;
-  const inextensible::Backend& backend_;
+  const PointSpec& spec_ = runner_.spec_;
+  const RunLimits& limits_ = runner_.limits_;
+  const inextensible::Backend& backend_ = runner_.backend_;
   double stop_at_;
   bool by_work_;
   Run& run_;
   std::optional<Judge> judge_;
-  FrameTimes frames_;
+  FrameTimes frames_{spec_.step};
   int block_ = 1;  // steps that are timed as one
   double cpu_begin_ = 0;
   Clock::time_point begin_;

@@ -2,13 +2,9 @@
 #pragma once
 
 #include <memory>
-#include <new>
-#include <stdexcept>
 #include <vector>
 
 #include "harness/base/clock.h"
-#include "harness/judge/drive.h"
-#include "harness/judge/judge.h"
 #include "harness/run/measure_point.h"
 #include "solvers/registry.h"
 
@@ -65,7 +61,6 @@ class PointRunner {
   const PointSpec& spec() const { return spec_; }
   const Scene& scene() const { return scene_; }
   int steps() const { return steps_; }
-  double seconds_per_step(const Run& run) const { return run.seconds / steps_; }
 
  private:
   class Observed;  // a run in progress
@@ -79,19 +74,5 @@ class PointRunner {
   inextensible::State first_state_;  // the scene's, or half a step back where velocities ask for it
   std::shared_ptr<const Reference> reference_;
 };
-
-// Does the work on a point; what goes wrong becomes the point's status.
-template <class Work>
-void with_failures_in(PointResult& point, const Work& work) {
-  try {
-    work();
-  } catch (const std::bad_alloc&) {
-    point.status = PointStatus::out_of_memory;
-    point.detail = "an allocation failed";
-  } catch (const std::invalid_argument& error) {  // the solver does not take the problem
-    point.status = PointStatus::unsupported;
-    point.detail = error.what();
-  }
-}
 
 }  // namespace harness

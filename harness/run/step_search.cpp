@@ -1,7 +1,6 @@
 #include "harness/run/step_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>

@@ -114,8 +114,7 @@ struct Sweep {
   }
 
   void repeat(PointResult& point) {
-    append(runners.repeat(point, {.timeout = suite.timeout, .interrupted = events.interrupted}),
-           point);
+    runners.add_sample(point, {.timeout = suite.timeout, .interrupted = events.interrupted});
   }
 
   void find_best(std::size_t search, Neighbour& neighbour);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <random>
+#include <set>
 
 #include "harness/base/text.h"
 #include "harness/points/point_json.h"
@@ -11,6 +13,47 @@
 
 namespace harness {
 namespace {
+
+// ---- The search in the space of settings ----
+
+constexpr double none = std::numeric_limits<double>::infinity();  // seconds of what fails
+constexpr double give_up_trial_at = 1.5;                          // times the best seconds
+constexpr double first_reach = 0.3;  // standard deviation of the first moves, over the range
+constexpr double last_reach = 0.15;  // times the first
+constexpr double least_gain = 0.05;  // all of it must be faster than the defaults by more than this
+constexpr std::uint64_t seed = 1;
+
+double shift(const TunedNumber& number) {
+  return number.whole && number.range.least < 1 ? 1 - number.range.least : 0;
+}
+
+bool logarithmic(const TunedNumber& number) {
+  const double least = number.range.least + shift(number);
+  return least > 0 && (number.range.largest + shift(number)) / least >= 10;
+}
+
+// How many times farther the range's lower end is from its bound than the upper one.
+double distance_ratio(const inextensible::SearchRange& range) {
+  return (*range.bound - range.least) / (*range.bound - range.largest);
+}
+
+// To three digits: two more than the search can tell apart.
+double rounded(double value) {
+  const double digits = std::pow(10, 3 - std::ceil(std::log10(std::abs(value) + 1e-300)));
+  return std::round(value * digits) / digits;
+}
+
+using Random = std::mt19937_64;
+
+// By a normal distance, reflected at an end of the range.
+double moved(const TunedNumber& number, double value, double reach, Random& random) {
+  double at = position_of(number, value) + std::normal_distribution<double>(0, reach)(random);
+  if (at < 0) at = -at > 1 ? 0 : -at;
+  if (at > 1) at = at > 2 ? 1 : 2 - at;
+  return value_at(number, at);
+}
+
+// ---- The times of settings ----
 
 constexpr double give_up_at = 2.5;  // times the time that is known at a place
 constexpr double far_too_long = 4;  // times options.longest_run: no step of a short one takes it
@@ -28,77 +71,75 @@ struct Found {
 };
 
 // At one size and strain limit of the scene.
-class Tuner {
- public:
-  Tuner(const SweepSpec& scene, const TuneOptions& options, const SweepRunners& runners,
-        const std::vector<TunedNumber>& numbers, Values start)
-      : options_(options),
-        runners_(runners),
-        scene_(scene),
-        numbers_(numbers),
-        start_(std::move(start)) {}
+struct Tuner {
+  const SweepSpec& scene;  // one size and limit
+  const TuneOptions& options;
+  const SweepRunners& runners;
+  const std::vector<TunedNumber>& numbers;
+  Values initial;  // what the search begins with, and must better
+  Search search = {};
+  std::optional<double> stiffness = {};   // to begin calibrations from
+  Found leader = {};                      // so far; where the next search begins
+  std::map<Values, Found> measured = {};  // the last time
 
   // Nothing where no step counts with any settings tried. `guess` is tried first and takes the
   // values found.
   std::optional<TunedPlace> run(Values& guess) {
     begin(guess);
-    if (best_.seconds >= 1e300) draw_start(guess);
-    if (best_.seconds >= 1e300) return {};
+    if (leader.seconds >= 1e300) draw_start(guess);
+    if (leader.seconds >= 1e300) return {};
     const auto seconds = [this](const Values& values, double hopeless) {
       return evaluate(values, hopeless);
     };
-    std::vector<TunedNumber> from = numbers_;
-    for (std::size_t i = 0; i < from.size(); ++i) from[i].initial = start_[i];
-    const TuneOutcome outcome = tune_values(from, seconds, options_.rules, guess);
-    const auto was = last_.find(start_), is = last_.find(outcome.values);
-    if (was == last_.end() || is == last_.end()) return {};
+    std::vector<TunedNumber> from = numbers;
+    for (std::size_t i = 0; i < from.size(); ++i) from[i].initial = initial[i];
+    const TuneOutcome outcome = tune_values(from, seconds, options.budget, guess);
+    const auto was = measured.find(initial), is = measured.find(outcome.values);
+    if (was == measured.end() || is == measured.end()) return {};
     guess = outcome.values;
     const Found &before = was->second, &now = is->second;
     return TunedPlace{
-        {search_.base.resolution, search_.base.strain_limit, settings_of(outcome.values)},
+        {search.base.resolution, search.base.strain_limit, settings_of(outcome.values)},
         outcome.evaluations,
         before.seconds,
-        search_.ladder[before.rung],
+        search.ladder[before.rung],
         now.seconds,
-        search_.ladder[now.rung]};
+        search.ladder[now.rung]};
   }
 
- private:
   // At this size of the scene; nothing is known there.
   void take_size(int size) {
     Suite suite;
-    suite.sweeps = {scene_};
+    suite.sweeps = {scene};
     suite.sweeps.front().resolutions = {size};
-    search_ = plan(suite, {}).front();
-    stiffness_.reset();
-    best_ = {0, 1e300};
-    last_.clear();
+    search = plan(suite, {}).front();
+    stiffness.reset();
+    leader = {0, 1e300};
+    measured.clear();
   }
 
   inextensible::Settings settings_of(const Values& values) const {
     inextensible::Settings settings;
-    for (std::size_t i = 0; i < numbers_.size(); ++i)
-      if (values[i] != numbers_[i].initial) settings[numbers_[i].name] = values[i];
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      if (values[i] != numbers[i].initial) settings[numbers[i].name] = values[i];
     return settings;
   }
 
   PointResult run_once(std::size_t rung, const inextensible::Settings& settings,
                        double most_seconds) {
-    PointSpec what = search_.base;
-    what.step = search_.ladder[rung];
+    PointSpec what = search.base;
+    what.step = search.ladder[rung];
     what.settings = settings;
     const double hopeless = std::max(0.05, most_seconds * duration());
-    PointResult point = runners_.run(
-        what, {options_.timeout, hopeless, options_.interrupted, runners_.references}, stiffness_);
-    if (point.stiffness) stiffness_ = point.stiffness;
+    PointResult point = runners.run(
+        what, {options.timeout, hopeless, options.interrupted, runners.references}, stiffness);
+    if (point.stiffness) stiffness = point.stiffness;
     return point;
   }
 
   // With a sample more.
   const PointResult& repeated(PointResult& point) const {
-    append(
-        runners_.repeat(point, {.timeout = options_.timeout, .interrupted = options_.interrupted}),
-        point);
+    runners.add_sample(point, {.timeout = options.timeout, .interrupted = options.interrupted});
     return point;
   }
 
@@ -106,16 +147,16 @@ class Tuner {
   // that takes too long, and longer with `guess` too: a default must not decide at which size a
   // method is tuned.
   void begin(const Values& guess) {
-    take_size(scene_.resolutions.front());
-    const std::vector<int> smaller_ones = smaller_sizes(scene_.scene);
-    find_best(far_too_long * options_.longest_run);
+    take_size(scene.resolutions.front());
+    const std::vector<int> smaller_ones = smaller_sizes(scene.scene);
+    find_best(far_too_long * options.longest_run);
     for (const int size : smaller_ones) {
-      if (best_.seconds < 1e300 && takes_too_long() && !guess.empty())
-        evaluate(guess, give_up_at * best_.seconds);
+      if (leader.seconds < 1e300 && takes_too_long() && !guess.empty())
+        evaluate(guess, give_up_at * leader.seconds);
       if (!takes_too_long()) break;
-      if (size >= search_.base.resolution) continue;
+      if (size >= search.base.resolution) continue;
       take_size(size);
-      find_best(size == smaller_ones.back() ? 1e300 : far_too_long * options_.longest_run);
+      find_best(size == smaller_ones.back() ? 1e300 : far_too_long * options.longest_run);
     }
   }
 
@@ -124,31 +165,31 @@ class Tuner {
   void draw_start(const Values& guess) {
     std::mt19937_64 random{1};
     std::uniform_real_distribution<double> position(0, 1);
-    for (int trial = 0; trial < options_.rules.budget && best_.seconds >= 1e300; ++trial) {
-      for (std::size_t i = 0; i < start_.size(); ++i)
-        start_[i] = value_at(numbers_[i], position(random));
-      if (trial == 0 && !guess.empty()) start_ = guess;
+    for (int trial = 0; trial < options.budget && leader.seconds >= 1e300; ++trial) {
+      for (std::size_t i = 0; i < initial.size(); ++i)
+        initial[i] = value_at(numbers[i], position(random));
+      if (trial == 0 && !guess.empty()) initial = guess;
       find_best(1e300);
     }
   }
 
-  bool takes_too_long() const { return !(best_.seconds * duration() <= options_.longest_run); }
+  bool takes_too_long() const { return !(leader.seconds * duration() <= options.longest_run); }
 
-  double duration() const { return search_.base.scene_parameters.at("duration"); }
+  double duration() const { return search.base.scene_parameters.at("duration"); }
 
   void find_best(double most_seconds) {
     std::map<std::size_t, PointResult> known;
     double best = most_seconds / duration() / give_up_at;
     const auto run = [&](std::size_t rung, double) -> const PointResult& {
       const auto [at, fresh] = known.try_emplace(rung);
-      if (fresh) at->second = run_once(rung, settings_of(start_), give_up_at * best);
+      if (fresh) at->second = run_once(rung, settings_of(initial), give_up_at * best);
       if (counts(at->second)) best = std::min(best, at->second.seconds());
       return at->second;
     };
     const auto again = [&](std::size_t rung) -> const PointResult& {
       return repeated(known.at(rung));
     };
-    find_best_steps({search_.ladder.size(), run, again, {headline_error}});
+    find_best_steps({search.ladder.size(), run, again, {headline_error}});
     for (const auto& [rung, point] : known)
       if (counts(point)) learn({rung, point.seconds()});
   }
@@ -158,26 +199,26 @@ class Tuner {
   std::optional<double> evaluate(const Values& values, double hopeless) {
     const inextensible::Settings settings = settings_of(values);
     const bool in_race = hopeless < 1e300;
-    const auto own = last_.find(values);
+    const auto own = measured.find(values);
     PointResult fastest;
     std::optional<std::size_t> rung =
-        best_step(settings, own == last_.end() ? best_.rung : own->second.rung, in_race ? 1 : 2,
+        best_step(settings, own == measured.end() ? leader.rung : own->second.rung, in_race ? 1 : 2,
                   hopeless, fastest);
     // One run is enough to say of what is slower that it is not better.
-    if (rung && (!in_race || fastest.seconds() < best_.seconds)) {
+    if (rung && (!in_race || fastest.seconds() < leader.seconds)) {
       for (int i = 1; i < samples; ++i) repeated(fastest);
     }
     if (rung && fastest.seconds() > hopeless) rung.reset();
-    options_.tell(scene_.scene + "/" + search_.base.solver + " " + to_json(settings).dump() + ": " +
-                  (rung ? duration_text(fastest.seconds()) + "/s" : "too slow"));
+    options.tell(scene.scene + "/" + search.base.solver + " " + nlohmann::json(settings).dump() +
+                 ": " + (rung ? duration_text(fastest.seconds()) + "/s" : "too slow"));
     if (!rung) return {};
-    last_[values] = {*rung, fastest.seconds()};
-    learn(last_[values]);
+    measured[values] = {*rung, fastest.seconds()};
+    learn(measured[values]);
     return fastest.seconds();
   }
 
   void learn(const Found& found) {
-    if (found.seconds < best_.seconds) best_ = found;
+    if (found.seconds < leader.seconds) leader = found;
   }
 
   // The rung of the fastest step, whose run goes to `fastest`: from `start` to both sides, until
@@ -196,22 +237,12 @@ class Tuner {
     for (const int direction : {1, -1}) {
       int in_vain = 0;
       for (auto at = static_cast<int>(start) + direction;
-           in_vain < patience && at >= 0 && at < static_cast<int>(search_.ladder.size());
+           in_vain < patience && at >= 0 && at < static_cast<int>(search.ladder.size());
            at += direction)
         in_vain = faster(static_cast<std::size_t>(at)) ? 0 : in_vain + 1;
     }
     return best;
   }
-
-  const TuneOptions& options_;
-  const SweepRunners& runners_;
-  const SweepSpec& scene_;  // one size and limit
-  const std::vector<TunedNumber>& numbers_;
-  Values start_;  // what the search begins with, and must better
-  Search search_;
-  std::optional<double> stiffness_;  // to begin calibrations from
-  Found best_;                       // so far; where the next search begins
-  std::map<Values, Found> last_;     // of the last time that it was measured
 };
 
 Values values_of(const inextensible::Settings& settings, const std::vector<TunedNumber>& numbers) {
@@ -225,15 +256,95 @@ Values values_of(const inextensible::Settings& settings, const std::vector<Tuned
 
 }  // namespace
 
+TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
+                        int budget, const Values& guess) {
+  TuneOutcome outcome;
+  for (const TunedNumber& n : numbers) outcome.values.push_back(n.initial);
+  const Values initial = outcome.values;
+  if (numbers.empty() || budget < 2) return outcome;
+  std::set<Values> seen;
+  const auto evaluate = [&](const Values& values, double hopeless) {
+    ++outcome.evaluations;
+    seen.insert(values);
+    const auto found = seconds(values, hopeless);
+    return found && std::isfinite(*found) ? *found : none;
+  };
+  // But for the last comparison, two evaluations.
+  const auto left = [&] { return budget - 2 - outcome.evaluations; };
+  double best = evaluate(initial, none);
+  if (best == none) return outcome;
+  const auto try_out = [&](const Values& values) {
+    if (seen.contains(values)) return;
+    const double found = evaluate(values, give_up_trial_at * best);
+    if (found >= best) return;
+    best = found;
+    outcome.values = values;
+  };
+  if (!guess.empty() && left() > 0) try_out(guess);
+  Random random{seed};
+  const int steps = left();
+  for (int step = 1; step <= steps; ++step) {
+    const double reach = first_reach * std::pow(last_reach, static_cast<double>(step) / steps);
+    const double probability = 1 - std::log(step) / std::log(std::max(2, steps));
+    std::bernoulli_distribution moves(std::clamp(probability, 0.0, 1.0));
+    std::uniform_int_distribution<std::size_t> any(0, numbers.size() - 1);
+    Values values = outcome.values;
+    // Rounding may lead back to what was tried: then draw again.
+    for (int attempt = 0; attempt < 100 && seen.contains(values); ++attempt) {
+      values = outcome.values;
+      const std::size_t always = any(random);
+      for (std::size_t i = 0; i < numbers.size(); ++i)
+        if (i == always || moves(random)) values[i] = moved(numbers[i], values[i], reach, random);
+    }
+    try_out(values);
+  }
+  if (outcome.values == initial) return outcome;
+  const double now = evaluate(outcome.values, none), was = evaluate(initial, none);
+  const bool gained = now < none && was < none && was / now > 1 + least_gain;
+  if (!gained) outcome.values = initial;
+  return outcome;
+}
+
+std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend) {
+  std::vector<TunedNumber> numbers;
+  for (const auto& info : backend.settings) {
+    if (!info.tunable) continue;
+    numbers.push_back({info.name, std::get<double>(info.initial), *info.tunable, info.range.whole});
+  }
+  return numbers;
+}
+
+double position_of(const TunedNumber& number, double value) {
+  const auto& [least, largest, bound] = number.range;
+  const double s = shift(number), inside = std::clamp(value, least, largest);
+  if (bound)
+    return std::log((*bound - least) / (*bound - inside)) / std::log(distance_ratio(number.range));
+  if (!logarithmic(number)) return (inside - least) / (largest - least);
+  return std::log((inside + s) / (least + s)) / std::log((largest + s) / (least + s));
+}
+
+double value_at(const TunedNumber& number, double position) {
+  const auto& [least, largest, bound] = number.range;
+  if (bound) {
+    const double distance = (*bound - least) * std::pow(distance_ratio(number.range), -position);
+    return std::clamp(*bound - rounded(distance), least, largest);
+  }
+  const double s = shift(number);
+  const double value = logarithmic(number)
+                           ? (least + s) * std::pow((largest + s) / (least + s), position) - s
+                           : least + position * (largest - least);
+  if (number.whole) return std::clamp(std::round(value), std::ceil(least), std::floor(largest));
+  return std::clamp(rounded(value), least, largest);
+}
+
 TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOptions options,
                        const SweepRunners& runners, const TunedEntry* known) {
   const inextensible::Backend& backend = *inextensible::find_backend(solver);
   const std::vector<TunedNumber> numbers = tunable_numbers(backend);
-  options.rules.budget =
-      std::min(options.rules.budget, options.trials_each * static_cast<int>(numbers.size()));
+  options.budget = std::min(options.budget, options.trials_each * static_cast<int>(numbers.size()));
   TunedEntry entry{.kind = find_scene(scene.scene)->kind(),
                    .solver = solver,
-                   .budget = options.rules.budget,
+                   .budget = options.budget,
                    .places = {},
                    .rule = tuning_rule(scene, backend),
                    .context = {}};
@@ -248,8 +359,8 @@ TunedEntry tune_solver(const std::string& solver, const SweepSpec& scene, TuneOp
       here.refine = false;
       here.resolutions = {size};
       here.limits = {limit};
-      if (auto place = Tuner(here, options, runners, numbers,
-                             values_of(there.settings_for(size, limit), numbers))
+      if (auto place = Tuner{here, options, runners, numbers,
+                             values_of(there.settings_for(size, limit), numbers)}
                            .run(guess))
         entry.places.push_back(std::move(*place));
     }

@@ -25,30 +25,22 @@ struct TunedNumber {
   bool whole = false;
 };
 
-// Those that a method's row marks as tunable, in its order; given ones are not touched.
-std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend,
-                                         const inextensible::Settings& given = {});
+// Those that a method's row marks as tunable, in its order.
+std::vector<TunedNumber> tunable_numbers(const inextensible::Backend& backend);
 
 using Values = std::vector<double>;  // one of each setting
 // Seconds with these values, none if they fail. A value that lies above `hopeless` may be given up
 // early, and is then none.
 using TuneObjective = std::function<std::optional<double>(const Values&, double hopeless)>;
 
-struct TuneRules {
-  int budget = 40;           // evaluations at most, of all settings together
-  double reach = 0.3;        // standard deviation of the first moves, over the range
-  double least_gain = 0.05;  // all of it must be faster than the defaults by more than this
-};
-
 struct TuneOutcome {
-  Values values;        // the initial ones if nothing is better by enough
-  double gain = 1;      // seconds of the initial values over these, measured again
+  Values values;        // the initial ones unless these are faster by 5 %
   int evaluations = 0;  // the first one included; at most the budget
 };
 
 // `guess`, if any, is tried right after the initial values. Throws what `seconds` throws.
 TuneOutcome tune_values(const std::vector<TunedNumber>& numbers, const TuneObjective& seconds,
-                        const TuneRules& rules = {}, const Values& guess = {});
+                        int budget, const Values& guess = {});
 
 // Where a value lies in its range, from 0 to 1, and back: by the logarithm of the distance to its
 // bound where it has one; logarithmic where it spans a factor of ten, for counts too (of 1 +
@@ -57,8 +49,8 @@ double position_of(const TunedNumber& number, double value);
 double value_at(const TunedNumber& number, double position);
 
 struct TuneOptions {
-  TuneRules rules;
-  int trials_each = 10;  // of rules.budget at most so many for each setting
+  int budget = 40;       // evaluations at most, of all settings together
+  int trials_each = 10;  // of these at most so many for each setting
   double timeout = 10;   // s, of a run
   // Where a solver's best run takes longer than this, as it is and with what was found at the place
   // before, the place is taken at a smaller size.

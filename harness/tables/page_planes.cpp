@@ -10,7 +10,6 @@
 #include "harness/tables/tables.h"
 
 namespace harness {
-namespace tables {
 
 using namespace analysis;  // tables print what was analysed
 
@@ -31,12 +30,6 @@ std::string cell_text(const Cell& cell) {
   if (const Entry* paper = cell.rival(Rival::paper_best); paper && paper != first)
     text += "; " + analysis::text(*cell.lead_over(paper)) + " " + quoted(paper->row);
   return text;
-}
-
-template <class Is>
-bool any_cell(const std::vector<Plane>& planes, Is is) {
-  return std::ranges::any_of(
-      planes, [&](const Plane& plane) { return std::ranges::any_of(plane.cells, is); });
 }
 
 Table table_of(const std::vector<Plane>& planes) {
@@ -113,9 +106,9 @@ void print_slack(std::ostream& out, const Runs& runs, const Plane& plane) {
 // "0.1 %, error 1.2 %"; in brackets where the motion is not right to the headline's error.
 std::string reach_text(const std::optional<Reach>& reach) {
   if (!reach) return "-";
-  const std::string error =
-      std::isfinite(reach->error) ? number_text(100 * reach->error, 2) + " %" : "not known";
-  const std::string text = percent(reach->strain_limit) + ", error " + error;
+  const std::string text =
+      percent(reach->strain_limit) + ", error " +
+      (std::isfinite(reach->error) ? number_text(100 * reach->error, 2) + " %" : "not known");
   return reach->right ? text : "(" + text + ")";
 }
 
@@ -145,16 +138,12 @@ std::string title_of(const Plane& plane) {
                    " vertices, over " + plane.sweep;
 }
 
-void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
-  std::vector<nlohmann::json> sweeps;
-  for (const NamedResult& result : results) {
-    if (!is_stability(result.document)) sweeps.push_back(result.document);
-  }
+void print_planes(std::ostream& out, const std::vector<nlohmann::json>& sweeps) {
   if (sweeps.empty()) return;
   const Runs runs(joined(sweeps));
   std::vector<Plane> all = planes_of(runs);
   std::erase_if(all, [](const Plane& plane) {
-    return !any_cell({plane}, [](const Cell& cell) { return cell.counting(1); });
+    return std::ranges::none_of(plane.cells, [](const Cell& cell) { return cell.counting(1); });
   });
   for (const auto& [title, planes] : grouped(all, title_of)) {
     out << "### " << title << "\n\n";
@@ -172,23 +161,19 @@ void print_planes(std::ostream& out, const std::vector<NamedResult>& results) {
   }
 }
 
-}  // namespace tables
-
-void print_budgets(std::ostream& out, const std::vector<analysis::BudgetTable>& places) {
-  using namespace tables;
+void print_budgets(std::ostream& out, const std::vector<BudgetTable>& places) {
   for (const BudgetTable& place : places) {
     Table table{{"method"}};
     for (const double budget : place.budgets)
       table.head.push_back(number_text(1e3 * budget) + " ms a frame");
     std::string none;
     for (const Budgeted& row : place.rows) {
-      std::vector<std::string> cells{row.row};
-      for (const auto& reach : row.reached) cells.push_back(reach_text(reach));
-      if (std::ranges::any_of(row.reached, [](const auto& r) { return r.has_value(); })) {
-        table.rows.push_back(std::move(cells));
-      } else {
+      if (std::ranges::none_of(row.reached, [](const auto& reach) { return reach.has_value(); })) {
         none += (none.empty() ? "" : ", ") + quoted(row.row);
+        continue;
       }
+      table.rows.push_back({row.row});
+      for (const auto& reach : row.reached) table.rows.back().push_back(reach_text(reach));
     }
     out << "### " << scene_words(place.scene) << ", " << place.vertices << " vertices\n\n";
     print_markdown(out, table);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <map>
 
@@ -14,7 +15,6 @@
 #include "harness/tables/tables.h"
 
 namespace harness {
-namespace tables {
 
 using namespace analysis;  // tables print what was analysed
 using nlohmann::json;
@@ -26,7 +26,6 @@ std::string plain(double value, int digits) {
 
 namespace {
 
-constexpr auto itself = [](const auto& value) { return value; };
 std::string solver_of(const json& entry) { return entry.at("solver"); }
 
 void print_table(std::ostream& out, const std::string& introduction, const Table& table) {
@@ -35,11 +34,10 @@ void print_table(std::ostream& out, const std::string& introduction, const Table
   out << '\n';
 }
 
-void print_growth(std::ostream& out, const std::vector<NamedResult>& results) {
+void print_growth(std::ostream& out, const std::vector<json>& sweeps) {
   std::vector<Growth> all;
-  for (const NamedResult& result : results) {
-    if (is_stability(result.document)) continue;
-    for (Growth& growth : growth_in(planes_of(result.document))) all.push_back(std::move(growth));
+  for (const json& sweep : sweeps) {
+    for (Growth& growth : growth_in(planes_of(sweep))) all.push_back(std::move(growth));
   }
   if (all.empty()) return;
   Table table{{"solver"}};
@@ -49,7 +47,7 @@ void print_growth(std::ostream& out, const std::vector<NamedResult>& results) {
                          ", from " + number_text(growth.rows.front().smallest.vertices(), 7));
     for (const RowGrowth& row : growth.rows) names.push_back(row.row);
   }
-  for (const std::string& name : in_order(names, itself)) {
+  for (const std::string& name : in_order(names, std::identity())) {
     table.rows.push_back({name});
     for (const Growth& growth : all) {
       const auto row = std::ranges::find(growth.rows, name, &RowGrowth::row);
@@ -109,7 +107,6 @@ constexpr SceneTable scene_tables[]{
     {"garment", "Slip of the garment", "% (s)", about_slip, slip_text}};
 
 void print_scene(std::ostream& out, const NamedResult& result, const SceneTable& about) {
-  if (is_stability(result.document)) return;
   const Runs runs(result.document);
   std::vector<Point> fastest;
   std::ranges::copy_if(runs.points, std::back_inserter(fastest), [&](const Point& p) {
@@ -141,16 +138,13 @@ void print_answers(std::ostream& out, const NamedResult& result) {
       {"answer", "scene, strain limit", "exact", "finished", "nearest", "farthest", "order"}, {}};
   const json& rows = result.document.at("rows");
   for (const json& answer : result.document.at("answers")) {
-    std::vector<json> given;
-    for (const std::string& solver : in_order(rows, solver_of)) {
-      const json* finest = nullptr;
-      for (const json& row : rows) {
-        if (row.at("answer") == answer.at("name") && row.at("solver") == solver &&
-            !row.at("value").is_null() && (!finest || row.at("step") < finest->at("step")))
-          finest = &row;
-      }
-      if (finest) given.push_back(*finest);
-    }
+    std::vector<json> finished, given;
+    std::ranges::copy_if(rows, std::back_inserter(finished), [&answer](const json& row) {
+      return row.at("answer") == answer.at("name") && !row.at("value").is_null();
+    });
+    for (const auto& [solver, own] : grouped(finished, solver_of))
+      given.push_back(
+          std::ranges::min(own, {}, [](const json& row) { return row.at("step").get<double>(); }));
     std::ranges::stable_sort(
         given, {}, [](const json& row) { return std::abs(number_of(row.at("deviation"))); });
     std::vector<double> orders;
@@ -178,7 +172,6 @@ void print_answers(std::ostream& out, const NamedResult& result) {
 }
 
 void print_hard_cases(std::ostream& out, const NamedResult& result) {
-  if (!is_stability(result.document)) return;
   const json& counts = result.document.at("counts");
   print_table(out,
               "## Hard cases (`" + result.name +
@@ -202,12 +195,10 @@ void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
     const json& context = result.document.at("context");
     std::vector<std::string> row{result.name, context.at("date"), context.at("cpu_model"),
                                  context.at("build").at("git")};
-    if (const auto noise = context.find("noise"); noise != context.end() && noise->is_object()) {
-      row.push_back(quoted(noise->at("pair").at(0)));
-      row.push_back(std::to_string(noise->at("places").get<int>()));
+    if (const auto noise = noise_of(context)) {
       // Excess of the longer time over the shorter one, from |log ratio|.
-      for (const char* key : {"median", "q95"})
-        row.push_back(percent(std::expm1(noise->at(key).get<double>())));
+      row.insert(row.end(), {quoted(noise->one), std::to_string(noise->places),
+                             percent(std::expm1(noise->median)), percent(std::expm1(noise->q95))});
     }
     row.resize(table.head.size(), "-");
     table.rows.push_back(std::move(row));
@@ -218,8 +209,6 @@ void print_sources(std::ostream& out, const std::vector<NamedResult>& results) {
 }
 
 }  // namespace
-
-bool is_stability(const json& document) { return document.contains("matrix"); }
 
 Table outcomes_in(const json& document) {
   constexpr std::array outcomes{"survived", "survived_smaller", "refused", "diverged",
@@ -264,17 +253,23 @@ Table differences_in(const json& document) {
   return table;
 }
 
-}  // namespace tables
-
 void print_results_page(std::ostream& out, const std::vector<NamedResult>& results,
                         const std::vector<NamedResult>& growth,
                         const std::vector<NamedResult>& answers) try {
-  std::vector<nlohmann::json> documents;
-  documents.reserve(results.size());
-  for (const NamedResult& result : results) documents.push_back(result.document);
-  for (const NamedResult& result : growth) check_timed(result.document);
   std::vector<NamedResult> all = results;
   all.insert(all.end(), growth.begin(), growth.end());
+  all.insert(all.end(), answers.begin(), answers.end());
+  const auto is_hard = [](const NamedResult& result) { return result.document.contains("matrix"); };
+  std::vector<json> documents, sweeps, growing;
+  for (const NamedResult& result : results) {
+    documents.push_back(result.document);
+    if (!is_hard(result)) sweeps.push_back(result.document);
+  }
+  growing = sweeps;
+  for (const NamedResult& result : growth) {
+    check_timed(result.document);
+    if (!is_hard(result)) growing.push_back(result.document);
+  }
 
   out << "## The paper's claims (`bench claims` gives each rule)\n\n";
   print_claims_markdown(out, judge_claims(documents));
@@ -282,16 +277,19 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
          "simulated second and its step in s; then how many times as long the best of the paper's "
          "six takes, if it is not of them. Bold: faster than each other one beyond the noise. "
          "`u`: with untuned settings. Errors are over the scene's size.\n\n";
-  tables::print_planes(out, results);
-  tables::print_growth(out, all);
-  for (const tables::SceneTable& about : tables::scene_tables) {
-    for (const NamedResult& result : results) tables::print_scene(out, result, about);
+  print_planes(out, sweeps);
+  print_growth(out, growing);
+  for (const SceneTable& about : scene_tables) {
+    for (const NamedResult& result : results) {
+      if (!is_hard(result)) print_scene(out, result, about);
+    }
   }
-  for (const NamedResult& result : answers) tables::print_answers(out, result);
-  for (const NamedResult& result : results) tables::print_hard_cases(out, result);
-  all.insert(all.end(), answers.begin(), answers.end());
-  tables::print_sources(out, all);
-} catch (const nlohmann::json::exception& error) {
+  for (const NamedResult& result : answers) print_answers(out, result);
+  for (const NamedResult& result : results) {
+    if (is_hard(result)) print_hard_cases(out, result);
+  }
+  print_sources(out, all);
+} catch (const json::exception& error) {
   throw UsageError(std::string("a result file is incomplete: ") + error.what());
 }
 

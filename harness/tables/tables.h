@@ -1,7 +1,6 @@
 // What result files say, as tables on a terminal and on a page of Markdown (docs/results.md).
 #pragma once
 
-#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
@@ -15,13 +14,13 @@ namespace harness {
 
 // ---- On a terminal ----
 
-// A sweep's result, at most `columns` wide. For each scene and size a line for each answer of the
+// A sweep's result. For each scene and size a line for each answer of the
 // strain-error grid, levels of error with the same answer in one; its findings
 // (analysis/findings.h), of resolution sweeps the growth of a step's time; how much of that is
 // noise. all: every contestant too, fastest first, and how the runs that failed ended. file: what
 // the document is called in hints.
 void print_sweep(std::ostream& out, const nlohmann::json& document, const std::string& file,
-                 bool all = false, std::size_t columns = 120);
+                 bool all = false);
 // How each solver's hard cases ended, which did not end as expected, and its largest stable steps.
 void print_outcomes(std::ostream& out, const nlohmann::json& document);
 
@@ -36,7 +35,7 @@ void print_results_page(std::ostream& out, const std::vector<NamedResult>& resul
                         const std::vector<NamedResult>& answers = {});
 void print_budgets(std::ostream& out, const std::vector<analysis::BudgetTable>& tables);
 
-namespace tables {
+// ---- What both have in common ----
 
 inline std::string quoted(const std::string& name) { return '`' + name + '`'; }
 // As number_text(), but never with a power of ten where the number has more digits.
@@ -48,13 +47,11 @@ std::string title_of(const analysis::Plane& plane);
 // A sentence on the time until which errors at the headline's level count. Empty: they are not
 // known.
 std::string span_of_errors(const std::vector<analysis::Plane>& planes);
-bool is_stability(const nlohmann::json& document);
 // The strain-error grid of each scene: the fastest method within each limit and level of error.
-void print_planes(std::ostream& out, const std::vector<NamedResult>& results);
+void print_planes(std::ostream& out, const std::vector<nlohmann::json>& sweeps);
 // Hard cases: how many of each solver's ended in which way; and what did not end as theory
 // expects, with the reason where one is known.
 Table outcomes_in(const nlohmann::json& document);
 Table differences_in(const nlohmann::json& document);
 
-}  // namespace tables
 }  // namespace harness

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 
 #include "harness/analysis/findings.h"
 #include "harness/base/fields.h"
@@ -10,11 +9,7 @@
 
 namespace harness {
 
-using analysis::Cell;
-using analysis::Entry;
-using analysis::percent;
-using analysis::Plane;
-using analysis::Rival;
+using namespace analysis;  // tables print what was analysed
 using nlohmann::json;
 
 namespace {
@@ -48,22 +43,19 @@ std::string percent_or_unknown(double fraction) {
 
 // Name, time, step and error.
 std::vector<std::string> entry_cells(const Entry& entry, const std::string& name) {
-  return {name, analysis::time_words(entry.point.seconds()), step_text(entry.point.step()),
+  return {name, time_words(entry.point.seconds()), step_text(entry.point.step()),
           percent_or_unknown(entry.error)};
 }
 
 std::vector<std::string> answer_row(const std::string& place, const Cell& loosest,
                                     const Cell& tightest) {
-  std::vector<std::string> row{place, levels_text(loosest, tightest)};
-  if (const Entry* first = tightest.first()) {
-    const std::string name = first->row + (first->role.unranked ? " u" : "") +
-                             (tightest.counting(1) && !tightest.clear() ? " ~" : "");
-    const auto cells = entry_cells(*first, name);
-    row.insert(row.end(), cells.begin(), cells.end());
-    row.push_back(lead_text(tightest));
-  } else {
-    row.push_back("- " + tightest.empty_because);
-  }
+  const std::string levels = levels_text(loosest, tightest);
+  const Entry* first = tightest.first();
+  if (!first) return {place, levels, "- " + tightest.empty_because};
+  auto row = entry_cells(*first, first->row + (first->role.unranked ? " u" : "") +
+                                     (tightest.counting(1) && !tightest.clear() ? " ~" : ""));
+  row.insert(row.begin(), {place, levels});
+  row.push_back(lead_text(tightest));
   return row;
 }
 
@@ -82,14 +74,14 @@ void add_answers(Table& table, const Plane& plane, bool sizes) {
   }
 }
 
-void print_planes(std::ostream& out, const std::vector<Plane>& planes) {
-  for (const auto& [title, group] : analysis::grouped(planes, tables::title_of)) {
+void print_grid(std::ostream& out, const std::vector<Plane>& planes) {
+  for (const auto& [title, group] : grouped(planes, title_of)) {
     const bool sizes = group.front().sweep == "resolution";
     Table table{{sizes ? "vertices" : "strain", "within", "fastest", "time", "step, s", "error",
                  "times as long: best of the paper"}};
     for (const Plane& plane : group) add_answers(table, plane, sizes);
     out << '\n' << title << ": the fastest within a strain limit and an error\n";
-    if (const std::string span = tables::span_of_errors(group); !span.empty()) out << span << '\n';
+    if (const std::string span = span_of_errors(group); !span.empty()) out << span << '\n';
     print_aligned(out, table);
   }
 }
@@ -112,7 +104,7 @@ void print_everybody(std::ostream& out, const Plane& plane) {
       table.rows.push_back(std::move(row));
     }
     out << '\n'
-        << analysis::scene_words(plane.scene) << " of " << plane.vertices << " vertices at "
+        << scene_words(plane.scene) << " of " << plane.vertices << " vertices at "
         << percent(cell.strain_limit) << " strain, "
         << (cell.level == any_motion ? "any motion" : "motion error at most " + percent(cell.level))
         << '\n';
@@ -120,39 +112,39 @@ void print_everybody(std::ostream& out, const Plane& plane) {
   }
 }
 
-void print_growth(std::ostream& out, const analysis::Growth& growth) {
+void print_growth(std::ostream& out, const Growth& growth) {
   Table table{{"", "power (95 %)", "vertices", "ms a step", "GiB at the largest"}};
-  for (const analysis::RowGrowth& row : growth.rows) {
-    const analysis::Point& largest = row.largest;
+  for (const RowGrowth& row : growth.rows) {
+    const Point& largest = row.largest;
     table.rows.push_back(
-        {row.row, analysis::exponent_words(row.exponent),
+        {row.row, exponent_words(row.exponent),
          number_text(row.smallest.vertices(), 7) + ".." + number_text(largest.vertices(), 7),
          number_text(1e3 * largest.seconds() * largest.step(), 3),
          number_text(largest.result().peak_rss_bytes / (1 << 30), 3)});
   }
   out << '\n'
-      << analysis::scene_words(growth.scene) << " at " << percent(growth.strain_limit)
+      << scene_words(growth.scene) << " at " << percent(growth.strain_limit)
       << " strain, any motion: the time of a step grows as the number of vertices to a power\n";
   print_aligned(out, table);
 }
 
 // How runs that failed did so.
-void print_failures(std::ostream& out, const json& document, bool all) {
+void print_failures(std::ostream& out, const Runs& runs, bool all) {
   std::map<std::string, int> statuses, of_contestants;
   int failed = 0;
-  for (const json& p : document.at("points")) {
-    const analysis::Point point(p);
+  for (const Point& point : runs.points) {
     if (point.ok()) continue;
     ++failed;
-    ++statuses[point.status()];
-    ++of_contestants[point.scene() + ", " + point.contestant() + ": " + point.status()];
+    const std::string status = to_string(point.result().status);
+    ++statuses[status];
+    ++of_contestants[point.scene() + ", " + point.contestant() + ": " + status];
   }
   if (failed == 0) return;
   std::string counts;
   for (const auto& [status, count] : statuses)
     counts += (counts.empty() ? "" : ", ") + status + " " + std::to_string(count);
   out << '\n'
-      << failed << " of " << document.at("points").size()
+      << failed << " of " << runs.points.size()
       << " trial runs failed (coarse steps are tried until they do): " << counts << '\n';
   if (!all) return;
   for (const auto& [name, count] : of_contestants) out << "  " << name << " x " << count << '\n';
@@ -160,18 +152,16 @@ void print_failures(std::ostream& out, const json& document, bool all) {
 
 // Which solvers came from plug-ins, of which version, and what copying states into an engine and
 // out of it took of their time.
-void print_plugins(std::ostream& out, const json& document) {
-  const auto plugins = document.at("context").value("plugins", json::array());
+void print_plugins(std::ostream& out, const Runs& runs, const json& plugins) {
   if (!plugins.empty()) out << '\n';
   for (const auto& plugin : plugins) {
     for (const auto& solver : plugin.at("solvers")) {
       double copy = 0, all = 0;  // s
-      for (const auto& point : document.at("points")) {
-        if (point.at("solver") != solver || point.at("status") != "ok") continue;
-        const auto phases = point.value("phases", json::object());
-        copy += phases.value("copy", 0.0);
-        for (const char* phase : {"unconstrained", "filter", "collision", "copy"})
-          all += phases.value(phase, 0.0);
+      for (const Point& point : runs.points) {
+        if (point.spec().solver != solver || !point.ok()) continue;
+        const auto& phases = point.result().phases;
+        copy += phases.copy;
+        all += phases.unconstrained + phases.filter + phases.collision + phases.copy;
       }
       out << "plug-in " << solver.get<std::string>() << ": "
           << plugin.at("version").get<std::string>();
@@ -186,7 +176,7 @@ void print_noise(std::ostream& out, const json& document) {
   const json& context = document.at("context");
   if (const auto pair = noise_of(context))
     out << "\n"
-        << pair->one << " ran twice under two names: in 95 % of " << pair->places
+        << pair->pair[0] << " ran twice under two names: in 95 % of " << pair->places
         << " places its two times are within " << number_text(100 * std::expm1(pair->q95), 2)
         << " % of each other; smaller differences between solvers are noise\n";
   if (document.contains("warning"))
@@ -199,39 +189,37 @@ void print_noise(std::ostream& out, const json& document) {
 
 }  // namespace
 
-void print_sweep(std::ostream& out, const json& document, const std::string& file, bool all,
-                 std::size_t columns) {
-  std::ostringstream text;
-  const auto planes = analysis::planes_of(document);
-  print_planes(text, planes);
-  text << (planes.empty()
-               ? "\nall of these runs chose their steps by a controller, which is not ranked: "
-                 "bench plot draws them\n"
-               : "(~: too close to the next, or too few samples, to tell; u: with untuned "
-                 "settings; errors are over the scene's size)\n");
+void print_sweep(std::ostream& out, const json& document, const std::string& file, bool all) {
+  const Runs runs(document);
+  const auto planes = planes_of(runs);
+  print_grid(out, planes);
+  out << (planes.empty()
+              ? "\nall of these runs chose their steps by a controller, which is not ranked: "
+                "bench plot draws them\n"
+              : "(~: too close to the next, or too few samples, to tell; u: with untuned "
+                "settings; errors are over the scene's size)\n");
   for (const Plane& plane : planes) {
-    if (all) print_everybody(text, plane);
+    if (all) print_everybody(out, plane);
   }
-  for (const analysis::Growth& growth : analysis::growth_in(planes)) print_growth(text, growth);
-  for (const analysis::Finding& finding : analysis::findings_of(planes)) {
-    text << '\n' << finding.subject << ":\n";
-    for (const std::string& sentence : finding.sentences) text << sentence << '\n';
+  for (const Growth& growth : growth_in(planes)) print_growth(out, growth);
+  for (const Finding& finding : findings_of(planes)) {
+    out << '\n' << finding.subject << ":\n";
+    for (const std::string& sentence : finding.sentences) out << sentence << '\n';
   }
-  print_failures(text, document, all);
-  print_plugins(text, document);
-  print_noise(text, document);
+  print_failures(out, runs, all);
+  print_plugins(out, runs, document.at("context").value("plugins", json::array()));
+  print_noise(out, document);
   if (!all)
-    text << "\nall contestants: bench show " << file << " --all; a page with figures: bench report "
-         << file << " --out report.html\n";
-  out << fitted(text.str(), columns);
+    out << "\nall contestants: bench show " << file << " --all; a page with figures: bench report "
+        << file << " --out report.html\n";
 }
 
 void print_outcomes(std::ostream& out, const json& document) {
   const json &counts = document.at("counts"), &steps = document.at("largest_steps");
-  const Table differences = tables::differences_in(document);
+  const Table differences = differences_in(document);
   out << counts.at("cells") << " hard cases and solvers, " << counts.at("new_differences")
       << " with a new difference; how they ended:\n";
-  print_aligned(out, tables::outcomes_in(document));
+  print_aligned(out, outcomes_in(document));
   if (!differences.rows.empty()) {
     out << "\nnot as expected:\n";
     print_aligned(out, differences);
@@ -240,14 +228,13 @@ void print_outcomes(std::ostream& out, const json& document) {
   const auto scene_of = [](const json& entry) { return entry.at("scene").get<std::string>(); };
   const auto solver_of = [](const json& entry) { return entry.at("solver").get<std::string>(); };
   Table table{{"solver"}};
-  for (const std::string& scene : in_order(steps, scene_of)) table.head.push_back(scene);
-  for (const std::string& solver : in_order(steps, solver_of)) {
-    auto& row = table.rows.emplace_back(1, solver);
-    row.resize(table.head.size());
-    for (const json& entry : steps) {
-      const auto column = std::ranges::find(table.head, scene_of(entry)) - table.head.begin();
-      if (solver_of(entry) == solver)
-        row[static_cast<std::size_t>(column)] = step_text(number_of(entry.at("step")));
+  const auto scenes = in_order(steps, scene_of);
+  table.head.insert(table.head.end(), scenes.begin(), scenes.end());
+  for (const auto& [solver, own] : grouped(steps, solver_of)) {
+    table.rows.push_back({solver});
+    for (const std::string& scene : scenes) {
+      const auto at = std::ranges::find(own, scene, scene_of);
+      table.rows.back().push_back(at == own.end() ? "" : step_text(number_of(at->at("step"))));
     }
   }
   out << "\nlargest step (s) at which one second is survived, strain limit 1 %:\n";

@@ -77,7 +77,7 @@ def draw_growth(figure: Json, result: Result) -> Figure:
 
 def _draw(figure: Json, result: Result, columns: list[Column], styles: Styles, title: str, found: list[str], growth: bool = False) -> Figure:
     strip = ROW_HEIGHT * max(len(column.rows) for column in columns)
-    beneath = 0 if growth else _main_bottom(columns[0])
+    beneath = 0 if growth else (STEPS_HEIGHT + BETWEEN) * (2 if columns[0].filter else 1)
     sheet = make_sheet(result, title, [*receding_sentences(styles.values()), *_caption(figure, _points(figure, result), result, columns)],
                        columns[-1].left + MAIN_WIDTH + LEGEND_WIDTH, beneath + MAIN_HEIGHT + strip + (HEADING if len(columns) > 1 else 0),
                        legend_height(styles) - beneath - MAIN_HEIGHT, " ".join(found))
@@ -119,20 +119,16 @@ def _columns(figure: Json, points: list[Json], styles: Styles, level: str) -> li
     return columns
 
 
-def _main_bottom(column: Column) -> float:
-    return (STEPS_HEIGHT + BETWEEN) * (2 if column.filter else 1)
-
-
 def _draw_column(sheet: Sheet, column: Column, styles: Styles, figure: Json, beneath: float) -> Axes:
     """Returns the main panel, which is alone where nothing is beneath it."""
     main = sheet.axes(column.left, sheet.bottom + beneath, MAIN_WIDTH, MAIN_HEIGHT)
-    log_x(main, _xs(column.curves), MAIN_WIDTH)
+    log_x(main, [b.x for b in all_best(column.curves)] + [x for curve in column.curves.values() for x, _ in curve.failures], MAIN_WIDTH)
     panels = [(main, column.curves)]
     if column.filter:
         panels.append((sheet.axes(column.left, sheet.bottom + STEPS_HEIGHT + BETWEEN, MAIN_WIDTH, STEPS_HEIGHT, sharex=main), column.filter))
         panels[-1][0].set_ylabel("filter alone (s)")
     for axes, curves in panels:
-        log_y(axes, _times(curves))
+        log_y(axes, [time for best in all_best(curves) for time in (best.seconds, best.median)])
         draw_curves(axes, curves, styles)
         axes.tick_params(axis="x", which="both", labelbottom=not beneath)
         grid(axes)
@@ -144,14 +140,6 @@ def _draw_column(sheet: Sheet, column: Column, styles: Styles, figure: Json, ben
         grid(lowest)
     lowest.set_xlabel(AXIS_LABELS[figure["sweep"]])
     return main
-
-
-def _xs(curves: Curves) -> list[float]:
-    return sorted({best.x for best in all_best(curves)} | {x for curve in curves.values() for x, _ in curve.failures})
-
-
-def _times(curves: Curves) -> list[float]:
-    return [time for best in all_best(curves) for time in (best.seconds, best.median)]
 
 
 def _caption(figure: Json, points: list[Json], result: Result, columns: list[Column]) -> list[str]:

@@ -25,13 +25,13 @@
     if ([...texts.keys()].some((value) => String(value) === was)) place.value = was;
     const box = document.getElementById("contest-solvers");
     box.replaceChildren(box.firstElementChild);
-    for (const number of [...new Set(contest.map((point) => point.solver))].sort((a, b) => a - b)) {
-      const tick = element("input", {type: "checkbox", checked: !hidden.has(number)});
+    for (const name of Object.keys(data.labels).filter((name) => contest.some((point) => point.solver === name))) {
+      const tick = element("input", {type: "checkbox", checked: !hidden.has(name)});
       tick.addEventListener("change", () => {
-        if (tick.checked) hidden.delete(number); else hidden.add(number);
+        if (tick.checked) hidden.delete(name); else hidden.add(name);
         onHide.forEach((act) => act());
       });
-      box.append(element("label", {}, tick, data.solvers[number].label));
+      box.append(element("label", {}, tick, data.labels[name]));
     }
   }
 
@@ -39,7 +39,7 @@
     const here = contests.get(choice.value).filter((point) => !hidden.has(point.solver) && String(axis(point)) === place.value)
       .sort((a, b) => a.seconds - b.seconds);
     ranks.replaceChildren(...here.map((point, index) => {
-      const cells = [index + 1, data.solvers[point.solver].label, timeText(point.seconds),
+      const cells = [index + 1, data.labels[point.solver], timeText(point.seconds),
         point.high === null ? "" : `${timeText(point.seconds)} to ${timeText(point.high)}`, (point.seconds / here[0].seconds).toPrecision(3),
         stepText(point.step), percent(point.delivered ?? point.strain), point.error === null ? "" : point.error.toPrecision(3)];
       return element("tr", {title: story(point)}, ...cells.map((cell, number) => element("td", {className: number === 1 ? "" : "number"}, String(cell))),

@@ -2,7 +2,7 @@
 // What all parts share: the data, and elements made without ever reading text as markup.
 const data = JSON.parse(document.getElementById("data").textContent);
 const points = data.points.map((row) => Object.fromEntries(data.columns.map((name, index) => [name, row[index]])));
-const hidden = new Set();  // solvers, by number
+const hidden = new Set();  // solvers
 const onHide = [];         // what is to be done when it changes
 
 function element(name, properties = {}, ...children) {
@@ -33,8 +33,7 @@ function commandOf(point) {
 
 // What is behind a point, in words.
 function story(point) {
-  const solver = data.solvers[point.solver];
-  const parts = [solver.label, point.id];
+  const parts = [data.labels[point.solver], point.id];
   if (point.seconds !== null) {
     parts.push(`${timeText(point.seconds)} a simulated second` +
       (point.high === null ? "" : ` (${timeText(point.seconds)} to ${timeText(point.high)}, ${point.runs} runs)`));

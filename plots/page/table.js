@@ -7,13 +7,13 @@
   const portion = 100;
   let limit = portion, key = "seconds", down = false;
 
-  const columns = [["Solver", "solver", (p) => data.solvers[p.solver].label], ["Scene", "scene", (p) => words(p.scene)], ["Sweep", "sweep", (p) => p.sweep],
+  const columns = [["Solver", "solver", (p) => data.labels[p.solver]], ["Scene", "scene", (p) => words(p.scene)], ["Sweep", "sweep", (p) => p.sweep],
     ["Vertices", "vertices", (p) => p.vertices], ["Limit", "limit", (p) => percent(p.limit)], ["Step", "step", (p) => stepText(p.step)],
     ["Status", "status", (p) => words(p.status)], ["Time", "seconds", (p) => timeText(p.seconds)], ["Strain", "strain", (p) => percent(p.strain)],
     ["Delivered", "delivered", (p) => percent(p.delivered)], ["Error", "error", (p) => p.error === null ? "" : p.error.toPrecision(3)],
     ["Energy gained", "energy", (p) => p.energy === null ? "" : p.energy.toPrecision(2)], ["Iterations", "iterations", (p) => p.iterations ?? ""],
     ["File", "file", (p) => data.files[p.file].name]];
-  const text = points.map((p) => `${data.solvers[p.solver].name} ${data.solvers[p.solver].label} ${p.id} ${p.sweep} ${p.status} ${data.files[p.file].name}`.toLowerCase());
+  const text = points.map((p) => `${p.solver} ${data.labels[p.solver]} ${p.id} ${p.sweep} ${p.status} ${data.files[p.file].name}`.toLowerCase());
 
   const head = table.tHead.rows[0];
   for (const [title, name] of columns) {

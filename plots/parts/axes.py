@@ -28,11 +28,12 @@ def _log(axis: Axis, values: list[float], room: float, *ticks) -> None:
 
 def log_x(axes: Axes, ticks: list[float], inches: float) -> None:
     """A tick at each value that was measured, as far as their labels have room."""
-    spread = max(ticks) / min(ticks)
+    ticks = sorted(set(ticks))
+    spread = ticks[-1] / ticks[0]
     pad = max(spread**0.06, 1.15)
     scale = inches / math.log10(spread * pad * pad)
     kept: list[float] = []  # from the largest value down, each whose label does not touch the one before it
-    for tick in sorted(ticks, reverse=True):
+    for tick in reversed(ticks):
         if not kept or math.log10(kept[-1] / tick) * scale >= 0.07 * len(f"{tick:.7g}") + 0.08:
             kept.append(tick)
     _log(axes.xaxis, ticks, pad, FixedLocator(kept), FixedLocator(ticks), lambda x: f"{x:.7g}")
@@ -66,13 +67,9 @@ def log_steps_on_y(axes: Axes, steps: list[float]) -> None:
 
 
 def gap(axes: Axes, left: float, right: float) -> float:
-    """Distance of two x values as a fraction of the axes' width."""
-    to_axes = axes.transData + axes.transAxes.inverted()
-    return to_axes.transform((right, 0))[0] - to_axes.transform((left, 0))[0]
-
-
-def points_wide(axes: Axes) -> float:
-    return axes.get_figure().get_figwidth() * axes.get_position().width * 72
+    """Distance of two x values, in points."""
+    (start, _), (end, _) = axes.transData.transform([(left, 1), (right, 1)])
+    return (end - start) * 72 / axes.get_figure().dpi
 
 
 def grid(axes: Axes) -> None:

@@ -8,7 +8,7 @@ from matplotlib.text import Annotation
 from matplotlib.ticker import NullLocator
 from matplotlib.transforms import ScaledTranslation
 
-from parts.axes import gap, log_steps_on_y, points_wide
+from parts.axes import gap, log_steps_on_y
 from parts.result import Json
 from parts.sheet import LEFT, ROW_HEIGHT, Sheet
 from parts.style import DARK_GREY, LIGHT_GREY, Styles, line_of
@@ -97,7 +97,7 @@ def draw_steps(axes: Axes, curves: Curves, styles: Styles) -> None:
     most = max((len(solvers) for solvers in taken.values()), default=1)
     xs = sorted({b.x for b in all_best(curves)})
     # as wide as a marker if the nearest x leaves that much room
-    spacing = min([5.5] + [gap(axes, a, b) * points_wide(axes) / (most + 0.5) for a, b in zip(xs, xs[1:])])
+    spacing = min([5.5] + [gap(axes, a, b) / (most + 0.5) for a, b in zip(xs, xs[1:])])
     for solver, (style, best) in shown.items():
         for b in best:
             solvers = taken[b.x, _rung(b.step)]
@@ -145,16 +145,15 @@ def add_strip(sheet: Sheet, beneath: Axes, rows: Rows, styles: Styles, title: st
     axes.xaxis.set_minor_locator(NullLocator())
     axes.tick_params(axis="y", length=0, labelsize=NAME_SIZE)
     axes.set_yticks(range(len(rows)), [shorten(clean(name), LEFT - 0.15, NAME_SIZE) for name in rows])
-    wide = points_wide(axes)
     for row, (solver, marks) in enumerate(rows.items()):
         for (x, letters), after in zip(marks, [*marks[1:], None]):
             sign = line_of(styles[solver], [x], [row], zorder=5)
             sign.set(linestyle="none", clip_on=False)
             axes.add_line(sign)
-            if after and letters == after[1] and gap(axes, x, after[0]) * wide < 7 + 5 * len(letters):
+            if after and letters == after[1] and gap(axes, x, after[0]) < 7 + 5 * len(letters):
                 continue  # no room, and the next mark says the same
             # words that would run out of the strip go to the left of their mark
-            turned = (1 - gap(axes, axes.get_xlim()[0], x)) * wide < 4 * len(letters)
+            turned = gap(axes, x, axes.get_xlim()[1]) < 4 * len(letters)
             axes.annotate(letters, (x, row), (-4.5 if turned else 4.5, -0.3), textcoords="offset points",
                           fontsize=NAME_SIZE, ha="right" if turned else "left", va="center_baseline", annotation_clip=False)
     axes.set_title(title, loc="right", fontsize=7, pad=2, color=DARK_GREY)

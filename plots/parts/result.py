@@ -1,11 +1,8 @@
 """A result file that `bench` has checked, with what it says of it: the analysis of a sweep, and the legend of its solvers."""
 
-import json
 import math
-import sys
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any, Iterable
 
 from parts.words import clean
@@ -81,17 +78,7 @@ class Result:
         return ", ".join(f"{clean(letter)} = {clean(meaning)}" for letter, meaning in meanings.items() if letter in set(letters))
 
 
-def refused(script: str, why: str) -> int:
-    """The exit code of a script that cannot do what was asked."""
-    print(f"{script}: {why}", file=sys.stderr)
-    return 2
-
-
-def load(path: Path) -> Result:
-    return Result(json.loads(path.read_text(encoding="utf-8")))
-
-
 def seconds_of(point: Json) -> float | None:
     """The time that counts: the least sample."""
     timing = point["seconds_per_simulated_second"]
-    return min(timing["samples"]) if timing and timing["samples"] else None
+    return timing["min"] if timing else None

@@ -47,22 +47,18 @@ def step_sweeps_in(result: Result) -> list[StepSweep]:
     sweeps = []
     for scene, vertices in sorted(groups):
         sweep = StepSweep(scene, vertices, groups[scene, vertices], place_part({"scene": scene, "vertices": vertices}, places))
-        for point in sweep.points:
-            _add(sweep, point, result.at_any_settings(point["contestant"]), letters)
         sweeps.append(sweep)
+        for point in sweep.points:
+            solver, step, error, seconds = result.at_any_settings(point["contestant"]), point["step"], point["error"], seconds_of(point)
+            if point["status"] != "ok" or seconds is None:
+                sweep.failures.setdefault(solver, []).append((step, letters[point["status"]]))
+                continue
+            own = sweep.runs.setdefault(solver, [])
+            if error["trajectory"]:
+                own.append(Run(seconds, step, error["trajectory"], error["trajectory"] >= 3 * (error["gap"] or 0)))
+            if error.get("residuals"):
+                sweep.residuals.setdefault(solver, {}).setdefault(point["strain_limit"], {})[step] = error["residuals"]
     return sweeps
-
-
-def _add(sweep: StepSweep, point: Json, solver: str, letters: dict[str, str]) -> None:
-    step, error, seconds = point["step"], point["error"], seconds_of(point)
-    if point["status"] != "ok" or seconds is None:
-        sweep.failures.setdefault(solver, []).append((step, letters[point["status"]]))
-        return
-    own = sweep.runs.setdefault(solver, [])
-    if error["trajectory"]:
-        own.append(Run(seconds, step, error["trajectory"], error["trajectory"] >= 3 * (error["gap"] or 0)))
-    if error.get("residuals"):
-        sweep.residuals.setdefault(solver, {}).setdefault(point["strain_limit"], {})[step] = error["residuals"]
 
 
 def cheapest(runs: list[Run]) -> list[Run]:

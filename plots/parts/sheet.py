@@ -111,7 +111,7 @@ def sampling(result: Result) -> str:
     return "one run a point" if reps == 1 else f"least of {plain(reps)} samples or more" if reps else "least sample"
 
 
-def settings_of_the_run(result: Result, seed: bool = True) -> list[str]:
+def settings_of_the_run(result: Result) -> list[str]:
     suite = result.suite
     given = result.context.get("seed", suite.get("seed"))
     return [f"timeout {suite['timeout']:g} s" if "timeout" in suite else "", f"profile {plain(suite['profile'])}" if "profile" in suite else "",

@@ -82,14 +82,8 @@ def found_again(path: str, line: int, text: str) -> tuple[str, int] | None:
 
 
 def quotes(document: Path) -> list[str]:
-    errors = []
-    for path, line, text in QUOTE.findall(read(document)):
-        here = lines_with(ROOT / path, text)
-        if not here:
-            errors.append(f"{path} does not hold '{text}'")
-        elif int(line) not in here:
-            errors.append(f"{path}: '{text}' is in line {here[0]}, not {line} (run tests/docs/check_docs.py --fix)")
-    return errors
+    return [f"{path}: '{text}' is not in line {line} (run tests/docs/check_docs.py --fix)"
+            for path, line, text in QUOTE.findall(read(document)) if int(line) not in lines_with(ROOT / path, text)]
 
 
 # ---- generated blocks -------------------------------------------------------------------------------------------------
@@ -100,13 +94,9 @@ def markdown(head: list[str], rows: list[list[str]]) -> str:
 
 def references(_: str) -> str:
     """Until when each committed reference can be trusted at some levels of error."""
-    levels = (0.02, 0.01, 0.005)
-
-    def order(path: Path) -> tuple[str, int, str]:
-        return path.name.split("-n")[0], int(re.findall(r"-n(\d+)", path.name)[0]), path.name
-
-    rows = []
-    for path in sorted((ROOT / "results/references").glob("*.json"), key=order):
+    levels, rows = (0.02, 0.01, 0.005), []
+    for path in sorted((ROOT / "results/references").glob("*.json"),  # by scene, then by size
+                       key=lambda path: (path.name.split("-n")[0], int(re.findall(r"-n(\d+)", path.name)[0]), path.name)):
         file = json_of(path)
         known = list(zip(file["times"], file["gap"]))[:len(file["positions"])]
         until = [max((t for t, gap in known if SURE * gap <= level), default=0) for level in levels]

@@ -24,18 +24,14 @@ blocks = re.findall(r"<!-- (?:new file: (\S+)|(\S+), after: (.+?)) -->\n\n?```\w
 if not blocks:
     sys.exit("the page has nothing to add")
 for new, path, anchor, code in blocks:
-    if new:
-        place = tree / new
-        if place.exists():
-            sys.exit(f"{new} is there already")
-        place.write_text(code, encoding="utf-8")
-        continue
-    place = tree / path
-    lines = place.read_text(encoding="utf-8").splitlines(keepends=True)
-    at = next((i for i, line in enumerate(lines) if anchor in line), None)
+    place = tree / (new or path)
+    if new and place.exists():
+        sys.exit(f"{new} is there already")
+    lines = [] if new else place.read_text(encoding="utf-8").splitlines(keepends=True)
+    at = 0 if new else next((number for number, line in enumerate(lines, 1) if anchor in line), None)
     if at is None:
         sys.exit(f"{path} has no line with '{anchor}'")
-    lines.insert(at + 1, code)
+    lines.insert(at, code)
     place.write_text("".join(lines), encoding="utf-8")
 print(f"{len(blocks)} pieces added")
 

@@ -1,6 +1,7 @@
 """The report: what is computed for it, and the page in a browser (Debian: chromium-driver, python3-selenium; skipped without)."""
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -20,14 +21,14 @@ FOUND = [{"scene": "chain", "sweep": "step", "vertices": 80, "subject": "chain o
 
 
 def test_findings_are_the_programs_and_the_largest_drape_comes_first() -> None:
-    assert [texts for _, texts in report.findings(FOUND)] == [["C is first.", "D."], ["B is first."], ["A is first."]]
+    assert re.findall(r"[A-D] is first\.|D\.", report.findings(FOUND)) == ["C is first.", "D.", "B is first.", "A is first."]
 
 
 def test_the_data_are_those_of_the_points() -> None:
     result = analysed(strain_sweep())
     data = embedded({Path("it.json"): result})
     rows = [dict(zip(data["columns"], row)) for row in data["points"]]
-    assert [(row["id"], data["solvers"][row["solver"]]["name"]) for row in rows] == [(made["id"], made["solver"]) for made in result.points]
+    assert [(row["id"], row["solver"]) for row in rows] == [(made["id"], made["solver"]) for made in result.points]
     assert all(row["seconds"] is None or row["seconds"] <= row["high"] for row in rows)
     assert repeat_command(result) == "./bench --sweep strain --reps 9"
 

@@ -8,13 +8,12 @@
 
 namespace inextensible::names {
 
-// The name of a contestant: gauss_seidel@bdf2 is gauss_seidel_in_bdf2.
-inline std::string plain(std::string name) {
+// gauss_seidel@bdf2 is gauss_seidel_in_bdf2.
+inline constexpr auto contestant_name = [](const auto& info) {
+  std::string name = info.param;
   if (const std::size_t at = name.find('@'); at != name.npos) name.replace(at, 1, "_in_");
   return name;
-}
-
-inline constexpr auto contestant_name = [](const auto& info) { return plain(info.param); };
+};
 
 template <class Fits>
 std::vector<const char*> rows_that(const Fits& fit) {

@@ -13,21 +13,17 @@ namespace inextensible::testing {
 // at rest; masses log-uniform in [lightest, 1]; the first `pinned` vertices pinned. Zero gravity.
 // With extra well below 2 n the gradients are independent (a generic framework in space).
 inline RandomMesh random_graph(Random& random, int n, int extra, int pinned, double lightest) {
-  RandomMesh graph;
-  graph.x.resize(3, n);
-  for (Eigen::Index i = 0; i < graph.x.size(); ++i) graph.x.data()[i] = uniform(random, -1, 1);
-  ProblemParts parts;
-  parts.gravity.setZero();
-  for (int v = 0; v < n; ++v) {
-    parts.mass.push_back(std::pow(lightest, uniform(random, 0, 1)));
-    if (v < pinned) parts.pinned.push_back(v);
-  }
+  const Positions x = Positions::NullaryExpr(3, n, [&] { return uniform(random, -1, 1); });
+  std::vector<double> mass;
+  for (int v = 0; v < n; ++v) mass.push_back(std::pow(lightest, uniform(random, 0, 1)));
+  std::vector<int> pins(pinned);
+  std::iota(pins.begin(), pins.end(), 0);
+  std::vector<Edge> edges;
   std::set<std::pair<int, int>> taken;
   const auto join = [&](int a, int b) {
     if (a == b || (a < pinned && b < pinned) || !taken.insert(std::minmax(a, b)).second)
       return false;
-    parts.edges.push_back({a, b});
-    parts.rest_length.push_back((graph.x.col(b) - graph.x.col(a)).norm());
+    edges.push_back({a, b});
     return true;
   };
   const auto vertex = [&](int below) {
@@ -35,8 +31,7 @@ inline RandomMesh random_graph(Random& random, int n, int extra, int pinned, dou
   };
   for (int v = std::max(pinned, 1); v < n; ++v) join(v, vertex(v));
   for (int added = 0; added < extra;) added += join(vertex(n), vertex(n));
-  graph.problem = std::make_shared<const Problem>(std::move(parts));
-  return graph;
+  return {std::make_shared<const Problem>(parts_at_rest(x, edges, mass, pins)), x};
 }
 
 // Some hairs in one problem, their edges in random directions: pinned at one end, somewhere
@@ -44,26 +39,24 @@ inline RandomMesh random_graph(Random& random, int n, int extra, int pinned, dou
 // edges are there a second time.
 inline RandomMesh random_chains(Random& random, int chains, double lightest = 1e-3,
                                 bool twice = false) {
-  testing::RandomMesh mesh;
-  ProblemParts parts;
+  std::vector<double> mass;
+  std::vector<int> pins;
+  std::vector<Edge> edges;
   for (int chain = 0; chain < chains; ++chain) {
-    const int first = static_cast<int>(parts.mass.size());
+    const int first = static_cast<int>(mass.size());
     const int length = 1 + static_cast<int>(random() % 12);
     const int pin = first + static_cast<int>(random() % 13);
     for (int v = first; v < first + length; ++v) {
-      parts.mass.push_back(std::pow(lightest, uniform(random, 0, 1)));
-      if (v == pin) parts.pinned.push_back(v);
-      if (v > first) parts.edges.push_back(random() % 2 ? Edge{v - 1, v} : Edge{v, v - 1});
-      if (twice && v > first && random() % 4 == 0) parts.edges.push_back({v - 1, v});
+      mass.push_back(std::pow(lightest, uniform(random, 0, 1)));
+      if (v == pin) pins.push_back(v);
+      if (v > first) edges.push_back(random() % 2 ? Edge{v - 1, v} : Edge{v, v - 1});
+      if (twice && v > first && random() % 4 == 0) edges.push_back({v - 1, v});
     }
   }
-  std::shuffle(parts.edges.begin(), parts.edges.end(), random);
-  mesh.x = Positions::NullaryExpr(3, static_cast<Eigen::Index>(parts.mass.size()),
-                                  [&] { return uniform(random, -1, 1); });
-  for (const Edge e : parts.edges)
-    parts.rest_length.push_back((mesh.x.col(e.b) - mesh.x.col(e.a)).norm());
-  mesh.problem = std::make_shared<const Problem>(std::move(parts));
-  return mesh;
+  std::shuffle(edges.begin(), edges.end(), random);
+  const Positions x =
+      Positions::NullaryExpr(3, std::ssize(mass), [&] { return uniform(random, -1, 1); });
+  return {std::make_shared<const Problem>(parts_at_rest(x, edges, mass, pins)), x};
 }
 
 }  // namespace inextensible::testing

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <random>
 
 #include "solvers/problem/problem.h"
@@ -48,40 +49,42 @@ inline ProblemParts parts_of(const Problem& problem) {
   return parts;
 }
 
-// A crumpled quad grid of rows x columns vertices with unequal edge lengths and masses (a decade
-// apart). pinned: how many vertices; gravity is zero, so that momentum can be checked.
-inline RandomMesh random_mesh(Random& random, int rows, int columns, int pinned,
-                              std::shared_ptr<const Collider> collider = nullptr) {
-  RandomMesh mesh;
-  const int n = rows * columns;
-  mesh.x.resize(3, n);
+// At rest at x where edges join vertices; without gravity, so that momentum can be checked.
+inline ProblemParts parts_at_rest(const Positions& x, std::vector<Edge> edges,
+                                  std::vector<double> mass, std::vector<int> pinned = {}) {
   ProblemParts parts;
   parts.gravity.setZero();
-  parts.collider = std::move(collider);
+  parts.mass = std::move(mass);
+  parts.pinned = std::move(pinned);
+  for (const Edge e : edges) parts.rest_length.push_back((x.col(e.b) - x.col(e.a)).norm());
+  parts.edges = std::move(edges);
+  return parts;
+}
+
+// A crumpled quad grid of rows x columns vertices with unequal edge lengths and masses (a decade
+// apart). pinned: how many vertices.
+inline RandomMesh random_mesh(Random& random, int rows, int columns, int pinned) {
+  const int n = rows * columns;
+  Positions x(3, n);
+  std::vector<double> mass;
+  std::vector<Edge> edges;
   for (int i = 0; i < rows; ++i) {
     for (int j = 0; j < columns; ++j) {
       const int v = i * columns + j;
-      mesh.x.col(v) << j + uniform(random, -0.2, 0.2), uniform(random, -0.3, 0.3),
+      x.col(v) << j + uniform(random, -0.2, 0.2), uniform(random, -0.3, 0.3),
           i + uniform(random, -0.2, 0.2);
-      parts.mass.push_back(uniform(random, 0.1, 1));
-      if (j > 0) parts.edges.push_back({v - 1, v});
-      if (i > 0) parts.edges.push_back({v, v - columns});  // both orientations occur
+      mass.push_back(uniform(random, 0.1, 1));
+      if (j > 0) edges.push_back({v - 1, v});
+      if (i > 0) edges.push_back({v, v - columns});  // both orientations occur
     }
   }
-  std::vector<int> order(n);
-  for (int v = 0; v < n; ++v) order[v] = v;
-  std::shuffle(order.begin(), order.end(), random);
-  parts.pinned.assign(order.begin(), order.begin() + pinned);
-  std::erase_if(parts.edges, [&](Edge e) {
-    const auto is_pinned = [&](int v) {
-      return std::count(parts.pinned.begin(), parts.pinned.end(), v) > 0;
-    };
-    return is_pinned(e.a) && is_pinned(e.b);
-  });
-  for (const Edge e : parts.edges)
-    parts.rest_length.push_back((mesh.x.col(e.b) - mesh.x.col(e.a)).norm());
-  mesh.problem = std::make_shared<const Problem>(std::move(parts));
-  return mesh;
+  std::vector<int> pins(n);
+  std::iota(pins.begin(), pins.end(), 0);
+  std::shuffle(pins.begin(), pins.end(), random);
+  pins.resize(pinned);
+  const auto is_pinned = [&](int v) { return std::ranges::count(pins, v) > 0; };
+  std::erase_if(edges, [&](Edge e) { return is_pinned(e.a) && is_pinned(e.b); });
+  return {std::make_shared<const Problem>(parts_at_rest(x, edges, mass, pins)), x};
 }
 
 // Free vertices moved by up to `size` in each coordinate.

@@ -1,7 +1,6 @@
 // Children that misbehave end, and their parents do not. One process at a time takes times; the
 // lock ends with its process, and those who are started under it go on.
 #include <gtest/gtest.h>
-#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -25,23 +24,6 @@ using std::chrono::milliseconds;
 
 void sleep_for(int ms) { std::this_thread::sleep_for(milliseconds(ms)); }
 
-// A number that children can leave for their parents; it stays until this process ends.
-pid_t& shared_pid() {
-  return *static_cast<pid_t*>(
-      mmap(nullptr, sizeof(pid_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
-}
-
-// Makes this process the parent of orphans below it. Who else takes them, and when, is the
-// machine's affair: where nobody does, a process that was killed is there for ever.
-void adopt_orphans() { ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0); }
-
-// Waits for the end of an orphan.
-bool was_killed(pid_t orphan) {
-  int status = 0;
-  return waitpid(orphan, &status, 0) == orphan && WIFSIGNALED(status) &&
-         WTERMSIG(status) == SIGKILL;
-}
-
 TEST(ChildProcess, AnAnswerThatCannotBeReadIsHowItEnded) {
   for (const char* text : {"{\"seconds\": null}", "no JSON", "{}", "[1"}) {
     ChildOutcome outcome = run_in_child([text](Heartbeat&) { return std::string(text); }, {});
@@ -54,24 +36,28 @@ TEST(ChildProcess, AnAnswerThatCannotBeReadIsHowItEnded) {
   }
 }
 
-TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParent) {
-  adopt_orphans();
-  pid_t& left = shared_pid();
+TEST(ChildProcess, OneThatLeavesAChildBehindDoesNotHoldUpItsParentAndTakesItAlong) {
+  // This process takes orphans: where nobody does, one that was killed is there for ever.
+  ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
   const ChildOutcome outcome = run_in_child(
-      [&](Heartbeat&) -> std::string {
+      [](Heartbeat& heartbeat) -> std::string {
         const pid_t own = fork();
         if (own == 0) {
           sleep_for(60000);  // with the pipe open
           _exit(0);
         }
-        left = own;
+        heartbeat.step = own;
         _exit(3);
       },
       {});
   EXPECT_EQ(outcome.end, End::exited);
   EXPECT_EQ(outcome.code, 3);
+  const auto left = static_cast<pid_t>(outcome.step);
   ASSERT_GT(left, 0);
-  EXPECT_TRUE(was_killed(left)) << "its parent waited for the process that it left behind";
+  int status = 0;
+  ASSERT_EQ(waitpid(left, &status, 0), left);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
+      << "its parent waited for the process that it left behind";
 }
 
 // Whether a process whose child does `work` gets its answer in spite of what disturbs it meanwhile.
@@ -124,28 +110,6 @@ TEST(ChildProcess, AnAnswerIsNotLostToASignal) {
       }));
 }
 
-TEST(ChildProcess, OneThatHangsIsEndedWithWhatItStarted) {
-  adopt_orphans();
-  pid_t& started = shared_pid();
-  const ChildOutcome outcome = run_in_child(
-      [&](Heartbeat& heartbeat) -> std::string {
-        const pid_t own = fork();
-        if (own > 0) started = own;
-        // Its time is up now. Said again and again: a parent that was away for long may have set
-        // the beginning at the same time.
-        while (own > 0) {
-          heartbeat.begin = heartbeat.begin - 1000;
-          sleep_for(50);
-        }
-        sleep_for(60000);
-        _exit(0);
-      },
-      {.timeout = 100});
-  EXPECT_EQ(outcome.end, End::timed_out);
-  ASSERT_GT(started, 0);
-  EXPECT_TRUE(was_killed(started));
-}
-
 class Lock : public testing::Test {
  protected:
   void SetUp() override { setenv("TMPDIR", ::testing::TempDir().c_str(), 1); }
@@ -182,27 +146,21 @@ TEST_F(Lock, IsHeldByOneProcessAndNotInTheWayOfProgramsStartedUnderIt) {
 }
 
 TEST_F(Lock, EndsWithItsProcessThoughAChildOfThatLives) {
-  std::array<int, 2> tell{}, stop{};
-  ASSERT_EQ(pipe(tell.data()), 0);
-  ASSERT_EQ(pipe(stop.data()), 0);
+  std::array<int, 2> held{};
+  ASSERT_EQ(pipe(held.data()), 0);
+  char c = 'x';
   const pid_t holder = fork();
   if (holder == 0) {
+    setpgid(0, 0);
     const TimingLock lock;
-    if (fork() == 0) {  // outlives its parent until told to stop
-      char c = 0;
-      close(stop[1]);
-      _exit(static_cast<int>(read(stop[0], &c, 1)));
-    }
-    const char c = 'x';
-    if (write(tell[1], &c, 1) != 1) _exit(1);
-    pause();
+    if (fork() > 0 && write(held[1], &c, 1) != 1) _exit(1);
+    while (true) pause();  // both: the child outlives its parent
   }
-  char c = 0;
-  ASSERT_EQ(read(tell[0], &c, 1), 1);
+  ASSERT_EQ(read(held[0], &c, 1), 1);
   kill(holder, SIGKILL);
   waitpid(holder, nullptr, 0);
   EXPECT_EQ(try_in_child(), 0);
-  for (const int end : {tell[0], tell[1], stop[0], stop[1]}) close(end);
+  kill(-holder, SIGKILL);
 }
 
 }  // namespace

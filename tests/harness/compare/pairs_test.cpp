@@ -1,40 +1,33 @@
 // Interleaved pairs with a fake clock: no process runs here.
-#include "harness/compare/pairs.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "harness/compare/comparison.h"
 
 namespace harness {
 namespace {
 
 using nlohmann::json;
 
-ComparedPoint printed(double seconds, const std::string& status = "ok", double iterations = 10) {
+ComparedPoint printed(double seconds, const std::string& status = "ok") {
   ComparedPoint point{"strain", "chain", status};
-  point.counters = {{"iterations", iterations}};
+  point.counters = {{"iterations", 10}};
   if (status == "ok") point.samples = {seconds, 2 * seconds};
   return point;
 }
 
-using Names = std::vector<std::string>;
 using Answer = std::function<ComparedPoint(Side side, const std::string& name)>;
 
 RunOne running(const Answer& answer) {
   return [answer](Side side, const PairedPoint& point) { return answer(side, point.spec); };
 }
 
-Gate informing() {
-  Gate gate;
-  gate.counter_rule = CounterRule::inform;
-  return gate;
-}
-
-Comparison compared(const Names& names, const Answer& answer, const Gate& gate = informing()) {
+Comparison compared(const std::vector<std::string>& names, const Answer& answer) {
   std::vector<PairedPoint> points;
   for (const std::string& name : names) points.push_back({json(name)});
-  return compare_in_pairs(std::move(points), 15, 25, gate, {}, running(answer));
+  return compare_in_pairs(std::move(points), 15, 25, {}, {}, running(answer));
 }
 
 // A machine whose speed wanders, and now and then drops for a while.
@@ -139,16 +132,6 @@ TEST(CompareInPairs, WhatFailsOnBothSidesIsUndecidedAndWhatFailsBeforeOnlyIsFixe
     });
     EXPECT_EQ(old_alone.points[0].change, Change::fixed) << status;
   }
-}
-
-TEST(CompareInPairs, CountersInformUnlessTheGateSaysOtherwise) {
-  const Answer more_work = [](Side side, const std::string&) {
-    return printed(1, "ok", side == Side::old_one ? 10 : 11);
-  };
-  const auto told = compared({"a"}, more_work);
-  EXPECT_EQ(told.points[0].change, Change::same);
-  EXPECT_EQ(told.points[0].text(), "iterations 10 -> 11 (+10 %)");
-  EXPECT_EQ(compared({"a"}, more_work, Gate()).points[0].change, Change::slower);
 }
 
 }  // namespace

@@ -113,13 +113,16 @@ TEST(Suite, NamesFileKeyAndValueOfWhatIsWrong) {
   const std::pair<std::string, const char*> suites[] = {
       {"{ nonsense", "is not JSON"},
       {"[]", "must be an object"},
+      {R"({"name": "../x", "sweeps": []})", "'name' is"},
       {R"({"reps": 0, "sweeps": []})", "'reps' is 0"},
+      {R"({"reps": 1e300, "sweeps": []})", "'reps' is 1"},
       {sweep(R"("limits": [0])"), "'limits' is 0"},
       {sweep(R"("limits": "all")"), "'limits' is \"all\""},
       {sweep(R"("limit": 0.1, "scene": "drap")"), "did you mean 'drape'"},
       {sweep(R"("limit": 0.1, "solver": ["icd"])"), "did you mean 'solvers'"},
       {sweep(R"("limit": 0.1, "scene_parameters": {"n": 1})"), "'n' is 1"},
       {sweep(R"("limit": 0.1, "scene_parameters": {"m": 1})"), "no parameter of scene chain 'm'"},
+      {sweep(R"("limit": 0.1, "scene_parameters": {"duration": 1e9})"), "'duration'"},
       {sweep(R"("limit": 0.1, "resolutions": [2.5])"), "'resolutions' is 2.5"},
       {sweep(R"("limit": 0.1, "solver_options": {"icd": {"max_iteration": 3}})"),
        "did you mean 'max_iterations'"},
@@ -224,7 +227,7 @@ TEST(Noise, IsTheSpreadOfThePairsRatiosWhateverItsSteps) {
   EXPECT_EQ(noise->places, 21);
   EXPECT_NEAR(noise->median, 0.1, 1e-12);
   EXPECT_NEAR(noise->q95, 0.19, 1e-12);
-  EXPECT_EQ(noise_of({{"noise", to_json(*noise)}})->q95, noise->q95);
+  EXPECT_EQ(noise_of({{"noise", *noise}})->q95, noise->q95);
   EXPECT_FALSE(noise_of(json::object()));
   EXPECT_FALSE(pair_noise(points, "jacobi"));
   // A step sweep compares equal steps.

@@ -3,14 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include "harness/analysis/findings.h"
 #include "harness/compare/comparison.h"
 #include "harness/points/context.h"
-#include "harness/points/point_json.h"
 #include "harness/points/schema.h"
 #include "harness/points/tuned.h"
 #include "harness/run/sweep.h"

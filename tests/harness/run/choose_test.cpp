@@ -14,7 +14,7 @@ namespace {
 
 PointResult run(const std::string& solver, double step, double seconds, double error) {
   PointResult point;
-  point.spec.solver = solver;
+  point.spec.contestant = point.spec.solver = solver;
   point.spec.step = step;
   point.status = PointStatus::ok;
   point.samples = {seconds};
@@ -60,19 +60,6 @@ TEST(Choose, ABudgetIsKeptByTheFramesAndNotByTheMean) {
   EXPECT_FALSE(recommend(all, {.error = 0.001}).to_be_taken());
 }
 
-TEST(Choose, LaddersFollowWhatScreeningSaw) {
-  std::vector<PointResult> screened;
-  for (const auto& [status, seconds] : std::vector<std::pair<PointStatus, std::vector<double>>>{
-           {PointStatus::unsupported, {}},
-           {PointStatus::strain_missed, {0.1}},
-           {PointStatus::ok, {3}},
-           {PointStatus::not_converged, {0.01}},
-           {PointStatus::ok, {2}},
-           {PointStatus::timeout, {}}})
-    screened.emplace_back(PointSpec{}, status).samples = seconds;
-  EXPECT_EQ(ladder_order(screened), (std::vector<std::size_t>{4, 2, 1, 3, 0, 5}));
-}
-
 // Six contestants on a chain. A run takes the seconds of the table at 1/60 s, and twice as much at
 // half the step. The error is 1 % everywhere.
 class InventedMachine {
@@ -95,20 +82,15 @@ class InventedMachine {
     std::ranges::reverse(sweep.contestants);
     sweep.coarsest = 1.0 / 60;
     sweep.finest = 1.0 / 240;
-    ChooseRunners runners;
-    runners.screen = [this](const PointSpec& spec, const RunLimits& limits, auto) {
-      calls.push_back("screen " + spec.solver);
-      EXPECT_LE(limits.hopeless, 0.1);
-      return spend(spec, limits.hopeless, limits);
-    };
+    SweepRunners runners;
     runners.run = [this](const PointSpec& spec, const RunLimits& limits, auto) {
-      calls.push_back("run " + spec.solver);
-      return spend(spec, std::min(cost(spec), limits.hopeless), limits);
-    };
-    runners.repeat = [this](const PointResult& point, const RunLimits& limits) {
-      calls.push_back("repeat " + point.spec.solver);
-      spend(point.spec, cost(point.spec), limits);
-      return Samples{{cost(point.spec)}};
+      calls.push_back((limits.look        ? "screen "
+                       : limits.sample_of ? "repeat "
+                                          : "run ") +
+                      spec.solver);
+      EXPECT_TRUE(!limits.look || limits.hopeless <= 0.1);
+      const double wanted = limits.look ? limits.hopeless : cost(spec);
+      return spend(spec, std::min(wanted, limits.hopeless), limits);
     };
     return try_contestants(
         suite, plan(suite, {}), {},

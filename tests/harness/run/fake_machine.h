@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,7 +19,7 @@ inline PointSpec spec_at(const std::string& scene, const SceneParameters& parame
   spec.sweep = "strain";
   spec.scene = scene;
   spec.scene_parameters = complete_parameters(*find_scene(scene), parameters);
-  spec.solver = solver;
+  spec.contestant = spec.solver = solver;
   spec.step = step;
   return spec;
 }
@@ -41,24 +40,25 @@ struct FakeMachine {
   // The machine must outlive them.
   SweepRunners runners() {
     return {[this](const PointSpec& spec, const RunLimits& limits, std::optional<double>) {
-              specs.push_back(spec);
-              hopeless.push_back(limits.hopeless);
-              PointResult point(spec, status(spec));
-              point.steps_planned = static_cast<int>(std::lround(1 / spec.step));
-              if (error) {
-                const double e = error(spec);
-                point.measures.error_series = {{0.5, e, e, gap, gap}};
-              }
-              const double taken = seconds(spec);
-              if (stops && point.ok() && taken > limits.hopeless)
-                point.status = PointStatus::timeout;
-              if (point.ok()) point.samples = {taken};
-              return point;
-            },
-            [this](const PointResult& point, const RunLimits&) {
-              ++repetitions;
-              return Samples{{again(point)}};
-            }};
+      if (limits.sample_of) {
+        ++repetitions;
+        PointResult more(spec);
+        more.samples = {again(*limits.sample_of)};
+        return more;
+      }
+      specs.push_back(spec);
+      hopeless.push_back(limits.hopeless);
+      PointResult point(spec, status(spec));
+      point.steps_planned = static_cast<int>(std::lround(1 / spec.step));
+      if (error) {
+        const double e = error(spec);
+        point.measures.error_series = {{0.5, e, e, gap, gap}};
+      }
+      const double taken = seconds(spec);
+      if (stops && point.ok() && taken > limits.hopeless) point.status = PointStatus::timeout;
+      if (point.ok()) point.samples = {taken};
+      return point;
+    }};
   }
 
   std::vector<int> steps() const {  // as 1/n s

@@ -34,13 +34,12 @@ TEST(TuneSearch, FindsTheLowestPointOfASmoothFunction) {
       if (fails && (v[0] > 1.75 || v[2] > 40)) return {};
       return bowl(v);
     };
-    const TuneOutcome found = tune_values(numbers(), seconds, {.budget = 60});
+    const TuneOutcome found = tune_values(numbers(), seconds, 60);
     EXPECT_LT(bowl(found.values), fails ? 1.1 : 1.06);  // what is within 5 % is not worth a change
     EXPECT_TRUE(seconds(found.values, 1e300));
-    EXPECT_NEAR(found.gain, bowl({1, 0.1, 0}) / bowl(found.values), 1e-12);
     EXPECT_LE(found.evaluations, 60);
     EXPECT_EQ(found.values[2], std::round(found.values[2]));
-    EXPECT_EQ(tune_values(numbers(), seconds, {.budget = 60}).values, found.values);
+    EXPECT_EQ(tune_values(numbers(), seconds, 60).values, found.values);
   }
 }
 
@@ -63,7 +62,7 @@ TEST(TuneSearch, FindsTheLowestPointOfAValleyAcrossTwoSettings) {
       const double across = std::cos(angle) * y - std::sin(angle) * x;
       return std::optional(1 + 2 * along * along + 20 * across * across);
     };
-    if (*seconds(tune_values(two, seconds).values, 0) < 1.1) ++within_10_percent;
+    if (*seconds(tune_values(two, seconds, 40).values, 0) < 1.1) ++within_10_percent;
   }
   EXPECT_GE(within_10_percent, valleys * 90 / 100);
 }
@@ -72,15 +71,14 @@ TEST(TuneSearch, KeepsWhatIsAsGoodAsAnything) {
   const auto flat = [](const Values& v, double) {
     return std::optional(1 + 0.02 * std::sin(50 * v[0] + 9 * v[1]));  // 4 %: below what counts
   };
-  const TuneOutcome found = tune_values(numbers(), flat);
+  const TuneOutcome found = tune_values(numbers(), flat, 40);
   EXPECT_EQ(found.values, (Values{1, 0.1, 0}));
-  EXPECT_EQ(found.gain, 1);
   int calls = 0;
   const auto fails = [&calls](const Values&, double) {
     ++calls;
     return std::optional<double>();
   };
-  EXPECT_EQ(tune_values(numbers(), fails).values, (Values{1, 0.1, 0}));
+  EXPECT_EQ(tune_values(numbers(), fails, 40).values, (Values{1, 0.1, 0}));
   EXPECT_EQ(calls, 1) << "what fails as it is has nothing to be compared with";
 }
 
@@ -96,7 +94,7 @@ TEST(TuneSearch, NeverReturnsAnythingWorseThanTheDefaultWhateverTheNoise) {
       ++calls;
       return std::optional(truth(v) * std::exp(noise(random)));
     };
-    const TuneOutcome found = tune_values(numbers(), seconds, {.budget = 20});
+    const TuneOutcome found = tune_values(numbers(), seconds, 20);
     EXPECT_LE(calls, 20);
     EXPECT_EQ(calls, found.evaluations);
     EXPECT_LE(truth(found.values), truth({1, 0.1, 0}));
@@ -129,18 +127,19 @@ double bowl_of(const PointSpec& spec) {
   return (0.1 + std::pow(relaxation_of(spec.settings) - 1.7, 2)) * (1 + off * off);
 }
 
-TunedEntry tuned(FakeMachine& machine,
-                 const TuneOptions& options = {
-                     .rules = {.budget = 60}, .trials_each = 30, .longest_run = 10}) {
+TunedEntry tuned(FakeMachine& machine, const TuneOptions& options = {
+                                           .budget = 60, .trials_each = 30, .longest_run = 10}) {
   machine.stops = true;
-  return tune_solver("gauss_seidel_colored", tuning_scenes().front(), options, machine.runners());
+  TunedEntry entry =
+      tune_solver("gauss_seidel_colored", tuning_scenes().front(), options, machine.runners());
+  EXPECT_EQ(entry.places.size(), 6u);
+  return entry;
 }
 
 TEST(Tune, FindsASettingAndSaysWhatItGains) {
   FakeMachine machine{bowl_of};
   const TunedEntry entry = tuned(machine);
   EXPECT_EQ(entry.kind, "chain");
-  ASSERT_EQ(entry.places.size(), 6u);
   for (const TunedPlace& place : entry.places) {
     const double relaxation = relaxation_of(place.settings);
     EXPECT_NEAR(relaxation, 1.7, 0.1);
@@ -169,7 +168,6 @@ TEST(Tune, EachPlaceIsTunedForItself) {
                                      : PointStatus::ok;
                         }};
     const TunedEntry entry = tuned(machine);
-    ASSERT_EQ(entry.places.size(), 6u);
     for (const TunedPlace& place : entry.places)
       EXPECT_NEAR(relaxation_of(place.settings), place.limit < 0.005 ? fails_above - 0.05 : 1.7,
                   0.1)
@@ -192,7 +190,6 @@ TEST(Tune, FindsBestStepsThatLieFarApart) {
                                                                         : PointStatus::ok;
                       }};
   const TunedEntry entry = tuned(machine);
-  ASSERT_EQ(entry.places.size(), 6u);
   const double off = std::log2(250.0 / 200);  // of the ladder's step next to 1/250 s
   for (const TunedPlace& place : entry.places) {
     EXPECT_GT(relaxation_of(place.settings), 1.5);
@@ -211,7 +208,6 @@ TEST(Tune, OnlyMotionThatIsRightCounts) {
     if (known)
       machine.error = [=](const PointSpec& spec) { return wrong(spec.settings) ? 0.05 : 0.001; };
     const TunedEntry entry = tuned(machine);
-    ASSERT_EQ(entry.places.size(), 6u);
     for (const TunedPlace& place : entry.places) EXPECT_EQ(wrong(place.settings), !known);
   }
 }
@@ -228,7 +224,7 @@ TEST(Tune, APlaceWhoseRunsAreLongIsTakenAtASmallerSize) {
     return found;
   };
   using Sizes = std::multiset<int>;
-  const TuneOptions few{.rules = {.budget = 30}}, many{.rules = {.budget = 60}, .trials_each = 30};
+  const TuneOptions few{.budget = 30}, many{.budget = 60, .trials_each = 30};
   EXPECT_EQ(sizes(bowl_of, few, 100), (Sizes{50, 50, 50, 200, 200, 200}));
   EXPECT_EQ(sizes(bowl_of, few, 1e-3), (Sizes{12, 12, 12, 12, 12, 12}))
       << "the smallest, though it takes long there too";
@@ -241,7 +237,7 @@ TEST(Tune, APlaceWhoseRunsAreLongIsTakenAtASmallerSize) {
 
 TEST(Tune, AnEntryIsRefusedOnceItsRuleHasChanged) {
   FakeMachine machine{bowl_of};
-  const TunedEntry entry = tuned(machine, {.rules = {.budget = 10}});
+  const TunedEntry entry = tuned(machine, {.budget = 10});
   struct Row {
     const char* place;
     nlohmann::json was;

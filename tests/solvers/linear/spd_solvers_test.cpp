@@ -176,8 +176,7 @@ TEST_P(SpdSolvers, SolveForThreeCoordinatesAsForEachAlone) {
 // A positive diagonal does not make a matrix positive definite. What is left of a refused matrix
 // must not reach the next one.
 TEST_P(SpdSolvers, RefuseWhatIsNotPositiveDefiniteAndForgetIt) {
-  for (std::uint64_t seed = 0; seed < 30; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
+  testing::for_seeds(30, [](Random&, std::uint64_t seed) {
     System system = random_system(GetParam(), seed);
     const int n = system.pattern.n;
     const VectorXd b = VectorXd::LinSpaced(n, -1, 2);
@@ -199,7 +198,7 @@ TEST_P(SpdSolvers, RefuseWhatIsNotPositiveDefiniteAndForgetIt) {
       }
     }
     EXPECT_EQ(solution(), fresh);
-  }
+  });
 }
 
 // A chain of springs that hangs on nothing: its Laplacian is singular, and so nearly that of one

@@ -1,7 +1,8 @@
 // Friction of every kind of method against what statics and dynamics say of it: a rope on a slope,
-// and a rope round a post.
+// a turntable, and a rope round a post.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
@@ -34,15 +35,12 @@ class Friction : public ::testing::TestWithParam<const char*> {};
 struct OnSlope {
   OnSlope(const char* solver, double friction, double angle)
       : down(std::cos(angle), -std::sin(angle), 0) {
-    const Vector3d normal(std::sin(angle), std::cos(angle), 0);
-    ProblemParts parts;
-    parts.mass = {0.1, 0.3, 0.2, 0.1};
-    parts.edges = {{0, 1}, {1, 2}, {2, 3}};
-    parts.rest_length = {0.1, 0.1, 0.1};
+    state.x = down * Eigen::RowVector4d(0, 0.1, 0.2, 0.3);
+    ProblemParts parts =
+        testing::parts_at_rest(state.x, {{0, 1}, {1, 2}, {2, 3}}, {0.1, 0.3, 0.2, 0.1});
     parts.gravity = {0, -gravity, 0};
+    const Vector3d normal(std::sin(angle), std::cos(angle), 0);
     parts.collider = std::make_shared<const testing::Ground>(normal, 0, friction);
-    state.x.resize(3, 4);
-    for (int i = 0; i < 4; ++i) state.x.col(i) = 0.1 * i * down;
     state.v.setZero(3, 4);
     stepper = make_stepper(solver, std::make_shared<const Problem>(std::move(parts)),
                            {1e-3, 1, stiff_enough(solver), &state});
@@ -85,6 +83,29 @@ TEST(FrictionInEveryStepper, StopsASlidingRopeWhereCoulombSays) {
   }
 }
 
+// A vertex is carried round where friction bears its centripetal acceleration, and flung off where
+// not.
+TEST(FrictionOnATurntable, HoldsWhatItCan) {
+  constexpr double rate = 4, radius = 0.5, needed = rate * rate * radius / gravity;
+  const auto turn = [](double time) {
+    return Eigen::AngleAxisd(rate * time, Vector3d::UnitY()).toRotationMatrix();
+  };
+  const auto after = [&](double friction) {
+    ProblemParts parts;
+    parts.mass = {0.3};
+    parts.collider = std::make_shared<const testing::Ground>(Vector3d(0, 1, 0), 0, friction);
+    parts.body_motion = [=](double time) { return Pose{turn(time), Vector3d::Zero()}; };
+    State state{Vector3d(radius, 0, 0), Vector3d(0, 0, -rate * radius), 0};  // with the table
+    const auto stepper =
+        make_stepper("fast_projection", std::make_shared<const Problem>(parts), {0.01, 1});
+    while (state.time < 0.5) EXPECT_TRUE(stepper->advance(state, 1.0 / 128));
+    return state;
+  };
+  const State held = after(1.1 * needed), flung = after(0.5 * needed);
+  EXPECT_LT((held.x.col(0) - turn(held.time) * Vector3d(radius, 0, 0)).norm(), 1e-12);
+  EXPECT_GT(flung.x.col(0).norm(), 1.1 * radius);
+}
+
 // A post of `sides` facets each way round, along z, with the radius R to the middles of its facets.
 TriangleMesh post(int sides, double radius) {
   TriangleMesh mesh;
@@ -110,23 +131,22 @@ struct OnPost {
   static constexpr double turn = pi / vertices;  // of the rope, at each vertex
 
   OnPost(const char* solver, double heavy) {
-    ProblemParts parts;
+    state.x.resize(3, vertices + 2);
+    std::vector<Edge> edges;
+    for (int i = 0; i < vertices + 2; ++i) {
+      const double angle = (std::clamp(i, 1, vertices) - 0.5) * turn;
+      state.x.col(i) << radius * std::cos(angle), radius * std::sin(angle), 0;
+      if (i > 0) edges.push_back({i - 1, i});
+    }
+    for (const int end : {0, vertices + 1}) state.x(1, end) -= 0.25;
+    std::vector<double> masses(vertices + 2, mass);
+    masses.front() = light;
+    masses.back() = heavy;
+    ProblemParts parts = testing::parts_at_rest(state.x, edges, masses);
     parts.gravity = {0, -gravity, 0};
     static const auto post_of_all =
         std::make_shared<const TriangleCollider>(post(2 * vertices, radius), friction);
     parts.collider = post_of_all;
-    const double link = 2 * radius * std::sin(turn / 2), fall = 0.25;
-    state.x.resize(3, vertices + 2);
-    for (int i = 0; i < vertices + 2; ++i) {
-      const bool first = i == 0, last = i == vertices + 1;
-      const double angle = (std::clamp(i, 1, vertices) - 0.5) * turn;
-      state.x.col(i) << radius * std::cos(angle),
-          first || last ? radius * std::sin(angle) - fall : radius * std::sin(angle), 0;
-      parts.mass.push_back(first ? light : last ? heavy : mass);
-      if (first) continue;
-      parts.edges.push_back({i - 1, i});
-      parts.rest_length.push_back(i == 1 || last ? fall : link);
-    }
     state.v.setZero(3, vertices + 2);
     stepper = make_stepper(solver, std::make_shared<const Problem>(std::move(parts)),
                            {1e-3, 1, stiff_enough(solver), &state});

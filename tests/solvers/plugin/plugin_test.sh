@@ -55,10 +55,7 @@ tiny --solver 'symmetric_sweeps|gauss_seidel' --out figures/out.json >sweep.txt 
 grep -q 'could not be drawn' sweep.txt && fail "no figures: $(cat sweep.txt)"
 ls figures/*.svg >/dev/null || fail "no figures"
 "$bench" --plugin "$plugin" report figures/out.json --out page.html >report.txt 2>&1 || fail "a page of an installed bench: $(cat report.txt)"
-grep -q '</html>' page.html || fail "the page has no end"
 [[ -n $(find installed -name LICENSE) ]] || fail "the licence is not installed"
-"$bench" --plugin "$plugin" --sweep stability --case '^(Q1|infeasible)' --solver symmetric_sweeps --no-plots --out hard.json \
-  >hard.txt 2>&1 || fail "hard cases: $(cat hard.txt)"
 
 # ---- Every verb of an installed bench ----
 tiny --solver fast_projection --no-plots --out small.json >sweep.txt 2>&1 || fail "a small sweep: $(cat sweep.txt)"

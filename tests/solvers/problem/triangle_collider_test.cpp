@@ -114,7 +114,10 @@ TEST(TriangleCollider, PushOutMovesWhatIsInsideToTheSurfaceWhateverTheFriction) 
         }
         Eigen::Matrix3Xd x = candidate;
         WorkCounters work;
-        testing::push_out(collider, start, x, work);
+        const Problem problem = testing::points(n, collider, false);
+        Contacts contacts(problem);
+        contacts.begin(start, 0, 1);
+        contacts.push_out(x, work);
         int inside = 0;
         for (int v = 0; v < n; ++v) {
           const double distance = collider->nearest_by_all(candidate.col(v)).signed_distance,

@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "harness/base/statistics.h"
+#include "harness/judge/mechanics.h"
 #include "harness/judge/reference.h"
 #include "harness/scenes/pendulum.h"
-#include "solvers/problem/forces.h"
 #include "solvers/registry.h"
 #include "solvers/stepping/bdf2.h"
 #include "solvers/systems/constrained_acceleration.h"
+#include "support/motion.h"
 #include "support/param_name.h"
 #include "support/scenes.h"
 
@@ -126,16 +127,11 @@ INSTANTIATE_TEST_SUITE_P(Pairs, PairOrder,
                          })),
                          inextensible::names::contestant_name);
 
-double energy(const Scene& scene, const State& state) {
-  return inextensible::potential_energy(*scene.problem, state.x) +
-         inextensible::kinetic_energy(*scene.problem, state.v);
-}
-
 double energy_after(const Scene& scene, const char* solver, double h, double duration,
                     double limit = tight, const Settings& settings = {}) {
   State state = scene.start;
   run(*make_stepper(solver, scene.problem, {limit, 1, settings}), state, h, duration);
-  return energy(scene, state);
+  return total_energy(*scene.problem, state);
 }
 
 // Over one second the implicit methods lose energy, less at smaller steps; RATTLE does not drift.
@@ -162,11 +158,11 @@ TEST(Energy, IsNotGainedWhereOnlyStrainNearTheLimitIsTakenBack) {
     const auto stepper =
         make_stepper("fast_projection", scene.problem, {0.01, 1, {{"target", target}}});
     State state = scene.start;
-    const double before = energy(scene, state);
+    const double before = total_energy(*scene.problem, state);
     double most = 0;
     for (int i = 0; i < 800; ++i) {
       EXPECT_TRUE(stepper->advance(state, 1.0 / 800));
-      most = std::max(most, energy(scene, state) - before);
+      most = std::max(most, total_energy(*scene.problem, state) - before);
     }
     return most / (scene.problem->total_mass() * 9.81);  // of weight times size
   };
@@ -179,7 +175,7 @@ TEST(Energy, IsNotGainedWhereOnlyStrainNearTheLimitIsTakenBack) {
 // first.
 TEST(Energy, OfATurningNetIsKeptByDirectionsOfTheMiddle) {
   const Scene scene = testing::build("spinning_net", {{"n", 7}});
-  const double start = energy(scene, scene.start);
+  const double start = total_energy(*scene.problem, scene.start);
   const auto lost = [&](const char* solver, const Settings& settings, double h) {
     return 1 - energy_after(scene, solver, h, 0.32, 1e-9, settings) / start;
   };
@@ -194,10 +190,8 @@ TEST(Energy, OfATurningNetIsKeptByDirectionsOfTheMiddle) {
 }
 
 std::shared_ptr<const inextensible::Problem> free_edge() {
-  inextensible::ProblemParts parts;
-  parts.mass = {1, 2};
-  parts.edges = {{0, 1}};
-  parts.rest_length = {1};
+  auto parts = inextensible::testing::parts_of(*inextensible::testing::one_edge(1, 2));
+  parts.gravity = {0, -9.81, 0};
   return std::make_shared<const inextensible::Problem>(parts);
 }
 
@@ -209,8 +203,7 @@ Bdf2Stepper bdf2(const std::shared_ptr<const inextensible::Problem>& problem,
 TEST(Bdf2, IsExactInFreeFallWhateverTheSteps) {
   const auto problem = free_edge();
   auto stepper = bdf2(problem);
-  State state{Positions::Zero(3, 2), Positions::Zero(3, 2), 0};
-  state.x(0, 1) = 1;
+  State state = inextensible::testing::stretched_edge(1);
   state.v.colwise() += Eigen::Vector3d(1, 2, 3);
   const State start = state;
   for (const double h : {0.01, 0.01, 0.01, 0.01, 0.02, 0.005, 0.01, 0.03}) {
@@ -226,8 +219,7 @@ TEST(Bdf2, IsExactInFreeFallWhateverTheSteps) {
 TEST(Bdf2, StartsAnewFromAStateThatIsNotItsOwn) {
   const auto problem = free_edge();
   auto used = bdf2(problem), fresh = bdf2(problem);
-  State state{Positions::Zero(3, 2), Positions::Zero(3, 2), 0};
-  state.x(0, 1) = 1;
+  State state = inextensible::testing::stretched_edge(1);
   state.v(1, 1) = 4;  // spins
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(used.advance(state, 0.01));
   state.v *= 0.5;

@@ -96,32 +96,25 @@ Start cloth(int n, double shear, bool implicit) {
   start.state.x.resize(3, n * n);
   start.state.v.setZero(3, n * n);
   const auto at = [n](int i, int j) { return i * n + j; };
-  const auto spring = [&](int a, int b) {
-    parts.shear->edges.push_back({a, b});
-    parts.shear->rest_length.push_back(std::sqrt(2.0) * link);
-    parts.shear->stiffness.push_back(shear);
-  };
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       start.state.x.col(at(i, j)) << j * link, 0, i * link;
-      const auto yarn = [&](int a, int b) {
-        parts.edges.push_back({a, b});
-        parts.rest_length.push_back(link);
-      };
-      if (j + 1 < n && i > 0) yarn(at(i, j), at(i, j + 1));  // the pinned row is free: no taut row
-      if (i + 1 < n) yarn(at(i, j), at(i + 1, j));
-      if (i + 1 < n && j + 1 < n) {
-        spring(at(i, j), at(i + 1, j + 1));
-        spring(at(i, j + 1), at(i + 1, j));
+      for (const auto& [down, right] : {std::pair(0, 1), std::pair(1, 0)}) {
+        if (i + down == n || j + right == n) continue;
+        const int next = at(i + down, j + right);
+        if (i + down > 0) parts.edges.push_back({at(i, j), next});  // no taut row between the pins
+        if (i + 2 * down < n && j + 2 * right < n)
+          parts.bending.push_back(yarn_bending(at(i, j), next, at(i + 2 * down, j + 2 * right),
+                                               link, link, 1e-3 * link));
       }
-      if (j + 2 < n)
-        parts.bending.push_back(
-            yarn_bending(at(i, j), at(i, j + 1), at(i, j + 2), link, link, 1e-3 * link));
-      if (i + 2 < n)
-        parts.bending.push_back(
-            yarn_bending(at(i, j), at(i + 1, j), at(i + 2, j), link, link, 1e-3 * link));
+      if (i + 1 == n || j + 1 == n) continue;
+      parts.shear->edges.push_back({at(i, j), at(i + 1, j + 1)});
+      parts.shear->edges.push_back({at(i, j + 1), at(i + 1, j)});
     }
   }
+  parts.rest_length.assign(parts.edges.size(), link);
+  parts.shear->rest_length.assign(parts.shear->edges.size(), std::sqrt(2.0) * link);
+  parts.shear->stiffness.assign(parts.shear->edges.size(), shear);
   parts.implicit_forces = implicit;
   start.problem = std::make_shared<const Problem>(std::move(parts));
   return start;

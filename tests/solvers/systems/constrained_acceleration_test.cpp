@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 
 #include "solvers/registry.h"
+#include "support/motion.h"
 #include "support/random_graph.h"
 
 namespace inextensible {
@@ -21,11 +22,6 @@ RandomMesh falling(const RandomMesh& mesh, const Eigen::Vector3d& gravity) {
   return {std::make_shared<const Problem>(std::move(parts)), mesh.x};
 }
 
-// Random velocities; pinned vertices rest.
-State random_state(Random& random, const RandomMesh& mesh) {
-  return {mesh.x, testing::perturbed(random, mesh, 1) - mesh.x, 0};
-}
-
 // a = W f - W J^T lambda from the definitions.
 TEST(ConstrainedAcceleration, IsThatOfDenseAlgebra) {
   testing::for_seeds(20, [&](testing::Random& random, std::uint64_t seed) {
@@ -33,7 +29,7 @@ TEST(ConstrainedAcceleration, IsThatOfDenseAlgebra) {
                                              : testing::random_graph(random, 30, 20, 2, 1e-3),
                                     {1, -9.81, 2});
     const Problem& p = *mesh.problem;
-    const State state = random_state(random, mesh);
+    const State state = testing::moving_state(random, mesh, 1);
     const Eigen::MatrixXd j = testing::dense_gradient(p, state.x);
     const Eigen::MatrixXd wjt = testing::inverse_masses3(p).asDiagonal() * j.transpose();
     Positions fall = Positions::Zero(3, p.vertices());
@@ -53,14 +49,10 @@ TEST(ConstrainedAcceleration, IsThatOfDenseAlgebra) {
 
 // A straight row of unequal masses between two pins: J W J^T is singular.
 TEST(ConstrainedAcceleration, OfATautRowIsWhatTheRowCannotHinder) {
-  ProblemParts parts;
-  parts.mass = {1, 2, 0.5, 3, 1};
-  parts.pinned = {0, 4};
   Positions x = Positions::Zero(3, 5);
-  for (int v = 0; v < 5; ++v) {
-    x(0, v) = v;
-    if (v > 0) parts.edges.push_back({v - 1, v}), parts.rest_length.push_back(1);
-  }
+  x.row(0) << 0, 1, 2, 3, 4;
+  ProblemParts parts =
+      testing::parts_at_rest(x, {{0, 1}, {1, 2}, {2, 3}, {3, 4}}, {1, 2, 0.5, 3, 1}, {0, 4});
   parts.gravity = {4, -9, 0};
   const Positions a = constrained_acceleration(Problem(parts), {x, Positions::Zero(3, 5), 0});
   for (int v = 1; v < 4; ++v) {
@@ -91,8 +83,8 @@ TEST(StartHalfStepBack, LetsEveryMethodFallExactly) {
     State state{mesh.x, Positions::Zero(3, 25), 0};
     state.v.colwise() += Eigen::Vector3d(1, 2, 3);
     const State begin = state;
-    const double h = 0.01;
     const auto stepper = make_stepper(row.name, mesh.problem, {1e-3, 1, {}});
+    using testing::h;
     if (row.velocities == Velocities::half_step)
       state = start_half_step_back(*mesh.problem, state, h);
     for (int i = 0; i < 50; ++i) ASSERT_TRUE(stepper->advance(state, h));
