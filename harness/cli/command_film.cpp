@@ -54,7 +54,7 @@ void print_times(const Recording& recording) {
 
 struct Film : SceneOptions {
   std::string solver = "fast_projection", limits = "0.01", out, stills;
-  double step = 0;  // s; 0: not given
+  double step = FilmSpec{}.step;  // s
   double frames_per_second = 30;
   int width = 0;  // pixels; 0: not given
 
@@ -63,10 +63,8 @@ struct Film : SceneOptions {
     SceneOptions::declare(command, scene);
     add_solver(command, solver);
     add_limits(command, limits, limits);
-    command.option("--step", step,
-                   "s; shortened to a whole part of a frame; default: 0.01, or as short as the "
-                   "energy check asks for",
-                   "S", Bounds::positive());
+    command.option("--step", step, "s; shortened to a whole part of a frame; default: 0.01", "S",
+                   Bounds::positive());
     command.option("--fps", frames_per_second, "frames a second", "N", Bounds::positive());
     command.option("--stills", stills,
                    "times of the pictures in a .png, s, between commas; default: four", "TIMES");
@@ -88,7 +86,7 @@ struct Film : SceneOptions {
     }
     tune(film.solvers, read_tuned_up_to_date("tuned.json"), find_scene(film.scene)->kind());
     film.strain_limits = numbers_of("--limit", limits, Bounds::strain());
-    if (step > 0) film.step = step;
+    film.step = step;
     film.frames_per_second = frames_per_second;
     return film;
   }
@@ -139,7 +137,6 @@ struct Film : SceneOptions {
   // Pictures go to the script that puts them together in a folder of their own.
   int draw_pictures(const Recording& recording, bool still) const {
     const TemporaryFolder folder("film");
-    write_film_header(folder.path(), recording);
     Progress progress;
     write_pictures(folder.path(), recording,
                    {shown_frames(recording.spec, still), width > 0 ? width : default_width,

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 #include <future>
-#include <map>
 #include <mutex>
 #include <numbers>
 #include <numeric>
@@ -17,6 +16,9 @@
 #include "harness/base/json.h"
 
 namespace harness {
+
+using nlohmann::json;
+
 namespace {
 
 constexpr int legend_end = 4;       // strain over its limit
@@ -90,6 +92,17 @@ std::vector<Picture> distinct(const Recording& recording, const std::vector<std:
   return pictures;
 }
 
+// Sag of each mark at each frame: how far below the height where it would hang if nothing
+// stretched, m.
+json sags(const FilmScene& stage, const FilmRun& take) {
+  json all = json::object();
+  for (const Scene::Mark& mark : stage.marks) {
+    json& sag = all[mark.name] = json::array();
+    for (const auto& frame : take.frames) sag.push_back(mark.height - frame(1, mark.vertex));
+  }
+  return all;
+}
+
 std::string ppm(const Pixels& pixels) {
   return "P6\n" + std::to_string(pixels.width) + " " + std::to_string(pixels.height) + "\n255\n" +
          std::string(pixels.rgb.begin(), pixels.rgb.end());
@@ -109,36 +122,6 @@ void on_all_cores(std::size_t count, const std::function<void(std::size_t)>& wor
 }
 
 }  // namespace
-
-std::vector<std::array<int, 3>> oriented(std::vector<std::array<int, 3>> triangles) {
-  std::map<Side, std::vector<std::size_t>> beside;
-  const auto from = [&](std::size_t t, std::size_t k) { return triangles[t][k % 3]; };
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k)
-      beside[std::minmax(from(i, k), from(i, k + 1))].push_back(i);
-  std::vector<char> seen(triangles.size(), 0);
-  for (std::size_t first = 0; first < triangles.size(); ++first) {
-    std::vector<std::size_t> reached;
-    if (!seen[first]) reached.push_back(first);
-    seen[first] = 1;
-    for (std::size_t at = 0; at < reached.size(); ++at) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const int a = from(reached[at], k), b = from(reached[at], k + 1);
-        for (const std::size_t next : beside[std::minmax(a, b)]) {
-          if (seen[next]) continue;
-          seen[next] = 1;
-          reached.push_back(next);
-          for (std::size_t i = 0; i < 3; ++i) {
-            if (from(next, i) != a || from(next, i + 1) != b) continue;
-            std::swap(triangles[next][1], triangles[next][2]);  // it passed in the same direction
-            break;
-          }
-        }
-      }
-    }
-  }
-  return triangles;
-}
 
 Shot shot_of(const Recording& recording, const View& view, std::size_t take, std::size_t frame,
              int width) {
@@ -176,14 +159,24 @@ void write_pictures(const std::string& folder, const Recording& recording, const
     const std::lock_guard held(lock);
     told(++done, pictures.size());
   });
-  nlohmann::json legend = nlohmann::json::array();
+  json legend = json::array(), takes = json::array();
   for (int i = 0; i <= 16 * legend_end; ++i) legend.push_back(shade(strain_colour(i / 16.0)));
-  const nlohmann::json header{{"width", spec.width},
-                              {"height", view.height(spec.width)},
-                              {"frames", spec.frames},
-                              {"legend", legend},
-                              {"legend_end", legend_end}};
-  write_atomically(folder + "/pictures.json", compact(header) + "\n");
+  for (const FilmRun& take : recording.takes)
+    takes.push_back({{"label", take.label},
+                     {"strain_limit", take.strain_limit},
+                     {"step", take.step},
+                     {"detail", take.detail},
+                     {"energy_gained", take.energy_gained},
+                     {"frames", take.frames.size()},
+                     {"largest_strain", take.largest_strain},
+                     {"sag", sags(recording.stage, take)},
+                     {"seconds", take.seconds}});
+  const json header{
+      {"width", spec.width},     {"height", view.height(spec.width)},
+      {"frames", spec.frames},   {"frames_per_second", recording.spec.frames_per_second},
+      {"takes", takes},          {"legend", legend},
+      {"legend_end", legend_end}};
+  write_atomically(folder + "/film.json", compact(header) + "\n");
 }
 
 // ---- The camera ----
@@ -258,12 +251,6 @@ int View::height(int width) const {
 
 Vector3d View::ray(double x, double y) const {
   return (tangent * (x * right + y * aspect * up) - towards).normalized();
-}
-
-Eigen::Vector2d View::seen(const Vector3d& point) const {
-  const Vector3d from = point - eye;
-  const double depth = -from.dot(towards) * tangent;
-  return {from.dot(right) / depth, from.dot(up) / (depth * aspect)};
 }
 
 View view_of(const Recording& recording, const std::vector<std::size_t>& frames) {

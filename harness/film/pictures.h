@@ -13,14 +13,7 @@
 
 namespace harness {
 
-// ---- the cloth ----
-
-// Turns triangles so that two with a common side pass it in opposite directions, and normals do not
-// flip from one to the next; the first triangle of each connected part stays as it is. A surface
-// with one side only cannot be turned that way: there it is left wrong along a line.
-std::vector<std::array<int, 3>> oriented(std::vector<std::array<int, 3>> triangles);
-
-// ---- the camera (view.cpp) ----
+// ---- the camera ----
 
 struct View {
   Eigen::Vector3d centre, eye;         // m
@@ -33,8 +26,6 @@ struct View {
   // The direction from the eye through a point of the picture: x from -1 (left) to 1, y from -1
   // (below) to 1.
   Eigen::Vector3d ray(double x, double y) const;
-  // Where a point is seen, in the same measures.
-  Eigen::Vector2d seen(const Eigen::Vector3d& point) const;
 };
 
 // Sees body and cloth of all takes at the frames that are shown, as long as the cloth stays near
@@ -83,9 +74,9 @@ Shot shot_of(const Recording& recording, const View& view, std::size_t take, std
              int width);
 
 // Into a folder that is there: <take>-<frame>.ppm for each frame that the take has, and its last
-// one if it ended early; pictures.json with the width, the height, the frames, and the colours of
-// strain over its limit from 0 to legend_end. On all cores. told: how many of all are done. Throws
-// FileError, Interrupted.
+// one if it ended early; film.json with the width, the height, the frames, what is said of each
+// take, and the colours of strain over its limit from 0 to legend_end. On all cores. told: how many
+// of all are done. Throws FileError, Interrupted.
 void write_pictures(const std::string& folder, const Recording& recording, const PictureSpec& spec,
                     const std::function<bool()>& interrupted,
                     const std::function<void(std::size_t done, std::size_t all)>& told);

@@ -1,10 +1,9 @@
-// Runs of a film: how they are recorded, and at which step.
 #include <algorithm>
 #include <cmath>
 
 #include "harness/base/clock.h"
 #include "harness/base/text.h"
-#include "harness/film/pictures.h"
+#include "harness/film/recording.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"
@@ -19,7 +18,7 @@ using inextensible::State;
 
 FilmScene stage_of(const Scene& scene) {
   FilmScene stage;
-  stage.triangles = oriented(scene.triangles);
+  stage.triangles = scene.triangles;
   for (const auto [a, b] : scene.problem->edges()) stage.edges.push_back({a, b});
   stage.rest_length = scene.problem->rest_length();
   stage.marks = scene.marks;
@@ -83,9 +82,7 @@ struct FilmSetup {
   const std::function<void(const FilmRun&)>& told;
 };
 
-// Ends early where energy is gained, unless `to_the_end`.
-FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double limit, double step,
-                bool to_the_end) {
+FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double limit) {
   const FilmSpec& spec = setup.spec;
   const Scene& scene = setup.scene;
   const double rate = spec.frames_per_second;
@@ -93,8 +90,9 @@ FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double lim
   take.solver = contestant.name;
   take.label = label_of(contestant);
   take.strain_limit = limit;
-  take.steps_per_frame = std::max(1, static_cast<int>(std::ceil(1 / (rate * step) - 1e-9)));
-  take.step = take.smallest_step = 1 / (rate * take.steps_per_frame);
+  const int steps_per_frame =
+      std::max(1, static_cast<int>(std::ceil(1 / (rate * spec.step) - 1e-9)));
+  take.step = take.smallest_step = 1 / (rate * steps_per_frame);
   const auto settings = calibrated(spec, contestant, limit, take.step, setup.interrupted);
   const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
   State state = start_of(scene, backend, take.step);
@@ -118,17 +116,17 @@ FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double lim
     const double seconds = since(begin);
     energy.after(at, driven.last);
     judge_energy();
-    if (driven.whole && driven.steps % take.steps_per_frame == 0) {
+    if (driven.whole && driven.steps % steps_per_frame == 0) {
       take.smallest_step = driven.smallest;
       take.seconds.push_back(seconds);
       keep(at);
     }
     const std::string work = too_much_work(stepper->work(), driven.steps);
     if (!work.empty()) take.detail = gave_up(at.time, work);
-    return work.empty() && (to_the_end || take.energy_gained.empty());
+    return work.empty();
   };
   keep(state);
-  const long steps = take.steps_per_frame * (static_cast<long>(frames_in(spec)) - 1);
+  const long steps = steps_per_frame * (static_cast<long>(frames_in(spec)) - 1);
   const DriveState driven = drive(*stepper, state, {take.step, steps, most_halvings}, go_on,
                                   {.interrupted = setup.interrupted});
   if (driven.end == DriveState::End::refused)
@@ -138,44 +136,54 @@ FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double lim
   return take;
 }
 
-// At the first of the default step and its halves at which the run passes; where none does, at the
-// one that goes well for longest.
-FilmRun take_of_default_step(const FilmSetup& setup, const Contestant& contestant, double limit) {
-  double step = default_step, longest_step = step;
-  std::size_t longest = 0;
-  for (int halved = 0; halved <= most_refinements; ++halved) {
-    FilmRun take = take_of(setup, contestant, limit, step, false);
-    if (take.detail.empty() && take.energy_gained.empty()) return take;
-    if (take.frames.size() > longest) longest_step = take.step;
-    longest = std::max(longest, take.frames.size());
-    step = take.step / 2;
-  }
-  return take_of(setup, contestant, limit, longest_step, true);
-}
-
 // A body that moves does work: it can throw cloth at twice its own speed at most, as an elastic
 // impact does, and lift it as far as it rises itself.
 double energy_bound_of(const Scene& scene, const FilmScene& stage, double frames_per_second) {
   if (std::isfinite(scene.energy_bound)) return scene.energy_bound;
-  const auto at = [&](std::size_t frame, Eigen::Index i) {
-    const inextensible::Pose& pose = stage.body_poses[frame];
-    return pose(stage.body.empty() ? Eigen::Vector3d(scene.start.x.col(i)) : stage.body[i]);
-  };
-  const auto points = stage.body.empty() ? scene.start.x.cols() : std::ssize(stage.body);
-  double fastest = 0, rise = 0;
+  const inextensible::Positions start = body_at(stage, 0);
+  inextensible::Positions before = start;
+  double longest_way = 0, rise = 0;  // m, of a corner, from frame to frame and in all
   for (std::size_t frame = 1; frame < stage.body_poses.size(); ++frame) {
-    for (Eigen::Index i = 0; i < points; ++i) {
-      fastest = std::max(fastest, (at(frame, i) - at(frame - 1, i)).norm() * frames_per_second);
-      rise = std::max(rise, at(frame, i).y() - at(0, i).y());
-    }
+    const inextensible::Positions now = body_at(stage, frame);
+    longest_way = std::max(longest_way, (now - before).colwise().norm().maxCoeff());
+    rise = std::max(rise, (now - start).row(1).maxCoeff());
+    before = now;
   }
   const inextensible::Problem& problem = *scene.problem;
   const double work =
-      problem.total_mass() * (0.5 * std::pow(2 * fastest, 2) + problem.gravity().norm() * rise);
+      problem.total_mass() *
+      (0.5 * std::pow(2 * longest_way * frames_per_second, 2) + problem.gravity().norm() * rise);
   return Scene{}.energy_bound + work / energy_scale(scene);
 }
 
 }  // namespace
+
+std::vector<double> strains(const FilmScene& stage, const inextensible::Positions& x) {
+  std::vector<double> all;
+  all.reserve(stage.edges.size());
+  for (std::size_t k = 0; k < stage.edges.size(); ++k) {
+    const auto [a, b] = stage.edges[k];
+    all.push_back(strain_size(x, a, b, stage.rest_length[k]));
+  }
+  return all;
+}
+
+std::vector<double> strains_of_vertices(const FilmScene& stage, const inextensible::Positions& x) {
+  std::vector<double> most(static_cast<std::size_t>(x.cols()), 0);
+  const std::vector<double> all = strains(stage, x);
+  for (std::size_t k = 0; k < all.size(); ++k)
+    for (const int end : stage.edges[k]) most[end] = std::max(most[end], all[k]);
+  return most;
+}
+
+inextensible::Positions body_at(const FilmScene& stage, std::size_t frame) {
+  const inextensible::Pose pose =
+      stage.body_poses.empty() ? inextensible::Pose{} : stage.body_poses.at(frame);
+  inextensible::Positions x(3, stage.body.size());
+  for (std::size_t i = 0; i < stage.body.size(); ++i)
+    x.col(static_cast<Eigen::Index>(i)) = pose(stage.body[i]);
+  return x;
+}
 
 std::size_t frames_in(const FilmSpec& spec) {
   return 1 + static_cast<std::size_t>(
@@ -201,8 +209,7 @@ Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
   const FilmSetup setup{spec, scene, recording.stage, energy_bound, interrupted, tell};
   for (const double limit : spec.strain_limits) {
     for (const Contestant& contestant : spec.solvers)
-      recording.takes.push_back(spec.step ? take_of(setup, contestant, limit, *spec.step, true)
-                                          : take_of_default_step(setup, contestant, limit));
+      recording.takes.push_back(take_of(setup, contestant, limit));
   }
   return recording;
 }

@@ -3,8 +3,6 @@
 
 #include <array>
 #include <functional>
-#include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,20 +16,15 @@ struct FilmSpec {
   SceneParameters parameters;  // complete
   Contestants solvers;
   std::vector<double> strain_limits;  // every solver at each
-  // s; shortened to a whole part of a frame. None: see record().
-  std::optional<double> step;
+  double step = 0.01;                 // s; shortened to a whole part of a frame
   double frames_per_second = 30;
 };
-
-inline constexpr double default_step = 0.01;  // s
-inline constexpr int most_refinements = 4;    // of it
 
 // One run.
 struct FilmRun {
   std::string solver, label;
   double strain_limit = 0;
-  double step = 0;  // s
-  int steps_per_frame = 1;
+  double step = 0;                              // s
   std::string detail;                           // why it ended early; empty: it did not
   std::string energy_gained;                    // why it fails the energy check; empty: it passes
   std::vector<inextensible::Positions> frames;  // from the start on
@@ -61,10 +54,7 @@ struct Recording {
 // has.
 std::size_t frames_in(const FilmSpec& spec);
 
-// Springs get the stiffness that keeps the limit. Where no step is given, each run takes the first
-// of default_step and its halves at which it neither gains energy nor gives up; if none does, the
-// one at which it goes well for longest. told: of every frame, of runs that are dropped too. Throws
-// Interrupted.
+// Springs get the stiffness that keeps the limit. told: of every frame. Throws Interrupted.
 Recording record(
     const FilmSpec& spec, const std::function<bool()>& interrupted,
     const std::function<void(const FilmRun&, std::size_t frame, std::size_t frames)>& told);
@@ -77,13 +67,6 @@ std::vector<double> strains(const FilmScene& stage, const inextensible::Position
 
 // Largest strain of each vertex's edges.
 std::vector<double> strains_of_vertices(const FilmScene& stage, const inextensible::Positions& x);
-
-// Into a folder that is there. film.json: all but what is of vertices (poses as the rows of [turn
-// way]). film.f32: 32-bit floats, little-endian, x y z of every vertex of every frame of every take
-// in turn. film.u8: bytes in the same order, the vertex's strain over the take's limit, in
-// `strain_unit`s. Both throw FileError.
-void write_film_header(const std::string& folder, const Recording& recording);
-void write_recording(const std::string& folder, const Recording& recording);
 
 // ---- for other programs (exports.cpp) ----
 

@@ -90,7 +90,7 @@ Draft vertex_square(const SceneParameters& p, double y) {
   for (int i = 0; i + 1 < n; ++i) {
     for (int j = 0; j + 1 < n; ++j) {
       scene.triangles.push_back({vertex(i, j), vertex(i, j + 1), vertex(i + 1, j)});
-      scene.triangles.push_back({vertex(i + 1, j + 1), vertex(i, j + 1), vertex(i + 1, j)});
+      scene.triangles.push_back({vertex(i + 1, j + 1), vertex(i + 1, j), vertex(i, j + 1)});
     }
   }
   return square;

@@ -53,9 +53,8 @@ struct Scene {
     double height;  // m, at which it would hang if nothing stretched
   };
   std::vector<Mark> marks;
-  // For shape statistics of a cloth: its corners, and triangles that cover it.
-  std::vector<int> corners;
-  std::vector<std::array<int, 3>> triangles;
+  std::vector<int> corners;                   // of a cloth, for statistics of its shape
+  std::vector<std::array<int, 3>> triangles;  // that cover it, all with the same side outwards
 };
 
 struct SceneType {

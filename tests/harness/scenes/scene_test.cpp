@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "harness/judge/mechanics.h"
 #include "solvers/problem/edge_constraints.h"
@@ -44,6 +45,10 @@ TEST(EveryScene, StartsAsItPromises) {
       EXPECT_LT(mirror_defect(mirror, scene.start.x), 1e-12);
       EXPECT_LT(mirror_defect(mirror, scene.start.v), 1e-12);
     }
+    std::set<std::pair<int, int>> sides;  // as triangles pass them: one side of the cloth is out
+    for (const auto& [a, b, c] : scene.triangles)
+      for (const auto& side : {std::pair(a, b), {b, c}, {c, a}})
+        EXPECT_TRUE(sides.insert(side).second);
     if (const auto* body = dynamic_cast<const TriangleCollider*>(scene.problem->collider())) {
       EXPECT_GT(least_distance(*body, scene.start.x), 0);
     }
