@@ -16,36 +16,6 @@ using inextensible::Positions;
 
 namespace {
 
-// Area covered by triangles seen from above: pixel centres of a raster, over size^2.
-double shadow_area(const Scene& scene, const Positions& x) {
-  constexpr int pixels = 512;
-  const double reach = 0.75 * scene.size;  // a square cloth of side 1 reaches 0.71 from its middle
-  const double pixel = 2 * reach / pixels;
-  std::vector<char> dark(pixels * pixels, 0);
-  const auto index = [&](double coordinate) {
-    return std::clamp(static_cast<int>((coordinate + reach) / pixel), 0, pixels - 1);
-  };
-  for (const auto& [a, b, c] : scene.triangles) {
-    const Eigen::Vector2d p(x(0, a), x(2, a)), q(x(0, b), x(2, b)), r(x(0, c), x(2, c));
-    const auto cross = [](const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
-      return u.x() * v.y() - u.y() * v.x();
-    };
-    const double area = cross(q - p, r - p);
-    if (area == 0) continue;
-    const Eigen::Vector2d low = p.cwiseMin(q).cwiseMin(r), high = p.cwiseMax(q).cwiseMax(r);
-    for (int j = index(low.y()); j <= index(high.y()); ++j) {
-      for (int i = index(low.x()); i <= index(high.x()); ++i) {
-        const Eigen::Vector2d s((i + 0.5) * pixel - reach, (j + 0.5) * pixel - reach);
-        if (cross(q - p, s - p) / area >= 0 && cross(r - q, s - q) / area >= 0 &&
-            cross(p - r, s - r) / area >= 0)
-          dark[j * pixels + i] = 1;
-      }
-    }
-  }
-  const auto count = std::count(dark.begin(), dark.end(), 1);
-  return static_cast<double>(count) * pixel * pixel / (scene.size * scene.size);
-}
-
 // The vertices along the hem, in order: sides of one triangle only. Empty where there is not one
 // loop.
 std::vector<int> hem_of(const Scene& scene) {
@@ -78,6 +48,33 @@ std::vector<int> hem_of(const Scene& scene) {
 
 }  // namespace
 
+double shadow_area(const Scene& scene, const Positions& x, double reach, int pixels) {
+  const double pixel = 2 * reach / pixels;
+  std::vector<char> dark(pixels * pixels, 0);
+  const auto index = [&](double coordinate) {
+    return std::clamp(static_cast<int>((coordinate + reach) / pixel), 0, pixels - 1);
+  };
+  for (const auto& [a, b, c] : scene.triangles) {
+    const Eigen::Vector2d p(x(0, a), x(2, a)), q(x(0, b), x(2, b)), r(x(0, c), x(2, c));
+    const auto cross = [](const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
+      return u.x() * v.y() - u.y() * v.x();
+    };
+    const double area = cross(q - p, r - p);
+    if (area == 0) continue;
+    const Eigen::Vector2d low = p.cwiseMin(q).cwiseMin(r), high = p.cwiseMax(q).cwiseMax(r);
+    for (int j = index(low.y()); j <= index(high.y()); ++j) {
+      for (int i = index(low.x()); i <= index(high.x()); ++i) {
+        const Eigen::Vector2d s((i + 0.5) * pixel - reach, (j + 0.5) * pixel - reach);
+        if (cross(q - p, s - p) / area >= 0 && cross(r - q, s - q) / area >= 0 &&
+            cross(p - r, s - r) / area >= 0)
+          dark[j * pixels + i] = 1;
+      }
+    }
+  }
+  const auto count = std::count(dark.begin(), dark.end(), 1);
+  return static_cast<double>(count) * pixel * pixel;
+}
+
 int count_folds(const Scene& scene, const Positions& x) {
   constexpr double least = 0.02;
   std::vector<int> hem = hem_of(scene);
@@ -104,13 +101,15 @@ int count_folds(const Scene& scene, const Positions& x) {
 bool is_cloth(const Scene& scene) { return !scene.triangles.empty(); }
 
 Shape shape_of(const Scene& scene, const Positions& x) {
+  const double size = scene.size;
+  const double reach = 0.75 * size;  // a square cloth of side 1 reaches 0.71 from its middle
   double corner_height = 0;
   for (const int corner : scene.corners)
-    corner_height += x(1, corner) / scene.size / static_cast<double>(scene.corners.size());
+    corner_height += x(1, corner) / size / static_cast<double>(scene.corners.size());
   return {
       {"potential_energy", inextensible::potential_energy(*scene.problem, x) / energy_scale(scene)},
       {"corner_height", corner_height},
-      {"shadow", shadow_area(scene, x)},
+      {"shadow", shadow_area(scene, x, reach, 512) / (size * size)},
       {"folds", count_folds(scene, x)}};
 }
 

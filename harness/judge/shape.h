@@ -11,6 +11,10 @@ namespace harness {
 
 bool is_cloth(const Scene& scene);  // it has a shadow and a hem
 
+// m^2, of the cloth's shadow on a horizontal plane as far as `reach` (m) from the y axis along x
+// and z: counted on a raster of pixels x pixels.
+double shadow_area(const Scene& scene, const inextensible::Positions& x, double reach, int pixels);
+
 // How often the hem rises and falls again by 2 % of the size or more on one way around the cloth. 0
 // where its triangles have no single hem.
 int count_folds(const Scene& scene, const inextensible::Positions& x);
