@@ -14,6 +14,7 @@
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/json.h"
+#include "harness/judge/mechanics.h"
 
 namespace harness {
 
@@ -45,23 +46,26 @@ Eigen::Vector3d strain_colour(double over_limit) {
   return linear(stops.back().rgb);
 }
 
-// Color of each vertex, by the largest strain of its edges.
-Eigen::Matrix3Xd colours_of(const FilmScene& stage, const inextensible::Positions& x,
+// Colour of each vertex, by the largest strain of its edges.
+Eigen::Matrix3Xd colours_of(const inextensible::Problem& problem, const inextensible::Positions& x,
                             double limit) {
-  const std::vector<double> most = strains_of_vertices(stage, x);
+  std::vector<double> strains, most(static_cast<std::size_t>(x.cols()), 0);
+  append_strains(problem, x, strains);
+  for (std::size_t k = 0; k < strains.size(); ++k) {
+    const auto [a, b] = problem.edges()[k];
+    for (const int end : {a, b}) most[end] = std::max(most[end], strains[k]);
+  }
   Eigen::Matrix3Xd colours(3, x.cols());
   for (Eigen::Index v = 0; v < x.cols(); ++v) colours.col(v) = strain_colour(most[v] / limit);
   return colours;
 }
 
-using Side = std::pair<int, int>;
-
-std::vector<std::uint8_t> yarns_of(const FilmScene& stage) {
-  std::set<Side> edges;
-  for (const auto& [a, b] : stage.edges) edges.insert(std::minmax(a, b));
+std::vector<std::uint8_t> yarns_of(const Scene& scene) {
+  std::set<std::pair<int, int>> edges;
+  for (const auto& [a, b] : scene.problem->edges()) edges.insert(std::minmax(a, b));
   std::vector<std::uint8_t> sides;
-  sides.reserve(stage.triangles.size());
-  for (const auto& t : stage.triangles) {
+  sides.reserve(scene.triangles.size());
+  for (const auto& t : scene.triangles) {
     unsigned yarns = 0;
     for (unsigned k = 0; k < 3; ++k)
       if (edges.contains(std::minmax(t[k], t[(k + 1) % 3]))) yarns |= 1U << k;
@@ -71,10 +75,11 @@ std::vector<std::uint8_t> yarns_of(const FilmScene& stage) {
 }
 
 // Mean length of the cloth's edges, m; 0 without edges.
-double mean_edge(const FilmScene& stage) {
-  if (stage.rest_length.empty()) return 0;
-  return std::accumulate(stage.rest_length.begin(), stage.rest_length.end(), 0.0) /
-         static_cast<double>(stage.rest_length.size());
+double mean_edge(const inextensible::Problem& problem) {
+  const std::vector<double>& all = problem.rest_length();
+  return all.empty()
+             ? 0
+             : std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
 }
 
 struct Picture {
@@ -94,9 +99,9 @@ std::vector<Picture> distinct(const Recording& recording, const std::vector<std:
 
 // Sag of each mark at each frame: how far below the height where it would hang if nothing
 // stretched, m.
-json sags(const FilmScene& stage, const FilmRun& take) {
+json sags(const Scene& scene, const FilmRun& take) {
   json all = json::object();
-  for (const Scene::Mark& mark : stage.marks) {
+  for (const Scene::Mark& mark : scene.marks) {
     json& sag = all[mark.name] = json::array();
     for (const auto& frame : take.frames) sag.push_back(mark.height - frame(1, mark.vertex));
   }
@@ -128,16 +133,16 @@ Shot shot_of(const Recording& recording, const View& view, std::size_t take, std
   const FilmScene& stage = recording.stage;
   const FilmRun& shown = recording.takes.at(take);
   Shot shot{.stage = stage, .cloth = shown.frames.at(frame)};
-  shot.colours = colours_of(stage, shot.cloth, shown.strain_limit);
-  if (!stage.body.empty()) shot.body = body_at(stage, frame);
-  const double edge = mean_edge(stage), distance = (view.eye - view.centre).norm();
+  shot.colours = colours_of(*stage.scene.problem, shot.cloth, shown.strain_limit);
+  if (!stage.body.vertices.empty()) shot.body = body_at(stage, frame);
+  const double edge = mean_edge(*stage.scene.problem), distance = (view.eye - view.centre).norm();
   const double pixel = 2 * view.tangent * distance / width;  // m
   shot.thickness = std::clamp(0.25 * edge, 0.004 * view.size, 0.03 * view.size);
-  if (stage.triangles.empty()) {
+  if (stage.scene.triangles.empty()) {
     shot.yarn = std::max(1.2 * pixel, std::min(0.009 * view.size, 0.25 * edge));
     return shot;
   }
-  shot.yarns = yarns_of(stage);
+  shot.yarns = yarns_of(stage.scene);
   shot.yarn = std::clamp(0.05 * edge, 0.4 * pixel, 0.9 * pixel);
   shot.yarn_shade = 0.5 * std::min(1.0, edge / (line_spacing * pixel));
   return shot;
@@ -169,7 +174,7 @@ void write_pictures(const std::string& folder, const Recording& recording, const
                      {"energy_gained", take.energy_gained},
                      {"frames", take.frames.size()},
                      {"largest_strain", take.largest_strain},
-                     {"sag", sags(recording.stage, take)},
+                     {"sag", sags(recording.stage.scene, take)},
                      {"seconds", take.seconds}});
   const json header{
       {"width", spec.width},     {"height", view.height(spec.width)},
@@ -216,7 +221,7 @@ std::vector<Positions> in_sight(const Recording& recording,
                                 const std::vector<std::size_t>& frames) {
   const FilmScene& stage = recording.stage;
   const Positions& start = recording.takes.at(0).frames.at(0);
-  const bool body = !stage.body.empty();
+  const bool body = !stage.body.vertices.empty();
   const Positions body_start = body ? body_at(stage, 0) : start;
   Box about;
   extend(about, body_start);

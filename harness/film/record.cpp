@@ -8,27 +8,12 @@
 #include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"
 #include "harness/run/measure_point.h"
-#include "solvers/problem/triangle_collider.h"
 #include "solvers/registry.h"
 
 namespace harness {
 namespace {
 
 using inextensible::State;
-
-FilmScene stage_of(const Scene& scene) {
-  FilmScene stage;
-  stage.triangles = scene.triangles;
-  for (const auto [a, b] : scene.problem->edges()) stage.edges.push_back({a, b});
-  stage.rest_length = scene.problem->rest_length();
-  stage.marks = scene.marks;
-  const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(scene.problem->collider());
-  if (body) {
-    stage.body = body->mesh().vertices;
-    stage.body_triangles = body->mesh().triangles;
-  }
-  return stage;
-}
 
 // The settings given, and for springs the stiffness that a sweep would find.
 inextensible::Settings calibrated(const FilmSpec& spec, const Contestant& contestant, double limit,
@@ -76,7 +61,6 @@ std::string gave_up(double time, const std::string& why) {
 struct FilmSetup {
   const FilmSpec& spec;
   const Scene& scene;
-  const FilmScene& stage;
   double energy_bound;
   const std::function<bool()>& interrupted;
   const std::function<void(const FilmRun&)>& told;
@@ -103,8 +87,7 @@ FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double lim
   Clock::time_point begin;
   const auto keep = [&](const State& at) {
     take.frames.push_back(at.x);
-    const std::vector<double> all = strains(setup.stage, at.x);
-    take.largest_strain.push_back(all.empty() ? 0 : *std::max_element(all.begin(), all.end()));
+    take.largest_strain.push_back(strain_range(*scene.problem, at.x).most);
     setup.told(take);
     begin = Clock::now();
   };
@@ -138,7 +121,8 @@ FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double lim
 
 // A body that moves does work: it can throw cloth at twice its own speed at most, as an elastic
 // impact does, and lift it as far as it rises itself.
-double energy_bound_of(const Scene& scene, const FilmScene& stage, double frames_per_second) {
+double energy_bound_of(const FilmScene& stage, double frames_per_second) {
+  const Scene& scene = stage.scene;
   if (std::isfinite(scene.energy_bound)) return scene.energy_bound;
   const inextensible::Positions start = body_at(stage, 0);
   inextensible::Positions before = start;
@@ -158,30 +142,13 @@ double energy_bound_of(const Scene& scene, const FilmScene& stage, double frames
 
 }  // namespace
 
-std::vector<double> strains(const FilmScene& stage, const inextensible::Positions& x) {
-  std::vector<double> all;
-  all.reserve(stage.edges.size());
-  for (std::size_t k = 0; k < stage.edges.size(); ++k) {
-    const auto [a, b] = stage.edges[k];
-    all.push_back(strain_size(x, a, b, stage.rest_length[k]));
-  }
-  return all;
-}
-
-std::vector<double> strains_of_vertices(const FilmScene& stage, const inextensible::Positions& x) {
-  std::vector<double> most(static_cast<std::size_t>(x.cols()), 0);
-  const std::vector<double> all = strains(stage, x);
-  for (std::size_t k = 0; k < all.size(); ++k)
-    for (const int end : stage.edges[k]) most[end] = std::max(most[end], all[k]);
-  return most;
-}
-
 inextensible::Positions body_at(const FilmScene& stage, std::size_t frame) {
   const inextensible::Pose pose =
       stage.body_poses.empty() ? inextensible::Pose{} : stage.body_poses.at(frame);
-  inextensible::Positions x(3, stage.body.size());
-  for (std::size_t i = 0; i < stage.body.size(); ++i)
-    x.col(static_cast<Eigen::Index>(i)) = pose(stage.body[i]);
+  const std::vector<Eigen::Vector3d>& corners = stage.body.vertices;
+  inextensible::Positions x(3, corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    x.col(static_cast<Eigen::Index>(i)) = pose(corners[i]);
   return x;
 }
 
@@ -192,10 +159,10 @@ std::size_t frames_in(const FilmSpec& spec) {
 
 Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
                  const std::function<void(const FilmRun&, std::size_t, std::size_t)>& told) {
-  const Scene scene = find_scene(spec.scene)->build(spec.parameters);
-  Recording recording;
-  recording.spec = spec;
-  recording.stage = stage_of(scene);
+  Recording recording{spec, {find_scene(spec.scene)->build(spec.parameters), {}, {}}, {}};
+  const Scene& scene = recording.stage.scene;
+  const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(scene.problem->collider());
+  if (body) recording.stage.body = body->mesh();
   const std::size_t frames = frames_in(spec);
   if (const auto& motion = scene.problem->body_motion()) {
     for (std::size_t i = 0; i < frames; ++i)
@@ -205,8 +172,8 @@ Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
   const std::function<void(const FilmRun&)> tell = [&](const FilmRun& take) {
     told(take, take.frames.size(), frames);
   };
-  const double energy_bound = energy_bound_of(scene, recording.stage, spec.frames_per_second);
-  const FilmSetup setup{spec, scene, recording.stage, energy_bound, interrupted, tell};
+  const FilmSetup setup{spec, scene, energy_bound_of(recording.stage, spec.frames_per_second),
+                        interrupted, tell};
   for (const double limit : spec.strain_limits) {
     for (const Contestant& contestant : spec.solvers)
       recording.takes.push_back(take_of(setup, contestant, limit));

@@ -1,13 +1,13 @@
 // Runs to look at: the positions of a scene's vertices at the frames of a film, by several solvers.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "harness/points/contestant.h"
 #include "harness/scenes/scene.h"
+#include "solvers/problem/triangle_collider.h"
 
 namespace harness {
 
@@ -35,13 +35,9 @@ struct FilmRun {
 
 // What there is to see besides vertices.
 struct FilmScene {
-  std::vector<std::array<int, 3>> triangles;  // of a cloth; none of a chain
-  std::vector<std::array<int, 2>> edges;      // warp and weft
-  std::vector<double> rest_length;            // m
-  std::vector<Eigen::Vector3d> body;          // m; empty: no obstacle
-  std::vector<std::array<int, 3>> body_triangles;
+  Scene scene;
+  inextensible::TriangleMesh body;             // empty: no obstacle
   std::vector<inextensible::Pose> body_poses;  // of each frame; empty: it stays
-  std::vector<Scene::Mark> marks;              // whose sag is told
 };
 
 struct Recording {
@@ -61,12 +57,6 @@ Recording record(
 
 // Where the body's corners are at a frame.
 inextensible::Positions body_at(const FilmScene& stage, std::size_t frame);
-
-// |strain| of every edge of the stage.
-std::vector<double> strains(const FilmScene& stage, const inextensible::Positions& x);
-
-// Largest strain of each vertex's edges.
-std::vector<double> strains_of_vertices(const FilmScene& stage, const inextensible::Positions& x);
 
 // ---- for other programs (exports.cpp) ----
 

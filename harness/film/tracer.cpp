@@ -190,13 +190,13 @@ class Tracer {
 Tracer::Tracer(const Shot& shot, const View& view, int samples)
     : shot_(shot), view_(view), count_(samples * samples), device_(rtcNewDevice("threads=1")) {
   if (!device_) throw std::runtime_error("Embree cannot start");
-  normals_ = normals_of(shot.cloth, shot.stage.triangles);
-  body_normals_ = normals_of(shot.body, shot.stage.body_triangles);
-  const auto body = triangle_geometry(device_.get(), shot.body, shot.stage.body_triangles);
+  normals_ = normals_of(shot.cloth, shot.stage.scene.triangles);
+  body_normals_ = normals_of(shot.body, shot.stage.body.triangles);
+  const auto body = triangle_geometry(device_.get(), shot.body, shot.stage.body.triangles);
   body_ = scene_of(device_.get(), {body.get()});
-  if (shot.stage.triangles.empty()) {
+  if (shot.stage.scene.triangles.empty()) {
     std::vector<int> ends, vertices(static_cast<std::size_t>(shot.cloth.cols()));
-    for (const auto& edge : shot.stage.edges) ends.insert(ends.end(), edge.begin(), edge.end());
+    for (const auto& [a, b] : shot.stage.scene.problem->edges()) ends.insert(ends.end(), {a, b});
     std::iota(vertices.begin(), vertices.end(), 0);
     const auto rope = round_geometry(device_.get(), shot, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE,
                                      ends, shot.yarn),
@@ -205,7 +205,7 @@ Tracer::Tracer(const Shot& shot, const View& view, int samples)
     cloth_ = scene_of(device_.get(), {rope.get(), knots.get()});
     all_ = scene_of(device_.get(), {rope.get(), knots.get(), body.get()});
   } else {
-    const auto cloth = triangle_geometry(device_.get(), shot.cloth, shot.stage.triangles);
+    const auto cloth = triangle_geometry(device_.get(), shot.cloth, shot.stage.scene.triangles);
     cloth_ = scene_of(device_.get(), {cloth.get()});
     all_ = scene_of(device_.get(), {cloth.get(), body.get()});
   }
@@ -261,7 +261,7 @@ Surface Tracer::on_triangle(const Hit& hit, const Vector3d& direction, const Pos
 
 // How much of a yarn's line is at a point: 0 to 1.
 double Tracer::line(const Hit& hit) const {
-  const auto& t = shot_.stage.triangles[hit.primitive];
+  const auto& t = shot_.stage.scene.triangles[hit.primitive];
   const unsigned drawn = shot_.yarns[hit.primitive];
   if (drawn == 0) return 0;
   const double twice_area = hit.face.norm();
@@ -277,7 +277,7 @@ double Tracer::line(const Hit& hit) const {
 }
 
 Surface Tracer::on_cloth(const Hit& hit, const Vector3d& direction) const {
-  const auto& corners = shot_.stage.triangles[hit.primitive];
+  const auto& corners = shot_.stage.scene.triangles[hit.primitive];
   Surface surface = on_triangle(hit, direction, shot_.cloth, corners, normals_);
   for (std::size_t k = 0; k < 3; ++k)
     surface.colour += hit.weight[k] * shot_.colours.col(corners[k]);
@@ -291,7 +291,7 @@ Surface Tracer::on_rope(const Hit& hit, const Vector3d& direction) const {
   surface.point = view_.eye + hit.distance * direction;
   surface.normal = hit.face.normalized();
   if (hit.geometry == 0) {
-    const auto [a, b] = shot_.stage.edges[hit.primitive];
+    const auto [a, b] = shot_.stage.scene.problem->edges()[hit.primitive];
     surface.colour = hit.weight[0] * shot_.colours.col(a) + hit.weight[1] * shot_.colours.col(b);
   } else {
     surface.colour = shot_.colours.col(hit.primitive);
@@ -329,11 +329,11 @@ Vector3d Tracer::colour(const Vector3d& direction, int sample) const {
   const double apart = std::max(1e-4 * view_.size, shot_.thickness);
   if (std::isinf(cloth.distance) && std::isinf(body.distance)) return background;
   if (cloth.distance < body.distance + shot_.thickness)
-    return lit(
-        shot_.stage.triangles.empty() ? on_rope(cloth, direction) : on_cloth(cloth, direction),
-        direction, sample, apart);
+    return lit(shot_.stage.scene.triangles.empty() ? on_rope(cloth, direction)
+                                                   : on_cloth(cloth, direction),
+               direction, sample, apart);
   Surface surface = on_triangle(body, direction, shot_.body,
-                                shot_.stage.body_triangles[body.primitive], body_normals_);
+                                shot_.stage.body.triangles[body.primitive], body_normals_);
   surface.colour = body_colour;
   surface.shine = 0.06;
   return lit(surface, direction, sample, apart);

@@ -42,7 +42,7 @@ StrainRange strain_range(const Problem& problem, const Positions& x) {
 void append_strains(const Problem& problem, const Positions& x, std::vector<double>& strains) {
   for (std::size_t k = 0; k < problem.edges().size(); ++k) {
     const auto [a, b] = problem.edges()[k];
-    strains.push_back(strain_size(x, a, b, problem.rest_length()[k]));
+    strains.push_back(std::abs((x.col(b) - x.col(a)).norm() / problem.rest_length()[k] - 1));
   }
 }
 

@@ -2,7 +2,6 @@
 // energy are computed for the judge, the hard cases and `bench check`.
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 #include "harness/scenes/scene.h"
@@ -21,10 +20,6 @@ struct StrainRange {
 // x: 3 x vertices, m.
 StrainRange strain_range(const inextensible::Problem& problem, const inextensible::Positions& x);
 
-// |strain| of the edge from a to b.
-inline double strain_size(const inextensible::Positions& x, int a, int b, double rest_length) {
-  return std::abs((x.col(b) - x.col(a)).norm() / rest_length - 1);
-}
 // Appends every edge's |strain|.
 void append_strains(const inextensible::Problem& problem, const inextensible::Positions& x,
                     std::vector<double>& strains);

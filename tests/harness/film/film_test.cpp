@@ -44,12 +44,11 @@ TEST(Films, EndRunsWhoseStepsTakeTooMuchWork) {
 
 TEST(Pictures, ShowFlatCloth) {
   constexpr int width = 96;
-  const Scene scene = testing::build("drape", {{"n", 12}});
   Recording recording;
-  recording.stage.triangles = scene.triangles;
+  recording.stage.scene = testing::build("drape", {{"n", 12}});
   FilmRun take;
   take.strain_limit = 0.01;
-  take.frames = {scene.start.x};
+  take.frames = {recording.stage.scene.start.x};
   recording.takes = {take};
   const View view = view_of(recording, {0});
   const Pixels pixels = trace(shot_of(recording, view, 0, 0, width), view, width, 2);
