@@ -4,18 +4,9 @@
 
 namespace harness {
 
-std::vector<SceneParameterInfo> with_cloth_parameters(std::vector<SceneParameterInfo> own,
-                                                      const ClothDefaults& cloth) {
-  own.insert(own.end(),
-             {{"density", cloth.density, "kg/m^2", 0, 1e4},
-              {"gravity", 9.81, "m/s^2, downwards", -1e4, 1e4},
-              {"shear", cloth.shear, "shear stiffness, N/m; 0: none", zero_too, 1e9},
-              {"bending", cloth.bending,
-               "bending rigidity of warp and weft, straight at rest, N m; 0: none", zero_too, 1e6},
-              {"drag", cloth.drag, "of still air, N s/m^3: force per area and speed; 0: none",
-               zero_too, 1e6},
-              {"duration", cloth.duration, "s", 0, 1e4}});
-  return own;
+ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefaults& cloth,
+                                     double duration) {
+  return joined({own, fabric_parameters(cloth), {duration_info(duration)}});
 }
 
 Draft cloth_draft(const PinnedMesh& cloth, const SceneParameters& p) {

@@ -11,13 +11,9 @@ struct PinnedMesh {
   std::vector<char> held;  // of each vertex, whether it is pinned
 };
 
-// What cloth_draft reads, where a scene begins. Units as below.
-struct ClothDefaults {
-  double density, shear, bending, drag, duration;
-};
 // The scene's own parameters, and after them those that cloth_draft reads.
-std::vector<SceneParameterInfo> with_cloth_parameters(std::vector<SceneParameterInfo> own,
-                                                      const ClothDefaults& cloth);
+ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefaults& cloth,
+                                     double duration);
 
 // The cloth is at rest, and unstretched, as the mesh lies. Sides of quads keep their length;
 // diagonals of quads, and the other sides of triangles, are springs of the shear stiffness (each

@@ -27,14 +27,15 @@ Eigen::Matrix2Xd waves(int n, double l, double slope) {
   return p;
 }
 
-// In waves, `folds` steep, the lowest point at the height y. A sum of two curves keeps the length
-// of every link: a Chebyshev net.
-void fold(Scene& scene, const SceneParameters& p, double y) {
-  const int n = whole(p);
-  const Eigen::Matrix2Xd wave = waves(n, square_link(p), p.at("folds"));
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j)
-      scene.start.x.col(i * n + j) << wave(0, j), y + wave(1, j) + wave(1, i), wave(0, i);
+// A sum of two curves, which keeps the length of every link: a Chebyshev net. The lowest point is
+// at the height y, the middle `aside` off the axis along x, and half as far along -z.
+void lay(Scene& scene, const Eigen::Matrix2Xd& weft, const Eigen::Matrix2Xd& warp, double y,
+         double aside = 0) {
+  const Eigen::Index n = weft.cols();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j)
+      scene.start.x.col(i * n + j) << weft(0, j) + aside, y + weft(1, j) + warp(1, i),
+          warp(0, i) - 0.5 * aside;
   }
 }
 
@@ -43,7 +44,7 @@ void fold(Scene& scene, const SceneParameters& p, double y) {
 // y.
 void place_unevenly(Scene& scene, const SceneParameters& p, double y) {
   const int n = whole(p);
-  const double l = square_link(p), side = p.at("side"), aside = value_or_zero(p, "off_axis");
+  const double l = square_link(p), side = p.at("side");
   const auto curve = [&](double count, double phase) {
     const double slope = 2 * std::numbers::pi * count * p.at("waves") / side;
     Eigen::Matrix2Xd at(2, n);  // along, up
@@ -57,12 +58,7 @@ void place_unevenly(Scene& scene, const SceneParameters& p, double y) {
     at.row(1).array() -= at.row(1).minCoeff();
     return at;
   };
-  const Eigen::Matrix2Xd weft = curve(2, 0.7), warp = curve(1.5, 2.1);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j)
-      scene.start.x.col(i * n + j) << weft(0, j) + aside, y + weft(1, j) + warp(1, i),
-          warp(0, i) - 0.5 * aside;
-  }
+  lay(scene, curve(2, 0.7), curve(1.5, 2.1), y, value_or_zero(p, "off_axis"));
   scene.mirrors.clear();
 }
 
@@ -75,31 +71,20 @@ void add_ball(Draft& cloth, const SceneParameters& p) {
   cloth.parts.contact_inside = p.at("contact") != 0;
 }
 
-void add_drag(Draft& cloth, const SceneParameters& p) {
-  const double l = square_link(p), drag = value_or_zero(p, "drag");
-  if (drag > 0) cloth.parts.drag.assign(cloth.parts.mass.size(), drag * l * l);
-}
-
-// Above the ball. A fabric has its own forces, in physical units, at the end of the step: each
-// diagonal of a quad, as a spring of stiffness G, gives the cloth the shear stiffness G, since
-// turned by gamma both change by l gamma / sqrt(2), and bear G (l gamma)^2 / 2 together.
-Scene build_drape(const SceneParameters& given) {
-  SceneParameters p = given;
-  const bool fabric = p.contains("density"), folded = p.contains("folds");
-  if (fabric) p["mass"] = p.at("density") * p.at("side") * p.at("side");
-  const double y = p.at("radius") + p.at("gap"), bending = value_or_zero(p, "bending");
+// Above the ball.
+Scene build_drape(const SceneParameters& p) {
+  const double y = p.at("radius") + p.at("gap");
   Draft cloth = vertex_square(p, y);
-  if (bending > 0) bend_yarns(cloth, p, bending);
-  add_drag(cloth, p);
   if (p.contains("waves")) place_unevenly(cloth.scene, p, y);
-  if (folded) {
-    if (p.at("folds") > 0) fold(cloth.scene, p, y);
+  if (p.contains("folds")) {
+    const Eigen::Matrix2Xd wave = waves(whole(p), square_link(p), p.at("folds"));
+    if (p.at("folds") > 0) lay(cloth.scene, wave, wave, y);
     cloth.scene.start.v.row(1).setConstant(-p.at("speed"));
     // For speed at sizes at which the start's acceleration would take longer to find than a step,
     // and a few steps only, whose path is compared with nothing.
     cloth.scene.staggered = false;
   }
-  cloth.parts.implicit_forces = fabric || value_or_zero(p, "implicit") != 0;
+  if (value_or_zero(p, "implicit") != 0) cloth.parts.implicit_forces = true;
   add_ball(cloth, p);
   return finished(std::move(cloth));
 }
@@ -120,15 +105,10 @@ double stopping_distance(const SceneParameters& p) {
 }
 
 // A fabric in air that swings down from two corners, in waves, which leave no symmetry.
-Scene build_curtain(const SceneParameters& given) {
-  SceneParameters p = given;
-  p["mass"] = p.at("density") * p.at("side") * p.at("side");
+Scene build_curtain(const SceneParameters& p) {
   Draft cloth = vertex_square(p, 0);
-  bend_yarns(cloth, p, p.at("bending"));
-  add_drag(cloth, p);
   place_unevenly(cloth.scene, p, 0);
   cloth.parts.pinned = {cloth.scene.corners[0], cloth.scene.corners[1]};
-  cloth.parts.implicit_forces = true;
   return finished(std::move(cloth));
 }
 
@@ -174,7 +154,6 @@ Scene build_hung_patch(const SceneParameters& p) {
     x << x.x(), -below * std::cos(tilt), below * std::sin(tilt);
   }
   cloth.parts.pinned = {scene.corners[0], scene.corners[1]};
-  add_drag(cloth, p);
   const int n = whole(p);
   scene.marks = {{"top_row", n / 2, 0}, {"lower_edge", (n - 1) * n + n / 2, -side}};
   scene.mirrors.pop_back();
@@ -201,47 +180,36 @@ ParameterInfos drape_parameters(const ParameterInfos& cloth, const ParameterInfo
        {{"radius", 0.25, "of the sphere, m; 0: no collider at all", zero_too, 1e6},
         {"subdivisions", 3, "of the icosahedron; 3: 1,280 triangles", 0, 6, true},
         {"gap", 0.001, "between sphere and cloth at the start, m", zero_too, 1e6},
-        {"friction", 0.3, "Coulomb coefficient", zero_too, 1e3},
+        friction_info(0.3),
         {"contact", 1,
          "1: enforced together with edges; 0: in a pass of its own after that, as in the paper",
          zero_too, 1, true},
         duration_info(duration)}});
 }
 
-// density in kg/m^2, bending in N m, shear in N/m.
-SceneType fabric_on_ball(const char* name, const char* summary, double density, double bending,
-                         double shear) {
-  return {
-      .name = name,
-      .summary = summary,
-      .parameters = drape_parameters(
-          {{"n", 71, "vertices along each side", 3, 4000, true},
-           {"side", 1, "m", 0, 1e6},
-           {"density", density, "kg/m^2", 0, 1e4},
-           gravity_info(),
-           {"shear", shear, "shear stiffness, N/m; 0: none", zero_too, 1e9},
-           {"bending", bending, "bending rigidity of warp and weft, N m; 0: none", zero_too, 1e6}},
-          {{"drag", 0.05, "of still air, N s/m^3: force per area and speed; 0: none", zero_too,
-            1e6}}),
-      .build = build_drape,
-      .counts = count_square,
-      .like = "drape"};
+ParameterInfos fabric_square(double n, const ClothDefaults& fabric) {
+  return joined({{{"n", n, "vertices along each side", 3, 4000, true}, {"side", 1, "m", 0, 1e6}},
+                 fabric_parameters(fabric)});
 }
 
-SceneType measured_fabric(const char* name, const char* summary, const Fabric& cloth) {
-  return fabric_on_ball(name, summary, cloth.density, cloth.bending, fabric_shear);
+SceneType fabric_on_ball(const char* name, const char* summary, const ClothDefaults& fabric) {
+  return {.name = name,
+          .summary = summary,
+          .parameters = drape_parameters(fabric_square(71, fabric), {}),
+          .build = build_drape,
+          .counts = count_square,
+          .like = "drape"};
+}
+
+SceneType measured_fabric(const char* name, const char* summary, std::string_view cloth) {
+  const Fabric& measured = fabric(cloth);
+  return fabric_on_ball(name, summary, {measured.density, fabric_shear, measured.bending, 0.05});
 }
 
 // Stiff cotton in air, whose start has waves.
-ParameterInfos stiff_cotton(int n) {
-  return {{"n", static_cast<double>(n), "vertices along each side", 3, 4000, true},
-          {"side", 1, "m", 0, 1e6},
-          {"density", 0.15, "kg/m^2", 0, 1e4},
-          gravity_info(),
-          {"shear", fabric_shear, "shear stiffness, N/m; 0: none", zero_too, 1e9},
-          {"bending", 5e-4, "bending rigidity of warp and weft, N m; 0: none", zero_too, 1e6},
-          {"drag", 4, "of still air, N s/m^3: force per area and speed; 0: none", zero_too, 1e6},
-          {"waves", 0.01, "amplitude of the start's waves, m; 0: flat", zero_too, 0.05}};
+ParameterInfos stiff_cotton(double n) {
+  return joined({fabric_square(n, {0.15, fabric_shear, 5e-4, 4}),
+                 {{"waves", 0.01, "amplitude of the start's waves, m; 0: flat", zero_too, 0.05}}});
 }
 
 // Known to its end: air and bending let it fold in one way only.
@@ -299,15 +267,14 @@ std::vector<SceneType> cloth_scenes() {
       fabric_on_ball("fabric_drape",
                      "the drape with a fabric's weight, shear and bending in physical units, "
                      "implicit, and air",
-                     0.15, 1e-5, 20),
+                     {0.15, 20, 1e-5, 0.05}),
       settling_drape(),
       curtain(),
       sliding_block(),
-      measured_fabric("cotton_drape", "fabric_drape of cotton broadcloth, as measured",
-                      fabric("cotton")),
-      measured_fabric("wool_drape", "fabric_drape of wool tropical, as measured", fabric("wool")),
+      measured_fabric("cotton_drape", "fabric_drape of cotton broadcloth, as measured", "cotton"),
+      measured_fabric("wool_drape", "fabric_drape of wool tropical, as measured", "wool"),
       measured_fabric("polyester_drape", "fabric_drape of polyester tropical, as measured",
-                      fabric("polyester")),
+                      "polyester"),
       {.name = "folded_drape",
        .summary =
            "the drape, from a start in folds that shear it: as hard as mid-fall, at any size",
@@ -321,11 +288,10 @@ std::vector<SceneType> cloth_scenes() {
        .like = "drape"},
       {.name = "hung_patch",
        .summary = "the patch as it hangs from two corners, brought to rest by air (Figure 1)",
-       .parameters = joined(
-           {cloth_parameters(31),
-            {{"tilt", 0.3, "out of the vertical, at the start, rad", -1.5, 1.5},
-             {"drag", 2, "of still air, N s/m^3: force per area and speed; 0: none", zero_too, 1e6},
-             duration_info(3)}}),
+       .parameters = joined({cloth_parameters(31),
+                             {{"tilt", 0.3, "out of the vertical, at the start, rad", -1.5, 1.5},
+                              drag_info(2),
+                              duration_info(3)}}),
        .build = build_hung_patch,
        .counts = count_square,
        .like = "patch"},

@@ -61,23 +61,21 @@ Scene build_cusick(const SceneParameters& p) {
 
 std::vector<SceneType> disc_scenes() {
   const Fabric& cotton = fabric("cotton");
-  return {{.name = "cusick",
-           .summary =
-               "a disc of cotton broadcloth hangs over the edge of a round table (Cusick's drape "
-               "test)",
-           .parameters = with_cloth_parameters(
-               {{"n", 31, "vertices along the disc's diameter", 7, 1000, true},
-                {"radius", 0.15, "of the disc, m", 0, 1e6},
-                {"table", 0.09, "radius on which it is held, m", 0, 1e6},
-                {"uneven", 2e-4, "height of waves along the rim at the start, m", zero_too, 1e-2}},
-               {.density = cotton.density,
-                .shear = fabric_shear,
-                .bending = cotton.bending,
-                .drag = 1,
-                .duration = 1.5}),
-           .build = build_cusick,
-           .counts = [](const SceneParameters& p) { return count_cloth(disc_of(p)); },
-           .like = "patch"}};
+  return {
+      {.name = "cusick",
+       .summary =
+           "a disc of cotton broadcloth hangs over the edge of a round table (Cusick's drape "
+           "test)",
+       .parameters = with_cloth_parameters(
+           {{"n", 31, "vertices along the disc's diameter", 7, 1000, true},
+            {"radius", 0.15, "of the disc, m", 0, 1e6},
+            {"table", 0.09, "radius on which it is held, m", 0, 1e6},
+            {"uneven", 2e-4, "height of waves along the rim at the start, m", zero_too, 1e-2}},
+           {.density = cotton.density, .shear = fabric_shear, .bending = cotton.bending, .drag = 1},
+           1.5),
+       .build = build_cusick,
+       .counts = [](const SceneParameters& p) { return count_cloth(disc_of(p)); },
+       .like = "patch"}};
 }
 
 }  // namespace harness

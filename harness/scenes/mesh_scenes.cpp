@@ -232,7 +232,7 @@ SceneType mesh_scene(const std::string& name) {
                {"scale", 1, "m per unit of the files", 0, 1e6},
                {"up", 1, "which of the files' axes is up: 1 is y, 2 is z", 1, 2, true},
                {"friction", 0.3, "Coulomb coefficient of the body", zero_too, 1e3}},
-              {.density = 0.15, .shear = 20, .bending = 1e-5, .drag = 0.05, .duration = 1}),
+              {.density = 0.15, .shear = 20, .bending = 1e-5, .drag = 0.05}, 1),
           .build = [model](const SceneParameters& p) { return build_mesh(*model, p); },
           .counts = [model](const SceneParameters& p) { return count_cloth(cloth_for(*model, p)); },
           .like = model->parts.body.empty() ? "patch" : "drape",
