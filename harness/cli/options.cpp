@@ -7,7 +7,6 @@
 #include "harness/base/errors.h"
 #include "harness/base/pattern.h"
 #include "harness/base/text.h"
-#include "harness/scenes/mesh_scenes.h"
 #include "solvers/registry.h"
 
 namespace harness {

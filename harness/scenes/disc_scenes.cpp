@@ -2,7 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "harness/scenes/cloth_draft.h"
+#include "harness/scenes/cloth_mesh.h"
 #include "harness/scenes/fabrics.h"
 
 namespace harness {

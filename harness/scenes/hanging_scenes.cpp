@@ -5,7 +5,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "harness/scenes/chain_scenes.h"
 #include "harness/scenes/meshes.h"
 
 namespace harness {

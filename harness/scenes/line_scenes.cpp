@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 
-#include "harness/scenes/chain_scenes.h"
 #include "harness/scenes/meshes.h"
 
 namespace harness {

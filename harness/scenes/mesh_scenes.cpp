@@ -1,5 +1,4 @@
-#include "harness/scenes/mesh_scenes.h"
-
+// Cloth from files.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
@@ -12,7 +11,7 @@
 #include "harness/base/errors.h"
 #include "harness/base/files.h"
 #include "harness/base/text.h"
-#include "harness/scenes/cloth_draft.h"
+#include "harness/scenes/cloth_mesh.h"
 #include "solvers/problem/triangle_collider.h"
 
 namespace harness {

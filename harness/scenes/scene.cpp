@@ -6,7 +6,6 @@
 
 #include "harness/base/errors.h"
 #include "harness/base/text.h"
-#include "harness/scenes/mesh_scenes.h"
 #include "harness/scenes/meshes.h"
 
 namespace harness {

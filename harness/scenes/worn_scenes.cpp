@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "harness/scenes/cloth_draft.h"
+#include "harness/scenes/cloth_mesh.h"
 #include "solvers/problem/triangle_collider.h"
 
 namespace harness {
