@@ -50,7 +50,6 @@ inline double value_or_zero(const SceneParameters& p, const char* name) {
 // To add one: a function that returns its scenes, here and in the list of scene.cpp.
 std::vector<SceneType> line_scenes();
 std::vector<SceneType> cloth_scenes();
-std::vector<SceneType> disc_scenes();
 std::vector<SceneType> worn_scenes();
 std::vector<SceneType> spinning_scenes();
 std::vector<SceneType> hanging_scenes();
