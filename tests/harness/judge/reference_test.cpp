@@ -176,6 +176,12 @@ TEST(Reference, SurvivesItsFile) {
   EXPECT_FALSE(references.find("chain", parameters("chain", {{"n", 4}, {"mass", 2}})));
   EXPECT_TRUE(references.find("chain", parameters("chain", {{"n", 4}})));
 
+  // A motion that is known needs no file.
+  const auto exact =
+      references.find("spinning_net", parameters("spinning_net", {{"n", 6}, {"duration", 0.2}}));
+  ASSERT_TRUE(exact);
+  EXPECT_NEAR(exact->known_until(0), 0.2, 1e-12);
+
   // A file under the name of parameters that it is not of does not stand for them.
   const auto five = parameters("chain", {{"n", 5}, {"duration", 0.2}});
   std::ofstream(folder + "/" + reference_name("chain", five)) << to_json(r);
