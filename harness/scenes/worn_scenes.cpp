@@ -166,9 +166,9 @@ struct Cone {
     rows = 1 + std::max(1, static_cast<int>(std::lround(length * links / mean)));
   }
 
-  // place: x and z of an index around, on the unit circle.
+  // Held by nothing. place: x and z of an index around, on the unit circle.
   template <class Place>
-  ClothMesh mesh(const Place& place) const {
+  PinnedMesh cloth(const Place& place) const {
     const double fall = std::sqrt(length * length - wider * wider);
     ClothMesh mesh;
     for (int r = 0; r < rows; ++r) {
@@ -181,33 +181,28 @@ struct Cone {
         mesh.quads.push_back({r * around + s, r * around + next, below + next, below + s});
       }
     }
-    return mesh;
+    const std::size_t vertices = mesh.vertices.size();
+    return {std::move(mesh), std::vector<char>(vertices, 0)};
   }
 };
 
 // ---- The garment ----
-Cone skirt(const SceneParameters& p) { return Cone(p, p.at("rim"), 2 * pi, "garment"); }
+PinnedMesh skirt(const SceneParameters& p) {
+  const Cone cone(p, p.at("rim"), 2 * pi, "garment");
+  return cone.cloth([&](int s) {
+    const double angle = 2 * pi * s / cone.around;
+    return std::array{std::cos(angle), std::sin(angle)};
+  });
+}
 
 Scene build_garment(const SceneParameters& p) {
   if (!(p.at("waist") < p.at("rim")))
     throw std::invalid_argument("'rim' of " + std::to_string(p.at("rim")) +
                                 " m: must be wider than the waist");
-  const Cone cone = skirt(p);
-  PinnedMesh cloth{cone.mesh([&](int s) {
-                     const double angle = 2 * pi * s / cone.around;
-                     return std::array{std::cos(angle), std::sin(angle)};
-                   }),
-                   {}};
-  cloth.held.assign(cloth.mesh.vertices.size(), 0);
-  Draft draft = worn(cloth, torso(p), p);
+  Draft draft = worn(skirt(p), torso(p), p);
   if (p.at("sway") != 0 || p.at("turn") != 0) set_moving(draft, swaying(p));
-  draft.scene.marks = {{"rim", 0, 0}, {"rim_across", cone.around / 2, 0}};
+  draft.scene.marks = {{"rim", 0, 0}, {"rim_across", whole(p) / 2, 0}};
   return finished(std::move(draft));
-}
-
-std::pair<int, int> count_garment(const SceneParameters& p) {
-  const int n = whole(p), rows = skirt(p).rows;
-  return {n * rows, n * rows + n * (rows - 1)};
 }
 
 // ---- The cape ----
@@ -218,11 +213,9 @@ PinnedMesh cape(const SceneParameters& p) {
   const auto angle = [&](int s) {
     return p.at("spread") * (static_cast<double>(s) / (cone.around - 1) - 0.5);
   };
-  PinnedMesh cloth{cone.mesh([&](int s) {
-                     return std::array{std::sin(angle(s)), std::cos(angle(s))};
-                   }),
-                   {}};
-  cloth.held.assign(cloth.mesh.vertices.size(), 0);
+  PinnedMesh cloth = cone.cloth([&](int s) {
+    return std::array{std::sin(angle(s)), std::cos(angle(s))};
+  });
   for (int s = 0; s < cone.around; ++s) cloth.held[s] = std::abs(angle(s)) <= 0.5 * p.at("held");
   return cloth;
 }
@@ -256,7 +249,7 @@ std::vector<SceneType> worn_scenes() {
             {"period", 1, "of both, s", 0, 1e3}},
            {.density = 0.15, .shear = 5, .bending = 1e-5, .drag = 0.1}, 3),
        .build = build_garment,
-       .counts = count_garment,
+       .counts = [](const SceneParameters& p) { return count_cloth(skirt(p)); },
        .like = "drape"},
       {.name = "cape",
        .summary =
