@@ -124,11 +124,10 @@ struct Film : SceneOptions {
   static Recording recorded(const FilmSpec& film) {
     Progress progress;
     try {
-      return record(film, interrupted,
-                    [&](const FilmRun& run, std::size_t frame, std::size_t frames) {
-                      if (frame <= 1) progress.begin_part();
-                      progress.show(frame, frames, name_of(run, run.label));
-                    });
+      return record(film, interrupted, [&](const FilmRun& run) {
+        if (run.frames.size() == 1) progress.begin_part();
+        progress.show(run.frames.size(), frames_in(film), name_of(run, run.label));
+      });
     } catch (const std::invalid_argument& error) {
       throw UsageError(error.what());
     }

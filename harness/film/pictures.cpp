@@ -82,21 +82,6 @@ double mean_edge(const inextensible::Problem& problem) {
              : std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
 }
 
-struct Picture {
-  std::size_t take, frame;
-};
-
-std::vector<Picture> distinct(const Recording& recording, const std::vector<std::size_t>& frames) {
-  std::vector<Picture> pictures;
-  for (std::size_t take = 0; take < recording.takes.size(); ++take) {
-    std::set<std::size_t> shown;
-    for (const std::size_t frame : frames)
-      shown.insert(std::min(frame, recording.takes[take].frames.size() - 1));
-    for (const std::size_t frame : shown) pictures.push_back({take, frame});
-  }
-  return pictures;
-}
-
 // Sag of each mark at each frame: how far below the height where it would hang if nothing
 // stretched, m.
 json sags(const Scene& scene, const FilmRun& take) {
@@ -152,7 +137,11 @@ void write_pictures(const std::string& folder, const Recording& recording, const
                     const std::function<bool()>& interrupted,
                     const std::function<void(std::size_t, std::size_t)>& told) {
   const View view = view_of(recording, spec.frames);
-  const std::vector<Picture> pictures = distinct(recording, spec.frames);
+  std::set<std::pair<std::size_t, std::size_t>> distinct;  // take and frame
+  for (std::size_t take = 0; take < recording.takes.size(); ++take)
+    for (const std::size_t frame : spec.frames)
+      distinct.emplace(take, std::min(frame, recording.takes[take].frames.size() - 1));
+  const std::vector pictures(distinct.begin(), distinct.end());
   std::mutex lock;
   std::size_t done = 0;
   on_all_cores(pictures.size(), [&](std::size_t i) {
@@ -203,10 +192,6 @@ void extend(Box& box, const Positions& x) {
     if (point.allFinite()) box.extend(Vector3d(point));
 }
 
-double reach(const Positions& x, const Vector3d& from) {
-  return x.cols() == 0 ? 0 : (x.colwise() - from).colwise().norm().maxCoeff();
-}
-
 // The points that are no farther from `middle` than `followed`.
 Positions near(const Positions& x, const Vector3d& middle, double followed) {
   Positions kept(3, x.cols());
@@ -226,8 +211,10 @@ std::vector<Positions> in_sight(const Recording& recording,
   Box about;
   extend(about, body_start);
   const Vector3d at_first = about.center();
-  const double followed = (body ? near_body : near_start) *
-                          std::max(reach(start, at_first), reach(body_start, at_first));
+  double reach = 0;
+  for (const Positions* x : {&start, &body_start})
+    reach = std::max(reach, (x->colwise() - at_first).colwise().norm().maxCoeff());
+  const double followed = (body ? near_body : near_start) * reach;
   std::vector<Positions> all;
   for (const FilmRun& take : recording.takes) {
     for (const std::size_t shown : frames) {

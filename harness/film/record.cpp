@@ -158,22 +158,18 @@ std::size_t frames_in(const FilmSpec& spec) {
 }
 
 Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
-                 const std::function<void(const FilmRun&, std::size_t, std::size_t)>& told) {
+                 const std::function<void(const FilmRun&)>& told) {
   Recording recording{spec, {find_scene(spec.scene)->build(spec.parameters), {}, {}}, {}};
   const Scene& scene = recording.stage.scene;
   const auto* body = dynamic_cast<const inextensible::TriangleCollider*>(scene.problem->collider());
   if (body) recording.stage.body = body->mesh();
-  const std::size_t frames = frames_in(spec);
   if (const auto& motion = scene.problem->body_motion()) {
-    for (std::size_t i = 0; i < frames; ++i)
+    for (std::size_t i = 0; i < frames_in(spec); ++i)
       recording.stage.body_poses.push_back(
           motion(scene.start.time + static_cast<double>(i) / spec.frames_per_second));
   }
-  const std::function<void(const FilmRun&)> tell = [&](const FilmRun& take) {
-    told(take, take.frames.size(), frames);
-  };
   const FilmSetup setup{spec, scene, energy_bound_of(recording.stage, spec.frames_per_second),
-                        interrupted, tell};
+                        interrupted, told};
   for (const double limit : spec.strain_limits) {
     for (const Contestant& contestant : spec.solvers)
       recording.takes.push_back(take_of(setup, contestant, limit));

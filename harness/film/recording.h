@@ -51,9 +51,8 @@ struct Recording {
 std::size_t frames_in(const FilmSpec& spec);
 
 // Springs get the stiffness that keeps the limit. told: of every frame. Throws Interrupted.
-Recording record(
-    const FilmSpec& spec, const std::function<bool()>& interrupted,
-    const std::function<void(const FilmRun&, std::size_t frame, std::size_t frames)>& told);
+Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
+                 const std::function<void(const FilmRun&)>& told);
 
 // Where the body's corners are at a frame.
 inextensible::Positions body_at(const FilmScene& stage, std::size_t frame);

@@ -119,7 +119,7 @@ MeshParts parts_of(const std::string& name) {
 
 // The files, read once; scenes of all parameters are made of them.
 struct MeshModel {
-  std::string name, identity;
+  std::string identity;
   MeshParts parts;
   ClothMesh cloth;
   inextensible::TriangleMesh body;
@@ -148,7 +148,6 @@ inextensible::TriangleMesh body_of(const MeshFile& file) {
 
 std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   auto model = std::make_shared<MeshModel>();
-  model->name = name;
   model->parts = parts_of(name);
   const MeshParts& parts = model->parts;
   std::string content = name.substr(std::min(name.find(",pins="), name.size()));
@@ -156,20 +155,20 @@ std::shared_ptr<const MeshModel> read_model(const std::string& name) {
   content = read_file(parts.file, "mesh") + content;
   if (!parts.body.empty()) content += read_file(parts.body, "mesh");
   model->identity = fnv1a(content);
-  model->cloth = cloth_of(read_mesh_file(model->parts.file), model->parts.file);
-  if (!model->parts.body.empty()) {
-    model->body = body_of(read_mesh_file(model->parts.body));
+  model->cloth = cloth_of(read_mesh_file(parts.file), parts.file);
+  if (!parts.body.empty()) {
+    model->body = body_of(read_mesh_file(parts.body));
     try {
       (void)inextensible::TriangleCollider(model->body, 0);
     } catch (const std::invalid_argument& error) {
-      throw UsageError("'" + model->parts.body + "' is no body to collide with: " + error.what());
+      throw UsageError("'" + parts.body + "' is no body to collide with: " + error.what());
     }
   }
   const auto& x = model->cloth.vertices;
   const bool holds = std::any_of(x.begin(), x.end(), [&](auto& v) { return model->pinned(v); });
-  if (!model->parts.pins.empty() && !holds)
+  if (!parts.pins.empty() && !holds)
     throw UsageError("scene '" + name + "': no vertex is where the pins are");
-  if (!holds && model->parts.body.empty())
+  if (!holds && parts.body.empty())
     throw UsageError("scene '" + name +
                      "': nothing is pinned and nothing is below; add ,pins=y>... or ,body=FILE");
   return model;
