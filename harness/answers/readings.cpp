@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "harness/answers/answer.h"
+#include "harness/judge/mechanics.h"
 #include "harness/judge/reference.h"
-#include "harness/judge/shape.h"
 #include "harness/scenes/meshes.h"
 
 namespace harness {

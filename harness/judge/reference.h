@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "harness/judge/shape.h"
 #include "harness/points/measures.h"
 #include "harness/scenes/scene.h"
 

@@ -141,8 +141,6 @@ Scene build_catenary(const SceneParameters& p) {
   return released(std::move(chain), {0, whole(p) - 1});
 }
 
-Positions hung(const SceneParameters& p, double /*time*/) { return catenary(p); }
-
 double whirling_rate(const SceneParameters& p) {  // rad/s
   return p.at("rate") * hanging_frequency(whole(p) - 1, row_link(p), p.at("gravity"), 1);
 }
@@ -264,7 +262,7 @@ std::vector<SceneType> hanging_scenes() {
                   build_hanging_chain, swung),
           hanging("catenary", "a chain that hangs at rest between two pins: it stays",
                   {{"slack", 1.2, "length over the distance of the pins", 1, 100}}, build_catenary,
-                  hung),
+                  [](const SceneParameters& p, double) { return catenary(p); }),
           hanging("whirling_chain",
                   "a chain that whirls about the vertical as a rigid curve: its motion is known",
                   {{"rate", 1.5, "of turning, over the slowest oscillation's", 1, 2.2}},

@@ -263,10 +263,9 @@ ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefau
   return joined({own, fabric_parameters(cloth), {duration_info(duration)}});
 }
 
-Draft cloth_draft(const PinnedMesh& cloth, const SceneParameters& p) {
-  const ClothMesh& mesh = cloth.mesh;
+Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p) {
   const auto length = [&](int a, int b) { return (mesh.vertices[a] - mesh.vertices[b]).norm(); };
-  const auto held = [&](auto... vertices) { return (cloth.held[vertices] && ...); };
+  const auto held = [&](auto... vertices) { return (mesh.held[vertices] && ...); };
   Draft draft;
   inextensible::ProblemParts& parts = draft.parts;
   Scene& scene = draft.scene;
@@ -319,12 +318,12 @@ Draft cloth_draft(const PinnedMesh& cloth, const SceneParameters& p) {
   return draft;
 }
 
-std::pair<int, int> count_cloth(const PinnedMesh& cloth) {
-  const std::vector<Side> sides = sides_of_quads(cloth.mesh);
+std::pair<int, int> count_cloth(const ClothMesh& mesh) {
+  const std::vector<Side> sides = sides_of_quads(mesh);
   const auto constrained = std::count_if(sides.begin(), sides.end(), [&](const Side& s) {
-    return !cloth.held[s.first] || !cloth.held[s.second];
+    return !mesh.held[s.first] || !mesh.held[s.second];
   });
-  return {static_cast<int>(cloth.mesh.vertices.size()), static_cast<int>(constrained)};
+  return {static_cast<int>(mesh.vertices.size()), static_cast<int>(constrained)};
 }
 
 }  // namespace harness

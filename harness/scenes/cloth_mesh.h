@@ -22,6 +22,7 @@ struct ClothMesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<int, 4>> quads;      // corners in turn
   std::vector<std::array<int, 3>> triangles;  // what is left
+  std::vector<char> held = {};                // of each vertex, whether a scene pins it
 };
 
 // Quads of a file's faces: triangles are joined to quads where two make one whose angles are within
@@ -48,11 +49,6 @@ std::vector<double> areas(const ClothMesh& mesh);
 
 // ---- The scene ----
 
-struct PinnedMesh {
-  ClothMesh mesh;
-  std::vector<char> held;  // of each vertex, whether it is pinned
-};
-
 // The scene's own parameters, and after them those that cloth_draft reads.
 ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefaults& cloth,
                                      double duration);
@@ -63,9 +59,9 @@ ParameterInfos with_cloth_parameters(const ParameterInfos& own, const ClothDefau
 // all forces act as they are at the end of a step. Parameters: density (kg/m^2), gravity, shear
 // (N/m), bending (N m), drag (N s/m^3), duration. Left to the caller: the scene's size, and what is
 // not at rest there.
-Draft cloth_draft(const PinnedMesh& cloth, const SceneParameters& p);
+Draft cloth_draft(const ClothMesh& mesh, const SceneParameters& p);
 
 // Its vertices and constraints.
-std::pair<int, int> count_cloth(const PinnedMesh& cloth);
+std::pair<int, int> count_cloth(const ClothMesh& mesh);
 
 }  // namespace harness

@@ -258,7 +258,7 @@ SceneType sliding_block() {
 // ---- Cusick's drape test ----
 // The quads of a square grid whose middle lies in the disc: its area is the disc's, but for what
 // the grid leaves open. In the plane y = 0, pinned where the table is.
-PinnedMesh disc_of(const SceneParameters& p) {
+ClothMesh disc_of(const SceneParameters& p) {
   const auto n = whole(p);
   const double radius = p.at("radius"), link = 2 * radius / (n - 1);
   const auto place = [&](double index) { return link * (index - 0.5 * (n - 1)); };
@@ -266,20 +266,20 @@ PinnedMesh disc_of(const SceneParameters& p) {
     return i >= 0 && j >= 0 && i + 1 < n && j + 1 < n &&
            std::hypot(place(i + 0.5), place(j + 0.5)) <= radius;
   };
-  PinnedMesh disc;
+  ClothMesh disc;
   std::vector<int> number(n * n, -1);
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       if (!quad(i, j) && !quad(i - 1, j) && !quad(i, j - 1) && !quad(i - 1, j - 1)) continue;
-      number[i * n + j] = static_cast<int>(disc.mesh.vertices.size());
-      disc.mesh.vertices.emplace_back(place(j), 0, place(i));
+      number[i * n + j] = static_cast<int>(disc.vertices.size());
+      disc.vertices.emplace_back(place(j), 0, place(i));
       disc.held.push_back(std::hypot(place(i), place(j)) <= p.at("table"));
     }
   }
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       const int* at = number.data() + i * n + j;
-      if (quad(i, j)) disc.mesh.quads.push_back({at[0], at[1], at[n + 1], at[n]});
+      if (quad(i, j)) disc.quads.push_back({at[0], at[1], at[n + 1], at[n]});
     }
   }
   return disc;

@@ -181,9 +181,9 @@ Eigen::Vector3d placed(const Eigen::Vector3d& x, const SceneParameters& p) {
   return s * x;
 }
 
-PinnedMesh cloth_for(const MeshModel& model, const SceneParameters& p) {
-  PinnedMesh cloth{refined(model.cloth, whole(p)), {}};
-  for (Eigen::Vector3d& v : cloth.mesh.vertices) {
+ClothMesh cloth_for(const MeshModel& model, const SceneParameters& p) {
+  ClothMesh cloth = refined(model.cloth, whole(p));
+  for (Eigen::Vector3d& v : cloth.vertices) {
     cloth.held.push_back(model.pinned(v));
     v = placed(v, p);
   }

@@ -13,9 +13,14 @@ namespace harness {
 std::span<const SceneType> scene_types() {
   static const std::vector<SceneType> types = [] {
     std::vector<SceneType> all;
-    for (const auto family :
-         {line_scenes, cloth_scenes, worn_scenes, spinning_scenes, hanging_scenes})
-      std::ranges::move(family(), std::back_inserter(all));
+    const auto add = [&all](std::vector<SceneType> family) {
+      std::ranges::move(family, std::back_inserter(all));
+    };
+    add(line_scenes());
+    add(cloth_scenes());
+    add(worn_scenes());
+    add(spinning_scenes());
+    add(hanging_scenes());
     return all;
   }();
   return types;

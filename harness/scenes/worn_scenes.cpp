@@ -61,16 +61,14 @@ struct Dome {
 std::vector<Ring> capped(double radius, const Dome& lower, const std::vector<Ring>& wall,
                          const Dome& upper) {
   constexpr int cap = 8;  // rings
+  const auto ring = [&](const Dome& dome, int k) -> Ring {
+    const double angle = 0.5 * pi * k / cap;
+    return {dome.y + dome.height * std::cos(angle), radius * std::sin(angle)};
+  };
   std::vector<Ring> rings;
-  for (int k = 0; k < cap; ++k) {
-    const double angle = 0.5 * pi * k / cap;
-    rings.push_back({lower.y - lower.height * std::cos(angle), radius * std::sin(angle)});
-  }
+  for (int k = 0; k < cap; ++k) rings.push_back(ring({lower.y, -lower.height}, k));
   rings.insert(rings.end(), wall.begin(), wall.end());
-  for (int k = cap; k >= 0; --k) {
-    const double angle = 0.5 * pi * k / cap;
-    rings.push_back({upper.y + upper.height * std::cos(angle), radius * std::sin(angle)});
-  }
+  for (int k = cap; k >= 0; --k) rings.push_back(ring(upper, k));
   return rings;
 }
 
@@ -131,7 +129,7 @@ inextensible::BodyMotion walking(const SceneParameters& p) {
       });
 }
 
-Draft worn(const PinnedMesh& cloth, const std::vector<Ring>& body, const SceneParameters& p) {
+Draft worn(const ClothMesh& cloth, const std::vector<Ring>& body, const SceneParameters& p) {
   Draft draft = cloth_draft(cloth, p);
   draft.parts.collider = std::make_shared<const inextensible::TriangleCollider>(
       lathed(body, whole(p, "segments")), p.at("friction"));
@@ -168,7 +166,7 @@ struct Cone {
 
   // Held by nothing. place: x and z of an index around, on the unit circle.
   template <class Place>
-  PinnedMesh cloth(const Place& place) const {
+  ClothMesh cloth(const Place& place) const {
     const double fall = std::sqrt(length * length - wider * wider);
     ClothMesh mesh;
     for (int r = 0; r < rows; ++r) {
@@ -181,13 +179,13 @@ struct Cone {
         mesh.quads.push_back({r * around + s, r * around + next, below + next, below + s});
       }
     }
-    const std::size_t vertices = mesh.vertices.size();
-    return {std::move(mesh), std::vector<char>(vertices, 0)};
+    mesh.held.assign(mesh.vertices.size(), 0);
+    return mesh;
   }
 };
 
 // ---- The garment ----
-PinnedMesh skirt(const SceneParameters& p) {
+ClothMesh skirt(const SceneParameters& p) {
   const Cone cone(p, p.at("rim"), 2 * pi, "garment");
   return cone.cloth([&](int s) {
     const double angle = 2 * pi * s / cone.around;
@@ -208,12 +206,12 @@ Scene build_garment(const SceneParameters& p) {
 // ---- The cape ----
 // Part of a cone about the body: the collar first, of which the vertices within `held` of its
 // middle are pinned.
-PinnedMesh cape(const SceneParameters& p) {
+ClothMesh cape(const SceneParameters& p) {
   const Cone cone(p, p.at("body") + p.at("gap"), p.at("spread"), "cape");
   const auto angle = [&](int s) {
     return p.at("spread") * (static_cast<double>(s) / (cone.around - 1) - 0.5);
   };
-  PinnedMesh cloth = cone.cloth([&](int s) {
+  ClothMesh cloth = cone.cloth([&](int s) {
     return std::array{std::sin(angle(s)), std::cos(angle(s))};
   });
   for (int s = 0; s < cone.around; ++s) cloth.held[s] = std::abs(angle(s)) <= 0.5 * p.at("held");
