@@ -74,14 +74,6 @@ std::vector<std::uint8_t> yarns_of(const Scene& scene) {
   return sides;
 }
 
-// Mean length of the cloth's edges, m; 0 without edges.
-double mean_edge(const inextensible::Problem& problem) {
-  const std::vector<double>& all = problem.rest_length();
-  return all.empty()
-             ? 0
-             : std::accumulate(all.begin(), all.end(), 0.0) / static_cast<double>(all.size());
-}
-
 // Sag of each mark at each frame: how far below the height where it would hang if nothing
 // stretched, m.
 json sags(const Scene& scene, const FilmRun& take) {
@@ -120,7 +112,10 @@ Shot shot_of(const Recording& recording, const View& view, std::size_t take, std
   Shot shot{.stage = stage, .cloth = shown.frames.at(frame)};
   shot.colours = colours_of(*stage.scene.problem, shot.cloth, shown.strain_limit);
   if (!stage.body.vertices.empty()) shot.body = body_at(stage, frame);
-  const double edge = mean_edge(*stage.scene.problem), distance = (view.eye - view.centre).norm();
+  const std::vector<double>& lengths = stage.scene.problem->rest_length();
+  const double edge = std::accumulate(lengths.begin(), lengths.end(), 0.0) /
+                      std::max(1.0, static_cast<double>(lengths.size()));  // m, the mean
+  const double distance = (view.eye - view.centre).norm();
   const double pixel = 2 * view.tangent * distance / width;  // m
   shot.thickness = std::clamp(0.25 * edge, 0.004 * view.size, 0.03 * view.size);
   if (stage.scene.triangles.empty()) {

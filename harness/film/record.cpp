@@ -57,18 +57,10 @@ std::string gave_up(double time, const std::string& why) {
   return "gave up at t = " + number_text(time, 3) + " s: " + why;
 }
 
-// What the runs of a film have in common.
-struct FilmSetup {
-  const FilmSpec& spec;
-  const Scene& scene;
-  double energy_bound;
-  const std::function<bool()>& interrupted;
-  const std::function<void(const FilmRun&)>& told;
-};
-
-FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double limit) {
-  const FilmSpec& spec = setup.spec;
-  const Scene& scene = setup.scene;
+FilmRun take_of(const FilmSpec& spec, const Scene& scene, double energy_bound,
+                const Contestant& contestant, double limit,
+                const std::function<bool()>& interrupted,
+                const std::function<void(const FilmRun&)>& told) {
   const double rate = spec.frames_per_second;
   FilmRun take;
   take.solver = contestant.name;
@@ -77,7 +69,7 @@ FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double lim
   const int steps_per_frame =
       std::max(1, static_cast<int>(std::ceil(1 / (rate * spec.step) - 1e-9)));
   take.step = take.smallest_step = 1 / (rate * steps_per_frame);
-  const auto settings = calibrated(spec, contestant, limit, take.step, setup.interrupted);
+  const auto settings = calibrated(spec, contestant, limit, take.step, interrupted);
   const inextensible::Backend& backend = *inextensible::find_backend(contestant.solver);
   State state = start_of(scene, backend, take.step);
   const auto stepper =
@@ -88,12 +80,12 @@ FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double lim
   const auto keep = [&](const State& at) {
     take.frames.push_back(at.x);
     take.largest_strain.push_back(strain_range(*scene.problem, at.x).most);
-    setup.told(take);
+    told(take);
     begin = Clock::now();
   };
   const auto judge_energy = [&] {
     if (take.energy_gained.empty())
-      take.energy_gained = energy_gained(energy, setup.energy_bound, scene.duration);
+      take.energy_gained = energy_gained(energy, energy_bound, scene.duration);
   };
   const auto go_on = [&](const State& at, const DriveState& driven) {
     const double seconds = since(begin);
@@ -111,7 +103,7 @@ FilmRun take_of(const FilmSetup& setup, const Contestant& contestant, double lim
   keep(state);
   const long steps = steps_per_frame * (static_cast<long>(frames_in(spec)) - 1);
   const DriveState driven = drive(*stepper, state, {take.step, steps, most_halvings}, go_on,
-                                  {.interrupted = setup.interrupted});
+                                  {.interrupted = interrupted});
   if (driven.end == DriveState::End::refused)
     take.detail = gave_up(state.time, driven.result.detail);
   energy.finish();
@@ -168,11 +160,11 @@ Recording record(const FilmSpec& spec, const std::function<bool()>& interrupted,
       recording.stage.body_poses.push_back(
           motion(scene.start.time + static_cast<double>(i) / spec.frames_per_second));
   }
-  const FilmSetup setup{spec, scene, energy_bound_of(recording.stage, spec.frames_per_second),
-                        interrupted, told};
+  const double energy_bound = energy_bound_of(recording.stage, spec.frames_per_second);
   for (const double limit : spec.strain_limits) {
     for (const Contestant& contestant : spec.solvers)
-      recording.takes.push_back(take_of(setup, contestant, limit));
+      recording.takes.push_back(
+          take_of(spec, scene, energy_bound, contestant, limit, interrupted, told));
   }
   return recording;
 }
