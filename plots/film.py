@@ -3,7 +3,7 @@
 
     plots/film.py FOLDER OUT.webp|.mp4|.png
 
-FOLDER holds film.json and the pictures of each take (harness/film/pictures.h). Pillow draws captions and writes .webp and .png;
+FOLDER holds film.json and the pictures of each take (harness/film/film.h). Pillow draws captions and writes .webp and .png;
 ffmpeg writes .mp4.
 """
 

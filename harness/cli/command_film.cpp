@@ -9,7 +9,7 @@
 #include "harness/analysis/measured_point.h"
 #include "harness/base/statistics.h"
 #include "harness/cli/command.h"
-#include "harness/film/pictures.h"
+#include "harness/film/film.h"
 #include "harness/points/suite.h"
 #include "harness/points/tuned.h"
 

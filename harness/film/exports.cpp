@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "harness/base/files.h"
-#include "harness/film/recording.h"
+#include "harness/film/film.h"
 #include "harness/judge/mechanics.h"
 
 namespace harness {

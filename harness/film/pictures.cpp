@@ -1,5 +1,3 @@
-#include "harness/film/pictures.h"
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -14,6 +12,7 @@
 #include "harness/base/files.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/json.h"
+#include "harness/film/film.h"
 #include "harness/judge/mechanics.h"
 
 namespace harness {

@@ -3,7 +3,7 @@
 
 #include "harness/base/clock.h"
 #include "harness/base/text.h"
-#include "harness/film/recording.h"
+#include "harness/film/film.h"
 #include "harness/judge/drive.h"
 #include "harness/judge/energy.h"
 #include "harness/judge/mechanics.h"

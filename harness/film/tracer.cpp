@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "harness/film/pictures.h"
+#include "harness/film/film.h"
 
 namespace harness {
 
@@ -17,31 +17,6 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using inextensible::Positions;
-
-namespace {
-
-double decoded(double shade) {  // of sRGB
-  return shade <= 0.04045 ? shade / 12.92 : std::pow((shade + 0.055) / 1.055, 2.4);
-}
-
-double encoded(double light) {
-  light = std::clamp(light, 0.0, 1.0);
-  return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-}
-
-}  // namespace
-
-Vector3d linear(const Vector3d& srgb) {
-  return srgb.unaryExpr([](double c) { return decoded(c); });
-}
-
-std::array<std::uint8_t, 3> shade(const Vector3d& rgb) {
-  std::array<std::uint8_t, 3> bytes{};
-  for (int k = 0; k < 3; ++k)
-    bytes[static_cast<std::size_t>(k)] =
-        static_cast<std::uint8_t>(std::lround(255 * encoded(rgb[k])));
-  return bytes;
-}
 
 namespace {
 
@@ -323,6 +298,21 @@ class Tracer {
 };
 
 }  // namespace
+
+Vector3d linear(const Vector3d& srgb) {
+  return srgb.unaryExpr(
+      [](double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); });
+}
+
+std::array<std::uint8_t, 3> shade(const Vector3d& rgb) {
+  const auto encoded = [](double light) {
+    light = std::clamp(light, 0.0, 1.0);
+    const double srgb =
+        light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+    return static_cast<std::uint8_t>(std::lround(255 * srgb));
+  };
+  return {encoded(rgb.x()), encoded(rgb.y()), encoded(rgb.z())};
+}
 
 Pixels trace(const Shot& shot, const View& view, int width, int samples) {
   const Tracer tracer(shot, view, samples);

@@ -1,8 +1,8 @@
 // Runs of films: what is said of them, and that they end; and a pixel of cloth.
+#include "harness/film/film.h"
+
 #include <gtest/gtest.h>
 
-#include "harness/film/pictures.h"
-#include "harness/film/recording.h"
 #include "support/scenes.h"
 
 namespace harness {
