@@ -19,16 +19,11 @@ std::string written(const std::string& path, const std::string& text) {
 struct Part {
   std::string name;  // of its files
   std::vector<std::array<int, 3>> triangles;
-  const inextensible::Problem* problem;  // whose edges are shown; null: none
+  std::vector<std::array<int, 2>> edges;
+  const inextensible::Problem* problem;  // whose edges they are; null: there are none
   bool stays;                            // one frame is all
   std::function<inextensible::Positions(std::size_t frame)> at;
 
-  std::vector<std::array<int, 2>> edges() const {
-    std::vector<std::array<int, 2>> ends;
-    if (problem)
-      for (const auto& [a, b] : problem->edges()) ends.push_back({a, b});
-    return ends;
-  }
   std::string file(std::size_t frame, const char* extension) const {
     char number[24] = "";
     if (!stays) std::snprintf(number, sizeof number, "-%04zu", frame + 1);
@@ -44,7 +39,7 @@ std::string obj_text(const Part& part, const inextensible::Positions& x) {
   for (const auto& [a, b, c] : part.triangles)
     out << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
   if (part.triangles.empty()) {
-    for (const auto& [a, b] : part.edges()) out << "l " << a + 1 << ' ' << b + 1 << '\n';
+    for (const auto& [a, b] : part.edges) out << "l " << a + 1 << ' ' << b + 1 << '\n';
   }
   return out.str();
 }
@@ -77,7 +72,7 @@ std::string vtp_text(const Part& part, const inextensible::Positions& x) {
   };
   out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
          "byte_order=\"LittleEndian\">\n<PolyData>\n<Piece NumberOfPoints=\""
-      << x.cols() << "\" NumberOfVerts=\"0\" NumberOfLines=\"" << part.edges().size()
+      << x.cols() << "\" NumberOfVerts=\"0\" NumberOfLines=\"" << part.edges.size()
       << "\" NumberOfStrips=\"0\" NumberOfPolys=\"" << part.triangles.size() << "\">\n<CellData>\n";
   array("Float64", "strain", 1, [&] {
     for (const double strain : strains) out << strain << ' ';
@@ -88,7 +83,7 @@ std::string vtp_text(const Part& part, const inextensible::Positions& x) {
       out << x(0, i) << ' ' << x(1, i) << ' ' << x(2, i) << ' ';
   });
   out << "</Points>\n";
-  cells("Lines", part.edges());
+  cells("Lines", part.edges);
   cells("Polys", part.triangles);
   out << "</Piece>\n</PolyData>\n</VTKFile>\n";
   return out.str();
@@ -103,10 +98,18 @@ void append(std::string& bytes, Number number) {
 std::vector<Part> parts_of(const Recording& recording, const FilmRun& take,
                            const std::string& name) {
   const FilmScene& stage = recording.stage;
-  std::vector<Part> parts{{name, stage.scene.triangles, stage.scene.problem.get(), false,
-                           [&take](std::size_t frame) { return take.frames[frame]; }}};
+  const inextensible::Problem* problem = stage.scene.problem.get();
+  std::vector<Part> parts{
+      {name, stage.scene.triangles, {}, problem, false, [&take](std::size_t frame) {
+         return take.frames[frame];
+       }}};
+  for (const auto& [a, b] : problem->edges()) parts[0].edges.push_back({a, b});
   if (!stage.body.vertices.empty())
-    parts.push_back({name + "-body", stage.body.triangles, nullptr, stage.body_poses.empty(),
+    parts.push_back({name + "-body",
+                     stage.body.triangles,
+                     {},
+                     nullptr,
+                     stage.body_poses.empty(),
                      [&stage](std::size_t frame) { return body_at(stage, frame); }});
   return parts;
 }

@@ -216,7 +216,7 @@ std::optional<ResidualProbe::Residuals> ResidualProbe::residuals() {
   watching_ = false;
   if (iterations_ == 0) return {};
   const double first = mean_residual(first_);
-  return Residuals{first, iterations_ == 1 ? first : mean_residual(last_), iterations_};
+  return Residuals{first, iterations_ == 1 ? first : mean_residual(last_)};
 }
 
 }  // namespace harness

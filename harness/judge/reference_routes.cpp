@@ -167,25 +167,26 @@ class ReferenceMaker {
                    int start) {
     const std::string name = route.name() + ", step " + number_text(h, 17) + " s, start " +
                              std::to_string(start) + ", " + std::to_string(samples) + " samples";
-    return runs_.run(name, [&] { return run_of(route, h, samples, from); }).path;
-  }
-  RouteRun run_of(const Route& route, double h, std::size_t samples, const State& from) {
-    const auto stepper = stepper_of(route, scene_);
-    State state = start_from(*scene_.problem, from, *inextensible::find_backend(route.solver), h);
-    const std::string name = route.solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ";
-    const long per_sample = std::lround(sample_interval / h);
-    runs_.tell(name + "...");
-    RouteRun run;
-    const DriveState driven = drive(*stepper, state, {h, per_sample * static_cast<long>(samples)},
-                                    [&](const State& now, const DriveState& so_far) {
-                                      if (so_far.steps % per_sample == 0) run.path.push_back(now.x);
-                                      return true;
-                                    });
-    if (driven.end == DriveState::End::refused)
-      runs_.tell(name + "stopped before t = " + number_text(r_.times[driven.steps / per_sample]) +
-                 " s: " + inextensible::to_string(driven.result.status) + ", " +
-                 driven.result.detail);
-    return run;
+    const auto compute = [&] {
+      const auto stepper = stepper_of(route, scene_);
+      State state = start_from(*scene_.problem, from, *inextensible::find_backend(route.solver), h);
+      const std::string words = route.solver + ", h = 1/" + number_text(std::round(1 / h)) + " s ";
+      const long per_sample = std::lround(sample_interval / h);
+      runs_.tell(words + "...");
+      RouteRun run;
+      const DriveState driven = drive(*stepper, state, {h, per_sample * static_cast<long>(samples)},
+                                      [&](const State& now, const DriveState& so_far) {
+                                        if (so_far.steps % per_sample == 0)
+                                          run.path.push_back(now.x);
+                                        return true;
+                                      });
+      if (driven.end == DriveState::End::refused)
+        runs_.tell(
+            words + "stopped before t = " + number_text(r_.times[driven.steps / per_sample]) +
+            " s: " + inextensible::to_string(driven.result.status) + ", " + driven.result.detail);
+      return run;
+    };
+    return runs_.run(name, compute).path;
   }
   const Path& path(const Route& route, double h) {
     return path(route, h, r_.times.size(), scene_.start, 0);

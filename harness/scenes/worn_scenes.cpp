@@ -91,7 +91,6 @@ std::vector<Ring> column(const SceneParameters& p) {
   constexpr double above = 0.02, below = 1.1, dome = 0.9;  // m; of the length; of the radius
   const double radius = p.at("body"), top = above, bottom = -below * p.at("length");
   std::vector<Ring> wall;
-  wall.reserve(rings);
   for (int k = 0; k < rings; ++k)
     wall.push_back({bottom + (top - bottom) * static_cast<double>(k) / rings, radius});
   return capped(radius, {bottom, dome * radius}, wall, {top, dome * radius});
