@@ -36,8 +36,8 @@ class ImplicitSprings final : public Stepper {
   void predict_tension(const Positions& x, const Positions& to);
   enum class Search { full, shortened, at_minimum, failed };
   Search search(const Positions& x, double h, double longest, double& current);
-  StepResult end_velocities(const State& before, double h, const Positions& filtered,
-                            const Positions& x, Positions& v) override;
+  StepResult end_velocities(const State& before, double h, const Positions& x,
+                            Positions& v) override;
 
   using Spring = SpringHessian::Spring;
   using Hinge = SpringHessian::Hinge;

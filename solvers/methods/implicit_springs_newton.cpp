@@ -201,12 +201,12 @@ StepResult ImplicitSprings::newton(double h, double current, Positions& x) {
 }
 
 // The history is of accepted steps, so that one tried again after a refusal starts as it did.
-StepResult ImplicitSprings::end_velocities(const State& before, double h, const Positions& filtered,
-                                           const Positions& x, Positions& v) {
+StepResult ImplicitSprings::end_velocities(const State& before, double h, const Positions& x,
+                                           Positions& v) {
   v_before_ = before.v;
   time_before_ = before.time;
   pull_before_.swap(pull_);
-  return Stepper::end_velocities(before, h, filtered, x, v);
+  return Stepper::end_velocities(before, h, x, v);
 }
 
 }  // namespace inextensible

@@ -228,8 +228,8 @@ class Rattle final : public Stepper {
     return result;
   }
 
-  StepResult end_velocities(const State& start, double h, const Positions& /*filtered*/,
-                            const Positions& x, Positions& v) override {
+  StepResult end_velocities(const State& start, double h, const Positions& x,
+                            Positions& v) override {
     Stopwatch stopwatch(phases_wanted_);
     v = (x - start.x) * (1 / h);  // velocity stage
     if (in_step(implicit_, h)) {

@@ -98,11 +98,11 @@ class VertexBlockDescent final : public Stepper {
   }
 
   // The history is of accepted steps, so that one tried again after a refusal starts as it did.
-  StepResult end_velocities(const State& before, double h, const Positions& filtered,
-                            const Positions& x, Positions& v) override {
+  StepResult end_velocities(const State& before, double h, const Positions& x,
+                            Positions& v) override {
     v_before_ = before.v;
     time_before_ = before.time;
-    return Stepper::end_velocities(before, h, filtered, x, v);
+    return Stepper::end_velocities(before, h, x, v);
   }
 
   int iterations_;

@@ -110,8 +110,8 @@ bool Bdf2Stepper::implicit_solve(const State& state, double h, bool known, Posit
   return true;
 }
 
-StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Positions& /*filtered*/,
-                                       const Positions& x, Positions& v) {
+StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Positions& x,
+                                       Positions& v) {
   Stopwatch stopwatch(phases_wanted_);
   const Bdf2Coefficients c = history_.coefficients(h);
   v = (x - c.now * start.x - c.before * history_.x()) * (1 / c.beta_h);
@@ -156,8 +156,8 @@ StepResult Bdf2OfEuler::solve(const State& state, double h, Positions& x) {
   return result;
 }
 
-StepResult Bdf2OfEuler::end_velocities(const State& start, double h, const Positions& /*filtered*/,
-                                       const Positions& x, Positions& v) {
+StepResult Bdf2OfEuler::end_velocities(const State& start, double h, const Positions& x,
+                                       Positions& v) {
   v = ahead_.v;
   history_.add_step(start, h, x, euler_->contacts(), v);
   return {};

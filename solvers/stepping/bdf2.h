@@ -65,8 +65,8 @@ class Bdf2Stepper final : public FilterStepper {
 
  private:
   bool unconstrained(const State& state, double h, Positions& x) override;
-  StepResult end_velocities(const State& start, double h, const Positions& filtered,
-                            const Positions& x, Positions& v) override;
+  StepResult end_velocities(const State& start, double h, const Positions& x,
+                            Positions& v) override;
   // x^{n+1} before the filter, and acceleration_. known: the last step's history goes on.
   void explicit_solve(const State& state, double h, bool known, Positions& x);
   bool implicit_solve(const State& state, double h, bool known, Positions& x);
@@ -89,8 +89,8 @@ class Bdf2OfEuler final : public Stepper {
 
  private:
   StepResult solve(const State& state, double h, Positions& x) override;
-  StepResult end_velocities(const State& start, double h, const Positions& filtered,
-                            const Positions& x, Positions& v) override;
+  StepResult end_velocities(const State& start, double h, const Positions& x,
+                            Positions& v) override;
 
   std::unique_ptr<Stepper> euler_;
   Bdf2History history_;

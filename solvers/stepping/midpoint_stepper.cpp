@@ -30,8 +30,7 @@ bool MidpointStepper::unconstrained(const State& state, double h, Positions& x0)
   return true;
 }
 
-StepResult MidpointStepper::end_velocities(const State& start, double h,
-                                           const Positions& /*filtered*/, const Positions& x,
+StepResult MidpointStepper::end_velocities(const State& start, double h, const Positions& x,
                                            Positions& v) {
   Stopwatch stopwatch(phases_wanted_);
   v = (2 * (candidate_ - start.x) + (1 + rho_) * (x - candidate_)) * (1 / h) - start.v;

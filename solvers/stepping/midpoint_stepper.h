@@ -28,8 +28,8 @@ class MidpointStepper final : public FilterStepper {
 
  private:
   bool unconstrained(const State& state, double h, Positions& x0) override;
-  StepResult end_velocities(const State& start, double h, const Positions& filtered,
-                            const Positions& x, Positions& v) override;
+  StepResult end_velocities(const State& start, double h, const Positions& x,
+                            Positions& v) override;
 
   double rho_;
   Positions middle_;     // x^n + h v^n / 2

@@ -48,7 +48,7 @@ StepResult Stepper::attempt(State& state, double h) {
   // A sum is not finite if any term is not.
   if (!std::isfinite(next_.sum()))
     return {Status::not_finite, result.iterations, -1, 0, "a position overflowed"};
-  const StepResult end = end_velocities(state, h, filtered_positions(), next_, velocity_);
+  const StepResult end = end_velocities(state, h, next_, velocity_);
   if (!end) return end;
   if (!std::isfinite(velocity_.sum()))
     return {Status::not_finite, result.iterations, -1, 0, "a velocity overflowed"};
@@ -71,8 +71,7 @@ const State& Stepper::with_pins_at_end(const State& state, double h) {
   return moved_;
 }
 
-StepResult Stepper::end_velocities(const State& start, double h, const Positions& /*filtered*/,
-                                   const Positions& x, Positions& v) {
+StepResult Stepper::end_velocities(const State& start, double h, const Positions& x, Positions& v) {
   v = (x - start.x) * (1 / h);
   return {};
 }

@@ -77,11 +77,9 @@ class Stepper {
   virtual StepResult solve(const State& state, double h, Positions& x) = 0;
 
   // Writes the velocities at the end of the step to v, from the positions x after the collision
-  // filter; `filtered` are those before it, the same object where there is no collider. One-step
-  // methods take v = (x - x^n) / h. A method that remembers earlier steps does so here; it may
-  // still refuse.
-  virtual StepResult end_velocities(const State& start, double h, const Positions& filtered,
-                                    const Positions& x, Positions& v);
+  // filter. One-step methods take v = (x - x^n) / h. A method that remembers earlier steps does so
+  // here; it may still refuse.
+  virtual StepResult end_velocities(const State& start, double h, const Positions& x, Positions& v);
 
   // Where all vertices, pins that follow the body as well, are at the start of the step.
   const Positions& start_positions() const { return *start_; }
