@@ -208,15 +208,12 @@ class Rattle final : public Stepper {
  private:
   StepResult solve(const State& state, double h, Positions& x) override {
     Stopwatch stopwatch(phases_wanted_);
-    x = state.x + h * state.v;  // position stage (Andersen 1983)
-    if (in_step(implicit_, h)) {
-      x.colwise() += 0.5 * h * h * problem_->gravity();
-      for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);
-      kick_ = x;
-      if (!implicit_->advance_inside(state, h, 0.5, x, work_))
+    if (in_step(implicit_, h)) {  // position stage (Andersen 1983)
+      if (!implicit_->advance_inside(state, h, 0.5, kick_, x, work_))
         return {Status::singular, 0, -1, 0, singular_forces};
       kick_ = (x - kick_) * (1 / h);
     } else {
+      x = state.x + h * state.v;
       add_acceleration(*problem_, state.x, 0.5 * h * h, x, work_);
       if (problem_->has_drag()) add_drag(*problem_, state.v, 0.5 * h * h, x);
       for (const int vertex : problem_->pinned()) x.col(vertex) = state.x.col(vertex);

@@ -130,13 +130,17 @@ bool ImplicitForces::advance(const State& start, double h, double scale, double 
 // About y it is (M + h / 2 D + s^2 L) theta (x0 - y) = s^2 (-grad V(y_theta) - D (y - x^n) / h),
 // with s = theta h.
 bool ImplicitForces::advance_inside(const State& start, double h, double theta, Positions& y,
-                                    WorkCounters& work) {
+                                    Positions& x0, WorkCounters& work) {
+  y = start.x + h * start.v;
+  y.colwise() += 0.5 * h * h * problem_.gravity();
+  for (const int vertex : problem_.pinned()) y.col(vertex) = start.x.col(vertex);
+  x0 = y;
   inside_ = (1 - theta) * start.x + theta * y;
   velocity_ = (y - start.x) * (1 / h);
   find_forces(start, 0.5 * h, late(h), inside_, velocity_, work);
   for (const int vertex : free_vertex_)
     force_.col(vertex) -= problem_.mass()[vertex] * problem_.gravity();
-  return add_solution(theta * h, 0.5 * h, late(h), 1 / theta, y, work);
+  return add_solution(theta * h, 0.5 * h, late(h), 1 / theta, x0, work);
 }
 
 bool ImplicitForces::add_solution(double scale, double drag, Late late, double factor, Positions& y,
