@@ -233,10 +233,7 @@ class Rattle final : public Stepper {
       v += kick_;
       v.colwise() += 0.5 * h * problem_->gravity();
     } else {
-      if (problem_->has_drag()) {  // of the velocity halfway
-        v_half_ = v;
-        add_drag(*problem_, v_half_, 0.5 * h, v);
-      }
+      if (problem_->has_drag()) add_drag(*problem_, v, 0.5 * h, v);  // of the velocity halfway
       add_acceleration(*problem_, x, 0.5 * h, v, work_);
     }
     for (const int vertex : problem_->pinned())  // 0 unless pins follow a body
@@ -258,7 +255,6 @@ class Rattle final : public Stepper {
   }
 
   Shake shake_;
-  Positions v_half_;                          // with drag only
   std::unique_ptr<ImplicitForces> implicit_;  // null: explicit
   Positions candidate_;                       // before friction, with contact only
   Positions kick_;                            // m/s, of implicit forces in half a step

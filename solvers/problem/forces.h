@@ -16,7 +16,7 @@ void unconstrained_step(const Problem& problem, const State& state, double h, Po
 void add_acceleration(const Problem& problem, const Positions& x, double scale, Positions& y,
                       WorkCounters& work);
 
-// y -= scale W D v, drag's. v: 3 x n, m/s.
+// y -= scale W D v, drag's. v: 3 x n, m/s; may be y.
 void add_drag(const Problem& problem, const Positions& v, double scale, Positions& y);
 
 // f += M g - grad V(x) - D v, N, on free vertices, with shear at shear_at instead of x.
