@@ -173,9 +173,8 @@ class Icd final : public VelocityFilter {
  private:
   // u_, c_, f_, largest_f_ and merit_ at x0 + dx (in trial_) with multipliers trial_mu_.
   void evaluate(const Positions& dx) {
-    permissible_ = edges_.linearize(trial_, u_, c_);  // (4) and (2)
-    if (target_ > 0) edges_.excess(target_, c_);
-    f_ = dx * mass_.asDiagonal();  // M times the F of section 4.1
+    permissible_ = edges_.linearize(trial_, u_, c_, target_);  // (4) and (2)
+    f_ = dx * mass_.asDiagonal();                              // M times the F of section 4.1
     for (std::size_t k = 0; k < edges_.a.size(); ++k) {
       const auto e = static_cast<Eigen::Index>(k);
       f_.col(edges_.a[k]) -= trial_mu_[e] * u_.col(e);

@@ -52,7 +52,7 @@ class Shake final : public VelocityFilter {
     double full_step = 0;    // |mu_| before halving
     double reach = 0;        // largest |x^{n+1} - x^n| that is not taken for spurious
     for (int j = 0;; ++j) {
-      const bool permissible = linearize(x);
+      const bool permissible = edges.linearize(x, u_, c_, target_);
       const double error = c_.norm();
       const bool exact = error == 0 && (target_ > 0 || j > 0);  // nothing is left to project
       if (permissible && (j >= min_iterations_ || exact)) {
@@ -85,7 +85,7 @@ class Shake final : public VelocityFilter {
       } else {
         if (!(error < least_error)) {
           x.restore(best_);
-          linearize(x);
+          edges.linearize(x, u_, c_, target_);
         }
         if (!factor_here(x.contacts(), work))
           return refuse(Status::singular, j, edges, x, "J(x_j) W J(x^n)^T is singular");
@@ -154,13 +154,6 @@ class Shake final : public VelocityFilter {
     return true;
   }
 
-  // The gradient to u_; what of C lies beyond the target to c_. Returns whether x is permissible.
-  bool linearize(const Positions& x) {
-    const bool permissible = system_.edges().linearize(x, u_, c_);
-    if (target_ > 0) system_.edges().excess(target_, c_);
-    return permissible;
-  }
-
   void correct(Iterate x) {
     system_.edges().apply(u_start_, mu_, x);  // (5) with J(x^n)
     x.settle();
@@ -182,7 +175,7 @@ class Shake final : public VelocityFilter {
   Eigen::Matrix3Xd u_start_, u_;
   Positions x_factored_;  // where the factor in system_ was built; used by RATTLE only
   bool factored_ = false;
-  Eigen::VectorXd c_, mu_;  // C~(x_j), and the step's h^2 dlambda
+  Eigen::VectorXd c_, mu_;  // what of C(x_j) lies beyond the target; the step's h^2 dlambda
   Iterate::Record best_;    // of least |C|
   // J(x_j) W J(x^n)^T, made at the first failure to converge: most runs never need it.
   std::unique_ptr<SchurComplement> current_;
