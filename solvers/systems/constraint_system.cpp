@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solvers/linear/spd_solvers.h"
-
 namespace inextensible {
 namespace {
 
