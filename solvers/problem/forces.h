@@ -23,9 +23,6 @@ void add_drag(const Problem& problem, const Positions& v, double scale, Position
 void add_forces(const Problem& problem, const Positions& x, const Positions& shear_at,
                 const Positions& v, Positions& f, WorkCounters& work);
 
-// Energy of linear springs, J.
-double spring_energy(const Springs& springs, const Positions& x);
-
 // Potential energy of gravity (zero at the origin), shear and bending, J.
 double potential_energy(const Problem& problem, const Positions& x);
 double kinetic_energy(const Problem& problem, const Positions& v);

@@ -121,7 +121,7 @@ StepResult Bdf2Stepper::end_velocities(const State& start, double h, const Posit
 }
 
 Bdf2OfEuler::Bdf2OfEuler(std::shared_ptr<const Problem> problem, std::unique_ptr<Stepper> euler)
-    : Stepper(std::move(problem), ContactsElsewhere{}),
+    : Stepper(std::move(problem), false),
       euler_(std::move(euler)),
       history_(*problem_),
       gravity_(problem_->gravity().replicate(1, problem_->vertices())) {

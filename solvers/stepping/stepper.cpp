@@ -7,14 +7,11 @@
 
 namespace inextensible {
 
-Stepper::Stepper(std::shared_ptr<const Problem> problem, ContactsElsewhere)
+Stepper::Stepper(std::shared_ptr<const Problem> problem, bool own_contacts)
     : problem_(std::move(problem)),
       next_(3, problem_->vertices()),
-      velocity_(3, problem_->vertices()) {}
-
-Stepper::Stepper(std::shared_ptr<const Problem> problem)
-    : Stepper(std::move(problem), ContactsElsewhere{}) {
-  if (!problem_->collider()) return;
+      velocity_(3, problem_->vertices()) {
+  if (!own_contacts || !problem_->collider()) return;
   contacts_ = std::make_unique<Contacts>(*problem_);
   filtered_.resize(3, problem_->vertices());
 }

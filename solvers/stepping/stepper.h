@@ -36,7 +36,8 @@ class IterateObserver {
 
 class Stepper {
  public:
-  explicit Stepper(std::shared_ptr<const Problem> problem);
+  // own_contacts: false for a stepper around another one, which looks after contacts.
+  explicit Stepper(std::shared_ptr<const Problem> problem, bool own_contacts = true);
   virtual ~Stepper() = default;
   Stepper(const Stepper&) = delete;
   Stepper& operator=(const Stepper&) = delete;
@@ -67,10 +68,6 @@ class Stepper {
   virtual void observe(IterateObserver* /*observer*/) {}
 
  protected:
-  // For a stepper around another one, which looks after contacts.
-  struct ContactsElsewhere {};
-  Stepper(std::shared_ptr<const Problem> problem, ContactsElsewhere);
-
   // Writes the inextensible positions at the end of the step to x; adds to work_ and phases_. Pins
   // that follow the body are, in `state`, where they end the step, without velocity: methods treat
   // them as if they never moved.
