@@ -84,14 +84,13 @@ TriangleCollider::TriangleCollider(TriangleMesh mesh, double friction)
 
 // A face's own normal; the sum of both faces' at an edge; the angle-weighted sum at a corner.
 void TriangleCollider::find_pseudonormals() {
-  const auto count = mesh_.triangles.size();
   std::vector<Vector3d> at_vertex(mesh_.vertices.size(), Vector3d::Zero());
   std::map<std::pair<int, int>, std::pair<Vector3d, int>> at_edge;
-  pseudonormal_.resize(count);
-  for (std::size_t f = 0; f < count; ++f) {
+  pseudonormal_.resize(mesh_.triangles.size());
+  for (int f = 0; f < triangles(); ++f) {
     const auto& triangle = mesh_.triangles[f];
     std::array<Vector3d, 3> p;
-    for (int i = 0; i < 3; ++i) p[i] = corner(mesh_, static_cast<int>(f), i);
+    for (int i = 0; i < 3; ++i) p[i] = corner(mesh_, f, i);
     const Vector3d normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
     pseudonormal_[f][0] = normal;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -112,7 +111,7 @@ void TriangleCollider::find_pseudonormals() {
           ") has " + std::to_string(normal.second) + " triangles, a closed mesh has 2");
     }
   }
-  for (std::size_t f = 0; f < count; ++f) {
+  for (int f = 0; f < triangles(); ++f) {
     const auto& triangle = mesh_.triangles[f];
     for (std::size_t i = 0; i < 3; ++i) {
       pseudonormal_[f][1 + i] =
@@ -125,10 +124,9 @@ void TriangleCollider::find_pseudonormals() {
 void TriangleCollider::check_orientation() {
   double volume = 0;
   convex_ = true;
-  for (std::size_t f = 0; f < mesh_.triangles.size(); ++f) {
-    const Vector3d& p = corner(mesh_, static_cast<int>(f), 0);
-    volume += p.dot((corner(mesh_, static_cast<int>(f), 1) - p)
-                        .cross(corner(mesh_, static_cast<int>(f), 2) - p));
+  for (int f = 0; f < triangles(); ++f) {
+    const Vector3d& p = corner(mesh_, f, 0);
+    volume += p.dot((corner(mesh_, f, 1) - p).cross(corner(mesh_, f, 2) - p));
     for (const Vector3d& v : mesh_.vertices) {
       convex_ = convex_ && (v - p).dot(pseudonormal_[f][0]) <= 1e-9 * p.norm();
     }
@@ -141,7 +139,6 @@ void TriangleCollider::check_orientation() {
 }
 
 void TriangleCollider::lay_out_grid() {
-  const auto count = mesh_.triangles.size();
   Vector3d high = low_ = mesh_.vertices.front();
   for (const Vector3d& v : mesh_.vertices) {
     low_ = low_.cwiseMin(v);
@@ -152,12 +149,11 @@ void TriangleCollider::lay_out_grid() {
   low_ -= margin;
   cell_size_ = (high + margin - low_) / resolution;
   inverse_cell_size_ = cell_size_.cwiseInverse();
-  for (std::size_t f = 0; f < count; ++f) {
+  for (int f = 0; f < triangles(); ++f) {
     const Vector3d& normal = pseudonormal_[f][0];
-    planes_.push_back(
-        {normal.x(), normal.y(), normal.z(), normal.dot(corner(mesh_, static_cast<int>(f), 0))});
+    planes_.push_back({normal.x(), normal.y(), normal.z(), normal.dot(corner(mesh_, f, 0))});
   }
-  std::vector<int> all(count);
+  std::vector<int> all(triangles());
   std::iota(all.begin(), all.end(), 0);
   cell_.assign(resolution * resolution * resolution, outside);
   lists_.push_back(add_list(all));  // deep
