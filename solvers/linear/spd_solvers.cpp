@@ -2,7 +2,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "solvers/linear/mixed_cholesky.h"
 #include "solvers/linear/multifrontal_cholesky.h"
 #include "solvers/linear/spd_solver.h"
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "solvers/methods/implicit_springs.h"
+#include "solvers/problem/forces.h"
 
 namespace inextensible {
 namespace {
@@ -87,10 +88,7 @@ ImplicitSprings::Search ImplicitSprings::search(const Positions& x, double h, do
 StepResult ImplicitSprings::solve(const State& state, double h, Positions& x) {
   Stopwatch stopwatch(phases_wanted_);
   if (problem().has_drag()) before_ = state.x;
-  const Eigen::Vector3d fall = h * h * problem().gravity();
-  inertial_ = state.x + h * state.v;
-  inertial_.colwise() += fall;
-  for (const int vertex : problem().pinned()) inertial_.col(vertex) = state.x.col(vertex);
+  free_flight(problem(), state, h, h * h, inertial_);
   pull_ = pull_before_;
   if (contacts_inside()) {
     contacts_->apply_friction(inertial_, work_);

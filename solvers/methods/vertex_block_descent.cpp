@@ -12,6 +12,7 @@
 
 #include "solvers/methods/rows.h"
 #include "solvers/methods/vertex_passes.h"
+#include "solvers/problem/forces.h"
 
 namespace inextensible {
 namespace {
@@ -43,10 +44,7 @@ class VertexBlockDescent final : public Stepper {
  private:
   StepResult solve(const State& state, double h, Positions& x) override {
     Stopwatch stopwatch(phases_wanted_);
-    const Eigen::Vector3d fall = h * h * problem().gravity();
-    inertial_ = state.x + h * state.v;
-    inertial_.colwise() += fall;
-    for (const int vertex : problem().pinned()) inertial_.col(vertex) = state.x.col(vertex);
+    free_flight(problem(), state, h, h * h, inertial_);
     for (int v = 0; problem().has_drag() && v < problem().vertices(); ++v) {
       const double mass = problem().mass()[v], drag = h * problem().drag(v);
       inertia_[v] = mass + drag;

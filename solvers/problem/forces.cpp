@@ -98,6 +98,13 @@ void add_accelerations(const Problem& problem, const Positions& x, const Positio
 
 }  // namespace
 
+void free_flight(const Problem& problem, const State& state, double h, double scale, Positions& y) {
+  const Eigen::Vector3d fall = scale * problem.gravity();
+  y = state.x + h * state.v;
+  y.colwise() += fall;
+  for (const int vertex : problem.pinned()) y.col(vertex) = state.x.col(vertex);
+}
+
 void add_acceleration(const Problem& problem, const Positions& x, double scale, Positions& y,
                       WorkCounters& work) {
   add_accelerations(problem, x, x, scale, y, work);

@@ -11,6 +11,9 @@ namespace inextensible {
 void unconstrained_step(const Problem& problem, const State& state, double h, Positions& x0,
                         WorkCounters& work);
 
+// y = x + h v + scale g of the state, in pinned vertices x.
+void free_flight(const Problem& problem, const State& state, double h, double scale, Positions& y);
+
 // y += scale (g - W grad V(x)), the acceleration by everything but inextensibility and drag. Pinned
 // vertices get gravity too; the caller puts them back.
 void add_acceleration(const Problem& problem, const Positions& x, double scale, Positions& y,

@@ -131,9 +131,7 @@ bool ImplicitForces::advance(const State& start, double h, double scale, double 
 // with s = theta h.
 bool ImplicitForces::advance_inside(const State& start, double h, double theta, Positions& y,
                                     Positions& x0, WorkCounters& work) {
-  y = start.x + h * start.v;
-  y.colwise() += 0.5 * h * h * problem_.gravity();
-  for (const int vertex : problem_.pinned()) y.col(vertex) = start.x.col(vertex);
+  free_flight(problem_, start, h, 0.5 * h * h, y);
   x0 = y;
   inside_ = (1 - theta) * start.x + theta * y;
   velocity_ = (y - start.x) * (1 / h);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solvers/linear/mixed_cholesky.h"
+#include "solvers/linear/multifrontal_cholesky.h"
 #include "solvers/linear/spd_solver.h"
 #include "solvers/problem/edge_constraints.h"
 #include "support/random_graph.h"
