@@ -9,7 +9,7 @@
 #include "harness/base/text.h"
 #include "harness/cli/command.h"
 #include "harness/judge/reference.h"
-#include "harness/scenes/mesh_scenes.h"
+#include "harness/scenes/scene.h"
 #include "solvers/registry.h"
 
 namespace harness {
